@@ -1,0 +1,12 @@
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+# Equal seeds must give equal trajectories on every machine: no fused multiply-add behind our back.
+add_compile_options(-ffp-contract=off)
+
+option(ERGOCAST_WERROR "Treat warnings as errors (continuous integration sets this)" OFF)
+add_library(ergocast_warnings INTERFACE)
+add_library(ergocast::warnings ALIAS ergocast_warnings)
+target_compile_options(ergocast_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow=local -Wnon-virtual-dtor $<$<BOOL:${ERGOCAST_WERROR}>:-Werror>)

@@ -1,0 +1,247 @@
+#include "coordinator/coordinator.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kMissionPeriod = 1s;
+constexpr auto kEndRepeatPeriod = 100ms;
+constexpr auto kTeamStatusPeriod = 250ms;
+/// An agent that says nothing for so long is not alive: six of its statuses.
+constexpr auto kSilence = 3s;
+/// How long the end is repeated.
+constexpr auto kFarewell = 1s;
+constexpr std::size_t kMaxRosterEntries = static_cast<std::size_t>(kMaxAgents) * 4;
+
+std::chrono::nanoseconds seconds(double s) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9));
+}
+
+}  // namespace
+
+Coordinator::Coordinator(RunId run, Incarnation incarnation, Mission mission,
+                         std::vector<std::byte> plan)
+    : run_(run),
+      incarnation_(incarnation),
+      mission_(std::move(mission)),
+      plan_(std::move(plan)) {}
+
+void Coordinator::receive(const Message& message, Instant now) {
+  if (header_of(message).run != run_ && !std::holds_alternative<Hello>(message)) return;
+  if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);
+  if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
+  if (const auto* stop = std::get_if<Stop>(&message)) return end(false, stop->reason, now);
+  if (const auto* status = std::get_if<AgentStatus>(&message)) {
+    const auto at = members_.find({status->header.sender, status->header.incarnation});
+    if (at == members_.end()) return;
+    // Liveness advances only on what is new: a replay keeps nobody alive.
+    if (at->second.status && at->second.status->header.sequence >= status->header.sequence) return;
+    at->second.status = *status;
+    at->second.heard = now;
+  }
+}
+
+RosterEntry* Coordinator::active_entry(AgentId id) {
+  const auto at = std::find_if(roster_.begin(), roster_.end(), [id](const RosterEntry& entry) {
+    return entry.author.agent == id && entry.active_until < 0;
+  });
+  return at == roster_.end() ? nullptr : &*at;
+}
+
+std::optional<AgentId> Coordinator::free_id() const {
+  for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
+    if (std::none_of(roster_.begin(), roster_.end(), [id](const RosterEntry& entry) {
+          return entry.author.agent == id && entry.active_until < 0;
+        })) {
+      return id;
+    }
+  }
+  return std::nullopt;
+}
+
+void Coordinator::on(const Hello& hello, Instant now) {
+  if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
+  if (header_of(hello).run != 0 && header_of(hello).run != run_) return;
+  const Incarnation nonce = hello.header.incarnation;
+  const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
+    return entry.author.incarnation == nonce;
+  });
+  if (known) {
+    next_mission_ = Instant{};  // it has not heard; say it again at once
+    return;
+  }
+  std::optional<AgentId> id = hello.requested_id;
+  if (*id == kUnassigned) id = free_id();
+  if (!id || *id >= static_cast<AgentId>(mission_.starts_m.size())) return;  // the team is full
+  const RosterEntry* holder = active_entry(*id);
+  if (holder != nullptr && alive(*holder, now)) return;  // the younger has to give way
+  admit({*id, nonce}, now);
+}
+
+void Coordinator::admit(const Author& author, Instant now) {
+  if (roster_.size() >= kMaxRosterEntries) return;
+  if (RosterEntry* former = active_entry(author.agent)) former->active_until = tick_;
+  const Tick from = state_ == MissionState::kRunning ? tick_ : 0;
+  roster_.push_back({author, from, -1});
+  std::sort(roster_.begin(), roster_.end(),
+            [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
+  members_[author].heard = now;
+  change();
+}
+
+void Coordinator::on(const WorldState& world, Instant now) {
+  if (world.header.tick < tick_) return;
+  if (world.header.tick > tick_) tick_since_ = now;
+  tick_ = world.header.tick;
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    answered_[vehicle.id] = vehicle.answered_tick;
+  }
+  if (tick_ >= mission_.timing.tick_count) end(false, "mission complete", now);
+}
+
+bool Coordinator::alive(const RosterEntry& entry, Instant now) const {
+  const auto at = members_.find(entry.author);
+  return entry.active_until < 0 && at != members_.end() && now - at->second.heard < kSilence;
+}
+
+int Coordinator::alive_count(Instant now) const {
+  return static_cast<int>(std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& e) {
+    return alive(e, now);
+  }));
+}
+
+void Coordinator::end(bool failed, std::string reason, Instant now) {
+  if (ended_) return;
+  state_ = failed ? MissionState::kFailed : MissionState::kEnded;
+  reason_ = std::move(reason);
+  ended_ = now;
+  change();
+}
+
+RosterEntry* Coordinator::culprit(Instant now) {
+  RosterEntry* suspect = nullptr;
+  for (RosterEntry& entry : roster_) {
+    if (entry.active_until >= 0 || answered_[entry.author.agent] >= tick_) continue;
+    if (!alive(entry, now)) return &entry;
+    const auto& status = members_[entry.author].status;
+    // Who waits for a teammate is not to blame; that teammate is.
+    if (status && status->waiting_for != kUnassigned) {
+      if (RosterEntry* named = active_entry(status->waiting_for)) suspect = named;
+      continue;
+    }
+    if (suspect == nullptr) suspect = &entry;
+  }
+  return suspect;
+}
+
+void Coordinator::check_timeouts(Instant now) {
+  if (state_ == MissionState::kWaiting) {
+    if (now - *started_ < seconds(mission_.timing.admission_timeout_s)) return;
+    std::string missing;
+    for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
+      if (active_entry(id) == nullptr) missing += (missing.empty() ? "" : ", ") + std::to_string(id);
+    }
+    return end(true, "only " + std::to_string(alive_count(now)) + " of the quorum of " +
+                         std::to_string(mission_.quorum) + " agents were admitted; missing: " +
+                         missing, now);
+  }
+  if (state_ != MissionState::kRunning || mission_.timing.pace != Pace::kLockstep) return;
+  if (now - tick_since_ < seconds(mission_.timing.lockstep_timeout_s)) return;
+  RosterEntry* late = culprit(now);
+  const std::string since = " for " + std::to_string(mission_.timing.lockstep_timeout_s) + " s";
+  if (late == nullptr) {
+    return end(true, "the world has not gone beyond tick " + std::to_string(tick_) + since, now);
+  }
+  const std::string who = "agent " + std::to_string(late->author.agent) +
+                          " has not answered tick " + std::to_string(tick_) + since;
+  if (mission_.timing.on_timeout == OnTimeout::kEndMission) return end(true, who, now);
+  late->active_until = tick_;
+  tick_since_ = now;
+  change();
+}
+
+void Coordinator::advance(Instant now, Outbox& out) {
+  if (!started_) started_ = now;
+  check_timeouts(now);
+  if (state_ == MissionState::kWaiting && alive_count(now) >= mission_.quorum) {
+    state_ = MissionState::kRunning;
+    tick_since_ = now;
+    change();
+  }
+  if (now >= next_mission_) {
+    publish_mission(out);
+    next_mission_ = now + (ended_ ? kEndRepeatPeriod : kMissionPeriod);
+  }
+  if (now >= next_team_status_) {
+    publish_team_status(now, out);
+    next_team_status_ = now + kTeamStatusPeriod;
+  }
+  finished_ = ended_ && now - *ended_ >= kFarewell;
+}
+
+void Coordinator::publish_mission(Outbox& out) {
+  const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
+  const std::size_t parts =
+      std::max({std::size_t{1}, ceil_div(plan_.size(), kMaxPlanBytesPerMessage),
+                ceil_div(roster_.size(), kMaxRosterEntriesPerMessage)});
+  for (std::size_t p = 0; p < parts; ++p) {
+    MissionPart part;
+    part.revision = revision_;
+    part.state = state_;
+    part.part = static_cast<std::int32_t>(p);
+    part.parts = static_cast<std::int32_t>(parts);
+    part.reason = reason_;
+    const auto slice = [p](const auto& all, std::size_t size, auto& into) {
+      const std::size_t first = std::min(p * size, all.size());
+      const std::size_t last = std::min(first + size, all.size());
+      into.assign(all.begin() + static_cast<std::ptrdiff_t>(first),
+                  all.begin() + static_cast<std::ptrdiff_t>(last));
+    };
+    slice(roster_, kMaxRosterEntriesPerMessage, part.roster);
+    slice(plan_, kMaxPlanBytesPerMessage, part.plan);
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
+      part.header = header(bus);
+      out.push_back({bus, part});
+    }
+  }
+}
+
+void Coordinator::publish_team_status(Instant now, Outbox& out) {
+  TeamStatus team;
+  team.state = state_;
+  team.tick_count = mission_.timing.tick_count;
+  team.agents_alive = alive_count(now);
+  team.agents_expected = static_cast<std::int32_t>(mission_.starts_m.size());
+  std::vector<double> metrics;
+  for (const RosterEntry& entry : roster_) {
+    const auto& status = members_[entry.author].status;
+    if (entry.active_until < 0 && status) metrics.push_back(status->ergodic_metric);
+  }
+  if (!metrics.empty()) {
+    const auto middle = metrics.begin() + static_cast<std::ptrdiff_t>(metrics.size() / 2);
+    std::nth_element(metrics.begin(), middle, metrics.end());
+    team.ergodic_metric = *middle;
+  }
+  const auto waiting = std::find_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+    return entry.active_until < 0 && !alive(entry, now);
+  });
+  if (waiting != roster_.end()) team.waiting_for = waiting->author.agent;
+  team.header = header(Bus::kSwarm);
+  out.push_back({Bus::kSwarm, team});
+}
+
+Header Coordinator::header(Bus bus) {
+  return {run_, kCoordinator, incarnation_, sequencer_.next(bus), tick_};
+}
+
+Instant Coordinator::next_wakeup() const {
+  if (!started_) return Instant{};
+  return std::min(next_mission_, next_team_status_);
+}
+
+}  // namespace ergocast

@@ -1,0 +1,77 @@
+// Admits agents, distributes the mission, starts, watches and ends it. Never steers.
+//
+// It repeats its whole state once a second, so that nothing it says needs an acknowledgement.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/messages.h"
+#include "core/mission.h"
+#include "core/mission_follower.h"
+
+namespace ergocast {
+
+class Coordinator {
+ public:
+  /// @param plan     the compiled plan as it travels; `mission` is what it decodes to
+  Coordinator(RunId run, Incarnation incarnation, Mission mission, std::vector<std::byte> plan);
+
+  void receive(const Message& message, Instant now);
+  void advance(Instant now, Outbox& out);
+  Instant next_wakeup() const;
+
+  /// Ends the mission in order; `failed` makes it a failure with that reason.
+  void end(bool failed, std::string reason, Instant now);
+
+  /// True once the end has been repeated for long enough.
+  bool finished() const { return finished_; }
+  MissionState state() const { return state_; }
+  const std::string& reason() const { return reason_; }
+  const std::vector<RosterEntry>& roster() const { return roster_; }
+  Tick tick() const { return tick_; }
+
+ private:
+  struct Member {
+    std::optional<AgentStatus> status;
+    Instant heard{};
+  };
+
+  void on(const Hello& hello, Instant now);
+  void on(const WorldState& world, Instant now);
+  void admit(const Author& author, Instant now);
+  std::optional<AgentId> free_id() const;
+  RosterEntry* active_entry(AgentId id);
+  bool alive(const RosterEntry& entry, Instant now) const;
+  int alive_count(Instant now) const;
+  void check_timeouts(Instant now);
+  RosterEntry* culprit(Instant now);
+  void change() { ++revision_, next_mission_ = Instant{}; }
+  void publish_mission(Outbox& out);
+  void publish_team_status(Instant now, Outbox& out);
+  Header header(Bus bus);
+
+  RunId run_;
+  Incarnation incarnation_;
+  Mission mission_;
+  std::vector<std::byte> plan_;
+  Sequencer sequencer_;
+
+  MissionState state_ = MissionState::kWaiting;
+  std::string reason_;
+  std::int64_t revision_ = 0;
+  std::vector<RosterEntry> roster_;
+  std::map<Author, Member> members_;
+  std::map<AgentId, std::int64_t> answered_;  // by the world's word
+
+  Tick tick_ = 0;
+  std::optional<Instant> started_, ended_;
+  Instant tick_since_{};
+  Instant next_mission_{}, next_team_status_{};
+  bool finished_ = false;
+};
+
+}  // namespace ergocast

@@ -1,0 +1,109 @@
+#include "core/basis.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/require.h"
+
+namespace ergocast {
+namespace {
+
+void fill_axis(double x_m, double length_m, int modes, BasisAt::Table& cosine,
+               BasisAt::Table& slope) {
+  const double wave_number = std::numbers::pi / length_m;
+  const double first_cos = std::cos(wave_number * x_m);
+  const double first_sin = std::sin(wave_number * x_m);
+  double c = 1, s = 0;
+  for (int m = 0; m < modes; ++m) {
+    cosine[m] = c;
+    slope[m] = -m * wave_number * s;
+    const double next_c = c * first_cos - s * first_sin;
+    s = s * first_cos + c * first_sin;
+    c = next_c;
+  }
+}
+
+double half_unless_zero(int mode) { return mode == 0 ? 1.0 : 0.5; }
+
+}  // namespace
+
+BasisAt::BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
+  ERGOCAST_REQUIRE(domain.contains(x_m));
+  ERGOCAST_REQUIRE(basis.modes_x <= kMaxModesPerAxis && basis.modes_y <= kMaxModesPerAxis);
+  fill_axis(x_m.x() - domain.origin_m.x(), domain.size_m.x(), basis.modes_x, cos_x, slope_x);
+  fill_axis(x_m.y() - domain.origin_m.y(), domain.size_m.y(), basis.modes_y, cos_y, slope_y);
+}
+
+Coefficients basis_values(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
+  Coefficients values = Coefficients::Zero(basis.modes_x, basis.modes_y);
+  accumulate_basis(BasisAt(x_m, domain, basis), basis, 1.0, values.data());
+  return values;
+}
+
+void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums) {
+  for (int m = 0; m < basis.modes_x; ++m) {
+    const double along_x = at.cos_x[m] * dt_s;
+    double* row = sums + m * basis.modes_y;
+    for (int n = 0; n < basis.modes_y; ++n) row[n] += along_x * at.cos_y[n];
+  }
+}
+
+Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights) {
+  // Column sums first: their loops run over n, so they vectorise without reordering an addition.
+  BasisAt::Table over_slope, over_cos;
+  for (int n = 0; n < basis.modes_y; ++n) over_slope[n] = over_cos[n] = 0;
+  for (int m = 0; m < basis.modes_x; ++m) {
+    const double* row = weights + m * basis.modes_y;
+    const double slope = at.slope_x[m], cosine = at.cos_x[m];
+    for (int n = 0; n < basis.modes_y; ++n) {
+      over_slope[n] += slope * row[n];
+      over_cos[n] += cosine * row[n];
+    }
+  }
+  Eigen::Vector2d gradient(0, 0);
+  for (int n = 0; n < basis.modes_y; ++n) {
+    gradient.x() += over_slope[n] * at.cos_y[n];
+    gradient.y() += over_cos[n] * at.slope_y[n];
+  }
+  return gradient;
+}
+
+Coefficients sobolev_weights(const Basis& basis, const Rectangle& domain) {
+  Coefficients weights(basis.modes_x, basis.modes_y);
+  const double area_m2 = domain.size_m.x() * domain.size_m.y();
+  for (int m = 0; m < basis.modes_x; ++m) {
+    for (int n = 0; n < basis.modes_y; ++n) {
+      const double squared = static_cast<double>(m) * m + static_cast<double>(n) * n;
+      const double base =
+          1 + (basis.sobolev_form == SobolevForm::kSquaredNorm ? squared : std::sqrt(squared));
+      const double h_squared =
+          basis.normalized ? area_m2 * half_unless_zero(m) * half_unless_zero(n) : 1.0;
+      weights(m, n) = std::pow(base, -basis.sobolev_exponent) / h_squared;
+    }
+  }
+  return weights;
+}
+
+Coefficients gradient_energies(const Basis& basis, const Rectangle& domain) {
+  Coefficients energies(basis.modes_x, basis.modes_y);
+  for (int m = 0; m < basis.modes_x; ++m) {
+    for (int n = 0; n < basis.modes_y; ++n) {
+      const double kx = m * std::numbers::pi / domain.size_m.x();
+      const double ky = n * std::numbers::pi / domain.size_m.y();
+      energies(m, n) = 0.5 * (kx * kx * half_unless_zero(n) + ky * ky * half_unless_zero(m));
+    }
+  }
+  return energies;
+}
+
+double ergodic_metric(const Coefficients& coverage, const Coefficients& target,
+                      const Coefficients& weights) {
+  double metric = 0;
+  for (Eigen::Index k = 0; k < weights.size(); ++k) {
+    const double residual = coverage.data()[k] - target.data()[k];
+    metric += weights.data()[k] * residual * residual;
+  }
+  return metric;
+}
+
+}  // namespace ergocast

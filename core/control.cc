@@ -1,0 +1,71 @@
+#include "core/control.h"
+
+#include <cmath>
+
+#include "core/noise.h"
+#include "core/require.h"
+
+namespace ergocast {
+
+Eigen::Vector2d smooth_input(const Eigen::Vector2d& spectral_gradient, double epsilon,
+                             double u_max_mps) {
+  // hypot, because B is 1e-4 and falling: its square would lose the smallest residuals.
+  const double length =
+      std::hypot(std::hypot(spectral_gradient.x(), spectral_gradient.y()), epsilon);
+  if (length == 0) return {0, 0};
+  return spectral_gradient * (-u_max_mps / length);
+}
+
+Controller::Controller(const Mission& mission)
+    : basis_(mission.basis),
+      law_(mission.law),
+      seed_(mission.seed),
+      dt_s_(mission.timing.dt_s),
+      target_(mission.target_coefficients),
+      weights_(sobolev_weights(mission.basis, mission.domain)),
+      energies_(gradient_energies(mission.basis, mission.domain)),
+      residual_(Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y)) {
+  ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
+}
+
+double Controller::weigh_residual(const Coefficients& coverage) {
+  const Eigen::Index count = residual_.size();
+  const double* c = coverage.data();
+  const double* mu = target_.data();
+  const double* weight = weights_.data();
+  double* residual = residual_.data();
+  for (Eigen::Index k = 0; k < count; ++k) residual[k] = weight[k] * (c[k] - mu[k]);
+  if (law_.regularization == Regularization::kAbsolute) return law_.epsilon;
+
+  // Four partial sums in a fixed order: one chain of additions would cost more than all the rest.
+  const double* energy = energies_.data();
+  double partial[4] = {0, 0, 0, 0};
+  Eigen::Index k = 0;
+  for (; k + 4 <= count; k += 4) {
+    for (int lane = 0; lane < 4; ++lane) {
+      partial[lane] += residual[k + lane] * residual[k + lane] * energy[k + lane];
+    }
+  }
+  for (; k < count; ++k) partial[0] += residual[k] * residual[k] * energy[k];
+  return law_.epsilon * std::sqrt((partial[0] + partial[1]) + (partial[2] + partial[3]));
+}
+
+Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m,
+                                    const BasisAt& at, const Coefficients& coverage) {
+  epsilon_ = weigh_residual(coverage);
+  spectral_gradient_ = weighted_gradient(at, basis_, residual_.data());
+  Eigen::Vector2d velocity = smooth_input(spectral_gradient_, epsilon_, law_.u_max_mps) -
+                             law_.contraction_gain_per_s * (x_m - law_.contraction_center_m);
+  if (law_.noise_intensity > 0) {
+    velocity += (law_.noise_intensity / std::sqrt(dt_s_)) *
+                normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
+                            static_cast<std::uint64_t>(tick));
+  }
+  return velocity;
+}
+
+double Controller::metric(const Coefficients& coverage) const {
+  return ergodic_metric(coverage, target_, weights_);
+}
+
+}  // namespace ergocast

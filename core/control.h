@@ -1,0 +1,50 @@
+// The control step: the one place that computes an agent's input.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/basis.h"
+#include "core/ids.h"
+#include "core/mission.h"
+
+namespace ergocast {
+
+/// u = −u_max B / √(‖B‖² + ε²), (8); for ε = 0 the classical law (5), whose limit we set to u = 0
+/// where B = 0.  ‖u‖ ≤ u_max up to rounding.
+Eigen::Vector2d smooth_input(const Eigen::Vector2d& spectral_gradient, double epsilon,
+                             double u_max_mps);
+
+/// What one agent does with the team's coverage. Holds the mission's constant tables and a
+/// K-vector of scratch space; no step allocates.
+class Controller {
+ public:
+  explicit Controller(const Mission& mission);
+
+  /// The velocity command of (10) at position `x_m`:
+  ///   v = u − k (x − centre) + σ ξ / √dt,  ξ = the noise of (seed, agent, tick).
+  /// @param at        the basis at `x_m`
+  /// @param coverage  the team's c_k as this agent knows it, mode_count() entries
+  Eigen::Vector2d command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m, const BasisAt& at,
+                          const Coefficients& coverage);
+
+  /// B of (6) for the last command() [1/m], and the ε it used.
+  const Eigen::Vector2d& spectral_gradient() const { return spectral_gradient_; }
+  double epsilon() const { return epsilon_; }
+
+  /// φ² of `coverage` against the mission's target.
+  double metric(const Coefficients& coverage) const;
+
+ private:
+  /// Fills `residual_` with λ (c − μ) and returns the ε that belongs to it.
+  double weigh_residual(const Coefficients& coverage);
+
+  Basis basis_;
+  ControlLaw law_;
+  std::uint64_t seed_;
+  double dt_s_;
+  Coefficients target_, weights_, energies_, residual_;
+  Eigen::Vector2d spectral_gradient_{0, 0};
+  double epsilon_ = 0;
+};
+
+}  // namespace ergocast

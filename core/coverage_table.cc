@@ -1,0 +1,120 @@
+#include "core/coverage_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/require.h"
+
+namespace ergocast {
+namespace {
+
+/// Cosines by recurrence exceed 1 by about 3e-15; this leaves honest rounding room for ever.
+constexpr double kRoundingMargin = 1e-9;
+
+bool in_range(const Contribution& c, double dt_s) {
+  const double expected_s = static_cast<double>(c.steps) * dt_s;
+  if (!(std::abs(c.elapsed_s - expected_s) <= kRoundingMargin * expected_s)) return false;
+  const double limit = expected_s * (1 + kRoundingMargin);
+  // The negation refuses NaN too.
+  return std::all_of(c.sums.begin(), c.sums.end(),
+                     [limit](double sum) { return std::abs(sum) <= limit; });
+}
+
+}  // namespace
+
+CoverageTable::CoverageTable(const Basis& basis, double dt_s)
+    : basis_(basis),
+      dt_s_(dt_s),
+      block_count_((basis.mode_count() + kBlockSize - 1) / kBlockSize) {}
+
+const CoverageTable::Row* CoverageTable::find(const Author& author) const {
+  const auto at = std::lower_bound(rows_.begin(), rows_.end(), author,
+                                   [](const Row& row, const Author& a) { return row.author < a; });
+  return at != rows_.end() && at->author == author ? &*at : nullptr;
+}
+
+CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
+  auto at = std::lower_bound(rows_.begin(), rows_.end(), author,
+                             [](const Row& row, const Author& a) { return row.author < a; });
+  if (at != rows_.end() && at->author == author) return &*at;
+  const auto incarnations = std::count_if(rows_.begin(), rows_.end(), [&](const Row& row) {
+    return row.author.agent == author.agent;
+  });
+  if (incarnations >= kMaxIncarnationsPerAgent) return nullptr;
+  if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
+  const auto blocks = static_cast<std::size_t>(block_count_);
+  return &*rows_.insert(at, Row{author, std::vector<Block>(blocks),
+                                std::vector<double>(blocks * kBlockSize)});
+}
+
+void CoverageTable::add_sample(const Author& author, const BasisAt& at) {
+  Row* row = find_or_add(author);
+  ERGOCAST_REQUIRE(row != nullptr);
+  accumulate_basis(at, basis_, dt_s_, row->sums.data());
+  for (Block& block : row->blocks) ++block.steps;
+}
+
+Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
+  if (theirs.mode_count != basis_.mode_count() || theirs.block < 0 ||
+      theirs.block >= block_count_ || theirs.steps < 1 || theirs.steps > max_steps ||
+      theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_)) {
+    return Merge::kRefusedRange;
+  }
+  Row* row = find_or_add(theirs.author());
+  if (row == nullptr) return Merge::kRefusedLimit;
+  Block& block = row->blocks[static_cast<std::size_t>(theirs.block)];
+  if (theirs.steps <= block.steps) return Merge::kStale;
+  block = {theirs.steps, theirs.next_broadcast_tick};
+  std::copy(theirs.sums.begin(), theirs.sums.end(), row->sums.begin() + theirs.block * kBlockSize);
+  return Merge::kNewer;
+}
+
+Contribution CoverageTable::block(const Author& author, int block) const {
+  Contribution out;
+  out.header.sender = author.agent;
+  out.header.incarnation = author.incarnation;
+  out.block = block;
+  out.mode_count = basis_.mode_count();
+  if (const Row* row = find(author)) {
+    const Block& held = row->blocks[static_cast<std::size_t>(block)];
+    out.steps = held.steps;
+    out.next_broadcast_tick = held.next_broadcast_tick;
+    out.elapsed_s = static_cast<double>(held.steps) * dt_s_;
+    std::copy_n(row->sums.begin() + block * kBlockSize, kBlockSize, out.sums.begin());
+  }
+  return out;
+}
+
+void CoverageTable::average(Coefficients& coverage) const {
+  for (int b = 0; b < block_count_; ++b) {
+    const int first = b * kBlockSize;
+    const int count = std::min(kBlockSize, basis_.mode_count() - first);
+    double* out = coverage.data() + first;
+    std::fill_n(out, count, 0.0);
+    std::int64_t steps = 0;
+    for (const Row& row : rows_) {
+      const double* sums = row.sums.data() + first;
+      for (int k = 0; k < count; ++k) out[k] += sums[k];
+      steps += row.blocks[static_cast<std::size_t>(b)].steps;
+    }
+    const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
+    for (int k = 0; k < count; ++k) out[k] *= per_second;
+  }
+}
+
+std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) const {
+  const Row* row = find(author);
+  if (row == nullptr) return std::nullopt;
+  return std::min_element(row->blocks.begin(), row->blocks.end(),
+                          [](const Block& a, const Block& b) { return a.steps < b.steps; })
+      ->steps;
+}
+
+bool CoverageTable::holds_due(const Author& author, Tick tick) const {
+  const Row* row = find(author);
+  return row != nullptr && std::all_of(row->blocks.begin(), row->blocks.end(), [&](const Block& b) {
+           return b.steps > 0 && b.next_broadcast_tick > tick;
+         });
+}
+
+}  // namespace ergocast

@@ -1,0 +1,70 @@
+// What an agent holds of everybody's coverage: a state-based CRDT of cumulative sums.
+//
+// One row per (agent, incarnation), each in blocks with their own step counts. A block with more
+// steps replaces one with fewer, so merging is commutative, associative and idempotent: loss,
+// repetition and reordering need no protocol. The team's c_k is rebuilt in ascending
+// (agent, incarnation) order, because the order of additions alone changes trajectories.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/basis.h"
+#include "core/ids.h"
+#include "core/messages.h"
+
+namespace ergocast {
+
+enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit };
+
+class CoverageTable {
+ public:
+  CoverageTable(const Basis& basis, double dt_s);
+
+  int block_count() const { return block_count_; }
+
+  /// S += f(x)·dt for the row of `author`, (4)'s integral; creates the row if it is new.
+  void add_sample(const Author& author, const BasisAt& at);
+
+  /// Takes in one block. Refused, without effect: another number of modes, a block that does not
+  /// exist, an elapsed time that is not steps·dt, |S| > elapsed (1 + 1e-9), more steps than
+  /// `max_steps` (a forged future would win for ever), a full table.
+  Merge merge(const Contribution& theirs, std::int64_t max_steps);
+
+  /// One block of a row, without header; all zero for an unknown author.
+  Contribution block(const Author& author, int block) const;
+
+  /// c_k = Σ_j S_j / Σ_j elapsed_j per block, (4) weighted by the time each row covers.
+  /// Entries of blocks that nobody has covered are 0. Does not allocate.
+  void average(Coefficients& coverage) const;
+
+  /// The fewest steps among a row's blocks; nothing if the row is unknown.
+  std::optional<std::int64_t> steps_held(const Author& author) const;
+
+  /// Whether every block that `author` was due to send by `tick` is held.
+  bool holds_due(const Author& author, Tick tick) const;
+
+  std::size_t row_count() const { return rows_.size(); }
+
+ private:
+  struct Block {
+    std::int64_t steps = 0;
+    Tick next_broadcast_tick = 0;
+  };
+  struct Row {
+    Author author;
+    std::vector<Block> blocks;
+    std::vector<double> sums;  // block_count · kBlockSize, zero beyond the last mode
+  };
+
+  const Row* find(const Author& author) const;
+  Row* find_or_add(const Author& author);
+
+  Basis basis_;
+  double dt_s_;
+  int block_count_;
+  std::vector<Row> rows_;  // ascending by author
+};
+
+}  // namespace ergocast

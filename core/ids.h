@@ -1,0 +1,53 @@
+// Who is who, and when: identities, limits and the clock that cannot be asked for the time.
+#pragma once
+
+#include <chrono>
+#include <compare>
+#include <cstdint>
+
+namespace ergocast {
+
+/// An agent's number in the team, 0 … kMaxAgents − 1.
+using AgentId = std::int32_t;
+
+/// 64 random bits drawn when a process starts; a restarted agent is a new incarnation of its id.
+using Incarnation = std::uint64_t;
+
+/// 64 random bits drawn for each run; messages of another run are refused.
+using RunId = std::uint64_t;
+
+/// Number of a control step. Tick n happens at mission time n·dt.
+using Tick = std::int64_t;
+
+inline constexpr int kMaxAgents = 128;
+inline constexpr int kMaxIncarnationsPerAgent = 16;
+inline constexpr int kMaxModesPerAxis = 64;
+inline constexpr int kMaxHostLength = 63;
+inline constexpr int kMaxVersionLength = 31;
+
+/// `sender` of the processes that are not agents.
+inline constexpr AgentId kUnassigned = -1;
+inline constexpr AgentId kCoordinator = -2;
+inline constexpr AgentId kWorld = -3;
+inline constexpr AgentId kLogger = -4;
+inline constexpr AgentId kOperator = -5;
+
+/// One stretch of an agent's life: what its contributions are keyed by.
+struct Author {
+  AgentId agent = kUnassigned;
+  Incarnation incarnation = 0;
+  auto operator<=>(const Author&) const = default;
+};
+
+/// The clock that paces repeats and time-outs. It has no now(): only a main() or the laboratory
+/// can tell the time, so logic that reads a clock does not compile.
+struct PacingClock {
+  using duration = std::chrono::nanoseconds;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<PacingClock>;
+  static constexpr bool is_steady = true;
+};
+using Instant = PacingClock::time_point;
+
+}  // namespace ergocast

@@ -1,0 +1,168 @@
+// Everything the processes say to each other, as plain values. How they look on the wire is known
+// to lcmtypes/ alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/ids.h"
+
+namespace ergocast {
+
+/// Doubles in one block of a contribution; the last block of a mission is padded with zeros.
+inline constexpr int kBlockSize = 128;
+inline constexpr int kMaxVehiclesPerState = 16;
+inline constexpr int kMaxRosterEntriesPerMessage = 12;
+inline constexpr int kMaxPlanBytesPerMessage = 512;
+inline constexpr int kMaxPlanParts = 128;
+inline constexpr int kMaxReasonLength = 191;
+
+/// Why bytes that arrived had no effect.
+enum class Refusal {
+  kSize,   ///< shorter or longer than its type and counts say
+  kType,   ///< not one of our types, or not the one its channel carries
+  kTag,    ///< damaged: the hash over the message does not match
+  kRun,    ///< of another run
+  kRange,  ///< a number that cannot be true: NaN, |S| > elapsed, a coverage from the future
+  kLimit,  ///< a table is full
+};
+inline constexpr int kRefusalKinds = 6;
+const char* to_string(Refusal refusal);
+using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
+
+/// Who says something, and as which of its messages.
+struct Header {
+  RunId run = 0;
+  AgentId sender = kUnassigned;
+  Incarnation incarnation = 0;
+  std::int64_t sequence = 0;  ///< grows by one with each message of this sender on one bus
+  Tick tick = 0;              ///< the sender's tick when it spoke
+};
+
+/// An agent asks to be admitted; its incarnation is the nonce that the roster will name.
+struct Hello {
+  Header header;
+  AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one
+  std::string host;
+  std::string version;
+};
+
+struct RosterEntry {
+  Author author;
+  Tick active_from = 0;
+  Tick active_until = -1;  ///< first tick without it; −1 while it is a member
+  bool active_at(Tick tick) const {
+    return tick >= active_from && (active_until < 0 || tick < active_until);
+  }
+};
+
+enum class MissionState { kWaiting, kRunning, kEnded, kFailed };
+const char* to_string(MissionState state);
+
+/// One numbered part of the mission; all parts of one revision together are the whole.
+struct MissionPart {
+  Header header;
+  std::int64_t revision = 0;  ///< of roster and state together
+  MissionState state = MissionState::kWaiting;
+  std::int32_t part = 0, parts = 1;
+  std::vector<RosterEntry> roster;   ///< this part's share
+  std::vector<std::byte> plan;       ///< this part's share of the compiled plan
+  std::string reason;                ///< why it ended or failed
+};
+
+/// One block of an agent's running sums: the numerator of (4), cumulative since its start.
+struct Contribution {
+  Header header;
+  std::int64_t steps = 0;        ///< samples in the sums; more steps win
+  Tick next_broadcast_tick = 0;  ///< when its sender will speak again
+  double elapsed_s = 0;          ///< time the sums cover, steps · dt
+  std::int32_t block = 0;
+  std::int32_t mode_count = 0;
+  alignas(16) std::array<double, kBlockSize> sums{};  ///< Σ f_k(x) dt, not divided by h_k [s]
+
+  Author author() const { return {header.sender, header.incarnation}; }
+};
+
+enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished };
+const char* to_string(AgentPhase phase);
+
+struct AgentStatus {
+  Header header;
+  AgentPhase phase = AgentPhase::kJoining;
+  double ergodic_metric = 0;             ///< φ² as this agent sees it
+  double max_staleness_s = 0;            ///< age of the oldest teammate's contribution
+  AgentId waiting_for = kUnassigned;     ///< whose block the current tick waits for
+  std::int64_t answered_tick = -1;       ///< last tick that got a command
+  std::int64_t contributions_received = 0, contributions_lost = 0, messages_sent = 0,
+               messages_received = 0;
+  std::int64_t missed_ticks = 0;         ///< world ticks that came and went without a command
+  RefusalCounts refused{};
+  std::int64_t kernel_drops = 0;
+  std::string host;
+};
+
+struct TeamStatus {
+  Header header;
+  MissionState state = MissionState::kWaiting;
+  Tick tick_count = 0;
+  std::int32_t agents_alive = 0, agents_expected = 0;
+  double ergodic_metric = 0;  ///< median of the agents' own φ²
+  AgentId waiting_for = kUnassigned;
+};
+
+/// Ends the run for whoever hears it; final.
+struct Stop {
+  Header header;
+  std::string reason;
+};
+
+struct Vehicle {
+  AgentId id = 0;
+  std::int64_t answered_tick = -1;         ///< newest tick its commands have answered
+  Eigen::Vector3d position_m{0, 0, 0};
+  Eigen::Vector3d velocity_mps{0, 0, 0};   ///< applied in the step that led here
+};
+
+/// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.
+struct WorldState {
+  Header header;
+  std::int64_t roster_revision = 0;
+  std::int32_t part = 0, parts = 1;
+  std::int32_t vehicle_count = 0;
+  std::array<Vehicle, kMaxVehiclesPerState> vehicles;
+};
+
+struct Command {
+  Header header;                           ///< header.tick is the tick it answers
+  Eigen::Vector3d position_m{0, 0, 0};     ///< from which it was computed
+  Eigen::Vector3d velocity_mps{0, 0, 0};
+};
+
+/// The logger has everything up to and including header.tick (−1: it is ready).
+struct RecordAck {
+  Header header;
+};
+
+using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
+                             WorldState, Command, RecordAck>;
+
+enum class Bus { kSwarm, kWorld, kCommand };
+inline constexpr int kBusCount = 3;
+
+/// What a core wants published.
+struct Outgoing {
+  Bus bus;
+  Message message;
+};
+using Outbox = std::vector<Outgoing>;
+
+inline const Header& header_of(const Message& message) {
+  return std::visit([](const auto& m) -> const Header& { return m.header; }, message);
+}
+
+}  // namespace ergocast

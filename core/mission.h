@@ -1,0 +1,59 @@
+// The mission plan as every process holds it once it is validated: nothing here needs checking.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/basis.h"
+#include "core/geometry.h"
+#include "core/ids.h"
+
+namespace ergocast {
+
+enum class Regularization {
+  kAbsolute,  ///< ε as in (8), in the unit of B
+  kRelative,  ///< ε = epsilon · RMS over the domain of ‖Σ λ (c − μ) ∇f‖
+};
+
+/// The input (8) and the dynamics (10): dx = u dt − k (x − centre) dt + σ dW.
+struct ControlLaw {
+  double u_max_mps = 1;
+  Regularization regularization = Regularization::kAbsolute;
+  double epsilon = 0;                         ///< 0 is the classical law (5), u = 0 where B = 0
+  double noise_intensity = 0;                 ///< σ [m/√s]
+  double contraction_gain_per_s = 0;          ///< k
+  Eigen::Vector2d contraction_center_m{0, 0};
+};
+
+enum class Pace { kLockstep, kRealtime };
+enum class OnTimeout { kEndMission, kEvict };
+
+struct Timing {
+  double dt_s = 0.1;
+  Tick tick_count = 0;  ///< the mission has ticks 0 … tick_count − 1
+  int broadcast_period_ticks = 1;
+  Pace pace = Pace::kLockstep;
+  double realtime_factor = 1;         ///< mission seconds per wall second
+  double lockstep_timeout_s = 10;     ///< wall time a tick may stay unanswered
+  double command_hold_s = 0.5;        ///< mission time the world goes on with an old command
+  double admission_timeout_s = 30;    ///< wall time the quorum may take
+  int catch_up_limit_ticks = 5;       ///< late ticks the world makes up for; the rest are skipped
+  OnTimeout on_timeout = OnTimeout::kEndMission;
+};
+
+struct Mission {
+  std::string name;
+  std::uint64_t seed = 0;
+  Rectangle domain;
+  Basis basis;
+  Coefficients target_coefficients;  ///< μ
+  ControlLaw law;
+  Timing timing;
+  std::vector<Eigen::Vector2d> starts_m;  ///< where agent i begins; one per planned agent
+  int quorum = 1;                         ///< agents that must be admitted before the start
+  double disturbance_intensity = 0;       ///< actuation noise in the world [m/√s]
+  bool wait_for_logger = true;            ///< lockstep: the world runs a bounded number of ticks ahead of the record
+};
+
+}  // namespace ergocast

@@ -1,0 +1,69 @@
+// Puts the numbered parts of MISSION together: what every process but the coordinator knows of the
+// roster and of the mission's state.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/messages.h"
+#include "core/mission.h"
+
+namespace ergocast {
+
+/// Turns the compiled plan's bytes into a checked Mission, or nothing if they are not one.
+/// The plan's format belongs to scenario/, which the cores do not know.
+using PlanDecoder = std::function<std::optional<Mission>(std::span<const std::byte>)>;
+
+class MissionFollower {
+ public:
+  explicit MissionFollower(PlanDecoder decode_plan) : decode_plan_(std::move(decode_plan)) {}
+
+  /// Takes in one part, in any order. True if it completed a newer revision.
+  bool receive(const MissionPart& part);
+
+  /// The mission, once a whole plan has arrived and decoded.
+  const std::optional<Mission>& mission() const { return mission_; }
+  /// True when a complete plan arrived that this program cannot read: another version's.
+  bool plan_unreadable() const { return plan_unreadable_; }
+
+  std::int64_t revision() const { return revision_; }
+  MissionState state() const { return state_; }
+  bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
+  const std::string& reason() const { return reason_; }
+  const std::vector<RosterEntry>& roster() const { return roster_; }
+  const std::vector<std::byte>& plan() const { return plan_; }
+
+  /// The entry of an incarnation, or null.
+  const RosterEntry* entry_of(Incarnation incarnation) const;
+
+ private:
+  void commit();
+
+  PlanDecoder decode_plan_;
+  std::optional<Mission> mission_;
+  bool plan_unreadable_ = false;
+  std::int64_t revision_ = -1;
+  MissionState state_ = MissionState::kWaiting;
+  std::string reason_;
+  std::vector<RosterEntry> roster_;
+  std::vector<std::byte> plan_;
+
+  std::int64_t collecting_revision_ = -1;
+  std::vector<std::optional<MissionPart>> collected_;
+};
+
+/// Sequence numbers for one sender, counted per bus, so that a gap on a bus is a loss on that bus.
+class Sequencer {
+ public:
+  std::int64_t next(Bus bus) { return ++last_[static_cast<std::size_t>(bus)]; }
+  std::int64_t total() const { return last_[0] + last_[1] + last_[2]; }
+
+ private:
+  std::array<std::int64_t, kBusCount> last_{};
+};
+
+}  // namespace ergocast

@@ -1,0 +1,32 @@
+// Random numbers as a function of (seed, purpose, who, step): no generator state anywhere, so runs
+// repeat bit for bit, in any order and after any restart.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace ergocast {
+
+enum class Purpose : std::uint32_t {
+  kPerturbation = 1,  ///< dW_i of (9)
+  kDisturbance = 2,   ///< actuation noise of the simulated world
+  kStart = 3,         ///< random initial positions
+  kIncarnation = 4,   ///< identities in a simulation
+  kFault = 5,         ///< the laboratory's network
+};
+
+/// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).
+struct Words {
+  std::uint64_t first, second;
+};
+Words random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::uint64_t step);
+
+/// Two independent numbers, uniform in (0, 1).
+Eigen::Vector2d uniform_pair(std::uint64_t seed, Purpose purpose, std::uint32_t who,
+                             std::uint64_t step);
+
+/// Two independent standard normal numbers (Box–Muller).
+Eigen::Vector2d normal_pair(std::uint64_t seed, Purpose purpose, std::uint32_t who,
+                            std::uint64_t step);
+
+}  // namespace ergocast

@@ -1,0 +1,111 @@
+#include "lab/swarm.h"
+
+#include <algorithm>
+
+#include "core/noise.h"
+#include "lcmtypes/codec.h"
+
+namespace ergocast::lab {
+namespace {
+
+Incarnation incarnation_of(std::uint64_t seed, int seat) {
+  return random_words(seed, Purpose::kIncarnation, static_cast<std::uint32_t>(seat), 0).first | 1;
+}
+
+Mission decoded(const Options& options) { return options.decode_plan(options.plan).value(); }
+
+}  // namespace
+
+Swarm::Swarm(Options options, std::ostream& trajectory, std::ostream& metrics)
+    : options_(std::move(options)),
+      run_(incarnation_of(decoded(options_).seed, -1)),
+      world_(run_, incarnation_of(decoded(options_).seed, kWorldSeat), options_.decode_plan),
+      coordinator_(run_, incarnation_of(decoded(options_).seed, kCoordinatorSeat),
+                   decoded(options_), options_.plan),
+      recorder_(run_, incarnation_of(decoded(options_).seed, kLoggerSeat), options_.decode_plan,
+                trajectory, metrics) {
+  const std::uint64_t seed = decoded(options_).seed;
+  for (int i = 0; i < options_.agents; ++i) {
+    agents_.push_back(std::make_unique<Agent>(
+        AgentIdentity{run_, i, incarnation_of(seed, i), options_.host, options_.version},
+        options_.decode_plan));
+  }
+}
+
+void Swarm::run(std::chrono::nanoseconds limit) {
+  while (now_.time_since_epoch() < limit && step()) {
+  }
+}
+
+bool Swarm::step() {
+  advance_all();
+  while (!in_flight_.empty()) {
+    const std::size_t batch = in_flight_.size();
+    for (std::size_t i = 0; i < batch; ++i) {
+      deliver(in_flight_.front());
+      spare_.push_back(std::move(in_flight_.front().bytes));
+      in_flight_.pop_front();
+    }
+    advance_all();
+  }
+  if (everybody_finished()) return false;
+  now_ = std::max(now_, next_wakeup());
+  return true;
+}
+
+void Swarm::advance_all() {
+  coordinator_.advance(now_, outbox_);
+  world_.advance(now_, outbox_);
+  for (auto& agent : agents_) agent->advance(now_, outbox_);
+  recorder_.advance(now_, outbox_);
+  send(outbox_);
+}
+
+void Swarm::send(Outbox& out) {
+  for (const Outgoing& outgoing : out) {
+    std::vector<std::byte> bytes;
+    if (!spare_.empty()) {
+      bytes = std::move(spare_.back());
+      spare_.pop_back();
+    }
+    encode(outgoing.message, bytes);
+    in_flight_.push_back({outgoing.bus, std::move(bytes)});
+    ++messages_sent_;
+  }
+  out.clear();
+}
+
+bool Swarm::reaches(const Message& message, int seat) {
+  if (!options_.delivers || options_.delivers(message, seat)) return true;
+  ++messages_dropped_;
+  return false;
+}
+
+void Swarm::deliver(const Datagram& datagram) {
+  const auto decoded = decode(datagram.bytes, run_);
+  const Message* message = std::get_if<Message>(&decoded);
+  if (message == nullptr) return;
+  if (datagram.bus != Bus::kCommand) {
+    for (std::size_t i = 0; i < agents_.size(); ++i) {
+      if (reaches(*message, static_cast<int>(i))) agents_[i]->receive(*message, now_);
+    }
+    if (reaches(*message, kCoordinatorSeat)) coordinator_.receive(*message, now_);
+  } else if (reaches(*message, kWorldSeat)) {
+    world_.receive(*message, now_);
+  }
+  if (reaches(*message, kLoggerSeat)) recorder_.receive(*message, now_);
+}
+
+bool Swarm::everybody_finished() const {
+  return coordinator_.finished() && recorder_.finished() && world_.finished() &&
+         std::all_of(agents_.begin(), agents_.end(), [](const auto& a) { return a->finished(); });
+}
+
+Instant Swarm::next_wakeup() const {
+  Instant next = coordinator_.finished() ? Instant::max() : coordinator_.next_wakeup();
+  next = std::min({next, world_.next_wakeup(), recorder_.next_wakeup()});
+  for (const auto& agent : agents_) next = std::min(next, agent->next_wakeup());
+  return next == Instant::max() ? now_ + std::chrono::milliseconds(100) : next;
+}
+
+}  // namespace ergocast::lab

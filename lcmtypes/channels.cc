@@ -1,0 +1,62 @@
+#include "lcmtypes/channels.h"
+
+#include <array>
+#include <vector>
+
+namespace ergocast {
+namespace {
+
+constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames = {
+    "ERGOCAST_HELLO", "ERGOCAST_MISSION",     "ERGOCAST_CONTRIBUTION", "ERGOCAST_AGENT_STATUS",
+    "ERGOCAST_TEAM_STATUS", "ERGOCAST_STOP",  "ERGOCAST_WORLD_STATE",  "ERGOCAST_COMMAND",
+    "ERGOCAST_RECORD_ACK"};
+
+template <class T>
+constexpr bool kPerAgent = std::is_same_v<T, Contribution> || std::is_same_v<T, AgentStatus> ||
+                           std::is_same_v<T, Command>;
+
+bool per_agent(const Message& message) {
+  return std::visit([](const auto& m) { return kPerAgent<std::decay_t<decltype(m)>>; }, message);
+}
+
+/// All names, made once: publishing builds no string.
+struct Table {
+  std::array<std::string, kNames.size()> plain;
+  std::array<std::array<std::string, kMaxAgents + 1>, kNames.size()> numbered;  // [0] is id −1
+
+  Table() {
+    for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
+      plain[kind] = kNames[kind];
+      for (int id = -1; id < kMaxAgents; ++id) {
+        numbered[kind][static_cast<std::size_t>(id + 1)] =
+            plain[kind] + "_" + (id < 0 ? "NEW" : std::to_string(id));
+      }
+    }
+  }
+};
+
+const Table& table() {
+  static const Table names;
+  return names;
+}
+
+const std::string& name(std::size_t kind, AgentId id) {
+  const bool numbered = id >= kUnassigned && id < kMaxAgents;
+  return numbered ? table().numbered[kind][static_cast<std::size_t>(id + 1)] : table().plain[kind];
+}
+
+}  // namespace
+
+const std::string& channel_of(const Message& message) {
+  if (!per_agent(message)) return table().plain[message.index()];
+  return name(message.index(), header_of(message).sender);
+}
+
+bool belongs_on(const Message& message, std::string_view channel) {
+  if (std::holds_alternative<Contribution>(message)) {
+    return channel.starts_with("ERGOCAST_CONTRIBUTION_");
+  }
+  return channel == channel_of(message);
+}
+
+}  // namespace ergocast

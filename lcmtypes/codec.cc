@@ -1,0 +1,443 @@
+#include "lcmtypes/codec.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <ergocast/agent_status_t.hpp>
+#include <ergocast/command_t.hpp>
+#include <ergocast/contribution_t.hpp>
+#include <ergocast/hello_t.hpp>
+#include <ergocast/mission_t.hpp>
+#include <ergocast/record_ack_t.hpp>
+#include <ergocast/stop_t.hpp>
+#include <ergocast/team_status_t.hpp>
+#include <ergocast/world_state_t.hpp>
+#include <optional>
+
+#include "core/require.h"
+
+namespace ergocast {
+namespace {
+
+constexpr std::size_t kTagOffset = 44;
+constexpr std::size_t kTagBytes = 16;
+constexpr std::size_t kHeaderEnd = kTagOffset + kTagBytes;
+constexpr std::size_t kRosterEntryBytes = 28;
+constexpr std::size_t kVehicleBytes = 60;
+
+// ---- numbers on the wire: big-endian --------------------------------------------------------
+
+std::uint64_t read64(const std::byte* at) {
+  std::uint64_t raw;
+  std::memcpy(&raw, at, sizeof raw);
+  return __builtin_bswap64(raw);
+}
+std::int32_t read32(const std::byte* at) {
+  std::uint32_t raw;
+  std::memcpy(&raw, at, sizeof raw);
+  return static_cast<std::int32_t>(__builtin_bswap32(raw));
+}
+
+// ---- the tag ---------------------------------------------------------------------------------
+
+using Tag = std::array<std::byte, kTagBytes>;
+
+/// XXH3-128 over `bytes` with the tag itself taken as zero.
+Tag tag_of(std::span<const std::byte> bytes) {
+  std::array<std::byte, kMaxDatagramBytes> copy;
+  std::memcpy(copy.data(), bytes.data(), bytes.size());
+  std::memset(copy.data() + kTagOffset, 0, kTagBytes);
+  XXH128_canonical_t canonical;
+  XXH128_canonicalFromHash(&canonical, XXH3_128bits(copy.data(), bytes.size()));
+  Tag tag;
+  std::memcpy(tag.data(), canonical.digest, kTagBytes);
+  return tag;
+}
+
+// ---- sizes: what the counts inside declare must be what arrived ---------------------------------
+
+/// Walks over the variable tail of a message without believing it.
+class Tail {
+ public:
+  Tail(std::span<const std::byte> bytes, std::size_t offset) : bytes_(bytes), at_(offset) {}
+
+  bool skip(std::size_t count) { return ok_ = ok_ && bytes_.size() - at_ >= count && advance(count); }
+  bool string(int max_length) {
+    if (!ok_ || bytes_.size() - at_ < 4) return ok_ = false;
+    const std::int32_t declared = read32(bytes_.data() + at_);  // includes the final NUL
+    if (declared < 1 || declared > max_length + 1) return ok_ = false;
+    return skip(4 + static_cast<std::size_t>(declared)) && (ok_ = bytes_[at_ - 1] == std::byte{0});
+  }
+  bool ended() const { return ok_ && at_ == bytes_.size(); }
+
+ private:
+  bool advance(std::size_t count) {
+    at_ += count;
+    return true;
+  }
+  std::span<const std::byte> bytes_;
+  std::size_t at_;
+  bool ok_ = true;
+};
+
+bool count_at(std::span<const std::byte> bytes, std::size_t offset, int limit, std::size_t& count) {
+  if (bytes.size() < offset + 4) return false;
+  const std::int32_t declared = read32(bytes.data() + offset);
+  if (declared < 0 || declared > limit) return false;
+  count = static_cast<std::size_t>(declared);
+  return true;
+}
+
+bool sizes_match(const hello_t*, std::span<const std::byte> bytes) {
+  Tail tail(bytes, kHeaderEnd);
+  return tail.skip(4) && tail.string(kMaxHostLength) && tail.string(kMaxVersionLength) &&
+         tail.ended();
+}
+
+bool sizes_match(const mission_t*, std::span<const std::byte> bytes) {
+  constexpr std::size_t kRosterCountOffset = kHeaderEnd + 8 + 1 + 4 + 4;
+  std::size_t roster = 0, plan = 0;
+  if (!count_at(bytes, kRosterCountOffset, kMaxRosterEntriesPerMessage, roster) ||
+      !count_at(bytes, kRosterCountOffset + 4, kMaxPlanBytesPerMessage, plan)) {
+    return false;
+  }
+  Tail tail(bytes, kRosterCountOffset + 8);
+  return tail.skip(roster * kRosterEntryBytes + plan) && tail.string(kMaxReasonLength) &&
+         tail.ended();
+}
+
+bool sizes_match(const agent_status_t*, std::span<const std::byte> bytes) {
+  Tail tail(bytes, kHeaderEnd);
+  return tail.skip(1 + 8 + 8 + 4 + 8 * 6 + 8 * kRefusalKinds + 8) && tail.string(kMaxHostLength) &&
+         tail.ended();
+}
+
+bool sizes_match(const stop_t*, std::span<const std::byte> bytes) {
+  Tail tail(bytes, kHeaderEnd);
+  return tail.string(kMaxReasonLength) && tail.ended();
+}
+
+bool sizes_match(const world_state_t*, std::span<const std::byte> bytes) {
+  std::size_t vehicles = 0;
+  return count_at(bytes, kHeaderEnd + 16, kMaxVehiclesPerState, vehicles) &&
+         bytes.size() == kHeaderEnd + 20 + vehicles * kVehicleBytes;
+}
+
+template <class Fixed>
+bool sizes_match(const Fixed*, std::span<const std::byte> bytes) {
+  static const auto size = static_cast<std::size_t>(Fixed{}.getEncodedSize());
+  return bytes.size() == size;
+}
+
+// ---- plain ⇄ wire, one pair a type ---------------------------------------------------------------
+
+header_t to_wire(const Header& h) {
+  header_t w{};
+  w.run_id = static_cast<std::int64_t>(h.run);
+  w.sender = h.sender;
+  w.incarnation = static_cast<std::int64_t>(h.incarnation);
+  w.sequence = h.sequence;
+  w.tick = h.tick;
+  return w;
+}
+Header from_wire(const header_t& w) {
+  return {static_cast<RunId>(w.run_id), w.sender, static_cast<Incarnation>(w.incarnation),
+          w.sequence, w.tick};
+}
+
+/// At most `limit` characters and no NUL, so that what we send is what we accept.
+std::string bounded(const std::string& text, int limit) {
+  std::string cut = text.substr(0, static_cast<std::size_t>(limit));
+  return cut.substr(0, cut.find('\0'));
+}
+
+void copy3(const Eigen::Vector3d& from, double* to) { std::copy_n(from.data(), 3, to); }
+Eigen::Vector3d vector3(const double* from) { return {from[0], from[1], from[2]}; }
+
+hello_t to_wire(const Hello& m) {
+  hello_t w;
+  w.header = to_wire(m.header);
+  w.requested_id = m.requested_id;
+  w.host = bounded(m.host, kMaxHostLength);
+  w.version = bounded(m.version, kMaxVersionLength);
+  return w;
+}
+std::optional<Hello> from_wire(const hello_t& w) {
+  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents) return std::nullopt;
+  return Hello{from_wire(w.header), w.requested_id, w.host, w.version};
+}
+
+mission_t to_wire(const MissionPart& m) {
+  ERGOCAST_REQUIRE(m.roster.size() <= kMaxRosterEntriesPerMessage &&
+                   m.plan.size() <= kMaxPlanBytesPerMessage);
+  mission_t w;
+  w.header = to_wire(m.header);
+  w.revision = m.revision;
+  w.state = static_cast<std::int8_t>(m.state);
+  w.part = m.part;
+  w.parts = m.parts;
+  w.roster_count = static_cast<std::int32_t>(m.roster.size());
+  w.plan_size = static_cast<std::int32_t>(m.plan.size());
+  for (const RosterEntry& entry : m.roster) {
+    roster_entry_t e;
+    e.id = entry.author.agent;
+    e.nonce = static_cast<std::int64_t>(entry.author.incarnation);
+    e.active_from = entry.active_from;
+    e.active_until = entry.active_until;
+    w.roster.push_back(e);
+  }
+  w.plan.resize(m.plan.size());
+  if (!m.plan.empty()) std::memcpy(w.plan.data(), m.plan.data(), m.plan.size());
+  w.reason = bounded(m.reason, kMaxReasonLength);
+  return w;
+}
+std::optional<MissionPart> from_wire(const mission_t& w) {
+  if (w.state < 0 || w.state > static_cast<int>(MissionState::kFailed) || w.revision < 0 ||
+      w.parts < 1 || w.parts > kMaxPlanParts || w.part < 0 || w.part >= w.parts) {
+    return std::nullopt;
+  }
+  MissionPart m;
+  m.header = from_wire(w.header);
+  m.revision = w.revision;
+  m.state = static_cast<MissionState>(w.state);
+  m.part = w.part;
+  m.parts = w.parts;
+  for (const roster_entry_t& e : w.roster) {
+    if (e.id < 0 || e.id >= kMaxAgents || e.active_from < 0 || e.active_until < -1) {
+      return std::nullopt;
+    }
+    m.roster.push_back({{e.id, static_cast<Incarnation>(e.nonce)}, e.active_from, e.active_until});
+  }
+  m.plan.resize(w.plan.size());
+  if (!w.plan.empty()) std::memcpy(m.plan.data(), w.plan.data(), w.plan.size());
+  m.reason = w.reason;
+  return m;
+}
+
+contribution_t to_wire(const Contribution& m) {
+  contribution_t w;
+  w.header = to_wire(m.header);
+  w.steps = m.steps;
+  w.next_broadcast_tick = m.next_broadcast_tick;
+  w.elapsed_s = m.elapsed_s;
+  w.block = m.block;
+  w.mode_count = m.mode_count;
+  std::copy(m.sums.begin(), m.sums.end(), w.sums);
+  return w;
+}
+/// Whether the sums can be true is for CoverageTable::merge, which knows the mission.
+std::optional<Contribution> from_wire(const contribution_t& w) {
+  if (w.header.sender < 0 || w.header.sender >= kMaxAgents || !std::isfinite(w.elapsed_s)) {
+    return std::nullopt;
+  }
+  Contribution m;
+  m.header = from_wire(w.header);
+  m.steps = w.steps;
+  m.next_broadcast_tick = w.next_broadcast_tick;
+  m.elapsed_s = w.elapsed_s;
+  m.block = w.block;
+  m.mode_count = w.mode_count;
+  std::copy_n(w.sums, kBlockSize, m.sums.begin());
+  return m;
+}
+
+agent_status_t to_wire(const AgentStatus& m) {
+  agent_status_t w;
+  w.header = to_wire(m.header);
+  w.phase = static_cast<std::int8_t>(m.phase);
+  w.ergodic_metric = m.ergodic_metric;
+  w.max_staleness_s = m.max_staleness_s;
+  w.waiting_for = m.waiting_for;
+  w.answered_tick = m.answered_tick;
+  w.contributions_received = m.contributions_received;
+  w.contributions_lost = m.contributions_lost;
+  w.messages_sent = m.messages_sent;
+  w.messages_received = m.messages_received;
+  w.missed_ticks = m.missed_ticks;
+  std::copy(m.refused.begin(), m.refused.end(), w.refused);
+  w.kernel_drops = m.kernel_drops;
+  w.status_host = bounded(m.host, kMaxHostLength);
+  return w;
+}
+std::optional<AgentStatus> from_wire(const agent_status_t& w) {
+  if (w.phase < 0 || w.phase > static_cast<int>(AgentPhase::kFinished) ||
+      w.header.sender < kUnassigned || w.header.sender >= kMaxAgents ||
+      !std::isfinite(w.ergodic_metric) || !std::isfinite(w.max_staleness_s)) {
+    return std::nullopt;
+  }
+  AgentStatus m;
+  m.header = from_wire(w.header);
+  m.phase = static_cast<AgentPhase>(w.phase);
+  m.ergodic_metric = w.ergodic_metric;
+  m.max_staleness_s = w.max_staleness_s;
+  m.waiting_for = w.waiting_for;
+  m.answered_tick = w.answered_tick;
+  m.contributions_received = w.contributions_received;
+  m.contributions_lost = w.contributions_lost;
+  m.messages_sent = w.messages_sent;
+  m.messages_received = w.messages_received;
+  m.missed_ticks = w.missed_ticks;
+  std::copy_n(w.refused, kRefusalKinds, m.refused.begin());
+  m.kernel_drops = w.kernel_drops;
+  m.host = w.status_host;
+  return m;
+}
+
+team_status_t to_wire(const TeamStatus& m) {
+  team_status_t w;
+  w.header = to_wire(m.header);
+  w.mission_state = static_cast<std::int8_t>(m.state);
+  w.tick_count = m.tick_count;
+  w.agents_alive = m.agents_alive;
+  w.agents_expected = m.agents_expected;
+  w.median_ergodic_metric = m.ergodic_metric;
+  w.team_waiting_for = m.waiting_for;
+  return w;
+}
+std::optional<TeamStatus> from_wire(const team_status_t& w) {
+  if (w.mission_state < 0 || w.mission_state > static_cast<int>(MissionState::kFailed) ||
+      !std::isfinite(w.median_ergodic_metric)) {
+    return std::nullopt;
+  }
+  return TeamStatus{from_wire(w.header), static_cast<MissionState>(w.mission_state),
+                    w.tick_count,        w.agents_alive,
+                    w.agents_expected,   w.median_ergodic_metric,
+                    w.team_waiting_for};
+}
+
+stop_t to_wire(const Stop& m) {
+  stop_t w;
+  w.header = to_wire(m.header);
+  w.stop_reason = bounded(m.reason, kMaxReasonLength);
+  return w;
+}
+std::optional<Stop> from_wire(const stop_t& w) { return Stop{from_wire(w.header), w.stop_reason}; }
+
+world_state_t to_wire(const WorldState& m) {
+  ERGOCAST_REQUIRE(m.vehicle_count >= 0 && m.vehicle_count <= kMaxVehiclesPerState);
+  world_state_t w;
+  w.header = to_wire(m.header);
+  w.roster_revision = m.roster_revision;
+  w.state_part = m.part;
+  w.state_parts = m.parts;
+  w.vehicle_count = m.vehicle_count;
+  w.vehicles.resize(static_cast<std::size_t>(m.vehicle_count));
+  for (std::size_t i = 0; i < w.vehicles.size(); ++i) {
+    w.vehicles[i].vehicle_id = m.vehicles[i].id;
+    w.vehicles[i].vehicle_answered_tick = m.vehicles[i].answered_tick;
+    copy3(m.vehicles[i].position_m, w.vehicles[i].position_m);
+    copy3(m.vehicles[i].velocity_mps, w.vehicles[i].velocity_mps);
+  }
+  return w;
+}
+std::optional<WorldState> from_wire(const world_state_t& w) {
+  WorldState m;
+  m.header = from_wire(w.header);
+  m.roster_revision = w.roster_revision;
+  m.part = w.state_part;
+  m.parts = w.state_parts;
+  m.vehicle_count = w.vehicle_count;
+  if (m.header.tick < 0 || m.roster_revision < 0 || m.part < 0 || m.part >= m.parts ||
+      m.parts > kMaxAgents) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < w.vehicles.size(); ++i) {
+    const vehicle_t& v = w.vehicles[i];
+    m.vehicles[i] = {v.vehicle_id, v.vehicle_answered_tick, vector3(v.position_m),
+                     vector3(v.velocity_mps)};
+    if (v.vehicle_id < 0 || v.vehicle_id >= kMaxAgents || !m.vehicles[i].position_m.allFinite() ||
+        !m.vehicles[i].velocity_mps.allFinite()) {
+      return std::nullopt;
+    }
+  }
+  return m;
+}
+
+command_t to_wire(const Command& m) {
+  command_t w;
+  w.header = to_wire(m.header);
+  copy3(m.position_m, w.command_position_m);
+  copy3(m.velocity_mps, w.command_velocity_mps);
+  return w;
+}
+std::optional<Command> from_wire(const command_t& w) {
+  const Command m{from_wire(w.header), vector3(w.command_position_m),
+                  vector3(w.command_velocity_mps)};
+  if (m.header.sender < 0 || m.header.sender >= kMaxAgents || m.header.tick < 0 ||
+      !m.position_m.allFinite() || !m.velocity_mps.allFinite()) {
+    return std::nullopt;
+  }
+  return m;
+}
+
+record_ack_t to_wire(const RecordAck& m) {
+  record_ack_t w;
+  w.ack_header = to_wire(m.header);
+  return w;
+}
+std::optional<RecordAck> from_wire(const record_ack_t& w) {
+  return RecordAck{from_wire(w.ack_header)};
+}
+
+template <class Wire>
+std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
+  if (!sizes_match(static_cast<const Wire*>(nullptr), bytes)) return Refusal::kSize;
+  Wire wire{};
+  const int size = static_cast<int>(bytes.size());
+  if (wire.decode(bytes.data(), 0, size) != size) return Refusal::kSize;
+  auto plain = from_wire(wire);
+  if (!plain) return Refusal::kRange;
+  return Message(std::move(*plain));
+}
+
+using DecodeFunction = std::variant<Message, Refusal> (*)(std::span<const std::byte>);
+
+template <class Wire>
+std::pair<std::uint64_t, DecodeFunction> entry() {
+  return {static_cast<std::uint64_t>(Wire::getHash()), &decode_as<Wire>};
+}
+
+DecodeFunction decoder_for(std::uint64_t fingerprint) {
+  static const std::array kDecoders = {
+      entry<contribution_t>(), entry<world_state_t>(), entry<command_t>(),
+      entry<agent_status_t>(), entry<record_ack_t>(),  entry<mission_t>(),
+      entry<team_status_t>(),  entry<hello_t>(),       entry<stop_t>()};
+  for (const auto& [known, function] : kDecoders) {
+    if (known == fingerprint) return function;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void encode(const Message& message, std::vector<std::byte>& out) {
+  std::visit(
+      [&out](const auto& plain) {
+        const auto wire = to_wire(plain);
+        const int size = wire.getEncodedSize();
+        out.resize(static_cast<std::size_t>(size));
+        ERGOCAST_REQUIRE(out.size() <= kMaxDatagramBytes);
+        ERGOCAST_REQUIRE(wire.encode(out.data(), 0, size) == size);
+      },
+      message);
+  const Tag tag = tag_of(out);
+  std::copy(tag.begin(), tag.end(), out.begin() + kTagOffset);
+}
+
+std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run) noexcept {
+  if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return Refusal::kSize;
+  const DecodeFunction function = decoder_for(read64(bytes.data()));
+  if (function == nullptr) return Refusal::kType;
+  const Tag tag = tag_of(bytes);
+  if (!std::equal(tag.begin(), tag.end(), bytes.begin() + kTagOffset)) return Refusal::kTag;
+  if (run != 0 && read64(bytes.data() + 8) != run) return Refusal::kRun;
+  try {
+    return function(bytes);
+  } catch (...) {  // only memory can run out here
+    return Refusal::kLimit;
+  }
+}
+
+}  // namespace ergocast

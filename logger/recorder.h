@@ -1,0 +1,88 @@
+// The run record: trajectory.csv and metrics.csv from what the world says, as an outside observer.
+//
+// Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
+// the world applied in between. Rows are written in order and acknowledged to the world, which in
+// lockstep repeats whatever state is still missing.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "core/basis.h"
+#include "core/ids.h"
+#include "core/messages.h"
+#include "core/mission_follower.h"
+
+namespace ergocast {
+
+/// What the record says about the whole run.
+struct RunFacts {
+  Tick ticks = 0;  ///< recorded
+  double ergodic_metric_first = 0, ergodic_metric_last = 0;
+  std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
+  Tick gaps = 0;                            ///< ticks of which a state never came (real time)
+};
+
+class Recorder {
+ public:
+  /// Writes to streams that outlive it; the caller checks them for errors.
+  Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan, std::ostream& trajectory,
+           std::ostream& metrics);
+
+  void receive(const Message& message, Instant now);
+  void advance(Instant now, Outbox& out);
+  Instant next_wakeup() const { return finished() ? Instant::max() : next_ack_; }
+
+  /// True once the last tick is recorded, or the mission is over and no more can come.
+  bool finished() const { return finished_; }
+  const MissionFollower& follower() const { return follower_; }
+  /// Why the run ended, if it did not come to its last tick.
+  const std::string& reason() const { return reason_; }
+  const RunFacts& facts() const { return facts_; }
+  const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
+  Tick next_row() const { return next_row_; }
+
+ private:
+  struct State {
+    std::vector<bool> parts;
+    std::map<AgentId, Vehicle> vehicles;
+    bool complete() const;
+  };
+
+  void on(const WorldState& world);
+  bool write_next_row();
+  void skip_gap();
+  void write_trajectory(const State& now, const State& next);
+  void observe(const State& now);
+  void write_metrics(double metric);
+
+  RunId run_;
+  Incarnation incarnation_;
+  MissionFollower follower_;
+  std::ostream& trajectory_;
+  std::ostream& metrics_;
+  Sequencer sequencer_;
+
+  std::map<Tick, State> states_;
+  Tick next_row_ = 0, acked_ = -2;
+  bool finished_ = false;
+  std::optional<Instant> over_since_;
+  std::string reason_;
+
+  Coefficients sums_s_, weights_;
+  double covered_s_ = 0;
+  std::map<Author, AgentStatus> statuses_;
+  Instant next_ack_{};
+  RunFacts facts_;
+};
+
+/// One line a column set; what stands at the top of the two files.
+inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps";
+inline constexpr const char* kMetricsHeader =
+    "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
+    "contributions_lost";
+
+}  // namespace ergocast

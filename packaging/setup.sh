@@ -1,0 +1,86 @@
+# Sourced by ./run and ./test (bash): installs what is missing and builds build/release.
+#   ERGOCAST_NO_INSTALL=1   never install anything
+#   ERGOCAST_CMAKE_ARGS     more arguments for the configuration, separated by spaces
+# All messages go to stderr. Exit code 3: the machine lacks something that only its owner can add.
+# shellcheck shell=bash
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$root/build/release
+
+say() { printf '%s\n' "$*" >&2; }
+
+# Runs a command in silence, and shows what it said only when it fails.
+quietly() {
+  local output status=0
+  output=$("$@" 2>&1) || status=$?
+  [ "$status" -eq 0 ] || say "$output"
+  return "$status"
+}
+
+missing_packages() {
+  local package
+  sed 's/#.*//' "$root/packaging/packages.txt" | while read -r package; do
+    [ -n "$package" ] || continue
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      printf '%s\n' "$package"
+  done
+}
+
+missing_tools() {
+  local tool
+  for tool in cmake ninja c++ protoc lcm-gen; do
+    command -v "$tool" >/dev/null || printf '%s\n' "$tool"
+  done
+}
+
+install_packages() {
+  local packages tools as_root=() install
+  mapfile -t packages < <(missing_packages)
+  [ "${#packages[@]}" -gt 0 ] || return 0
+
+  install=(env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends
+    "${packages[@]}")
+  local by_hand="  apt-get update && apt-get install -y --no-install-recommends ${packages[*]}"
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+
+  if [ "${ERGOCAST_NO_INSTALL:-0}" = 1 ] || ! command -v apt-get >/dev/null; then
+    say "Missing Debian packages, not installed here: ${packages[*]}"
+    say "As root:"
+    say "$by_hand"
+    mapfile -t tools < <(missing_tools)
+    [ "${#tools[@]}" -eq 0 ] || { say "Cannot build without: ${tools[*]}"; exit 3; }
+    return 0
+  fi
+  if [ "${#as_root[@]}" -gt 0 ] && ! command -v sudo >/dev/null; then
+    say "Missing Debian packages, and neither root nor sudo to install them. As root:"
+    say "$by_hand"
+    exit 3
+  fi
+  say "Installing ${#packages[@]} Debian packages (and what they need): ${packages[*]}"
+  if ! quietly "${as_root[@]}" apt-get -qq update || ! quietly "${as_root[@]}" "${install[@]}"; then
+    say "The installation failed. By hand, as root:"
+    say "$by_hand"
+    exit 3
+  fi
+}
+
+build_release() {
+  local arguments stamp=$build/configured-with
+  read -r -a arguments <<<"${ERGOCAST_CMAKE_ARGS:-}"
+  local wanted="$root ${arguments[*]}"
+
+  # Other arguments or a moved checkout: start from an empty cache, so that no old option lingers.
+  if [ ! -f "$build/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
+    say "Configuring $build"
+    rm -f "$stamp"
+    quietly cmake --fresh -S "$root" --preset release "${arguments[@]}"
+    printf '%s\n' "$wanted" >"$stamp"
+  fi
+  if ! ninja -C "$build" -n 2>/dev/null | grep -q '^ninja: no work to do'; then
+    say "Building $build"
+    cmake --build "$build" >&2
+  fi
+}
+
+install_packages
+build_release

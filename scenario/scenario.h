@@ -1,0 +1,82 @@
+// What a person writes (scenario.proto, text format) and what the team gets (the compiled plan).
+// The only place that knows Protobuf; this header does not show it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/mission.h"
+#include "core/target.h"
+
+namespace ergocast {
+
+/// One thing wrong with a scenario.
+struct Problem {
+  std::string where;   ///< "file:line:column" or "file: field.path"
+  std::string what;    ///< what is wrong, with the limit it breaks
+  std::string remedy;  ///< what to write instead
+};
+/// "where: what (remedy)", one line.
+std::string to_string(const Problem& problem);
+
+/// What the command line says over the file.
+struct Overrides {
+  std::optional<std::uint64_t> seed;
+  std::optional<double> duration_s;
+  std::optional<Pace> pace;
+  std::optional<double> realtime_factor;
+  std::optional<int> agents;  ///< the team's size: the listed starts are cut, or random ones added
+};
+
+/// A scenario without problems, all defaults filled in, random starts drawn.
+class Scenario {
+ public:
+  /// Reads a file, puts `overrides` over it and validates the result. All problems at once.
+  static std::variant<Scenario, std::vector<Problem>> load(const std::filesystem::path& file,
+                                                           const Overrides& overrides = {});
+  /// The same for text; `file` is what the problems call it.
+  static std::variant<Scenario, std::vector<Problem>> parse(std::string_view text,
+                                                            const std::string& file,
+                                                            const Overrides& overrides = {});
+
+  Scenario(const Scenario&);
+  Scenario(Scenario&&) noexcept;
+  Scenario& operator=(Scenario) noexcept;
+  ~Scenario();
+
+  /// Text that load() reads back to an equal scenario: every field with its value.
+  std::string print() const;
+
+  const std::string& name() const;
+  const std::string& description() const;
+  const TargetDensity& target() const;
+
+  /// The mission in the form the cores use. μ is computed once, here.
+  const Mission& mission() const;
+
+  /// The compiled plan as the coordinator sends it: the mission with μ and all starts, no file
+  /// needed by who receives it. Equal scenarios of one version give equal bytes.
+  const std::vector<std::byte>& plan() const;
+
+ private:
+  struct State;
+  explicit Scenario(std::shared_ptr<const State> state);
+  std::shared_ptr<const State> state_;
+};
+
+/// The mission in a compiled plan; nothing if the bytes are not one, are another version's, or
+/// break a limit of the scenario (plans come from the network). Never throws.
+std::optional<Mission> decode_plan(std::span<const std::byte> plan) noexcept;
+
+/// 32 hex digits that name a plan: XXH3-128 of its bytes.
+std::string plan_hash(std::span<const std::byte> plan);
+
+}  // namespace ergocast

@@ -1,0 +1,239 @@
+#include "sim/world.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/geometry.h"
+#include "core/noise.h"
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kRepeatPeriod = 20ms;
+/// How long the end is repeated to whoever has not heard of it.
+constexpr auto kFarewell = 2s;
+
+std::chrono::nanoseconds seconds(double s) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9));
+}
+
+}  // namespace
+
+World::World(RunId run, Incarnation incarnation, PlanDecoder decode_plan)
+    : run_(run), incarnation_(incarnation), follower_(std::move(decode_plan)) {}
+
+void World::receive(const Message& message, Instant now) {
+  if (finished_) return;
+  const Header& from = header_of(message);
+  if (run_ != 0 && from.run != run_) return;
+  if (const auto* command = std::get_if<Command>(&message)) return on(*command);
+  if (const auto* part = std::get_if<MissionPart>(&message)) {
+    if (run_ == 0) run_ = from.run;
+    if (!follower_.receive(*part)) return;
+    if (follower_.plan_unreadable()) return finish("the mission plan is another version's");
+    if (follower_.over()) return finish(follower_.reason());
+    if (started_) take_roster();
+    if (!started_ && follower_.state() == MissionState::kRunning) start(now);
+    return;
+  }
+  if (const auto* ack = std::get_if<RecordAck>(&message)) {
+    if (!recorded_ || ack->header.tick > *recorded_) {
+      recorded_ = ack->header.tick;
+      record_progress_ = now;
+    }
+    return;
+  }
+  if (const auto* stop = std::get_if<Stop>(&message)) finish(stop->reason);
+}
+
+void World::start(Instant now) {
+  started_ = true;
+  record_progress_ = now;
+  next_tick_ = now;
+  take_roster();
+}
+
+void World::take_roster() {
+  const Mission& mission = *follower_.mission();
+  for (const RosterEntry& entry : follower_.roster()) {
+    const auto known = bodies_.find(entry.author.agent);
+    if (entry.active_until >= 0) {
+      if (known != bodies_.end() && known->second.author == entry.author) {
+        known->second.author.incarnation = 0;  // nobody drives it; its place is kept
+      }
+    }
+  }
+  for (const RosterEntry& entry : follower_.roster()) {
+    if (entry.active_until >= 0) continue;
+    const auto id = static_cast<std::size_t>(entry.author.agent);
+    if (id >= mission.starts_m.size()) continue;
+    auto [at, is_new] = bodies_.try_emplace(entry.author.agent);
+    if (is_new) at->second.x_m = mission.starts_m[id];
+    if (at->second.author != entry.author) at->second.command.reset();
+    at->second.author = entry.author;
+  }
+}
+
+void World::on(const Command& command) {
+  const auto at = bodies_.find(command.header.sender);
+  if (at == bodies_.end() || at->second.author.incarnation != command.header.incarnation) return;
+  if (command.header.tick > tick_ || command.header.tick <= at->second.answered()) return;
+  at->second.command = command;
+}
+
+bool World::everyone_answered() const {
+  return std::all_of(bodies_.begin(), bodies_.end(), [this](const auto& entry) {
+    const Body& body = entry.second;
+    return body.author.incarnation == 0 || body.answered() == tick_;
+  });
+}
+
+bool World::record_is_close(Instant now) {
+  const Mission& mission = *follower_.mission();
+  if (!mission.wait_for_logger || logger_lost_) return true;
+  if (recorded_ && tick_ - *recorded_ <= kRecordWindowTicks) return true;
+  logger_lost_ = now - record_progress_ > seconds(mission.timing.lockstep_timeout_s);
+  return logger_lost_;
+}
+
+void World::advance(Instant now, Outbox& out) {
+  if (over_since_ && now - *over_since_ > kFarewell) return finish("mission complete");
+  if (!started_ || finished_) return;
+  if (follower_.mission()->timing.pace == Pace::kLockstep || over_since_) {
+    advance_lockstep(now, out);
+  } else {
+    advance_realtime(now, out);
+  }
+}
+
+void World::advance_lockstep(Instant now, Outbox& out) {
+  const bool over = tick_ >= follower_.mission()->timing.tick_count;
+  if (!published_) {
+    if (!record_is_close(now)) {
+      if (now >= next_publish_) help_logger(out);
+      if (now >= next_publish_) next_publish_ = now + kRepeatPeriod;
+      return;
+    }
+    remember_and_publish(now, out);
+  } else if (!over && everyone_answered()) {
+    step(false);
+    published_ = false;
+    return advance_lockstep(now, out);
+  } else if (now >= next_publish_) {
+    next_publish_ = now + kRepeatPeriod;
+    publish(history_.back(), out);
+    help_logger(out);
+  }
+  if (over && !over_since_) over_since_ = now;
+}
+
+void World::advance_realtime(Instant now, Outbox& out) {
+  const Timing& timing = follower_.mission()->timing;
+  const auto period = seconds(timing.dt_s / timing.realtime_factor);
+  if (!published_) {
+    if (!record_is_close(now)) return;  // only before the first tick: the logger's first word
+    remember_and_publish(now, out);
+    next_tick_ = now + period;
+  }
+  const auto late = (now - next_tick_) / period;
+  if (late > timing.catch_up_limit_ticks) {
+    skipped_ticks_ += late - timing.catch_up_limit_ticks;
+    next_tick_ += (late - timing.catch_up_limit_ticks) * period;
+  }
+  while (now >= next_tick_ && tick_ < timing.tick_count) {
+    for (const auto& [id, body] : bodies_) {
+      if (body.author.incarnation != 0 && body.answered() < tick_) ++missed_deadlines_;
+    }
+    step(true);
+    remember_and_publish(now, out);
+    next_tick_ += period;
+  }
+  if (tick_ >= timing.tick_count) over_since_ = now;
+}
+
+Eigen::Vector2d World::command_of(const Body& body, bool hold_old_commands) {
+  if (!body.command || body.author.incarnation == 0) return {0, 0};
+  const Timing& timing = follower_.mission()->timing;
+  const double age_s = static_cast<double>(tick_ - body.answered()) * timing.dt_s;
+  if (age_s > (hold_old_commands ? timing.command_hold_s : 0)) return {0, 0};
+  return body.command->velocity_mps.head<2>();
+}
+
+void World::step(bool hold_old_commands) {
+  const Mission& mission = *follower_.mission();
+  const double dt_s = mission.timing.dt_s;
+  for (auto& [id, body] : bodies_) {
+    body.applied_mps = command_of(body, hold_old_commands);
+    Eigen::Vector2d next_m = body.x_m + body.applied_mps * dt_s;
+    if (mission.disturbance_intensity > 0) {
+      next_m += mission.disturbance_intensity * std::sqrt(dt_s) *
+                normal_pair(mission.seed, Purpose::kDisturbance, static_cast<std::uint32_t>(id),
+                            static_cast<std::uint64_t>(tick_));
+    }
+    body.x_m = reflect(next_m, mission.domain);
+  }
+  ++tick_;
+}
+
+std::vector<WorldState> World::snapshot() const {
+  const auto parts = std::max<std::size_t>(
+      1, (bodies_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState);
+  std::vector<WorldState> states(parts);
+  std::size_t i = 0;
+  for (const auto& [id, body] : bodies_) {
+    WorldState& state = states[i++ / kMaxVehiclesPerState];
+    Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(state.vehicle_count++)];
+    vehicle.id = id;
+    vehicle.answered_tick = body.answered();
+    vehicle.position_m << body.x_m, 0;
+    vehicle.velocity_mps << body.applied_mps, 0;
+  }
+  for (std::size_t part = 0; part < parts; ++part) {
+    states[part].part = static_cast<std::int32_t>(part);
+    states[part].parts = static_cast<std::int32_t>(parts);
+    states[part].roster_revision = follower_.revision();
+    states[part].header.tick = tick_;
+  }
+  return states;
+}
+
+void World::publish(const std::vector<WorldState>& states, Outbox& out) {
+  for (WorldState state : states) {
+    state.header = {run_, kWorld, incarnation_, sequencer_.next(Bus::kWorld), state.header.tick};
+    out.push_back({Bus::kWorld, state});
+  }
+}
+
+void World::remember_and_publish(Instant now, Outbox& out) {
+  published_ = true;
+  next_publish_ = now + kRepeatPeriod;
+  history_.push_back(snapshot());
+  if (history_.size() > static_cast<std::size_t>(kRecordWindowTicks) + 2) history_.pop_front();
+  publish(history_.back(), out);
+}
+
+void World::help_logger(Outbox& out) {
+  // A row needs the state of its tick and the next one's, which carries the applied velocity.
+  if (!recorded_) return;
+  for (const auto& states : history_) {
+    const Tick tick = states.front().header.tick;
+    if (tick > *recorded_ && tick <= *recorded_ + 2 && tick < tick_) publish(states, out);
+  }
+}
+
+Instant World::next_wakeup() const {
+  if (finished_) return Instant::max();
+  if (!started_) return Instant::max();
+  if (over_since_) return std::min(next_publish_, *over_since_ + kFarewell);
+  return follower_.mission()->timing.pace == Pace::kLockstep ? next_publish_ : next_tick_;
+}
+
+void World::finish(std::string reason) {
+  finished_ = true;
+  reason_ = std::move(reason);
+}
+
+}  // namespace ergocast

@@ -1,0 +1,88 @@
+// The simulated world: integrates commands, reflects at the edge, publishes states, keeps the tick.
+//
+//   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
+//
+// In lockstep a tick is repeated until every member of the roster has answered it, and the world
+// runs a bounded number of ticks ahead of the record. In real time it goes by the clock.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/ids.h"
+#include "core/messages.h"
+#include "core/mission_follower.h"
+
+namespace ergocast {
+
+/// Lockstep: how many ticks the world may be ahead of what the logger has acknowledged.
+inline constexpr Tick kRecordWindowTicks = 64;
+
+class World {
+ public:
+  World(RunId run, Incarnation incarnation, PlanDecoder decode_plan);
+
+  void receive(const Message& message, Instant now);
+  void advance(Instant now, Outbox& out);
+  Instant next_wakeup() const;
+
+  bool finished() const { return finished_; }
+  const std::string& reason() const { return reason_; }
+  Tick tick() const { return tick_; }
+  /// Real time: commands that were not there when their tick was over.
+  std::int64_t missed_deadlines() const { return missed_deadlines_; }
+  /// Real time: ticks that were dropped because the process had been held up for too long.
+  std::int64_t skipped_ticks() const { return skipped_ticks_; }
+  /// True once a silent logger has been given up.
+  bool logger_lost() const { return logger_lost_; }
+
+ private:
+  struct Body {
+    Author author;
+    Eigen::Vector2d x_m{0, 0};
+    Eigen::Vector2d applied_mps{0, 0};
+    std::optional<Command> command;
+    Tick answered() const { return command ? command->header.tick : -1; }
+  };
+
+  void on(const Command& command);
+  void take_roster();
+  void start(Instant now);
+  bool everyone_answered() const;
+  bool record_is_close(Instant now);
+  void advance_lockstep(Instant now, Outbox& out);
+  void advance_realtime(Instant now, Outbox& out);
+  void step(bool hold_old_commands);
+  Eigen::Vector2d command_of(const Body& body, bool hold_old_commands);
+  std::vector<WorldState> snapshot() const;
+  void publish(const std::vector<WorldState>& states, Outbox& out);
+  void remember_and_publish(Instant now, Outbox& out);
+  void help_logger(Outbox& out);
+  void finish(std::string reason);
+
+  RunId run_;
+  Incarnation incarnation_;
+  MissionFollower follower_;
+  Sequencer sequencer_;
+  bool started_ = false, finished_ = false;
+  std::string reason_;
+  Tick tick_ = 0;
+  std::map<AgentId, Body> bodies_;
+
+  Instant next_publish_{};
+  Instant next_tick_{};
+  bool published_ = false;
+  std::optional<Instant> over_since_;
+
+  std::optional<Tick> recorded_;  // what the logger has acknowledged
+  Instant record_progress_{};
+  bool logger_lost_ = false;
+  std::deque<std::vector<WorldState>> history_;  // states of the last ticks, for the logger
+
+  std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0;
+};
+
+}  // namespace ergocast
