@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "core/require.h"
 
@@ -28,7 +29,7 @@ Agent::Agent(AgentIdentity identity, PlanDecoder decode_plan)
   self_ = {identity_.requested_id, identity_.incarnation};
 }
 
-void Agent::receive(const Message& message, Instant now) {
+void Agent::receive(const Message& message, Instant) {
   const Header& from = header_of(message);
   if (finished() || from.incarnation == identity_.incarnation) return;
   if (identity_.run != 0 && from.run != identity_.run) return count_refused(Refusal::kRun);
@@ -36,7 +37,7 @@ void Agent::receive(const Message& message, Instant now) {
   if (const auto* m = std::get_if<Contribution>(&message)) return on(*m);
   if (const auto* m = std::get_if<WorldState>(&message)) return on(*m);
   if (const auto* m = std::get_if<MissionPart>(&message)) return on(*m);
-  if (const auto* m = std::get_if<AgentStatus>(&message)) return on(*m, now);
+  if (const auto* m = std::get_if<AgentStatus>(&message)) return on(*m);
   if (const auto* m = std::get_if<Stop>(&message)) return on(*m);
 }
 
@@ -52,9 +53,7 @@ void Agent::on(const MissionPart& part) {
   }
   const RosterEntry* own = follower_.entry_of(identity_.incarnation);
   if (own == nullptr) return;
-  if (own->active_until >= 0 && own->active_until <= std::max<Tick>(tick_, 0)) {
-    return finish(true, "evicted from the roster at tick " + std::to_string(own->active_until));
-  }
+  if (evicted(std::max<Tick>(tick_, 0))) return;
   if (phase_ == AgentPhase::kJoining) {
     self_ = own->author;
     join();
@@ -62,6 +61,13 @@ void Agent::on(const MissionPart& part) {
   if (phase_ == AgentPhase::kWaiting && follower_.state() == MissionState::kRunning) {
     phase_ = AgentPhase::kRunning;
   }
+}
+
+bool Agent::evicted(Tick tick) {
+  const RosterEntry* own = follower_.entry_of(identity_.incarnation);
+  if (own == nullptr || own->active_until < 0 || own->active_until > tick) return false;
+  finish(true, "evicted from the roster at tick " + std::to_string(own->active_until));
+  return true;
 }
 
 void Agent::join() {
@@ -74,11 +80,8 @@ void Agent::join() {
 }
 
 void Agent::on(const Contribution& theirs) {
-  Heard& heard = heard_[theirs.author()];
-  if (heard.count == 0) heard.first = theirs.header.sequence;
-  heard.last = std::max(heard.last, theirs.header.sequence);
-  ++heard.count;
   if (!table_) return;
+  count_heard(theirs.header);
   ++contributions_received_;
   const double dt_s = follower_.mission()->timing.dt_s;
   const Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / dt_s));
@@ -92,11 +95,16 @@ void Agent::on(const Contribution& theirs) {
   }
 }
 
-void Agent::on(const AgentStatus& status, Instant) {
-  if (auto at = heard_.find({status.header.sender, status.header.incarnation}); at != heard_.end()) {
-    at->second.last = std::max(at->second.last, status.header.sequence);
-    ++at->second.count;
-  }
+void Agent::count_heard(const Header& from) {
+  if (follower_.entry_of(from.incarnation) == nullptr) return;  // bounded by the roster
+  Heard& heard = heard_[{from.sender, from.incarnation}];
+  if (heard.count == 0) heard.first = from.sequence;
+  heard.last = std::max(heard.last, from.sequence);
+  ++heard.count;
+}
+
+void Agent::on(const AgentStatus& status) {
+  if (table_) count_heard(status.header);
   if (phase_ != AgentPhase::kJoining || identity_.requested_id == kUnassigned ||
       status.header.sender != identity_.requested_id ||
       status.header.sequence <= rival_sequence_) {
@@ -127,7 +135,7 @@ void Agent::on(const WorldState& world) {
   }
 }
 
-void Agent::on(const Stop& stop) { finish(false, stop.reason); }
+void Agent::on(const Stop& stop) { finish(stop.failed, stop.reason); }
 
 void Agent::advance(Instant now, Outbox& out) {
   if (phase_ == AgentPhase::kJoining && now >= next_hello_) {
@@ -141,7 +149,7 @@ void Agent::advance(Instant now, Outbox& out) {
     if (phase_ == AgentPhase::kRunning && answered_tick_ < tick_ && may_answer()) answer(out);
   }
   // Nobody can tell two joining processes apart by an id that neither has been given.
-  const bool has_id = phase_ != AgentPhase::kJoining;
+  const bool has_id = table_.has_value();
   if (has_id && (now >= next_status_ || tick_ >= next_status_tick_)) publish_status(now, out);
 }
 
@@ -154,6 +162,7 @@ void Agent::begin_tick(Outbox& out) {
     tick_ = view.tick;
     return finish(false, "mission complete");
   }
+  if (evicted(view.tick)) return;
   if (tick_ >= 0) missed_ticks_ += view.tick - tick_ - 1;
   tick_ = view.tick;
   x_m_ = view.position_m.head<2>();
@@ -232,6 +241,9 @@ void Agent::publish_status(Instant now, Outbox& out) {
   next_status_ = now + kStatusPeriod;
   const double dt_s = follower_.mission()->timing.dt_s;
   next_status_tick_ = tick_ + std::max<Tick>(1, static_cast<Tick>(kStatusMissionPeriod_s / dt_s));
+  if (!finished()) return;
+  next_status_ = Instant::max();
+  next_status_tick_ = std::numeric_limits<Tick>::max();
 }
 
 double Agent::max_staleness_s() const {

@@ -35,6 +35,9 @@ class Agent {
   /// Does whatever is due at `now` and appends what to publish, in order.
   void advance(Instant now, Outbox& out);
 
+  /// Ends its part at once, as when its process is told to stop; advance() then says so.
+  void leave(std::string reason) { finish(false, std::move(reason)); }
+
   /// When advance() must be called at the latest, even if nothing arrives.
   Instant next_wakeup() const;
 
@@ -67,11 +70,13 @@ class Agent {
 
   void on(const MissionPart& part);
   void on(const Contribution& theirs);
-  void on(const AgentStatus& status, Instant now);
+  void on(const AgentStatus& status);
+  void count_heard(const Header& from);
   void on(const WorldState& world);
   void on(const Stop& stop);
 
   void join();
+  bool evicted(Tick tick);
   void begin_tick(Outbox& out);
   void broadcast(Outbox& out);
   void repeat(Outbox& out);

@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kMissionPeriod = 1s;
-constexpr auto kEndRepeatPeriod = 100ms;
+constexpr auto kMissionGap = 100ms;
 constexpr auto kTeamStatusPeriod = 250ms;
 /// An agent that says nothing for so long is not alive: six of its statuses.
 constexpr auto kSilence = 3s;
@@ -34,7 +34,7 @@ void Coordinator::receive(const Message& message, Instant now) {
   if (header_of(message).run != run_ && !std::holds_alternative<Hello>(message)) return;
   if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);
   if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
-  if (const auto* stop = std::get_if<Stop>(&message)) return end(false, stop->reason, now);
+  if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
   if (const auto* status = std::get_if<AgentStatus>(&message)) {
     const auto at = members_.find({status->header.sender, status->header.incarnation});
     if (at == members_.end()) return;
@@ -67,11 +67,13 @@ void Coordinator::on(const Hello& hello, Instant now) {
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   if (header_of(hello).run != 0 && header_of(hello).run != run_) return;
   const Incarnation nonce = hello.header.incarnation;
+  if (nonce == 0) return;  // the mark of nobody
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
     return entry.author.incarnation == nonce;
   });
   if (known) {
-    next_mission_ = Instant{};  // it has not heard; say it again at once
+    // It has not heard: say it again soon, but let nobody's hellos flood the bus.
+    next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
     return;
   }
   std::optional<AgentId> id = hello.requested_id;
@@ -97,6 +99,7 @@ void Coordinator::on(const WorldState& world, Instant now) {
   if (world.header.tick < tick_) return;
   if (world.header.tick > tick_) tick_since_ = now;
   tick_ = world.header.tick;
+  missed_deadlines_ = std::max(missed_deadlines_, world.missed_deadlines);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     answered_[vehicle.id] = vehicle.answered_tick;
@@ -123,20 +126,24 @@ void Coordinator::end(bool failed, std::string reason, Instant now) {
   change();
 }
 
+AgentId Coordinator::waits_for(const RosterEntry& entry) const {
+  const auto at = members_.find(entry.author);
+  return at != members_.end() && at->second.status ? at->second.status->waiting_for : kUnassigned;
+}
+
 RosterEntry* Coordinator::culprit(Instant now) {
+  RosterEntry* first_late = nullptr;
   RosterEntry* suspect = nullptr;
   for (RosterEntry& entry : roster_) {
     if (entry.active_until >= 0 || answered_[entry.author.agent] >= tick_) continue;
     if (!alive(entry, now)) return &entry;
-    const auto& status = members_[entry.author].status;
-    // Who waits for a teammate is not to blame; that teammate is.
-    if (status && status->waiting_for != kUnassigned) {
-      if (RosterEntry* named = active_entry(status->waiting_for)) suspect = named;
-      continue;
-    }
-    if (suspect == nullptr) suspect = &entry;
+    if (first_late == nullptr) first_late = &entry;
+    // Who waits for a teammate is not to blame; that teammate is, unless it waits itself.
+    const AgentId teammate = waits_for(entry);
+    RosterEntry* named = teammate == kUnassigned ? &entry : active_entry(teammate);
+    if (suspect == nullptr && named != nullptr && waits_for(*named) == kUnassigned) suspect = named;
   }
-  return suspect;
+  return suspect != nullptr ? suspect : first_late;
 }
 
 void Coordinator::check_timeouts(Instant now) {
@@ -144,7 +151,9 @@ void Coordinator::check_timeouts(Instant now) {
     if (now - *started_ < seconds(mission_.timing.admission_timeout_s)) return;
     std::string missing;
     for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
-      if (active_entry(id) == nullptr) missing += (missing.empty() ? "" : ", ") + std::to_string(id);
+      const RosterEntry* entry = active_entry(id);
+      if (entry != nullptr && alive(*entry, now)) continue;
+      missing += (missing.empty() ? "" : ", ") + std::to_string(id);
     }
     return end(true, "only " + std::to_string(alive_count(now)) + " of the quorum of " +
                          std::to_string(mission_.quorum) + " agents were admitted; missing: " +
@@ -155,6 +164,9 @@ void Coordinator::check_timeouts(Instant now) {
   RosterEntry* late = culprit(now);
   const std::string since = " for " + std::to_string(mission_.timing.lockstep_timeout_s) + " s";
   if (late == nullptr) {
+    if (alive_count(now) == 0) {
+      return end(true, "no agent is left to answer tick " + std::to_string(tick_), now);
+    }
     return end(true, "the world has not gone beyond tick " + std::to_string(tick_) + since, now);
   }
   const std::string who = "agent " + std::to_string(late->author.agent) +
@@ -175,7 +187,8 @@ void Coordinator::advance(Instant now, Outbox& out) {
   }
   if (now >= next_mission_) {
     publish_mission(out);
-    next_mission_ = now + (ended_ ? kEndRepeatPeriod : kMissionPeriod);
+    last_mission_ = now;
+    next_mission_ = now + (ended_ ? kMissionGap : kMissionPeriod);
   }
   if (now >= next_team_status_) {
     publish_team_status(now, out);
@@ -215,6 +228,7 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
   TeamStatus team;
   team.state = state_;
   team.tick_count = mission_.timing.tick_count;
+  team.missed_deadlines = missed_deadlines_;
   team.agents_alive = alive_count(now);
   team.agents_expected = static_cast<std::int32_t>(mission_.starts_m.size());
   std::vector<double> metrics;

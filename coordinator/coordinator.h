@@ -48,6 +48,7 @@ class Coordinator {
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;
   void check_timeouts(Instant now);
+  AgentId waits_for(const RosterEntry& entry) const;
   RosterEntry* culprit(Instant now);
   void change() { ++revision_, next_mission_ = Instant{}; }
   void publish_mission(Outbox& out);
@@ -68,9 +69,10 @@ class Coordinator {
   std::map<AgentId, std::int64_t> answered_;  // by the world's word
 
   Tick tick_ = 0;
+  std::int64_t missed_deadlines_ = 0;
   std::optional<Instant> started_, ended_;
   Instant tick_since_{};
-  Instant next_mission_{}, next_team_status_{};
+  Instant next_mission_{}, last_mission_{}, next_team_status_{};
   bool finished_ = false;
 };
 

@@ -13,7 +13,8 @@ Eigen::Vector2d smooth_input(const Eigen::Vector2d& spectral_gradient, double ep
   const double length =
       std::hypot(std::hypot(spectral_gradient.x(), spectral_gradient.y()), epsilon);
   if (length == 0) return {0, 0};
-  return spectral_gradient * (-u_max_mps / length);
+  // Divided first: u_max / length overflows where B is next to nothing.
+  return spectral_gradient / length * -u_max_mps;
 }
 
 Controller::Controller(const Mission& mission)

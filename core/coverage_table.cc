@@ -8,13 +8,17 @@
 namespace ergocast {
 namespace {
 
-/// Cosines by recurrence exceed 1 by about 3e-15; this leaves honest rounding room for ever.
-constexpr double kRoundingMargin = 1e-9;
+/// How far honest sums may be from steps·dt, relative: half an ulp for each addition, and room for
+/// cosines by recurrence, which exceed 1 by about 3e-15.
+double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(steps) * 0x1p-53; }
 
 bool in_range(const Contribution& c, double dt_s) {
   const double expected_s = static_cast<double>(c.steps) * dt_s;
-  if (!(std::abs(c.elapsed_s - expected_s) <= kRoundingMargin * expected_s)) return false;
-  const double limit = expected_s * (1 + kRoundingMargin);
+  const double margin_s = expected_s * rounding_margin(c.steps);
+  if (!(std::abs(c.elapsed_s - expected_s) <= margin_s)) return false;
+  // f_00 = 1, so S_00 is the time covered.
+  if (c.block == 0 && !(std::abs(c.sums[0] - expected_s) <= margin_s)) return false;
+  const double limit = expected_s + margin_s;
   // The negation refuses NaN too.
   return std::all_of(c.sums.begin(), c.sums.end(),
                      [limit](double sum) { return std::abs(sum) <= limit; });

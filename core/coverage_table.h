@@ -28,8 +28,9 @@ class CoverageTable {
   void add_sample(const Author& author, const BasisAt& at);
 
   /// Takes in one block. Refused, without effect: another number of modes, a block that does not
-  /// exist, an elapsed time that is not steps·dt, |S| > elapsed (1 + 1e-9), more steps than
-  /// `max_steps` (a forged future would win for ever), a full table.
+  /// exist, an elapsed time that is not steps·dt, an S_00 that is not the elapsed time, |S| > elapsed
+  /// (both but for rounding, 1e-9 and half an ulp a step), more steps than `max_steps` (a forged
+  /// future would win for ever), a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
   /// One block of a row, without header; all zero for an unknown author.

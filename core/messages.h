@@ -113,11 +113,13 @@ struct TeamStatus {
   std::int32_t agents_alive = 0, agents_expected = 0;
   double ergodic_metric = 0;  ///< median of the agents' own φ²
   AgentId waiting_for = kUnassigned;
+  std::int64_t missed_deadlines = 0;  ///< as the world counts them
 };
 
 /// Ends the run for whoever hears it; final.
 struct Stop {
   Header header;
+  bool failed = false;  ///< whether the mission failed or somebody simply wanted it to end
   std::string reason;
 };
 
@@ -132,6 +134,8 @@ struct Vehicle {
 struct WorldState {
   Header header;
   std::int64_t roster_revision = 0;
+  std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
+  std::int64_t skipped_ticks = 0;     ///< real time: ticks given up because the world was held up
   std::int32_t part = 0, parts = 1;
   std::int32_t vehicle_count = 0;
   std::array<Vehicle, kMaxVehiclesPerState> vehicles;

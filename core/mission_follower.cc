@@ -6,7 +6,8 @@ namespace ergocast {
 
 bool MissionFollower::receive(const MissionPart& part) {
   if (part.header.sender != kCoordinator || part.revision <= revision_ ||
-      part.revision < collecting_revision_) {
+      part.revision < collecting_revision_ || part.parts < 1 || part.parts > kMaxPlanParts ||
+      part.part < 0 || part.part >= part.parts) {
     return false;
   }
   if (part.revision > collecting_revision_ ||

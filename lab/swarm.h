@@ -38,7 +38,8 @@ class Swarm {
   /// @pre options.plan decodes.
   Swarm(Options options, std::ostream& trajectory, std::ostream& metrics);
 
-  /// Delivers what is in flight, then lets time pass to the next wake-up. False once all is over.
+  /// Delivers what is in flight and lets everybody answer; with nothing in flight, time first jumps
+  /// to the next wake-up. False once all is over.
   bool step();
   /// Runs until the mission is over, or `limit` of virtual time has passed.
   void run(std::chrono::nanoseconds limit = std::chrono::hours(24 * 365));
@@ -58,6 +59,7 @@ class Swarm {
     std::vector<std::byte> bytes;
   };
 
+  void pass_time();
   void advance_all();
   void send(Outbox& out);
   void deliver(const Datagram& datagram);
@@ -72,6 +74,7 @@ class Swarm {
   Coordinator coordinator_;
   Recorder recorder_;
   Instant now_{};
+  bool started_ = false;
   std::deque<Datagram> in_flight_;
   std::vector<std::vector<std::byte>> spare_;  // buffers to use again
   Outbox outbox_;

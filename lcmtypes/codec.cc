@@ -116,13 +116,13 @@ bool sizes_match(const agent_status_t*, std::span<const std::byte> bytes) {
 
 bool sizes_match(const stop_t*, std::span<const std::byte> bytes) {
   Tail tail(bytes, kHeaderEnd);
-  return tail.string(kMaxReasonLength) && tail.ended();
+  return tail.skip(1) && tail.string(kMaxReasonLength) && tail.ended();
 }
 
 bool sizes_match(const world_state_t*, std::span<const std::byte> bytes) {
   std::size_t vehicles = 0;
-  return count_at(bytes, kHeaderEnd + 16, kMaxVehiclesPerState, vehicles) &&
-         bytes.size() == kHeaderEnd + 20 + vehicles * kVehicleBytes;
+  return count_at(bytes, kHeaderEnd + 32, kMaxVehiclesPerState, vehicles) &&
+         bytes.size() == kHeaderEnd + 36 + vehicles * kVehicleBytes;
 }
 
 template <class Fixed>
@@ -145,6 +145,16 @@ header_t to_wire(const Header& h) {
 Header from_wire(const header_t& w) {
   return {static_cast<RunId>(w.run_id), w.sender, static_cast<Incarnation>(w.incarnation),
           w.sequence, w.tick};
+}
+
+/// More messages, ticks or events of any kind than a run can have; sums of a few cannot overflow.
+constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
+
+bool plausible_count(std::int64_t count) { return count >= 0 && count <= kMostEver; }
+
+bool plausible(const Header& h) {
+  return h.sender >= kOperator && h.sender < kMaxAgents && plausible_count(h.sequence) &&
+         h.tick >= -1 && h.tick <= kMostEver;
 }
 
 /// At most `limit` characters and no NUL, so that what we send is what we accept.
@@ -264,8 +274,13 @@ agent_status_t to_wire(const AgentStatus& m) {
 std::optional<AgentStatus> from_wire(const agent_status_t& w) {
   if (w.phase < 0 || w.phase > static_cast<int>(AgentPhase::kFinished) ||
       w.header.sender < kUnassigned || w.header.sender >= kMaxAgents ||
-      !std::isfinite(w.ergodic_metric) || !std::isfinite(w.max_staleness_s)) {
+      !std::isfinite(w.ergodic_metric) || !std::isfinite(w.max_staleness_s) ||
+      !std::all_of(std::begin(w.refused), std::end(w.refused), plausible_count)) {
     return std::nullopt;
+  }
+  for (const std::int64_t count : {w.contributions_received, w.contributions_lost, w.messages_sent,
+                                   w.messages_received, w.missed_ticks, w.kernel_drops}) {
+    if (!plausible_count(count)) return std::nullopt;
   }
   AgentStatus m;
   m.header = from_wire(w.header);
@@ -294,6 +309,7 @@ team_status_t to_wire(const TeamStatus& m) {
   w.agents_expected = m.agents_expected;
   w.median_ergodic_metric = m.ergodic_metric;
   w.team_waiting_for = m.waiting_for;
+  w.team_missed_deadlines = m.missed_deadlines;
   return w;
 }
 std::optional<TeamStatus> from_wire(const team_status_t& w) {
@@ -304,22 +320,25 @@ std::optional<TeamStatus> from_wire(const team_status_t& w) {
   return TeamStatus{from_wire(w.header), static_cast<MissionState>(w.mission_state),
                     w.tick_count,        w.agents_alive,
                     w.agents_expected,   w.median_ergodic_metric,
-                    w.team_waiting_for};
+                    w.team_waiting_for,  w.team_missed_deadlines};
 }
 
 stop_t to_wire(const Stop& m) {
   stop_t w;
   w.header = to_wire(m.header);
+  w.stop_failed = m.failed ? 1 : 0;
   w.stop_reason = bounded(m.reason, kMaxReasonLength);
   return w;
 }
-std::optional<Stop> from_wire(const stop_t& w) { return Stop{from_wire(w.header), w.stop_reason}; }
+std::optional<Stop> from_wire(const stop_t& w) { return Stop{from_wire(w.header), w.stop_failed != 0, w.stop_reason}; }
 
 world_state_t to_wire(const WorldState& m) {
   ERGOCAST_REQUIRE(m.vehicle_count >= 0 && m.vehicle_count <= kMaxVehiclesPerState);
   world_state_t w;
   w.header = to_wire(m.header);
   w.roster_revision = m.roster_revision;
+  w.missed_deadlines = m.missed_deadlines;
+  w.skipped_ticks = m.skipped_ticks;
   w.state_part = m.part;
   w.state_parts = m.parts;
   w.vehicle_count = m.vehicle_count;
@@ -336,6 +355,8 @@ std::optional<WorldState> from_wire(const world_state_t& w) {
   WorldState m;
   m.header = from_wire(w.header);
   m.roster_revision = w.roster_revision;
+  m.missed_deadlines = w.missed_deadlines;
+  m.skipped_ticks = w.skipped_ticks;
   m.part = w.state_part;
   m.parts = w.state_parts;
   m.vehicle_count = w.vehicle_count;
@@ -388,7 +409,7 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   const int size = static_cast<int>(bytes.size());
   if (wire.decode(bytes.data(), 0, size) != size) return Refusal::kSize;
   auto plain = from_wire(wire);
-  if (!plain) return Refusal::kRange;
+  if (!plain || !plausible(plain->header)) return Refusal::kRange;
   return Message(std::move(*plain));
 }
 

@@ -11,13 +11,15 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kAckPeriod = 100ms;
+/// When a state is missing that has been sent: the sooner the world knows, the sooner it repeats it.
+constexpr auto kImpatientAckPeriod = 20ms;
 constexpr Tick kAckEveryTicks = 16;
 constexpr double kMetricsPeriod_s = 1.0;
 /// Real time does not repeat a state: after so many newer ones, a missing one is given up.
 constexpr std::size_t kGiveUpAfterStates = 16;
 /// Lockstep states beyond this many ticks ahead cannot be honest.
 constexpr Tick kLeadTicks = 1024;
-/// How long after the end a missing state may still come.
+/// How long after the end, or the last row, a missing state or an agent's last status may still come.
 constexpr auto kFarewell = 1s;
 
 /// 17 significant digits: the double comes back bit for bit.
@@ -55,6 +57,7 @@ void Recorder::receive(const Message& message, Instant now) {
     return;
   }
   if (const auto* part = std::get_if<MissionPart>(&message)) {
+    if (run_ == 0) run_ = from.run;
     const bool had_mission = follower_.mission().has_value();
     if (!follower_.receive(*part)) return;
     if (!had_mission && follower_.mission()) {
@@ -64,12 +67,14 @@ void Recorder::receive(const Message& message, Instant now) {
     }
     if (follower_.over() && !over_since_) {
       over_since_ = now;
+      failed_ = follower_.state() == MissionState::kFailed;
       reason_ = follower_.reason();
     }
     return;
   }
   if (const auto* stop = std::get_if<Stop>(&message); stop && !over_since_) {
     over_since_ = now;
+    failed_ = stop->failed;
     reason_ = stop->reason;
   }
 }
@@ -77,6 +82,8 @@ void Recorder::receive(const Message& message, Instant now) {
 void Recorder::on(const WorldState& world) {
   const Tick tick = world.header.tick;
   if (tick < next_row_ || tick > next_row_ + kLeadTicks) return;
+  facts_.missed_deadlines = std::max(facts_.missed_deadlines, world.missed_deadlines);
+  facts_.skipped_ticks = std::max(facts_.skipped_ticks, world.skipped_ticks);
   State& state = states_[tick];
   if (state.parts.size() != static_cast<std::size_t>(world.parts)) {
     state.parts.assign(static_cast<std::size_t>(world.parts), false);
@@ -94,18 +101,52 @@ void Recorder::advance(Instant now, Outbox& out) {
   if (mission) {
     while (write_next_row()) {
     }
-    if (mission->timing.pace == Pace::kRealtime) skip_gap();
-    finished_ = next_row_ >= mission->timing.tick_count;
+    const bool given_up = states_.size() >= kGiveUpAfterStates;
+    if (mission->timing.pace == Pace::kRealtime && given_up) skip_gap();
+    if (next_row_ >= mission->timing.tick_count && !over_since_) {
+      over_since_ = now;
+      reason_ = "mission complete";
+    }
   }
-  if (over_since_ && now - *over_since_ >= kFarewell) finished_ = true;
+  if (over_since_ && now - *over_since_ >= kFarewell) close();
   const Tick recorded = next_row_ - 1;
   const bool progress = recorded > acked_ + kAckEveryTicks - 1 || (finished_ && recorded > acked_);
   if (mission && (progress || now >= next_ack_)) {
     acked_ = recorded;
-    next_ack_ = now + kAckPeriod;
+    const bool hole = !states_.empty() && states_.rbegin()->first > next_row_ + 1;
+    next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
     out.push_back({Bus::kCommand, RecordAck{{run_, kLogger, incarnation_,
                                             sequencer_.next(Bus::kCommand), recorded}}});
   }
+}
+
+Instant Recorder::next_wakeup() const {
+  return finished_ || !follower_.mission() ? Instant::max() : next_ack_;
+}
+
+void Recorder::stop(std::string reason) {
+  if (!over_since_) reason_ = std::move(reason);
+  close();
+}
+
+void Recorder::close() {
+  if (finished_) return;
+  finished_ = true;
+  const std::optional<Mission>& mission = follower_.mission();
+  if (!mission || mission->timing.pace != Pace::kRealtime) return;
+  // What stands behind a gap is written now or never.
+  while (next_row_ < mission->timing.tick_count && !states_.empty() &&
+         states_.rbegin()->first > next_row_) {
+    skip_gap();
+    while (write_next_row()) {
+    }
+  }
+}
+
+const char* Recorder::result() const {
+  if (failed_) return "failed";
+  const bool complete = follower_.mission() && next_row_ >= follower_.mission()->timing.tick_count;
+  return complete ? "done" : "stopped";
 }
 
 bool Recorder::write_next_row() {
@@ -125,7 +166,6 @@ bool Recorder::write_next_row() {
 }
 
 void Recorder::skip_gap() {
-  if (states_.size() < kGiveUpAfterStates) return;
   // The first pair of successive states is where the record can go on.
   const auto pair = std::adjacent_find(states_.begin(), states_.end(), [](const auto& a, const auto& b) {
     return b.first == a.first + 1 && a.second.complete() && b.second.complete();

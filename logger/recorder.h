@@ -24,22 +24,28 @@ struct RunFacts {
   double ergodic_metric_first = 0, ergodic_metric_last = 0;
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
   Tick gaps = 0;                            ///< ticks of which a state never came (real time)
+  std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
 };
 
 class Recorder {
  public:
   /// Writes to streams that outlive it; the caller checks them for errors.
+  /// @param run  the run to record; 0: the run of the first mission heard
   Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan, std::ostream& trajectory,
            std::ostream& metrics);
 
   void receive(const Message& message, Instant now);
   void advance(Instant now, Outbox& out);
-  Instant next_wakeup() const { return finished() ? Instant::max() : next_ack_; }
+  /// Ends the record with what has come so far.
+  void stop(std::string reason);
+  Instant next_wakeup() const;
 
-  /// True once the last tick is recorded, or the mission is over and no more can come.
+  /// True once the last tick is recorded or the mission is over, and no more can come.
   bool finished() const { return finished_; }
+  RunId run() const { return run_; }
   const MissionFollower& follower() const { return follower_; }
-  /// Why the run ended, if it did not come to its last tick.
+  /// "done" (its last tick is recorded), "failed" or "stopped" (somebody ended it), and why.
+  const char* result() const;
   const std::string& reason() const { return reason_; }
   const RunFacts& facts() const { return facts_; }
   const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
@@ -55,6 +61,7 @@ class Recorder {
   void on(const WorldState& world);
   bool write_next_row();
   void skip_gap();
+  void close();
   void write_trajectory(const State& now, const State& next);
   void observe(const State& now);
   void write_metrics(double metric);
@@ -68,8 +75,9 @@ class Recorder {
 
   std::map<Tick, State> states_;
   Tick next_row_ = 0, acked_ = -2;
-  bool finished_ = false;
+  bool finished_ = false, failed_ = false;
   std::optional<Instant> over_since_;
+  Instant last_row_{};
   std::string reason_;
 
   Coefficients sums_s_, weights_;

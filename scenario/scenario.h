@@ -29,23 +29,32 @@ std::string to_string(const Problem& problem);
 
 /// What the command line says over the file.
 struct Overrides {
-  std::optional<std::uint64_t> seed;
-  std::optional<double> duration_s;
-  std::optional<Pace> pace;
-  std::optional<double> realtime_factor;
-  std::optional<int> agents;  ///< the team's size: the listed starts are cut, or random ones added
+  std::optional<std::uint64_t> seed{};
+  std::optional<double> duration_s{};
+  std::optional<Pace> pace{};
+  std::optional<double> realtime_factor{};
+  /// The team's size: the listed starts are cut, or random ones added.
+  std::optional<int> agents{};
 };
+
+inline constexpr std::size_t kMaxScenarioBytes = std::size_t{1} << 20;
 
 /// A scenario without problems, all defaults filled in, random starts drawn.
 class Scenario {
  public:
-  /// Reads a file, puts `overrides` over it and validates the result. All problems at once.
+  /// Reads a file of at most kMaxScenarioBytes, puts `overrides` over it and validates the result.
+  /// All problems at once.
   static std::variant<Scenario, std::vector<Problem>> load(const std::filesystem::path& file,
                                                            const Overrides& overrides = {});
   /// The same for text; `file` is what the problems call it.
   static std::variant<Scenario, std::vector<Problem>> parse(std::string_view text,
                                                             const std::string& file,
                                                             const Overrides& overrides = {});
+
+  /// The scenario in a compiled plan, with the plan's μ and without a description. Nothing if the
+  /// bytes are not a plan, are another version's, or break a limit of the scenario: plans come from
+  /// the network. from_plan(s.plan())->plan() == s.plan().
+  static std::optional<Scenario> from_plan(std::span<const std::byte> plan) noexcept;
 
   Scenario(const Scenario&);
   Scenario(Scenario&&) noexcept;
@@ -72,8 +81,7 @@ class Scenario {
   std::shared_ptr<const State> state_;
 };
 
-/// The mission in a compiled plan; nothing if the bytes are not one, are another version's, or
-/// break a limit of the scenario (plans come from the network). Never throws.
+/// The mission of from_plan(), or nothing.
 std::optional<Mission> decode_plan(std::span<const std::byte> plan) noexcept;
 
 /// 32 hex digits that name a plan: XXH3-128 of its bytes.

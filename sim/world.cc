@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kRepeatPeriod = 20ms;
-/// How long the end is repeated to whoever has not heard of it.
+/// How long the end is repeated to whoever has not heard of it, after the record's last progress.
 constexpr auto kFarewell = 2s;
 
 std::chrono::nanoseconds seconds(double s) {
@@ -34,7 +34,8 @@ void World::receive(const Message& message, Instant now) {
     if (run_ == 0) run_ = from.run;
     if (!follower_.receive(*part)) return;
     if (follower_.plan_unreadable()) return finish("the mission plan is another version's");
-    if (follower_.over()) return finish(follower_.reason());
+    // At its own end the world stays for whoever has not heard the last states.
+    if (follower_.over() && !over_since_) return finish(follower_.reason());
     if (started_) take_roster();
     if (!started_ && follower_.state() == MissionState::kRunning) start(now);
     return;
@@ -44,6 +45,7 @@ void World::receive(const Message& message, Instant now) {
       recorded_ = ack->header.tick;
       record_progress_ = now;
     }
+    if (over_since_ && *recorded_ + 1 >= tick_) finish("mission complete");
     return;
   }
   if (const auto* stop = std::get_if<Stop>(&message)) finish(stop->reason);
@@ -85,10 +87,14 @@ void World::on(const Command& command) {
 }
 
 bool World::everyone_answered() const {
-  return std::all_of(bodies_.begin(), bodies_.end(), [this](const auto& entry) {
-    const Body& body = entry.second;
-    return body.author.incarnation == 0 || body.answered() == tick_;
-  });
+  // With nobody left, the tick waits for a restarted agent or for the coordinator's patience.
+  bool driven = false;
+  for (const auto& [id, body] : bodies_) {
+    if (body.author.incarnation == 0) continue;
+    if (body.answered() != tick_) return false;
+    driven = true;
+  }
+  return driven;
 }
 
 bool World::record_is_close(Instant now) {
@@ -100,7 +106,9 @@ bool World::record_is_close(Instant now) {
 }
 
 void World::advance(Instant now, Outbox& out) {
-  if (over_since_ && now - *over_since_ > kFarewell) return finish("mission complete");
+  if (over_since_ && now - std::max(*over_since_, record_progress_) > kFarewell) {
+    return finish("mission complete");
+  }
   if (!started_ || finished_) return;
   if (follower_.mission()->timing.pace == Pace::kLockstep || over_since_) {
     advance_lockstep(now, out);
@@ -124,6 +132,7 @@ void World::advance_lockstep(Instant now, Outbox& out) {
     return advance_lockstep(now, out);
   } else if (now >= next_publish_) {
     next_publish_ = now + kRepeatPeriod;
+    history_.back() = snapshot();  // the same state, but who has answered it is news
     publish(history_.back(), out);
     help_logger(out);
   }
@@ -134,7 +143,10 @@ void World::advance_realtime(Instant now, Outbox& out) {
   const Timing& timing = follower_.mission()->timing;
   const auto period = seconds(timing.dt_s / timing.realtime_factor);
   if (!published_) {
-    if (!record_is_close(now)) return;  // only before the first tick: the logger's first word
+    if (!record_is_close(now)) {  // only before the first tick: the logger's first word
+      next_tick_ = now + kRepeatPeriod;
+      return;
+    }
     remember_and_publish(now, out);
     next_tick_ = now + period;
   }
@@ -194,6 +206,8 @@ std::vector<WorldState> World::snapshot() const {
   for (std::size_t part = 0; part < parts; ++part) {
     states[part].part = static_cast<std::int32_t>(part);
     states[part].parts = static_cast<std::int32_t>(parts);
+    states[part].missed_deadlines = missed_deadlines_;
+    states[part].skipped_ticks = skipped_ticks_;
     states[part].roster_revision = follower_.revision();
     states[part].header.tick = tick_;
   }
@@ -227,7 +241,7 @@ void World::help_logger(Outbox& out) {
 Instant World::next_wakeup() const {
   if (finished_) return Instant::max();
   if (!started_) return Instant::max();
-  if (over_since_) return std::min(next_publish_, *over_since_ + kFarewell);
+  if (over_since_) return next_publish_;
   return follower_.mission()->timing.pace == Pace::kLockstep ? next_publish_ : next_tick_;
 }
 

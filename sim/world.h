@@ -29,7 +29,11 @@ class World {
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
+  /// Ends at once, as when its process is told to stop.
+  void stop(std::string reason) { finish(std::move(reason)); }
+
   bool finished() const { return finished_; }
+  RunId run() const { return run_; }
   const std::string& reason() const { return reason_; }
   Tick tick() const { return tick_; }
   /// Real time: commands that were not there when their tick was over.

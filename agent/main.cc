@@ -1,0 +1,59 @@
+// ergocast-agent: one agent of the team as a process.
+#include <spdlog/spdlog.h>
+
+#include "agent/agent.h"
+#include "runtime/event_loop.h"
+#include "runtime/node.h"
+#include "runtime/traffic_watch.h"
+#include "scenario/scenario.h"
+
+namespace ergocast {
+namespace {
+
+int run(const NodeOptions& node, AgentId requested_id) {
+  StopSignals signals;
+  Agent agent({node.run, requested_id, random_identity(), host_name(), version()}, decode_plan);
+  auto opened = Transport::open(
+      node.url, node.run,
+      {{Bus::kSwarm, "MISSION|STOP|CONTRIBUTION_.*|AGENT_STATUS_.*"}, {Bus::kWorld, "WORLD_STATE"}},
+      {.on_message = [&agent](const Message& message) { agent.receive(message, now()); },
+       .on_refused = [&agent](Refusal refusal) { agent.count_refused(refusal); }});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    spdlog::error("{}", *problem);
+    return kExitUnavailable;
+  }
+  Transport& transport = *std::get<0>(opened);
+  TrafficWatch watch(transport);
+  AgentPhase logged = AgentPhase::kJoining;
+  spdlog::info("joining on {}", node.url.base());
+
+  live(agent, transport, signals, [&] { agent.leave("told to stop by a signal"); }, [&] {
+    transport.set_run(agent.run());
+    if (watch.look(now())) agent.set_kernel_drops(watch.kernel_drops());
+    if (agent.phase() == logged) return;
+    logged = agent.phase();
+    if (!agent.finished()) {
+      spdlog::info("agent {} of run {}: {}", agent.id(), to_hex(agent.run()), to_string(logged));
+    }
+  });
+  spdlog::log(agent.failed() ? spdlog::level::err : spdlog::level::info, "finished at tick {}: {}",
+              agent.tick(), agent.reason());
+  return agent.failed() ? kExitFailed : kExitDone;
+}
+
+}  // namespace
+}  // namespace ergocast
+
+int main(int argc, char** argv) {
+  using namespace ergocast;
+  CLI::App app("One agent: joins the team on the URL, is given the mission over the wire, and steers.",
+               "ergocast-agent");
+  NodeOptions node;
+  AgentId requested_id = kUnassigned;
+  add_node_options(app, node);
+  app.add_option("--id", requested_id, "Be this agent; without it, whichever is free")
+      ->check(CLI::Range(0, kMaxAgents - 1));
+  if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
+  set_up_logging(requested_id == kUnassigned ? "agent" : "agent-" + std::to_string(requested_id));
+  return run(node, requested_id);
+}

@@ -1,0 +1,24 @@
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/run_directory.h"
+#include "runtime/node.h"
+
+namespace ergocast::cli {
+
+int check(const std::filesystem::path& file, bool print) {
+  const auto scenario = load_or_complain(file, {});
+  if (!scenario) return kExitBadInput;
+  if (print) {
+    std::fputs(scenario->print().c_str(), stdout);
+    return kExitDone;
+  }
+  const Mission& mission = scenario->mission();
+  std::printf("%s: no problems. %zu agents, %d x %d modes, %lld ticks of %g s, plan %s (%zu bytes)\n",
+              file.c_str(), mission.starts_m.size(), mission.basis.modes_x, mission.basis.modes_y,
+              static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
+              plan_hash(scenario->plan()).c_str(), scenario->plan().size());
+  return kExitDone;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,35 @@
+// What `ergocast` can do, one function a command. Each returns the program's exit code.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "runtime/lcm_url.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::cli {
+
+/// What `run` and `simulate` are told.
+struct MissionOptions {
+  std::filesystem::path scenario;
+  std::filesystem::path out;     ///< empty: runs/<scenario>-<time>
+  Overrides overrides;
+  std::optional<LcmUrl> url;     ///< nothing: this host only, on ports of the run's own
+};
+
+/// The mission as processes over LCM on this host.
+int run(const MissionOptions& options);
+
+/// The mission in this process, in virtual time.
+int simulate(const MissionOptions& options);
+
+/// Every problem of a scenario; with `print`, the scenario as it would be run.
+int check(const std::filesystem::path& scenario, bool print);
+
+/// (Re)makes the report of a run directory.
+int report(const std::filesystem::path& run_dir);
+
+/// Simulates a recorded run again and compares the trajectories.
+int verify(const std::filesystem::path& run_dir);
+
+}  // namespace ergocast::cli

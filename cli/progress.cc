@@ -1,0 +1,97 @@
+#include "cli/progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kBarWidth = 24;
+
+std::string clock_text(double seconds) {
+  char text[32];
+  const auto s = static_cast<long>(std::min(seconds, 359999.0) + 0.5);
+  if (s >= 3600) {
+    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%ld:%02ld", s / 60, s % 60);
+  }
+  return text;
+}
+
+std::string describe(const MissionProgress& at, double ticks_per_s) {
+  const double done_s = static_cast<double>(at.tick) * at.dt_s;
+  const double all_s = static_cast<double>(at.tick_count) * at.dt_s;
+  char text[160];
+  std::snprintf(text, sizeof text, "t = %.0f of %.0f s, phi^2 = %.3g, %d of %d agents", done_s,
+                all_s, at.ergodic_metric, at.agents_alive, at.agents_expected);
+  std::string line = text;
+  if (ticks_per_s > 0) {
+    std::snprintf(text, sizeof text, ", %.0f ticks/s", ticks_per_s);
+    line += text;
+    line += ", " + clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) + " left";
+  }
+  return line;
+}
+
+std::string bar(const MissionProgress& at) {
+  const double share =
+      static_cast<double>(at.tick) / static_cast<double>(std::max<Tick>(1, at.tick_count));
+  const auto full = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * kBarWidth);
+  return '[' + std::string(full, '#') + std::string(kBarWidth - full, '.') + "] ";
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+ProgressDisplay::ProgressDisplay() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void ProgressDisplay::measure_rate(Tick tick, Clock::time_point now) {
+  if (rate_since_ == Clock::time_point{} || tick < rate_from_) {
+    rate_since_ = now;
+    rate_from_ = tick;
+    return;
+  }
+  const double elapsed_s = std::chrono::duration<double>(now - rate_since_).count();
+  if (elapsed_s < 0.5) return;
+  ticks_per_s_ = static_cast<double>(tick - rate_from_) / elapsed_s;
+  rate_since_ = now;
+  rate_from_ = tick;
+}
+
+void ProgressDisplay::show(const MissionProgress& progress) {
+  const auto now = Clock::now();
+  measure_rate(progress.tick, now);
+  if (now < next_) return;
+  next_ = now + (terminal_ ? 200ms : 2000ms);
+  std::string line = describe(progress, ticks_per_s_);
+  if (!terminal_) {
+    std::fprintf(stderr, "%s\n", line.c_str());
+    return;
+  }
+  line = bar(progress) + line;
+  line.resize(std::min(line.size(), terminal_width() - 1));
+  std::fprintf(stderr, "\r\x1b[K%s", line.c_str());
+  bar_shown_ = true;
+}
+
+void ProgressDisplay::say(const std::string& line) {
+  std::fprintf(stderr, "%s%s\n", bar_shown_ ? "\r\x1b[K" : "", line.c_str());
+  bar_shown_ = false;
+}
+
+void ProgressDisplay::end() {
+  if (bar_shown_) std::fputc('\n', stderr);
+  bar_shown_ = false;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,23 @@
+#include "logger/report.h"
+
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/run_directory.h"
+#include "logger/run_record.h"
+#include "runtime/node.h"
+
+namespace ergocast::cli {
+
+int report(const std::filesystem::path& run_dir) {
+  const auto scenario = load_or_complain(run_dir / kScenarioFile, {});
+  if (!scenario) return kExitBadInput;
+  if (const auto problem = write_report(run_dir, scenario->mission(), scenario->target())) {
+    std::fprintf(stderr, "%s\n", problem->c_str());
+    return kExitBadInput;
+  }
+  std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());
+  return kExitDone;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,170 @@
+#include <chrono>
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/launcher.h"
+#include "cli/progress.h"
+#include "cli/run_directory.h"
+#include "logger/run_record.h"
+#include "runtime/clock.h"
+#include "runtime/node.h"
+#include "runtime/signals.h"
+#include "runtime/transport.h"
+
+namespace ergocast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr auto kAttendPeriod = 50ms;
+constexpr auto kStopPeriod = 100ms;
+
+/// What the launcher knows of the mission: it hears the coordinator, and can say STOP.
+class MissionWatch {
+ public:
+  MissionWatch(RunId run, double dt_s, ProgressDisplay& display)
+      : run_(run), dt_s_(dt_s), display_(display) {}
+
+  void receive(const Message& message) {
+    if (const auto* team = std::get_if<TeamStatus>(&message)) {
+      if (team->state == MissionState::kRunning || team->header.tick > 0) {
+        display_.show({team->header.tick, team->tick_count, dt_s_, team->ergodic_metric,
+                       team->agents_alive, team->agents_expected});
+      }
+      state_ = team->state;
+    } else if (const auto* part = std::get_if<MissionPart>(&message)) {
+      state_ = part->state;
+      if (!part->reason.empty()) reason_ = part->reason;
+    }
+  }
+  MissionState state() const { return state_; }
+  bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
+  const std::string& reason() const { return reason_; }
+
+  /// From now on repeat() says STOP; the first call counts.
+  void stop(bool failed, std::string reason) {
+    if (stop_) return;
+    stop_ = Stop{{run_, kOperator, incarnation_, 0, 0}, failed, std::move(reason)};
+  }
+  bool stopping() const { return stop_.has_value(); }
+  void repeat(Transport& transport, Instant now) {
+    if (!stop_ || now < next_stop_) return;
+    next_stop_ = now + kStopPeriod;
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
+      ++stop_->header.sequence;
+      transport.publish({bus, *stop_});
+    }
+  }
+
+ private:
+  RunId run_;
+  double dt_s_;
+  ProgressDisplay& display_;
+  Incarnation incarnation_ = random_identity();
+  MissionState state_ = MissionState::kWaiting;
+  std::string reason_;
+  std::optional<Stop> stop_;
+  Instant next_stop_{};
+};
+
+/// Until all processes have ended.
+void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
+               StopSignals& signals, ProgressDisplay& display) {
+  int asked = 0;
+  while (!launcher.all_ended()) {
+    transport.deliver_until(now() + kAttendPeriod, signals.fd());
+    if (const int count = signals.take(); count > 0) {
+      asked += count;
+      if (asked == 1) display.say("ending the mission in order; once more to end it now");
+      if (asked == 2) launcher.press(1);
+      if (asked > 2) launcher.press(2);
+      mission.stop(false, "stopped by a signal");
+    }
+    if (mission.over() || mission.stopping()) launcher.expect_end(now());
+    launcher.attend(now());
+    if (launcher.failure()) mission.stop(true, *launcher.failure());
+    mission.repeat(transport, now());
+  }
+  launcher.attend(now());
+}
+
+/// The logger's summary with what only the launcher knows.
+nlohmann::ordered_json amended_summary(const fs::path& run_dir, RunId run, const Launcher& launcher,
+                                       const MissionWatch& mission) {
+  auto summary = read_summary(run_dir);
+  if (!summary.is_object()) {
+    summary = {{"run_id", to_hex(run)}, {"result", "failed"}, {"reason", "the logger left no summary"}};
+  }
+  const auto fail = [&summary](const std::string& reason) {
+    summary["result"] = "failed";
+    summary["reason"] = reason;
+  };
+  if (mission.state() == MissionState::kFailed) fail(mission.reason());
+  if (launcher.failure()) fail(*launcher.failure());
+  summary["restarts"] = launcher.restarts();
+  summary["record_complete"] = !launcher.record_broken();
+  auto processes = nlohmann::ordered_json::array();
+  for (const ProcessFate& process : launcher.fates()) {
+    processes.push_back({{"name", process.name}, {"restarts", process.restarts}, {"end", process.fate}});
+  }
+  summary["processes"] = std::move(processes);
+  return summary;
+}
+
+int complain(ExitCode code, const std::string& problem) {
+  std::fprintf(stderr, "%s\n", problem.c_str());
+  return code;
+}
+
+}  // namespace
+
+int run(const MissionOptions& options) {
+  const auto scenario = load_or_complain(options.scenario, options.overrides);
+  if (!scenario) return kExitBadInput;
+  StopSignals signals;
+  const RunId run_id = random_identity();
+  LcmUrl url = options.url.value_or(LcmUrl{});
+  if (const auto problem = why_unreachable(url)) return complain(kExitUnavailable, *problem);
+  const auto ports = options.url ? std::nullopt : PortReservation::take(run_id);
+  if (!options.url) {
+    if (!ports) return complain(kExitUnavailable, "no free ports in 24000 to 26999; give --lcm-url");
+    url.base_port = ports->base_port();
+  }
+  const auto prepared = prepare_run_directory(options.out, *scenario);
+  if (const auto* problem = std::get_if<std::string>(&prepared)) {
+    return complain(kExitBadInput, *problem);
+  }
+  const auto& run_dir = std::get<fs::path>(prepared);
+
+  ProgressDisplay display;
+  MissionWatch mission(run_id, scenario->mission().timing.dt_s, display);
+  auto opened = Transport::open(
+      url, run_id, {{Bus::kSwarm, "TEAM_STATUS|MISSION"}},
+      {.on_message = [&mission](const Message& message) { mission.receive(message); }});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    return complain(kExitUnavailable, *problem);
+  }
+  display.say("run " + to_hex(run_id) + " of " + scenario->name() + " into " + run_dir.string());
+  for (const auto& [name, bus] : {std::pair{"swarm  ", Bus::kSwarm}, std::pair{"world  ", Bus::kWorld},
+                                  std::pair{"command", Bus::kCommand}}) {
+    display.say(std::string("  ") + name + "  " + url.of(bus));
+  }
+  Launcher launcher({fs::read_symlink("/proc/self/exe").parent_path(), run_dir, url, run_id,
+                     static_cast<int>(scenario->mission().starts_m.size())},
+                    display);
+  if (const auto problem = launcher.start()) {
+    launcher.press(2);
+    return complain(kExitFailed, *problem);
+  }
+  supervise(launcher, mission, *std::get<0>(opened), signals, display);
+  display.end();
+
+  const auto summary = amended_summary(run_dir, run_id, launcher, mission);
+  const auto unwritten = write_file(run_dir / kSummaryFile, summary.dump(2) + '\n');
+  conclude(run_dir, summary, *scenario);
+  if (unwritten) return complain(kExitFailed, *unwritten);
+  return summary["result"] == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;
+}
+
+}  // namespace ergocast::cli

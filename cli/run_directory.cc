@@ -1,0 +1,113 @@
+#include "cli/run_directory.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+
+#include "logger/report.h"
+#include "logger/run_record.h"
+
+namespace ergocast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path default_folder(const std::string& scenario) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  const std::string stem = scenario + '-' + stamp;
+  fs::path folder = fs::path("runs") / stem;
+  for (int i = 2; fs::exists(folder); ++i) folder = fs::path("runs") / (stem + '-' + std::to_string(i));
+  return folder;
+}
+
+using Json = nlohmann::ordered_json;
+
+/// What stands at `pointer` ("/messages/sent") as text; "unknown" if nothing does.
+std::string text_at(const Json& summary, const char* pointer) {
+  const Json value = summary.value(Json::json_pointer(pointer), Json(nullptr));
+  if (value.is_null()) return "unknown";
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string number_at(const Json& summary, const char* pointer, const char* format) {
+  const Json value = summary.value(Json::json_pointer(pointer), Json(nullptr));
+  if (!value.is_number()) return "unknown";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value.get<double>());
+  return text;
+}
+
+void print_summary(const Json& summary) {
+  const auto text = [&](const char* pointer) { return text_at(summary, pointer); };
+  const auto number = [&](const char* pointer, const char* format) {
+    return number_at(summary, pointer, format);
+  };
+  std::printf("\n%s: %s\n", text("/result").c_str(), text("/reason").c_str());
+  std::printf("  ticks     %s of %s in %s s, %s ticks/s\n", text("/ticks").c_str(),
+              text("/tick_count").c_str(), number("/wall_time_s", "%.1f").c_str(),
+              number("/ticks_per_s", "%.0f").c_str());
+  std::printf("  phi^2     %s -> %s, slope %s over the last decade\n",
+              number("/ergodic_metric/first", "%.4g").c_str(),
+              number("/ergodic_metric/last", "%.4g").c_str(),
+              number("/log_log_slope", "%.2f").c_str());
+  std::printf("  messages  %s sent, %s received, %s lost, %s dropped by the kernel\n",
+              text("/messages/sent").c_str(), text("/messages/received").c_str(),
+              text("/messages/lost").c_str(), text("/messages/kernel_drops").c_str());
+  if (summary.value("mode", "") == "realtime") {
+    std::printf("  deadlines %s commands too late, %s ticks skipped\n",
+                text("/missed_deadlines").c_str(), text("/skipped_ticks").c_str());
+  }
+}
+
+}  // namespace
+
+std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& overrides) {
+  auto loaded = Scenario::load(file, overrides);
+  if (auto* scenario = std::get_if<Scenario>(&loaded)) return std::move(*scenario);
+  const auto& problems = std::get<std::vector<Problem>>(loaded);
+  for (const Problem& problem : problems) std::fprintf(stderr, "%s\n", to_string(problem).c_str());
+  std::fprintf(stderr, "%zu problem%s\n", problems.size(), problems.size() == 1 ? "" : "s");
+  return std::nullopt;
+}
+
+std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted,
+                                                          const Scenario& scenario) {
+  const fs::path folder = wanted.empty() ? default_folder(scenario.name()) : wanted;
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    return "--out " + folder.string() + ": is a file; give a new folder";
+  }
+  if (fs::exists(folder, error) && !fs::is_empty(folder, error)) {
+    return "--out " + folder.string() + ": is not empty; give a new folder, or empty this one";
+  }
+  fs::create_directories(folder / "log", error);
+  if (error) return "--out " + folder.string() + ": " + error.message() + "; give another folder";
+  const std::string_view plan(reinterpret_cast<const char*>(scenario.plan().data()),
+                              scenario.plan().size());
+  if (auto problem = write_file(folder / kScenarioFile, scenario.print())) return *problem;
+  if (auto problem = write_file(folder / kPlanFile, plan)) return *problem;
+  return folder;
+}
+
+Json read_summary(const fs::path& run_dir) {
+  std::ifstream in(run_dir / kSummaryFile);
+  Json summary = Json::parse(in, nullptr, false);
+  return summary.is_object() ? summary : Json(nullptr);
+}
+
+void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scenario) {
+  const auto problem = write_report(run_dir, scenario.mission(), scenario.target());
+  print_summary(summary);
+  std::printf("  record    %s\n", run_dir.c_str());
+  if (!problem) std::printf("  report    %s\n", (fs::absolute(run_dir) / "report.html").c_str());
+  std::fflush(stdout);
+  if (problem) std::fprintf(stderr, "no report: %s\n", problem->c_str());
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,29 @@
+// Where a run's files go, and the last words of `run` and `simulate`.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+
+#include "scenario/scenario.h"
+
+namespace ergocast::cli {
+
+/// Loads a scenario or lists all its problems on the standard error stream.
+std::optional<Scenario> load_or_complain(const std::filesystem::path& file,
+                                         const Overrides& overrides);
+
+/// Makes the folder (`wanted`, or runs/<scenario>-<time> if empty) and writes scenario.textproto
+/// and plan.binpb into it. An error if it cannot be written or is not empty.
+std::variant<std::filesystem::path, std::string> prepare_run_directory(
+    const std::filesystem::path& wanted, const Scenario& scenario);
+
+/// The summary of a run directory; null if there is none that can be read.
+nlohmann::ordered_json read_summary(const std::filesystem::path& run_dir);
+
+/// Writes the report and prints how the run went and where everything is.
+void conclude(const std::filesystem::path& run_dir, const nlohmann::ordered_json& summary,
+              const Scenario& scenario);
+
+}  // namespace ergocast::cli

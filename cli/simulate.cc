@@ -1,0 +1,88 @@
+#include <chrono>
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "cli/run_directory.h"
+#include "lab/swarm.h"
+#include "logger/run_record.h"
+#include "logger/summary.h"
+#include "runtime/node.h"
+#include "runtime/signals.h"
+
+namespace ergocast::cli {
+namespace {
+
+/// Looking up from the simulation costs; once in so many turns is often enough for people.
+constexpr int kTurnsBetweenLooks = 256;
+
+void show(const lab::Swarm& swarm, const Mission& mission, ProgressDisplay& display) {
+  const int agents = static_cast<int>(mission.starts_m.size());
+  display.show({swarm.recorder().next_row(), mission.timing.tick_count, mission.timing.dt_s,
+                swarm.recorder().facts().ergodic_metric_last, agents, agents});
+}
+
+nlohmann::ordered_json summary_of(const lab::Swarm& swarm, const Scenario& scenario,
+                                  double wall_time_s) {
+  RunContext context;
+  context.run = swarm.recorder().run();
+  context.version = version();
+  context.build = build_text();
+  context.scenario_hash = plan_hash(scenario.plan());
+  context.simulated = true;
+  context.wall_time_s = wall_time_s;
+  context.cpu_has_fma = cpu_has_fma();
+  return summarize(swarm.recorder(), context);
+}
+
+}  // namespace
+
+int simulate(const MissionOptions& options) {
+  const auto scenario = load_or_complain(options.scenario, options.overrides);
+  if (!scenario) return kExitBadInput;
+  const auto prepared = prepare_run_directory(options.out, *scenario);
+  if (const auto* problem = std::get_if<std::string>(&prepared)) {
+    std::fprintf(stderr, "%s\n", problem->c_str());
+    return kExitBadInput;
+  }
+  const auto& folder = std::get<std::filesystem::path>(prepared);
+  auto created = RunRecord::create(folder);
+  if (const auto* problem = std::get_if<std::string>(&created)) {
+    std::fprintf(stderr, "%s\n", problem->c_str());
+    return kExitBadInput;
+  }
+  RunRecord& record = *std::get<0>(created);
+
+  StopSignals signals;
+  lab::Options lab_options;
+  lab_options.plan = scenario->plan();
+  lab_options.decode_plan = decode_plan;
+  lab_options.agents = static_cast<int>(scenario->mission().starts_m.size());
+  lab_options.host = host_name();
+  lab_options.version = version();
+  lab::Swarm swarm(std::move(lab_options), record.trajectory(), record.metrics());
+  ProgressDisplay display;
+  const auto start = std::chrono::steady_clock::now();
+  int turns = 0;
+  while (swarm.step()) {
+    if (++turns % kTurnsBetweenLooks != 0) continue;
+    show(swarm, scenario->mission(), display);
+    if (signals.take() > 0) swarm.coordinator().end(false, "stopped by a signal", swarm.now());
+    if (!record.trajectory()) break;
+  }
+  display.end();
+  const double wall_time_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  auto error = record.flush();
+  const auto summary = summary_of(swarm, *scenario, wall_time_s);
+  if (!error) error = write_file(folder / kSummaryFile, summary.dump(2) + '\n');
+  if (error) {
+    std::fprintf(stderr, "%s; the record is incomplete\n", error->c_str());
+    return kExitFailed;
+  }
+  conclude(folder, summary, *scenario);
+  return swarm.coordinator().state() == MissionState::kFailed ? kExitFailed : kExitDone;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,19 @@
+// report.html: one page that needs nothing but itself.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/mission.h"
+#include "logger/figures.h"
+#include "logger/run_data.h"
+
+namespace ergocast {
+
+/// The page, well-formed as XML too. Keys that `summary` lacks, or has with another type, are left
+/// out; all its text is escaped.
+std::string report_page(const RunData& run, const Mission& mission, const nlohmann::json& summary,
+                        const std::vector<Figure>& figures);
+
+}  // namespace ergocast

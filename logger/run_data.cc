@@ -1,0 +1,147 @@
+#include "logger/run_data.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "logger/recorder.h"
+
+namespace ergocast {
+namespace {
+
+constexpr std::size_t kColumns = 7;  // of either table
+using Fields = std::array<double, kColumns>;
+
+/// Beyond any mission, and squares and sums of such numbers are still finite.
+constexpr double kLargest = 1e100;
+
+/// Seven numbers with commas between them and nothing else.
+std::optional<Fields> parse_fields(std::string_view line) {
+  Fields fields;
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return {};
+    const auto [next, error] = std::from_chars(at, end, fields[i]);
+    if (error != std::errc() || !(std::abs(fields[i]) <= kLargest)) return {};
+    at = next;
+  }
+  if (at != end) return {};
+  return fields;
+}
+
+std::string in_quotes(const std::string& line) {
+  constexpr std::size_t kLongest = 60;
+  return '"' + (line.size() <= kLongest ? line : line.substr(0, kLongest) + "…") + '"';
+}
+
+/// Hands each row to `accept`, which says what is wrong with it or nothing.
+std::optional<std::string> read_table(
+    const std::filesystem::path& file, const std::string& header,
+    const std::function<std::optional<std::string>(const Fields&)>& accept) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    return file.string() + ": cannot be opened: give the directory of a run, with trajectory.csv "
+                           "and metrics.csv readable in it";
+  }
+  std::string line;
+  for (std::int64_t number = 1; std::getline(in, line) && !in.eof(); ++number) {
+    const std::string place = file.string() + ':' + std::to_string(number) + ": ";
+    if (number == 1) {
+      if (line == header) continue;
+      return place + "the header is " + in_quotes(line) + ", not \"" + header +
+             "\": use the version of ergocast that recorded the run";
+    }
+    const std::optional<Fields> fields = parse_fields(line);
+    const std::optional<std::string> wrong =
+        fields ? accept(*fields)
+               : "expected 7 numbers separated by commas, found " + in_quotes(line);
+    if (wrong) {
+      return place + *wrong + ": copy the file again from where it was recorded, or cut it off "
+                              "before this line";
+    }
+  }
+  return {};
+}
+
+bool is_count(double value) {
+  constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers above are not all doubles
+  return value >= 0 && value <= kExact && value == std::floor(value);
+}
+
+std::optional<std::string> add_point(RunData& run, const Fields& f) {
+  if (!is_count(f[0]) || f[1] < 0) return "the tick is not a whole number ≥ 0 at a time ≥ 0";
+  if (!is_count(f[2]) || f[2] >= kMaxAgents) {
+    return "the agent is not a whole number below " + std::to_string(kMaxAgents);
+  }
+  Track& track = run.tracks[static_cast<AgentId>(f[2])];
+  const TrackPoint point{static_cast<Tick>(f[0]), f[1], {f[3], f[4]}, {f[5], f[6]}};
+  if (!track.empty() && (point.tick <= track.back().tick || point.t_s <= track.back().t_s)) {
+    return "the tick or its time does not follow the agent's previous row";
+  }
+  track.push_back(point);
+  return {};
+}
+
+std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
+  if (!is_count(f[0]) || f[1] < 0) return "the tick is not a whole number ≥ 0 at a time ≥ 0";
+  const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6]};
+  if (!run.metrics.empty() &&
+      (row.tick <= run.metrics.back().tick || row.t_s <= run.metrics.back().t_s)) {
+    return "the tick or its time does not follow the previous row";
+  }
+  run.metrics.push_back(row);
+  return {};
+}
+
+}  // namespace
+
+double RunData::end_s() const {
+  double end_s = metrics.empty() ? 0 : metrics.back().t_s;
+  for (const auto& [agent, track] : tracks) end_s = std::max(end_s, track.back().t_s);
+  return end_s;
+}
+
+std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
+  RunData run;
+  auto problem = read_table(run_dir / "trajectory.csv", kTrajectoryHeader,
+                            [&run](const Fields& fields) { return add_point(run, fields); });
+  if (!problem) {
+    problem = read_table(run_dir / "metrics.csv", kMetricsHeader,
+                         [&run](const Fields& fields) { return add_metrics(run, fields); });
+  }
+  if (problem) return *problem;
+  return run;
+}
+
+std::optional<PowerLaw> fit_last_decade(const RunData& run) {
+  std::vector<double> t_s, values;
+  for (const MetricsRow& row : run.metrics) {
+    t_s.push_back(row.t_s);
+    values.push_back(row.ergodic_metric);
+  }
+  return fit_last_decade(t_s, values);
+}
+
+Coefficients coverage_of(const RunData& run, const Mission& mission) {
+  Coefficients sums = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  double samples = 0;
+  for (const auto& [agent, track] : run.tracks) {
+    for (const TrackPoint& point : track) {
+      if (!mission.domain.contains(point.x_m)) continue;
+      accumulate_basis(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
+                       sums.data());
+      ++samples;
+    }
+  }
+  if (samples > 0) sums /= samples;
+  return sums;
+}
+
+}  // namespace ergocast

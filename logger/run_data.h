@@ -1,0 +1,56 @@
+// What a run directory says, read back: the two tables, and the coverage they amount to.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/basis.h"
+#include "core/ids.h"
+#include "core/mission.h"
+#include "logger/slope.h"
+
+namespace ergocast {
+
+/// One row of trajectory.csv.
+struct TrackPoint {
+  Tick tick = 0;
+  double t_s = 0;
+  Eigen::Vector2d x_m{0, 0};
+  Eigen::Vector2d v_mps{0, 0};  ///< the command computed at x_m
+};
+using Track = std::vector<TrackPoint>;  ///< ascending by tick
+
+/// One row of metrics.csv.
+struct MetricsRow {
+  Tick tick = 0;
+  double t_s = 0;
+  double ergodic_metric = 0;
+  double spread = 0;  ///< largest minus smallest φ² among the agents' own views
+  double max_staleness_s = 0;
+  double received = 0, lost = 0;  ///< contributions, since the start
+};
+
+struct RunData {
+  std::map<AgentId, Track> tracks;  ///< without empty ones
+  std::vector<MetricsRow> metrics;
+
+  bool empty() const { return tracks.empty(); }
+  double end_s() const;  ///< time of the last row, 0 if there is none
+};
+
+/// Reads trajectory.csv and metrics.csv, or says which file and line is wrong and what to do.
+/// A last line without its line break is what a killed run leaves: it is not counted.
+std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir);
+
+/// φ² over the last decade of time, as slope.h fits it.
+std::optional<PowerLaw> fit_last_decade(const RunData& run);
+
+/// c_k of (4) over every recorded position inside the domain. All zero for an empty run.
+Coefficients coverage_of(const RunData& run, const Mission& mission);
+
+}  // namespace ergocast

@@ -1,0 +1,116 @@
+#include "logger/summary.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "logger/slope.h"
+
+namespace ergocast {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+/// JSON has no infinity and no NaN.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json agents(const Recorder& recorder) {
+  Json list = Json::array();
+  for (const RosterEntry& entry : recorder.follower().roster()) {
+    Json agent{{"id", entry.author.agent},
+               {"incarnation", hex(entry.author.incarnation)},
+               {"active_from", entry.active_from},
+               {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)}};
+    const auto known = recorder.statuses().find(entry.author);
+    if (known != recorder.statuses().end()) {
+      const AgentStatus& status = known->second;
+      agent["host"] = status.host;
+      agent["ergodic_metric"] = number(status.ergodic_metric);
+      agent["max_staleness_s"] = number(status.max_staleness_s);
+      agent["messages_sent"] = status.messages_sent;
+      agent["messages_received"] = status.messages_received;
+      agent["contributions_received"] = status.contributions_received;
+      agent["contributions_lost"] = status.contributions_lost;
+      agent["missed_ticks"] = status.missed_ticks;
+      agent["kernel_drops"] = status.kernel_drops;
+    }
+    list.push_back(std::move(agent));
+  }
+  return list;
+}
+
+/// Sums over the agents' last statuses; what the recording process refused or lost is added.
+Json messages(const Recorder& recorder, const RunContext& context) {
+  std::int64_t sent = 0, received = 0, lost = 0, drops = context.kernel_drops;
+  RefusalCounts refused = context.refused;
+  for (const auto& [author, status] : recorder.statuses()) {
+    sent += status.messages_sent;
+    received += status.messages_received;
+    lost += status.contributions_lost;
+    drops += status.kernel_drops;
+    for (std::size_t i = 0; i < refused.size(); ++i) refused[i] += status.refused[i];
+  }
+  Json reasons;
+  for (std::size_t i = 0; i < refused.size(); ++i) {
+    reasons[to_string(static_cast<Refusal>(i))] = refused[i];
+  }
+  return {{"sent", sent}, {"received", received}, {"lost", lost}, {"kernel_drops", drops},
+          {"refused", std::move(reasons)}};
+}
+
+Json conventions(const Basis& basis) {
+  const std::string s = Json(basis.sobolev_exponent).dump();
+  const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
+  return {{"h_k", basis.normalized ? "f_k divided by h_k = sqrt(prod L_i (1/2)^[k_i > 0])" : "1"},
+          {"lambda", (squared ? "(1 + |k|^2)^-" : "(1 + |k|)^-") + s}};
+}
+
+void add_mission(const Mission& mission, const RunContext& context, Json& summary) {
+  const bool lockstep = mission.timing.pace == Pace::kLockstep;
+  summary["scenario"] = mission.name;
+  summary["scenario_hash"] = context.scenario_hash;
+  summary["seed"] = mission.seed;
+  summary["mode"] = context.simulated ? "simulate" : lockstep ? "lockstep" : "realtime";
+  if (!lockstep) summary["realtime_factor"] = mission.timing.realtime_factor;
+  summary["dt_s"] = mission.timing.dt_s;
+  summary["tick_count"] = mission.timing.tick_count;
+}
+
+}  // namespace
+
+Json summarize(const Recorder& recorder, const RunContext& context) {
+  const RunFacts& facts = recorder.facts();
+  Json summary{{"run_id", hex(context.run)},
+               {"result", recorder.result()},
+               {"reason", recorder.reason()},
+               {"version", context.version},
+               {"build", context.build},
+               {"cpu_fma", context.cpu_has_fma}};
+  const auto& mission = recorder.follower().mission();
+  if (mission) add_mission(*mission, context, summary);
+  summary["ticks"] = facts.ticks;
+  const bool observed = !facts.t_s.empty();
+  summary["ergodic_metric"] = {
+      {"first", observed ? number(facts.ergodic_metric_first) : Json(nullptr)},
+      {"last", observed ? number(facts.ergodic_metric_last) : Json(nullptr)}};
+  const auto slope = log_log_slope(facts.t_s, facts.ergodic_metric);
+  summary["log_log_slope"] = slope ? number(*slope) : Json(nullptr);
+  if (mission) summary["conventions"] = conventions(mission->basis);
+  summary["wall_time_s"] = context.wall_time_s;
+  summary["ticks_per_s"] =
+      context.wall_time_s > 0 ? number(static_cast<double>(facts.ticks) / context.wall_time_s)
+                              : Json(nullptr);
+  summary["agents"] = agents(recorder);
+  summary["messages"] = messages(recorder, context);
+  summary["gaps"] = facts.gaps;
+  summary["missed_deadlines"] = facts.missed_deadlines;
+  summary["skipped_ticks"] = facts.skipped_ticks;
+  return summary;
+}
+
+}  // namespace ergocast

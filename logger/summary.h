@@ -1,0 +1,28 @@
+// summary.json: what a run was and how it ended, for people and programs.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/messages.h"
+#include "logger/recorder.h"
+
+namespace ergocast {
+
+/// What the recorder cannot know.
+struct RunContext {
+  RunId run = 0;
+  std::string version, build;
+  std::string scenario_hash;  ///< of the compiled plan
+  bool simulated = false;     ///< in one process, without a network
+  double wall_time_s = 0;
+  RefusalCounts refused{};    ///< by whoever records
+  std::int64_t kernel_drops = 0;
+  bool cpu_has_fma = false;
+};
+
+/// The summary as far as the record tells. Keys are documented in docs/run_directory.md.
+nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& context);
+
+}  // namespace ergocast

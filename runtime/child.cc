@@ -1,0 +1,90 @@
+#include "runtime/child.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <fstream>
+
+#include "runtime/signals.h"
+
+namespace ergocast {
+namespace {
+
+constexpr int kCannotExecute = 127;
+
+/// Between fork and exec only calls that are safe there.
+[[noreturn]] void become(char* const* arguments, int log, int signal_if_orphaned, pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, signal_if_orphaned);
+  if (getppid() != parent) _exit(kCannotExecute);  // it was gone before we asked to be told
+  const int nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  StopSignals::restore_in_child();
+  execv(arguments[0], arguments);
+  dprintf(STDERR_FILENO, "%s: %s\n", arguments[0], std::strerror(errno));
+  _exit(kCannotExecute);
+}
+
+}  // namespace
+
+std::variant<Child, std::string> Child::start(const Program& program) {
+  std::vector<std::string> command = program.command;
+  std::vector<char*> arguments;
+  for (std::string& word : command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  const int log = open(program.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (log < 0) return program.log.string() + ": " + std::strerror(errno);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) become(arguments.data(), log, program.signal_if_orphaned, parent);
+  const int error = errno;
+  close(log);
+  if (pid < 0) return command.front() + ": " + std::strerror(error);
+  return Child(pid);
+}
+
+bool Child::running() {
+  if (status_) return false;
+  int status = 0;
+  if (waitpid(pid_, &status, WNOHANG) != pid_) return true;
+  status_ = status;
+  return false;
+}
+
+void Child::send(int signal) {
+  if (running()) kill(pid_, signal);
+}
+
+std::optional<int> Child::exit_code() const {
+  if (!status_ || !WIFEXITED(*status_)) return std::nullopt;
+  return WEXITSTATUS(*status_);
+}
+
+std::string Child::fate() const {
+  if (!status_) return "is running";
+  if (WIFEXITED(*status_)) return "exited with code " + std::to_string(WEXITSTATUS(*status_));
+  return std::string("was killed by SIG") + signal_name(WTERMSIG(*status_));
+}
+
+std::string last_lines(const std::filesystem::path& file, int count) {
+  std::ifstream in(file);
+  std::deque<std::string> tail;
+  for (std::string line; std::getline(in, line);) {
+    tail.push_back(std::move(line));
+    if (tail.size() > static_cast<std::size_t>(count)) tail.pop_front();
+  }
+  std::string text;
+  for (const std::string& line : tail) text += "    " + line + '\n';
+  return text;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,15 @@
+// The only place where pacing time is read.
+#pragma once
+
+#include <chrono>
+
+#include "core/ids.h"
+
+namespace ergocast {
+
+inline Instant now() {
+  return Instant(std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::steady_clock::now().time_since_epoch()));
+}
+
+}  // namespace ergocast

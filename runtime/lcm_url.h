@@ -1,0 +1,58 @@
+// The one base URL from which a run's three buses follow.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "core/messages.h"
+
+namespace ergocast {
+
+/// Base ports that runs choose for themselves: 24000, 24003, … 26997. Each takes three ports.
+inline constexpr int kFirstBasePort = 24000;
+inline constexpr int kLastBasePort = 26997;
+
+/// `udpm://group:port[?ttl=N&recv_buf_size=N]`. LCM itself accepts nonsense silently (no port,
+/// unknown options), so it is read and checked here.
+struct LcmUrl {
+  std::string group = "239.255.76.67";
+  int base_port = 7667;
+  int ttl = 0;                    ///< 0 stays on this host, 1 reaches the local network
+  int receive_buffer_bytes = 0;   ///< 0: LCM's default
+
+  /// The URL, or what is wrong with it and how to write it.
+  static std::variant<LcmUrl, std::string> parse(std::string_view text);
+
+  std::string base() const { return of_port(base_port); }
+  /// Swarm, world and command are ports +0, +1 and +2.
+  std::string of(Bus bus) const { return of_port(base_port + static_cast<int>(bus)); }
+
+ private:
+  std::string of_port(int port) const;
+};
+
+/// Nothing if a datagram can be sent to the group and comes back; otherwise why not, with the
+/// commands that mend it. Takes a fraction of a second.
+std::optional<std::string> why_unreachable(const LcmUrl& url);
+
+/// Three free ports of this network, held by this process until it ends.
+class PortReservation {
+ public:
+  /// Starts to look at a place that depends on `run`. Nothing if the whole range is taken.
+  static std::optional<PortReservation> take(RunId run);
+  PortReservation(PortReservation&& other) noexcept;
+  PortReservation& operator=(PortReservation&&) = delete;
+  ~PortReservation();
+
+  int base_port() const { return base_port_; }
+
+ private:
+  PortReservation(int base_port, int lock) : base_port_(base_port), lock_(lock) {}
+  int base_port_;
+  int lock_;
+};
+
+}  // namespace ergocast

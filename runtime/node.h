@@ -1,0 +1,51 @@
+// What the command lines of all processes have in common.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+#include "core/ids.h"
+#include "runtime/lcm_url.h"
+
+namespace ergocast {
+
+/// Exit codes of every program of Ergocast.
+enum ExitCode {
+  kExitDone = 0,
+  kExitDiffers = 1,      ///< `verify`: the record is not what the simulation gives
+  kExitBadInput = 2,     ///< arguments, scenario or run directory
+  kExitUnavailable = 3,  ///< LCM cannot be used on this machine
+  kExitFailed = 4,       ///< the mission failed
+};
+
+struct NodeOptions {
+  LcmUrl url;
+  RunId run = 0;  ///< 0: not given
+};
+
+/// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group), --run-id and --version.
+void add_node_options(CLI::App& app, NodeOptions& options);
+
+/// Parses; the exit code if the program has to end here (0 after --help), −1 if it goes on.
+int parse_command_line(CLI::App& app, int argc, char** argv);
+
+/// --version's text: ours, LCM's and the compiler's.
+std::string version_text();
+/// "GNU 12.2.0, Release".
+std::string build_text();
+/// Whether this processor multiplies and adds in one rounding: glibc's sin and cos depend on it.
+bool cpu_has_fma();
+/// "0.1.0": what has to be equal in a team.
+std::string version();
+
+/// 64 random bits of the operating system's, not 0.
+std::uint64_t random_identity();
+std::string host_name();
+/// 16 hex digits.
+std::string to_hex(std::uint64_t value);
+
+/// One line per event on the standard error stream: time, level, process, text.
+void set_up_logging(const std::string& process_name);
+
+}  // namespace ergocast

@@ -1,0 +1,35 @@
+#include "runtime/traffic_watch.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <string>
+
+namespace ergocast {
+
+using namespace std::chrono_literals;
+
+bool TrafficWatch::look(Instant now) {
+  if (now < next_look_) return false;
+  next_look_ = now + 1s;
+  kernel_drops_ = transport_.kernel_drops();
+  const RefusalCounts& refused = transport_.refused();
+  if (now < next_log_ || (refused == logged_ && kernel_drops_ == logged_drops_)) return true;
+  next_log_ = now + 10s;
+  std::string reasons;
+  for (std::size_t i = 0; i < refused.size(); ++i) {
+    if (refused[i] == 0) continue;
+    reasons += std::string(" ") + to_string(static_cast<Refusal>(i)) + '=' +
+               std::to_string(refused[i]);
+  }
+  if (refused != logged_) spdlog::warn("messages refused since the start:{}", reasons);
+  if (kernel_drops_ != logged_drops_) {
+    spdlog::warn("the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "
+                 "recv_buf_size in the URL", kernel_drops_);
+  }
+  logged_ = refused;
+  logged_drops_ = kernel_drops_;
+  return true;
+}
+
+}  // namespace ergocast

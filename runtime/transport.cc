@@ -1,0 +1,161 @@
+#include "runtime/transport.h"
+
+#include <poll.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <lcm/lcm-cpp.hpp>
+#include <sstream>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/codec.h"
+#include "runtime/clock.h"
+
+namespace ergocast {
+namespace {
+
+constexpr int kMaxDatagramsPerTurn = 256;
+constexpr std::string_view kPrefix = "ERGOCAST_";
+
+/// The drops column of /proc/net/udp. Several processes share a port, so the lines are found by the
+/// sockets' inodes.
+std::int64_t drops_of(const std::vector<unsigned long>& inodes) {
+  std::ifstream table("/proc/net/udp");
+  std::string line;
+  std::getline(table, line);
+  std::int64_t drops = 0;
+  while (std::getline(table, line)) {
+    std::istringstream fields(line);
+    std::string skipped;
+    for (int i = 0; i < 9; ++i) fields >> skipped;
+    unsigned long inode = 0;
+    std::int64_t dropped = 0;
+    fields >> inode >> skipped >> skipped >> dropped;
+    if (std::find(inodes.begin(), inodes.end(), inode) != inodes.end()) drops += dropped;
+  }
+  return drops;
+}
+
+/// Inodes of this process's open sockets.
+std::vector<unsigned long> own_sockets() {
+  std::vector<unsigned long> inodes;
+  for (int fd = 0; fd < 256; ++fd) {
+    struct stat info {};
+    if (fstat(fd, &info) == 0 && S_ISSOCK(info.st_mode)) inodes.push_back(info.st_ino);
+  }
+  return inodes;
+}
+
+class LcmTransport final : public Transport {
+ public:
+  LcmTransport(RunId run, Handlers handlers) : run_(run), handlers_(std::move(handlers)) {}
+
+  std::optional<std::string> connect(const LcmUrl& url, const std::vector<Listening>& listening);
+
+  void set_run(RunId run) override { run_ = run; }
+  void publish(const Outgoing& outgoing) override;
+  void deliver_until(Instant deadline, int wake_fd) override;
+  std::int64_t kernel_drops() const override { return drops_of(sockets_); }
+
+ private:
+  struct Line {
+    LcmTransport* transport;
+    Bus bus;
+    void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
+      transport->take(bus, buffer, channel);
+    }
+  };
+
+  void refuse(Refusal refusal) noexcept {
+    ++refused_[static_cast<std::size_t>(refusal)];
+    if (handlers_.on_refused) handlers_.on_refused(refusal);
+  }
+  void take(Bus bus, const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
+
+  RunId run_;
+  Handlers handlers_;
+  std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
+  std::array<Line, kBusCount> lines_{};
+  std::vector<pollfd> ready_;             // of the buses we listen to, then the caller's
+  std::vector<lcm::LCM*> listened_;
+  std::vector<unsigned long> sockets_;
+  std::vector<std::byte> bytes_;
+};
+
+std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
+                                                 const std::vector<Listening>& listening) {
+  for (int b = 0; b < kBusCount; ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    buses_[at] = std::make_unique<lcm::LCM>(url.of(static_cast<Bus>(b)));
+    if (!buses_[at]->good()) return url.of(static_cast<Bus>(b)) + ": LCM cannot use it";
+  }
+  for (const Listening& one : listening) {
+    const auto at = static_cast<std::size_t>(one.bus);
+    // LCM tests itself here; a subscription after a failed test would abort the process later.
+    const int fd = buses_[at]->getFileno();
+    if (fd < 0) return url.of(one.bus) + ": LCM's self test failed";
+    lines_[at] = {this, one.bus};
+    buses_[at]
+        ->subscribe(std::string(kPrefix) + "(" + one.channels + ")", &Line::on_datagram, &lines_[at])
+        ->setQueueCapacity(0);
+    ready_.push_back({fd, POLLIN, 0});
+    listened_.push_back(buses_[at].get());
+  }
+  ready_.push_back({-1, POLLIN, 0});
+  sockets_ = own_sockets();
+  return std::nullopt;
+}
+
+void LcmTransport::publish(const Outgoing& outgoing) {
+  encode(outgoing.message, bytes_);
+  buses_[static_cast<std::size_t>(outgoing.bus)]->publish(
+      channel_of(outgoing.message), bytes_.data(), static_cast<unsigned>(bytes_.size()));
+}
+
+void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
+                        const std::string& channel) noexcept {
+  const std::span<const std::byte> bytes(static_cast<const std::byte*>(buffer->data),
+                                         buffer->data_size);
+  try {
+    const auto decoded = decode(bytes, run_);
+    if (const auto* refusal = std::get_if<Refusal>(&decoded)) return refuse(*refusal);
+    const Message& message = std::get<Message>(decoded);
+    if (!belongs_on(message, channel)) return refuse(Refusal::kType);
+    if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);
+    handlers_.on_message(message);
+  } catch (...) {  // an exception that passes through LCM's C frames would abort the next call
+    refuse(Refusal::kLimit);
+  }
+}
+
+void LcmTransport::deliver_until(Instant deadline, int wake_fd) {
+  using std::chrono::nanoseconds;
+  constexpr nanoseconds kLongest = std::chrono::seconds(1);
+  const Instant start = now();
+  const nanoseconds wait = deadline <= start ? nanoseconds(0)
+                                             : std::min<nanoseconds>(deadline - start, kLongest);
+  ready_.back().fd = wake_fd;
+  const timespec timeout{static_cast<time_t>(wait.count() / 1000000000),
+                         static_cast<long>(wait.count() % 1000000000)};
+  if (ppoll(ready_.data(), ready_.size(), &timeout, nullptr) <= 0) return;
+  for (std::size_t i = 0; i < listened_.size(); ++i) {
+    if ((ready_[i].revents & POLLIN) == 0) continue;
+    for (int n = 0; n < kMaxDatagramsPerTurn && listened_[i]->handleTimeout(0) > 0; ++n) {
+    }
+  }
+}
+
+}  // namespace
+
+std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
+    const LcmUrl& url, RunId run, std::vector<Listening> listening, Handlers handlers) {
+  if (const auto problem = why_unreachable(url)) return *problem;
+  auto transport = std::make_unique<LcmTransport>(run, std::move(handlers));
+  if (const auto problem = transport->connect(url, listening)) return *problem;
+  return std::unique_ptr<Transport>(std::move(transport));
+}
+
+}  // namespace ergocast

@@ -1,0 +1,59 @@
+// The three LCM buses as one process uses them: checked messages in, messages out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/messages.h"
+#include "runtime/lcm_url.h"
+
+namespace ergocast {
+
+/// A bus to listen to, and which of its channels (a regular expression over whole names).
+struct Listening {
+  Bus bus;
+  std::string channels;
+};
+
+class Transport {
+ public:
+  /// What becomes of a datagram; all but the first may be left out. `on_accepted` sees the bytes.
+  struct Handlers {
+    std::function<void(const Message&)> on_message;
+    std::function<void(Refusal)> on_refused = {};
+    std::function<void(Bus, std::string_view channel, std::span<const std::byte>)> on_accepted = {};
+  };
+
+  /// Opens every bus, to publish on; listens to some. An error says what would mend it.
+  /// @param run  the only run accepted; 0 accepts any until set_run()
+  static std::variant<std::unique_ptr<Transport>, std::string> open(
+      const LcmUrl& url, RunId run, std::vector<Listening> listening, Handlers handlers);
+  virtual ~Transport() = default;
+
+  virtual void set_run(RunId run) = 0;
+  virtual void publish(const Outgoing& outgoing) = 0;
+
+  /// Waits until something arrives, `deadline` has come or `wake_fd` (−1: none) is readable, and
+  /// hands over what has arrived; at most a bounded number of datagrams, so that a flood cannot
+  /// keep the caller from its work. Nothing that arrives makes it throw.
+  virtual void deliver_until(Instant deadline, int wake_fd) = 0;
+
+  /// How many datagrams were refused, by reason.
+  const RefusalCounts& refused() const { return refused_; }
+
+  /// Datagrams that the kernel dropped at our sockets for want of buffer space.
+  virtual std::int64_t kernel_drops() const = 0;
+
+ protected:
+  RefusalCounts refused_{};
+};
+
+}  // namespace ergocast

@@ -1,0 +1,19 @@
+// From Protobuf's blocks to the cores' plain types. Defaults are filled in; nothing is checked.
+#pragma once
+
+#include "core/mission.h"
+#include "core/target.h"
+#include "scenario/scenario.pb.h"
+
+namespace ergocast {
+
+Rectangle domain_of(const proto::Domain& domain);
+TargetDensity target_of(const proto::Target& target);
+Basis basis_of(const proto::Basis& basis);
+ControlLaw law_of(const proto::Law& law, const Rectangle& domain);
+Timing timing_of(const proto::Time& time);
+
+/// The whole mission but for μ.
+Mission mission_of(const proto::Scenario& scenario);
+
+}  // namespace ergocast

@@ -1,0 +1,124 @@
+#include "scenario/defaults.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/noise.h"
+#include "scenario/convert.h"
+#include "scenario/fields.h"
+#include "scenario/names.h"
+
+namespace ergocast {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+void set_number(Message& message, const FieldDescriptor& field, double value) {
+  const auto* reflection = message.GetReflection();
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+    reflection->SetDouble(&message, &field, value);
+  } else {
+    reflection->SetInt32(&message, &field, static_cast<std::int32_t>(value));
+  }
+}
+
+void fill_scalar(Message& message, const FieldDescriptor& field) {
+  const auto* reflection = message.GetReflection();
+  if (reflection->HasField(message, &field)) return;
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
+    reflection->SetEnumValue(&message, &field, 0);
+  } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
+    reflection->SetBool(&message, &field, false);
+  } else if (const FieldRule* rule = rule_of(field); rule && rule->absence == Absence::kDefaulted) {
+    set_number(message, field, rule->default_value);
+  }
+}
+
+/// Constant defaults of `message` and of every block below it.
+void fill_constants(Message& message) {
+  const auto* reflection = message.GetReflection();
+  for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+    const FieldDescriptor& field = *message.GetDescriptor()->field(i);
+    if (field.message_type() == nullptr) {
+      fill_scalar(message, field);
+    } else if (field.is_repeated()) {
+      for (int j = 0; j < reflection->FieldSize(message, &field); ++j) {
+        fill_constants(*reflection->MutableRepeatedMessage(&message, &field, j));
+      }
+    } else if (field.message_type() != proto::Covariance::descriptor() ||
+               reflection->HasField(message, &field)) {
+      // A covariance is the one block whose absence means something: the Gaussian is round.
+      fill_constants(*reflection->MutableMessage(&message, &field));
+    }
+  }
+}
+
+void resize_team(int size, proto::Agents& agents) {
+  if (agents.starts_size() > size) {
+    agents.mutable_starts()->DeleteSubrange(size, agents.starts_size() - size);
+  }
+  agents.set_random_count(size - agents.starts_size());
+  if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), size));
+}
+
+}  // namespace
+
+void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
+  if (overrides.seed) scenario.set_seed(*overrides.seed);
+  if (overrides.duration_s) {
+    scenario.mutable_time()->set_duration_s(*overrides.duration_s);
+    findings.blame("time.duration_s", "--duration");
+  }
+  if (overrides.pace) {
+    scenario.mutable_time()->set_pace(*overrides.pace == Pace::kLockstep ? proto::Time::LOCKSTEP
+                                                                         : proto::Time::REALTIME);
+  }
+  if (overrides.realtime_factor) {
+    scenario.mutable_time()->set_realtime_factor(*overrides.realtime_factor);
+    findings.blame("time.realtime_factor", "--realtime");
+  }
+  if (!overrides.agents) return;
+  const std::string limits = "1 to " + std::to_string(kMaxAgents);
+  if (*overrides.agents >= 1 && *overrides.agents <= kMaxAgents) {
+    resize_team(*overrides.agents, *scenario.mutable_agents());
+  } else {
+    findings.add_to_flag("--agents",
+                         std::to_string(*overrides.agents) + " is outside the limits " + limits,
+                         "write a number " + limits);
+  }
+}
+
+void fill_in(proto::Scenario& scenario, const std::string& file) {
+  if (!scenario.has_name()) {
+    scenario.set_name(name_from(std::filesystem::path(file).stem().string()));
+  }
+  if (!scenario.has_description()) scenario.set_description("");
+  if (!scenario.has_seed()) scenario.set_seed(kDefaultSeed);
+  fill_constants(scenario);
+  proto::Law& law = *scenario.mutable_law();
+  if (!law.has_epsilon()) {
+    law.set_epsilon(law.regularization() == proto::Law::RELATIVE ? 0.2 : 0);
+  }
+  proto::Agents& agents = *scenario.mutable_agents();
+  if (!agents.has_quorum()) {
+    const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
+    // A team outside its limits is reported as such, not by its quorum as well.
+    agents.set_quorum(static_cast<int>(std::clamp<std::int64_t>(size, 1, kMaxAgents)));
+  }
+}
+
+void draw_starts(proto::Scenario& scenario) {
+  const Rectangle domain = domain_of(scenario.domain());
+  proto::Agents& agents = *scenario.mutable_agents();
+  for (; agents.random_count() > 0; agents.set_random_count(agents.random_count() - 1)) {
+    const auto agent = static_cast<std::uint32_t>(agents.starts_size());
+    const Eigen::Vector2d share = uniform_pair(scenario.seed(), Purpose::kStart, agent, 0);
+    const Eigen::Vector2d x_m = domain.origin_m + share.cwiseProduct(domain.size_m);
+    proto::Start& start = *agents.add_starts();
+    start.set_x_m(x_m.x());
+    start.set_y_m(x_m.y());
+  }
+}
+
+}  // namespace ergocast

@@ -1,0 +1,22 @@
+// What a scenario file leaves open: the command line's words, the defaults, the random starts.
+#pragma once
+
+#include <string>
+
+#include "scenario/findings.h"
+#include "scenario/scenario.pb.h"
+
+namespace ergocast {
+
+/// Writes `overrides` over what the file says. From now on their problems are the command line's.
+void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings);
+
+/// Gives every field that is left out, and not required, its value. `file` names a scenario that
+/// does not name itself.
+void fill_in(proto::Scenario& scenario, const std::string& file);
+
+/// Replaces random_count by that many listed starts, each a function of the seed and the agent.
+/// @pre the scenario is valid
+void draw_starts(proto::Scenario& scenario);
+
+}  // namespace ergocast

@@ -1,0 +1,168 @@
+#include "scenario/explain.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scenario/scenario.pb.h"
+
+namespace ergocast {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::EnumDescriptor;
+using google::protobuf::FieldDescriptor;
+
+/// Changes of one letter that turn `a` into `b` (Levenshtein).
+int edit_distance(std::string_view a, std::string_view b) {
+  std::vector<int> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    int diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const int replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// How far `wrong` is from being `name`. A forgotten unit is the likeliest slip.
+int unlikeness(std::string_view wrong, std::string_view name) {
+  if (name.starts_with(std::string(wrong) + "_")) return 0;
+  return edit_distance(wrong, name);
+}
+
+/// The field of `message` that `wrong` was most likely to be, or null.
+const FieldDescriptor* nearest_field(const Descriptor& message, const std::string& wrong) {
+  const FieldDescriptor* best = nullptr;
+  int least = std::max(1, static_cast<int>(wrong.size()) / 3) + 1;
+  for (int i = 0; i < message.field_count(); ++i) {
+    const int distance = unlikeness(wrong, message.field(i)->name());
+    if (distance >= least) continue;
+    best = message.field(i);
+    least = distance;
+  }
+  return best;
+}
+
+/// The path of the block below `message` that has a field of exactly this name; empty if none.
+std::string block_with(const Descriptor& message, const std::string& field,
+                       const std::string& path) {
+  if (!path.empty() && message.FindFieldByName(field) != nullptr) return path;
+  for (int i = 0; i < message.field_count(); ++i) {
+    const FieldDescriptor& child = *message.field(i);
+    if (child.message_type() == nullptr) continue;
+    std::string found = block_with(*child.message_type(), field,
+                                   path.empty() ? child.name() : path + "." + child.name());
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+std::string names_of_fields(const Descriptor& message) {
+  std::string names;
+  for (int i = 0; i < message.field_count(); ++i) {
+    names += (i == 0 ? "" : ", ") + message.field(i)->name();
+  }
+  return names;
+}
+
+std::string remedy_for_unknown_field(const std::string& type, const std::string& field) {
+  const Descriptor* message = proto::Scenario::descriptor()->file()->FindMessageTypeByName(type);
+  if (message == nullptr) return "remove it";
+  if (const FieldDescriptor* near = nearest_field(*message, field)) {
+    return "did you mean " + near->name() + "?";
+  }
+  const std::string block = block_with(*proto::Scenario::descriptor(), field, "");
+  if (!block.empty()) return "write it inside " + block + " { }";
+  return "the fields here are " + names_of_fields(*message);
+}
+
+/// The values that an enumeration field of this name takes, wherever it is; empty if none.
+std::string values_of(const Descriptor& message, const std::string& field) {
+  const FieldDescriptor* found = message.FindFieldByName(field);
+  if (found != nullptr && found->enum_type() != nullptr) return enum_names(*found->enum_type());
+  for (int i = 0; i < message.field_count(); ++i) {
+    if (message.field(i)->message_type() == nullptr) continue;
+    std::string values = values_of(*message.field(i)->message_type(), field);
+    if (!values.empty()) return values;
+  }
+  return {};
+}
+
+std::string name_of_last(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+/// The first two texts in double quotes, empty where there are none.
+std::pair<std::string, std::string> quoted_in(const std::string& message) {
+  std::array<std::string, 2> found;
+  std::size_t end = std::string::npos;
+  for (std::string& text : found) {
+    const std::size_t begin = message.find('"', end + 1);
+    if (begin == std::string::npos) break;
+    end = std::min(message.find('"', begin + 1), message.size());
+    text = message.substr(begin + 1, end - begin - 1);
+  }
+  return {found[0], found[1]};
+}
+
+/// What to say of text that is not what the field takes, `wanted` in the parser's words.
+Problem wrong_value(const std::string& subject, const std::string& text,
+                    const std::string& wanted) {
+  const std::string what = subject + text + " is not ";
+  if (wanted == "string") return {"", what + "a quoted text", "put it in quotes"};
+  if (wanted == "double") return {"", what + "a number", "write a number such as 0.5"};
+  if (text.starts_with("-")) return {"", what + "0 or above", "write a number such as 16"};
+  return {"", what + "a whole number", "write a number such as 16"};
+}
+
+}  // namespace
+
+std::string enum_names(const EnumDescriptor& type) {
+  std::string names;
+  for (int i = 0; i < type.value_count(); ++i) {
+    names += (i == 0 ? "" : i + 1 == type.value_count() ? " or " : ", ") + type.value(i)->name();
+  }
+  return names;
+}
+
+Problem explained(const std::string& message, const BrokenField& broken) {
+  const std::string subject = broken.path.empty() ? "" : broken.path + ": ";
+  const auto [first, second] = quoted_in(message);
+  if (message.find("has no field named") != std::string::npos) {
+    const std::string type = first.substr(first.rfind('.') + 1);
+    return {"", "unknown field \"" + second + "\" in " + type,
+            remedy_for_unknown_field(type, second)};
+  }
+  if (message.starts_with("Unknown enumeration value")) {
+    return {"", subject + "unknown value \"" + broken.text + "\"",
+            "write one of " + values_of(*proto::Scenario::descriptor(), name_of_last(broken.path))};
+  }
+  if (message.starts_with("Invalid value for boolean")) {
+    return {"", subject + broken.text + " is neither true nor false", "write true or false"};
+  }
+  for (const char* wanted : {"double", "integer", "string"}) {
+    if (message.starts_with(std::string("Expected ") + wanted + ", got: ")) {
+      return wrong_value(subject, broken.text, wanted);
+    }
+  }
+  if (message.starts_with("Integer out of range")) {
+    return {"", subject + broken.text + " is out of range", "write a smaller number"};
+  }
+  if (broken.decimal_comma) {
+    return {"", subject + broken.text + " has a comma", "write a point instead"};
+  }
+  if (message.starts_with("Non-repeated field")) {
+    return {"", subject + "is written more than once", "keep one of them"};
+  }
+  if (message.starts_with("Ignoring extension")) return {"", "unknown extension", "remove it"};
+  return {"", subject + message, "correct the text here"};
+}
+
+}  // namespace ergocast

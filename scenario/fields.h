@@ -1,0 +1,41 @@
+// One table of every number in a scenario: its default and its limits, as scenario.proto's comments
+// state them. What depends on more than one field is in validate.cc.
+#pragma once
+
+#include <google/protobuf/descriptor.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace ergocast {
+
+/// Numbers allowed for a field; nan never is.
+struct Range {
+  double low, high;
+  bool low_excluded = false;
+
+  bool contains(double value) const;
+  /// "0 to 10", or "above 0, at most 10".
+  std::string text() const;
+};
+
+enum class Absence {
+  kRefused,    ///< the field is required
+  kDefaulted,  ///< it becomes FieldRule::default_value
+  kLeft,       ///< other fields decide what it means
+};
+
+struct FieldRule {
+  std::string_view message, field;
+  Range range;
+  Absence absence;
+  double default_value = 0;
+};
+
+/// The rule of a number's field, or null for one that has none: seed.
+const FieldRule* rule_of(const google::protobuf::FieldDescriptor& field);
+
+inline constexpr std::uint64_t kDefaultSeed = 1;
+
+}  // namespace ergocast

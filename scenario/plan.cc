@@ -1,0 +1,81 @@
+#include "scenario/plan.h"
+
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <google/protobuf/stubs/logging.h>
+#include <xxhash.h>
+
+#include <cmath>
+
+#include "core/messages.h"
+#include "core/require.h"
+#include "scenario/plan.pb.h"
+#include "scenario/scenario.h"
+
+namespace ergocast {
+namespace {
+
+constexpr std::size_t kMaxPlanBytes = std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage;
+
+bool is_mode_count(int modes) { return modes >= 1 && modes <= kMaxModesPerAxis; }
+
+/// |∫ f ρ| ≤ 1, but for the rounding of the quadrature.
+bool is_coefficient(double value) { return std::abs(value) <= 1 + 1e-9; }
+
+std::optional<Coefficients> coefficients_of(const proto::MissionPlan& plan) {
+  const proto::Basis& basis = plan.scenario().basis();
+  if (!is_mode_count(basis.modes_x()) || !is_mode_count(basis.modes_y())) return std::nullopt;
+  const auto& values = plan.target_coefficients();
+  if (values.size() != basis.modes_x() * basis.modes_y() || values.Get(0) != 1) return std::nullopt;
+  for (const double value : values) {
+    if (!is_coefficient(value)) return std::nullopt;  // nan is none either
+  }
+  return Eigen::Map<const Coefficients>(values.data(), basis.modes_x(), basis.modes_y());
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_plan(const proto::Scenario& scenario, const Coefficients& target) {
+  proto::MissionPlan plan;
+  plan.set_version(ERGOCAST_VERSION);
+  *plan.mutable_scenario() = scenario;
+  plan.mutable_scenario()->clear_description();
+  plan.mutable_target_coefficients()->Add(target.data(), target.data() + target.size());
+
+  std::vector<std::byte> bytes(plan.ByteSizeLong());
+  // The limits of a scenario keep it well below.
+  ERGOCAST_REQUIRE(bytes.size() <= kMaxPlanBytes);
+  google::protobuf::io::ArrayOutputStream array(bytes.data(), static_cast<int>(bytes.size()));
+  google::protobuf::io::CodedOutputStream stream(&array);
+  stream.SetSerializationDeterministic(true);
+  ERGOCAST_REQUIRE(plan.SerializeToCodedStream(&stream));
+  return bytes;
+}
+
+std::optional<Plan> parse_plan(std::span<const std::byte> bytes) {
+  if (bytes.size() > kMaxPlanBytes) return std::nullopt;
+  // Protobuf prints what it thinks of a string that is not UTF-8; whoever sends rubbish is not to
+  // fill our terminal.
+  const google::protobuf::LogSilencer silence;
+  proto::MissionPlan plan;
+  if (!plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
+  if (plan.version() != ERGOCAST_VERSION) return std::nullopt;
+  std::optional<Coefficients> target = coefficients_of(plan);
+  if (!target) return std::nullopt;
+  plan.DiscardUnknownFields();
+  return Plan{std::move(*plan.mutable_scenario()), std::move(*target)};
+}
+
+std::string plan_hash(std::span<const std::byte> plan) {
+  XXH128_canonical_t hash;
+  XXH128_canonicalFromHash(&hash, XXH3_128bits(plan.data(), plan.size()));
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : hash.digest) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
+}  // namespace ergocast

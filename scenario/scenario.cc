@@ -1,0 +1,131 @@
+#include "scenario/scenario.h"
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include "scenario/convert.h"
+#include "scenario/defaults.h"
+#include "scenario/findings.h"
+#include "scenario/plan.h"
+#include "scenario/scenario.pb.h"
+#include "scenario/text.h"
+#include "scenario/validate.h"
+
+namespace ergocast {
+namespace {
+
+using Problems = std::vector<Problem>;
+
+/// How far any μ_mn may be off; only correlated Gaussians mostly outside come near it.
+constexpr double kMaxTargetError = 1e-7;
+
+/// The contents of `file`, or why there are none.
+std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    return Problem{file.string(), "there is no such file", "check the name and the folder"};
+  }
+  if (std::filesystem::is_directory(status)) {
+    return Problem{file.string(), "is a folder, not a file",
+                   "name a file, such as " + (file / "scenario.textproto").string()};
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(kMaxScenarioBytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.is_open() || stream.bad()) {
+    return Problem{file.string(), "cannot be read", "check its permissions"};
+  }
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+}  // namespace
+
+struct Scenario::State {
+  proto::Scenario text;  ///< defaults filled in, starts listed
+  TargetDensity target;
+  Mission mission;
+  std::vector<std::byte> plan;
+
+  State(proto::Scenario scenario, Coefficients target_coefficients)
+      : text(std::move(scenario)), target(target_of(text.target())), mission(mission_of(text)) {
+    mission.target_coefficients = std::move(target_coefficients);
+    plan = encode_plan(text, mission.target_coefficients);
+  }
+};
+
+std::variant<Scenario, Problems> Scenario::load(const std::filesystem::path& file,
+                                                const Overrides& overrides) {
+  std::variant<std::string, Problem> text = read_file(file);
+  if (auto* problem = std::get_if<Problem>(&text)) return Problems{std::move(*problem)};
+  return parse(std::get<std::string>(text), file.string(), overrides);
+}
+
+std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const std::string& file,
+                                                 const Overrides& overrides) {
+  Findings findings(file);
+  proto::Scenario scenario;
+  if (!read_text(text, scenario, findings)) return findings.take();
+  put_over(overrides, scenario, findings);
+  fill_in(scenario, file);
+  validate(scenario, findings);
+  if (!findings.empty()) return findings.take();
+
+  draw_starts(scenario);
+  TargetCoefficients target = target_coefficients(
+      target_of(scenario.target()), domain_of(scenario.domain()), basis_of(scenario.basis()));
+  if (!(target.error_bound <= kMaxTargetError)) {
+    findings.add("target",
+                 "its coefficients can be off by " + shortest(target.error_bound) +
+                     ", more than the limit " + shortest(kMaxTargetError),
+                 "use wider or less correlated Gaussians");
+    return findings.take();
+  }
+  return Scenario(std::make_shared<State>(std::move(scenario), std::move(target.values)));
+}
+
+std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noexcept try {
+  std::optional<Plan> decoded = parse_plan(plan);
+  if (!decoded) return std::nullopt;
+  Findings findings("plan");
+  fill_in(decoded->scenario, "plan");
+  validate(decoded->scenario, findings);
+  if (!findings.empty()) return std::nullopt;
+  Scenario scenario(std::make_shared<State>(std::move(decoded->scenario),
+                                            std::move(decoded->target_coefficients)));
+  // A plan has one spelling: what leaves something open, or adds something, was not compiled.
+  const bool canonical =
+      std::equal(plan.begin(), plan.end(), scenario.plan().begin(), scenario.plan().end());
+  if (!canonical || scenario.state_->text.agents().random_count() != 0) return std::nullopt;
+  return scenario;
+} catch (...) {
+  return std::nullopt;
+}
+
+std::optional<Mission> decode_plan(std::span<const std::byte> plan) noexcept try {
+  const std::optional<Scenario> scenario = Scenario::from_plan(plan);
+  if (!scenario) return std::nullopt;
+  return scenario->mission();
+} catch (...) {
+  return std::nullopt;
+}
+
+Scenario::Scenario(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+Scenario::Scenario(const Scenario&) = default;
+Scenario::Scenario(Scenario&&) noexcept = default;
+Scenario::~Scenario() = default;
+Scenario& Scenario::operator=(Scenario other) noexcept {
+  state_.swap(other.state_);
+  return *this;
+}
+
+std::string Scenario::print() const { return print_text(state_->text); }
+const std::string& Scenario::name() const { return state_->text.name(); }
+const std::string& Scenario::description() const { return state_->text.description(); }
+const TargetDensity& Scenario::target() const { return state_->target; }
+const Mission& Scenario::mission() const { return state_->mission; }
+const std::vector<std::byte>& Scenario::plan() const { return state_->plan; }
+
+}  // namespace ergocast

@@ -1,0 +1,170 @@
+#include "scenario/text.h"
+
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <google/protobuf/stubs/strutil.h>
+#include <google/protobuf/text_format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "scenario/explain.h"
+#include "scenario/salvage.h"
+#include "scenario/utf8.h"
+
+namespace ergocast {
+namespace {
+
+using google::protobuf::Message;
+using google::protobuf::TextFormat;
+
+/// What the parser says, which quotes the file and may be as long as the file is.
+struct Complaint {
+  Place place;
+  std::string message;
+
+  Complaint(int line, int column, const std::string& words)
+      : place{std::max(line, 0), std::max(column, 0)}, message(words.substr(0, 300)) {}
+};
+
+/// One reading of the text: the first error, and the warnings.
+class Collector : public google::protobuf::io::ErrorCollector {
+ public:
+  static constexpr std::size_t kMaxWarnings = 200;
+
+  void AddError(int line, int column, const std::string& message) override {
+    if (!error) error.emplace(line, column, message);
+  }
+  void AddWarning(int line, int column, const std::string& message) override {
+    if (warnings.size() < kMaxWarnings) warnings.emplace_back(line, column, message);
+  }
+
+  std::optional<Complaint> error;
+  std::vector<Complaint> warnings;
+};
+
+/// Blocks lie at most three deep; the limit keeps a hostile file off our stack.
+constexpr int kMaxDepth = 16;
+
+/// Whether the parser can take `text`; if not, that is reported.
+bool fit_to_parse(std::string_view text, Findings& findings) {
+  if (text.size() > kMaxScenarioBytes) {
+    findings.add_to_file(
+        "is longer than the limit, " + std::to_string(kMaxScenarioBytes) + " bytes",
+        "is it a scenario?");
+    return false;
+  }
+  if (const std::size_t bad = first_bad_utf8(text); bad != std::string_view::npos) {
+    findings.add_at(place_of(text, bad), {"", "this is not UTF-8", "save the file as UTF-8"});
+    return false;
+  }
+  if (const std::optional<std::size_t> deep = too_deep(text, kMaxDepth)) {
+    findings.add_at(place_of(text, *deep),
+                    {"", "blocks lie deeper than the limit, " + std::to_string(kMaxDepth),
+                     "a scenario's blocks lie at most three deep"});
+    return false;
+  }
+  return true;
+}
+
+void parse_once(const std::string& text, proto::Scenario& scenario, Findings& findings,
+                Collector& collector) {
+  TextFormat::Parser parser;
+  parser.RecordErrorsTo(&collector);
+  parser.WriteLocationsTo(&findings.new_locations());
+  parser.AllowUnknownField(true);
+  parser.SetRecursionLimit(kMaxDepth);
+  google::protobuf::io::ArrayInputStream stream(text.data(), static_cast<int>(text.size()));
+  parser.Parse(&stream, &scenario);
+}
+
+/// Reports a syntax error and takes it out of `text`.
+/// @return false where that cannot be done
+bool repair(const Complaint& error, std::string& text, Findings& findings) {
+  const std::optional<BrokenField> broken =
+      broken_field(text, offset_of(text, error.place), error.message);
+  if (broken) {
+    findings.add_at(place_of(text, broken->culprit), explained(error.message, *broken));
+    const bool first_stands = error.message.starts_with("Non-repeated field");
+    if (!first_stands) findings.give_up(broken->path);
+    std::replace_if(
+        text.begin() + static_cast<std::ptrdiff_t>(broken->begin),
+        text.begin() + static_cast<std::ptrdiff_t>(broken->end), [](char c) { return c != '\n'; },
+        ' ');
+    return true;
+  }
+  if (const std::optional<std::size_t> open = unclosed_block(text)) {
+    findings.add_at(place_of(text, *open), {"", "this block is not closed", "add a }"});
+    text += "\n}";
+    return true;
+  }
+  findings.add_at(error.place, explained(error.message));
+  return false;
+}
+
+/// Numbers in the fewest digits, text as it was written.
+class Readable : public TextFormat::FastFieldValuePrinter {
+ public:
+  void PrintString(const std::string& value, TextFormat::BaseTextGenerator* out) const override {
+    out->PrintLiteral("\"");
+    out->PrintString(google::protobuf::strings::Utf8SafeCEscape(value));
+    out->PrintLiteral("\"");
+  }
+  void PrintDouble(double value, TextFormat::BaseTextGenerator* out) const override {
+    out->PrintString(shortest(value));
+  }
+};
+
+/// A start in one line: a team has up to 128 of them.
+class OneLine : public TextFormat::FastFieldValuePrinter {
+ public:
+  void PrintMessageStart(const Message&, int, int, bool,
+                         TextFormat::BaseTextGenerator* out) const override {
+    out->PrintLiteral(" { ");
+  }
+  bool PrintMessageContent(const Message& message, int, int, bool,
+                           TextFormat::BaseTextGenerator* out) const override {
+    const auto& start = static_cast<const proto::Start&>(message);
+    out->PrintString("x_m: " + shortest(start.x_m()) + " y_m: " + shortest(start.y_m()));
+    return true;
+  }
+  void PrintMessageEnd(const Message&, int, int, bool,
+                       TextFormat::BaseTextGenerator* out) const override {
+    out->PrintLiteral(" }\n");
+  }
+};
+
+}  // namespace
+
+bool read_text(std::string_view file, proto::Scenario& scenario, Findings& findings) {
+  constexpr int kMaxErrors = 50;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (file.starts_with(kByteOrderMark)) file.remove_prefix(kByteOrderMark.size());
+  if (!fit_to_parse(file, findings)) return false;
+  std::string text(file);
+  for (int errors = 0; errors < kMaxErrors; ++errors) {
+    Collector collector;
+    parse_once(text, scenario, findings, collector);
+    const bool broken = collector.error.has_value();
+    if (broken && repair(*collector.error, text, findings)) continue;
+    for (const Complaint& warning : collector.warnings) {
+      findings.add_at(warning.place, explained(warning.message));
+    }
+    if (broken || collector.warnings.size() < Collector::kMaxWarnings) return !broken;
+    break;
+  }
+  findings.add_to_file("has more mistakes than these", "correct them first");
+  return false;
+}
+
+std::string print_text(const proto::Scenario& scenario) {
+  TextFormat::Printer printer;
+  printer.SetDefaultFieldValuePrinter(new Readable);  // the printer owns both
+  printer.RegisterFieldValuePrinter(proto::Agents::descriptor()->FindFieldByName("starts"),
+                                    new OneLine);
+  std::string text;
+  printer.PrintToString(scenario, &text);
+  return text;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,52 @@
+// ergocast-sim: the simulated world as a process. On robots, their driver takes its place.
+#include <spdlog/spdlog.h>
+
+#include "runtime/event_loop.h"
+#include "runtime/node.h"
+#include "runtime/traffic_watch.h"
+#include "scenario/scenario.h"
+#include "sim/world.h"
+
+namespace ergocast {
+namespace {
+
+int run(const NodeOptions& node) {
+  StopSignals signals;
+  World world(node.run, random_identity(), decode_plan);
+  auto opened = Transport::open(
+      node.url, node.run, {{Bus::kCommand, "COMMAND_.*|MISSION|STOP|RECORD_ACK"}},
+      {.on_message = [&](const Message& message) { world.receive(message, now()); }});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    spdlog::error("{}", *problem);
+    return kExitUnavailable;
+  }
+  Transport& transport = *std::get<0>(opened);
+  TrafficWatch watch(transport);
+  spdlog::info("waiting for a mission on {}", node.url.base());
+
+  bool logger_lost = false;
+  const auto stop = [&] { world.stop("the world was told to stop"); };
+  live(world, transport, signals, stop, [&] {
+    transport.set_run(world.run());
+    watch.look(now());
+    if (world.logger_lost() && !logger_lost) spdlog::warn("the logger is silent: going on without");
+    logger_lost = world.logger_lost();
+  });
+  spdlog::info("finished at tick {}: {}; {} commands too late, {} ticks skipped", world.tick(),
+               world.reason(), world.missed_deadlines(), world.skipped_ticks());
+  return kExitDone;
+}
+
+}  // namespace
+}  // namespace ergocast
+
+int main(int argc, char** argv) {
+  using namespace ergocast;
+  CLI::App app("The simulated world: integrates commands, reflects at the edge, keeps the tick.",
+               "ergocast-sim");
+  NodeOptions node;
+  add_node_options(app, node);
+  if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
+  set_up_logging("sim");
+  return run(node);
+}

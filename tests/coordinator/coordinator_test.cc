@@ -1,0 +1,460 @@
+// The coordinator, driven by hand: who is admitted, when the mission starts, whom a time-out names,
+// and that the end reaches everybody.
+#include "coordinator/coordinator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/support/team.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+const std::vector<std::byte> kPlan{std::byte{1}, std::byte{2}};
+
+Coordinator coordinator_of(const Mission& mission) {
+  return {kRun, kCoordinatorLife, mission, kPlan};
+}
+
+Hello hello_of(AgentId id, Incarnation incarnation) {
+  return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", "1.2.3"};
+}
+Hello hello_of(AgentId id) { return hello_of(id, life_of(id)); }
+
+void admit_all(Coordinator& coordinator, int agents, Instant now) {
+  for (AgentId id = 0; id < agents; ++id) coordinator.receive(hello_of(id), now);
+}
+
+/// A coordinator whose mission runs since `now`.
+Coordinator running_coordinator(const Mission& mission, Instant now = at(0s)) {
+  Coordinator coordinator = coordinator_of(mission);
+  advance(coordinator, now);
+  admit_all(coordinator, static_cast<int>(mission.starts_m.size()), now);
+  advance(coordinator, now);
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  return coordinator;
+}
+
+/// The world at `tick`, where agent i has answered `answered[i]`.
+WorldState world_where(Tick tick, const std::vector<Tick>& answered) {
+  WorldState state = world_state(tick, std::vector<Eigen::Vector2d>(answered.size(), {1, 1}));
+  for (std::size_t i = 0; i < answered.size(); ++i) state.vehicles[i].answered_tick = answered[i];
+  return state;
+}
+
+// ---- admission -----------------------------------------------------------------------------------
+
+TEST(CoordinatorAdmits, EachAgentUnderTheNumberItAsksFor) {
+  Coordinator coordinator = coordinator_of(small_mission(3));
+  coordinator.receive(hello_of(2), at(0s));
+  coordinator.receive(hello_of(0), at(0s));
+  ASSERT_EQ(coordinator.roster().size(), 2u);
+  EXPECT_EQ(coordinator.roster()[0].author, author_of(0)) << "in the order of numbers";
+  EXPECT_EQ(coordinator.roster()[1].author, author_of(2));
+  EXPECT_TRUE(coordinator.roster()[0].active_at(0));
+}
+
+TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
+  Coordinator coordinator = coordinator_of(small_mission(3));
+  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(hello_of(kUnassigned, 71), at(0s));
+  coordinator.receive(hello_of(kUnassigned, 72), at(0s));
+  coordinator.receive(hello_of(kUnassigned, 73), at(0s));
+  ASSERT_EQ(coordinator.roster().size(), 3u) << "and nobody beyond the plan";
+  EXPECT_EQ(coordinator.roster()[1].author, (Author{1, 71}));
+  EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 72}));
+}
+
+TEST(CoordinatorAdmits, NobodyWhoIsNotOfThisMission) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  coordinator.receive(hello_of(2), at(0s));
+  Hello foreign = hello_of(0);
+  foreign.header.run = kRun + 1;
+  coordinator.receive(foreign, at(0s));
+  coordinator.receive(hello_of(0, 0), at(0s));
+  EXPECT_TRUE(coordinator.roster().empty());
+  // Who does not know its run yet has none.
+  foreign.header.run = 0;
+  coordinator.receive(foreign, at(0s));
+  EXPECT_EQ(coordinator.roster().size(), 1u);
+}
+
+TEST(CoordinatorAdmits, OneProcessOnce) {
+  Coordinator coordinator = coordinator_of(small_mission(3));
+  for (int i = 0; i < 5; ++i) coordinator.receive(hello_of(kUnassigned, 71), at(i * 1s));
+  EXPECT_EQ(coordinator.roster().size(), 1u);
+}
+
+TEST(CoordinatorAdmits, NotTheYoungerOfTwoWithOneNumberWhileTheElderLives) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(hello_of(0, 99), at(1s));
+  coordinator.receive(status_of(0, 1), at(2s));
+  coordinator.receive(hello_of(0, 99), at(4900ms));
+  ASSERT_EQ(coordinator.roster().size(), 1u);
+  EXPECT_EQ(coordinator.roster()[0].author, author_of(0));
+}
+
+TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.receive(world_where(7, {6, 6}), at(1s));
+  coordinator.receive(hello_of(0, 99), at(2999ms));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+  coordinator.receive(hello_of(0, 99), at(3s));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  const auto entry = [&](Incarnation incarnation) {
+    return *std::find_if(coordinator.roster().begin(), coordinator.roster().end(),
+                         [&](const auto& e) { return e.author.incarnation == incarnation; });
+  };
+  EXPECT_EQ(entry(life_of(0)).active_until, 7) << "out at the tick at which";
+  EXPECT_EQ(entry(99).active_from, 7) << "the other comes in";
+  EXPECT_EQ(entry(99).active_until, -1);
+}
+
+TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
+  Coordinator coordinator = coordinator_of(small_mission(1));
+  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(status_of(0, 5), at(1s));
+  coordinator.receive(status_of(0, 5), at(3s));
+  coordinator.receive(status_of(0, 4), at(3s));
+  coordinator.receive(hello_of(0, 99), at(4s));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+}
+
+TEST(CoordinatorAdmits, NobodyOnceTheMissionIsOver) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.end(false, "enough", at(1s));
+  coordinator.receive(hello_of(0, 99), at(10s));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+}
+
+TEST(CoordinatorAdmits, ABoundedNumberOfLives) {
+  Coordinator coordinator = coordinator_of(small_mission(1));
+  for (Incarnation life = 1; life <= 2000; ++life) {
+    coordinator.receive(hello_of(0, life), at(std::chrono::seconds(10 * life)));
+  }
+  EXPECT_LE(coordinator.roster().size(), 4u * kMaxAgents);
+}
+
+// ---- start ---------------------------------------------------------------------------------------
+
+TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
+  Mission mission = small_mission(4);
+  mission.quorum = 3;
+  Coordinator coordinator = coordinator_of(mission);
+  admit_all(coordinator, 2, at(0s));
+  advance(coordinator, at(1s));
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  coordinator.receive(hello_of(3), at(1s));
+  const auto said = only<MissionPart>(advance(coordinator, at(1s)));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  ASSERT_FALSE(said.empty()) << "and says so at once";
+  EXPECT_EQ(said[0].state, MissionState::kRunning);
+}
+
+TEST(CoordinatorStarts, DoesNotCountThoseWhoHaveDiedMeanwhile) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(hello_of(1), at(4s));
+  advance(coordinator, at(4s));
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  coordinator.receive(status_of(0, 1), at(4s));
+  advance(coordinator, at(4s));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+}
+
+TEST(CoordinatorStarts, OrFailsByATimeOutThatNamesWhoIsMissing) {
+  Mission mission = small_mission(4);
+  mission.quorum = 3;
+  mission.timing.admission_timeout_s = 20;
+  Coordinator coordinator = coordinator_of(mission);
+  advance(coordinator, at(100s));
+  coordinator.receive(hello_of(1), at(100s));
+  coordinator.receive(hello_of(2), at(100s));
+  advance(coordinator, at(119999ms));
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  coordinator.receive(status_of(1, 1), at(119s));
+  advance(coordinator, at(120s));
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+  EXPECT_EQ(coordinator.reason(),
+            "only 1 of the quorum of 3 agents were admitted; missing: 0, 2, 3")
+      << "2 came and fell silent";
+}
+
+// ---- what it repeats -----------------------------------------------------------------------------
+
+TEST(CoordinatorRepeats, TheWholeMissionOnceASecondOnBothBuses) {
+  Coordinator coordinator = running_coordinator(small_mission(1));
+  for (int second = 1; second <= 3; ++second) {
+    EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(second * 1s - 1ms))).empty());
+    int on_bus[kBusCount] = {0, 0, 0};
+    for (const Outgoing& out : advance(coordinator, at(second * 1s))) {
+      if (std::holds_alternative<MissionPart>(out.message)) ++on_bus[static_cast<int>(out.bus)];
+    }
+    EXPECT_EQ(on_bus[static_cast<int>(Bus::kSwarm)], 1);
+    EXPECT_EQ(on_bus[static_cast<int>(Bus::kCommand)], 1);
+    EXPECT_EQ(on_bus[static_cast<int>(Bus::kWorld)], 0);
+  }
+}
+
+TEST(CoordinatorRepeats, SoonerToWhoeverHasNotHeardButWithoutAFlood) {
+  Coordinator coordinator = running_coordinator(small_mission(1));
+  int missions = 0;
+  for (int ms = 1; ms <= 1000; ++ms) {
+    coordinator.receive(hello_of(0), at(ms * 1ms));
+    missions += static_cast<int>(only<MissionPart>(advance(coordinator, at(ms * 1ms))).size());
+  }
+  EXPECT_EQ(missions, 2 * 10) << "every 100 ms, on two buses";
+}
+
+TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogether) {
+  const Mission mission = small_mission(30);
+  std::vector<std::byte> plan;
+  for (int i = 0; i < 1100; ++i) plan.push_back(static_cast<std::byte>(i * 31));
+  Coordinator coordinator(kRun, kCoordinatorLife, mission, plan);
+  admit_all(coordinator, 30, at(0s));
+  const auto parts = only<MissionPart>(advance(coordinator, at(0s)));
+  ASSERT_EQ(parts.size(), 2u * 3u) << "three parts on two buses";
+  std::vector<std::byte> decoded;
+  MissionFollower follower([&](std::span<const std::byte> bytes) {
+    decoded.assign(bytes.begin(), bytes.end());
+    return mission;
+  });
+  for (const MissionPart& part : parts) {
+    EXPECT_LE(part.roster.size(), static_cast<std::size_t>(kMaxRosterEntriesPerMessage));
+    EXPECT_LE(part.plan.size(), static_cast<std::size_t>(kMaxPlanBytesPerMessage));
+    follower.receive(part);
+  }
+  EXPECT_EQ(decoded, plan);
+  ASSERT_EQ(follower.roster().size(), 30u);
+  for (AgentId id = 0; id < 30; ++id) EXPECT_NE(follower.entry_of(life_of(id)), nullptr) << id;
+}
+
+TEST(CoordinatorRepeats, ANewRevisionForEveryChange) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  std::int64_t last = only<MissionPart>(advance(coordinator, at(0s))).at(0).revision;
+  const auto next_revision = [&](Instant now) {
+    const auto parts = only<MissionPart>(advance(coordinator, now));
+    return parts.empty() ? -1 : parts[0].revision;
+  };
+  coordinator.receive(hello_of(0), at(1ms));
+  EXPECT_GT(next_revision(at(1ms)), last);
+  last = next_revision(at(1001ms));
+  EXPECT_GE(last, 0);
+  coordinator.receive(hello_of(1), at(1002ms));
+  EXPECT_GT(next_revision(at(1002ms)), last) << "admission and start";
+  last = next_revision(at(3s));
+  coordinator.end(false, "enough", at(3s));
+  EXPECT_GT(next_revision(at(3s)), last);
+}
+
+TEST(CoordinatorRepeats, HowTheTeamIs) {
+  Coordinator coordinator = running_coordinator(small_mission(4));
+  const double metrics[] = {9, 1, 3, 5};
+  for (AgentId id = 0; id < 4; ++id) {
+    AgentStatus status = status_of(id, 1);
+    status.ergodic_metric = metrics[id];
+    coordinator.receive(status, id == 2 ? at(0s) : at(2s));
+  }
+  WorldState world = world_where(7, {6, 6, 6, 6});
+  world.missed_deadlines = 12;
+  coordinator.receive(world, at(2s));
+  const auto teams = only<TeamStatus>(advance(coordinator, at(3s)));
+  ASSERT_EQ(teams.size(), 1u);
+  EXPECT_EQ(teams[0].state, MissionState::kRunning);
+  EXPECT_EQ(teams[0].tick_count, 100);
+  EXPECT_EQ(teams[0].header.tick, 7);
+  EXPECT_EQ(teams[0].agents_alive, 3);
+  EXPECT_EQ(teams[0].agents_expected, 4);
+  EXPECT_EQ(teams[0].waiting_for, 2) << "silent for 3 s";
+  EXPECT_EQ(teams[0].missed_deadlines, 12);
+  EXPECT_TRUE(teams[0].ergodic_metric == 3 || teams[0].ergodic_metric == 5) << "a median";
+}
+
+// ---- time-outs -----------------------------------------------------------------------------------
+
+Mission impatient(int agents, OnTimeout on_timeout = OnTimeout::kEndMission) {
+  Mission mission = small_mission(agents);
+  mission.timing.lockstep_timeout_s = 10;
+  mission.timing.on_timeout = on_timeout;
+  return mission;
+}
+
+/// Everybody in `ids` says at `now` that it lives and for whom it waits.
+void all_alive(Coordinator& coordinator, const std::vector<AgentId>& waiting_for, Instant now) {
+  for (std::size_t id = 0; id < waiting_for.size(); ++id) {
+    coordinator.receive(status_of(static_cast<AgentId>(id), now.time_since_epoch().count() + 1, -1,
+                                  waiting_for[id]), now);
+  }
+}
+
+TEST(CoordinatorTimeOut, NamesTheAgentThatHasNotAnsweredAndEndsTheMission) {
+  Coordinator coordinator = running_coordinator(impatient(3));
+  coordinator.receive(world_where(5, {5, 4, 5}), at(1s));
+  all_alive(coordinator, {-1, -1, -1}, at(10s));
+  advance(coordinator, at(10999ms));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  advance(coordinator, at(11s));
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+  EXPECT_NE(coordinator.reason().find("agent 1 has not answered tick 5"), std::string::npos)
+      << coordinator.reason();
+}
+
+TEST(CoordinatorTimeOut, StartsAgainWithEveryTick) {
+  Coordinator coordinator = running_coordinator(impatient(1));
+  for (int i = 0; i < 5; ++i) {
+    coordinator.receive(world_where(i, {i - 1}), at(i * 9s));
+    advance(coordinator, at(i * 9s + 8s));
+    EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  }
+}
+
+TEST(CoordinatorTimeOut, IsNotPutOffByRepeatsOfTheSameTick) {
+  Coordinator coordinator = running_coordinator(impatient(1));
+  for (int i = 0; i <= 10; ++i) {
+    coordinator.receive(world_where(1, {0}), at(i * 1s));
+    advance(coordinator, at(i * 1s));
+  }
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+}
+
+/// Whom the reason names if nobody's answer of tick 5 has come; `waiting_for` as they report it.
+std::string blamed(const std::vector<AgentId>& waiting_for) {
+  const auto agents = static_cast<int>(waiting_for.size());
+  Coordinator coordinator = running_coordinator(impatient(agents));
+  coordinator.receive(world_where(5, std::vector<Tick>(waiting_for.size(), 4)), at(1s));
+  all_alive(coordinator, waiting_for, at(10s));
+  advance(coordinator, at(11s));
+  return coordinator.reason().substr(0, coordinator.reason().find(" has"));
+}
+
+TEST(CoordinatorTimeOut, DoesNotBlameWhoWaitsForATeammate) {
+  EXPECT_EQ(blamed({1, -1}), "agent 1");
+  EXPECT_EQ(blamed({-1, 0}), "agent 0");
+  EXPECT_EQ(blamed({2, 2, -1}), "agent 2");
+  // 1 waits for 0, 0 for 2: the end of the chain.
+  EXPECT_EQ(blamed({2, 0, -1}), "agent 2");
+  // Two that wait for each other: somebody has to be named.
+  EXPECT_EQ(blamed({1, 0}), "agent 0");
+}
+
+TEST(CoordinatorTimeOut, BlamesTheDeadFirst) {
+  Coordinator coordinator = running_coordinator(impatient(3));
+  coordinator.receive(world_where(5, {4, 4, 4}), at(1s));
+  coordinator.receive(status_of(0, 1, 4, 1), at(10s));
+  coordinator.receive(status_of(1, 1, 4), at(10s));
+  advance(coordinator, at(11s));
+  EXPECT_NE(coordinator.reason().find("agent 2 has not answered tick 5"), std::string::npos)
+      << coordinator.reason();
+}
+
+TEST(CoordinatorTimeOut, NamesTheWorldIfEverybodyHasAnswered) {
+  Coordinator coordinator = running_coordinator(impatient(2));
+  coordinator.receive(world_where(5, {5, 5}), at(1s));
+  all_alive(coordinator, {-1, -1}, at(10s));
+  advance(coordinator, at(11s));
+  EXPECT_NE(coordinator.reason().find("the world has not gone beyond tick 5"), std::string::npos)
+      << coordinator.reason();
+}
+
+TEST(CoordinatorTimeOut, EvictsInsteadIfTheScenarioSaysSo) {
+  Coordinator coordinator = running_coordinator(impatient(2, OnTimeout::kEvict));
+  coordinator.receive(world_where(5, {5, 4}), at(1s));
+  all_alive(coordinator, {-1, -1}, at(10s));
+  const auto said = only<MissionPart>(advance(coordinator, at(11s)));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  ASSERT_FALSE(said.empty());
+  EXPECT_EQ(said[0].roster[0].active_until, -1);
+  EXPECT_EQ(said[0].roster[1].active_until, 5) << "the tick it did not answer";
+  advance(coordinator, at(20s));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning) << "the others have their time anew";
+}
+
+TEST(CoordinatorTimeOut, FailsWhenTheLastAgentIsEvicted) {
+  Coordinator coordinator = running_coordinator(impatient(1, OnTimeout::kEvict));
+  coordinator.receive(world_where(5, {4}), at(1s));
+  advance(coordinator, at(11s));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning) << "it may be restarted";
+  advance(coordinator, at(21s));
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+  EXPECT_EQ(coordinator.reason(), "no agent is left to answer tick 5");
+}
+
+TEST(CoordinatorTimeOut, DoesNotExistInRealTime) {
+  Mission mission = impatient(1);
+  mission.timing.pace = Pace::kRealtime;
+  Coordinator coordinator = running_coordinator(mission);
+  coordinator.receive(world_where(5, {4}), at(1s));
+  advance(coordinator, at(1h));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+}
+
+// ---- the end -------------------------------------------------------------------------------------
+
+TEST(CoordinatorEnds, WhenTheWorldHasReachedTheLastTick) {
+  Coordinator coordinator = running_coordinator(small_mission(1));
+  coordinator.receive(world_where(99, {98}), at(1s));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  coordinator.receive(world_where(100, {99}), at(1s));
+  EXPECT_EQ(coordinator.state(), MissionState::kEnded);
+  EXPECT_EQ(coordinator.reason(), "mission complete");
+}
+
+TEST(CoordinatorEnds, IgnoresAWorldThatSpeaksOfThePast) {
+  Coordinator coordinator = running_coordinator(impatient(1));
+  coordinator.receive(world_where(7, {6}), at(1s));
+  coordinator.receive(world_where(3, {3}), at(2s));
+  EXPECT_EQ(coordinator.tick(), 7);
+}
+
+TEST(CoordinatorEnds, ByAStopWithItsReasonAndItsResult) {
+  for (const bool failed : {false, true}) {
+    Coordinator coordinator = running_coordinator(small_mission(1));
+    coordinator.receive(Stop{{kRun + 1, kOperator, 1, 1, 0}, failed, "not ours"}, at(1s));
+    EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+    coordinator.receive(Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough"}, at(1s));
+    EXPECT_EQ(coordinator.state(), failed ? MissionState::kFailed : MissionState::kEnded);
+    EXPECT_EQ(coordinator.reason(), "enough");
+  }
+}
+
+TEST(CoordinatorEnds, TheFirstEndIsFinal) {
+  Coordinator coordinator = running_coordinator(small_mission(1));
+  coordinator.end(false, "mission complete", at(1s));
+  coordinator.end(true, "too late", at(2s));
+  EXPECT_EQ(coordinator.state(), MissionState::kEnded);
+  EXPECT_EQ(coordinator.reason(), "mission complete");
+}
+
+TEST(CoordinatorEnds, TellsEverybodyTenTimesOverASecondAndIsThenDone) {
+  Coordinator coordinator = running_coordinator(small_mission(1));
+  coordinator.end(true, "agent 3 is late", at(5s));
+  int told = 0;
+  for (int ms = 0; ms < 1000; ++ms) {
+    for (const MissionPart& part : only<MissionPart>(advance(coordinator, at(5s + ms * 1ms)))) {
+      EXPECT_EQ(part.state, MissionState::kFailed);
+      EXPECT_EQ(part.reason, "agent 3 is late");
+      ++told;
+    }
+    ASSERT_FALSE(coordinator.finished());
+  }
+  EXPECT_EQ(told, 2 * 10) << "on two buses";
+  advance(coordinator, at(6s));
+  EXPECT_TRUE(coordinator.finished());
+}
+
+TEST(CoordinatorEnds, WakesUpNoLaterThanItsNextWord) {
+  Coordinator coordinator = coordinator_of(small_mission(1));
+  EXPECT_EQ(coordinator.next_wakeup(), Instant{}) << "at once, to begin";
+  advance(coordinator, at(10s));
+  EXPECT_EQ(coordinator.next_wakeup(), at(10s + 250ms)) << "the team's status";
+  coordinator.receive(hello_of(0), at(10s));
+  EXPECT_LE(coordinator.next_wakeup(), at(10s)) << "a change is said at once";
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,138 @@
+// The control step allocates nothing. Counted are all ways to the allocator that this program's own
+// code has: operator new, replaced here, and malloc and its kin, which the linker redirects here
+// (Eigen calls them directly).
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "core/control.h"
+#include "core/coverage_table.h"
+#include "tests/support/team.h"
+
+namespace {
+// Atomic, because the compiler knows that malloc() changes no plain variable of ours.
+std::atomic<std::size_t> g_allocations = 0;
+}  // namespace
+
+extern "C" {
+void* __real_malloc(std::size_t size);
+void* __real_calloc(std::size_t count, std::size_t size);
+void* __real_realloc(void* block, std::size_t size);
+void* __real_aligned_alloc(std::size_t alignment, std::size_t size);
+int __real_posix_memalign(void** block, std::size_t alignment, std::size_t size);
+
+void* __wrap_malloc(std::size_t size) {
+  ++g_allocations;
+  return __real_malloc(size);
+}
+void* __wrap_calloc(std::size_t count, std::size_t size) {
+  ++g_allocations;
+  return __real_calloc(count, size);
+}
+void* __wrap_realloc(void* block, std::size_t size) {
+  ++g_allocations;
+  return __real_realloc(block, size);
+}
+void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++g_allocations;
+  return __real_aligned_alloc(alignment, size);
+}
+int __wrap_posix_memalign(void** block, std::size_t alignment, std::size_t size) {
+  ++g_allocations;
+  return __real_posix_memalign(block, alignment, size);
+}
+}
+
+// Not inlined, or the compiler sees free() at the end of a `new` and takes it for a mistake.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (void* block = std::malloc(size == 0 ? 1 : size)) return block;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  const auto step = static_cast<std::size_t>(alignment);
+  if (void* block = std::aligned_alloc(step, (size + step - 1) / step * step)) return block;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* block) noexcept { std::free(block); }
+[[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+[[gnu::noinline]] void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
+[[gnu::noinline]] void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
+  std::free(block);
+}
+
+namespace ergocast {
+namespace {
+
+/// How often `action` went to the allocator.
+template <class Action>
+std::size_t allocations_in(const Action& action) {
+  const std::size_t before = g_allocations;
+  action();
+  return g_allocations - before;
+}
+
+/// Whoever is shown to it has to exist: the compiler may not leave an allocation out.
+const void* volatile g_seen = nullptr;
+
+TEST(Allocations, AreCountedWhateverTheWay) {
+  struct alignas(64) Line {
+    double value = 1;
+  };
+  EXPECT_EQ(allocations_in([] { g_seen = std::make_unique<double>(1).get(); }), 1u);
+  EXPECT_EQ(allocations_in([] { g_seen = std::make_unique<Line>().get(); }), 1u);
+  EXPECT_EQ(allocations_in([] { g_seen = std::vector<double>(100, 1.0).data(); }), 1u);
+  EXPECT_EQ(allocations_in([] {
+              const Coefficients coefficients = Coefficients::Constant(20, 20, 1);
+              g_seen = coefficients.data();
+            }), 1u);
+  EXPECT_EQ(allocations_in([] { g_seen = nullptr; }), 0u);
+}
+
+/// K = 400 modes, four agents, every feature of the law on.
+Mission full_mission(Regularization regularization) {
+  Mission mission = test::small_mission(4);
+  mission.basis.modes_x = mission.basis.modes_y = 20;
+  mission.target_coefficients = Coefficients::Zero(20, 20);
+  mission.target_coefficients(0, 0) = 1;
+  mission.law.regularization = regularization;
+  mission.law.epsilon = 0.1;
+  mission.law.noise_intensity = 1;
+  mission.law.contraction_gain_per_s = 1e-3;
+  return mission;
+}
+
+TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
+  for (const Regularization how : {Regularization::kAbsolute, Regularization::kRelative}) {
+    const Mission mission = full_mission(how);
+    Controller controller(mission);
+    CoverageTable own(mission.basis, mission.timing.dt_s);
+    Coefficients coverage = Coefficients::Zero(20, 20);
+    std::vector<CoverageTable> teammates(3, CoverageTable(mission.basis, mission.timing.dt_s));
+    const auto step = [&](Tick tick) {
+      const Eigen::Vector2d x_m(100 + static_cast<double>(tick), 500);
+      const BasisAt at(x_m, mission.domain, mission.basis);
+      own.add_sample(test::author_of(0), at);
+      for (AgentId id = 1; id < 4; ++id) {
+        CoverageTable& theirs = teammates[static_cast<std::size_t>(id - 1)];
+        theirs.add_sample(test::author_of(id), at);
+        for (int b = 0; b < own.block_count(); ++b) {
+          ASSERT_EQ(own.merge(theirs.block(test::author_of(id), b), tick + 1), Merge::kNewer);
+        }
+      }
+      own.average(coverage);
+      ASSERT_TRUE(controller.command(0, tick, x_m, at, coverage).allFinite());
+      ASSERT_GT(controller.metric(coverage), 0);
+    };
+    EXPECT_GT(allocations_in([&] { step(0); }), 0u) << "the first one makes the rows";
+    for (Tick tick = 1; tick < 20; ++tick) {
+      EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ergocast

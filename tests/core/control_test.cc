@@ -1,0 +1,418 @@
+// The control step against the paper's formulas written out term by term, and B against the slope
+// of φ² itself.
+#include "core/control.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/coverage_table.h"
+#include "core/noise.h"
+#include "tests/support/team.h"
+
+namespace ergocast {
+namespace {
+
+constexpr double kRounding = 0x1p-53;
+constexpr double kTiniest = std::numeric_limits<double>::denorm_min();
+
+/// A mission on a domain with its own origin and unequal sides; μ without any pattern.
+Mission uneven_mission() {
+  Mission mission = test::small_mission(1);
+  mission.domain = {{-300, 50}, {2000, 1200}};
+  mission.basis.modes_x = 9;
+  mission.basis.modes_y = 7;
+  mission.target_coefficients = Coefficients::Zero(9, 7);
+  for (int m = 0; m < 9; ++m) {
+    for (int n = 0; n < 7; ++n) {
+      mission.target_coefficients(m, n) = std::cos(1.0 + 2.3 * m + 0.7 * n * n) / (1 + m + n);
+    }
+  }
+  mission.target_coefficients(0, 0) = 1;
+  mission.law.u_max_mps = 12;
+  mission.timing.dt_s = 0.125;
+  return mission;
+}
+
+Eigen::Vector2d place_in(const Rectangle& domain, std::uint64_t i) {
+  return domain.origin_m + uniform_pair(5, Purpose::kStart, 0, i).cwiseProduct(domain.size_m);
+}
+
+/// c_k of a path of `steps` places.
+Coefficients coverage_of(const Mission& mission, int steps) {
+  Coefficients sum = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  for (int i = 0; i < steps; ++i) {
+    sum += basis_values(place_in(mission.domain, static_cast<std::uint64_t>(i)), mission.domain,
+                        mission.basis);
+  }
+  return sum / steps;
+}
+
+Eigen::Vector2d command_at(Controller& controller, const Mission& mission, const Eigen::Vector2d& x_m,
+                           const Coefficients& coverage, AgentId agent = 0, Tick tick = 0) {
+  return controller.command(agent, tick, x_m, BasisAt(x_m, mission.domain, mission.basis), coverage);
+}
+
+// ---- (8) by itself -------------------------------------------------------------------------------
+
+TEST(SmoothInput, IsEquation8) {
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Eigen::Vector2d b = normal_pair(1, Purpose::kStart, 0, i) * 1e-4;
+    const double epsilon = 1e-4 * uniform_pair(1, Purpose::kStart, 1, i).x();
+    const Eigen::Vector2d expected = -12 * b / std::sqrt(b.squaredNorm() + epsilon * epsilon);
+    // Fewer than ten roundings on either side, of numbers of at most 12.
+    EXPECT_LE((smooth_input(b, epsilon, 12) - expected).norm(), 20 * 12 * kRounding);
+  }
+}
+
+TEST(SmoothInput, WithoutEpsilonIsTheClassicalLaw) {
+  EXPECT_EQ(smooth_input({3e-5, 0}, 0, 12), Eigen::Vector2d(-12, 0));
+  EXPECT_EQ(smooth_input({0, -1e-9}, 0, 12), Eigen::Vector2d(0, 12));
+  const Eigen::Vector2d u = smooth_input({3, -4}, 0, 10);
+  EXPECT_DOUBLE_EQ(u.x(), -6);
+  EXPECT_DOUBLE_EQ(u.y(), 8);
+}
+
+TEST(SmoothInput, OfNoGradientIsNoInputAndNeverNan) {
+  for (const double epsilon : {0.0, kTiniest, 1e-300, 1e-3}) {
+    for (const Eigen::Vector2d& b : {Eigen::Vector2d(0, 0), Eigen::Vector2d(-0.0, 0.0)}) {
+      EXPECT_EQ(smooth_input(b, epsilon, 12), Eigen::Vector2d(0, 0)) << epsilon;
+    }
+  }
+}
+
+TEST(SmoothInput, OfNextToNoGradientIsADirectionAndNeverInfinite) {
+  // An agent 1e-308 m off an edge feels a gradient like that.
+  for (const double tiny : {1e-150, 1e-300, 1e-307, 1e-310, 1e-320, kTiniest}) {
+    EXPECT_EQ(smooth_input({tiny, 0}, 0, 12), Eigen::Vector2d(-12, 0)) << tiny;
+    EXPECT_EQ(smooth_input({0, -tiny}, 0, 12), Eigen::Vector2d(0, 12)) << tiny;
+    EXPECT_LE(smooth_input({tiny, tiny}, 1e-3, 12).norm(), 12 * 2 * tiny / 1e-3) << tiny;
+  }
+}
+
+TEST(SmoothInput, NeverExceedsItsLimit) {
+  for (std::uint64_t i = 0; i < 100000; ++i) {
+    // Every magnitude from 1e-300 to 1e+300, and ε as well.
+    const Eigen::Vector2d u = uniform_pair(2, Purpose::kStart, 0, i);
+    const Eigen::Vector2d b = normal_pair(2, Purpose::kStart, 1, i) * std::pow(10, 600 * u.x() - 300);
+    const double epsilon = i % 4 == 0 ? 0 : std::pow(10, 600 * u.y() - 300);
+    const Eigen::Vector2d input = smooth_input(b, epsilon, 12);
+    ASSERT_TRUE(input.allFinite()) << b.transpose() << ", " << epsilon;
+    // A square root and two divisions round.
+    ASSERT_LE(input.norm(), 12 * (1 + 8 * kRounding)) << b.transpose() << ", " << epsilon;
+  }
+}
+
+// ---- the command, (6), (8) and (10), written out ---------------------------------------------------
+
+/// B, term by term, with the library's cosines and sines.
+Eigen::Vector2d reference_gradient(const Mission& mission, const Eigen::Vector2d& x_m,
+                                   const Coefficients& coverage) {
+  Eigen::Vector2d b(0, 0);
+  const Eigen::Vector2d x = x_m - mission.domain.origin_m, size = mission.domain.size_m;
+  for (int m = 0; m < mission.basis.modes_x; ++m) {
+    for (int n = 0; n < mission.basis.modes_y; ++n) {
+      const double kx = m * std::numbers::pi / size.x(), ky = n * std::numbers::pi / size.y();
+      const double k = std::sqrt(m * m + n * n), s = mission.basis.sobolev_exponent;
+      const bool squared = mission.basis.sobolev_form == SobolevForm::kSquaredNorm;
+      double lambda = squared ? std::pow(1 + k * k, -s) : std::pow(1 + k, -s);
+      if (mission.basis.normalized) {
+        lambda /= size.x() * (m > 0 ? 0.5 : 1) * size.y() * (n > 0 ? 0.5 : 1);
+      }
+      const double a = lambda * (coverage(m, n) - mission.target_coefficients(m, n));
+      b.x() -= a * kx * std::sin(kx * x.x()) * std::cos(ky * x.y());
+      b.y() -= a * ky * std::cos(kx * x.x()) * std::sin(ky * x.y());
+    }
+  }
+  return b;
+}
+
+/// RMS over the domain of ‖Σ a ∇f‖ by midpoints, of which twice the highest mode are exact.
+double reference_rms(const Mission& mission, const Coefficients& coverage) {
+  constexpr int kPoints = 24;
+  double sum = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    for (int j = 0; j < kPoints; ++j) {
+      const Eigen::Vector2d share((i + 0.5) / kPoints, (j + 0.5) / kPoints);
+      const Eigen::Vector2d x_m = mission.domain.origin_m + share.cwiseProduct(mission.domain.size_m);
+      sum += reference_gradient(mission, x_m, coverage).squaredNorm();
+    }
+  }
+  return std::sqrt(sum) / kPoints;
+}
+
+Eigen::Vector2d reference_command(const Mission& mission, AgentId agent, Tick tick,
+                                  const Eigen::Vector2d& x_m, const Coefficients& coverage,
+                                  double rms) {
+  const ControlLaw& law = mission.law;
+  const Eigen::Vector2d b = reference_gradient(mission, x_m, coverage);
+  const bool relative = law.regularization == Regularization::kRelative;
+  const double epsilon = law.epsilon * (relative ? rms : 1);
+  const double length = std::sqrt(b.squaredNorm() + epsilon * epsilon);
+  Eigen::Vector2d v = length == 0 ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(-law.u_max_mps * b / length);
+  v -= law.contraction_gain_per_s * (x_m - law.contraction_center_m);
+  v += law.noise_intensity / std::sqrt(mission.timing.dt_s) *
+       normal_pair(mission.seed, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
+                   static_cast<std::uint64_t>(tick));
+  return v;
+}
+
+std::vector<Mission> every_law() {
+  std::vector<Mission> missions;
+  for (const SobolevForm form : {SobolevForm::kSquaredNorm, SobolevForm::kNorm}) {
+    for (const bool normalized : {false, true}) {
+      for (const Regularization how : {Regularization::kAbsolute, Regularization::kRelative}) {
+        for (const double epsilon : {0.0, 0.25}) {
+          Mission mission = uneven_mission();
+          mission.basis.sobolev_form = form;
+          mission.basis.sobolev_exponent = 1.25;
+          mission.basis.normalized = normalized;
+          mission.law.regularization = how;
+          // Absolute: in the unit of B, which the norm of the modes changes too.
+          mission.law.epsilon =
+              how == Regularization::kRelative ? epsilon : epsilon * (normalized ? 1e-9 : 1e-3);
+          mission.law.contraction_gain_per_s = 2e-3;
+          mission.law.contraction_center_m = {40, 700};
+          mission.law.noise_intensity = 0.5;
+          missions.push_back(mission);
+        }
+      }
+    }
+  }
+  return missions;
+}
+
+TEST(Command, IsThePapersLawTermByTerm) {
+  for (const Mission& mission : every_law()) {
+    Controller controller(mission);
+    const Coefficients coverage = coverage_of(mission, 50);
+    const double rms = reference_rms(mission, coverage);
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      const Eigen::Vector2d x_m = place_in(mission.domain, 1000 + i);
+      const auto tick = static_cast<Tick>(i);
+      const Eigen::Vector2d v = command_at(controller, mission, x_m, coverage, 3, tick);
+      const Eigen::Vector2d b = reference_gradient(mission, x_m, coverage);
+      // B is a sum of 63 terms of at most a few RMS, each with 20 roundings of its cosines; where
+      // the terms nearly cancel, its direction is that much less certain.
+      const double bound = 63 * 20 * kRounding * (1 + rms / b.norm());
+      EXPECT_LE((controller.spectral_gradient() - b).norm(), bound * b.norm());
+      EXPECT_LE((v - reference_command(mission, 3, tick, x_m, coverage, rms)).norm(), bound * 20);
+    }
+  }
+}
+
+TEST(Command, GradientIsTheSlopeOfPhiSquaredInTheNewestSample) {
+  // With S the sum before the sample and T the time after it, c = (S + f(x) dt) / T, so that
+  // ∂φ²/∂x = 2 dt/T Σ λ (c − μ) ∇f = 2 dt/T · B.
+  for (Mission mission : every_law()) {
+    mission.law = {};
+    Controller controller(mission);
+    constexpr int kBefore = 7;
+    const Coefficients before = coverage_of(mission, kBefore) * kBefore;
+    const auto coverage_with = [&](const Eigen::Vector2d& x_m) -> Coefficients {
+      return (before + basis_values(x_m, mission.domain, mission.basis)) / (kBefore + 1);
+    };
+    const auto metric_with = [&](const Eigen::Vector2d& x_m) {
+      return controller.metric(coverage_with(x_m));
+    };
+    const Eigen::Vector2d x_m(512.5, 640.25);  // dyadic, so that x ± h is exact
+    const double h = 0.0625;
+    const Coefficients coverage = coverage_with(x_m);
+    command_at(controller, mission, x_m, coverage);
+    const Eigen::Vector2d slope = 2 * controller.spectral_gradient() / (kBefore + 1);
+
+    // h²/6 of the third derivative, ≤ Σ λ (2 |c − μ| k³ + 6 k³)/8 with |c| changing by at most 1/8
+    // for each k; and the rounding of φ², 63 terms, over h.
+    const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
+    double third = 0;
+    for (int m = 0; m < 9; ++m) {
+      for (int n = 0; n < 7; ++n) {
+        const double k = std::hypot(m * std::numbers::pi / 2000, n * std::numbers::pi / 1200);
+        third += weights(m, n) * k * k * k *
+                 (2 * std::abs(coverage(m, n) - mission.target_coefficients(m, n)) + 6.0 / 8) / 8;
+      }
+    }
+    const double bound =
+        h * h / 6 * third + 63 * 20 * kRounding * controller.metric(coverage) / h;
+    ASSERT_LT(bound, 1e-4 * slope.norm()) << "the comparison is worth it";
+    for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector2d step = h * Eigen::Vector2d::Unit(axis);
+      EXPECT_NEAR(slope[axis], (metric_with(x_m + step) - metric_with(x_m - step)) / (2 * h), bound);
+    }
+  }
+}
+
+TEST(Command, LowersPhiSquaredOfTheNextSample) {
+  Mission mission = uneven_mission();
+  Controller controller(mission);
+  const Coefficients before = coverage_of(mission, 10) * 10;
+  const Eigen::Vector2d x_m(512.5, 640.25);
+  const auto metric_after = [&](const Eigen::Vector2d& next_m) {
+    return controller.metric((before + basis_values(next_m, mission.domain, mission.basis)) / 11);
+  };
+  const Coefficients now = (before + basis_values(x_m, mission.domain, mission.basis)) / 11;
+  const Eigen::Vector2d step = command_at(controller, mission, x_m, now) * mission.timing.dt_s;
+  EXPECT_LT(metric_after(x_m + step), metric_after(x_m));
+  EXPECT_GT(metric_after(x_m - step), metric_after(x_m));
+}
+
+// ---- where the gradient vanishes -----------------------------------------------------------------
+
+TEST(Command, OfTheClassicalLawIsExactlyZeroAtTheOriginsCorner) {
+  // Every slope is exactly 0 there; 0/0 would poison the team.
+  Mission mission = uneven_mission();
+  Controller controller(mission);
+  const Coefficients coverage = coverage_of(mission, 5);
+  EXPECT_EQ(command_at(controller, mission, mission.domain.origin_m, coverage), Eigen::Vector2d(0, 0));
+}
+
+TEST(Command, OfAnyLawIsExactlyZeroWhereNothingIsLeftToDo) {
+  for (const Regularization how : {Regularization::kAbsolute, Regularization::kRelative}) {
+    for (const double epsilon : {0.0, 0.2}) {
+      Mission mission = uneven_mission();
+      mission.law.regularization = how;
+      mission.law.epsilon = epsilon;
+      Controller controller(mission);
+      const Eigen::Vector2d v =
+          command_at(controller, mission, {100, 600}, mission.target_coefficients);
+      EXPECT_EQ(v, Eigen::Vector2d(0, 0)) << epsilon;
+      EXPECT_EQ(controller.metric(mission.target_coefficients), 0);
+    }
+  }
+}
+
+TEST(Command, NextToAnEdgeIsFiniteHoweverClose) {
+  Mission mission = uneven_mission();
+  mission.domain.origin_m = {0, 0};
+  Controller controller(mission);
+  const Coefficients coverage = coverage_of(mission, 5);
+  for (const double tiny : {1e-13, 1e-100, 1e-300, 1e-306, 1e-308, 1e-312, kTiniest}) {
+    for (const Eigen::Vector2d& x_m : {Eigen::Vector2d(tiny, 0), Eigen::Vector2d(0, tiny),
+                                       Eigen::Vector2d(tiny, tiny)}) {
+      const Eigen::Vector2d v = command_at(controller, mission, x_m, coverage);
+      EXPECT_TRUE(v.allFinite()) << tiny;
+      EXPECT_LE(v.norm(), 12 * 1.5) << tiny;  // the last denormals round by half of themselves
+    }
+  }
+}
+
+// ---- relative regularization ---------------------------------------------------------------------
+
+TEST(RelativeEpsilon, IsAShareOfTheResidualGradientsRms) {
+  for (Mission mission : every_law()) {
+    mission.law.regularization = Regularization::kRelative;
+    mission.law.epsilon = 0.2;
+    Controller controller(mission);
+    const Coefficients coverage = coverage_of(mission, 30);
+    command_at(controller, mission, {100, 600}, coverage);
+    // 576 squares of 63 terms, 20 roundings each.
+    const double expected = 0.2 * reference_rms(mission, coverage);
+    EXPECT_NEAR(controller.epsilon(), expected, (576 + 63 * 20) * kRounding * expected);
+  }
+}
+
+TEST(RelativeEpsilon, KeepsTheInputAsTheResidualShrinksWhereAnAbsoluteOneThrottlesIt) {
+  Mission mission = uneven_mission();
+  const Coefficients residual = coverage_of(mission, 30) - mission.target_coefficients;
+  const auto speed = [&](Regularization how, double epsilon, double scale) {
+    mission.law.regularization = how;
+    mission.law.epsilon = epsilon;
+    Controller controller(mission);
+    // Powers of two, so that scaling rounds nothing in the residual beyond μ's own bits.
+    const Coefficients coverage = mission.target_coefficients + scale * residual;
+    return command_at(controller, mission, {100, 600}, coverage).norm();
+  };
+  const double full = speed(Regularization::kRelative, 0.2, 1);
+  // c − μ keeps 53 − 20 of its bits.
+  EXPECT_NEAR(speed(Regularization::kRelative, 0.2, 0x1p-20), full, full * 63 * 0x1p-30);
+  EXPECT_LT(speed(Regularization::kAbsolute, 1e-4, 0x1p-20), 1e-2);
+}
+
+TEST(AbsoluteEpsilon, IsWhatTheScenarioSays) {
+  Mission mission = uneven_mission();
+  mission.law.epsilon = 1.5e-3;
+  Controller controller(mission);
+  command_at(controller, mission, {100, 600}, coverage_of(mission, 3));
+  EXPECT_EQ(controller.epsilon(), 1.5e-3);
+}
+
+// ---- noise and contraction -----------------------------------------------------------------------
+
+TEST(Command, AddsTheNoiseOfItsAgentAndTickAsAVelocity) {
+  Mission mission = uneven_mission();
+  const Coefficients coverage = mission.target_coefficients;  // u = 0, so the noise stands alone
+  mission.law.noise_intensity = 0.75;
+  Controller noisy(mission);
+  for (const AgentId agent : {0, 5}) {
+    for (const Tick tick : {Tick{0}, Tick{1}, Tick{1} << 40}) {
+      const Eigen::Vector2d xi = normal_pair(mission.seed, Purpose::kPerturbation,
+                                             static_cast<std::uint32_t>(agent),
+                                             static_cast<std::uint64_t>(tick));
+      const Eigen::Vector2d v = command_at(noisy, mission, {100, 600}, coverage, agent, tick);
+      EXPECT_EQ(v, (0.75 / std::sqrt(0.125)) * xi);
+    }
+  }
+}
+
+TEST(Command, PullsTowardsTheCentreOfContraction) {
+  Mission mission = uneven_mission();
+  mission.law.contraction_gain_per_s = 0.5;
+  mission.law.contraction_center_m = {20, 100};
+  Controller controller(mission);
+  EXPECT_EQ(command_at(controller, mission, {100, 600}, mission.target_coefficients),
+            Eigen::Vector2d(-40, -250));
+}
+
+// ---- symmetry ------------------------------------------------------------------------------------
+
+/// Four agents, mirrored in both midlines, under a target that is mirrored too.
+using Team = std::array<Eigen::Vector2d, 4>;
+
+TEST(Symmetry, OfPlacesIsKeptUnderASymmetricTarget) {
+  Mission mission = test::small_mission(4);
+  mission.basis.modes_x = mission.basis.modes_y = 15;
+  mission.basis.sobolev_exponent = 1;
+  mission.target_coefficients = Coefficients::Zero(15, 15);
+  for (int m = 0; m < 15; m += 2) {
+    for (int n = 0; n < 15; n += 2) {
+      mission.target_coefficients(m, n) = std::cos(1.0 * m * n) / (1 + m * m + n * n);
+    }
+  }
+  mission.target_coefficients(0, 0) = 1;
+  mission.law.epsilon = 1e-3;
+  Controller controller(mission);
+  const double size = 2000, dt_s = mission.timing.dt_s;
+  const double x = 310, y = 420;
+  Team team{{{x, y}, {size - x, y}, {x, size - y}, {size - x, size - y}}};
+  const Team start = team;
+  Coefficients sums = Coefficients::Zero(15, 15);
+  constexpr int kTicks = 200;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    for (const Eigen::Vector2d& x_m : team) sums += basis_values(x_m, mission.domain, mission.basis) / 4;
+    Team next;
+    for (std::size_t i = 0; i < 4; ++i) {
+      next[i] = team[i] + dt_s * command_at(controller, mission, team[i], sums / (tick + 1));
+    }
+    team = next;
+  }
+  EXPECT_GT((team[0] - start[0]).norm(), 50) << "they have moved";
+  // A step's rounding, at most 1e-12 m (a few ulps of 2000 m), is carried on by u's slope: the
+  // largest gradient of u is u_max |∇B|/ε ≤ 10·1e-5/1e-3 = 0.1/s, so at most e^(0.1·20 s) = 8 times.
+  const double bound = kTicks * 1e-12 * 8;
+  EXPECT_LE((team[1] - Eigen::Vector2d(size - team[0].x(), team[0].y())).norm(), bound);
+  EXPECT_LE((team[2] - Eigen::Vector2d(team[0].x(), size - team[0].y())).norm(), bound);
+  EXPECT_LE((team[3] - Eigen::Vector2d(size - team[0].x(), size - team[0].y())).norm(), bound);
+}
+
+TEST(ControllerDeathTest, StopsACallerWhoseTargetHasAnotherSize) {
+  Mission mission = uneven_mission();
+  mission.target_coefficients = Coefficients::Zero(3, 3);
+  EXPECT_DEATH(Controller{mission}, "broken precondition");
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,265 @@
+// Reads every #include of the tree and holds it against the one table of who may know whom.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace ergocast {
+namespace {
+
+// What lies outside the tree, by what it lets a file do. The standard library's harmless part is
+// open to all; so is Eigen.
+enum class Outside {
+  kProtobuf,     // messages that people write
+  kLcm,          // the network
+  kLcmTypes,     // lcm-gen's structs
+  kLog,          // spdlog
+  kCommandLine,  // CLI11
+  kJson,         // nlohmann
+  kHash,         // xxHash
+  kGenerator,    // Random123
+  kFiles,        // files and standard streams
+  kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
+};
+using enum Outside;
+
+/// Who may include what: a folder, or one file where it differs from its folder.
+struct Rule {
+  std::string_view who;
+  std::set<std::string_view> folders;
+  std::set<Outside> outside;
+};
+
+const std::vector<Rule> kRules = {
+    {"core", {"core"}, {kGenerator}},
+    {"scenario", {"core", "scenario"}, {kProtobuf, kHash, kFiles}},
+    {"lcmtypes", {"core", "lcmtypes"}, {kLcmTypes, kHash}},
+    // The four kinds of process: they know the core, and not each other.
+    {"agent", {"core", "agent"}, {}},
+    {"coordinator", {"core", "coordinator"}, {}},
+    {"sim", {"core", "sim"}, {}},
+    {"logger", {"core", "logger"}, {kFiles, kJson}},
+    // The same cores in one process: no network, no clock, no threads.
+    {"lab", {"core", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab"}, {}},
+    {"runtime", {"core", "lcmtypes", "runtime"}, {kLcm, kLog, kCommandLine, kFiles, kSystem}},
+    {"agent/main.cc", {"agent", "scenario", "runtime"}, {kLog}},
+    {"coordinator/main.cc", {"coordinator", "scenario", "runtime"}, {kLog}},
+    {"sim/main.cc", {"sim", "scenario", "runtime"}, {kLog}},
+    {"logger/main.cc", {"logger", "scenario", "runtime", "lcmtypes"}, {kLcm, kLog, kFiles, kSystem}},
+    {"cli",
+     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "cli"},
+     {kLog, kCommandLine, kJson, kFiles, kSystem}},
+};
+
+/// Folders with code that may include everything.
+const std::set<std::string_view> kFree = {"tests", "bench"};
+
+/// Names of headers by kind; a star at an end stands for anything.
+struct Kind {
+  Outside outside;
+  std::vector<std::string_view> names;
+};
+const std::vector<Kind> kKinds = {
+    {kProtobuf, {"google/protobuf/*", "*.pb.h"}},
+    {kLcm, {"lcm/*"}},
+    {kLcmTypes, {"ergocast/*"}},
+    {kLog, {"spdlog/*"}},
+    {kCommandLine, {"CLI/*"}},
+    {kJson, {"nlohmann/*"}},
+    {kHash, {"xxhash.h"}},
+    {kGenerator, {"Random123/*"}},
+    {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},
+    {kSystem,
+     {"thread", "mutex", "shared_mutex", "condition_variable", "future", "semaphore", "latch",
+      "barrier", "stop_token", "random", "ctime", "csignal", "sys/*", "netinet/*", "arpa/*", "net/*",
+      "linux/*", "fcntl.h", "poll.h", "pthread.h", "signal.h", "spawn.h", "time.h", "unistd.h"}},
+};
+
+// Reading the time or rolling dice needs no #include of its own: <chrono> is open to all.
+const std::string_view kClocksAndDice[] = {
+    "_clock::now",   "clock_gettime", "gettimeofday", "std::time(",
+    "random_device", "std::rand(",    "sleep_for",    "sleep_until"};
+
+bool matches(std::string_view name, std::string_view pattern) {
+  if (pattern.ends_with('*')) return name.starts_with(pattern.substr(0, pattern.size() - 1));
+  if (pattern.starts_with('*')) return name.ends_with(pattern.substr(1));
+  return name == pattern;
+}
+
+const Rule* rule_of(const std::string& path) {
+  const Rule* found = nullptr;
+  for (const Rule& rule : kRules) {
+    if (path == rule.who) return &rule;
+    if (path.starts_with(std::string(rule.who) + "/")) found = &rule;
+  }
+  return found;
+}
+
+/// Why `rule` does not allow `header`; empty if it does.
+std::string objection(const Rule& rule, const std::string& header, bool quoted) {
+  for (const Kind& kind : kKinds) {
+    for (const std::string_view name : kind.names) {
+      if (!matches(header, name)) continue;
+      return rule.outside.contains(kind.outside) ? "" : "must not use <" + header + ">";
+    }
+  }
+  if (quoted) {
+    const std::string folder = header.substr(0, header.find('/'));
+    return rule.folders.contains(folder) ? "" : "must not know " + folder + "/";
+  }
+  const bool of_the_language = header.find_first_of("./") == std::string::npos;
+  const bool harmless = of_the_language || matches(header, "Eigen/*");
+  return harmless ? "" : "<" + header + "> has no entry in this table";
+}
+
+/// What a line includes and whether in quotes; an empty name if it is no #include.
+std::pair<std::string, bool> include_in(std::string line) {
+  std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
+  for (const auto& [start, end] : {std::pair("#include\"", '"'), std::pair("#include<", '>')}) {
+    if (!line.starts_with(start)) continue;
+    const std::size_t first = std::string_view(start).size();
+    return {line.substr(first, line.find(end, first) - first), end == '"'};
+  }
+  return {};
+}
+
+/// "path:line: …" for every line of `text` that breaks the rules of `path`.
+std::vector<std::string> violations_in(const std::string& path, const std::string& text) {
+  const Rule* rule = rule_of(path);
+  if (rule == nullptr) return {path + ":1: its folder has no entry in this table"};
+  std::vector<std::string> found;
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = path + ":" + std::to_string(++number) + ": " + std::string(rule->who) + " ";
+    const auto [header, quoted] = include_in(line);
+    const std::string why = header.empty() ? "" : objection(*rule, header, quoted);
+    if (!why.empty()) found.push_back(where + why);
+    if (rule->outside.contains(kSystem)) continue;
+    for (const std::string_view forbidden : kClocksAndDice) {
+      if (line.find(forbidden) == std::string::npos) continue;
+      found.push_back(where + "must not say " + std::string(forbidden));
+    }
+  }
+  return found;
+}
+
+bool is_code(const std::filesystem::path& file) {
+  static const std::set<std::string> kExtensions = {".h", ".hpp", ".cc", ".cpp"};
+  return kExtensions.contains(file.extension().string());
+}
+
+/// Paths of the tree's code, relative to its root.
+std::vector<std::string> code_of_the_tree() {
+  namespace fs = std::filesystem;
+  const fs::path root(ERGOCAST_SOURCE_DIR);
+  std::vector<std::string> paths;
+  for (const auto& top : fs::directory_iterator(root)) {
+    const std::string name = top.path().filename().string();
+    if (name.starts_with('.') || name.starts_with("build") || kFree.contains(name)) continue;
+    if (!top.is_directory()) {
+      if (is_code(top.path())) paths.push_back(name);
+      continue;
+    }
+    for (const auto& file : fs::recursive_directory_iterator(top.path())) {
+      if (is_code(file.path())) paths.push_back(fs::relative(file.path(), root).string());
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+TEST(Layering, NoFileIncludesWhatItsLayerMayNotKnow) {
+  for (const std::string& path : code_of_the_tree()) {
+    std::ifstream file(std::filesystem::path(ERGOCAST_SOURCE_DIR) / path);
+    std::stringstream text;
+    text << file.rdbuf();
+    ASSERT_FALSE(text.str().empty()) << path;
+    for (const std::string& violation : violations_in(path, text.str())) ADD_FAILURE() << violation;
+  }
+}
+
+TEST(Layering, EveryRuleIsAboutSomethingThatIsThere) {
+  const std::vector<std::string> paths = code_of_the_tree();
+  for (const Rule& rule : kRules) {
+    EXPECT_TRUE(std::any_of(paths.begin(), paths.end(), [&](const std::string& path) {
+      return rule_of(path) == &rule;
+    })) << rule.who;
+  }
+}
+
+/// What the checker says of one line in a file.
+std::string said_of(const std::string& path, const std::string& line) {
+  const auto found = violations_in(path, "// first\n" + line + "\n");
+  return found.empty() ? "" : found.front();
+}
+
+TEST(LayeringChecker, NamesFileAndLineOfEveryPlantedViolation) {
+  EXPECT_EQ(said_of("core/basis.cc", "#include \"agent/agent.h\""),
+            "core/basis.cc:2: core must not know agent/");
+  EXPECT_EQ(said_of("agent/agent.h", "  #  include  \"sim/world.h\"  // why not"),
+            "agent/agent.h:2: agent must not know sim/");
+  const std::pair<const char*, const char*> planted[] = {
+      {"coordinator/coordinator.cc", "#include \"agent/agent.h\""},
+      {"sim/world.cc", "#include \"lcmtypes/codec.h\""},
+      {"logger/recorder.cc", "#include \"runtime/clock.h\""},
+      {"logger/report.cc", "#include <lcm/lcm-cpp.hpp>"},
+      {"lab/swarm.cc", "#include \"runtime/transport.h\""},
+      {"lab/swarm.cc", "#include <thread>"},
+      {"scenario/scenario.cc", "#include \"agent/agent.h\""},
+      {"scenario/scenario.cc", "#include \"lcmtypes/codec.h\""},
+      {"lcmtypes/codec.cc", "#include \"runtime/transport.h\""},
+      {"runtime/node.cc", "#include \"agent/agent.h\""},
+      {"runtime/transport.cc", "#include <ergocast/hello_t.hpp>"},
+      {"core/target.h", "#include <google/protobuf/message.h>"},
+      {"agent/agent.cc", "#include \"scenario/plan.pb.h\""},
+      {"agent/agent.cc", "#include \"scenario/scenario.h\""},
+      {"agent/agent.cc", "#include <spdlog/spdlog.h>"},
+      {"agent/agent.cc", "#include <sys/socket.h>"},
+      {"agent/agent.cc", "#include <unistd.h>"},
+      {"agent/agent.cc", "#include <fstream>"},
+      {"sim/world.cc", "#include <random>"},
+      {"agent/main.cc", "#include \"coordinator/coordinator.h\""},
+      {"agent/main.cc", "#include <lcm/lcm-cpp.hpp>"},
+      {"cli/run.cc", "#include \"agent/agent.h\""},
+      {"cli/run.cc", "#include <lcm/lcm.h>"},
+      {"core/ids.h", "#include \"tests/support/team.h\""},
+      {"core/ids.h", "#include <boost/optional.hpp>"},
+      {"core/ids.h", "#include \"ids.h\""},
+      {"agent/agent.cc", "  const auto now = std::chrono::steady_clock::now();"},
+      {"sim/world.cc", "  std::this_thread::sleep_for(1s);"},
+      {"core/noise.cc", "  std::random_device device;"},
+      {"hosts/new.cc", "int x;"},
+  };
+  for (const auto& [path, line] : planted) EXPECT_NE(said_of(path, line), "") << path << ": " << line;
+}
+
+TEST(LayeringChecker, LetsThroughWhatTheArchitectureAllows) {
+  const std::pair<const char*, const char*> honest[] = {
+      {"core/basis.cc", "#include \"core/basis.h\""},
+      {"core/basis.cc", "#include <Eigen/Core>"},
+      {"core/basis.cc", "#include <string_view>"},
+      {"core/ids.h", "#include <chrono>"},
+      {"core/noise.cc", "#include <Random123/philox.h>"},
+      {"agent/agent.cc", "#include \"core/control.h\""},
+      {"agent/main.cc", "#include \"runtime/event_loop.h\""},
+      {"agent/main.cc", "#include \"scenario/scenario.h\""},
+      {"scenario/plan.cc", "#include \"scenario/plan.pb.h\""},
+      {"lcmtypes/codec.cc", "#include <ergocast/hello_t.hpp>"},
+      {"lab/swarm.h", "#include \"agent/agent.h\""},
+      {"runtime/clock.h", "  return steady_clock::now();"},
+      {"cli/simulate.cc", "#include \"lab/swarm.h\""},
+      {"agent/agent.cc", "  // the coordinator/coordinator.h side of it"},
+  };
+  for (const auto& [path, line] : honest) EXPECT_EQ(said_of(path, line), "");
+}
+
+}  // namespace
+}  // namespace ergocast

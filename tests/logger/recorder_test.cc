@@ -1,0 +1,408 @@
+// The run record: which rows, which numbers, what is acknowledged, and what a gap or an end does.
+#include "logger/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <sstream>
+
+#include "core/noise.h"
+#include "tests/support/team.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+/// A recorder with the streams it writes to.
+struct Record {
+  explicit Record(const Mission& mission)
+      : recorder(kRun, kLoggerLife, decoder_of(mission), trajectory, metrics) {
+    const auto team = static_cast<int>(mission.starts_m.size());
+    recorder.receive(mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
+  }
+
+  Outbox tell(const Message& message, Instant now = at(0s)) {
+    recorder.receive(message, now);
+    return advance(recorder, now);
+  }
+
+  /// Lines after the header.
+  static std::vector<std::string> rows(const std::ostringstream& file) {
+    std::istringstream lines(file.str());
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(lines, line);) rows.push_back(line);
+    rows.erase(rows.begin());
+    return rows;
+  }
+  std::vector<std::string> trajectory_rows() const { return rows(trajectory); }
+  std::vector<std::string> metrics_rows() const { return rows(metrics); }
+
+  std::ostringstream trajectory, metrics;
+  Recorder recorder;
+};
+
+std::vector<std::string> columns(const std::string& row) {
+  std::vector<std::string> found;
+  std::istringstream fields(row);
+  for (std::string field; std::getline(fields, field, ',');) found.push_back(field);
+  return found;
+}
+double number(const std::string& row, std::size_t column) {
+  return std::strtod(columns(row).at(column).c_str(), nullptr);
+}
+
+/// Agent 0 at `tick`, after a step with `applied_mps`.
+WorldState state_of(Tick tick, const Eigen::Vector2d& x_m, const Eigen::Vector2d& applied_mps) {
+  WorldState state = world_state(tick, {x_m});
+  state.vehicles[0].velocity_mps << applied_mps, 0;
+  return state;
+}
+/// Agent 0 on a straight line, a metre a tick.
+WorldState state_of(Tick tick) {
+  return state_of(tick, {100 + static_cast<double>(tick), 500}, {10, 0});
+}
+
+// ---- trajectory.csv ------------------------------------------------------------------------------
+
+TEST(Trajectory, RowNHoldsThePlaceOfTickNAndTheCommandAppliedThere) {
+  Record record(small_mission(1));
+  record.tell(state_of(0, {100, 500}, {0, 0}));
+  EXPECT_TRUE(record.trajectory_rows().empty()) << "the command of tick 0 is not known yet";
+  record.tell(state_of(1, {101, 502}, {10, 20}));
+  record.tell(state_of(2, {104, 506}, {30, 40}));
+  EXPECT_EQ(record.trajectory.str(),
+            "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps\n"
+            "0,0,0,100,500,10,20\n"
+            "1,0.10000000000000001,0,101,502,30,40\n");
+}
+
+TEST(Trajectory, EveryNumberReadsBackBitForBit) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 300;
+  Record record(mission);
+  std::vector<Eigen::Vector2d> places, commands;
+  for (Tick tick = 0; tick <= 200; ++tick) {
+    const auto step = static_cast<std::uint64_t>(tick);
+    const double scale = std::pow(10, -static_cast<double>(tick % 20));
+    places.push_back(2000 * uniform_pair(1, Purpose::kStart, 0, step) * scale);
+    commands.push_back(normal_pair(1, Purpose::kStart, 1, step) * scale);
+    record.tell(state_of(tick, places.back(), commands.back()));
+  }
+  const auto rows = record.trajectory_rows();
+  ASSERT_EQ(rows.size(), 200u);
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    EXPECT_EQ(number(rows[n], 1), static_cast<double>(n) * 0.1);
+    EXPECT_EQ(number(rows[n], 3), places[n].x());
+    EXPECT_EQ(number(rows[n], 4), places[n].y());
+    EXPECT_EQ(number(rows[n], 5), commands[n + 1].x());
+    EXPECT_EQ(number(rows[n], 6), commands[n + 1].y());
+  }
+}
+
+TEST(Trajectory, RowsComeInOrderWhateverTheOrderOfArrival) {
+  Record in_order(small_mission(1)), shuffled(small_mission(1));
+  for (Tick tick = 0; tick <= 5; ++tick) in_order.tell(state_of(tick));
+  for (const Tick tick : {3, 1, 1, 5, 0, 4, 3, 2, 0}) shuffled.tell(state_of(tick));
+  ASSERT_EQ(in_order.trajectory_rows().size(), 5u);
+  EXPECT_EQ(shuffled.trajectory.str(), in_order.trajectory.str());
+  EXPECT_EQ(shuffled.metrics.str(), in_order.metrics.str());
+}
+
+TEST(Trajectory, WaitsForEveryPartOfAState) {
+  const Mission mission = small_mission(2);
+  Record record(mission);
+  const auto part_of = [&](Tick tick, int part) {
+    WorldState state = world_state(tick, {mission.starts_m[static_cast<std::size_t>(part)]});
+    state.vehicles[0].id = part;
+    state.part = part;
+    state.parts = 2;
+    return state;
+  };
+  record.tell(part_of(0, 0));
+  record.tell(part_of(1, 0));
+  record.tell(part_of(1, 1));
+  EXPECT_TRUE(record.trajectory_rows().empty());
+  record.tell(part_of(0, 1));
+  const auto rows = record.trajectory_rows();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(columns(rows[0])[2], "0");
+  EXPECT_EQ(columns(rows[1])[2], "1");
+}
+
+TEST(Trajectory, EndsWithTheLastTicksRow) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 3;
+  Record record(mission);
+  for (Tick tick = 0; tick <= 3; ++tick) record.tell(state_of(tick));
+  record.tell(state_of(4));
+  EXPECT_EQ(record.trajectory_rows().size(), 3u);
+  EXPECT_EQ(record.recorder.facts().ticks, 3);
+  EXPECT_EQ(record.recorder.facts().gaps, 0);
+}
+
+TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
+  Record record(small_mission(1));
+  record.tell(state_of(1025, {1, 1}, {0, 0}));
+  record.tell(state_of(std::numeric_limits<Tick>::max(), {1, 1}, {0, 0}));
+  record.tell(state_of(0));
+  record.tell(state_of(1));
+  EXPECT_EQ(record.trajectory_rows().size(), 1u);
+}
+
+// ---- acknowledgements ----------------------------------------------------------------------------
+
+std::vector<Tick> acks(const Outbox& out) {
+  std::vector<Tick> ticks;
+  for (const Outgoing& outgoing : out) {
+    if (const auto* ack = std::get_if<RecordAck>(&outgoing.message)) {
+      EXPECT_EQ(outgoing.bus, Bus::kCommand);
+      EXPECT_EQ(ack->header.sender, kLogger);
+      EXPECT_EQ(ack->header.run, kRun);
+      ticks.push_back(ack->header.tick);
+    }
+  }
+  return ticks;
+}
+
+TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
+  std::ostringstream trajectory, metrics;
+  Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
+  EXPECT_TRUE(advance(recorder, at(0s)).empty()) << "not before it knows the mission";
+  recorder.receive(mission_part(0, MissionState::kWaiting, {}), at(0s));
+  EXPECT_EQ(acks(advance(recorder, at(0s))), (std::vector<Tick>{-1}));
+}
+
+TEST(Acknowledgement, ComesEverySixteenRowsAndEveryTenthOfASecond) {
+  Record record(small_mission(1));
+  EXPECT_EQ(acks(record.tell(state_of(0))), (std::vector<Tick>{-1}));
+  std::vector<Tick> all;
+  for (Tick tick = 1; tick <= 50; ++tick) {
+    for (const Tick ack : acks(record.tell(state_of(tick)))) all.push_back(ack);
+  }
+  EXPECT_EQ(all, (std::vector<Tick>{15, 31, 47}));
+  EXPECT_TRUE(acks(advance(record.recorder, at(99ms))).empty());
+  EXPECT_EQ(record.recorder.next_wakeup(), at(100ms));
+  EXPECT_EQ(acks(advance(record.recorder, at(100ms))), (std::vector<Tick>{49}));
+  EXPECT_EQ(acks(advance(record.recorder, at(200ms))), (std::vector<Tick>{49})) << "repeated";
+}
+
+TEST(Acknowledgement, NeverNamesATickThatIsNotWritten) {
+  Record record(small_mission(1));
+  record.tell(state_of(0));
+  record.tell(state_of(1));
+  for (Tick tick = 3; tick < 40; ++tick) {
+    for (const Tick ack : acks(record.tell(state_of(tick), at(tick * 1s)))) EXPECT_LE(ack, 0);
+  }
+  record.tell(state_of(2), at(50s));
+  EXPECT_EQ(acks(advance(record.recorder, at(51s))), (std::vector<Tick>{38}));
+}
+
+// ---- gaps ----------------------------------------------------------------------------------------
+
+Mission realtime_mission() {
+  Mission mission = small_mission(1);
+  mission.timing.pace = Pace::kRealtime;
+  return mission;
+}
+
+TEST(Gap, InLockstepTheRecordWaitsForTheMissingStateBecauseItIsRepeated) {
+  Record record(small_mission(1));
+  for (Tick tick = 0; tick <= 60; ++tick) {
+    if (tick != 3) record.tell(state_of(tick));
+  }
+  EXPECT_EQ(record.recorder.next_row(), 2);
+  record.tell(state_of(3));
+  EXPECT_EQ(record.recorder.next_row(), 60);
+  EXPECT_EQ(record.recorder.facts().gaps, 0);
+}
+
+TEST(Gap, InRealTimeTheRecordGoesOnAndCountsTheRowsItLacks) {
+  Record record(realtime_mission());
+  for (Tick tick = 0; tick <= 60; ++tick) {
+    if (tick != 10 && tick != 11 && tick != 40) record.tell(state_of(tick));
+  }
+  // A row needs its own state and the next: 9, 10, 11 and 39, 40 are gone.
+  std::vector<Tick> ticks;
+  for (const std::string& row : record.trajectory_rows()) ticks.push_back(std::stoll(row));
+  std::vector<Tick> expected;
+  for (Tick tick = 0; tick < 60; ++tick) {
+    if (tick < 9 || (tick > 11 && tick < 39) || tick > 40) expected.push_back(tick);
+  }
+  EXPECT_EQ(ticks, expected);
+  EXPECT_EQ(record.recorder.facts().gaps, 5);
+  EXPECT_EQ(record.recorder.facts().ticks, static_cast<Tick>(expected.size()));
+}
+
+TEST(Gap, ShortlyBeforeTheEndCostsNoOtherRow) {
+  for (const bool by_stop : {false, true}) {
+    Record record(realtime_mission());
+    for (Tick tick = 0; tick <= 100; ++tick) {
+      if (tick != 95) record.tell(state_of(tick));
+    }
+    if (by_stop) {
+      record.recorder.stop("SIGTERM");
+    } else {
+      record.tell(mission_part(1, MissionState::kEnded, roster_of(1), "mission complete"));
+      advance(record.recorder, at(1s));
+    }
+    EXPECT_TRUE(record.recorder.finished());
+    EXPECT_EQ(record.trajectory_rows().size(), 98u);
+    EXPECT_EQ(columns(record.trajectory_rows().back())[0], "99");
+    EXPECT_EQ(record.recorder.facts().gaps, 2);
+  }
+}
+
+// ---- metrics.csv ---------------------------------------------------------------------------------
+
+TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 25;
+  Record record(mission);
+  Coefficients sums = Coefficients::Zero(5, 4);
+  const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
+  std::vector<double> expected;
+  for (Tick tick = 0; tick <= 25; ++tick) {
+    record.tell(state_of(tick));
+    const Eigen::Vector2d x_m(100 + static_cast<double>(tick), 500);
+    sums += 0.1 * basis_values(x_m, mission.domain, mission.basis);
+    if (tick == 0 || tick == 10 || tick == 20 || tick == 24) {
+      const Coefficients coverage = sums / (0.1 * static_cast<double>(tick + 1));
+      expected.push_back(ergodic_metric(coverage, mission.target_coefficients, weights));
+    }
+  }
+  EXPECT_EQ(record.metrics.str().substr(0, record.metrics.str().find('\n')),
+            "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
+            "contributions_lost");
+  const auto rows = record.metrics_rows();
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(columns(rows[1])[0], "10");
+  EXPECT_EQ(columns(rows[3])[0], "24");
+  EXPECT_EQ(number(rows[1], 1), 1.0);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    // The order of summation differs: 25 samples of 20 modes.
+    EXPECT_NEAR(number(rows[i], 2), expected[i], 1e-13 * expected[i]);
+  }
+  const RunFacts& facts = record.recorder.facts();
+  EXPECT_EQ(facts.ergodic_metric_first, number(rows.front(), 2));
+  EXPECT_EQ(facts.ergodic_metric_last, number(rows.back(), 2));
+  EXPECT_EQ(facts.ergodic_metric.size(), 4u);
+}
+
+TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
+  Record record(small_mission(3));
+  const auto report = [](AgentId id, std::int64_t sequence, double metric, double staleness,
+                         std::int64_t received, std::int64_t lost) {
+    AgentStatus status = status_of(id, sequence);
+    status.ergodic_metric = metric;
+    status.max_staleness_s = staleness;
+    status.contributions_received = received;
+    status.contributions_lost = lost;
+    return status;
+  };
+  record.tell(report(0, 7, 0.5, 1.5, 100, 3));
+  record.tell(report(0, 6, 99, 99, 1, 1));  // older
+  record.tell(report(1, 1, 0.25, 2.5, 200, 4));
+  record.tell(report(2, 1, 0.75, 0.5, 300, 5));
+  AgentStatus foreign = report(2, 9, 1e9, 1e9, 1000, 1000);
+  foreign.header.run = kRun + 1;
+  record.tell(foreign);
+  record.tell(state_of(0));
+  record.tell(state_of(1));
+  const auto rows = record.metrics_rows();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(number(rows[0], 3), 0.5) << "max − min of φ² as the agents see it";
+  EXPECT_EQ(number(rows[0], 4), 2.5) << "the worst-informed agent's";
+  EXPECT_EQ(columns(rows[0])[5], "600");
+  EXPECT_EQ(columns(rows[0])[6], "12");
+}
+
+TEST(Metrics, AnAgentThatHasLeftCountsInTheTotalsButNotInTheSpread) {
+  Record record(small_mission(2));
+  AgentStatus gone = status_of(1, 1);
+  gone.ergodic_metric = 50;
+  gone.max_staleness_s = 50;
+  gone.contributions_received = 7;
+  AgentStatus here = status_of(0, 1);
+  here.ergodic_metric = 1;
+  here.contributions_received = 10;
+  record.tell(gone);
+  record.tell(here);
+  std::vector<RosterEntry> roster = roster_of(2);
+  roster[1].active_until = 0;
+  record.tell(mission_part(1, MissionState::kRunning, roster));
+  record.tell(state_of(0));
+  record.tell(state_of(1));
+  const auto rows = record.metrics_rows();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(number(rows[0], 3), 0);
+  EXPECT_EQ(number(rows[0], 4), 0);
+  EXPECT_EQ(columns(rows[0])[5], "17");
+}
+
+TEST(Metrics, ShowWhatTheWorldMissedAndSkipped) {
+  Record record(realtime_mission());
+  WorldState state = state_of(0);
+  state.missed_deadlines = 4;
+  state.skipped_ticks = 2;
+  record.tell(state);
+  EXPECT_EQ(record.recorder.facts().missed_deadlines, 4);
+  EXPECT_EQ(record.recorder.facts().skipped_ticks, 2);
+}
+
+// ---- the end -------------------------------------------------------------------------------------
+
+TEST(RecordEnd, ComesASecondAfterTheLastTickSoThatLastStatusesCount) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 2;
+  Record record(mission);
+  for (Tick tick = 0; tick <= 2; ++tick) record.tell(state_of(tick), at(5s));
+  EXPECT_FALSE(record.recorder.finished());
+  record.tell(status_of(0, 9), at(5500ms));
+  EXPECT_EQ(acks(advance(record.recorder, at(6s))), (std::vector<Tick>{1}));
+  EXPECT_TRUE(record.recorder.finished());
+  EXPECT_STREQ(record.recorder.result(), "done");
+  EXPECT_EQ(record.recorder.statuses().at(author_of(0)).header.sequence, 9);
+  EXPECT_EQ(record.recorder.next_wakeup(), Instant::max());
+}
+
+TEST(RecordEnd, SaysThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
+  Record record(small_mission(1));
+  for (Tick tick = 0; tick <= 7; ++tick) record.tell(state_of(tick));
+  record.tell(mission_part(1, MissionState::kFailed, roster_of(1), "agent 0 is late"), at(5s));
+  record.tell(state_of(8), at(5500ms));
+  EXPECT_FALSE(record.recorder.finished()) << "a missing state may still come";
+  advance(record.recorder, at(6s));
+  EXPECT_TRUE(record.recorder.finished());
+  EXPECT_STREQ(record.recorder.result(), "failed");
+  EXPECT_EQ(record.recorder.reason(), "agent 0 is late");
+  EXPECT_EQ(record.trajectory_rows().size(), 8u);
+}
+
+TEST(RecordEnd, AStopEndsItWithTheStopsReason) {
+  for (const bool failed : {false, true}) {
+    Record record(small_mission(1));
+    record.tell(Stop{{kRun + 1, kOperator, 1, 1, 0}, true, "another run's"}, at(0s));
+    record.tell(Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough"}, at(5s));
+    record.tell(mission_part(1, MissionState::kEnded, roster_of(1), "later"), at(5s));
+    advance(record.recorder, at(6s));
+    EXPECT_TRUE(record.recorder.finished());
+    EXPECT_STREQ(record.recorder.result(), failed ? "failed" : "stopped");
+    EXPECT_EQ(record.recorder.reason(), "enough");
+  }
+}
+
+TEST(RecordEnd, ItsOwnProcessMayEndIt) {
+  Record record(small_mission(1));
+  for (Tick tick = 0; tick <= 3; ++tick) record.tell(state_of(tick));
+  record.recorder.stop("SIGTERM");
+  EXPECT_TRUE(record.recorder.finished());
+  EXPECT_STREQ(record.recorder.result(), "stopped");
+  EXPECT_EQ(record.recorder.reason(), "SIGTERM");
+  EXPECT_EQ(record.trajectory_rows().size(), 3u);
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,52 @@
+// Fig. 1(a): the classical law (5) from the four corners is caught by the target's symmetry.
+//
+// In exact arithmetic nobody would move at all. Three of the four do, because sin(mπ) is not zero
+// in floating point; what they then do is what the figure shows.
+#include <gtest/gtest.h>
+
+#include "tests/support/paper_team.h"
+
+namespace ergocast::test {
+namespace {
+
+class Fig1a : public ::testing::Test {
+ protected:
+  PaperTeam team_{shipped_mission("paper_fig1a")};
+};
+
+TEST_F(Fig1a, AgentAtTheOriginNeverMovesAtAll) {
+  team_.run_until(150, [this] {
+    ASSERT_EQ(team_.x_m(0), Eigen::Vector2d(0, 0));
+    ASSERT_EQ(team_.v_mps(0), Eigen::Vector2d(0, 0));
+  });
+}
+
+TEST_F(Fig1a, AgentsOnTheEdgesStayOnThemAndEndNearTheFirstPeak) {
+  team_.run_until(150, [this] {
+    ASSERT_EQ(team_.x_m(1).y(), 0);
+    ASSERT_EQ(team_.x_m(2).x(), 0);
+  });
+  for (const double end_m : {team_.x_m(1).x(), team_.x_m(2).y()}) {
+    EXPECT_GT(end_m, 600);
+    EXPECT_LT(end_m, 850);
+  }
+}
+
+TEST_F(Fig1a, AgentAtTheFarCornerRunsDownTheDiagonalToItsPeak) {
+  double farthest_off_m = 0;
+  team_.run_until(70, [this, &farthest_off_m] {
+    const Eigen::Vector2d x_m = team_.x_m(3);
+    farthest_off_m = std::max(farthest_off_m, std::abs(x_m.x() - x_m.y()));
+  });
+  EXPECT_LT(farthest_off_m, 1e-6);
+  team_.run_until(150);
+  EXPECT_LT((team_.x_m(3) - Eigen::Vector2d(1450, 1450)).norm(), 200);
+}
+
+TEST_F(Fig1a, CoverageStaysPoor) {
+  team_.run_until(150);
+  EXPECT_NEAR(team_.metric(), 0.61, 0.02);
+}
+
+}  // namespace
+}  // namespace ergocast::test

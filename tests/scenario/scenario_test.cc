@@ -1,0 +1,310 @@
+// What a valid scenario becomes: defaults, overrides, random starts, print(), the shipped files.
+#include "scenario/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/scenario/scenarios.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+TEST(Defaults, FillWhateverIsLeftOut) {
+  const Scenario scenario = good(kSmall);
+  const Mission& mission = scenario.mission();
+
+  EXPECT_EQ(scenario.name(), "small");
+  EXPECT_EQ(mission.name, "small");
+  EXPECT_EQ(scenario.description(), "");
+  EXPECT_EQ(mission.seed, 1u);
+  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector2d(0, 0));
+  EXPECT_EQ(mission.domain.size_m, Eigen::Vector2d(100, 50));
+  EXPECT_EQ(mission.basis.modes_x, 16);
+  EXPECT_EQ(mission.basis.modes_y, 16);
+  EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kSquaredNorm);
+  EXPECT_EQ(mission.basis.sobolev_exponent, 1.5);
+  EXPECT_FALSE(mission.basis.normalized);
+  EXPECT_EQ(mission.law.u_max_mps, 5);
+  EXPECT_EQ(mission.law.regularization, Regularization::kRelative);
+  EXPECT_EQ(mission.law.epsilon, 0.2);
+  EXPECT_EQ(mission.law.noise_intensity, 1);
+  EXPECT_EQ(mission.law.contraction_gain_per_s, 1e-4);
+  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(50, 25));
+  EXPECT_EQ(mission.timing.dt_s, 0.1);
+  EXPECT_EQ(mission.timing.tick_count, 600);
+  EXPECT_EQ(mission.timing.broadcast_period_ticks, 1);
+  EXPECT_EQ(mission.timing.pace, Pace::kLockstep);
+  EXPECT_EQ(mission.timing.realtime_factor, 1);
+  EXPECT_EQ(mission.timing.lockstep_timeout_s, 10);
+  EXPECT_EQ(mission.timing.on_timeout, OnTimeout::kEndMission);
+  EXPECT_EQ(mission.timing.command_hold_s, 0.5);
+  EXPECT_EQ(mission.timing.admission_timeout_s, 30);
+  EXPECT_EQ(mission.timing.catch_up_limit_ticks, 5);
+  EXPECT_EQ(mission.starts_m, std::vector<Eigen::Vector2d>{Eigen::Vector2d(10, 20)});
+  EXPECT_EQ(mission.quorum, 1);
+  EXPECT_EQ(mission.disturbance_intensity, 0);
+}
+
+TEST(Defaults, AbsoluteRegularizationIsClassicalUnlessEpsilonIsGiven) {
+  EXPECT_EQ(good(small_with("law {", "law { regularization: ABSOLUTE")).mission().law.epsilon, 0);
+}
+
+TEST(Defaults, NameComesFromTheFileAndAlwaysNamesAFolder) {
+  const auto name_in = [](const std::string& file) {
+    return good(Scenario::parse(kSmall, file)).name();
+  };
+  EXPECT_EQ(name_in("/a/b/c-1.textproto"), "c-1");
+  EXPECT_EQ(name_in("my file.textproto"), "my_file");
+  EXPECT_EQ(name_in("é.textproto"), "__");
+  EXPECT_EQ(name_in(".."), "_.");
+  EXPECT_EQ(name_in(""), "scenario");
+  EXPECT_EQ(name_in(std::string(100, 'x')), std::string(64, 'x'));
+}
+
+TEST(Reading, TakesEverySpellingOfEveryField) {
+  const Mission mission = good(R"(
+    domain { origin_x_m: -10 origin_y_m: 5 size_x_m: 100 size_y_m: 50 }
+    target {
+      gaussians { weight: 2 mean_x_m: 20 mean_y_m: 30 covariance { xx_m2: 25 yy_m2: 16 xy_m2: -4 } }
+      uniform_weight: 0.5
+    }
+    basis { modes_x: 3 modes_y: 4 normalized: true sobolev_form: NORM sobolev_exponent: 2 }
+    law { u_max_mps: 5 contraction_center: POINT contraction_x_m: 1 contraction_y_m: 6 }
+    time { duration_s: 1 pace: REALTIME on_timeout: EVICT }
+    agents { starts: [ { x_m: -10 y_m: 5 }, { x_m: 90, y_m: 55 } ] random_count: 1 quorum: 2 }
+    world { disturbance_intensity: 0.25 }
+  )")
+                              .mission();
+  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector2d(-10, 5));
+  EXPECT_EQ(mission.basis.modes_x, 3);
+  EXPECT_EQ(mission.basis.modes_y, 4);
+  EXPECT_TRUE(mission.basis.normalized);
+  EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kNorm);
+  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(1, 6));
+  EXPECT_EQ(mission.timing.pace, Pace::kRealtime);
+  EXPECT_EQ(mission.timing.on_timeout, OnTimeout::kEvict);
+  EXPECT_EQ(mission.starts_m.size(), 3u);
+  EXPECT_EQ(mission.quorum, 2);
+  EXPECT_EQ(mission.disturbance_intensity, 0.25);
+}
+
+TEST(Reading, TargetAndItsCoefficientsBelongTogether) {
+  const Scenario scenario = good(small_with(
+      "uniform_weight: 1",
+      "gaussians { mean_x_m: 20 mean_y_m: 30 covariance { xx_m2: 25 yy_m2: 16 xy_m2: -4 } }"));
+  const TargetDensity& target = scenario.target();
+  ASSERT_EQ(target.gaussians.size(), 1u);
+  EXPECT_EQ(target.gaussians[0].weight, 1);
+  EXPECT_EQ(target.gaussians[0].mean_m, Eigen::Vector2d(20, 30));
+  EXPECT_EQ(target.gaussians[0].covariance_m2, (Eigen::Matrix2d() << 25, -4, -4, 16).finished());
+  const Mission& mission = scenario.mission();
+  EXPECT_EQ(mission.target_coefficients,
+            target_coefficients(target, mission.domain, mission.basis).values);
+}
+
+TEST(Reading, ByteOrderMarkAndWindowsLineEndsDoNoHarm) {
+  std::string text = "\xEF\xBB\xBF";
+  for (const char c : kSmall) text += c == '\n' ? "\r\n" : std::string(1, c);
+  EXPECT_EQ(good(text).plan(), good(kSmall).plan());
+}
+
+TEST(RandomStarts, AreInsideRepeatAndBelongToTheAgentsNumber) {
+  const std::string text = small_with("agents {", "seed: 9 agents { random_count: 127");
+  const std::vector<Eigen::Vector2d> starts = good(text).mission().starts_m;
+  ASSERT_EQ(starts.size(), 128u);
+  EXPECT_EQ(starts[0], Eigen::Vector2d(10, 20));
+  const Rectangle domain = good(text).mission().domain;
+  for (const Eigen::Vector2d& x_m : starts) EXPECT_TRUE(domain.contains(x_m));
+
+  EXPECT_EQ(good(text).mission().starts_m, starts);
+  EXPECT_EQ(good(text, {.agents = 5}).mission().starts_m,
+            std::vector<Eigen::Vector2d>(starts.begin(), starts.begin() + 5));
+  EXPECT_NE(good(text, {.seed = 10}).mission().starts_m[1], starts[1]);
+}
+
+TEST(Overrides, AreReadInPlaceOfTheFile) {
+  const Mission mission = good(kSmall, {.seed = std::numeric_limits<std::uint64_t>::max(),
+                                        .duration_s = 7,
+                                        .pace = Pace::kRealtime,
+                                        .realtime_factor = 20,
+                                        .agents = {}})
+                              .mission();
+  EXPECT_EQ(mission.seed, std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(mission.timing.tick_count, 70);
+  EXPECT_EQ(mission.timing.pace, Pace::kRealtime);
+  EXPECT_EQ(mission.timing.realtime_factor, 20);
+}
+
+TEST(Overrides, StandInForRequiredFields) {
+  EXPECT_EQ(good(small_with("time { duration_s: 60 }", ""), {.duration_s = 1})
+                .mission()
+                .timing.tick_count,
+            10);
+  EXPECT_EQ(good(small_with("agents { starts { x_m: 10 y_m: 20 } }", ""), {.agents = 3})
+                .mission()
+                .starts_m.size(),
+            3u);
+}
+
+TEST(Overrides, AgentsCutTheTeamAndItsQuorum) {
+  const std::string text = small_with(
+      "agents {", "agents { starts { x_m: 1 y_m: 2 } starts { x_m: 3 y_m: 4 } quorum: 3");
+  const Mission smaller = good(text, {.agents = 2}).mission();
+  ASSERT_EQ(smaller.starts_m.size(), 2u);
+  EXPECT_EQ(smaller.starts_m[1], Eigen::Vector2d(3, 4));
+  EXPECT_EQ(smaller.quorum, 2);
+
+  const Mission larger = good(text, {.agents = 6}).mission();
+  EXPECT_EQ(larger.starts_m.size(), 6u);
+  EXPECT_EQ(larger.quorum, 3);
+  EXPECT_EQ(good(kSmall, {.agents = 6}).mission().quorum, 6);
+}
+
+TEST(Overrides, TakeTheBlameForWhatTheyBreak) {
+  const std::vector<Problem> problems =
+      problems_of(kSmall, {.duration_s = -1, .realtime_factor = std::nan(""), .agents = 129});
+  const std::string text = joined(problems);
+  EXPECT_EQ(problems.size(), 3u) << text;
+  EXPECT_TRUE(has(text, "--duration: -1 is not above 0"));
+  EXPECT_TRUE(has(text, "--realtime: nan is not a number"));
+  EXPECT_TRUE(has(text, "--agents: 129 is outside the limits 1 to 128"));
+  EXPECT_TRUE(has(joined(problems_of(kSmall, {.duration_s = 0.01})), "--duration: 0.01 is less"));
+  EXPECT_TRUE(has(joined(problems_of(kSmall, {.agents = 0})), "--agents: 0 is"));
+}
+
+class Shipped : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Scenarios, Shipped, ::testing::ValuesIn(kShipped),
+                         [](const auto& shipped_name) { return std::string(shipped_name.param); });
+
+TEST_P(Shipped, LoadsUnderItsOwnNameAndRunsInLockstep) {
+  const Scenario scenario = good(Scenario::load(shipped(GetParam())));
+  EXPECT_EQ(scenario.name(), GetParam());
+  EXPECT_FALSE(scenario.description().empty());
+  EXPECT_EQ(scenario.mission().timing.pace, Pace::kLockstep);
+  EXPECT_EQ(scenario.mission().quorum, static_cast<int>(scenario.mission().starts_m.size()));
+}
+
+TEST_P(Shipped, PrintsWhatReadsBackToTheSame) {
+  const Scenario scenario = good(Scenario::load(shipped(GetParam())));
+  const Scenario again = good(Scenario::parse(scenario.print(), "printed"));
+  EXPECT_EQ(again.plan(), scenario.plan());
+  EXPECT_EQ(again.description(), scenario.description());
+  EXPECT_EQ(again.print(), scenario.print());
+}
+
+TEST(Print, ShowsEveryFieldInTheFewestDigits) {
+  const std::string text =
+      good(small_with("agents {", "description: \"λ, \\\"quoted\\\"\\n2nd\" agents {")).print();
+  for (const char* line : {"name: \"small\"",
+                           "description: \"λ, \\\"quoted\\\"\\n2nd\"",
+                           "seed: 1",
+                           "origin_x_m: 0",
+                           "size_x_m: 100\n",
+                           "modes_x: 16",
+                           "normalized: false",
+                           "sobolev_form: SQUARED_NORM",
+                           "regularization: RELATIVE",
+                           "epsilon: 0.2\n",
+                           "contraction_gain_per_s: 0.0001\n",
+                           "contraction_center: DOMAIN_CENTER",
+                           "dt_s: 0.1\n",
+                           "pace: LOCKSTEP",
+                           "on_timeout: END_MISSION",
+                           "catch_up_limit_ticks: 5",
+                           "starts { x_m: 10 y_m: 20 }\n",
+                           "random_count: 0",
+                           "quorum: 1",
+                           "disturbance_intensity: 0"}) {
+    EXPECT_TRUE(has(text, line));
+  }
+}
+
+TEST(Print, KeepsEveryBitOfANumber) {
+  for (const char* number : {"0.1234567890123456", "1.7976931348623e-05", "0.30000000000000004",
+                             "1e-05", "33.333333333333336"}) {
+    const std::string text = small_with("{ x_m: 10", std::string("{ x_m: ") + number);
+    const Scenario scenario = good(text);
+    EXPECT_EQ(good(scenario.print()).mission().starts_m[0].x(), std::strtod(number, nullptr));
+    EXPECT_TRUE(has(scenario.print(), std::string("x_m: ") + number + " "));
+  }
+}
+
+// The values that reproduce the paper's figures.
+void expect_paper(const Scenario& scenario, bool stochastic) {
+  const Mission& mission = scenario.mission();
+  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector2d(0, 0));
+  EXPECT_EQ(mission.domain.size_m, Eigen::Vector2d(2000, 2000));
+  ASSERT_EQ(scenario.target().gaussians.size(), 4u);
+  EXPECT_EQ(scenario.target().uniform_weight, 0);
+  const Eigen::Vector2d means[] = {{500, 500}, {500, 1500}, {1500, 500}, {1500, 1500}};
+  for (int i = 0; i < 4; ++i) {
+    const Gaussian& gaussian = scenario.target().gaussians[static_cast<std::size_t>(i)];
+    EXPECT_EQ(gaussian.mean_m, means[i]);
+    EXPECT_EQ(gaussian.weight, 1);
+    EXPECT_EQ(gaussian.covariance_m2, (1e4 * Eigen::Matrix2d::Identity()).eval());
+  }
+  EXPECT_EQ(mission.basis.modes_x, 15);
+  EXPECT_EQ(mission.basis.modes_y, 15);
+  EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kSquaredNorm);
+  EXPECT_EQ(mission.basis.sobolev_exponent, 1);
+  EXPECT_FALSE(mission.basis.normalized);
+  EXPECT_EQ(mission.law.u_max_mps, 10);
+  EXPECT_EQ(mission.law.regularization, Regularization::kAbsolute);
+  EXPECT_EQ(mission.law.epsilon, stochastic ? 1e-3 : 0);
+  EXPECT_EQ(mission.law.noise_intensity, stochastic ? 1e-5 : 0);
+  EXPECT_EQ(mission.law.contraction_gain_per_s, stochastic ? 1e-3 : 0);
+  if (stochastic) {
+    EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(0, 0));
+  }
+  EXPECT_EQ(mission.timing.dt_s, 0.1);
+  EXPECT_EQ(mission.timing.tick_count, 1500);
+  EXPECT_EQ(mission.disturbance_intensity, 0);
+}
+
+const std::vector<Eigen::Vector2d> kCorners{{0, 0}, {2000, 0}, {0, 2000}, {2000, 2000}};
+const std::vector<Eigen::Vector2d> kMidline{{100, 1000}, {300, 1000}, {1300, 1000}};
+
+TEST(ShippedValues, PaperFigures) {
+  for (const auto& [name, stochastic, starts] :
+       {std::tuple{"paper_fig1a", false, kCorners}, std::tuple{"paper_fig1b", false, kMidline},
+        std::tuple{"paper_fig2a", true, kCorners}, std::tuple{"paper_fig2b", true, kMidline}}) {
+    SCOPED_TRACE(name);
+    const Scenario scenario = good(Scenario::load(shipped(name)));
+    expect_paper(scenario, stochastic);
+    EXPECT_EQ(scenario.mission().starts_m, starts);
+  }
+}
+
+TEST(ShippedValues, QuadrimodalCornersIsTheRecommendedLawFromTheWorstStarts) {
+  const Mission mission = good(Scenario::load(shipped("quadrimodal_corners"))).mission();
+  EXPECT_EQ(mission.starts_m, kCorners);
+  EXPECT_EQ(mission.law.regularization, Regularization::kRelative);
+  EXPECT_EQ(mission.law.epsilon, 0.2);
+  EXPECT_GT(mission.law.noise_intensity, 0);
+  EXPECT_EQ(mission.law.contraction_gain_per_s, 1e-4);
+  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(1000, 1000));
+}
+
+TEST(ShippedValues, UniformSquareIsThePublishedCase) {
+  const Mission mission = good(Scenario::load(shipped("uniform_square"))).mission();
+  EXPECT_EQ(mission.domain.size_m, Eigen::Vector2d(1, 1));
+  EXPECT_EQ(mission.basis.mode_count(), 2500);
+  EXPECT_TRUE(mission.basis.normalized);
+  EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kSquaredNorm);
+  EXPECT_EQ(mission.basis.sobolev_exponent, 1.5);
+  EXPECT_EQ(mission.law.u_max_mps, 1);
+  EXPECT_EQ(mission.law.epsilon, 0);
+  EXPECT_EQ(mission.law.noise_intensity, 0);
+  EXPECT_EQ(mission.law.contraction_gain_per_s, 0);
+  EXPECT_EQ(mission.timing.dt_s, 0.01);
+  EXPECT_EQ(mission.timing.tick_count, 20000);
+  EXPECT_EQ(mission.starts_m.size(), 4u);
+  EXPECT_EQ(mission.target_coefficients.cwiseAbs().sum(), 1);  // μ_00 alone
+}
+
+}  // namespace
+}  // namespace ergocast

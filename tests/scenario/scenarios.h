@@ -1,0 +1,72 @@
+// Scenario texts for tests, and the two ways their reading can end.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "scenario/scenario.h"
+
+namespace ergocast::test {
+
+inline constexpr const char* kShipped[] = {"paper_fig1a", "paper_fig1b",         "paper_fig2a",
+                                           "paper_fig2b", "quadrimodal_corners", "uniform_square"};
+
+inline std::filesystem::path shipped(const std::string& name) {
+  return std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
+}
+
+/// The fewest words that make a scenario.
+inline constexpr std::string_view kSmall = R"(
+domain { size_x_m: 100 size_y_m: 50 }
+target { uniform_weight: 1 }
+law { u_max_mps: 5 }
+time { duration_s: 60 }
+agents { starts { x_m: 10 y_m: 20 } }
+)";
+
+/// kSmall with `from` replaced by `to`.
+inline std::string small_with(std::string_view from, std::string_view to) {
+  std::string text(kSmall);
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+inline ::testing::AssertionResult has(std::string_view text, std::string_view part) {
+  if (text.find(part) != std::string_view::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "no \"" << part << "\" in:\n" << text;
+}
+
+inline std::string joined(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) text += to_string(problem) + "\n";
+  return text;
+}
+
+using Loaded = std::variant<Scenario, std::vector<Problem>>;
+
+inline Scenario good(Loaded loaded) {
+  if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
+    throw std::runtime_error(joined(*problems));  // fails the test, with the reason
+  }
+  return std::get<Scenario>(std::move(loaded));
+}
+
+inline Scenario good(std::string_view text, const Overrides& overrides = {}) {
+  return good(Scenario::parse(text, "small.textproto", overrides));
+}
+
+/// The problems of `text`, none if it has none.
+inline std::vector<Problem> problems_of(std::string_view text, const Overrides& overrides = {}) {
+  const Loaded loaded = Scenario::parse(text, "f", overrides);
+  const auto* problems = std::get_if<std::vector<Problem>>(&loaded);
+  return problems == nullptr ? std::vector<Problem>{} : *problems;
+}
+
+}  // namespace ergocast::test

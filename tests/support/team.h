@@ -1,0 +1,118 @@
+// Small missions and messages for tests that drive one core by hand.
+#pragma once
+
+#include <chrono>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/messages.h"
+#include "core/mission.h"
+#include "core/mission_follower.h"
+
+namespace ergocast::test {
+
+using namespace std::chrono_literals;
+
+inline constexpr RunId kRun = 0x1234;
+inline constexpr Incarnation kCoordinatorLife = 0xc0, kWorldLife = 0x3d, kLoggerLife = 0x10;
+
+inline Instant at(std::chrono::nanoseconds since_start) { return Instant{since_start}; }
+
+/// The incarnation that agent `id` has in these tests.
+inline Incarnation life_of(AgentId id) { return 1000 + static_cast<Incarnation>(id); }
+inline Author author_of(AgentId id) { return {id, life_of(id)}; }
+
+/// A uniform target on [0, 2000]², every agent starting on the line y = 500.
+inline Mission small_mission(int agents) {
+  Mission mission;
+  mission.name = "small";
+  mission.seed = 7;
+  mission.domain.size_m = {2000, 2000};
+  mission.basis.modes_x = 5;
+  mission.basis.modes_y = 4;
+  mission.target_coefficients = Coefficients::Zero(5, 4);
+  mission.target_coefficients(0, 0) = 1;
+  mission.law.u_max_mps = 10;
+  mission.timing.tick_count = 100;
+  mission.quorum = agents;
+  mission.wait_for_logger = false;
+  for (int i = 0; i < agents; ++i) mission.starts_m.push_back({100.0 * (i + 1), 500});
+  return mission;
+}
+
+/// A decoder that takes whatever bytes arrive for `mission`.
+inline PlanDecoder decoder_of(Mission mission) {
+  return [mission = std::move(mission)](std::span<const std::byte>) { return mission; };
+}
+
+inline std::vector<RosterEntry> roster_of(int agents) {
+  std::vector<RosterEntry> roster;
+  for (AgentId id = 0; id < agents; ++id) roster.push_back({author_of(id), 0, -1});
+  return roster;
+}
+
+inline MissionPart mission_part(std::int64_t revision, MissionState state,
+                                std::vector<RosterEntry> roster, std::string reason = "") {
+  MissionPart part;
+  part.header = {kRun, kCoordinator, kCoordinatorLife, revision + 1, 0};
+  part.revision = revision;
+  part.state = state;
+  part.roster = std::move(roster);
+  part.plan = {std::byte{1}};
+  part.reason = std::move(reason);
+  return part;
+}
+
+/// The world at `tick` as one part; agent i of `positions_m` is vehicle i.
+inline WorldState world_state(Tick tick, const std::vector<Eigen::Vector2d>& positions_m,
+                              std::int64_t answered_tick = -1) {
+  WorldState state;
+  state.header = {kRun, kWorld, kWorldLife, tick + 1, tick};
+  state.vehicle_count = static_cast<std::int32_t>(positions_m.size());
+  for (std::size_t i = 0; i < positions_m.size(); ++i) {
+    state.vehicles[i].id = static_cast<AgentId>(i);
+    state.vehicles[i].answered_tick = answered_tick;
+    state.vehicles[i].position_m << positions_m[i], 0;
+  }
+  return state;
+}
+
+inline Command command_of(AgentId id, Tick tick, const Eigen::Vector2d& velocity_mps) {
+  Command command;
+  command.header = {kRun, id, life_of(id), tick + 1, tick};
+  command.velocity_mps << velocity_mps, 0;
+  return command;
+}
+
+inline AgentStatus status_of(AgentId id, std::int64_t sequence, Tick answered_tick = -1,
+                             AgentId waiting_for = kUnassigned) {
+  AgentStatus status;
+  status.header = {kRun, id, life_of(id), sequence, 0};
+  status.phase = AgentPhase::kRunning;
+  status.answered_tick = answered_tick;
+  status.waiting_for = waiting_for;
+  status.host = "elsewhere";
+  return status;
+}
+
+/// The messages of type M in `out`, in order.
+template <class M>
+std::vector<M> only(const Outbox& out) {
+  std::vector<M> found;
+  for (const Outgoing& outgoing : out) {
+    if (const auto* message = std::get_if<M>(&outgoing.message)) found.push_back(*message);
+  }
+  return found;
+}
+
+/// What `core` publishes at `now`.
+template <class Core>
+Outbox advance(Core& core, Instant now) {
+  Outbox out;
+  core.advance(now, out);
+  return out;
+}
+
+}  // namespace ergocast::test
