@@ -12,7 +12,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kHelloPeriod = 250ms;
-constexpr auto kStatusPeriod = 500ms;
 /// A status this often in mission time too, so that a fast lockstep run is not left unobserved.
 constexpr double kStatusMissionPeriod_s = 1.0;
 /// How far ahead of us a teammate's coverage may be before it counts as forged.
@@ -238,7 +237,7 @@ void Agent::publish_status(Instant now, Outbox& out) {
   status.kernel_drops = kernel_drops_;
   status.host = identity_.host;
   publish(Bus::kSwarm, status, std::max<Tick>(tick_, 0), out);
-  next_status_ = now + kStatusPeriod;
+  next_status_ = now + kAgentStatusPeriod;
   const double dt_s = follower_.mission()->timing.dt_s;
   next_status_tick_ = tick_ + std::max<Tick>(1, static_cast<Tick>(kStatusMissionPeriod_s / dt_s));
   if (!finished()) return;

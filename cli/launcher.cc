@@ -20,8 +20,8 @@ constexpr int kMaxRestarts = 3;
 constexpr auto kFirstBackOff = 500ms;
 constexpr auto kLongestBackOff = 5s;
 /// How long processes may take to end by themselves, and then after SIGTERM.
-constexpr auto kPatience = 15s;
-constexpr auto kPoliteness = 3s;
+constexpr auto kPatience = 6s;
+constexpr auto kPoliteness = 2s;
 constexpr int kLinesOfExplanation = 5;
 
 }  // namespace

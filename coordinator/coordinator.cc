@@ -11,8 +11,10 @@ using namespace std::chrono_literals;
 constexpr auto kMissionPeriod = 1s;
 constexpr auto kMissionGap = 100ms;
 constexpr auto kTeamStatusPeriod = 250ms;
-/// An agent that says nothing for so long is not alive: six of its statuses.
-constexpr auto kSilence = 3s;
+/// An agent that says nothing for so long is not alive.
+constexpr auto kSilence = 6 * kAgentStatusPeriod;
+/// What it said before that is out of date.
+constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 /// How long the end is repeated.
 constexpr auto kFarewell = 1s;
 constexpr std::size_t kMaxRosterEntries = static_cast<std::size_t>(kMaxAgents) * 4;
@@ -132,18 +134,25 @@ AgentId Coordinator::waits_for(const RosterEntry& entry) const {
 }
 
 RosterEntry* Coordinator::culprit(Instant now) {
-  RosterEntry* first_late = nullptr;
+  RosterEntry* silent = nullptr;
   RosterEntry* suspect = nullptr;
   for (RosterEntry& entry : roster_) {
     if (entry.active_until >= 0 || answered_[entry.author.agent] >= tick_) continue;
-    if (!alive(entry, now)) return &entry;
-    if (first_late == nullptr) first_late = &entry;
+    const Member& member = members_[entry.author];
+    if (now - member.heard > kOverdue) {
+      if (silent == nullptr || member.heard < members_[silent->author].heard) silent = &entry;
+      continue;
+    }
     // Who waits for a teammate is not to blame; that teammate is, unless it waits itself.
     const AgentId teammate = waits_for(entry);
-    RosterEntry* named = teammate == kUnassigned ? &entry : active_entry(teammate);
-    if (suspect == nullptr && named != nullptr && waits_for(*named) == kUnassigned) suspect = named;
+    RosterEntry* named = teammate == kUnassigned ? nullptr : active_entry(teammate);
+    if (named != nullptr && waits_for(*named) == kUnassigned) {
+      suspect = named;
+    } else if (suspect == nullptr) {
+      suspect = &entry;
+    }
   }
-  return suspect != nullptr ? suspect : first_late;
+  return silent != nullptr ? silent : suspect;
 }
 
 void Coordinator::check_timeouts(Instant now) {

@@ -1,6 +1,7 @@
 #include "core/coverage_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/require.h"
@@ -11,6 +12,10 @@ namespace {
 /// How far honest sums may be from steps·dt, relative: half an ulp for each addition, and room for
 /// cosines by recurrence, which exceed 1 by about 3e-15.
 double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(steps) * 0x1p-53; }
+
+/// Divides kBlockSize, so that reading so many never leaves a row.
+constexpr int kModesAtOnce = 8;
+static_assert(kBlockSize % kModesAtOnce == 0);
 
 bool in_range(const Contribution& c, double dt_s) {
   const double expected_s = static_cast<double>(c.steps) * dt_s;
@@ -91,18 +96,21 @@ Contribution CoverageTable::block(const Author& author, int block) const {
 
 void CoverageTable::average(Coefficients& coverage) const {
   for (int b = 0; b < block_count_; ++b) {
-    const int first = b * kBlockSize;
-    const int count = std::min(kBlockSize, basis_.mode_count() - first);
-    double* out = coverage.data() + first;
-    std::fill_n(out, count, 0.0);
     std::int64_t steps = 0;
-    for (const Row& row : rows_) {
-      const double* sums = row.sums.data() + first;
-      for (int k = 0; k < count; ++k) out[k] += sums[k];
-      steps += row.blocks[static_cast<std::size_t>(b)].steps;
-    }
+    for (const Row& row : rows_) steps += row.blocks[static_cast<std::size_t>(b)].steps;
     const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
-    for (int k = 0; k < count; ++k) out[k] *= per_second;
+    const int end = std::min((b + 1) * kBlockSize, basis_.mode_count());
+    // A few modes at a time over all rows: their sums stay in registers.
+    for (int first = b * kBlockSize; first < end; first += kModesAtOnce) {
+      std::array<double, kModesAtOnce> team{};
+      for (const Row& row : rows_) {
+        const double* sums = row.sums.data() + first;
+        for (int k = 0; k < kModesAtOnce; ++k) team[k] += sums[k];
+      }
+      double* out = coverage.data() + first;
+      const int count = std::min(kModesAtOnce, end - first);
+      for (int k = 0; k < count; ++k) out[k] = team[k] * per_second;
+    }
   }
 }
 

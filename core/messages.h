@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -21,6 +22,8 @@ inline constexpr int kMaxRosterEntriesPerMessage = 12;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 128;
 inline constexpr int kMaxReasonLength = 191;
+/// How often an agent says how it is, whatever else happens.
+inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
 
 /// Why bytes that arrived had no effect.
 enum class Refusal {

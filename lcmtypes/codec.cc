@@ -14,7 +14,6 @@
 #include <ergocast/stop_t.hpp>
 #include <ergocast/team_status_t.hpp>
 #include <ergocast/world_state_t.hpp>
-#include <optional>
 
 #include "core/require.h"
 
@@ -131,7 +130,7 @@ bool sizes_match(const Fixed*, std::span<const std::byte> bytes) {
   return bytes.size() == size;
 }
 
-// ---- plain ⇄ wire, one pair a type ---------------------------------------------------------------
+// ---- plain ⇄ wire, one pair a type; from_wire() is false for what cannot be true -------------------
 
 header_t to_wire(const Header& h) {
   header_t w{};
@@ -174,9 +173,10 @@ hello_t to_wire(const Hello& m) {
   w.version = bounded(m.version, kMaxVersionLength);
   return w;
 }
-std::optional<Hello> from_wire(const hello_t& w) {
-  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents) return std::nullopt;
-  return Hello{from_wire(w.header), w.requested_id, w.host, w.version};
+bool from_wire(const hello_t& w, Hello& m) {
+  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents) return false;
+  m = {from_wire(w.header), w.requested_id, w.host, w.version};
+  return true;
 }
 
 mission_t to_wire(const MissionPart& m) {
@@ -203,12 +203,11 @@ mission_t to_wire(const MissionPart& m) {
   w.reason = bounded(m.reason, kMaxReasonLength);
   return w;
 }
-std::optional<MissionPart> from_wire(const mission_t& w) {
+bool from_wire(const mission_t& w, MissionPart& m) {
   if (w.state < 0 || w.state > static_cast<int>(MissionState::kFailed) || w.revision < 0 ||
       w.parts < 1 || w.parts > kMaxPlanParts || w.part < 0 || w.part >= w.parts) {
-    return std::nullopt;
+    return false;
   }
-  MissionPart m;
   m.header = from_wire(w.header);
   m.revision = w.revision;
   m.state = static_cast<MissionState>(w.state);
@@ -216,14 +215,14 @@ std::optional<MissionPart> from_wire(const mission_t& w) {
   m.parts = w.parts;
   for (const roster_entry_t& e : w.roster) {
     if (e.id < 0 || e.id >= kMaxAgents || e.active_from < 0 || e.active_until < -1) {
-      return std::nullopt;
+      return false;
     }
     m.roster.push_back({{e.id, static_cast<Incarnation>(e.nonce)}, e.active_from, e.active_until});
   }
   m.plan.resize(w.plan.size());
   if (!w.plan.empty()) std::memcpy(m.plan.data(), w.plan.data(), w.plan.size());
   m.reason = w.reason;
-  return m;
+  return true;
 }
 
 contribution_t to_wire(const Contribution& m) {
@@ -238,11 +237,10 @@ contribution_t to_wire(const Contribution& m) {
   return w;
 }
 /// Whether the sums can be true is for CoverageTable::merge, which knows the mission.
-std::optional<Contribution> from_wire(const contribution_t& w) {
+bool from_wire(const contribution_t& w, Contribution& m) {
   if (w.header.sender < 0 || w.header.sender >= kMaxAgents || !std::isfinite(w.elapsed_s)) {
-    return std::nullopt;
+    return false;
   }
-  Contribution m;
   m.header = from_wire(w.header);
   m.steps = w.steps;
   m.next_broadcast_tick = w.next_broadcast_tick;
@@ -250,7 +248,7 @@ std::optional<Contribution> from_wire(const contribution_t& w) {
   m.block = w.block;
   m.mode_count = w.mode_count;
   std::copy_n(w.sums, kBlockSize, m.sums.begin());
-  return m;
+  return true;
 }
 
 agent_status_t to_wire(const AgentStatus& m) {
@@ -271,18 +269,17 @@ agent_status_t to_wire(const AgentStatus& m) {
   w.status_host = bounded(m.host, kMaxHostLength);
   return w;
 }
-std::optional<AgentStatus> from_wire(const agent_status_t& w) {
+bool from_wire(const agent_status_t& w, AgentStatus& m) {
   if (w.phase < 0 || w.phase > static_cast<int>(AgentPhase::kFinished) ||
       w.header.sender < kUnassigned || w.header.sender >= kMaxAgents ||
       !std::isfinite(w.ergodic_metric) || !std::isfinite(w.max_staleness_s) ||
       !std::all_of(std::begin(w.refused), std::end(w.refused), plausible_count)) {
-    return std::nullopt;
+    return false;
   }
   for (const std::int64_t count : {w.contributions_received, w.contributions_lost, w.messages_sent,
                                    w.messages_received, w.missed_ticks, w.kernel_drops}) {
-    if (!plausible_count(count)) return std::nullopt;
+    if (!plausible_count(count)) return false;
   }
-  AgentStatus m;
   m.header = from_wire(w.header);
   m.phase = static_cast<AgentPhase>(w.phase);
   m.ergodic_metric = w.ergodic_metric;
@@ -297,7 +294,7 @@ std::optional<AgentStatus> from_wire(const agent_status_t& w) {
   std::copy_n(w.refused, kRefusalKinds, m.refused.begin());
   m.kernel_drops = w.kernel_drops;
   m.host = w.status_host;
-  return m;
+  return true;
 }
 
 team_status_t to_wire(const TeamStatus& m) {
@@ -312,15 +309,16 @@ team_status_t to_wire(const TeamStatus& m) {
   w.team_missed_deadlines = m.missed_deadlines;
   return w;
 }
-std::optional<TeamStatus> from_wire(const team_status_t& w) {
+bool from_wire(const team_status_t& w, TeamStatus& m) {
   if (w.mission_state < 0 || w.mission_state > static_cast<int>(MissionState::kFailed) ||
       !std::isfinite(w.median_ergodic_metric)) {
-    return std::nullopt;
+    return false;
   }
-  return TeamStatus{from_wire(w.header), static_cast<MissionState>(w.mission_state),
-                    w.tick_count,        w.agents_alive,
-                    w.agents_expected,   w.median_ergodic_metric,
-                    w.team_waiting_for,  w.team_missed_deadlines};
+  m = {from_wire(w.header), static_cast<MissionState>(w.mission_state),
+       w.tick_count,        w.agents_alive,
+       w.agents_expected,   w.median_ergodic_metric,
+       w.team_waiting_for,  w.team_missed_deadlines};
+  return true;
 }
 
 stop_t to_wire(const Stop& m) {
@@ -330,7 +328,10 @@ stop_t to_wire(const Stop& m) {
   w.stop_reason = bounded(m.reason, kMaxReasonLength);
   return w;
 }
-std::optional<Stop> from_wire(const stop_t& w) { return Stop{from_wire(w.header), w.stop_failed != 0, w.stop_reason}; }
+bool from_wire(const stop_t& w, Stop& m) {
+  m = {from_wire(w.header), w.stop_failed != 0, w.stop_reason};
+  return true;
+}
 
 world_state_t to_wire(const WorldState& m) {
   ERGOCAST_REQUIRE(m.vehicle_count >= 0 && m.vehicle_count <= kMaxVehiclesPerState);
@@ -351,8 +352,7 @@ world_state_t to_wire(const WorldState& m) {
   }
   return w;
 }
-std::optional<WorldState> from_wire(const world_state_t& w) {
-  WorldState m;
+bool from_wire(const world_state_t& w, WorldState& m) {
   m.header = from_wire(w.header);
   m.roster_revision = w.roster_revision;
   m.missed_deadlines = w.missed_deadlines;
@@ -362,7 +362,7 @@ std::optional<WorldState> from_wire(const world_state_t& w) {
   m.vehicle_count = w.vehicle_count;
   if (m.header.tick < 0 || m.roster_revision < 0 || m.part < 0 || m.part >= m.parts ||
       m.parts > kMaxAgents) {
-    return std::nullopt;
+    return false;
   }
   for (std::size_t i = 0; i < w.vehicles.size(); ++i) {
     const vehicle_t& v = w.vehicles[i];
@@ -370,10 +370,10 @@ std::optional<WorldState> from_wire(const world_state_t& w) {
                      vector3(v.velocity_mps)};
     if (v.vehicle_id < 0 || v.vehicle_id >= kMaxAgents || !m.vehicles[i].position_m.allFinite() ||
         !m.vehicles[i].velocity_mps.allFinite()) {
-      return std::nullopt;
+      return false;
     }
   }
-  return m;
+  return true;
 }
 
 command_t to_wire(const Command& m) {
@@ -383,14 +383,10 @@ command_t to_wire(const Command& m) {
   copy3(m.velocity_mps, w.command_velocity_mps);
   return w;
 }
-std::optional<Command> from_wire(const command_t& w) {
-  const Command m{from_wire(w.header), vector3(w.command_position_m),
-                  vector3(w.command_velocity_mps)};
-  if (m.header.sender < 0 || m.header.sender >= kMaxAgents || m.header.tick < 0 ||
-      !m.position_m.allFinite() || !m.velocity_mps.allFinite()) {
-    return std::nullopt;
-  }
-  return m;
+bool from_wire(const command_t& w, Command& m) {
+  m = {from_wire(w.header), vector3(w.command_position_m), vector3(w.command_velocity_mps)};
+  return m.header.sender >= 0 && m.header.sender < kMaxAgents && m.header.tick >= 0 &&
+         m.position_m.allFinite() && m.velocity_mps.allFinite();
 }
 
 record_ack_t to_wire(const RecordAck& m) {
@@ -398,33 +394,38 @@ record_ack_t to_wire(const RecordAck& m) {
   w.ack_header = to_wire(m.header);
   return w;
 }
-std::optional<RecordAck> from_wire(const record_ack_t& w) {
-  return RecordAck{from_wire(w.ack_header)};
+bool from_wire(const record_ack_t& w, RecordAck& m) {
+  m.header = from_wire(w.ack_header);
+  return true;
 }
 
-template <class Wire>
+/// The message is made where it is returned: a contribution is a kilobyte, too much to pass along.
+template <class Wire, class Plain>
 std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
-  if (!sizes_match(static_cast<const Wire*>(nullptr), bytes)) return Refusal::kSize;
-  Wire wire{};
+  std::variant<Message, Refusal> result(Refusal::kSize);
+  if (!sizes_match(static_cast<const Wire*>(nullptr), bytes)) return result;
+  Wire wire;
   const int size = static_cast<int>(bytes.size());
-  if (wire.decode(bytes.data(), 0, size) != size) return Refusal::kSize;
-  auto plain = from_wire(wire);
-  if (!plain || !plausible(plain->header)) return Refusal::kRange;
-  return Message(std::move(*plain));
+  if (wire.decode(bytes.data(), 0, size) != size) return result;
+  auto& plain = result.emplace<Message>().emplace<Plain>();
+  if (!from_wire(wire, plain) || !plausible(plain.header)) result = Refusal::kRange;
+  return result;
 }
 
 using DecodeFunction = std::variant<Message, Refusal> (*)(std::span<const std::byte>);
 
-template <class Wire>
+template <class Wire, class Plain>
 std::pair<std::uint64_t, DecodeFunction> entry() {
-  return {static_cast<std::uint64_t>(Wire::getHash()), &decode_as<Wire>};
+  return {static_cast<std::uint64_t>(Wire::getHash()), &decode_as<Wire, Plain>};
 }
 
 DecodeFunction decoder_for(std::uint64_t fingerprint) {
   static const std::array kDecoders = {
-      entry<contribution_t>(), entry<world_state_t>(), entry<command_t>(),
-      entry<agent_status_t>(), entry<record_ack_t>(),  entry<mission_t>(),
-      entry<team_status_t>(),  entry<hello_t>(),       entry<stop_t>()};
+      entry<contribution_t, Contribution>(), entry<world_state_t, WorldState>(),
+      entry<command_t, Command>(),           entry<agent_status_t, AgentStatus>(),
+      entry<record_ack_t, RecordAck>(),      entry<mission_t, MissionPart>(),
+      entry<team_status_t, TeamStatus>(),    entry<hello_t, Hello>(),
+      entry<stop_t, Stop>()};
   for (const auto& [known, function] : kDecoders) {
     if (known == fingerprint) return function;
   }

@@ -295,7 +295,7 @@ void all_alive(Coordinator& coordinator, const std::vector<AgentId>& waiting_for
 TEST(CoordinatorTimeOut, NamesTheAgentThatHasNotAnsweredAndEndsTheMission) {
   Coordinator coordinator = running_coordinator(impatient(3));
   coordinator.receive(world_where(5, {5, 4, 5}), at(1s));
-  all_alive(coordinator, {-1, -1, -1}, at(10s));
+  all_alive(coordinator, {-1, -1, -1}, at(10500ms));
   advance(coordinator, at(10999ms));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
   advance(coordinator, at(11s));
@@ -327,7 +327,7 @@ std::string blamed(const std::vector<AgentId>& waiting_for) {
   const auto agents = static_cast<int>(waiting_for.size());
   Coordinator coordinator = running_coordinator(impatient(agents));
   coordinator.receive(world_where(5, std::vector<Tick>(waiting_for.size(), 4)), at(1s));
-  all_alive(coordinator, waiting_for, at(10s));
+  all_alive(coordinator, waiting_for, at(10500ms));
   advance(coordinator, at(11s));
   return coordinator.reason().substr(0, coordinator.reason().find(" has"));
 }
@@ -342,11 +342,12 @@ TEST(CoordinatorTimeOut, DoesNotBlameWhoWaitsForATeammate) {
   EXPECT_EQ(blamed({1, 0}), "agent 0");
 }
 
-TEST(CoordinatorTimeOut, BlamesTheDeadFirst) {
+TEST(CoordinatorTimeOut, BlamesTheSilentFirstAndAmongThemTheOneSilentForLongest) {
+  // 0 waits for 1 and says so; 1 was heard 2 s ago, 2 has not been heard since the start.
   Coordinator coordinator = running_coordinator(impatient(3));
   coordinator.receive(world_where(5, {4, 4, 4}), at(1s));
-  coordinator.receive(status_of(0, 1, 4, 1), at(10s));
-  coordinator.receive(status_of(1, 1, 4), at(10s));
+  coordinator.receive(status_of(1, 1, 4), at(9s));
+  coordinator.receive(status_of(0, 1, 4, 1), at(10500ms));
   advance(coordinator, at(11s));
   EXPECT_NE(coordinator.reason().find("agent 2 has not answered tick 5"), std::string::npos)
       << coordinator.reason();

@@ -570,12 +570,12 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
     for (const std::int64_t bad : {kHuge, std::int64_t{-1}}) {
       AgentStatus status = agent_status();
       status.*count = bad;
-      EXPECT_EQ(verdict(status), "range");
+      EXPECT_EQ(verdict(Message(status)), "range");
     }
   }
   AgentStatus status = agent_status();
   status.refused[5] = kHuge;
-  EXPECT_EQ(verdict(status), "range");
+  EXPECT_EQ(verdict(Message(status)), "range");
 }
 
 TEST(Codec, AnotherRunsMessagesAreRefusedUnlessAnyRunWillDo) {

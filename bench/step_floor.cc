@@ -1,0 +1,98 @@
+#include "bench/step_floor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/basis.h"
+#include "core/noise.h"
+
+namespace ergocast::bench {
+namespace {
+
+using Table = std::array<double, kMaxModesPerAxis>;
+
+void waves_at(double x_m, double length_m, int modes, Table& value, Table& slope) {
+  const double wave_number = std::numbers::pi / length_m;
+  const double first_cos = std::cos(wave_number * x_m), first_sin = std::sin(wave_number * x_m);
+  double c = 1, s = 0;
+  for (int m = 0; m < modes; ++m) {
+    value[m] = c;
+    slope[m] = -m * wave_number * s;
+    const double next = c * first_cos - s * first_sin;
+    s = s * first_cos + c * first_sin;
+    c = next;
+  }
+}
+
+std::vector<double> flat(const Coefficients& table) {
+  return {table.data(), table.data() + table.size()};
+}
+
+}  // namespace
+
+StepFloor::StepFloor(const Mission& mission, int agents)
+    : mission_(mission),
+      agents_(agents),
+      modes_(mission.basis.modes_x),
+      sums_(static_cast<std::size_t>(agents * mission.basis.mode_count())),
+      target_(flat(mission.target_coefficients)),
+      weight_(flat(sobolev_weights(mission.basis, mission.domain))),
+      energy_(flat(gradient_energies(mission.basis, mission.domain))) {}
+
+void StepFloor::take(const std::vector<Contribution>& news) {
+  const int count = mission_.basis.mode_count();
+  for (const Contribution& block : news) {
+    const int first = block.block * kBlockSize;
+    std::copy_n(block.sums.data(), std::min(kBlockSize, count - first),
+                sums_.data() + block.header.sender * count + first);
+  }
+}
+
+Eigen::Vector2d StepFloor::step(Tick tick, const Eigen::Vector2d& x_m) {
+  const double dt_s = mission_.timing.dt_s;
+  const int count = modes_ * modes_;
+  Table cos_x, slope_x, cos_y, slope_y, over_slope{}, over_cos{}, power{};
+  waves_at(x_m.x(), mission_.domain.size_m.x(), modes_, cos_x, slope_x);
+  waves_at(x_m.y(), mission_.domain.size_m.y(), modes_, cos_y, slope_y);
+  const double per_second = 1 / (static_cast<double>(++steps_ * agents_) * dt_s);
+
+  // Short loops over n without branches, each of which the compiler turns into vector instructions.
+  Table team;
+  for (int m = 0; m < modes_; ++m) {
+    double* own = sums_.data() + m * modes_;
+    const double along_x = cos_x[m] * dt_s;
+    for (int n = 0; n < modes_; ++n) team[n] = own[n] += along_x * cos_y[n];
+    for (int mate = 1; mate < agents_; ++mate) {
+      const double* theirs = own + mate * count;
+      for (int n = 0; n < modes_; ++n) team[n] += theirs[n];
+    }
+    const double* weight = weight_.data() + m * modes_;
+    const double* target = target_.data() + m * modes_;
+    const double* energy = energy_.data() + m * modes_;
+    const double slope = slope_x[m], value = cos_x[m];
+    for (int n = 0; n < modes_; ++n) {
+      const double residual = weight[n] * (team[n] * per_second - target[n]);
+      power[n] += residual * residual * energy[n];
+      over_slope[n] += slope * residual;
+      over_cos[n] += value * residual;
+    }
+  }
+
+  Eigen::Vector2d gradient(0, 0);
+  double power_sum = 0;
+  for (int n = 0; n < modes_; ++n) {
+    gradient.x() += over_slope[n] * cos_y[n];
+    gradient.y() += over_cos[n] * slope_y[n];
+    power_sum += power[n];
+  }
+  const ControlLaw& law = mission_.law;
+  const double length = std::sqrt(gradient.squaredNorm() + law.epsilon * law.epsilon * power_sum);
+  return -law.u_max_mps / length * gradient -
+         law.contraction_gain_per_s * (x_m - law.contraction_center_m) +
+         law.noise_intensity / std::sqrt(dt_s) *
+             normal_pair(mission_.seed, Purpose::kPerturbation, 0, static_cast<std::uint64_t>(tick));
+}
+
+}  // namespace ergocast::bench

@@ -1,0 +1,68 @@
+// A whole team in one process, messages as bytes: what the laboratory makes of one core.
+//
+// An iteration is one mission from the first hello to the last row of its record. The record is
+// written as in a run, but nobody keeps it.
+#include <benchmark/benchmark.h>
+
+#include <optional>
+#include <ostream>
+#include <streambuf>
+#include <string>
+
+#include "lab/swarm.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::bench {
+namespace {
+
+/// A file on a disk without end and without weight.
+class Nowhere : public std::streambuf {
+ protected:
+  std::streamsize xsputn(const char*, std::streamsize count) override { return count; }
+  int_type overflow(int_type c) override { return traits_type::not_eof(c); }
+};
+
+lab::Options options_of(const Scenario& scenario) {
+  lab::Options options;
+  options.plan = scenario.plan();
+  options.decode_plan = decode_plan;
+  options.agents = static_cast<int>(scenario.mission().starts_m.size());
+  return options;
+}
+
+void Swarm(benchmark::State& state, const std::string& name) {
+  const std::string file = std::string(ERGOCAST_SCENARIO_DIR) + '/' + name + ".textproto";
+  Overrides overrides;
+  overrides.duration_s = 600;  // long enough for the start not to count
+  const auto loaded = Scenario::load(file, overrides);
+  const auto* scenario = std::get_if<Scenario>(&loaded);
+  if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
+
+  Nowhere nowhere;
+  std::ostream trajectory(&nowhere), metrics(&nowhere);
+  std::int64_t messages = 0, agent_steps = 0;
+  for (auto _ : state) {
+    state.PauseTiming();  // reading the plan and integrating the target are no steps
+    std::optional<lab::Swarm> swarm(std::in_place, options_of(*scenario), trajectory, metrics);
+    state.ResumeTiming();
+    swarm->run();
+    state.PauseTiming();
+    messages += swarm->messages_sent();
+    agent_steps += swarm->recorder().facts().ticks * options_of(*scenario).agents;
+    swarm.reset();
+    state.ResumeTiming();
+  }
+  using benchmark::Counter;
+  state.counters["agent_steps_per_s"] = Counter(static_cast<double>(agent_steps), Counter::kIsRate);
+  state.counters["messages_per_step"] =
+      static_cast<double>(messages) / static_cast<double>(agent_steps);
+}
+
+BENCHMARK_CAPTURE(Swarm, paper_fig1a, "paper_fig1a")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Swarm, quadrimodal_corners, "quadrimodal_corners")
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace ergocast::bench
+
+BENCHMARK_MAIN();

@@ -1,0 +1,136 @@
+// One clear error, the documented exit code, and nothing written.
+#include <sys/mount.h>
+
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+class BadInput : public OwnHost {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+};
+
+constexpr const char* kManyProblems = R"(
+domain { size_x_m: 100 size_y_m: 50 }
+target { uniform_weight: -1 }
+basis { modes_x: 65 }
+law { u_max_mps: nan }
+time { duration_s: 60 durration_s: 3 }
+agents { starts { x_m: 500 y_m: 20 } }
+)";
+
+TEST_F(BadInput, CheckNamesEveryProblemAtOnceWithItsLine) {
+  const auto file = write("bad.textproto", kManyProblems);
+  EXPECT_EQ(ergocast({"check", file}), 2);
+  for (const char* part : {"bad.textproto:3:", "uniform_weight", "bad.textproto:4:", "modes_x", "64",
+                           "bad.textproto:5:", "u_max_mps", "bad.textproto:6:", "durration_s",
+                           "duration_s", "bad.textproto:7:", "x_m", "problems"}) {
+    EXPECT_TRUE(said(part)) << part << " in\n" << output();
+  }
+}
+
+TEST_F(BadInput, RunAndSimulateRefuseABadScenarioAndWriteNothing) {
+  const auto file = write("bad.textproto", kManyProblems);
+  for (const char* command : {"run", "simulate"}) {
+    EXPECT_EQ(ergocast({command, file, "--out", out()}), 2);
+    EXPECT_FALSE(std::filesystem::exists(out()));
+  }
+}
+
+TEST_F(BadInput, CheckPrintsAScenarioThatIsItself) {
+  ASSERT_EQ(ergocast({"check", "--print", scenario_file("quadrimodal_corners")}), 0);
+  const auto printed = write("printed.textproto", output());
+  ASSERT_EQ(ergocast({"check", "--print", printed}), 0) << output();
+  EXPECT_EQ(output(), text_of(printed));
+}
+
+TEST_F(BadInput, UnknownCommandsAndOptionsAreRefused) {
+  const auto scenario = scenario_file("quadrimodal_corners");
+  EXPECT_EQ(ergocast({}), 2);
+  EXPECT_EQ(ergocast({"fly", scenario}), 2);
+  EXPECT_EQ(ergocast({"run", scenario, "--speed", "3"}), 2);
+  EXPECT_EQ(ergocast({"run", scenario, "--lockstep", "--realtime"}), 2);
+  EXPECT_EQ(ergocast({"run", scenario, "--duration", "long", "--out", out()}), 2);
+  EXPECT_EQ(ergocast({"run", scenario, "--agents", "0", "--out", out()}), 2);
+  EXPECT_EQ(ergocast({"run", scenario, "--lcm-url", "udpm://10.0.0.1:7667", "--out", out()}), 2);
+  EXPECT_TRUE(said("multicast")) << output();
+  EXPECT_FALSE(std::filesystem::exists(out()));
+}
+
+TEST_F(BadInput, EveryProgramKnowsHelpAndVersion) {
+  for (const char* program : {"ergocast", "ergocast-agent", "ergocast-coordinator", "ergocast-sim",
+                              "ergocast-logger"}) {
+    EXPECT_EQ(run(program, {"--help"}), 0) << program;
+    EXPECT_TRUE(said("--version")) << output();
+    EXPECT_EQ(run(program, {"--version"}), 0) << program;
+    EXPECT_TRUE(said("LCM 1.")) << output();
+  }
+}
+
+TEST_F(BadInput, AnOutThatIsNotEmptyIsLeftAlone) {
+  std::filesystem::create_directory(out());
+  const auto precious = write("run/precious", "data");
+  for (const char* command : {"run", "simulate"}) {
+    EXPECT_EQ(ergocast({command, scenario_file("quadrimodal_corners"), "--out", out()}), 2);
+    EXPECT_TRUE(said("is not empty")) << output();
+    EXPECT_EQ(text_of(precious), "data");
+    EXPECT_FALSE(std::filesystem::exists(out() / "trajectory.csv"));
+  }
+}
+
+TEST_F(BadInput, AnOutThatCannotBeMadeIsNamed) {
+  const auto file = write("file", "");
+  EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", file}), 2);
+  EXPECT_TRUE(said("is a file")) << output();
+  EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", file / "below"}), 2);
+  EXPECT_TRUE(said("Not a directory")) << output();
+  EXPECT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--out", "/proc/run"}), 2);
+  EXPECT_TRUE(said("/proc/run")) << output();
+}
+
+TEST_F(BadInput, LoggerRefusesAFolderWithARecord) {
+  std::filesystem::create_directory(out());
+  const auto record = write("run/trajectory.csv", "old");
+  EXPECT_EQ(run("ergocast-logger", {"--out", out(), "--lcm-url", "udpm://239.255.76.67:24800"}), 2);
+  EXPECT_TRUE(said("already a record")) << output();
+  EXPECT_EQ(text_of(record), "old");
+}
+
+TEST_F(BadInput, AFullDiskEndsTheRunAndIsNamed) {
+  if (!may_mount()) GTEST_SKIP() << "only root may mount the small disk this needs";
+  const auto disk = folder_ / "disk";
+  std::filesystem::create_directory(disk);
+  ASSERT_EQ(mount("none", disk.c_str(), "tmpfs", 0, "size=2m"), 0);
+  EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", disk / "run"}), 4);
+  EXPECT_TRUE(said("disk is full") || said("No space left")) << output();
+  std::filesystem::remove_all(disk / "run");
+  EXPECT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "10000",
+                      "--out", disk / "simulated"}), 4);
+  EXPECT_TRUE(said("disk is full") || said("No space left")) << output();
+  umount(disk.c_str());
+}
+
+TEST_F(BadInput, WithoutAMulticastRouteTheCommandsThatMendItAreNamed) {
+  ASSERT_EQ(std::system("ip route del 224.0.0.0/4 dev lo"), 0);
+  EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", out()}), 3);
+  EXPECT_TRUE(said("ip route add 224.0.0.0/4 dev lo")) << output();
+  EXPECT_FALSE(std::filesystem::exists(out()));
+  EXPECT_EQ(run("ergocast-agent", {}), 3);
+  EXPECT_TRUE(said("ip route add 224.0.0.0/4 dev lo")) << output();
+  ASSERT_EQ(std::system("ip route add 224.0.0.0/4 dev lo"), 0);
+}
+
+TEST_F(BadInput, ReportAndVerifyNameWhatIsMissing) {
+  EXPECT_EQ(ergocast({"report", folder_ / "nothing"}), 2);
+  EXPECT_TRUE(said("scenario.textproto")) << output();
+  EXPECT_EQ(ergocast({"verify", folder_ / "nothing"}), 2);
+  EXPECT_TRUE(said("plan.binpb")) << output();
+}
+
+}  // namespace
+}  // namespace ergocast::test

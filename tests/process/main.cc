@@ -1,0 +1,20 @@
+// Every test of this program runs on a host of its own.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "tests/support/own_host.h"
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  if (!GTEST_FLAG_GET(list_tests)) {
+    try {
+      ergocast::test::enter_own_host();
+    } catch (const std::runtime_error& error) {
+      std::fprintf(stderr, "cannot make a host for the test: %s\n", error.what());
+      return 1;
+    }
+  }
+  return RUN_ALL_TESTS();
+}

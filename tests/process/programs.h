@@ -1,0 +1,101 @@
+// Running the real programs from a test.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "runtime/child.h"
+#include "tests/support/own_host.h"
+
+namespace ergocast::test {
+
+/// How long something that must happen may take before a test gives up: decides no success.
+inline constexpr auto kPatience = std::chrono::seconds(120);
+
+inline std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline std::filesystem::path scenario_file(const std::string& name) {
+  return std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
+}
+
+/// Waits for `condition`; false if it does not come.
+inline bool eventually(const std::function<bool()>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+/// A folder that is gone after the test, and the programs' network.
+class OwnHost : public ::testing::Test {
+ protected:
+  OwnHost() {
+    std::string name = std::filesystem::temp_directory_path() / "ergocast-test-XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~OwnHost() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  void TearDown() override {
+    EXPECT_TRUE(eventually([] { return processes_on_own_host().empty(); }))
+        << "left behind: " << ::testing::PrintToString(processes_on_own_host());
+  }
+
+  /// Starts one of our programs; its output goes to `log`.
+  Child start(const std::string& program, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), (std::filesystem::path(ERGOCAST_BIN_DIR) / program).string());
+    log_ = folder_ / ("output-" + std::to_string(++started_));
+    return std::get<Child>(Child::start({arguments, log_, SIGKILL}));
+  }
+  /// Its exit code, or −signal.
+  static int wait_for(Child& child) {
+    if (!eventually([&child] { return !child.running(); })) {
+      child.send(SIGKILL);
+      ADD_FAILURE() << "did not end";
+    }
+    return child.exit_code().value_or(-1);
+  }
+  /// Runs to the end; the exit code. Its output is in output().
+  int run(const std::string& program, std::vector<std::string> arguments) {
+    Child child = start(program, std::move(arguments));
+    return wait_for(child);
+  }
+  int ergocast(std::vector<std::string> arguments) { return run("ergocast", std::move(arguments)); }
+  std::string output() const { return text_of(log_); }
+
+  std::filesystem::path out() const { return folder_ / "run"; }
+  nlohmann::json summary() const { return nlohmann::json::parse(text_of(out() / "summary.json")); }
+
+  /// Waits until that many rows are on disk: a mission that is under way.
+  bool recorded(std::uintmax_t bytes) const {
+    return eventually([&] {
+      std::error_code error;
+      const auto size = std::filesystem::file_size(out() / "trajectory.csv", error);
+      return !error && size >= bytes;
+    });
+  }
+
+  std::filesystem::path folder_, log_;
+
+ private:
+  int started_ = 0;
+};
+
+}  // namespace ergocast::test

@@ -1,0 +1,133 @@
+// The main job: a mission as real processes over real LCM.
+#include <algorithm>
+#include <sstream>
+
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+using MissionRun = OwnHost;
+
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST_F(MissionRun, DefaultScenarioLeavesACompleteRecordThatIsTheSimulationsByteForByte) {
+  const auto scenario = scenario_file("quadrimodal_corners").string();
+  ASSERT_EQ(ergocast({"run", scenario, "--duration", "100", "--out", out()}), 0) << output();
+  ASSERT_EQ(ergocast({"simulate", scenario, "--duration", "100", "--out", folder_ / "simulated"}), 0)
+      << output();
+  const std::string recorded = text_of(out() / "trajectory.csv");
+  EXPECT_EQ(lines(recorded), 1U + 4 * 1000);
+  EXPECT_TRUE(recorded == text_of(folder_ / "simulated" / "trajectory.csv"));
+
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_NE(output().find("identical"), std::string::npos) << output();
+  EXPECT_EQ(lines(text_of(out() / "metrics.csv")), 1U + 101);
+  const auto facts = summary();
+  EXPECT_EQ(facts["result"], "done");
+  EXPECT_EQ(facts["ticks"], 1000);
+  EXPECT_EQ(facts["mode"], "lockstep");
+  EXPECT_EQ(facts["restarts"], 0);
+  EXPECT_EQ(facts["record_complete"], true);
+  EXPECT_EQ(facts["agents"].size(), 4U);
+  EXPECT_LT(facts["ergodic_metric"]["last"], facts["ergodic_metric"]["first"]);
+  for (const char* name : {"scenario.textproto", "plan.binpb", "events-000.lcm", "report.html",
+                           "figures/trajectories.svg", "log/agent-3.log", "log/sim.log",
+                           "log/coordinator.log", "log/logger.log"}) {
+    EXPECT_GT(std::filesystem::file_size(out() / name), 0U) << name;
+  }
+}
+
+TEST_F(MissionRun, RecordedScenarioRunsAgainToTheSameTrajectory) {
+  ASSERT_EQ(ergocast({"run", scenario_file("paper_fig2b").string(), "--duration", "20", "--seed",
+                      "9", "--out", out()}), 0) << output();
+  ASSERT_EQ(ergocast({"simulate", out() / "scenario.textproto", "--out", folder_ / "again"}), 0)
+      << output();
+  EXPECT_TRUE(text_of(out() / "trajectory.csv") == text_of(folder_ / "again" / "trajectory.csv"));
+}
+
+TEST_F(MissionRun, SeventeenAgentsFillTwoWorldStatesATick) {
+  const auto scenario = scenario_file("quadrimodal_corners").string();
+  ASSERT_EQ(ergocast({"run", scenario, "--duration", "5", "--agents", "17", "--out", out()}), 0)
+      << output();
+  EXPECT_EQ(lines(text_of(out() / "trajectory.csv")), 1U + 17 * 50);
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+TEST_F(MissionRun, VerifyNamesTheFirstTickAndAgentThatDiffer) {
+  ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners").string(), "--duration", "10",
+                      "--out", out()}), 0) << output();
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  std::string table = text_of(out() / "trajectory.csv");
+  const auto row = table.find("\n42,");
+  const auto second = table.find("\n42,", row + 1);
+  const auto end = table.find('\n', second + 1);
+  table[end - 1] = table[end - 1] == '1' ? '2' : '1';
+  std::ofstream(out() / "trajectory.csv", std::ios::binary) << table;
+  EXPECT_EQ(ergocast({"verify", out()}), 1);
+  EXPECT_NE(output().find("first at tick 42, agent 1"), std::string::npos) << output();
+}
+
+TEST_F(MissionRun, RealTimeKeepsTheClockAndCountsWhatItMissed) {
+  ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners").string(), "--duration", "20",
+                      "--realtime=10", "--out", out()}), 0) << output();
+  const auto facts = summary();
+  EXPECT_EQ(facts["result"], "done");
+  EXPECT_EQ(facts["mode"], "realtime");
+  EXPECT_EQ(facts["realtime_factor"], 10);
+  EXPECT_TRUE(facts["missed_deadlines"].is_number());
+  EXPECT_TRUE(facts["skipped_ticks"].is_number());
+  EXPECT_LE(facts["ticks"], 200);
+  EXPECT_EQ(ergocast({"verify", out()}), 2);
+  EXPECT_NE(output().find("real time"), std::string::npos) << output();
+}
+
+TEST_F(MissionRun, EventsReplayWithLcmLogplayer) {
+  const std::string url = "udpm://239.255.76.67:24500?ttl=0";
+  ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners").string(), "--duration", "3",
+                      "--out", out()}), 0) << output();
+  // A second logger records the replay; what it hears has to make the same record.
+  const auto again = folder_ / "again";
+  std::filesystem::create_directory(again);
+  const std::string run_id = summary()["run_id"];
+  Child listener = start("ergocast-logger", {"--out", again, "--lcm-url", url, "--run-id", run_id});
+  const auto log = log_;
+  ASSERT_TRUE(eventually([&] { return text_of(log).find("recording") != std::string::npos; }));
+  const auto player = std::get<Child>(Child::start(
+      {{"/usr/bin/lcm-logplayer", "--lcm-url=" + url, "--speed=0.5",
+        (out() / "events-000.lcm").string()}, folder_ / "player", SIGKILL}));
+  Child playing = player;
+  EXPECT_EQ(wait_for(playing), 0) << text_of(folder_ / "player");
+  listener.send(SIGTERM);
+  EXPECT_EQ(wait_for(listener), 0) << text_of(log);
+  const auto replayed = nlohmann::json::parse(text_of(again / "summary.json"));
+  EXPECT_EQ(replayed["run_id"], run_id);
+  EXPECT_EQ(replayed["scenario_hash"], summary()["scenario_hash"]);
+  EXPECT_EQ(replayed["agents"].size(), 4U);
+}
+
+TEST_F(MissionRun, AnAgentNeedsNoMoreThanThirtyMegabytes) {
+  Child mission = start("ergocast", {"run", scenario_file("quadrimodal_corners").string(),
+                                     "--duration", "100000", "--out", out()});
+  ASSERT_TRUE(recorded(100000)) << output();
+  int agents = 0;
+  for (const auto& process : std::filesystem::directory_iterator("/proc")) {
+    std::istringstream command(text_of(process.path() / "cmdline"));
+    std::string program;
+    std::getline(command, program, '\0');
+    if (!program.ends_with("/ergocast-agent")) continue;
+    const std::string status = text_of(process.path() / "status");
+    const auto peak = status.find("VmHWM:");
+    ASSERT_NE(peak, std::string::npos);
+    EXPECT_LE(std::stol(status.substr(peak + 6)), 30 * 1024) << "kB";
+    ++agents;
+  }
+  EXPECT_GE(agents, 4);
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << output();
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,80 @@
+#include "tests/support/own_host.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+namespace ergocast::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool was_root = false;
+
+void write_text(const char* file, const std::string& text) {
+  if (!(std::ofstream(file) << text << std::flush)) throw std::runtime_error(file);
+}
+
+void must_run(const char* command) {
+  if (std::system(command) != 0) throw std::runtime_error(std::string("failed: ") + command);
+}
+
+std::string network_of(const fs::path& process) {
+  std::error_code error;
+  return fs::read_symlink(process / "ns" / "net", error).string();
+}
+
+/// The state letter and name of a process.
+std::pair<char, std::string> state_of(const fs::path& process) {
+  std::ifstream in(process / "stat");
+  std::string stat;
+  std::getline(in, stat);
+  const auto open = stat.find('('), close = stat.rfind(')');
+  if (open == stat.npos || close == stat.npos || close + 2 >= stat.size()) return {'Z', ""};
+  return {stat[close + 2], stat.substr(open + 1, close - open - 1)};
+}
+
+}  // namespace
+
+void enter_own_host() {
+  const uid_t user = geteuid();
+  const gid_t group = getegid();
+  was_root = user == 0;
+  if (unshare((was_root ? 0 : CLONE_NEWUSER) | CLONE_NEWNET | CLONE_NEWNS) != 0) {
+    throw std::runtime_error(std::string("this system allows no network namespaces: ") +
+                             std::strerror(errno));
+  }
+  if (!was_root) {
+    write_text("/proc/self/setgroups", "deny");
+    write_text("/proc/self/uid_map", "0 " + std::to_string(user) + " 1");
+    write_text("/proc/self/gid_map", "0 " + std::to_string(group) + " 1");
+  }
+  must_run("mount --make-rprivate /");
+  must_run("ip link set lo up");
+  must_run("ip link set lo multicast on");
+  must_run("ip route add 224.0.0.0/4 dev lo");
+}
+
+bool may_mount() { return was_root; }
+
+std::vector<std::string> processes_on_own_host() {
+  const std::string own = network_of("/proc/self");
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/proc", error)) {
+    const std::string pid = entry.path().filename();
+    if (pid.find_first_not_of("0123456789") != pid.npos || pid == std::to_string(getpid())) continue;
+    if (network_of(entry.path()) != own) continue;
+    const auto [state, name] = state_of(entry.path());
+    if (state != 'Z' && state != 'X') found.push_back(name + " (pid " + pid + ")");
+  }
+  return found;
+}
+
+}  // namespace ergocast::test

@@ -1,0 +1,20 @@
+// A host of the test's own: a network namespace with multicast on its loopback, so that tests
+// that open sockets neither hear nor disturb anybody, and can see which processes they left.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ergocast::test {
+
+/// Moves this process into a new network namespace (and mount namespace). As an ordinary user in a
+/// new user namespace. Throws std::runtime_error with the reason where the system forbids it.
+void enter_own_host();
+
+/// Whether mounting is allowed there: only with real root.
+bool may_mount();
+
+/// "agent (pid 12)" of every process in this network namespace but this one, zombies left out.
+std::vector<std::string> processes_on_own_host();
+
+}  // namespace ergocast::test
