@@ -86,7 +86,7 @@ class Agent {
   void finish(bool failed, std::string reason);
   Header header(Bus bus, Tick tick);
   template <class M>
-  void publish(Bus bus, M message, Tick tick, Outbox& out);
+  void publish(Bus bus, const M& message, Tick tick, Outbox& out);
   Tick next_broadcast_after(Tick tick) const;
   double max_staleness_s() const;
   std::int64_t messages_lost() const;

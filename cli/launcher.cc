@@ -24,6 +24,10 @@ constexpr auto kPatience = 6s;
 constexpr auto kPoliteness = 2s;
 constexpr int kLinesOfExplanation = 5;
 
+std::chrono::nanoseconds back_off(int restarts) {
+  return std::min<std::chrono::nanoseconds>(kFirstBackOff * (1 << restarts), kLongestBackOff);
+}
+
 }  // namespace
 
 void Launcher::plan(Role role, std::string name, const std::string& program,
@@ -71,13 +75,10 @@ std::optional<std::string> Launcher::launch(Process& process) {
 void Launcher::attend(Instant now) {
   for (Process& process : processes_) {
     if (process.child && !process.end_noted && !process.child->running()) take_note(process, now);
-    if (!process.restart_at || now < *process.restart_at) continue;
-    process.restart_at.reset();
-    if (end_expected_) continue;
-    ++process.restarts;
-    display_.say(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
-                 std::to_string(kMaxRestarts) + ")");
-    if (const auto problem = launch(process)) fail(*problem);
+    if (process.restart_at && now >= *process.restart_at) {
+      process.restart_at.reset();
+      if (!end_expected_) restart(process);
+    }
   }
   if (!end_expected_) return;
   if (pressed_ < 1 && now - *end_expected_ > kPatience) press(1);
@@ -86,22 +87,37 @@ void Launcher::attend(Instant now) {
 
 void Launcher::take_note(Process& process, Instant now) {
   process.end_noted = true;
-  const bool in_order = process.child->exit_code() == kExitDone;
-  if (process.role == Role::kLogger && !in_order) {
-    record_broken_ = true;
-    explain(process);
-    // A record that cannot be written ends a run that exists for its record; after a crash the team
-    // goes on without.
-    if (process.child->exit_code()) fail("the record cannot be written; see log/logger.log");
+  const auto code = process.child->exit_code();
+  if (process.role == Role::kAgent) {
+    // An agent that ends in order may simply have seen the mission's end before us.
+    if (code != kExitDone && !(end_expected_ && code == kExitFailed)) explain(process);
+    process.restart_at = now + back_off(process.restarts);
     return;
   }
-  // In an ending mission agents and coordinator say "failed" because the mission has.
-  if (in_order || (end_expected_ && process.child->exit_code() == kExitFailed)) return;
+  if (code == kExitDone) return;
+  // A coordinator says "failed" because the mission has; it also says why.
+  if (process.role == Role::kCoordinator && code == kExitFailed) return;
   explain(process);
-  if (end_expected_) return;
-  if (process.role == Role::kAgent) return consider_restart(process, now);
-  if (process.role == Role::kCoordinator && process.child->exit_code() == kExitFailed) return;
-  fail("the " + process.name + " process " + process.child->fate());
+  if (process.role != Role::kLogger) {
+    if (!end_expected_) fail("the " + process.name + " process " + process.child->fate());
+    return;
+  }
+  // A record that cannot be written ends a run that exists for its record; after a crash the team
+  // goes on without.
+  record_broken_ = true;
+  if (code) fail("the record cannot be written; see log/logger.log");
+}
+
+void Launcher::restart(Process& process) {
+  if (process.child->exit_code() == kExitDone) explain(process);
+  if (process.restarts >= kMaxRestarts) {
+    return fail(process.name + " " + process.child->fate() + " after " +
+                std::to_string(kMaxRestarts) + " restarts");
+  }
+  ++process.restarts;
+  display_.say(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
+               std::to_string(kMaxRestarts) + ")");
+  if (const auto problem = launch(process)) fail(*problem);
 }
 
 void Launcher::explain(const Process& process) {
@@ -110,16 +126,6 @@ void Launcher::explain(const Process& process) {
   std::string tail = last_lines(process.program.log, kLinesOfExplanation);
   if (!tail.empty()) tail.pop_back();
   display_.say(tail.empty() ? "    (nothing was logged)" : tail);
-}
-
-void Launcher::consider_restart(Process& process, Instant now) {
-  if (process.restarts >= kMaxRestarts) {
-    return fail(process.name + " " + process.child->fate() + " after " +
-                std::to_string(kMaxRestarts) + " restarts");
-  }
-  const auto back_off = std::min<std::chrono::nanoseconds>(kFirstBackOff * (1 << process.restarts),
-                                                           kLongestBackOff);
-  process.restart_at = now + back_off;
 }
 
 void Launcher::fail(std::string reason) {

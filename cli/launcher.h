@@ -76,7 +76,7 @@ class Launcher {
   std::optional<std::string> launch(Process& process);
   void take_note(Process& process, Instant now);
   void explain(const Process& process);
-  void consider_restart(Process& process, Instant now);
+  void restart(Process& process);
   void fail(std::string reason);
 
   Setup setup_;

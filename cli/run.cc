@@ -89,13 +89,27 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
   launcher.attend(now());
 }
 
+/// What can be said of a run whose logger left no summary.
+nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
+  const Timing& timing = scenario.mission().timing;
+  return {{"run_id", to_hex(run)},
+          {"result", "failed"},
+          {"reason", "the logger left no summary"},
+          {"version", version()},
+          {"build", build_text()},
+          {"scenario", scenario.name()},
+          {"scenario_hash", plan_hash(scenario.plan())},
+          {"seed", scenario.mission().seed},
+          {"mode", timing.pace == Pace::kLockstep ? "lockstep" : "realtime"},
+          {"dt_s", timing.dt_s},
+          {"tick_count", timing.tick_count}};
+}
+
 /// The logger's summary with what only the launcher knows.
-nlohmann::ordered_json amended_summary(const fs::path& run_dir, RunId run, const Launcher& launcher,
-                                       const MissionWatch& mission) {
-  auto summary = read_summary(run_dir);
-  if (!summary.is_object()) {
-    summary = {{"run_id", to_hex(run)}, {"result", "failed"}, {"reason", "the logger left no summary"}};
-  }
+nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher::Setup& setup,
+                                       const Launcher& launcher, const MissionWatch& mission) {
+  auto summary = read_summary(setup.run_dir);
+  if (!summary.is_object()) summary = makeshift_summary(scenario, setup.run);
   const auto fail = [&summary](const std::string& reason) {
     summary["result"] = "failed";
     summary["reason"] = reason;
@@ -112,9 +126,43 @@ nlohmann::ordered_json amended_summary(const fs::path& run_dir, RunId run, const
   return summary;
 }
 
+void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDisplay& display) {
+  display.say("run " + to_hex(setup.run) + " of " + scenario.name() + " into " +
+              setup.run_dir.string());
+  display.say("  swarm    " + setup.url.of(Bus::kSwarm));
+  display.say("  world    " + setup.url.of(Bus::kWorld));
+  display.say("  command  " + setup.url.of(Bus::kCommand));
+}
+
 int complain(ExitCode code, const std::string& problem) {
   std::fprintf(stderr, "%s\n", problem.c_str());
   return code;
+}
+
+/// Flies the mission on a network that works, into a run directory that is ready.
+int fly(const Scenario& scenario, const Launcher::Setup& setup, StopSignals& signals) {
+  ProgressDisplay display;
+  MissionWatch mission(setup.run, scenario.mission().timing.dt_s, display);
+  auto opened = Transport::open(
+      setup.url, setup.run, {{Bus::kSwarm, "TEAM_STATUS|MISSION"}},
+      {.on_message = [&mission](const Message& message) { mission.receive(message); }});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    return complain(kExitUnavailable, *problem);
+  }
+  announce(setup, scenario, display);
+  Launcher launcher(setup, display);
+  if (const auto problem = launcher.start()) {
+    launcher.press(2);
+    return complain(kExitFailed, *problem);
+  }
+  supervise(launcher, mission, *std::get<0>(opened), signals, display);
+  display.end();
+
+  const auto summary = amended_summary(scenario, setup, launcher, mission);
+  const auto unwritten = write_file(setup.run_dir / kSummaryFile, summary.dump(2) + '\n');
+  conclude(setup.run_dir, summary, scenario);
+  if (unwritten) return complain(kExitFailed, *unwritten);
+  return summary["result"] == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;
 }
 
 }  // namespace
@@ -123,48 +171,23 @@ int run(const MissionOptions& options) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
   StopSignals signals;
-  const RunId run_id = random_identity();
-  LcmUrl url = options.url.value_or(LcmUrl{});
-  if (const auto problem = why_unreachable(url)) return complain(kExitUnavailable, *problem);
-  const auto ports = options.url ? std::nullopt : PortReservation::take(run_id);
+  Launcher::Setup setup;
+  setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
+  setup.agents = static_cast<int>(scenario->mission().starts_m.size());
+  setup.run = random_identity();
+  setup.url = options.url.value_or(LcmUrl{});
+  if (const auto problem = why_unreachable(setup.url)) return complain(kExitUnavailable, *problem);
+  const auto ports = options.url ? std::nullopt : PortReservation::take(setup.run);
   if (!options.url) {
     if (!ports) return complain(kExitUnavailable, "no free ports in 24000 to 26999; give --lcm-url");
-    url.base_port = ports->base_port();
+    setup.url.base_port = ports->base_port();
   }
   const auto prepared = prepare_run_directory(options.out, *scenario);
   if (const auto* problem = std::get_if<std::string>(&prepared)) {
     return complain(kExitBadInput, *problem);
   }
-  const auto& run_dir = std::get<fs::path>(prepared);
-
-  ProgressDisplay display;
-  MissionWatch mission(run_id, scenario->mission().timing.dt_s, display);
-  auto opened = Transport::open(
-      url, run_id, {{Bus::kSwarm, "TEAM_STATUS|MISSION"}},
-      {.on_message = [&mission](const Message& message) { mission.receive(message); }});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    return complain(kExitUnavailable, *problem);
-  }
-  display.say("run " + to_hex(run_id) + " of " + scenario->name() + " into " + run_dir.string());
-  for (const auto& [name, bus] : {std::pair{"swarm  ", Bus::kSwarm}, std::pair{"world  ", Bus::kWorld},
-                                  std::pair{"command", Bus::kCommand}}) {
-    display.say(std::string("  ") + name + "  " + url.of(bus));
-  }
-  Launcher launcher({fs::read_symlink("/proc/self/exe").parent_path(), run_dir, url, run_id,
-                     static_cast<int>(scenario->mission().starts_m.size())},
-                    display);
-  if (const auto problem = launcher.start()) {
-    launcher.press(2);
-    return complain(kExitFailed, *problem);
-  }
-  supervise(launcher, mission, *std::get<0>(opened), signals, display);
-  display.end();
-
-  const auto summary = amended_summary(run_dir, run_id, launcher, mission);
-  const auto unwritten = write_file(run_dir / kSummaryFile, summary.dump(2) + '\n');
-  conclude(run_dir, summary, *scenario);
-  if (unwritten) return complain(kExitFailed, *unwritten);
-  return summary["result"] == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;
+  setup.run_dir = std::get<fs::path>(prepared);
+  return fly(*scenario, setup, signals);
 }
 
 }  // namespace ergocast::cli

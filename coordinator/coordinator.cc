@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <sstream>
 
 namespace ergocast {
 namespace {
@@ -171,7 +172,9 @@ void Coordinator::check_timeouts(Instant now) {
   if (state_ != MissionState::kRunning || mission_.timing.pace != Pace::kLockstep) return;
   if (now - tick_since_ < seconds(mission_.timing.lockstep_timeout_s)) return;
   RosterEntry* late = culprit(now);
-  const std::string since = " for " + std::to_string(mission_.timing.lockstep_timeout_s) + " s";
+  std::ostringstream since_text;
+  since_text << " for " << mission_.timing.lockstep_timeout_s << " s";
+  const std::string since = since_text.str();
   if (late == nullptr) {
     if (alive_count(now) == 0) {
       return end(true, "no agent is left to answer tick " + std::to_string(tick_), now);

@@ -43,16 +43,21 @@ std::int32_t read32(const std::byte* at) {
 
 using Tag = std::array<std::byte, kTagBytes>;
 
-/// XXH3-128 over `bytes` with the tag itself taken as zero.
+/// XXH3-128 over bytes whose tag is zero.
+Tag hash_of(std::span<const std::byte> bytes) {
+  XXH128_canonical_t canonical;
+  XXH128_canonicalFromHash(&canonical, XXH3_128bits(bytes.data(), bytes.size()));
+  Tag tag;
+  std::memcpy(tag.data(), canonical.digest, kTagBytes);
+  return tag;
+}
+
+/// The tag that `bytes` should have, whatever theirs is.
 Tag tag_of(std::span<const std::byte> bytes) {
   std::array<std::byte, kMaxDatagramBytes> copy;
   std::memcpy(copy.data(), bytes.data(), bytes.size());
   std::memset(copy.data() + kTagOffset, 0, kTagBytes);
-  XXH128_canonical_t canonical;
-  XXH128_canonicalFromHash(&canonical, XXH3_128bits(copy.data(), bytes.size()));
-  Tag tag;
-  std::memcpy(tag.data(), canonical.digest, kTagBytes);
-  return tag;
+  return hash_of({copy.data(), bytes.size()});
 }
 
 // ---- sizes: what the counts inside declare must be what arrived ---------------------------------
@@ -444,7 +449,7 @@ void encode(const Message& message, std::vector<std::byte>& out) {
         ERGOCAST_REQUIRE(wire.encode(out.data(), 0, size) == size);
       },
       message);
-  const Tag tag = tag_of(out);
+  const Tag tag = hash_of(out);  // to_wire() leaves it zero
   std::copy(tag.begin(), tag.end(), out.begin() + kTagOffset);
 }
 

@@ -22,14 +22,78 @@ bool is_original(Bus bus, std::string_view channel) {
   return bus != Bus::kCommand || !(channel.ends_with("_MISSION") || channel.ends_with("_STOP"));
 }
 
-/// The plan as it was sent, and as people read it. A launcher may have written the latter already.
-std::optional<std::string> write_plan(const fs::path& folder, const std::vector<std::byte>& plan) {
-  const std::string_view bytes(reinterpret_cast<const char*>(plan.data()), plan.size());
-  if (const auto error = write_file(folder / kPlanFile, bytes)) return error;
-  std::error_code ignored;
-  if (fs::exists(folder / kScenarioFile, ignored)) return std::nullopt;
-  return write_file(folder / kScenarioFile, Scenario::from_plan(plan)->print());
-}
+/// A recorder with the files it fills. The first write error ends the record.
+class RunLogger {
+ public:
+  RunLogger(RunId run, RunRecord& record)
+      : record_(record),
+        events_(record.folder()),
+        recorder_(run, random_identity(), decode_plan, record.trajectory(), record.metrics()) {}
+
+  Recorder& recorder() { return recorder_; }
+  bool failed() const { return failed_; }
+
+  void keep_event(Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
+    if (is_original(bus, channel)) events_.write(channel, bytes);
+  }
+
+  /// What is done every turn: times for the summary, and the plan once it is known.
+  void attend(Instant now) {
+    if (recorder_.next_row() != seen_row_) {
+      seen_row_ = recorder_.next_row();
+      last_row_ = now;
+      if (!first_row_) first_row_ = now;
+    }
+    if (plan_written_ || !recorder_.follower().mission()) return;
+    plan_written_ = true;
+    check(write_plan());
+  }
+
+  void flush() {
+    check(record_.flush());
+    check(events_.flush());
+  }
+
+  void write_summary(const Transport& transport) {
+    RunContext context;
+    context.run = recorder_.run();
+    context.version = version();
+    context.build = build_text();
+    context.scenario_hash = plan_hash(recorder_.follower().plan());
+    if (first_row_) {
+      context.wall_time_s = std::chrono::duration<double>(*last_row_ - *first_row_).count();
+    }
+    context.refused = transport.refused();
+    context.kernel_drops = transport.kernel_drops();
+    context.cpu_has_fma = cpu_has_fma();
+    check(write_file(record_.folder() / kSummaryFile, summarize(recorder_, context).dump(2) + '\n'));
+  }
+
+ private:
+  void check(const std::optional<std::string>& problem) {
+    if (!problem || failed_) return;
+    failed_ = true;
+    spdlog::error("{}; the record ends here", *problem);
+    recorder_.stop("the record cannot be written: " + *problem);
+  }
+
+  /// The plan as it was sent, and as people read it, unless a launcher has already written that.
+  std::optional<std::string> write_plan() const {
+    const std::vector<std::byte>& plan = recorder_.follower().plan();
+    const std::string_view bytes(reinterpret_cast<const char*>(plan.data()), plan.size());
+    if (auto problem = write_file(record_.folder() / kPlanFile, bytes)) return problem;
+    std::error_code ignored;
+    if (fs::exists(record_.folder() / kScenarioFile, ignored)) return std::nullopt;
+    return write_file(record_.folder() / kScenarioFile, Scenario::from_plan(plan)->print());
+  }
+
+  RunRecord& record_;
+  EventLog events_;
+  Recorder recorder_;
+  bool failed_ = false, plan_written_ = false;
+  Tick seen_row_ = 0;
+  std::optional<Instant> first_row_, last_row_;
+};
 
 int run(const NodeOptions& node, const fs::path& folder) {
   StopSignals signals;
@@ -38,15 +102,13 @@ int run(const NodeOptions& node, const fs::path& folder) {
     spdlog::error("{}", *problem);
     return kExitBadInput;
   }
-  RunRecord& record = *std::get<0>(created);
-  EventLog events(folder);
-  Recorder recorder(node.run, random_identity(), decode_plan, record.trajectory(),
-                    record.metrics());
+  RunLogger logger(node.run, *std::get<0>(created));
+  Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
       node.url, node.run, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
       {.on_message = [&](const Message& message) { recorder.receive(message, now()); },
        .on_accepted = [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
-         if (is_original(bus, channel)) events.write(channel, bytes);
+         logger.keep_event(bus, channel, bytes);
        }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
@@ -56,49 +118,17 @@ int run(const NodeOptions& node, const fs::path& folder) {
   TrafficWatch watch(transport);
   spdlog::info("recording {} into {}", node.url.base(), folder.string());
 
-  std::optional<std::string> error;
-  bool plan_written = false;
-  std::optional<Instant> first_row, last_row;
-  Tick seen_row = 0;
-  const auto keep = [&](std::optional<std::string> problem) {
-    if (!problem || error) return;
-    error = std::move(problem);
-    spdlog::error("{}; the record ends here", *error);
-    recorder.stop("the record cannot be written: " + *error);
-  };
   const auto stop = [&] { recorder.stop("the logger was told to stop"); };
   live(recorder, transport, signals, stop, [&] {
     transport.set_run(recorder.run());
-    if (recorder.next_row() != seen_row) {
-      seen_row = recorder.next_row();
-      last_row = now();
-      if (!first_row) first_row = last_row;
-    }
-    const MissionFollower& follower = recorder.follower();
-    if (follower.mission() && !plan_written) {
-      plan_written = true;
-      keep(write_plan(folder, follower.plan()));
-    }
-    if (!watch.look(now())) return;
-    keep(record.flush());
-    keep(events.flush());
+    logger.attend(now());
+    if (watch.look(now())) logger.flush();
   });
-  keep(record.flush());
-  keep(events.flush());
-
-  RunContext context;
-  context.run = recorder.run();
-  context.version = version();
-  context.build = build_text();
-  context.scenario_hash = plan_hash(recorder.follower().plan());
-  if (first_row) context.wall_time_s = std::chrono::duration<double>(*last_row - *first_row).count();
-  context.refused = transport.refused();
-  context.kernel_drops = transport.kernel_drops();
-  context.cpu_has_fma = cpu_has_fma();
-  keep(write_file(folder / kSummaryFile, summarize(recorder, context).dump(2) + '\n'));
+  logger.flush();
+  logger.write_summary(transport);
   spdlog::info("{} ticks recorded: {} ({})", recorder.facts().ticks, recorder.result(),
                recorder.reason());
-  return error ? kExitFailed : kExitDone;
+  return logger.failed() ? kExitFailed : kExitDone;
 }
 
 }  // namespace

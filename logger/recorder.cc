@@ -99,8 +99,7 @@ void Recorder::advance(Instant now, Outbox& out) {
   if (finished_) return;
   const std::optional<Mission>& mission = follower_.mission();
   if (mission) {
-    while (write_next_row()) {
-    }
+    while (write_next_row()) last_row_ = now;
     const bool given_up = states_.size() >= kGiveUpAfterStates;
     if (mission->timing.pace == Pace::kRealtime && given_up) skip_gap();
     if (next_row_ >= mission->timing.tick_count && !over_since_) {
@@ -108,7 +107,7 @@ void Recorder::advance(Instant now, Outbox& out) {
       reason_ = "mission complete";
     }
   }
-  if (over_since_ && now - *over_since_ >= kFarewell) close();
+  if (over_since_ && now - std::max(*over_since_, last_row_) >= kFarewell) close();
   const Tick recorded = next_row_ - 1;
   const bool progress = recorded > acked_ + kAckEveryTicks - 1 || (finished_ && recorded > acked_);
   if (mission && (progress || now >= next_ack_)) {
@@ -219,7 +218,7 @@ void Recorder::write_metrics(double metric) {
     received += status.contributions_received;
     lost += status.contributions_lost;
     const RosterEntry* entry = follower_.entry_of(author.incarnation);
-    if (entry == nullptr || !entry->active_at(next_row_)) continue;
+    if (entry == nullptr || !entry->active_at(next_row_) || status.answered_tick < 0) continue;
     low = first ? status.ergodic_metric : std::min(low, status.ergodic_metric);
     high = first ? status.ergodic_metric : std::max(high, status.ergodic_metric);
     staleness_s = std::max(staleness_s, status.max_staleness_s);

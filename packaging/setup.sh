@@ -1,4 +1,4 @@
-# Sourced by ./run and ./test (bash): installs what is missing and builds build/release.
+# Sourced by ./run and ./test (bash): installs what is missing and builds $target of build/release.
 #   ERGOCAST_NO_INSTALL=1   never install anything
 #   ERGOCAST_CMAKE_ARGS     more arguments for the configuration, separated by spaces
 # All messages go to stderr. Exit code 3: the machine lacks something that only its owner can add.
@@ -76,9 +76,9 @@ build_release() {
     quietly cmake --fresh -S "$root" --preset release "${arguments[@]}"
     printf '%s\n' "$wanted" >"$stamp"
   fi
-  if ! ninja -C "$build" -n 2>/dev/null | grep -q '^ninja: no work to do'; then
+  if ! ninja -C "$build" -n "$target" 2>/dev/null | grep -q '^ninja: no work to do'; then
     say "Building $build"
-    cmake --build "$build" >&2
+    cmake --build "$build" --target "$target" >&2
   fi
 }
 

@@ -372,8 +372,9 @@ TEST(RecordEnd, SaysThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
   for (Tick tick = 0; tick <= 7; ++tick) record.tell(state_of(tick));
   record.tell(mission_part(1, MissionState::kFailed, roster_of(1), "agent 0 is late"), at(5s));
   record.tell(state_of(8), at(5500ms));
+  advance(record.recorder, at(6400ms));
   EXPECT_FALSE(record.recorder.finished()) << "a missing state may still come";
-  advance(record.recorder, at(6s));
+  advance(record.recorder, at(6500ms));
   EXPECT_TRUE(record.recorder.finished());
   EXPECT_STREQ(record.recorder.result(), "failed");
   EXPECT_EQ(record.recorder.reason(), "agent 0 is late");

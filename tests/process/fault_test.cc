@@ -88,6 +88,27 @@ TEST_F(Fault, DeadAgentIsNamedRestartedAndTheMissionGoesOn) {
   EXPECT_NE(output().find("restarted"), std::string::npos) << output();
 }
 
+TEST_F(Fault, AgentThatIsToldToStopIsNamedAndReplaced) {
+  Child mission = long_mission();
+  signal_to({"ergocast-agent", "--id 0"}, SIGTERM);
+  ASSERT_TRUE(eventually([this] { return said().find("agent-0: restarted") != std::string::npos; }));
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_NE(said().find("agent-0 (process"), std::string::npos) << said();
+  EXPECT_NE(said().find("told to stop by a signal"), std::string::npos) << said();
+}
+
+TEST_F(Fault, DeadLoggerIsNamedAndTheTeamGoesOnWithoutARecord) {
+  Child mission = long_mission();
+  signal_to({"ergocast-logger"}, SIGKILL);
+  ASSERT_TRUE(eventually([this] { return said().find("logger (process") != std::string::npos; }));
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(summary()["record_complete"], false);
+  EXPECT_EQ(summary()["scenario"], "quadrimodal_corners");
+  EXPECT_EQ(ergocast({"verify", out()}), 2) << output();
+}
+
 TEST_F(Fault, AgentThatDiesAgainAndAgainFailsTheMission) {
   Child mission = long_mission();
   for (int restart = 0; restart <= 3; ++restart) {

@@ -336,11 +336,8 @@ TEST_F(File, ThatHasNoEndIsRefused) {
 }
 
 TEST_F(File, ThatCannotBeReadIsNamed) {
-  const std::filesystem::path file = folder_ / "secret.textproto";
-  std::ofstream(file) << kSmall;
-  std::filesystem::permissions(file, std::filesystem::perms::none);
-  if (std::ifstream(file).is_open()) GTEST_SKIP() << "this user may read everything";
-  EXPECT_TRUE(has(said_of(file), "cannot be read"));
+  // Opens for everybody, root included, but gives an error where reading begins.
+  EXPECT_TRUE(has(said_of("/proc/self/mem"), "cannot be read"));
 }
 
 TEST_F(File, GivesItsNameToProblemsAndScenario) {
