@@ -15,9 +15,12 @@ constexpr const char* kExitCodes =
 
 void add_mission_options(CLI::App& command, MissionOptions& options) {
   command.add_option("SCENARIO", options.scenario, "Scenario file (scenarios/*.textproto)")
-      ->required();
-  command.add_option("--out", options.out,
-                     "Run directory: new or empty (default: runs/<scenario>-<time>)");
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("--out", options.out,
+                  "Run directory: new or empty (default: runs/<scenario>-<time>)")
+      ->type_name("DIR");
   command.add_option("--seed", options.overrides.seed, "Other random numbers");
   command.add_option("--duration", options.overrides.duration_s, "Mission time [s]");
   command.add_option("--agents", options.overrides.agents,
@@ -75,17 +78,17 @@ int parse_and_do(int argc, char** argv) {
   simulate_command->callback([&] { action = [&] { return simulate(mission); }; });
 
   auto* check_command = app.add_subcommand("check", "Name every problem of a scenario");
-  check_command->add_option("SCENARIO", path, "Scenario file")->required();
+  check_command->add_option("SCENARIO", path, "Scenario file")->required()->type_name("FILE");
   check_command->add_flag("--print", print, "Show the scenario with all defaults filled in");
   check_command->callback([&] { action = [&] { return check(path, print); }; });
 
   auto* report_command = app.add_subcommand("report", "Make a run's report again");
-  report_command->add_option("RUN_DIR", path, "Run directory")->required();
+  report_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
   report_command->callback([&] { action = [&] { return report(path); }; });
 
   auto* verify_command =
       app.add_subcommand("verify", "Simulate a recorded run again and compare the trajectories");
-  verify_command->add_option("RUN_DIR", path, "Run directory")->required();
+  verify_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
   verify_command->callback([&] { action = [&] { return verify(path); }; });
 
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;

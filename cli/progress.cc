@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kBarWidth = 24;
+constexpr int kBarWidth = 16;
 
 std::string clock_text(double seconds) {
   char text[32];
@@ -24,17 +24,20 @@ std::string clock_text(double seconds) {
   return text;
 }
 
+std::string text_of(const char* format, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
 std::string describe(const MissionProgress& at, double ticks_per_s) {
-  const double done_s = static_cast<double>(at.tick) * at.dt_s;
-  const double all_s = static_cast<double>(at.tick_count) * at.dt_s;
-  char text[160];
-  std::snprintf(text, sizeof text, "t = %.0f of %.0f s, phi^2 = %.3g, %d of %d agents", done_s,
-                all_s, at.ergodic_metric, at.agents_alive, at.agents_expected);
-  std::string line = text;
+  std::string line = text_of("t = %.0f of ", static_cast<double>(at.tick) * at.dt_s) +
+                     text_of("%.0f s, ", static_cast<double>(at.tick_count) * at.dt_s);
+  if (at.ergodic_metric > 0) line += text_of("phi^2 = %.3g, ", at.ergodic_metric);
+  line += std::to_string(at.agents_alive) + " of " + std::to_string(at.agents_expected) + " agents";
   if (ticks_per_s > 0) {
-    std::snprintf(text, sizeof text, ", %.0f ticks/s", ticks_per_s);
-    line += text;
-    line += ", " + clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) + " left";
+    const double left_s = static_cast<double>(at.tick_count - at.tick) / ticks_per_s;
+    line += text_of(", %.0f ticks/s, ", ticks_per_s) + clock_text(left_s) + " left";
   }
   return line;
 }

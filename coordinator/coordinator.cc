@@ -246,7 +246,8 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
   std::vector<double> metrics;
   for (const RosterEntry& entry : roster_) {
     const auto& status = members_[entry.author].status;
-    if (entry.active_until < 0 && status) metrics.push_back(status->ergodic_metric);
+    const bool knows = entry.active_until < 0 && status && status->answered_tick >= 0;
+    if (knows) metrics.push_back(status->ergodic_metric);
   }
   if (!metrics.empty()) {
     const auto middle = metrics.begin() + static_cast<std::ptrdiff_t>(metrics.size() / 2);

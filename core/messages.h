@@ -114,7 +114,7 @@ struct TeamStatus {
   MissionState state = MissionState::kWaiting;
   Tick tick_count = 0;
   std::int32_t agents_alive = 0, agents_expected = 0;
-  double ergodic_metric = 0;  ///< median of the agents' own φ²
+  double ergodic_metric = 0;  ///< median of the agents' own φ²; 0 until one has answered a tick
   AgentId waiting_for = kUnassigned;
   std::int64_t missed_deadlines = 0;  ///< as the world counts them
 };

@@ -218,10 +218,11 @@ void Recorder::write_metrics(double metric) {
     received += status.contributions_received;
     lost += status.contributions_lost;
     const RosterEntry* entry = follower_.entry_of(author.incarnation);
-    if (entry == nullptr || !entry->active_at(next_row_) || status.answered_tick < 0) continue;
+    if (entry == nullptr || !entry->active_at(next_row_)) continue;
+    staleness_s = std::max(staleness_s, status.max_staleness_s);
+    if (status.answered_tick < 0) continue;  // it knows of no coverage yet
     low = first ? status.ergodic_metric : std::min(low, status.ergodic_metric);
     high = first ? status.ergodic_metric : std::max(high, status.ergodic_metric);
-    staleness_s = std::max(staleness_s, status.max_staleness_s);
     first = false;
   }
   std::string line = std::to_string(next_row_);

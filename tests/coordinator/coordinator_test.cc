@@ -256,7 +256,7 @@ TEST(CoordinatorRepeats, HowTheTeamIs) {
   Coordinator coordinator = running_coordinator(small_mission(4));
   const double metrics[] = {9, 1, 3, 5};
   for (AgentId id = 0; id < 4; ++id) {
-    AgentStatus status = status_of(id, 1);
+    AgentStatus status = status_of(id, 1, 0);
     status.ergodic_metric = metrics[id];
     coordinator.receive(status, id == 2 ? at(0s) : at(2s));
   }

@@ -294,7 +294,7 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
   Record record(small_mission(3));
   const auto report = [](AgentId id, std::int64_t sequence, double metric, double staleness,
                          std::int64_t received, std::int64_t lost) {
-    AgentStatus status = status_of(id, sequence);
+    AgentStatus status = status_of(id, sequence, 0);
     status.ergodic_metric = metric;
     status.max_staleness_s = staleness;
     status.contributions_received = received;
@@ -305,6 +305,12 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
   record.tell(report(0, 6, 99, 99, 1, 1));  // older
   record.tell(report(1, 1, 0.25, 2.5, 200, 4));
   record.tell(report(2, 1, 0.75, 0.5, 300, 5));
+  AgentStatus newcomer = status_of(1, 2);  // φ² of no coverage at all says nothing
+  newcomer.ergodic_metric = 7;
+  newcomer.max_staleness_s = 2.5;
+  newcomer.contributions_received = 200;
+  newcomer.contributions_lost = 4;
+  record.tell(newcomer);
   AgentStatus foreign = report(2, 9, 1e9, 1e9, 1000, 1000);
   foreign.header.run = kRun + 1;
   record.tell(foreign);
@@ -312,7 +318,7 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
   record.tell(state_of(1));
   const auto rows = record.metrics_rows();
   ASSERT_EQ(rows.size(), 1u);
-  EXPECT_EQ(number(rows[0], 3), 0.5) << "max − min of φ² as the agents see it";
+  EXPECT_EQ(number(rows[0], 3), 0.25) << "max − min of φ² as the agents see it";
   EXPECT_EQ(number(rows[0], 4), 2.5) << "the worst-informed agent's";
   EXPECT_EQ(columns(rows[0])[5], "600");
   EXPECT_EQ(columns(rows[0])[6], "12");
