@@ -404,6 +404,16 @@ bool from_wire(const record_ack_t& w, RecordAck& m) {
   return true;
 }
 
+/// Who alone says some things; of the others any sender may.
+template <class Plain>
+AgentId speaker_of(const Plain& m) {
+  return m.header.sender;
+}
+AgentId speaker_of(const WorldState&) { return kWorld; }
+AgentId speaker_of(const RecordAck&) { return kLogger; }
+AgentId speaker_of(const MissionPart&) { return kCoordinator; }
+AgentId speaker_of(const TeamStatus&) { return kCoordinator; }
+
 /// The message is made where it is returned: a contribution is a kilobyte, too much to pass along.
 template <class Wire, class Plain>
 std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
@@ -413,7 +423,10 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   const int size = static_cast<int>(bytes.size());
   if (wire.decode(bytes.data(), 0, size) != size) return result;
   auto& plain = result.emplace<Message>().emplace<Plain>();
-  if (!from_wire(wire, plain) || !plausible(plain.header)) result = Refusal::kRange;
+  if (!from_wire(wire, plain) || !plausible(plain.header) ||
+      plain.header.sender != speaker_of(plain)) {
+    result = Refusal::kRange;
+  }
   return result;
 }
 
