@@ -102,7 +102,7 @@ TEST_F(BadInput, LoggerRefusesAFolderWithARecord) {
 }
 
 TEST_F(BadInput, AFullDiskEndsTheRunAndIsNamed) {
-  if (!may_mount()) GTEST_SKIP() << "only root may mount the small disk this needs";
+  if (!may_mount()) GTEST_SKIP() << "the small disk this needs cannot be mounted here";
   const auto disk = folder_ / "disk";
   std::filesystem::create_directory(disk);
   ASSERT_EQ(mount("none", disk.c_str(), "tmpfs", 0, "size=2m"), 0);

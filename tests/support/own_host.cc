@@ -1,6 +1,7 @@
 #include "tests/support/own_host.h"
 
 #include <sched.h>
+#include <sys/mount.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool was_root = false;
+bool mounts_are_private = false;
 
 void write_text(const char* file, const std::string& text) {
   if (!(std::ofstream(file) << text << std::flush)) throw std::runtime_error(file);
@@ -45,23 +46,24 @@ std::pair<char, std::string> state_of(const fs::path& process) {
 void enter_own_host() {
   const uid_t user = geteuid();
   const gid_t group = getegid();
-  was_root = user == 0;
-  if (unshare((was_root ? 0 : CLONE_NEWUSER) | CLONE_NEWNET | CLONE_NEWNS) != 0) {
+  const bool root = user == 0;
+  if (unshare((root ? 0 : CLONE_NEWUSER) | CLONE_NEWNET | CLONE_NEWNS) != 0) {
     throw std::runtime_error(std::string("this system allows no network namespaces: ") +
                              std::strerror(errno));
   }
-  if (!was_root) {
+  if (!root) {
     write_text("/proc/self/setgroups", "deny");
     write_text("/proc/self/uid_map", "0 " + std::to_string(user) + " 1");
     write_text("/proc/self/gid_map", "0 " + std::to_string(group) + " 1");
   }
-  must_run("mount --make-rprivate /");
+  // Not possible below a chroot, whose root is no mount point.
+  mounts_are_private = root && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
   must_run("ip link set lo up");
   must_run("ip link set lo multicast on");
   must_run("ip route add 224.0.0.0/4 dev lo");
 }
 
-bool may_mount() { return was_root; }
+bool may_mount() { return mounts_are_private; }
 
 std::vector<std::string> processes_on_own_host() {
   const std::string own = network_of("/proc/self");

@@ -11,7 +11,7 @@ namespace ergocast::test {
 /// new user namespace. Throws std::runtime_error with the reason where the system forbids it.
 void enter_own_host();
 
-/// Whether mounting is allowed there: only with real root.
+/// Whether mounting is possible there without anybody else seeing it.
 bool may_mount();
 
 /// "agent (pid 12)" of every process in this network namespace but this one, zombies left out.
