@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "runtime/node.h"
@@ -101,6 +102,9 @@ int parse_and_do(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return ergocast::cli::parse_and_do(argc, argv);
+  } catch (const nlohmann::json::exception& error) {
+    std::fprintf(stderr, "ergocast: summary.json is not one that ergocast wrote: %s\n", error.what());
+    return ergocast::kExitBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ergocast: %s\n", error.what());
     return ergocast::kExitFailed;

@@ -162,7 +162,7 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, StopSignals& sig
   const auto unwritten = write_file(setup.run_dir / kSummaryFile, summary.dump(2) + '\n');
   conclude(setup.run_dir, summary, scenario);
   if (unwritten) return complain(kExitFailed, *unwritten);
-  return summary["result"] == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;
+  return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;
 }
 
 }  // namespace

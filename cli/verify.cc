@@ -17,22 +17,25 @@ namespace fs = std::filesystem;
 constexpr int kTurnsBetweenComparisons = 256;
 
 /// Why a run has more in it than a simulation of its plan could know; empty if it has not.
+/// Throws nlohmann::json::exception if the summary is not one of ours.
 std::string what_cannot_be_repeated(const nlohmann::ordered_json& summary, std::size_t agents) {
   if (summary.value("mode", "") == "realtime") {
     return "it ran in real time, where what an agent knew depended on the network";
   }
-  const auto& roster = summary["agents"];
+  const auto roster = summary.value("agents", nlohmann::ordered_json());
   if (!roster.is_array()) return "its summary names no agents";
   if (roster.size() != agents) {
     return "its roster has " + std::to_string(roster.size()) + " entries for " +
            std::to_string(agents) + " agents: agents were restarted, or never came";
   }
   for (const auto& agent : roster) {
-    const std::string who = "agent " + agent["id"].dump();
-    if (!agent["active_until"].is_null()) {
-      return who + " left or was evicted at tick " + agent["active_until"].dump();
+    const std::string who = "agent " + agent.at("id").dump();
+    if (!agent.at("active_until").is_null()) {
+      return who + " left or was evicted at tick " + agent.at("active_until").dump();
     }
-    if (agent["active_from"] != 0) return who + " joined at tick " + agent["active_from"].dump();
+    if (agent.at("active_from") != 0) {
+      return who + " joined at tick " + agent.at("active_from").dump();
+    }
   }
   return "";
 }
