@@ -74,36 +74,42 @@ void Agent::join() {
   table_.emplace(mission.basis, mission.timing.dt_s);
   controller_.emplace(mission);
   team_coverage_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  table_->add_row(self_);  // before any other incarnation could take its place
   published_.resize(static_cast<std::size_t>(table_->block_count()));
   phase_ = AgentPhase::kWaiting;
 }
 
 void Agent::on(const Contribution& theirs) {
   if (!table_) return;
-  count_heard(theirs.header);
+  const RosterEntry* entry = follower_.entry_of(theirs.header.incarnation);
+  if (entry == nullptr || entry->author != theirs.author()) return;  // nobody we know of yet
+  Heard& heard = count_heard(theirs.header);
   ++contributions_received_;
   const double dt_s = follower_.mission()->timing.dt_s;
   const Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / dt_s));
-  const Tick max_steps = tick_ + 1 + lead;
+  Tick max_steps = tick_ + 1 + lead;
+  if (entry->active_until >= 0) max_steps = std::min(max_steps, entry->active_until + 1);
   if (tick_ < 0 && theirs.steps > max_steps) return;  // we do not know yet how late it is
   switch (table_->merge(theirs, max_steps)) {
     case Merge::kRefusedRange: return count_refused(Refusal::kRange);
     case Merge::kRefusedLimit: return count_refused(Refusal::kLimit);
-    case Merge::kNewer:
+    case Merge::kNewer: heard.news_tick = tick_; return;
     case Merge::kStale: return;
   }
 }
 
-void Agent::count_heard(const Header& from) {
-  if (follower_.entry_of(from.incarnation) == nullptr) return;  // bounded by the roster
+Agent::Heard& Agent::count_heard(const Header& from) {
   Heard& heard = heard_[{from.sender, from.incarnation}];
   if (heard.count == 0) heard.first = from.sequence;
   heard.last = std::max(heard.last, from.sequence);
   ++heard.count;
+  return heard;
 }
 
 void Agent::on(const AgentStatus& status) {
-  if (table_) count_heard(status.header);
+  if (table_ && follower_.entry_of(status.header.incarnation) != nullptr) {
+    count_heard(status.header);
+  }
   if (phase_ != AgentPhase::kJoining || identity_.requested_id == kUnassigned ||
       status.header.sender != identity_.requested_id ||
       status.header.sequence <= rival_sequence_) {
@@ -137,7 +143,8 @@ void Agent::on(const WorldState& world) {
 void Agent::on(const Stop& stop) { finish(stop.failed, stop.reason); }
 
 void Agent::advance(Instant now, Outbox& out) {
-  if (phase_ == AgentPhase::kJoining && now >= next_hello_) {
+  const bool may_ask = phase_ == AgentPhase::kJoining && identity_.run != 0;
+  if (may_ask && now >= next_hello_) {
     next_hello_ = now + kHelloPeriod;
     publish(Bus::kSwarm, Hello{{}, identity_.requested_id, identity_.host, identity_.version}, 0,
             out);
@@ -164,6 +171,7 @@ void Agent::begin_tick(Outbox& out) {
   if (evicted(view.tick)) return;
   if (tick_ >= 0) missed_ticks_ += view.tick - tick_ - 1;
   tick_ = view.tick;
+  roster_revision_ = view.roster_revision;
   x_m_ = view.position_m.head<2>();
   basis_at_.emplace(x_m_, mission.domain, mission.basis);
   table_->add_sample(self_, *basis_at_);
@@ -201,6 +209,8 @@ void Agent::repeat(Outbox& out) {
 bool Agent::may_answer() {
   waiting_for_ = kUnassigned;
   if (follower_.mission()->timing.pace == Pace::kRealtime) return true;
+  // Who takes part in a tick is what the world says, not who has heard of it first.
+  if (follower_.revision() < roster_revision_) return false;
   for (const RosterEntry& entry : follower_.roster()) {
     if (entry.author == self_ || !entry.active_at(tick_)) continue;
     if (!table_->holds_due(entry.author, tick_)) {
@@ -250,8 +260,9 @@ double Agent::max_staleness_s() const {
   Tick oldest = 0;
   for (const RosterEntry& entry : follower_.roster()) {
     if (entry.author == self_ || !entry.active_at(tick_)) continue;
-    const Tick covered = entry.active_from + table_->steps_held(entry.author).value_or(0);
-    oldest = std::max(oldest, tick_ + 1 - covered);
+    const auto heard = heard_.find(entry.author);
+    const Tick news = heard == heard_.end() ? -1 : heard->second.news_tick;
+    oldest = std::max(oldest, tick_ - std::max(news, entry.active_from - 1));
   }
   return static_cast<double>(oldest) * follower_.mission()->timing.dt_s;
 }
@@ -264,7 +275,8 @@ std::int64_t Agent::messages_lost() const {
 
 Instant Agent::next_wakeup() const {
   if (finished()) return Instant::max();
-  return phase_ == AgentPhase::kJoining ? next_hello_ : next_status_;
+  if (phase_ != AgentPhase::kJoining) return next_status_;
+  return identity_.run == 0 ? Instant::max() : next_hello_;
 }
 
 void Agent::finish(bool failed, std::string reason) {

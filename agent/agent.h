@@ -65,13 +65,14 @@ class Agent {
   /// What was heard of one sender on the swarm bus, by its sequence numbers.
   struct Heard {
     std::int64_t first = 0, last = 0, count = 0;
+    Tick news_tick = -1;  ///< when its coverage last grew for us
     std::int64_t lost() const { return std::max<std::int64_t>(0, last - first + 1 - count); }
   };
 
   void on(const MissionPart& part);
   void on(const Contribution& theirs);
   void on(const AgentStatus& status);
-  void count_heard(const Header& from);
+  Heard& count_heard(const Header& from);
   void on(const WorldState& world);
   void on(const Stop& stop);
 
@@ -105,6 +106,7 @@ class Agent {
 
   std::optional<WorldView> pending_;
   bool repeat_wanted_ = false;
+  std::int64_t roster_revision_ = 0;  // of the world, at tick_
   Tick tick_ = -1, answered_tick_ = -1, next_broadcast_tick_ = 0;
   Eigen::Vector2d x_m_{0, 0};
   std::optional<BasisAt> basis_at_;

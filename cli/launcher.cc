@@ -94,9 +94,12 @@ void Launcher::take_note(Process& process, Instant now) {
     process.restart_at = now + back_off(process.restarts);
     return;
   }
+  if (process.role == Role::kCoordinator && (code == kExitDone || code == kExitFailed)) {
+    // Its last words may have been lost, or we may have been asleep.
+    if (code == kExitFailed) fail("the coordinator ended the mission; see log/coordinator.log");
+    return expect_end(now);
+  }
   if (code == kExitDone) return;
-  // A coordinator says "failed" because the mission has; it also says why.
-  if (process.role == Role::kCoordinator && code == kExitFailed) return;
   explain(process);
   if (process.role != Role::kLogger) {
     if (!end_expected_) fail("the " + process.name + " process " + process.child->fate());

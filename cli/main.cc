@@ -92,6 +92,9 @@ int parse_and_do(int argc, char** argv) {
   verify_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
   verify_command->callback([&] { action = [&] { return verify(path); }; });
 
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->set_version_flag("--version", version_text());
+  }
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   return action();
 }

@@ -35,6 +35,10 @@ std::string describe(const MissionProgress& at, double ticks_per_s) {
                      text_of("%.0f s, ", static_cast<double>(at.tick_count) * at.dt_s);
   if (at.ergodic_metric > 0) line += text_of("phi^2 = %.3g, ", at.ergodic_metric);
   line += std::to_string(at.agents_alive) + " of " + std::to_string(at.agents_expected) + " agents";
+  if (at.waiting_for != kUnassigned) line += ", agent " + std::to_string(at.waiting_for) + " silent";
+  if (at.missed_deadlines > 0) {
+    line += ", " + std::to_string(at.missed_deadlines) + " commands late";
+  }
   if (ticks_per_s > 0) {
     const double left_s = static_cast<double>(at.tick_count - at.tick) / ticks_per_s;
     line += text_of(", %.0f ticks/s, ", ticks_per_s) + clock_text(left_s) + " left";

@@ -13,6 +13,8 @@ struct MissionProgress {
   double dt_s = 0;
   double ergodic_metric = 0;
   int agents_alive = 0, agents_expected = 0;
+  std::int64_t missed_deadlines = 0;
+  AgentId waiting_for = kUnassigned;  ///< who is silent, if anybody
 };
 
 class ProgressDisplay {

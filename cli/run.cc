@@ -6,6 +6,7 @@
 #include "cli/progress.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
+#include "logger/summary.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
@@ -30,7 +31,8 @@ class MissionWatch {
     if (const auto* team = std::get_if<TeamStatus>(&message)) {
       if (team->state == MissionState::kRunning || team->header.tick > 0) {
         display_.show({team->header.tick, team->tick_count, dt_s_, team->ergodic_metric,
-                       team->agents_alive, team->agents_expected});
+                       team->agents_alive, team->agents_expected, team->missed_deadlines,
+                       team->waiting_for});
       }
       state_ = team->state;
     } else if (const auto* part = std::get_if<MissionPart>(&message)) {
@@ -114,10 +116,14 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
     summary["result"] = "failed";
     summary["reason"] = reason;
   };
-  if (mission.state() == MissionState::kFailed) fail(mission.reason());
+  // A mission that came to its end, with a record that did not: the logger was given up.
+  const bool cut_short = mission.state() == MissionState::kEnded && !mission.stopping() &&
+                         summary.value("result", "") != "done";
+  if (cut_short) fail("the mission is complete, but its record is not: the logger fell behind");
   if (launcher.failure()) fail(*launcher.failure());
+  if (mission.state() == MissionState::kFailed) fail(mission.reason());
   summary["restarts"] = launcher.restarts();
-  summary["record_complete"] = !launcher.record_broken();
+  summary["record_complete"] = !launcher.record_broken() && !cut_short;
   auto processes = nlohmann::ordered_json::array();
   for (const ProcessFate& process : launcher.fates()) {
     processes.push_back({{"name", process.name}, {"restarts", process.restarts}, {"end", process.fate}});
@@ -159,7 +165,7 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, StopSignals& sig
   display.end();
 
   const auto summary = amended_summary(scenario, setup, launcher, mission);
-  const auto unwritten = write_file(setup.run_dir / kSummaryFile, summary.dump(2) + '\n');
+  const auto unwritten = write_file(setup.run_dir / kSummaryFile, to_text(summary));
   conclude(setup.run_dir, summary, scenario);
   if (unwritten) return complain(kExitFailed, *unwritten);
   return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;

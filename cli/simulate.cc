@@ -76,7 +76,7 @@ int simulate(const MissionOptions& options) {
 
   auto error = record.flush();
   const auto summary = summary_of(swarm, *scenario, wall_time_s);
-  if (!error) error = write_file(folder / kSummaryFile, summary.dump(2) + '\n');
+  if (!error) error = write_file(folder / kSummaryFile, to_text(summary));
   if (error) {
     std::fprintf(stderr, "%s; the record is incomplete\n", error->c_str());
     return kExitFailed;

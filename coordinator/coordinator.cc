@@ -34,7 +34,7 @@ Coordinator::Coordinator(RunId run, Incarnation incarnation, Mission mission,
       plan_(std::move(plan)) {}
 
 void Coordinator::receive(const Message& message, Instant now) {
-  if (header_of(message).run != run_ && !std::holds_alternative<Hello>(message)) return;
+  if (header_of(message).run != run_) return;
   if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);
   if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
   if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
@@ -55,20 +55,16 @@ RosterEntry* Coordinator::active_entry(AgentId id) {
   return at == roster_.end() ? nullptr : &*at;
 }
 
-std::optional<AgentId> Coordinator::free_id() const {
+std::optional<AgentId> Coordinator::free_id(Instant now) {
   for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
-    if (std::none_of(roster_.begin(), roster_.end(), [id](const RosterEntry& entry) {
-          return entry.author.agent == id && entry.active_until < 0;
-        })) {
-      return id;
-    }
+    const RosterEntry* holder = active_entry(id);
+    if (holder == nullptr || !alive(*holder, now)) return id;
   }
   return std::nullopt;
 }
 
 void Coordinator::on(const Hello& hello, Instant now) {
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
-  if (header_of(hello).run != 0 && header_of(hello).run != run_) return;
   const Incarnation nonce = hello.header.incarnation;
   if (nonce == 0) return;  // the mark of nobody
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
@@ -80,7 +76,7 @@ void Coordinator::on(const Hello& hello, Instant now) {
     return;
   }
   std::optional<AgentId> id = hello.requested_id;
-  if (*id == kUnassigned) id = free_id();
+  if (*id == kUnassigned) id = free_id(now);
   if (!id || *id >= static_cast<AgentId>(mission_.starts_m.size())) return;  // the team is full
   const RosterEntry* holder = active_entry(*id);
   if (holder != nullptr && alive(*holder, now)) return;  // the younger has to give way
@@ -88,7 +84,10 @@ void Coordinator::on(const Hello& hello, Instant now) {
 }
 
 void Coordinator::admit(const Author& author, Instant now) {
-  if (roster_.size() >= kMaxRosterEntries) return;
+  const auto lives = std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+    return entry.author.agent == author.agent;
+  });
+  if (roster_.size() >= kMaxRosterEntries || lives >= kMaxIncarnationsPerAgent) return;
   if (RosterEntry* former = active_entry(author.agent)) former->active_until = tick_;
   const Tick from = state_ == MissionState::kRunning ? tick_ : 0;
   roster_.push_back({author, from, -1});

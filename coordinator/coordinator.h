@@ -43,7 +43,7 @@ class Coordinator {
   void on(const Hello& hello, Instant now);
   void on(const WorldState& world, Instant now);
   void admit(const Author& author, Instant now);
-  std::optional<AgentId> free_id() const;
+  std::optional<AgentId> free_id(Instant now);
   RosterEntry* active_entry(AgentId id);
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;

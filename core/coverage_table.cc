@@ -56,6 +56,10 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
                                 std::vector<double>(blocks * kBlockSize)});
 }
 
+void CoverageTable::add_row(const Author& author) {
+  ERGOCAST_REQUIRE(find_or_add(author) != nullptr);
+}
+
 void CoverageTable::add_sample(const Author& author, const BasisAt& at) {
   Row* row = find_or_add(author);
   ERGOCAST_REQUIRE(row != nullptr);

@@ -24,6 +24,10 @@ class CoverageTable {
 
   int block_count() const { return block_count_; }
 
+  /// Makes an empty row, if there is none yet.
+  /// @pre the table has room.
+  void add_row(const Author& author);
+
   /// S += f(x)·dt for the row of `author`, (4)'s integral; creates the row if it is new.
   void add_sample(const Author& author, const BasisAt& at);
 

@@ -163,7 +163,10 @@ bool plausible(const Header& h) {
 
 /// At most `limit` characters and no NUL, so that what we send is what we accept.
 std::string bounded(const std::string& text, int limit) {
-  std::string cut = text.substr(0, static_cast<std::size_t>(limit));
+  auto size = static_cast<std::size_t>(limit);
+  // Not in the middle of a UTF-8 character.
+  while (text.size() > size && size > 0 && (text[size] & 0xC0) == 0x80) --size;
+  const std::string cut = text.substr(0, size);
   return cut.substr(0, cut.find('\0'));
 }
 

@@ -66,7 +66,7 @@ class RunLogger {
     context.refused = transport.refused();
     context.kernel_drops = transport.kernel_drops();
     context.cpu_has_fma = cpu_has_fma();
-    check(write_file(record_.folder() / kSummaryFile, summarize(recorder_, context).dump(2) + '\n'));
+    check(write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context))));
   }
 
  private:

@@ -17,7 +17,8 @@ constexpr Tick kAckEveryTicks = 16;
 constexpr double kMetricsPeriod_s = 1.0;
 /// Real time does not repeat a state: after so many newer ones, a missing one is given up.
 constexpr std::size_t kGiveUpAfterStates = 16;
-/// Lockstep states beyond this many ticks ahead cannot be honest.
+/// Lockstep: states beyond this many ticks ahead cannot be honest. In real time the record may be
+/// behind by any number.
 constexpr Tick kLeadTicks = 1024;
 /// How long after the end, or the last row, a missing state or an agent's last status may still come.
 constexpr auto kFarewell = 1s;
@@ -81,7 +82,9 @@ void Recorder::receive(const Message& message, Instant now) {
 
 void Recorder::on(const WorldState& world) {
   const Tick tick = world.header.tick;
-  if (tick < next_row_ || tick > next_row_ + kLeadTicks) return;
+  const auto& mission = follower_.mission();
+  const bool lockstep = !mission || mission->timing.pace == Pace::kLockstep;
+  if (tick < next_row_ || (lockstep && tick > next_row_ + kLeadTicks)) return;
   facts_.missed_deadlines = std::max(facts_.missed_deadlines, world.missed_deadlines);
   facts_.skipped_ticks = std::max(facts_.skipped_ticks, world.skipped_ticks);
   State& state = states_[tick];
@@ -194,11 +197,18 @@ void Recorder::write_trajectory(const State& now, const State& next) {
   trajectory_ << line;
 }
 
+bool Recorder::is_member(AgentId id) const {
+  const auto& roster = follower_.roster();
+  return std::any_of(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
+    return entry.author.agent == id && entry.active_at(next_row_);
+  });
+}
+
 void Recorder::observe(const State& now) {
   const Mission& mission = *follower_.mission();
   for (const auto& [id, vehicle] : now.vehicles) {
     const Eigen::Vector2d x_m = vehicle.position_m.head<2>();
-    if (!mission.domain.contains(x_m)) continue;
+    if (!is_member(id) || !mission.domain.contains(x_m)) continue;
     accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis,
                      mission.timing.dt_s, sums_s_.data());
     covered_s_ += mission.timing.dt_s;

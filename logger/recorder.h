@@ -63,6 +63,8 @@ class Recorder {
   void skip_gap();
   void close();
   void write_trajectory(const State& now, const State& next);
+  /// Whether somebody drives that vehicle at the row's tick: others stand still and cover nothing.
+  bool is_member(AgentId id) const;
   void observe(const State& now);
   void write_metrics(double metric);
 

@@ -113,4 +113,8 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   return summary;
 }
 
+std::string to_text(const Json& summary) {
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
 }  // namespace ergocast

@@ -25,4 +25,7 @@ struct RunContext {
 /// The summary as far as the record tells. Keys are documented in docs/run_directory.md.
 nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& context);
 
+/// As it stands in the file. Bytes that are no UTF-8, which the network may bring, are replaced.
+std::string to_text(const nlohmann::ordered_json& summary);
+
 }  // namespace ergocast

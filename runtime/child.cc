@@ -18,9 +18,12 @@ namespace {
 
 constexpr int kCannotExecute = 127;
 
-/// Between fork and exec only calls that are safe there.
-[[noreturn]] void become(char* const* arguments, int log, int signal_if_orphaned, pid_t parent) {
+/// Between fork and exec only calls that are safe there, hence the message made beforehand.
+[[noreturn]] void become(char* const* arguments, const std::string& complaint, int log,
+                         int signal_if_orphaned, pid_t parent) {
   setpgid(0, 0);
+  // LCM's sockets are inherited otherwise, and their drops counted as the child's.
+  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   prctl(PR_SET_PDEATHSIG, signal_if_orphaned);
   if (getppid() != parent) _exit(kCannotExecute);  // it was gone before we asked to be told
   const int nothing = open("/dev/null", O_RDONLY);
@@ -29,7 +32,7 @@ constexpr int kCannotExecute = 127;
   dup2(log, STDERR_FILENO);
   StopSignals::restore_in_child();
   execv(arguments[0], arguments);
-  dprintf(STDERR_FILENO, "%s: %s\n", arguments[0], std::strerror(errno));
+  if (write(STDERR_FILENO, complaint.data(), complaint.size()) < 0) _exit(kCannotExecute);
   _exit(kCannotExecute);
 }
 
@@ -43,9 +46,10 @@ std::variant<Child, std::string> Child::start(const Program& program) {
 
   const int log = open(program.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (log < 0) return program.log.string() + ": " + std::strerror(errno);
+  const std::string complaint = command.front() + ": cannot be executed\n";
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(arguments.data(), log, program.signal_if_orphaned, parent);
+  if (pid == 0) become(arguments.data(), complaint, log, program.signal_if_orphaned, parent);
   const int error = errno;
   close(log);
   if (pid < 0) return command.front() + ": " + std::strerror(error);
@@ -55,8 +59,9 @@ std::variant<Child, std::string> Child::start(const Program& program) {
 bool Child::running() {
   if (status_) return false;
   int status = 0;
-  if (waitpid(pid_, &status, WNOHANG) != pid_) return true;
-  status_ = status;
+  const pid_t ended = waitpid(pid_, &status, WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) return true;
+  status_ = ended == pid_ ? status : W_EXITCODE(kCannotExecute, 0);  // somebody else reaped it
   return false;
 }
 

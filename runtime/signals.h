@@ -4,7 +4,8 @@
 namespace ergocast {
 
 /// Turns SIGINT and SIGTERM of this process into a readable descriptor. To be made before any
-/// thread starts, LCM's included. SIGPIPE is ignored.
+/// thread starts, LCM's included. SIGPIPE is ignored,
+/// SIGCHLD as it is by default.
 class StopSignals {
  public:
   StopSignals();

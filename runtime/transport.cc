@@ -18,6 +18,8 @@ namespace ergocast {
 namespace {
 
 constexpr int kMaxDatagramsPerTurn = 256;
+/// Messages that may wait for us on a bus, 5 MB of them: a flood costs messages, not memory.
+constexpr int kQueueCapacity = 4096;
 constexpr std::string_view kPrefix = "ERGOCAST_";
 
 /// The drops column of /proc/net/udp. Several processes share a port, so the lines are found by the
@@ -100,7 +102,7 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
     lines_[at] = {this, one.bus};
     buses_[at]
         ->subscribe(std::string(kPrefix) + "(" + one.channels + ")", &Line::on_datagram, &lines_[at])
-        ->setQueueCapacity(0);
+        ->setQueueCapacity(kQueueCapacity);
     ready_.push_back({fd, POLLIN, 0});
     listened_.push_back(buses_[at].get());
   }

@@ -12,7 +12,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRepeatPeriod = 20ms;
+/// An unanswered tick is repeated after this, then after twice as long each time: a loss is mended
+/// at once, and a team that is merely slow is not buried in repeats.
+constexpr std::chrono::nanoseconds kRepeatPeriod = 20ms;
+constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
 /// How long the end is repeated to whoever has not heard of it, after the record's last progress.
 constexpr auto kFarewell = 2s;
 
@@ -34,8 +37,8 @@ void World::receive(const Message& message, Instant now) {
     if (run_ == 0) run_ = from.run;
     if (!follower_.receive(*part)) return;
     if (follower_.plan_unreadable()) return finish("the mission plan is another version's");
-    // At its own end the world stays for whoever has not heard the last states.
-    if (follower_.over() && !over_since_) return finish(follower_.reason());
+    // At its own end the world stays until the record, too, has the last states.
+    if (follower_.over() && (!over_since_ || record_complete())) return finish(follower_.reason());
     if (started_) take_roster();
     if (!started_ && follower_.state() == MissionState::kRunning) start(now);
     return;
@@ -45,7 +48,7 @@ void World::receive(const Message& message, Instant now) {
       recorded_ = ack->header.tick;
       record_progress_ = now;
     }
-    if (over_since_ && *recorded_ + 1 >= tick_) finish("mission complete");
+    if (over_since_ && follower_.over() && record_complete()) finish(follower_.reason());
     return;
   }
   if (const auto* stop = std::get_if<Stop>(&message)) finish(stop->reason);
@@ -55,6 +58,7 @@ void World::start(Instant now) {
   started_ = true;
   record_progress_ = now;
   next_tick_ = now;
+  repeat_period_ = kRepeatPeriod;
   take_roster();
 }
 
@@ -83,6 +87,9 @@ void World::on(const Command& command) {
   const auto at = bodies_.find(command.header.sender);
   if (at == bodies_.end() || at->second.author.incarnation != command.header.incarnation) return;
   if (command.header.tick > tick_ || command.header.tick <= at->second.answered()) return;
+  const Eigen::Vector2d step_m =
+      command.velocity_mps.head<2>() * follower_.mission()->timing.dt_s;
+  if (!step_m.allFinite()) return;  // numbers that only overflow here are no velocities
   at->second.command = command;
 }
 
@@ -101,9 +108,12 @@ bool World::record_is_close(Instant now) {
   const Mission& mission = *follower_.mission();
   if (!mission.wait_for_logger || logger_lost_) return true;
   if (recorded_ && tick_ - *recorded_ <= kRecordWindowTicks) return true;
-  logger_lost_ = now - record_progress_ > seconds(mission.timing.lockstep_timeout_s);
+  // Half of it, so that the coordinator does not lose patience with the team first.
+  logger_lost_ = now - record_progress_ > seconds(mission.timing.lockstep_timeout_s / 2);
   return logger_lost_;
 }
+
+bool World::record_complete() const { return recorded_ && *recorded_ + 1 >= tick_; }
 
 void World::advance(Instant now, Outbox& out) {
   if (over_since_ && now - std::max(*over_since_, record_progress_) > kFarewell) {
@@ -121,8 +131,7 @@ void World::advance_lockstep(Instant now, Outbox& out) {
   const bool over = tick_ >= follower_.mission()->timing.tick_count;
   if (!published_) {
     if (!record_is_close(now)) {
-      if (now >= next_publish_) help_logger(out);
-      if (now >= next_publish_) next_publish_ = now + kRepeatPeriod;
+      if (now >= next_publish_) repeat(now, out);
       return;
     }
     remember_and_publish(now, out);
@@ -131,10 +140,7 @@ void World::advance_lockstep(Instant now, Outbox& out) {
     published_ = false;
     return advance_lockstep(now, out);
   } else if (now >= next_publish_) {
-    next_publish_ = now + kRepeatPeriod;
-    history_.back() = snapshot();  // the same state, but who has answered it is news
-    publish(history_.back(), out);
-    help_logger(out);
+    repeat(now, out);
   }
   if (over && !over_since_) over_since_ = now;
 }
@@ -221,9 +227,27 @@ void World::publish(const std::vector<WorldState>& states, Outbox& out) {
   }
 }
 
+void World::repeat(Instant now, Outbox& out) {
+  repeat_period_ = std::min(2 * repeat_period_, kLongestRepeatPeriod);
+  next_publish_ = now + repeat_period_;
+  if (!history_.empty()) {
+    // The same state, but who has answered is news.
+    for (WorldState& part : history_.back()) {
+      for (int i = 0; i < part.vehicle_count; ++i) {
+        Vehicle& vehicle = part.vehicles[static_cast<std::size_t>(i)];
+        vehicle.answered_tick = bodies_.at(vehicle.id).answered();
+      }
+      part.roster_revision = follower_.revision();
+    }
+    publish(history_.back(), out);
+  }
+  help_logger(out);
+}
+
 void World::remember_and_publish(Instant now, Outbox& out) {
   published_ = true;
-  next_publish_ = now + kRepeatPeriod;
+  repeat_period_ = kRepeatPeriod;
+  next_publish_ = now + repeat_period_;
   history_.push_back(snapshot());
   if (history_.size() > static_cast<std::size_t>(kRecordWindowTicks) + 2) history_.pop_front();
   publish(history_.back(), out);

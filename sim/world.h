@@ -57,6 +57,7 @@ class World {
   void start(Instant now);
   bool everyone_answered() const;
   bool record_is_close(Instant now);
+  bool record_complete() const;
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
   void step(bool hold_old_commands);
@@ -64,6 +65,7 @@ class World {
   std::vector<WorldState> snapshot() const;
   void publish(const std::vector<WorldState>& states, Outbox& out);
   void remember_and_publish(Instant now, Outbox& out);
+  void repeat(Instant now, Outbox& out);
   void help_logger(Outbox& out);
   void finish(std::string reason);
 
@@ -77,6 +79,7 @@ class World {
   std::map<AgentId, Body> bodies_;
 
   Instant next_publish_{};
+  std::chrono::nanoseconds repeat_period_{};
   Instant next_tick_{};
   bool published_ = false;
   std::optional<Instant> over_since_;
