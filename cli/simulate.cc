@@ -35,6 +35,26 @@ nlohmann::ordered_json summary_of(const lab::Swarm& swarm, const Scenario& scena
   return summarize(swarm.recorder(), context);
 }
 
+/// Until the mission is over, somebody wants it to end, or the disk is full. The wall time it took.
+double fly(lab::Swarm& swarm, const Mission& mission, const RunRecord& record) {
+  StopSignals signals;
+  ProgressDisplay display;
+  const auto start = std::chrono::steady_clock::now();
+  int turns = 0;
+  while (swarm.step()) {
+    if (++turns % kTurnsBetweenLooks != 0) continue;
+    show(swarm, mission, display);
+    if (signals.take() > 0) swarm.coordinator().end(false, "stopped by a signal", swarm.now());
+    if (!record.good()) break;
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+int complain(ExitCode code, const std::string& problem) {
+  std::fprintf(stderr, "%s\n", problem.c_str());
+  return code;
+}
+
 }  // namespace
 
 int simulate(const MissionOptions& options) {
@@ -42,18 +62,14 @@ int simulate(const MissionOptions& options) {
   if (!scenario) return kExitBadInput;
   const auto prepared = prepare_run_directory(options.out, *scenario);
   if (const auto* problem = std::get_if<std::string>(&prepared)) {
-    std::fprintf(stderr, "%s\n", problem->c_str());
-    return kExitBadInput;
+    return complain(kExitBadInput, *problem);
   }
   const auto& folder = std::get<std::filesystem::path>(prepared);
   auto created = RunRecord::create(folder);
   if (const auto* problem = std::get_if<std::string>(&created)) {
-    std::fprintf(stderr, "%s\n", problem->c_str());
-    return kExitBadInput;
+    return complain(kExitBadInput, *problem);
   }
   RunRecord& record = *std::get<0>(created);
-
-  StopSignals signals;
   lab::Options lab_options;
   lab_options.plan = scenario->plan();
   lab_options.decode_plan = decode_plan;
@@ -61,26 +77,12 @@ int simulate(const MissionOptions& options) {
   lab_options.host = host_name();
   lab_options.version = version();
   lab::Swarm swarm(std::move(lab_options), record.trajectory(), record.metrics());
-  ProgressDisplay display;
-  const auto start = std::chrono::steady_clock::now();
-  int turns = 0;
-  while (swarm.step()) {
-    if (++turns % kTurnsBetweenLooks != 0) continue;
-    show(swarm, scenario->mission(), display);
-    if (signals.take() > 0) swarm.coordinator().end(false, "stopped by a signal", swarm.now());
-    if (!record.trajectory()) break;
-  }
-  display.end();
-  const double wall_time_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  auto error = record.flush();
+  const double wall_time_s = fly(swarm, scenario->mission(), record);
   const auto summary = summary_of(swarm, *scenario, wall_time_s);
+  auto error = record.flush();
   if (!error) error = write_file(folder / kSummaryFile, to_text(summary));
-  if (error) {
-    std::fprintf(stderr, "%s; the record is incomplete\n", error->c_str());
-    return kExitFailed;
-  }
+  if (error) return complain(kExitFailed, *error + "; the record is incomplete");
   conclude(folder, summary, *scenario);
   return swarm.coordinator().state() == MissionState::kFailed ? kExitFailed : kExitDone;
 }

@@ -104,6 +104,32 @@ void simulate_and_compare(const Scenario& scenario, Comparison& comparison) {
   }
 }
 
+/// Says how the comparison went.
+int verdict(const fs::path& run_dir, Comparison& comparison,
+            const nlohmann::ordered_json& summary) {
+  const bool complete = summary.value("result", "") == "done";
+  if (!comparison.same()) {
+    std::printf("%s differs from its simulation, first at %s\n%s", run_dir.c_str(),
+                comparison.place().c_str(), comparison.difference().c_str());
+    if (summary.value("cpu_fma", cpu_has_fma()) != cpu_has_fma()) {
+      std::printf("It was recorded on another kind of processor, whose sine differs.\n");
+    }
+    return kExitDiffers;
+  }
+  if (comparison.recorded_over() && complete) {
+    std::printf("%s says it is done, but ends after tick %s\n", run_dir.c_str(),
+                comparison.last_tick().c_str());
+    return kExitDiffers;
+  }
+  if (!comparison.recorded_over() && comparison.has_more()) {
+    std::printf("%s goes on after the plan's last tick\n", run_dir.c_str());
+    return kExitDiffers;
+  }
+  std::printf("%s: identical to its simulation, byte for byte, up to tick %s%s\n", run_dir.c_str(),
+              comparison.last_tick().c_str(), complete ? "" : ", where the record ends");
+  return kExitDone;
+}
+
 }  // namespace
 
 int verify(const fs::path& run_dir) {
@@ -130,27 +156,7 @@ int verify(const fs::path& run_dir) {
   }
 
   simulate_and_compare(*scenario, comparison);
-  const bool complete = summary.value("result", "") == "done";
-  if (!comparison.same()) {
-    std::printf("%s differs from its simulation, first at %s\n%s", run_dir.c_str(),
-                comparison.place().c_str(), comparison.difference().c_str());
-    if (summary.value("cpu_fma", true) != cpu_has_fma()) {
-      std::printf("It was recorded on another kind of processor, whose sine differs.\n");
-    }
-    return kExitDiffers;
-  }
-  if (comparison.recorded_over() && complete) {
-    std::printf("%s says it is done, but ends after tick %s\n", run_dir.c_str(),
-                comparison.last_tick().c_str());
-    return kExitDiffers;
-  }
-  if (!comparison.recorded_over() && comparison.has_more()) {
-    std::printf("%s goes on after the plan's last tick\n", run_dir.c_str());
-    return kExitDiffers;
-  }
-  std::printf("%s: identical to its simulation, byte for byte, up to tick %s%s\n", run_dir.c_str(),
-              comparison.last_tick().c_str(), complete ? "" : ", where it was ended");
-  return kExitDone;
+  return verdict(run_dir, comparison, summary);
 }
 
 }  // namespace ergocast::cli

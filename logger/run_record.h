@@ -27,6 +27,7 @@ class RunRecord {
 
   std::ostream& trajectory() { return trajectory_; }
   std::ostream& metrics() { return metrics_; }
+  bool good() const { return trajectory_.good() && metrics_.good(); }
   const std::filesystem::path& folder() const { return folder_; }
 
   /// Hands everything to the operating system. The first write error, such as a full disk, if any.

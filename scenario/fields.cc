@@ -55,7 +55,7 @@ constexpr FieldRule kRules[] = {
     {"Time", "lockstep_timeout_s", above(0, kMaxWallTime_s), kDefaulted, 10},
     {"Time", "command_hold_s", between(0, 1e6), kDefaulted, 0.5},
     {"Time", "admission_timeout_s", above(0, kMaxWallTime_s), kDefaulted, 30},
-    {"Time", "catch_up_limit_ticks", between(0, 1e6), kDefaulted, 5},
+    {"Time", "catch_up_limit_ticks", between(0, 1000), kDefaulted, 5},
 
     {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
     {"Agents", "quorum", between(1, kMaxAgents), kLeft},

@@ -26,6 +26,7 @@ constexpr int kMaxGaussians = 64;
 constexpr double kMaxCorrelation = 0.99;
 constexpr double kMinMassInside = 1e-6;
 constexpr double kMaxTicks = 1e8;
+constexpr double kMinWallStep_s = 1e-4;
 
 std::string indexed(const std::string& path, int index) {
   return path + "[" + std::to_string(index) + "]";
@@ -311,6 +312,24 @@ class Validator {
   }
 
   void time() {
+    duration();
+    wall_time_of_a_step();
+  }
+
+  void wall_time_of_a_step() {
+    const proto::Time& time = scenario_.time();
+    if (time.pace() != proto::Time::REALTIME) return;
+    if (!sound("time.dt_s") || !sound("time.realtime_factor")) return;
+    const double wall_s = time.dt_s() / time.realtime_factor();
+    if (wall_s >= kMinWallStep_s) return;
+    problem("time.realtime_factor",
+            shortest(time.realtime_factor()) + " makes a step last " + shortest(wall_s) +
+                " s of wall time, below the limit " + shortest(kMinWallStep_s) + " s",
+            "write at most " + shortest(rounded_down(time.dt_s() / kMinWallStep_s)) +
+                ", or a greater dt_s");
+  }
+
+  void duration() {
     const proto::Time& time = scenario_.time();
     if (!sound("time.dt_s") || !sound("time.duration_s")) return;
     const double ticks = std::round(time.duration_s() / time.dt_s());

@@ -72,6 +72,14 @@ TEST_F(BadInput, EveryProgramKnowsHelpAndVersion) {
   }
 }
 
+TEST_F(BadInput, EveryCommandKnowsHelpAndVersion) {
+  for (const char* command : {"run", "simulate", "check", "report", "verify"}) {
+    EXPECT_EQ(ergocast({command, "--help"}), 0) << command;
+    EXPECT_EQ(ergocast({command, "--version"}), 0) << command;
+    EXPECT_TRUE(said("LCM 1.")) << output();
+  }
+}
+
 TEST_F(BadInput, AnOutThatIsNotEmptyIsLeftAlone) {
   std::filesystem::create_directory(out());
   const auto precious = write("run/precious", "data");

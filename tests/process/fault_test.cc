@@ -21,9 +21,12 @@ class Fault : public OwnHost {
     text.replace(text.find("pace:"), 0,
                  "lockstep_timeout_s: " + std::to_string(timeout_s) + "  ");
     std::ofstream(folder_ / "quadrimodal_corners.textproto") << text;
-    std::vector<std::string> arguments{"run", folder_ / "quadrimodal_corners.textproto",
-                                       "--duration", "100000", "--out", out()};
+    std::vector<std::string> arguments{"run", folder_ / "quadrimodal_corners.textproto", "--out",
+                                       out()};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    if (std::find(more.begin(), more.end(), "--duration") == more.end()) {
+      arguments.insert(arguments.end(), {"--duration", "100000"});
+    }
     Child mission = start("ergocast", arguments);
     mission_log_ = log_;
     EXPECT_TRUE(recorded(100000)) << said();
@@ -112,6 +115,43 @@ TEST_F(Fault, DeadLoggerIsNamedAndTheTeamGoesOnWithoutARecord) {
   EXPECT_EQ(summary()["record_complete"], false);
   EXPECT_EQ(summary()["scenario"], "quadrimodal_corners");
   EXPECT_EQ(ergocast({"verify", out()}), 2) << output();
+}
+
+TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
+  Child mission = start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--duration",
+                                     "400", "--out", out()});
+  mission_log_ = log_;
+  ASSERT_TRUE(recorded(100000)) << said();
+  mission.send(SIGSTOP);
+  ASSERT_TRUE(eventually([] { return processes_on_own_host().size() == 1; }));
+  mission.send(SIGCONT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["restarts"], 0);
+}
+
+TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
+  Child mission = long_mission({"--duration", "1000"}, 1);
+  signal_to({"ergocast-logger"}, SIGSTOP);
+  // The world goes on without it when its patience is over, to the end.
+  ASSERT_TRUE(eventually([this] {
+    return text_of(out() / "log" / "coordinator.log").find("mission ended") != std::string::npos;
+  })) << said();
+  EXPECT_NE(text_of(out() / "log" / "sim.log").find("going on without"), std::string::npos);
+  signal_to({"ergocast-logger"}, SIGCONT);
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(summary()["record_complete"], false);
+  EXPECT_EQ(summary()["result"], "failed");
+}
+
+TEST_F(Fault, ParentThatIgnoresItsChildrenIsNoObstacle) {
+  signal(SIGCHLD, SIG_IGN);  // is inherited
+  EXPECT_EQ(std::system(("exec " ERGOCAST_BIN_DIR "/ergocast run " +
+                         scenario_file("quadrimodal_corners").string() +
+                         " --duration 5 --out " + out().string() + " >/dev/null 2>&1").c_str()),
+            -1);  // whoever ignores children cannot ask how they ended
+  signal(SIGCHLD, SIG_DFL);
+  EXPECT_EQ(summary()["result"], "done");
 }
 
 TEST_F(Fault, AgentThatDiesAgainAndAgainFailsTheMission) {
