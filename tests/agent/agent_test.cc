@@ -596,6 +596,43 @@ TEST(AgentStatusReport, SequencesGrowByOneOnEachBus) {
 
 // ---- restarts and the end ------------------------------------------------------------------------
 
+TEST(AgentHears, CoverageOfMembersOnly) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  // More lives of our own number than a table holds, and one of a teammate: none is in the roster.
+  for (Incarnation life = 1; life <= 20; ++life) {
+    agent.receive(blocks_of(mission, {0, life}, {{900, 900}}, 1).front(), at(0s));
+    agent.receive(blocks_of(mission, {1, life}, {{900, 900}}, 1).front(), at(0s));
+  }
+  // A member's name with another's life is nobody's either.
+  agent.receive(blocks_of(mission, {0, life_of(1)}, {{900, 900}}, 1).front(), at(0s));
+  EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
+  tell(agent, world_state(0, {{100, 500}, {200, 500}}));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
+}
+
+TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(mission_part(5, MissionState::kRunning,
+                             {{author_of(0), 0, -1}, {author_of(1), 0, 2}}), at(0s));
+  tell(agent, world_state(0, {{100, 500}, {200, 500}}));
+  const std::vector<Eigen::Vector2d> three(3, {200, 500}), four(4, {200, 500});
+  agent.receive(block_of(mission, 1, three, 1), at(0s));
+  agent.receive(block_of(mission, 1, four, 1), at(0s));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 3) << "it still covers, but is no member";
+}
+
+TEST(AgentInLockstep, WaitsForTheRosterThatTheWorldGoesBy) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  WorldState world = world_state(0, {{100, 500}});
+  world.roster_revision = 3;
+  EXPECT_TRUE(only<Command>(tell(agent, world)).empty());
+  EXPECT_EQ(only<Command>(tell(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(),
+            1u);
+}
+
 TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);

@@ -113,6 +113,17 @@ TEST(WorldInLockstep, TakesTheFirstAnswerToATickAndNoOther) {
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0));
 }
 
+TEST(WorldInLockstep, TakesNoVelocityWhoseStepOverflows) {
+  Mission mission = small_mission(1);
+  mission.timing.dt_s = 10;
+  World world = running_world(mission);
+  advance(world, at(0s));
+  world.receive(command_of(0, 0, {1e308, 0}), at(0s));
+  EXPECT_TRUE(advance(world, at(0s)).empty()) << "unanswered";
+  world.receive(command_of(0, 0, {1, 0}), at(0s));
+  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0));
+}
+
 TEST(WorldInLockstep, PublishesLargeTeamsInParts) {
   World world = running_world(small_mission(19));
   const auto states = states_after(world, at(0s));
