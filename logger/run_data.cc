@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "logger/recorder.h"
+#include "logger/run_record.h"
 
 namespace ergocast {
 namespace {
@@ -110,10 +111,10 @@ double RunData::end_s() const {
 
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
   RunData run;
-  auto problem = read_table(run_dir / "trajectory.csv", kTrajectoryHeader,
+  auto problem = read_table(run_dir / kTrajectoryFile, kTrajectoryHeader,
                             [&run](const Fields& fields) { return add_point(run, fields); });
   if (!problem) {
-    problem = read_table(run_dir / "metrics.csv", kMetricsHeader,
+    problem = read_table(run_dir / kMetricsFile, kMetricsHeader,
                          [&run](const Fields& fields) { return add_metrics(run, fields); });
   }
   if (problem) return *problem;

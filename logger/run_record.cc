@@ -57,8 +57,10 @@ std::optional<std::string> write_file(const std::filesystem::path& file, std::st
   }
   out.close();
   std::filesystem::rename(temporary, file, error);
-  if (error) return file.string() + ": " + error.message();
-  return std::nullopt;
+  if (!error) return std::nullopt;
+  const std::string problem = file.string() + ": " + error.message();
+  std::filesystem::remove(temporary, error);
+  return problem;
 }
 
 }  // namespace ergocast
