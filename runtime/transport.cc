@@ -153,7 +153,7 @@ void LcmTransport::deliver_until(Instant deadline, int wake_fd) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
-    const LcmUrl& url, RunId run, std::vector<Listening> listening, Handlers handlers) {
+    const LcmUrl& url, RunId run, const std::vector<Listening>& listening, Handlers handlers) {
   if (const auto problem = why_unreachable(url)) return *problem;
   auto transport = std::make_unique<LcmTransport>(run, std::move(handlers));
   if (const auto problem = transport->connect(url, listening)) return *problem;

@@ -35,7 +35,7 @@ class Transport {
   /// Opens every bus, to publish on; listens to some. An error says what would mend it.
   /// @param run  the only run accepted; 0 accepts any until set_run()
   static std::variant<std::unique_ptr<Transport>, std::string> open(
-      const LcmUrl& url, RunId run, std::vector<Listening> listening, Handlers handlers);
+      const LcmUrl& url, RunId run, const std::vector<Listening>& listening, Handlers handlers);
   virtual ~Transport() = default;
 
   virtual void set_run(RunId run) = 0;
