@@ -22,7 +22,10 @@ void add_mission_options(CLI::App& command, MissionOptions& options) {
       .add_option("--out", options.out,
                   "Run directory: new or empty (default: runs/<scenario>-<time>)")
       ->type_name("DIR");
-  command.add_option("--seed", options.overrides.seed, "Other random numbers");
+  command.add_option("--seed", options.overrides.seed, "Other random numbers")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? "--seed must not be negative" : std::string();
+      });
   command.add_option("--duration", options.overrides.duration_s, "Mission time [s]");
   command.add_option("--agents", options.overrides.agents,
                      "Team size: listed starts are cut, or random ones added");

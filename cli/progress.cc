@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 namespace ergocast::cli {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kBarWidth = 16;
+constexpr std::size_t kLongestLine = 200;
 
 std::string clock_text(double seconds) {
   char text[32];
@@ -30,18 +32,33 @@ std::string text_of(const char* format, double value) {
   return text;
 }
 
-std::string describe(const MissionProgress& at, double ticks_per_s) {
-  std::string line = text_of("t = %.0f of ", static_cast<double>(at.tick) * at.dt_s) +
-                     text_of("%.0f s, ", static_cast<double>(at.tick_count) * at.dt_s);
-  if (at.ergodic_metric > 0) line += text_of("phi^2 = %.3g, ", at.ergodic_metric);
-  line += std::to_string(at.agents_alive) + " of " + std::to_string(at.agents_expected) + " agents";
-  if (at.waiting_for != kUnassigned) line += ", agent " + std::to_string(at.waiting_for) + " silent";
-  if (at.missed_deadlines > 0) {
-    line += ", " + std::to_string(at.missed_deadlines) + " commands late";
+/// What there is to say, most important first.
+std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
+  std::vector<std::string> said{text_of("t = %.0f of ", static_cast<double>(at.tick) * at.dt_s) +
+                                text_of("%.0f s", static_cast<double>(at.tick_count) * at.dt_s)};
+  const bool under_way = at.tick < at.tick_count && ticks_per_s > 0;
+  if (under_way) {
+    said.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) + " left");
   }
-  if (ticks_per_s > 0) {
-    const double left_s = static_cast<double>(at.tick_count - at.tick) / ticks_per_s;
-    line += text_of(", %.0f ticks/s, ", ticks_per_s) + clock_text(left_s) + " left";
+  if (at.ergodic_metric > 0) said.push_back(text_of("phi^2 = %.3g", at.ergodic_metric));
+  if (at.waiting_for != kUnassigned) {
+    said.push_back("agent " + std::to_string(at.waiting_for) + " silent");
+  }
+  if (at.missed_deadlines > 0) {
+    said.push_back(std::to_string(at.missed_deadlines) + " commands late");
+  }
+  said.push_back(std::to_string(at.agents_alive) + " of " + std::to_string(at.agents_expected) +
+                 " agents");
+  if (under_way) said.push_back(text_of("%.0f ticks/s", ticks_per_s));
+  return said;
+}
+
+/// As many facts as fit, whole ones.
+std::string describe(const MissionProgress& at, double ticks_per_s, std::size_t width) {
+  std::string line;
+  for (const std::string& fact : facts(at, ticks_per_s)) {
+    if (line.size() + 2 + fact.size() > width) break;
+    line += (line.empty() ? "" : ", ") + fact;
   }
   return line;
 }
@@ -69,7 +86,7 @@ void ProgressDisplay::measure_rate(Tick tick, Clock::time_point now) {
     return;
   }
   const double elapsed_s = std::chrono::duration<double>(now - rate_since_).count();
-  if (elapsed_s < 0.5) return;
+  if (elapsed_s < 0.5 || tick == rate_from_) return;
   ticks_per_s_ = static_cast<double>(tick - rate_from_) / elapsed_s;
   rate_since_ = now;
   rate_from_ = tick;
@@ -80,13 +97,12 @@ void ProgressDisplay::show(const MissionProgress& progress) {
   measure_rate(progress.tick, now);
   if (now < next_) return;
   next_ = now + (terminal_ ? 200ms : 2000ms);
-  std::string line = describe(progress, ticks_per_s_);
   if (!terminal_) {
-    std::fprintf(stderr, "%s\n", line.c_str());
+    std::fprintf(stderr, "%s\n", describe(progress, ticks_per_s_, kLongestLine).c_str());
     return;
   }
-  line = bar(progress) + line;
-  line.resize(std::min(line.size(), terminal_width() - 1));
+  const std::size_t width = std::max<std::size_t>(terminal_width(), kBarWidth + 4) - 1;
+  const std::string line = bar(progress) + describe(progress, ticks_per_s_, width - kBarWidth - 3);
   std::fprintf(stderr, "\r\x1b[K%s", line.c_str());
   bar_shown_ = true;
 }

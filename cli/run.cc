@@ -81,7 +81,7 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
       if (asked == 1) display.say("ending the mission in order; once more to end it now");
       if (asked == 2) launcher.press(1);
       if (asked > 2) launcher.press(2);
-      mission.stop(false, "stopped by a signal");
+      mission.stop(false, "Ctrl-C or SIGTERM");
     }
     if (mission.over() || mission.stopping()) launcher.expect_end(now());
     launcher.attend(now());

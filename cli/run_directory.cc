@@ -59,6 +59,9 @@ void print_summary(const Json& summary) {
   std::printf("  messages  %s sent, %s received, %s lost, %s dropped by the kernel\n",
               text("/messages/sent").c_str(), text("/messages/received").c_str(),
               text("/messages/lost").c_str(), text("/messages/kernel_drops").c_str());
+  if (summary.value("restarts", 0) > 0) {
+    std::printf("  restarts  %s\n", text("/restarts").c_str());
+  }
   if (summary.value("mode", "") == "realtime") {
     std::printf("  deadlines %s commands too late, %s ticks skipped\n",
                 text("/missed_deadlines").c_str(), text("/skipped_ticks").c_str());

@@ -23,8 +23,9 @@ void show(const lab::Swarm& swarm, const Mission& mission, ProgressDisplay& disp
 }
 
 nlohmann::ordered_json summary_of(const lab::Swarm& swarm, const Scenario& scenario,
-                                  double wall_time_s) {
+                                  const std::string& started, double wall_time_s) {
   RunContext context;
+  context.started = started;
   context.run = swarm.recorder().run();
   context.version = version();
   context.build = build_text();
@@ -44,7 +45,7 @@ double fly(lab::Swarm& swarm, const Mission& mission, const RunRecord& record) {
   while (swarm.step()) {
     if (++turns % kTurnsBetweenLooks != 0) continue;
     show(swarm, mission, display);
-    if (signals.take() > 0) swarm.coordinator().end(false, "stopped by a signal", swarm.now());
+    if (signals.take() > 0) swarm.coordinator().end(false, "Ctrl-C or SIGTERM", swarm.now());
     if (!record.good()) break;
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -78,8 +79,9 @@ int simulate(const MissionOptions& options) {
   lab_options.version = version();
   lab::Swarm swarm(std::move(lab_options), record.trajectory(), record.metrics());
 
+  const std::string started = wall_clock_text();
   const double wall_time_s = fly(swarm, scenario->mission(), record);
-  const auto summary = summary_of(swarm, *scenario, wall_time_s);
+  const auto summary = summary_of(swarm, *scenario, started, wall_time_s);
   auto error = record.flush();
   if (!error) error = write_file(folder / kSummaryFile, to_text(summary));
   if (error) return complain(kExitFailed, *error + "; the record is incomplete");

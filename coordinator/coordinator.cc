@@ -98,6 +98,7 @@ void Coordinator::admit(const Author& author, Instant now) {
 }
 
 void Coordinator::on(const WorldState& world, Instant now) {
+  world_heard_ = true;
   if (world.header.tick < tick_) return;
   if (world.header.tick > tick_) tick_since_ = now;
   tick_ = world.header.tick;
@@ -178,7 +179,9 @@ void Coordinator::check_timeouts(Instant now) {
     if (alive_count(now) == 0) {
       return end(true, "no agent is left to answer tick " + std::to_string(tick_), now);
     }
-    return end(true, "the world has not gone beyond tick " + std::to_string(tick_) + since, now);
+    return end(true, world_heard_ ? "the world has not gone beyond tick " + std::to_string(tick_) + since
+                                  : "no world was heard" + since + ": is one running on this URL?",
+               now);
   }
   const std::string who = "agent " + std::to_string(late->author.agent) +
                           " has not answered tick " + std::to_string(tick_) + since;

@@ -68,6 +68,7 @@ class Coordinator {
   std::map<Author, Member> members_;
   std::map<AgentId, std::int64_t> answered_;  // by the world's word
 
+  bool world_heard_ = false;
   Tick tick_ = 0;
   std::int64_t missed_deadlines_ = 0;
   std::optional<Instant> started_, ended_;

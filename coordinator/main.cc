@@ -35,12 +35,14 @@ int run(const NodeOptions& node, const Scenario& scenario) {
     watch.look(now());
     if (coordinator.roster().size() != admitted) {
       admitted = coordinator.roster().size();
-      spdlog::info("roster has {} entries", admitted);
+      spdlog::info("agents admitted so far: {}", admitted);
     }
     if (coordinator.state() == logged) return;
     logged = coordinator.state();
-    spdlog::info("mission {} at tick {} {}", to_string(logged), coordinator.tick(),
-                 coordinator.reason());
+    const std::string& reason = coordinator.reason();
+    spdlog::log(logged == MissionState::kFailed ? spdlog::level::err : spdlog::level::info,
+                "mission {} at tick {}{}{}", to_string(logged), coordinator.tick(),
+                reason.empty() ? "" : ": ", reason);
   });
   return coordinator.state() == MissionState::kFailed ? kExitFailed : kExitDone;
 }

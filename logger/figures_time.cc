@@ -137,8 +137,8 @@ void draw_limit(Svg& svg, const Plot& plot, const Mission& mission) {
   const double u_max_mps = mission.law.u_max_mps;
   const Eigen::Vector2d left = plot.at(0, u_max_mps);
   svg.line(left, {plot.area().right(), left.y()}, "class=\"limit\"");
-  svg.text({plot.area().right() - 6, left.y() - 6}, "class=\"note end halo\"",
-           "u_max = " + readable(u_max_mps) + " m/s");
+  svg.text({left.x() + 6, plot.area().top + 14}, "class=\"note halo\"",
+           "dashed: u_max = " + readable(u_max_mps) + " m/s");
 }
 
 std::string speeds_caption(const RunData& run, double bin_s) {

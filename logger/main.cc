@@ -57,6 +57,7 @@ class RunLogger {
   void write_summary(const Transport& transport) {
     RunContext context;
     context.run = recorder_.run();
+    context.started = started_;
     context.version = version();
     context.build = build_text();
     context.scenario_hash = plan_hash(recorder_.follower().plan());
@@ -87,6 +88,7 @@ class RunLogger {
     return write_file(record_.folder() / kScenarioFile, Scenario::from_plan(plan)->print());
   }
 
+  const std::string started_ = wall_clock_text();
   RunRecord& record_;
   EventLog events_;
   Recorder recorder_;

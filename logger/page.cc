@@ -247,14 +247,17 @@ std::string identity_section(const Json& summary) {
   facts.add("version", said(summary, "version"));
   facts.add("build", said(summary, "build"));
   facts.add("processor has FMA", said(summary, "cpu_fma"));
-  std::string commands =
-      "ergocast verify .                      # simulate it again and compare every position\n"
-      "ergocast simulate scenario.textproto   # the same mission as a new run\n"
-      "ergocast report .                      # make this page again\n";
   const auto mode = said(summary, "mode");
+  std::string commands;
+  if (!mode || *mode != "realtime") {
+    commands += "# simulate it again and compare every position\nergocast verify .\n";
+  }
+  commands += "# the same mission as a new run\n"
+              "ergocast simulate scenario.textproto --out ../again\n"
+              "# make this page again\nergocast report .\n";
   if (mode && *mode != "simulate") {
-    commands +=
-        "lcm-logplayer events-000.lcm           # send its messages again, as for lcm-spy\n";
+    commands += "# send its messages again, as for lcm-spy, on a port of their own\n"
+                "lcm-logplayer --lcm-url=\"udpm://239.255.76.67:7777?ttl=0\" -s 0.1 events-000.lcm\n";
   }
   return "<section><h2>How to reproduce</h2>\n<p>In the run’s directory:</p>\n<pre>" + commands +
          "</pre>\n" + facts.html() + "</section>\n";
@@ -269,6 +272,7 @@ std::string report_page(const RunData& run, const Mission& mission, const Json& 
   origin.add("agents", std::to_string(std::max(run.tracks.size(), mission.starts_m.size())));
   origin.add("mode", mode_text(summary));
   origin.add("seed", std::to_string(mission.seed));
+  origin.add("started", said(summary, "started"));
   origin.add("run", said(summary, "run_id"));
   origin.add("scenario hash", said(summary, "scenario_hash"));
 

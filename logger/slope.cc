@@ -11,10 +11,22 @@ namespace {
 constexpr std::size_t kFewestRows = 3;
 constexpr double kShortestSpan = 2;
 
-double mean(const std::vector<double>& values) {
+/// How much of the axis each point stands for, as a share: rows even in time crowd together where
+/// log t is large, and would drown the rest.
+std::vector<double> shares(const std::vector<double>& x) {
+  std::vector<double> share;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double left = i == 0 ? x.front() : x[i - 1];
+    const double right = i + 1 == x.size() ? x.back() : x[i + 1];
+    share.push_back((right - left) / 2 / (x.back() - x.front()));
+  }
+  return share;
+}
+
+double mean(const std::vector<double>& values, const std::vector<double>& share) {
   double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) sum += share[i] * values[i];
+  return sum;
 }
 
 }  // namespace
@@ -35,16 +47,17 @@ std::optional<PowerLaw> fit_last_decade(std::span<const double> t_s,
   if (log_t.size() < kFewestRows || log_t.back() - log_t.front() < std::log(kShortestSpan)) return {};
 
   PowerLaw law;
-  law.center_log_t = mean(log_t);
-  law.center_log_value = mean(log_value);
+  const std::vector<double> share = shares(log_t);
+  law.center_log_t = mean(log_t, share);
+  law.center_log_value = mean(log_value, share);
   law.from_s = std::exp(log_t.front());
   law.to_s = std::exp(log_t.back());
   // Sums about the means: the textbook formula n·Σxy − Σx·Σy would cancel most digits.
   double square = 0, product = 0;
   for (std::size_t i = 0; i < log_t.size(); ++i) {
     const double x = log_t[i] - law.center_log_t;
-    square += x * x;
-    product += x * (log_value[i] - law.center_log_value);
+    square += share[i] * x * x;
+    product += share[i] * x * (log_value[i] - law.center_log_value);
   }
   law.slope = product / square;
   return law;

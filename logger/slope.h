@@ -15,7 +15,8 @@ struct PowerLaw {
   double at(double t_s) const;
 };
 
-/// Least squares of log value against log t over the last decade of time: rows with t > 0,
+/// Least squares of log value against log t, every stretch of log t counting alike, over the last
+/// decade of time: rows with t > 0,
 /// t ≥ t_end/10 and value > 0, where t_end is the last row's time. Nothing if fewer than three rows
 /// remain, or if they cover less than a factor of 2 in time, over which noise passes for a slope.
 /// @pre t_s is ascending and as long as values.

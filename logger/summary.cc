@@ -1,5 +1,6 @@
 #include "logger/summary.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -9,6 +10,9 @@ namespace ergocast {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Real time: late commands that are worth a word.
+constexpr double kNotableShare = 0.01;
 
 std::string hex(std::uint64_t value) {
   char text[17];
@@ -81,13 +85,27 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
   summary["tick_count"] = mission.timing.tick_count;
 }
 
+/// The recorder's reason, and what nobody should overlook about how it came to it.
+std::string reason_of(const Recorder& recorder) {
+  const RunFacts& facts = recorder.facts();
+  const auto agents = static_cast<double>(recorder.follower().roster().size());
+  const double share =
+      static_cast<double>(facts.missed_deadlines) / std::max(1.0, static_cast<double>(facts.ticks) * agents);
+  if (share < kNotableShare) return recorder.reason();
+  char text[80];
+  std::snprintf(text, sizeof text, "; %.0f %% of the commands came too late for their tick",
+                std::min(100.0, 100 * share));
+  return recorder.reason() + text;
+}
+
 }  // namespace
 
 Json summarize(const Recorder& recorder, const RunContext& context) {
   const RunFacts& facts = recorder.facts();
   Json summary{{"run_id", hex(context.run)},
                {"result", recorder.result()},
-               {"reason", recorder.reason()},
+               {"reason", reason_of(recorder)},
+               {"started", context.started},
                {"version", context.version},
                {"build", context.build},
                {"cpu_fma", context.cpu_has_fma}};

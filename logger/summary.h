@@ -13,6 +13,7 @@ namespace ergocast {
 /// What the recorder cannot know.
 struct RunContext {
   RunId run = 0;
+  std::string started;        ///< wall-clock time, ISO 8601
   std::string version, build;
   std::string scenario_hash;  ///< of the compiled plan
   bool simulated = false;     ///< in one process, without a network

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <ctime>
 
 namespace ergocast {
 namespace {
@@ -89,6 +90,15 @@ std::string host_name() {
   std::array<char, 65> name{};
   gethostname(name.data(), name.size() - 1);
   return name.data();
+}
+
+std::string wall_clock_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
 }
 
 std::string to_hex(std::uint64_t value) {

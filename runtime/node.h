@@ -42,6 +42,8 @@ std::string version();
 /// 64 random bits of the operating system's, not 0.
 std::uint64_t random_identity();
 std::string host_name();
+/// Now, by the wall clock, as "2026-01-31T12:00:00Z".
+std::string wall_clock_text();
 /// 16 hex digits.
 std::string to_hex(std::uint64_t value);
 

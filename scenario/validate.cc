@@ -348,7 +348,7 @@ class Validator {
 
   void agents() {
     const proto::Agents& agents = scenario_.agents();
-    if (sound("domain")) starts();
+    starts();
     if (!sound("agents.random_count") || !sound("agents.quorum")) return;
     const int size = agents.starts_size() + agents.random_count();
     if (size == 0) {
@@ -367,16 +367,24 @@ class Validator {
   }
 
   void starts() {
-    const Rectangle domain = domain_of(scenario_.domain());
-    const Eigen::Vector2d high_m = domain.origin_m + domain.size_m;
+    const proto::Domain& domain = scenario_.domain();
+    // Each axis by itself: one that is wrong hides nothing of the other.
+    const bool x_known = domain.has_size_x_m() && sound("domain.origin_x_m") && sound("domain.size_x_m");
+    const bool y_known = domain.has_size_y_m() && sound("domain.origin_y_m") && sound("domain.size_y_m");
     for (int i = 0; i < scenario_.agents().starts_size(); ++i) {
       const proto::Start& start = scenario_.agents().starts(i);
       const std::string path = indexed("agents.starts", i);
-      if (!sound(path) || domain.contains({start.x_m(), start.y_m()})) continue;
-      problem(path, shortest(start.x_m()) + ", " + shortest(start.y_m()) + " is outside the domain",
-              "write x_m " + shortest(domain.origin_m.x()) + " to " + shortest(high_m.x()) +
-                  ", y_m " + shortest(domain.origin_m.y()) + " to " + shortest(high_m.y()));
+      if (!sound(path)) continue;
+      if (x_known) inside(path + ".x_m", start.x_m(), domain.origin_x_m(), domain.size_x_m());
+      if (y_known) inside(path + ".y_m", start.y_m(), domain.origin_y_m(), domain.size_y_m());
     }
+  }
+
+  void inside(const std::string& path, double value_m, double low_m, double size_m) {
+    const double high_m = low_m + size_m;
+    if (value_m >= low_m && value_m <= high_m) return;
+    problem(path, shortest(value_m) + " is outside the domain",
+            "write " + shortest(low_m) + " to " + shortest(high_m));
   }
 
   void disturbance() {

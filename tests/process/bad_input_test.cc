@@ -16,7 +16,7 @@ class BadInput : public OwnHost {
 };
 
 constexpr const char* kManyProblems = R"(
-domain { size_x_m: 100 size_y_m: 50 }
+domain { size_x_m: 100 size_y_m: -50 }
 target { uniform_weight: -1 }
 basis { modes_x: 65 }
 law { u_max_mps: nan }
@@ -27,7 +27,7 @@ agents { starts { x_m: 500 y_m: 20 } }
 TEST_F(BadInput, CheckNamesEveryProblemAtOnceWithItsLine) {
   const auto file = write("bad.textproto", kManyProblems);
   EXPECT_EQ(ergocast({"check", file}), 2);
-  for (const char* part : {"bad.textproto:3:", "uniform_weight", "bad.textproto:4:", "modes_x", "64",
+  for (const char* part : {"bad.textproto:2:", "size_y_m", "bad.textproto:3:", "uniform_weight", "bad.textproto:4:", "modes_x", "64",
                            "bad.textproto:5:", "u_max_mps", "bad.textproto:6:", "durration_s",
                            "duration_s", "bad.textproto:7:", "x_m", "problems"}) {
     EXPECT_TRUE(said(part)) << part << " in\n" << output();
@@ -57,6 +57,7 @@ TEST_F(BadInput, UnknownCommandsAndOptionsAreRefused) {
   EXPECT_EQ(ergocast({"run", scenario, "--lockstep", "--realtime"}), 2);
   EXPECT_EQ(ergocast({"run", scenario, "--duration", "long", "--out", out()}), 2);
   EXPECT_EQ(ergocast({"run", scenario, "--agents", "0", "--out", out()}), 2);
+  EXPECT_EQ(ergocast({"run", scenario, "--seed", "-1", "--out", out()}), 2);
   EXPECT_EQ(ergocast({"run", scenario, "--lcm-url", "udpm://10.0.0.1:7667", "--out", out()}), 2);
   EXPECT_TRUE(said("multicast")) << output();
   EXPECT_FALSE(std::filesystem::exists(out()));

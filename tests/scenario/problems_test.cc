@@ -54,8 +54,7 @@ agents {
       "f:14:3: time.dt_s: -0.1 is below the limit 1e-06 (write a number 1e-06 to 3600)\n"
       "f:15:8: time.pace: Expected \":\", found \"LOCKSTEP\". (correct the text here)\n"
       "f:17:25: time.broadcast_period_ticks: is written more than once (keep one of them)\n"
-      "f:20:3: agents.starts[0]: 5000, 0 is outside the domain (write x_m 0 to 2000, y_m 0 to "
-      "2000)\n"
+      "f:20:12: agents.starts[0].x_m: 5000 is outside the domain (write 0 to 2000)\n"
       "f:21:3: agents.quorum: 3 is above the limit, the team's size 1 (write 1 to 1)\n");
 }
 
@@ -158,7 +157,7 @@ constexpr Mistake kFields[] = {
 INSTANTIATE_TEST_SUITE_P(Fields, OneMistake, ::testing::ValuesIn(kFields));
 
 constexpr Mistake kRelations[] = {
-    {"{ x_m: 10", "{ x_m: 100.1", "agents.starts[0]: 100.1, 20 is outside the domain"},
+    {"{ x_m: 10", "{ x_m: 100.1", "agents.starts[0].x_m: 100.1 is outside the domain"},
     {"{ x_m: 10", "{ x_m: -0.001", "is outside the domain"},
     {"u_max_mps: 5", "u_max_mps: 501",
      "u_max_mps · dt_s 50.1 m, above the limit, the domain's shorter side 50 m"},
