@@ -1,8 +1,6 @@
 // ergocast: the command a person types.
-#include <cmath>
 #include <cstdio>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "runtime/node.h"
@@ -108,9 +106,6 @@ int parse_and_do(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return ergocast::cli::parse_and_do(argc, argv);
-  } catch (const nlohmann::json::exception& error) {
-    std::fprintf(stderr, "ergocast: summary.json is not one that ergocast wrote: %s\n", error.what());
-    return ergocast::kExitBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ergocast: %s\n", error.what());
     return ergocast::kExitFailed;

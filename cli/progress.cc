@@ -41,8 +41,8 @@ std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
     said.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) + " left");
   }
   if (at.ergodic_metric > 0) said.push_back(text_of("phi^2 = %.3g", at.ergodic_metric));
-  if (at.waiting_for != kUnassigned) {
-    said.push_back("agent " + std::to_string(at.waiting_for) + " silent");
+  if (at.silent_agent != kUnassigned) {
+    said.push_back("agent " + std::to_string(at.silent_agent) + " silent");
   }
   if (at.missed_deadlines > 0) {
     said.push_back(std::to_string(at.missed_deadlines) + " commands late");

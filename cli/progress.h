@@ -14,7 +14,7 @@ struct MissionProgress {
   double ergodic_metric = 0;
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0;
-  AgentId waiting_for = kUnassigned;  ///< who is silent, if anybody
+  AgentId silent_agent = kUnassigned;
 };
 
 class ProgressDisplay {

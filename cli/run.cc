@@ -32,7 +32,7 @@ class MissionWatch {
       if (team->state == MissionState::kRunning || team->header.tick > 0) {
         display_.show({team->header.tick, team->tick_count, dt_s_, team->ergodic_metric,
                        team->agents_alive, team->agents_expected, team->missed_deadlines,
-                       team->waiting_for});
+                       team->silent_agent});
       }
       state_ = team->state;
     } else if (const auto* part = std::get_if<MissionPart>(&message)) {
@@ -110,8 +110,10 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
 /// The logger's summary with what only the launcher knows.
 nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher::Setup& setup,
                                        const Launcher& launcher, const MissionWatch& mission) {
-  auto summary = read_summary(setup.run_dir);
-  if (!summary.is_object()) summary = makeshift_summary(scenario, setup.run);
+  auto read = read_summary(setup.run_dir);
+  const auto* written = std::get_if<nlohmann::ordered_json>(&read);
+  auto summary = written != nullptr && written->is_object() ? *written
+                                                            : makeshift_summary(scenario, setup.run);
   const auto fail = [&summary](const std::string& reason) {
     summary["result"] = "failed";
     summary["reason"] = reason;

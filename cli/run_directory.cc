@@ -98,12 +98,6 @@ std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted
   return folder;
 }
 
-Json read_summary(const fs::path& run_dir) {
-  std::ifstream in(run_dir / kSummaryFile);
-  Json summary = Json::parse(in, nullptr, false);
-  return summary.is_object() ? summary : Json(nullptr);
-}
-
 void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scenario) {
   const auto problem = write_report(run_dir, scenario.mission(), scenario.target());
   print_summary(summary);

@@ -19,9 +19,6 @@ std::optional<Scenario> load_or_complain(const std::filesystem::path& file,
 std::variant<std::filesystem::path, std::string> prepare_run_directory(
     const std::filesystem::path& wanted, const Scenario& scenario);
 
-/// The summary of a run directory; null if there is none that can be read.
-nlohmann::ordered_json read_summary(const std::filesystem::path& run_dir);
-
 /// Writes the report and prints how the run went and where everything is.
 void conclude(const std::filesystem::path& run_dir, const nlohmann::ordered_json& summary,
               const Scenario& scenario);

@@ -7,6 +7,7 @@
 #include "cli/run_directory.h"
 #include "lab/swarm.h"
 #include "logger/run_record.h"
+#include "logger/summary.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
@@ -17,7 +18,6 @@ namespace fs = std::filesystem;
 constexpr int kTurnsBetweenComparisons = 256;
 
 /// Why a run has more in it than a simulation of its plan could know; empty if it has not.
-/// Throws nlohmann::json::exception if the summary is not one of ours.
 std::string what_cannot_be_repeated(const nlohmann::ordered_json& summary, std::size_t agents) {
   if (summary.value("mode", "") == "realtime") {
     return "it ran in real time, where what an agent knew depended on the network";
@@ -38,6 +38,15 @@ std::string what_cannot_be_repeated(const nlohmann::ordered_json& summary, std::
     }
   }
   return "";
+}
+
+/// The same for any JSON, whoever wrote it.
+std::string why_not_repeatable(const nlohmann::ordered_json& summary, std::size_t agents) {
+  try {
+    return what_cannot_be_repeated(summary, agents);
+  } catch (const nlohmann::json::exception& error) {
+    return std::string(kSummaryFile) + " is not one that ergocast wrote: " + error.what();
+  }
 }
 
 /// Compares a recorded table with one that is simulated bit by bit.
@@ -142,9 +151,14 @@ int verify(const fs::path& run_dir) {
                  (run_dir / (scenario ? kTrajectoryFile : kPlanFile)).c_str(), version().c_str());
     return kExitBadInput;
   }
-  auto summary = read_summary(run_dir);
+  auto read = read_summary(run_dir);
+  if (const auto* problem = std::get_if<std::string>(&read)) {
+    std::fprintf(stderr, "%s\n", problem->c_str());
+    return kExitBadInput;
+  }
+  auto& summary = std::get<nlohmann::ordered_json>(read);
   if (summary.is_object()) {
-    const auto reason = what_cannot_be_repeated(summary, scenario->mission().starts_m.size());
+    const auto reason = why_not_repeatable(summary, scenario->mission().starts_m.size());
     if (!reason.empty()) {
       std::fprintf(stderr, "%s cannot be verified: %s\n", run_dir.c_str(), reason.c_str());
       return kExitBadInput;

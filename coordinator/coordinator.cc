@@ -20,10 +20,6 @@ constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 constexpr auto kFarewell = 1s;
 constexpr std::size_t kMaxRosterEntries = static_cast<std::size_t>(kMaxAgents) * 4;
 
-std::chrono::nanoseconds seconds(double s) {
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9));
-}
-
 }  // namespace
 
 Coordinator::Coordinator(RunId run, Incarnation incarnation, Mission mission,
@@ -156,20 +152,19 @@ RosterEntry* Coordinator::culprit(Instant now) {
   return silent != nullptr ? silent : suspect;
 }
 
-void Coordinator::check_timeouts(Instant now) {
-  if (state_ == MissionState::kWaiting) {
-    if (now - *started_ < seconds(mission_.timing.admission_timeout_s)) return;
-    std::string missing;
-    for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
-      const RosterEntry* entry = active_entry(id);
-      if (entry != nullptr && alive(*entry, now)) continue;
-      missing += (missing.empty() ? "" : ", ") + std::to_string(id);
-    }
-    return end(true, "only " + std::to_string(alive_count(now)) + " of the quorum of " +
-                         std::to_string(mission_.quorum) + " agents were admitted; missing: " +
-                         missing, now);
+void Coordinator::check_admission(Instant now) {
+  if (now - *started_ < seconds(mission_.timing.admission_timeout_s)) return;
+  std::string missing;
+  for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
+    const RosterEntry* entry = active_entry(id);
+    if (entry != nullptr && alive(*entry, now)) continue;
+    missing += (missing.empty() ? "" : ", ") + std::to_string(id);
   }
-  if (state_ != MissionState::kRunning || mission_.timing.pace != Pace::kLockstep) return;
+  end(true, "only " + std::to_string(alive_count(now)) + " of the quorum of " +
+                std::to_string(mission_.quorum) + " agents were admitted; missing: " + missing, now);
+}
+
+void Coordinator::check_tick(Instant now) {
   if (now - tick_since_ < seconds(mission_.timing.lockstep_timeout_s)) return;
   RosterEntry* late = culprit(now);
   std::ostringstream since_text;
@@ -193,7 +188,8 @@ void Coordinator::check_timeouts(Instant now) {
 
 void Coordinator::advance(Instant now, Outbox& out) {
   if (!started_) started_ = now;
-  check_timeouts(now);
+  if (state_ == MissionState::kWaiting) check_admission(now);
+  if (state_ == MissionState::kRunning && mission_.timing.pace == Pace::kLockstep) check_tick(now);
   if (state_ == MissionState::kWaiting && alive_count(now) >= mission_.quorum) {
     state_ = MissionState::kRunning;
     tick_since_ = now;
@@ -256,10 +252,10 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
     std::nth_element(metrics.begin(), middle, metrics.end());
     team.ergodic_metric = *middle;
   }
-  const auto waiting = std::find_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+  const auto silent = std::find_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return entry.active_until < 0 && !alive(entry, now);
   });
-  if (waiting != roster_.end()) team.waiting_for = waiting->author.agent;
+  if (silent != roster_.end()) team.silent_agent = silent->author.agent;
   team.header = header(Bus::kSwarm);
   out.push_back({Bus::kSwarm, team});
 }

@@ -47,7 +47,8 @@ class Coordinator {
   RosterEntry* active_entry(AgentId id);
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;
-  void check_timeouts(Instant now);
+  void check_admission(Instant now);
+  void check_tick(Instant now);
   AgentId waits_for(const RosterEntry& entry) const;
   RosterEntry* culprit(Instant now);
   void change() { ++revision_, next_mission_ = Instant{}; }

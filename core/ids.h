@@ -4,6 +4,7 @@
 #include <chrono>
 #include <compare>
 #include <cstdint>
+#include <string>
 
 namespace ergocast {
 
@@ -49,5 +50,12 @@ struct PacingClock {
   static constexpr bool is_steady = true;
 };
 using Instant = PacingClock::time_point;
+
+inline PacingClock::duration seconds(double s) {
+  return PacingClock::duration(static_cast<std::int64_t>(s * 1e9));
+}
+
+/// An identity as people read it: 16 hex digits.
+std::string to_hex(std::uint64_t identity);
 
 }  // namespace ergocast

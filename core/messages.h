@@ -97,7 +97,7 @@ const char* to_string(AgentPhase phase);
 struct AgentStatus {
   Header header;
   AgentPhase phase = AgentPhase::kJoining;
-  double ergodic_metric = 0;             ///< φ² as this agent sees it
+  double ergodic_metric = 0;             ///< φ² as this agent sees it, once answered_tick ≥ 0
   double max_staleness_s = 0;            ///< age of the oldest teammate's contribution
   AgentId waiting_for = kUnassigned;     ///< whose block the current tick waits for
   std::int64_t answered_tick = -1;       ///< last tick that got a command
@@ -115,7 +115,7 @@ struct TeamStatus {
   Tick tick_count = 0;
   std::int32_t agents_alive = 0, agents_expected = 0;
   double ergodic_metric = 0;  ///< median of the agents' own φ²; 0 until one has answered a tick
-  AgentId waiting_for = kUnassigned;
+  AgentId silent_agent = kUnassigned;  ///< the first that is not alive, if any
   std::int64_t missed_deadlines = 0;  ///< as the world counts them
 };
 

@@ -13,7 +13,7 @@
 namespace ergocast {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // --- what the summary says, where it says it ---
 

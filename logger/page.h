@@ -13,7 +13,7 @@ namespace ergocast {
 
 /// The page, well-formed as XML too. Keys that `summary` lacks, or has with another type, are left
 /// out; all its text is escaped.
-std::string report_page(const RunData& run, const Mission& mission, const nlohmann::json& summary,
+std::string report_page(const RunData& run, const Mission& mission, const nlohmann::ordered_json& summary,
                         const std::vector<Figure>& figures);
 
 }  // namespace ergocast

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
+#include "logger/run_record.h"
 #include "logger/slope.h"
 
 namespace ergocast {
@@ -14,12 +16,6 @@ using Json = nlohmann::ordered_json;
 /// Real time: late commands that are worth a word.
 constexpr double kNotableShare = 0.01;
 
-std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
-
 /// JSON has no infinity and no NaN.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -27,7 +23,7 @@ Json agents(const Recorder& recorder) {
   Json list = Json::array();
   for (const RosterEntry& entry : recorder.follower().roster()) {
     Json agent{{"id", entry.author.agent},
-               {"incarnation", hex(entry.author.incarnation)},
+               {"incarnation", to_hex(entry.author.incarnation)},
                {"active_from", entry.active_from},
                {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)}};
     const auto known = recorder.statuses().find(entry.author);
@@ -102,7 +98,7 @@ std::string reason_of(const Recorder& recorder) {
 
 Json summarize(const Recorder& recorder, const RunContext& context) {
   const RunFacts& facts = recorder.facts();
-  Json summary{{"run_id", hex(context.run)},
+  Json summary{{"run_id", to_hex(context.run)},
                {"result", recorder.result()},
                {"reason", reason_of(recorder)},
                {"started", context.started},
@@ -129,6 +125,18 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   summary["missed_deadlines"] = facts.missed_deadlines;
   summary["skipped_ticks"] = facts.skipped_ticks;
   return summary;
+}
+
+std::variant<Json, std::string> read_summary(const std::filesystem::path& run_dir) {
+  const auto file = run_dir / kSummaryFile;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return Json(nullptr);
+  try {
+    return Json::parse(in);
+  } catch (const Json::exception& error) {
+    return file.string() + ": is not JSON: " + error.what() +
+           ": copy it again from where the run was recorded, or remove it";
+  }
 }
 
 std::string to_text(const Json& summary) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <variant>
 
 #include "core/messages.h"
 #include "logger/recorder.h"
@@ -28,5 +29,10 @@ nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& con
 
 /// As it stands in the file. Bytes that are no UTF-8, which the network may bring, are replaced.
 std::string to_text(const nlohmann::ordered_json& summary);
+
+/// The summary of a run directory: null if there is none, whatever it holds if that is
+/// JSON, else an error that names the file.
+std::variant<nlohmann::ordered_json, std::string> read_summary(
+    const std::filesystem::path& run_dir);
 
 }  // namespace ergocast

@@ -101,12 +101,6 @@ std::string wall_clock_text() {
   return text.data();
 }
 
-std::string to_hex(std::uint64_t value) {
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
-  return text.data();
-}
-
 void set_up_logging(const std::string& process_name) {
   auto logger = spdlog::stderr_color_mt(process_name);
   logger->set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %v");

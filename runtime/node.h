@@ -44,8 +44,6 @@ std::uint64_t random_identity();
 std::string host_name();
 /// Now, by the wall clock, as "2026-01-31T12:00:00Z".
 std::string wall_clock_text();
-/// 16 hex digits.
-std::string to_hex(std::uint64_t value);
 
 /// One line per event on the standard error stream: time, level, process, text.
 void set_up_logging(const std::string& process_name);

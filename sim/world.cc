@@ -19,10 +19,6 @@ constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
 /// How long the end is repeated to whoever has not heard of it, after the record's last progress.
 constexpr auto kFarewell = 2s;
 
-std::chrono::nanoseconds seconds(double s) {
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9));
-}
-
 }  // namespace
 
 World::World(RunId run, Incarnation incarnation, PlanDecoder decode_plan)

@@ -266,7 +266,7 @@ TEST(CoordinatorRepeats, HowTheTeamIs) {
   EXPECT_EQ(teams[0].header.tick, 7);
   EXPECT_EQ(teams[0].agents_alive, 3);
   EXPECT_EQ(teams[0].agents_expected, 4);
-  EXPECT_EQ(teams[0].waiting_for, 2) << "silent for 3 s";
+  EXPECT_EQ(teams[0].silent_agent, 2) << "silent for 3 s";
   EXPECT_EQ(teams[0].missed_deadlines, 12);
   EXPECT_TRUE(teams[0].ergodic_metric == 3 || teams[0].ergodic_metric == 5) << "a median";
 }

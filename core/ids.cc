@@ -1,0 +1,13 @@
+#include "core/ids.h"
+
+#include <cstdio>
+
+namespace ergocast {
+
+std::string to_hex(std::uint64_t identity) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(identity));
+  return text;
+}
+
+}  // namespace ergocast

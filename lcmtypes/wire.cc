@@ -1,0 +1,284 @@
+#include "lcmtypes/wire.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/require.h"
+
+namespace ergocast {
+namespace {
+
+header_t to_wire(const Header& h) {
+  header_t w{};
+  w.run_id = static_cast<std::int64_t>(h.run);
+  w.sender = h.sender;
+  w.incarnation = static_cast<std::int64_t>(h.incarnation);
+  w.sequence = h.sequence;
+  w.tick = h.tick;
+  return w;
+}
+Header from_wire(const header_t& w) {
+  return {static_cast<RunId>(w.run_id), w.sender, static_cast<Incarnation>(w.incarnation),
+          w.sequence, w.tick};
+}
+
+/// More messages, ticks or events of any kind than a run can have; sums of a few cannot overflow.
+constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
+
+bool plausible_count(std::int64_t count) { return count >= 0 && count <= kMostEver; }
+
+/// At most `limit` characters and no NUL, so that what we send is what we accept.
+std::string bounded(const std::string& text, int limit) {
+  auto size = static_cast<std::size_t>(limit);
+  // Not in the middle of a UTF-8 character.
+  while (text.size() > size && size > 0 && (text[size] & 0xC0) == 0x80) --size;
+  const std::string cut = text.substr(0, size);
+  return cut.substr(0, cut.find('\0'));
+}
+
+void copy3(const Eigen::Vector3d& from, double* to) { std::copy_n(from.data(), 3, to); }
+Eigen::Vector3d vector3(const double* from) { return {from[0], from[1], from[2]}; }
+
+}  // namespace
+
+hello_t to_wire(const Hello& m) {
+  hello_t w;
+  w.header = to_wire(m.header);
+  w.requested_id = m.requested_id;
+  w.host = bounded(m.host, kMaxHostLength);
+  w.version = bounded(m.version, kMaxVersionLength);
+  return w;
+}
+bool from_wire(const hello_t& w, Hello& m) {
+  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents) return false;
+  m = {from_wire(w.header), w.requested_id, w.host, w.version};
+  return true;
+}
+
+mission_t to_wire(const MissionPart& m) {
+  ERGOCAST_REQUIRE(m.roster.size() <= kMaxRosterEntriesPerMessage &&
+                   m.plan.size() <= kMaxPlanBytesPerMessage);
+  mission_t w;
+  w.header = to_wire(m.header);
+  w.revision = m.revision;
+  w.state = static_cast<std::int8_t>(m.state);
+  w.part = m.part;
+  w.parts = m.parts;
+  w.roster_count = static_cast<std::int32_t>(m.roster.size());
+  w.plan_size = static_cast<std::int32_t>(m.plan.size());
+  for (const RosterEntry& entry : m.roster) {
+    roster_entry_t e;
+    e.id = entry.author.agent;
+    e.nonce = static_cast<std::int64_t>(entry.author.incarnation);
+    e.active_from = entry.active_from;
+    e.active_until = entry.active_until;
+    w.roster.push_back(e);
+  }
+  w.plan.resize(m.plan.size());
+  if (!m.plan.empty()) std::memcpy(w.plan.data(), m.plan.data(), m.plan.size());
+  w.reason = bounded(m.reason, kMaxReasonLength);
+  return w;
+}
+bool from_wire(const mission_t& w, MissionPart& m) {
+  if (w.state < 0 || w.state > static_cast<int>(MissionState::kFailed) || w.revision < 0 ||
+      w.parts < 1 || w.parts > kMaxPlanParts || w.part < 0 || w.part >= w.parts) {
+    return false;
+  }
+  m.header = from_wire(w.header);
+  m.revision = w.revision;
+  m.state = static_cast<MissionState>(w.state);
+  m.part = w.part;
+  m.parts = w.parts;
+  for (const roster_entry_t& e : w.roster) {
+    if (e.id < 0 || e.id >= kMaxAgents || e.active_from < 0 || e.active_until < -1) {
+      return false;
+    }
+    m.roster.push_back({{e.id, static_cast<Incarnation>(e.nonce)}, e.active_from, e.active_until});
+  }
+  m.plan.resize(w.plan.size());
+  if (!w.plan.empty()) std::memcpy(m.plan.data(), w.plan.data(), w.plan.size());
+  m.reason = w.reason;
+  return true;
+}
+
+contribution_t to_wire(const Contribution& m) {
+  contribution_t w;
+  w.header = to_wire(m.header);
+  w.steps = m.steps;
+  w.next_broadcast_tick = m.next_broadcast_tick;
+  w.elapsed_s = m.elapsed_s;
+  w.block = m.block;
+  w.mode_count = m.mode_count;
+  std::copy(m.sums.begin(), m.sums.end(), w.sums);
+  return w;
+}
+/// Whether the sums can be true is for CoverageTable::merge, which knows the mission.
+bool from_wire(const contribution_t& w, Contribution& m) {
+  if (w.header.sender < 0 || w.header.sender >= kMaxAgents || !std::isfinite(w.elapsed_s)) {
+    return false;
+  }
+  m.header = from_wire(w.header);
+  m.steps = w.steps;
+  m.next_broadcast_tick = w.next_broadcast_tick;
+  m.elapsed_s = w.elapsed_s;
+  m.block = w.block;
+  m.mode_count = w.mode_count;
+  std::copy_n(w.sums, kBlockSize, m.sums.begin());
+  return true;
+}
+
+agent_status_t to_wire(const AgentStatus& m) {
+  agent_status_t w;
+  w.header = to_wire(m.header);
+  w.phase = static_cast<std::int8_t>(m.phase);
+  w.ergodic_metric = m.ergodic_metric;
+  w.max_staleness_s = m.max_staleness_s;
+  w.waiting_for = m.waiting_for;
+  w.answered_tick = m.answered_tick;
+  w.contributions_received = m.contributions_received;
+  w.contributions_lost = m.contributions_lost;
+  w.messages_sent = m.messages_sent;
+  w.messages_received = m.messages_received;
+  w.missed_ticks = m.missed_ticks;
+  std::copy(m.refused.begin(), m.refused.end(), w.refused);
+  w.kernel_drops = m.kernel_drops;
+  w.status_host = bounded(m.host, kMaxHostLength);
+  return w;
+}
+bool from_wire(const agent_status_t& w, AgentStatus& m) {
+  if (w.phase < 0 || w.phase > static_cast<int>(AgentPhase::kFinished) ||
+      w.header.sender < kUnassigned || w.header.sender >= kMaxAgents ||
+      !std::isfinite(w.ergodic_metric) || !std::isfinite(w.max_staleness_s) ||
+      !std::all_of(std::begin(w.refused), std::end(w.refused), plausible_count)) {
+    return false;
+  }
+  for (const std::int64_t count : {w.contributions_received, w.contributions_lost, w.messages_sent,
+                                   w.messages_received, w.missed_ticks, w.kernel_drops}) {
+    if (!plausible_count(count)) return false;
+  }
+  m.header = from_wire(w.header);
+  m.phase = static_cast<AgentPhase>(w.phase);
+  m.ergodic_metric = w.ergodic_metric;
+  m.max_staleness_s = w.max_staleness_s;
+  m.waiting_for = w.waiting_for;
+  m.answered_tick = w.answered_tick;
+  m.contributions_received = w.contributions_received;
+  m.contributions_lost = w.contributions_lost;
+  m.messages_sent = w.messages_sent;
+  m.messages_received = w.messages_received;
+  m.missed_ticks = w.missed_ticks;
+  std::copy_n(w.refused, kRefusalKinds, m.refused.begin());
+  m.kernel_drops = w.kernel_drops;
+  m.host = w.status_host;
+  return true;
+}
+
+team_status_t to_wire(const TeamStatus& m) {
+  team_status_t w;
+  w.header = to_wire(m.header);
+  w.mission_state = static_cast<std::int8_t>(m.state);
+  w.tick_count = m.tick_count;
+  w.agents_alive = m.agents_alive;
+  w.agents_expected = m.agents_expected;
+  w.median_ergodic_metric = m.ergodic_metric;
+  w.silent_agent = m.silent_agent;
+  w.team_missed_deadlines = m.missed_deadlines;
+  return w;
+}
+bool from_wire(const team_status_t& w, TeamStatus& m) {
+  if (w.mission_state < 0 || w.mission_state > static_cast<int>(MissionState::kFailed) ||
+      !std::isfinite(w.median_ergodic_metric)) {
+    return false;
+  }
+  m = {from_wire(w.header), static_cast<MissionState>(w.mission_state),
+       w.tick_count,        w.agents_alive,
+       w.agents_expected,   w.median_ergodic_metric,
+       w.silent_agent,  w.team_missed_deadlines};
+  return true;
+}
+
+stop_t to_wire(const Stop& m) {
+  stop_t w;
+  w.header = to_wire(m.header);
+  w.stop_failed = m.failed ? 1 : 0;
+  w.stop_reason = bounded(m.reason, kMaxReasonLength);
+  return w;
+}
+bool from_wire(const stop_t& w, Stop& m) {
+  m = {from_wire(w.header), w.stop_failed != 0, w.stop_reason};
+  return true;
+}
+
+world_state_t to_wire(const WorldState& m) {
+  ERGOCAST_REQUIRE(m.vehicle_count >= 0 && m.vehicle_count <= kMaxVehiclesPerState);
+  world_state_t w;
+  w.header = to_wire(m.header);
+  w.roster_revision = m.roster_revision;
+  w.missed_deadlines = m.missed_deadlines;
+  w.skipped_ticks = m.skipped_ticks;
+  w.state_part = m.part;
+  w.state_parts = m.parts;
+  w.vehicle_count = m.vehicle_count;
+  w.vehicles.resize(static_cast<std::size_t>(m.vehicle_count));
+  for (std::size_t i = 0; i < w.vehicles.size(); ++i) {
+    w.vehicles[i].vehicle_id = m.vehicles[i].id;
+    w.vehicles[i].vehicle_answered_tick = m.vehicles[i].answered_tick;
+    copy3(m.vehicles[i].position_m, w.vehicles[i].position_m);
+    copy3(m.vehicles[i].velocity_mps, w.vehicles[i].velocity_mps);
+  }
+  return w;
+}
+bool from_wire(const world_state_t& w, WorldState& m) {
+  m.header = from_wire(w.header);
+  m.roster_revision = w.roster_revision;
+  m.missed_deadlines = w.missed_deadlines;
+  m.skipped_ticks = w.skipped_ticks;
+  m.part = w.state_part;
+  m.parts = w.state_parts;
+  m.vehicle_count = w.vehicle_count;
+  if (m.header.tick < 0 || m.roster_revision < 0 || m.part < 0 || m.part >= m.parts ||
+      m.parts > kMaxAgents) {
+    return false;
+  }
+  for (std::size_t i = 0; i < w.vehicles.size(); ++i) {
+    const vehicle_t& v = w.vehicles[i];
+    m.vehicles[i] = {v.vehicle_id, v.vehicle_answered_tick, vector3(v.position_m),
+                     vector3(v.velocity_mps)};
+    if (v.vehicle_id < 0 || v.vehicle_id >= kMaxAgents || !m.vehicles[i].position_m.allFinite() ||
+        !m.vehicles[i].velocity_mps.allFinite()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+command_t to_wire(const Command& m) {
+  command_t w;
+  w.header = to_wire(m.header);
+  copy3(m.position_m, w.command_position_m);
+  copy3(m.velocity_mps, w.command_velocity_mps);
+  return w;
+}
+bool from_wire(const command_t& w, Command& m) {
+  m = {from_wire(w.header), vector3(w.command_position_m), vector3(w.command_velocity_mps)};
+  return m.header.sender >= 0 && m.header.sender < kMaxAgents && m.header.tick >= 0 &&
+         m.position_m.allFinite() && m.velocity_mps.allFinite();
+}
+
+record_ack_t to_wire(const RecordAck& m) {
+  record_ack_t w;
+  w.ack_header = to_wire(m.header);
+  return w;
+}
+bool from_wire(const record_ack_t& w, RecordAck& m) {
+  m.header = from_wire(w.ack_header);
+  return true;
+}
+
+bool plausible(const Header& h) {
+  return h.sender >= kOperator && h.sender < kMaxAgents && plausible_count(h.sequence) &&
+         h.tick >= -1 && h.tick <= kMostEver;
+}
+
+}  // namespace ergocast

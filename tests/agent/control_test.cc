@@ -1,0 +1,267 @@
+// When an agent samples, speaks and answers: the control step, in lockstep and in real time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/agent/driven_agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+// ---- the control step ----------------------------------------------------------------------------
+
+TEST(AgentTick, FirstSampleIsWhereItStandsAtTheStart) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].steps, 1);
+  EXPECT_EQ(said[0].elapsed_s, 0.1);
+  EXPECT_EQ(said[0].mode_count, 20);
+  EXPECT_EQ(said[0].author(), author_of(0));
+  const Contribution expected = block_of(mission, 0, {{100, 500}}, 1);
+  EXPECT_EQ(said[0].sums, expected.sums);
+  EXPECT_EQ(said[0].next_broadcast_tick, 1);
+}
+
+TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
+  Mission mission = small_mission(2);
+  mission.law.noise_intensity = 0.5;
+  mission.law.contraction_gain_per_s = 1e-3;
+  mission.law.epsilon = 1e-4;
+  Agent agent = running_agent(mission);
+  const Contribution theirs = block_of(mission, 1, {{700, 900}}, 1);
+  agent.receive(theirs, at(0s));
+  const auto commands = only<Command>(tell(agent, world_state(0, {{100, 500}, {700, 900}})));
+  ASSERT_EQ(commands.size(), 1u);
+
+  CoverageTable table(mission.basis, mission.timing.dt_s);
+  const BasisAt here({100, 500}, mission.domain, mission.basis);
+  table.add_sample(author_of(0), here);
+  table.merge(theirs, 10);
+  Coefficients team = Coefficients::Zero(5, 4);
+  table.average(team);
+  const Eigen::Vector2d expected = Controller(mission).command(0, 0, {100, 500}, here, team);
+  EXPECT_EQ(commands[0].velocity_mps.head<2>(), expected) << "bit for bit";
+  EXPECT_EQ(commands[0].velocity_mps.z(), 0);
+  EXPECT_EQ(commands[0].position_m, Eigen::Vector3d(100, 500, 0));
+  EXPECT_EQ(commands[0].header.tick, 0);
+  EXPECT_EQ(commands[0].header.sender, 0);
+  EXPECT_EQ(commands[0].header.incarnation, life_of(0));
+}
+
+TEST(AgentTick, SpeaksOnTheBusesOfTheProtocol) {
+  Agent agent = running_agent(small_mission(1));
+  for (const Outgoing& outgoing : tell(agent, world_state(0, {{100, 500}}))) {
+    const bool command = std::holds_alternative<Command>(outgoing.message);
+    EXPECT_EQ(outgoing.bus, command ? Bus::kCommand : Bus::kSwarm);
+  }
+}
+
+TEST(AgentTick, ContributionsAreCumulative) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  std::vector<Eigen::Vector2d> path;
+  for (Tick tick = 0; tick < 5; ++tick) {
+    path.push_back({100.0 + 7 * static_cast<double>(tick), 500});
+    const auto said = only<Contribution>(tell(agent, world_state(tick, {path.back()})));
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_EQ(said[0].steps, tick + 1);
+    EXPECT_EQ(said[0].sums, block_of(mission, 0, path, 0).sums);
+  }
+}
+
+TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
+  Mission mission = small_mission(4);
+  mission.timing.broadcast_period_ticks = 4;
+  mission.timing.pace = Pace::kRealtime;
+  std::vector<Tick> second_broadcast;
+  for (AgentId id = 0; id < 4; ++id) {
+    Agent agent = running_agent(mission, id);
+    Tick announced = 0;
+    for (Tick tick = 0; tick < 40; ++tick) {
+      const auto said = only<Contribution>(
+          tell(agent, world_state(tick, {{1, 1}, {2, 2}, {3, 3}, {4, 4}})));
+      ASSERT_EQ(said.size(), tick == announced ? 1u : 0u) << "agent " << id << " at " << tick;
+      if (said.empty()) continue;
+      if (tick == 0) second_broadcast.push_back(said[0].next_broadcast_tick);
+      EXPECT_LE(said[0].next_broadcast_tick, tick + 4);
+      if (tick > 0) {
+        EXPECT_EQ(said[0].next_broadcast_tick, tick + 4);
+      }
+      announced = said[0].next_broadcast_tick;
+    }
+  }
+  std::sort(second_broadcast.begin(), second_broadcast.end());
+  EXPECT_EQ(second_broadcast, (std::vector<Tick>{1, 2, 3, 4})) << "spread over the period";
+}
+
+TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  const Outbox out = tell(agent, world_state(mission.timing.tick_count, {{100, 500}}));
+  EXPECT_TRUE(agent.finished());
+  EXPECT_FALSE(agent.failed());
+  EXPECT_EQ(agent.reason(), "mission complete");
+  EXPECT_TRUE(only<Command>(out).empty());
+  EXPECT_TRUE(only<Contribution>(out).empty());
+}
+
+// ---- lockstep ------------------------------------------------------------------------------------
+
+TEST(AgentInLockstep, AnswersOnlyWhenEveryDueBlockOfEveryTeammateIsThere) {
+  const Mission mission = two_block_mission(3);
+  Agent agent = running_agent(mission);
+  const std::vector<Eigen::Vector2d> places{{100, 500}, {200, 500}, {300, 500}};
+  const auto one = blocks_of(mission, author_of(1), {places[1]}, 1);
+  const auto two = blocks_of(mission, author_of(2), {places[2]}, 1);
+  ASSERT_EQ(one.size(), 2u);
+
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, places))).empty());
+  EXPECT_TRUE(only<Command>(tell(agent, two[1])).empty());
+  EXPECT_TRUE(only<Command>(tell(agent, one[0])).empty());
+  EXPECT_TRUE(only<Command>(tell(agent, two[0])).empty());
+  const auto answer = only<Command>(tell(agent, one[1]));
+  ASSERT_EQ(answer.size(), 1u);
+  EXPECT_EQ(answer[0].header.tick, 0);
+
+  // The next tick needs their next blocks.
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(1, places))).empty());
+}
+
+TEST(AgentInLockstep, StatusNamesTheTeammateItWaitsFor) {
+  const Mission mission = small_mission(3);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, {{200, 500}}, 1), at(0s));
+  tell(agent, world_state(0, {{100, 500}, {200, 500}, {300, 500}}));
+  EXPECT_EQ(status_after(agent, at(0s)).waiting_for, 2);
+  EXPECT_EQ(status_after(agent, at(2h)).answered_tick, -1);
+  tell(agent, block_of(mission, 2, {{300, 500}}, 1), at(4h));
+  EXPECT_EQ(status_after(agent, at(4h)).waiting_for, kUnassigned);
+  EXPECT_EQ(status_after(agent, at(6h)).answered_tick, 0);
+}
+
+TEST(AgentInLockstep, DoesNotWaitForWhatIsNotDue) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, {{200, 500}}, 3), at(0s));
+  for (Tick tick = 0; tick < 3; ++tick) {
+    EXPECT_EQ(only<Command>(tell(agent, world_state(tick, {{100, 500}}))).size(), 1u) << tick;
+  }
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(3, {{100, 500}}))).empty());
+}
+
+TEST(AgentInLockstep, DoesNotWaitForMembersWhoHaveLeftOrAreYetToCome) {
+  const Mission mission = small_mission(3);
+  Agent agent(identity_of(0), decoder_of(mission));
+  std::vector<RosterEntry> roster = roster_of(3);
+  roster[1].active_until = 0;
+  roster[2].active_from = 5;
+  agent.receive(mission_part(0, MissionState::kRunning, roster), at(0s));
+  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500}}))).size(), 1u);
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(5, {{100, 500}}))).empty());
+}
+
+TEST(AgentInLockstep, GoesOnWhenARosterRevisionRemovesTheOneItWaitedFor) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, {{100, 500}}))).empty());
+  std::vector<RosterEntry> roster = roster_of(2);
+  roster[1].active_until = 0;
+  EXPECT_EQ(only<Command>(tell(agent, mission_part(1, MissionState::kRunning, roster))).size(), 1u);
+}
+
+TEST(AgentInLockstep, ARepeatedTickIsAnsweredAgainWithTheSameBlocksAndCommand) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  const Outbox first = tell(agent, world_state(0, {{100, 500}}));
+  const Outbox again = tell(agent, world_state(0, {{100, 500}}), at(20ms));
+  ASSERT_EQ(only<Command>(again).size(), 1u);
+  EXPECT_EQ(only<Command>(again)[0].velocity_mps, only<Command>(first)[0].velocity_mps);
+  EXPECT_EQ(only<Command>(again)[0].header.tick, 0);
+  ASSERT_EQ(only<Contribution>(again).size(), 1u);
+  EXPECT_EQ(only<Contribution>(again)[0].sums, only<Contribution>(first)[0].sums);
+  EXPECT_EQ(only<Contribution>(again)[0].steps, 1) << "a repeat is no new sample";
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
+  EXPECT_GT(only<Command>(again)[0].header.sequence, only<Command>(first)[0].header.sequence);
+}
+
+TEST(AgentInLockstep, BetweenBroadcastsARepeatSaysWhatTheLastBroadcastSaid) {
+  Mission mission = small_mission(1);
+  mission.timing.broadcast_period_ticks = 4;
+  Agent agent = running_agent(mission);
+  const auto broadcast = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
+  tell(agent, world_state(1, {{150, 500}}));
+  const auto repeated = only<Contribution>(tell(agent, world_state(1, {{150, 500}}), at(20ms)));
+  ASSERT_EQ(repeated.size(), 1u);
+  EXPECT_EQ(repeated[0].steps, 1) << "newer sums would make a tick depend on what was lost";
+  EXPECT_EQ(repeated[0].sums, broadcast[0].sums);
+}
+
+TEST(AgentInLockstep, ARepeatedTickThatWaitsRepeatsOnlyTheBlocks) {
+  Agent agent = running_agent(small_mission(2));
+  tell(agent, world_state(0, {{100, 500}}));
+  const Outbox again = tell(agent, world_state(0, {{100, 500}}), at(20ms));
+  EXPECT_EQ(only<Contribution>(again).size(), 1u);
+  EXPECT_TRUE(only<Command>(again).empty());
+}
+
+TEST(AgentInLockstep, OldTicksOfTheWorldHaveNoEffect) {
+  Agent agent = running_agent(small_mission(1));
+  tell(agent, world_state(0, {{100, 500}}));
+  tell(agent, world_state(1, {{110, 500}}));
+  const Outbox out = tell(agent, world_state(0, {{1900, 500}}));
+  EXPECT_TRUE(only<Command>(out).empty());
+  EXPECT_TRUE(only<Contribution>(out).empty());
+  EXPECT_EQ(agent.tick(), 1);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 2);
+}
+
+TEST(AgentInLockstep, LateOldBlocksChangeNothing) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  const Contribution old_block = block_of(mission, 1, {{200, 500}}, 1);
+  agent.receive(block_of(mission, 1, {{200, 500}, {210, 500}}, 2), at(0s));
+  agent.receive(old_block, at(0s));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 2);
+  EXPECT_EQ(status_after(agent, at(0s)).refused, RefusalCounts{}) << "stale is not refused";
+}
+
+// ---- real time -----------------------------------------------------------------------------------
+
+TEST(AgentInRealTime, AnswersWithWhatItHas) {
+  Mission mission = small_mission(4);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500}}))).size(), 1u);
+}
+
+TEST(AgentInRealTime, CountsTheTicksThatWentByWithoutIt) {
+  Mission mission = small_mission(1);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(3, {{100, 500}}));
+  EXPECT_EQ(status_after(agent, at(0s)).missed_ticks, 0) << "it was not there before";
+  tell(agent, world_state(4, {{100, 500}}));
+  tell(agent, world_state(9, {{100, 500}}));
+  EXPECT_EQ(status_after(agent, at(2h)).missed_ticks, 4);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 3) << "and covers only what it saw";
+}
+
+TEST(AgentInRealTime, TakesTheNewestOfSeveralStatesThatArriveTogether) {
+  Mission mission = small_mission(1);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  agent.receive(world_state(2, {{300, 500}}), at(0s));
+  agent.receive(world_state(1, {{200, 500}}), at(0s));
+  const auto commands = only<Command>(advance(agent, at(0s)));
+  ASSERT_EQ(commands.size(), 1u);
+  EXPECT_EQ(commands[0].header.tick, 2);
+  EXPECT_EQ(commands[0].position_m.x(), 300);
+}
+
+}  // namespace
+}  // namespace ergocast

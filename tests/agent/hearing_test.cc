@@ -1,0 +1,175 @@
+// What an agent believes of what it hears, and what its status says of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/agent/driven_agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+// ---- what is refused -----------------------------------------------------------------------------
+
+/// Feeds one untrue contribution and expects: no row, no block, one more refusal for `why`.
+void expect_refused(const Contribution& lie, Refusal why) {
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, {{100, 500}}));
+  tell(agent, lie);
+  EXPECT_EQ(agent.coverage()->row_count(), 1u) << "only its own";
+  RefusalCounts expected{};
+  expected[static_cast<std::size_t>(why)] = 1;
+  EXPECT_EQ(status_after(agent, at(0s)).refused, expected);
+}
+
+TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
+  const Mission mission = small_mission(2);
+  const Contribution honest = block_of(mission, 1, {{200, 500}}, 1);
+  Contribution lie = honest;
+  lie.sums[3] = kNan;
+  expect_refused(lie, Refusal::kRange);
+  lie = honest;
+  lie.sums[3] = 0.1 * (1 + 1e-8);
+  expect_refused(lie, Refusal::kRange);
+  lie = honest;
+  lie.mode_count = 21;
+  expect_refused(lie, Refusal::kRange);
+  lie = honest;
+  lie.block = 1;
+  expect_refused(lie, Refusal::kRange);
+  lie = honest;
+  lie.header.run = kRun + 1;
+  expect_refused(lie, Refusal::kRun);
+}
+
+TEST(AgentRefuses, CoverageFromTheFuture) {
+  // A minute of lead is allowed, since clocks of several hosts may differ; beyond it would win for ever.
+  const Mission mission = small_mission(2);
+  Contribution future = block_of(mission, 1, {{200, 500}}, 1);
+  const auto claim = [&future](std::int64_t steps) {
+    future.steps = steps;
+    future.elapsed_s = 0.1 * static_cast<double>(steps);
+    future.sums.fill(0);
+    future.sums[0] = future.elapsed_s;
+  };
+  claim(602);
+  expect_refused(future, Refusal::kRange);
+  claim(std::numeric_limits<std::int64_t>::max());
+  expect_refused(future, Refusal::kRange);
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, {{100, 500}}));
+  claim(601);
+  tell(agent, future);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 601);
+}
+
+TEST(AgentRefuses, APlaceOutsideTheDomain) {
+  Agent agent = running_agent(small_mission(1));
+  const Outbox out = tell(agent, world_state(0, {{-1, 500}}));
+  EXPECT_TRUE(only<Command>(out).empty());
+  EXPECT_EQ(agent.tick(), -1);
+  EXPECT_EQ(status_after(agent, at(0s)).refused[static_cast<std::size_t>(Refusal::kRange)], 1);
+}
+
+TEST(AgentRefuses, AndShowsWhatTheTransportRefused) {
+  Agent agent = running_agent(small_mission(1));
+  agent.count_refused(Refusal::kTag);
+  agent.count_refused(Refusal::kTag);
+  agent.count_refused(Refusal::kSize);
+  agent.set_kernel_drops(8);
+  const AgentStatus status = status_after(agent, at(0s));
+  EXPECT_EQ(status.refused, (RefusalCounts{1, 0, 2, 0, 0, 0}));
+  EXPECT_EQ(status.kernel_drops, 8);
+}
+
+TEST(AgentRefuses, ItsOwnEcho) {
+  // Multicast gives everybody their own words back.
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
+  tell(agent, said.at(0));
+  const AgentStatus status = status_after(agent, at(0s));
+  EXPECT_EQ(status.contributions_received, 0);
+  EXPECT_EQ(agent.coverage()->row_count(), 1u);
+}
+
+// ---- what the status counts ----------------------------------------------------------------------
+
+TEST(AgentStatusReport, CountsGapsInATeammatesSequenceAsLost) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  Contribution theirs = block_of(mission, 1, {{200, 500}}, 1);
+  for (const std::int64_t sequence : {11, 12, 15, 14}) {
+    theirs.header.sequence = sequence;
+    agent.receive(theirs, at(0s));
+  }
+  const AgentStatus status = status_after(agent, at(0s));
+  EXPECT_EQ(status.contributions_received, 4);
+  EXPECT_EQ(status.contributions_lost, 1) << "13; what came before 11 was before its time";
+}
+
+TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
+  Mission mission = small_mission(3);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, {{100, 500}}));
+  agent.receive(block_of(mission, 1, {{200, 500}}, 1), at(0s));
+  agent.receive(block_of(mission, 2, {{300, 500}}, 1), at(0s));
+  tell(agent, world_state(9, {{100, 500}}));
+  agent.receive(block_of(mission, 1, {{200, 500}, {200, 500}, {200, 500}}, 3), at(0s));
+  // Teammate 2 was last heard of at tick 0. How many samples the others gave does not matter: a
+  // teammate that was held up once is not out of date for ever.
+  EXPECT_DOUBLE_EQ(status_after(agent, at(0s)).max_staleness_s, 0.9);
+}
+
+TEST(AgentStatusReport, ShowsPhiSquaredOfTheTeamAsItKnowsIt) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, {{100, 500}}));
+  const double expected = Controller(mission).metric(
+      basis_values({100, 500}, mission.domain, mission.basis));
+  EXPECT_NEAR(status_after(agent, at(0s)).ergodic_metric, expected, 1e-14 * expected);
+}
+
+TEST(AgentStatusReport, ComesTwiceASecondAndOnceAMissionSecond) {
+  Agent agent = running_agent(small_mission(1));
+  EXPECT_EQ(only<AgentStatus>(advance(agent, at(0s))).size(), 1u);
+  EXPECT_TRUE(only<AgentStatus>(advance(agent, at(499ms))).empty());
+  EXPECT_EQ(agent.next_wakeup(), at(500ms));
+  EXPECT_EQ(only<AgentStatus>(advance(agent, at(500ms))).size(), 1u);
+  int statuses = 0;
+  for (Tick tick = 0; tick < 40; ++tick) {
+    statuses += static_cast<int>(
+        only<AgentStatus>(tell(agent, world_state(tick, {{100, 500}}), at(501ms))).size());
+  }
+  EXPECT_EQ(statuses, 4) << "40 ticks of 0.1 s without any time on the clock";
+}
+
+TEST(AgentStatusReport, CountsItsOwnMessages) {
+  Agent agent = running_agent(small_mission(1));
+  std::size_t sent = advance(agent, at(0s)).size();
+  sent += tell(agent, world_state(0, {{100, 500}})).size();
+  sent += tell(agent, world_state(0, {{100, 500}})).size();
+  const AgentStatus status = status_after(agent, at(0s));
+  EXPECT_EQ(status.messages_sent, static_cast<std::int64_t>(sent));
+  EXPECT_EQ(status.messages_received, 3) << "the mission and two states";
+}
+
+TEST(AgentStatusReport, SequencesGrowByOneOnEachBus) {
+  Agent agent = running_agent(small_mission(1));
+  std::int64_t last[kBusCount] = {0, 0, 0};
+  for (Tick tick = 0; tick < 20; ++tick) {
+    for (const Outgoing& out : tell(agent, world_state(tick / 2, {{100, 500}}), at(tick * 200ms))) {
+      EXPECT_EQ(header_of(out.message).sequence, ++last[static_cast<std::size_t>(out.bus)]);
+    }
+  }
+  EXPECT_GT(last[static_cast<std::size_t>(Bus::kSwarm)], 20);
+  EXPECT_GE(last[static_cast<std::size_t>(Bus::kCommand)], 20);
+}
+
+}  // namespace
+}  // namespace ergocast

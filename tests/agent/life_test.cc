@@ -1,0 +1,245 @@
+// How an agent joins, is replaced and ends.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/agent/driven_agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+// ---- joining -------------------------------------------------------------------------------------
+
+TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
+  Agent agent(identity_of(3), decoder_of(small_mission(4)));
+  const auto hellos = only<Hello>(advance(agent, at(0s)));
+  ASSERT_EQ(hellos.size(), 1u);
+  EXPECT_EQ(hellos[0].requested_id, 3);
+  EXPECT_EQ(hellos[0].header.incarnation, life_of(3));
+  EXPECT_EQ(hellos[0].host, "here");
+  EXPECT_EQ(hellos[0].version, "1.2.3");
+  EXPECT_TRUE(advance(agent, at(249ms)).empty());
+  EXPECT_EQ(agent.next_wakeup(), at(250ms));
+  EXPECT_EQ(only<Hello>(advance(agent, at(250ms))).size(), 1u);
+
+  // A roster that names only others changes nothing.
+  EXPECT_EQ(only<Hello>(tell(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
+                .size(), 1u);
+  EXPECT_EQ(agent.phase(), AgentPhase::kJoining);
+
+  tell(agent, mission_part(1, MissionState::kWaiting, roster_of(4)), at(600ms));
+  EXPECT_EQ(agent.phase(), AgentPhase::kWaiting);
+  EXPECT_TRUE(only<Hello>(advance(agent, at(10s))).empty());
+}
+
+TEST(AgentJoining, TakesTheNumberThatTheRosterGivesItsIncarnation) {
+  AgentIdentity anybody = identity_of(0);
+  anybody.requested_id = kUnassigned;
+  anybody.incarnation = life_of(2);
+  Agent agent(anybody, decoder_of(small_mission(3)));
+  EXPECT_EQ(agent.id(), kUnassigned);
+  agent.receive(mission_part(0, MissionState::kRunning, roster_of(3)), at(0s));
+  EXPECT_EQ(agent.id(), 2);
+}
+
+TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
+  const Mission mission = small_mission(1);
+  Agent agent(identity_of(0), decoder_of(mission));
+  agent.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
+  const Outbox waiting = tell(agent, world_state(0, {{100, 500}}));
+  EXPECT_TRUE(only<Command>(waiting).empty());
+  EXPECT_TRUE(only<Contribution>(waiting).empty());
+  EXPECT_EQ(agent.tick(), -1);
+  const Outbox running = tell(agent, mission_part(1, MissionState::kRunning, roster_of(1)));
+  EXPECT_EQ(only<Command>(running).size(), 1u);
+}
+
+TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstItHearsOf) {
+  AgentIdentity late = identity_of(0);
+  late.run = 0;
+  Agent agent(late, decoder_of(small_mission(1)));
+  agent.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  EXPECT_EQ(agent.run(), kRun);
+  MissionPart other = mission_part(9, MissionState::kEnded, {});
+  other.header.run = kRun + 1;
+  agent.receive(other, at(0s));
+  EXPECT_FALSE(agent.finished());
+}
+
+TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
+  Agent agent(identity_of(1), decoder_of(small_mission(2)));
+  AgentStatus rival = status_of(1, 1);
+  rival.header.incarnation = 77;
+  for (std::int64_t sequence = 1; sequence <= 3; ++sequence) {
+    EXPECT_FALSE(agent.finished());
+    rival.header.sequence = sequence;
+    agent.receive(rival, at(0s));
+  }
+  EXPECT_TRUE(agent.finished());
+  EXPECT_TRUE(agent.failed());
+  EXPECT_EQ(agent.reason(), "agent 1 is already running on elsewhere: choose another id, or none");
+  EXPECT_TRUE(advance(agent, at(1h)).empty()) << "it must not speak under a number that is taken";
+}
+
+TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
+  Agent agent(identity_of(1), decoder_of(small_mission(2)));
+  AgentStatus rival = status_of(1, 5);
+  rival.header.incarnation = 77;
+  for (const std::int64_t sequence : {5, 5, 4, 3, 5, 6, 6}) {
+    rival.header.sequence = sequence;
+    agent.receive(rival, at(0s));
+  }
+  for (int i = 0; i < 10; ++i) agent.receive(status_of(0, i), at(0s));
+  EXPECT_FALSE(agent.finished());
+}
+
+TEST(AgentJoining, AnAgentThatAskedForNoNumberHasNoRival) {
+  AgentIdentity anybody = identity_of(1);
+  anybody.requested_id = kUnassigned;
+  Agent agent(anybody, decoder_of(small_mission(2)));
+  for (int i = 1; i < 10; ++i) agent.receive(status_of(0, i), at(0s));
+  EXPECT_FALSE(agent.finished());
+}
+
+TEST(AgentJoining, OnceAdmittedItDoesNotGiveWay) {
+  Agent agent = running_agent(small_mission(2));
+  AgentStatus rival = status_of(0, 1);
+  rival.header.incarnation = 77;
+  for (rival.header.sequence = 1; rival.header.sequence < 10; ++rival.header.sequence) {
+    agent.receive(rival, at(0s));
+  }
+  EXPECT_FALSE(agent.finished());
+}
+
+TEST(AgentJoining, RefusesAPlanItCannotReadAndSaysWhatToDo) {
+  Agent agent(identity_of(0), [](auto) { return std::nullopt; });
+  agent.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
+  EXPECT_TRUE(agent.finished());
+  EXPECT_TRUE(agent.failed());
+  EXPECT_EQ(agent.reason(),
+            "the mission plan is not readable by version 1.2.3: run the same version everywhere");
+}
+
+// ---- restarts and the end ------------------------------------------------------------------------
+
+TEST(AgentHears, CoverageOfMembersOnly) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  // More lives of our own number than a table holds, and one of a teammate: none is in the roster.
+  for (Incarnation life = 1; life <= 20; ++life) {
+    agent.receive(blocks_of(mission, {0, life}, {{900, 900}}, 1).front(), at(0s));
+    agent.receive(blocks_of(mission, {1, life}, {{900, 900}}, 1).front(), at(0s));
+  }
+  // A member's name with another's life is nobody's either.
+  agent.receive(blocks_of(mission, {0, life_of(1)}, {{900, 900}}, 1).front(), at(0s));
+  EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
+  tell(agent, world_state(0, {{100, 500}, {200, 500}}));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
+}
+
+TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(mission_part(5, MissionState::kRunning,
+                             {{author_of(0), 0, -1}, {author_of(1), 0, 2}}), at(0s));
+  tell(agent, world_state(0, {{100, 500}, {200, 500}}));
+  const std::vector<Eigen::Vector2d> three(3, {200, 500}), four(4, {200, 500});
+  agent.receive(block_of(mission, 1, three, 1), at(0s));
+  agent.receive(block_of(mission, 1, four, 1), at(0s));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 3) << "it still covers, but is no member";
+}
+
+TEST(AgentInLockstep, WaitsForTheRosterThatTheWorldGoesBy) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  WorldState world = world_state(0, {{100, 500}});
+  world.roster_revision = 3;
+  EXPECT_TRUE(only<Command>(tell(agent, world)).empty());
+  EXPECT_EQ(only<Command>(tell(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(),
+            1u);
+}
+
+TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
+  const Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  const Author former{0, 55};
+  auto roster = roster_of(1);
+  roster.push_back({former, 0, 3});
+  agent.receive(mission_part(9, MissionState::kRunning, roster), at(0s));
+  agent.receive(blocks_of(mission, former, {{900, 900}, {910, 900}}, 2).front(), at(0s));
+  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].steps, 1) << "the old sum is never added into the new";
+  EXPECT_EQ(agent.coverage()->row_count(), 2u);
+  EXPECT_EQ(agent.coverage()->steps_held(former), 2);
+}
+
+TEST(AgentEnd, AStopEndsItAndTheLastStatusSaysSoOnce) {
+  for (const bool failed : {false, true}) {
+    Agent agent = running_agent(small_mission(1));
+    advance(agent, at(0s));
+    const auto last = only<AgentStatus>(
+        tell(agent, Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough"}, at(1ms)));
+    EXPECT_TRUE(agent.finished());
+    EXPECT_EQ(agent.failed(), failed);
+    EXPECT_EQ(agent.reason(), "enough");
+    ASSERT_EQ(last.size(), 1u);
+    EXPECT_EQ(last[0].phase, AgentPhase::kFinished);
+    EXPECT_TRUE(tell(agent, world_state(0, {{100, 500}}), at(1h)).empty()) << "final";
+  }
+}
+
+TEST(AgentEnd, AStopOfAnotherRunDoesNot) {
+  Agent agent = running_agent(small_mission(1));
+  agent.receive(Stop{{kRun + 1, kOperator, 1, 1, 0}, false, "enough"}, at(0s));
+  EXPECT_FALSE(agent.finished());
+}
+
+TEST(AgentEnd, TheMissionsEndIsItsEnd) {
+  Agent done = running_agent(small_mission(1));
+  done.receive(mission_part(1, MissionState::kEnded, roster_of(1), "mission complete"), at(0s));
+  EXPECT_TRUE(done.finished());
+  EXPECT_FALSE(done.failed());
+  Agent failed = running_agent(small_mission(1));
+  failed.receive(mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));
+  EXPECT_TRUE(failed.finished());
+  EXPECT_TRUE(failed.failed());
+  EXPECT_EQ(failed.reason(), "agent 3 is late");
+}
+
+TEST(AgentEnd, LeavingIsNoFailure) {
+  Agent agent = running_agent(small_mission(1));
+  agent.leave("SIGTERM");
+  EXPECT_TRUE(agent.finished());
+  EXPECT_FALSE(agent.failed());
+  EXPECT_EQ(only<AgentStatus>(advance(agent, at(0s))).at(0).phase, AgentPhase::kFinished);
+}
+
+TEST(AgentEnd, AnEvictedAgentStopsAtTheNamedTick) {
+  std::vector<RosterEntry> roster = roster_of(2);
+  roster[0].active_until = 3;
+  const MissionPart eviction = mission_part(1, MissionState::kRunning, roster);
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
+
+  Agent there = running_agent(mission);
+  tell(there, world_state(3, {{100, 500}}));
+  there.receive(eviction, at(0s));
+  EXPECT_TRUE(there.finished());
+  EXPECT_TRUE(there.failed());
+  EXPECT_EQ(there.reason(), "evicted from the roster at tick 3");
+
+  Agent behind = running_agent(mission);
+  tell(behind, world_state(1, {{100, 500}}));
+  behind.receive(eviction, at(0s));
+  EXPECT_EQ(only<Command>(tell(behind, world_state(2, {{100, 500}}))).size(), 1u);
+  EXPECT_TRUE(only<Command>(tell(behind, world_state(3, {{100, 500}}))).empty());
+  EXPECT_TRUE(behind.finished());
+  EXPECT_EQ(behind.reason(), "evicted from the roster at tick 3");
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,288 @@
+// Hostile bytes: whatever they are, the answer is a reason, never a message, a throw or a read past
+// the end (each datagram stands in an allocation of its exact size, for the address sanitizer).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/noise.h"
+#include "lcmtypes/codec.h"
+#include "tests/lcmtypes/sample_messages.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+// ---- damaged bytes -------------------------------------------------------------------------------
+
+TEST(Codec, EveryTruncationIsRefused) {
+  for (const Message& message : every_message()) {
+    const Bytes whole = encoded(message);
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+      ASSERT_EQ(verdict(cut), size < kHeaderBytes ? "size" : "tag")
+          << "message kind " << message.index() << ", " << size << " bytes";
+    }
+  }
+}
+
+TEST(Codec, EveryTruncationWithACorrectTagIsRefusedForItsSize) {
+  for (const Message& message : every_message()) {
+    const Bytes whole = encoded(message);
+    for (std::size_t size = kHeaderBytes; size < whole.size(); ++size) {
+      const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+      ASSERT_EQ(verdict(retagged(cut)), "size")
+          << "message kind " << message.index() << ", " << size << " bytes";
+    }
+  }
+}
+
+TEST(Codec, AnythingAfterTheEndIsRefusedForItsSize) {
+  for (const Message& message : every_message()) {
+    Bytes longer = encoded(message);
+    for (int extra = 0; extra < 9 && longer.size() < kMaxDatagramBytes; ++extra) {
+      longer.push_back(std::byte{0});
+      ASSERT_EQ(verdict(retagged(longer)), "size") << "message kind " << message.index();
+    }
+  }
+}
+
+TEST(Codec, EverySingleFlippedBitIsRefused) {
+  for (const Message& message : every_message()) {
+    Bytes bytes = encoded(message);
+    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+      const auto mask = static_cast<std::byte>(1 << bit % 8);
+      bytes[bit / 8] ^= mask;
+      ASSERT_EQ(verdict(bytes), bit / 8 < 8 ? "type" : "tag")
+          << "message kind " << message.index() << ", bit " << bit;
+      bytes[bit / 8] ^= mask;
+    }
+    ASSERT_EQ(verdict(bytes), "accepted");
+  }
+}
+
+TEST(Codec, OversizedDatagramsAreRefusedUnread) {
+  for (const std::size_t size : {kMaxDatagramBytes + 1, std::size_t{1473}, std::size_t{65507}}) {
+    Bytes bytes = encoded(contribution());
+    bytes.resize(size);
+    EXPECT_EQ(verdict(retagged(bytes)), "size") << size;
+  }
+}
+
+TEST(Codec, UnknownTypesAreRefusedEvenWithACorrectTag) {
+  for (const std::size_t size : {kHeaderBytes, std::size_t{500}}) {
+    EXPECT_EQ(verdict(retagged(Bytes(size, std::byte{0}))), "type");
+    EXPECT_EQ(verdict(retagged(Bytes(size, std::byte{0xff}))), "type");
+  }
+}
+
+// ---- lying bytes: a correct tag over numbers that are not true -----------------------------------
+
+constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+
+TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
+  constexpr std::size_t kRosterCount = kHeaderBytes + 17, kPlanSize = kHeaderBytes + 21,
+                        kVehicleCount = kHeaderBytes + 32;
+  // The offsets are right: writing the true counts there changes nothing.
+  ASSERT_EQ(with_count(mission_part(), kRosterCount, 2), encoded(mission_part()));
+  ASSERT_EQ(with_count(mission_part(), kPlanSize, 300), encoded(mission_part()));
+  ASSERT_EQ(with_count(world_state(), kVehicleCount, 2), encoded(world_state()));
+  for (const std::int32_t count : {-1, 0, 1, 3, 12, 13, 100, 0x01000000, 0x7fffff00, kMost, kLeast}) {
+    EXPECT_EQ(verdict(with_count(mission_part(), kRosterCount, count)), "size") << count;
+    EXPECT_EQ(verdict(with_count(world_state(), kVehicleCount, count)), "size") << count;
+  }
+  for (const std::int32_t count : {-1, 0, 299, 301, 512, 513, kMost, kLeast}) {
+    EXPECT_EQ(verdict(with_count(mission_part(), kPlanSize, count)), "size") << count;
+  }
+}
+
+TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
+  // 28 bytes less of roster and 28 more of plan: the whole adds up, so only its meaning changes.
+  Bytes shifted = encoded(mission_part());
+  put32(shifted, kHeaderBytes + 17, 1);
+  put32(shifted, kHeaderBytes + 21, 328);
+  const auto part = decoded_as<MissionPart>(retagged(shifted));
+  EXPECT_EQ(part.roster.size(), 1u);
+  EXPECT_EQ(part.plan.size(), 328u);
+  // Beyond a limit, it does not help that the sum is right.
+  put32(shifted, kHeaderBytes + 17, 13);
+  put32(shifted, kHeaderBytes + 21, 300 - 11 * 28 + 2 * 28);
+  EXPECT_EQ(verdict(retagged(shifted)), "size");
+}
+
+TEST(Codec, HostileStringLengthsAreRefused) {
+  const struct {
+    Message message;
+    std::size_t offset;
+    std::int32_t length;  // with the final NUL
+  } strings[] = {{hello(), kHeaderBytes + 4, 13},
+                 {hello(), kHeaderBytes + 4 + 4 + 13, 6},
+                 {stop(), kHeaderBytes + 1, 7},
+                 {agent_status(), encoded(agent_status()).size() - 17, 13},
+                 {mission_part(), encoded(mission_part()).size() - 12, 8}};
+  for (const auto& text : strings) {
+    ASSERT_EQ(with_count(text.message, text.offset, text.length), encoded(text.message))
+        << "the offset is right";
+    for (const std::int32_t length : {-1, 0, 1, text.length - 1, text.length + 1, 64, 65, 1000,
+                                      kMost, kMost - 3, kLeast}) {
+      EXPECT_EQ(verdict(with_count(text.message, text.offset, length)), "size")
+          << "message kind " << text.message.index() << ", length " << length;
+    }
+    Bytes unterminated = encoded(text.message);
+    unterminated[text.offset + 4 + static_cast<std::size_t>(text.length) - 1] = std::byte{'x'};
+    EXPECT_EQ(verdict(retagged(unterminated)), "size");
+  }
+}
+
+TEST(Codec, StringsLongerThanTheirLimitAreRefusedEvenIfTheBytesAreThere) {
+  Bytes bytes = encoded(Stop{header_of_sender(kOperator), true, std::string(kMaxReasonLength, 'r')});
+  bytes.insert(bytes.end() - 1, std::byte{'r'});
+  put32(bytes, kHeaderBytes + 1, kMaxReasonLength + 2);
+  EXPECT_EQ(verdict(retagged(bytes)), "size");
+}
+
+TEST(Codec, NumbersThatAreNotNumbersAreRefused) {
+  const auto refused_with = [](auto message, double& number) {
+    for (const double bad : {kNan, -kNan, kInfinity, -kInfinity}) {
+      const double good = std::exchange(number, bad);
+      EXPECT_EQ(verdict(Message(message())), "range") << bad << " in place of " << good;
+      number = good;
+    }
+  };
+  AgentStatus status = agent_status();
+  const auto the_status = [&] { return status; };
+  refused_with(the_status, status.ergodic_metric);
+  refused_with(the_status, status.max_staleness_s);
+  TeamStatus team = team_status();
+  refused_with([&] { return team; }, team.ergodic_metric);
+  Contribution sums = contribution();
+  refused_with([&] { return sums; }, sums.elapsed_s);
+  WorldState world = world_state();
+  Command answer = command();
+  for (int axis = 0; axis < 3; ++axis) {
+    refused_with([&] { return world; }, world.vehicles[1].position_m[axis]);
+    refused_with([&] { return world; }, world.vehicles[1].velocity_mps[axis]);
+    refused_with([&] { return answer; }, answer.position_m[axis]);
+    refused_with([&] { return answer; }, answer.velocity_mps[axis]);
+  }
+}
+
+/// A copy of `message` after `change`.
+template <class M>
+Message changed(M message, const std::function<void(M&)>& change) {
+  change(message);
+  return message;
+}
+
+TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
+  using Part = MissionPart;
+  const Message lies[] = {
+      changed<Hello>(hello(), [](Hello& m) { m.requested_id = -2; }),
+      changed<Hello>(hello(), [](Hello& m) { m.requested_id = kMaxAgents; }),
+      changed<Part>(mission_part(), [](Part& m) { m.state = static_cast<MissionState>(4); }),
+      changed<Part>(mission_part(), [](Part& m) { m.state = static_cast<MissionState>(-1); }),
+      changed<Part>(mission_part(), [](Part& m) { m.revision = -1; }),
+      changed<Part>(mission_part(), [](Part& m) { m.part = -1; }),
+      changed<Part>(mission_part(), [](Part& m) { m.part = m.parts; }),
+      changed<Part>(mission_part(), [](Part& m) { m.parts = kMaxPlanParts + 1; }),
+      changed<Part>(mission_part(), [](Part& m) { m.part = 0, m.parts = 0; }),
+      changed<Part>(mission_part(), [](Part& m) { m.part = -5, m.parts = kLeast; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].author.agent = -1; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].author.agent = kMaxAgents; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].active_from = -1; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].active_until = -2; }),
+      changed<Contribution>(contribution(), [](Contribution& m) { m.header.sender = -1; }),
+      changed<Contribution>(contribution(), [](Contribution& m) { m.header.sender = kMaxAgents; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.header.sender = kCoordinator; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.header.sender = kMaxAgents; }),
+      changed<AgentStatus>(agent_status(),
+                           [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(4); }),
+      changed<AgentStatus>(agent_status(),
+                           [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(-1); }),
+      changed<TeamStatus>(team_status(),
+                          [](TeamStatus& m) { m.state = static_cast<MissionState>(9); }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.header.tick = -1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.roster_revision = -1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.part = -1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.part = m.parts; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.part = 0, m.parts = 0; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.parts = kMaxAgents + 1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.vehicles[1].id = -1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.vehicles[1].id = kMaxAgents; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.header.sender = 3; }),
+      changed<Part>(mission_part(), [](Part& m) { m.header.sender = kOperator; }),
+      changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.header.sender = 0; }),
+      changed<RecordAck>(record_ack(), [](RecordAck& m) { m.header.sender = kWorld; }),
+      changed<Command>(command(), [](Command& m) { m.header.sender = kWorld; }),
+      changed<Command>(command(), [](Command& m) { m.header.sender = kMaxAgents; }),
+      changed<Command>(command(), [](Command& m) { m.header.tick = -1; }),
+  };
+  for (std::size_t i = 0; i < std::size(lies); ++i) EXPECT_EQ(verdict(lies[i]), "range") << "lie " << i;
+}
+
+TEST(Codec, CountsThatOnlyOverflowAreRefused) {
+  constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
+  for (const Message& original : every_message()) {
+    const auto with = [&](const std::function<void(Header&)>& change) {
+      Message message = original;
+      std::visit([&](auto& m) { change(m.header); }, message);
+      return verdict(message);
+    };
+    for (const std::int64_t bad : {kHuge, -kHuge, (std::int64_t{1} << 48) + 1, std::int64_t{-2}}) {
+      EXPECT_EQ(with([&](Header& h) { h.sequence = bad; }), "range") << bad;
+      EXPECT_EQ(with([&](Header& h) { h.tick = bad; }), "range") << bad;
+    }
+    EXPECT_EQ(with([](Header& h) { h.sender = kOperator - 1; }), "range");
+    EXPECT_EQ(with([](Header& h) { h.sender = kMaxAgents; }), "range");
+  }
+  for (std::int64_t AgentStatus::*count :
+       {&AgentStatus::contributions_received, &AgentStatus::contributions_lost,
+        &AgentStatus::messages_sent, &AgentStatus::messages_received, &AgentStatus::missed_ticks,
+        &AgentStatus::kernel_drops}) {
+    for (const std::int64_t bad : {kHuge, std::int64_t{-1}}) {
+      AgentStatus status = agent_status();
+      status.*count = bad;
+      EXPECT_EQ(verdict(Message(status)), "range");
+    }
+  }
+  AgentStatus status = agent_status();
+  status.refused[5] = kHuge;
+  EXPECT_EQ(verdict(Message(status)), "range");
+}
+
+TEST(Codec, AnotherRunsMessagesAreRefusedUnlessAnyRunWillDo) {
+  for (const Message& message : every_message()) {
+    const Bytes bytes = encoded(message);
+    EXPECT_EQ(verdict(bytes, kRun), "accepted");
+    EXPECT_EQ(verdict(bytes, kRun + 1), "run");
+    EXPECT_EQ(verdict(bytes, kRun << 32), "run");
+    EXPECT_EQ(verdict(bytes, 0), "accepted");
+  }
+}
+
+TEST(Codec, MutationsWithACorrectTagNeverDoMoreThanBeRefusedOrMakeAValidMessage) {
+  const std::vector<Message> originals = every_message();
+  int refused = 0, accepted = 0;
+  for (std::uint64_t round = 0; round < 60000; ++round) {
+    Bytes bytes = encoded(originals[round % originals.size()]);
+    for (std::uint32_t change = 0; change < 1 + round % 5; ++change) {
+      const Words words = random_words(11, Purpose::kFault, change, round);
+      bytes[8 + words.first % (bytes.size() - 8)] = static_cast<std::byte>(words.second);
+    }
+    if (round % 7 == 0) bytes.resize(kHeaderBytes + round % (bytes.size() - kHeaderBytes + 1));
+    const Decoded decoded = decode(retagged(bytes), 0);
+    if (const auto* message = std::get_if<Message>(&decoded)) {
+      ++accepted;
+      ASSERT_EQ(verdict(decode(encoded(*message), 0)), "accepted") << "round " << round;
+    } else {
+      ++refused;
+    }
+  }
+  // Both ways out were taken often enough to mean something.
+  EXPECT_GT(refused, 5000);
+  EXPECT_GT(accepted, 5000);
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,150 @@
+// One message of every kind, every field with a value of its own, and their bytes.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/codec.h"
+
+namespace ergocast::test {
+
+using Bytes = std::vector<std::byte>;
+using Decoded = std::variant<Message, Refusal>;
+
+inline constexpr RunId kRun = 0xfeedfacecafebeef;
+inline constexpr std::size_t kHeaderBytes = 60;
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// ---- honest messages, every field with a value of its own ----------------------------------------
+
+inline Header header_of_sender(AgentId sender) {
+  return {kRun, sender, 0x8000000000000123, 4711, 123456789012};
+}
+
+inline Hello hello() { return {header_of_sender(kUnassigned), 7, "host.example", "0.1.0"}; }
+
+inline MissionPart mission_part() {
+  MissionPart m;
+  m.header = header_of_sender(kCoordinator);
+  m.revision = 12;
+  m.state = MissionState::kRunning;
+  m.part = 2;
+  m.parts = 5;
+  m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200}};
+  for (int i = 0; i < 300; ++i) m.plan.push_back(static_cast<std::byte>(i * 7));
+  m.reason = "because";
+  return m;
+}
+
+inline Contribution contribution() {
+  Contribution m;
+  m.header = header_of_sender(3);
+  m.steps = 1000;
+  m.next_broadcast_tick = 1001;
+  m.elapsed_s = 100;
+  m.block = 1;
+  m.mode_count = 225;
+  for (int k = 0; k < kBlockSize; ++k) m.sums[static_cast<std::size_t>(k)] = 99.5 * std::sin(k) / 3;
+  m.sums[5] = -0.0;
+  m.sums[6] = 5e-324;
+  return m;
+}
+
+inline AgentStatus agent_status() {
+  AgentStatus m;
+  m.header = header_of_sender(3);
+  m.phase = AgentPhase::kRunning;
+  m.ergodic_metric = 1.0 / 3;
+  m.max_staleness_s = 2.5;
+  m.waiting_for = 4;
+  m.answered_tick = 5;
+  m.contributions_received = 6;
+  m.contributions_lost = 7;
+  m.messages_sent = 8;
+  m.messages_received = 9;
+  m.missed_ticks = 10;
+  m.refused = {11, 12, 13, 14, 15, 16};
+  m.kernel_drops = 17;
+  m.host = "host.example";
+  return m;
+}
+
+inline TeamStatus team_status() {
+  return {header_of_sender(kCoordinator), MissionState::kEnded, 1500, 3, 4, 1.0 / 7, 2, 9};
+}
+
+inline Stop stop() { return {header_of_sender(kOperator), true, "enough"}; }
+
+inline WorldState world_state() {
+  WorldState m;
+  m.header = header_of_sender(kWorld);
+  m.roster_revision = 3;
+  m.missed_deadlines = 4;
+  m.skipped_ticks = 5;
+  m.part = 1;
+  m.parts = 8;
+  m.vehicle_count = 2;
+  m.vehicles[0] = {16, 77, {1.0 / 3, -2, 3}, {4, 5, 6}};
+  m.vehicles[1] = {127, -1, {7, 8, 9}, {10, -11, 1e-300}};
+  return m;
+}
+
+inline Command command() { return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}}; }
+
+inline RecordAck record_ack() { return {header_of_sender(kLogger)}; }
+
+inline std::vector<Message> every_message() {
+  return {hello(), mission_part(), contribution(), agent_status(), team_status(),
+          stop(),  world_state(),  command(),      record_ack()};
+}
+
+// ---- bytes ---------------------------------------------------------------------------------------
+
+inline Bytes encoded(const Message& message) {
+  Bytes bytes;
+  encode(message, bytes);
+  bytes.shrink_to_fit();
+  return bytes;
+}
+
+/// Recomputes the tag as a sender who knows the format would: XXH3-128 with bytes 44 to 59 zero.
+inline Bytes retagged(Bytes bytes) {
+  std::memset(bytes.data() + 44, 0, 16);
+  XXH128_canonical_t canonical;
+  XXH128_canonicalFromHash(&canonical, XXH3_128bits(bytes.data(), bytes.size()));
+  std::memcpy(bytes.data() + 44, canonical.digest, 16);
+  return bytes;
+}
+
+inline void put32(Bytes& bytes, std::size_t offset, std::int32_t value) {
+  const std::uint32_t big_endian = __builtin_bswap32(static_cast<std::uint32_t>(value));
+  std::memcpy(bytes.data() + offset, &big_endian, 4);
+}
+
+inline Bytes with_count(const Message& message, std::size_t offset, std::int32_t count) {
+  Bytes bytes = encoded(message);
+  put32(bytes, offset, count);
+  return retagged(bytes);
+}
+
+/// "accepted", or the reason.
+inline std::string verdict(const Decoded& decoded) {
+  const auto* refusal = std::get_if<Refusal>(&decoded);
+  return refusal == nullptr ? "accepted" : to_string(*refusal);
+}
+inline std::string verdict(const Bytes& bytes, RunId run = kRun) { return verdict(decode(bytes, run)); }
+inline std::string verdict(const Message& message) { return verdict(encoded(message)); }
+
+template <class M>
+M decoded_as(const Bytes& bytes) {
+  return std::get<M>(std::get<Message>(decode(bytes, kRun)));
+}
+
+}  // namespace ergocast::test
