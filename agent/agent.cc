@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 
+#include "core/noise.h"
 #include "core/require.h"
 
 namespace ergocast {
@@ -12,8 +13,16 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kHelloPeriod = 250ms;
-/// A status this often in mission time too, so that a fast lockstep run is not left unobserved.
+/// This often in mission time too, so that a fast lockstep run is not left alone.
 constexpr double kStatusMissionPeriod_s = 1.0;
+constexpr auto kDigestPeriod = 1s;
+constexpr double kDigestMissionPeriod_s = 1.0;
+/// Whoever asks for the mission gets it from one of us, after a random share of this; and from each
+/// of us at most so often.
+constexpr auto kLongestRepeatDelay = 50ms;
+constexpr auto kMissionRepeatGap = 500ms;
+/// A world that says nothing for so long is worth a word.
+constexpr auto kWorldSilence = 1s;
 /// How far ahead of us a teammate's coverage may be before it counts as forged.
 constexpr double kLead_s = 60;
 constexpr Tick kLeadTicks = 64;
@@ -26,22 +35,27 @@ Agent::Agent(AgentIdentity identity, PlanDecoder decode_plan)
     : identity_(std::move(identity)), follower_(std::move(decode_plan)) {
   ERGOCAST_REQUIRE(identity_.incarnation != 0);
   self_ = {identity_.requested_id, identity_.incarnation};
+  last_command_.header.tick = command_before_.header.tick = -1;
 }
 
-void Agent::receive(const Message& message, Instant) {
+void Agent::receive(const Message& message, Instant now, AgentId transmitter) {
   const Header& from = header_of(message);
   if (finished() || from.incarnation == identity_.incarnation) return;
   if (identity_.run != 0 && from.run != identity_.run) return count_refused(Refusal::kRun);
+  if (!radio_.hears(self_.agent, transmitter)) return;
   ++received_;
-  if (const auto* m = std::get_if<Contribution>(&message)) return on(*m);
-  if (const auto* m = std::get_if<WorldState>(&message)) return on(*m);
-  if (const auto* m = std::get_if<MissionPart>(&message)) return on(*m);
+  if (const auto* m = std::get_if<Contribution>(&message)) return on(*m, transmitter, now);
+  if (const auto* m = std::get_if<WorldState>(&message)) return on(*m, now);
+  if (const auto* m = std::get_if<Digest>(&message)) return on(*m, now);
+  if (const auto* m = std::get_if<Hello>(&message)) return on(*m, now);
+  if (const auto* m = std::get_if<MissionPart>(&message)) return on(*m, now);
   if (const auto* m = std::get_if<AgentStatus>(&message)) return on(*m);
   if (const auto* m = std::get_if<Stop>(&message)) return on(*m);
 }
 
-void Agent::on(const MissionPart& part) {
+void Agent::on(const MissionPart& part, Instant now) {
   if (identity_.run == 0) identity_.run = part.header.run;
+  if (part.revision >= follower_.revision()) mission_repeat_.reset();  // said by somebody else
   if (!follower_.receive(part)) return;
   if (follower_.plan_unreadable()) {
     return finish(true, "the mission plan is not readable by version " + identity_.version +
@@ -59,6 +73,7 @@ void Agent::on(const MissionPart& part) {
   }
   if (phase_ == AgentPhase::kWaiting && follower_.state() == MissionState::kRunning) {
     phase_ = AgentPhase::kRunning;
+    world_heard_ = now;
   }
 }
 
@@ -73,42 +88,66 @@ void Agent::join() {
   const Mission& mission = *follower_.mission();
   table_.emplace(mission.basis, mission.timing.dt_s);
   controller_.emplace(mission);
+  schedule_.emplace(mission, self_);
+  anti_entropy_.emplace(self_, mission.seed, mission.timing.dt_s);
+  radio_ = RadioRange(mission.radio_range_m);
   team_coverage_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
   table_->add_row(self_);  // before any other incarnation could take its place
   published_.resize(static_cast<std::size_t>(table_->block_count()));
   phase_ = AgentPhase::kWaiting;
 }
 
-void Agent::on(const Contribution& theirs) {
+std::int64_t Agent::most_steps(const RosterEntry& author, Instant now) const {
+  const Timing& timing = follower_.mission()->timing;
+  Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
+  if (timing.pace == Pace::kRealtime && tick_ >= 0) {
+    // Others have gone on while we heard nothing of the world; twice, for clocks that differ.
+    const double unheard_s = std::chrono::duration<double>(now - world_heard_).count();
+    lead += static_cast<Tick>(2 * unheard_s * timing.realtime_factor / timing.dt_s);
+  }
+  const Tick current = tick_ + 1;
+  return lead + (author.active_until < 0 ? current : std::min(current, author.active_until + 1));
+}
+
+void Agent::on(const Contribution& theirs, AgentId transmitter, Instant now) {
   if (!table_) return;
   const RosterEntry* entry = follower_.entry_of(theirs.header.incarnation);
   if (entry == nullptr || entry->author != theirs.author()) return;  // nobody we know of yet
-  Heard& heard = count_heard(theirs.header);
+  if (transmitter == theirs.header.sender) {
+    hearing_.count(theirs.header);
+  } else {
+    anti_entropy_->on_relayed(theirs, *table_);
+  }
   ++contributions_received_;
-  const double dt_s = follower_.mission()->timing.dt_s;
-  const Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / dt_s));
-  Tick max_steps = tick_ + 1 + lead;
-  if (entry->active_until >= 0) max_steps = std::min(max_steps, entry->active_until + 1);
+  const std::int64_t max_steps = most_steps(*entry, now);
   if (tick_ < 0 && theirs.steps > max_steps) return;  // we do not know yet how late it is
   switch (table_->merge(theirs, max_steps)) {
     case Merge::kRefusedRange: return count_refused(Refusal::kRange);
     case Merge::kRefusedLimit: return count_refused(Refusal::kLimit);
-    case Merge::kNewer: heard.news_tick = tick_; return;
+    case Merge::kNewer: return hearing_.news(theirs.author(), tick_);
     case Merge::kStale: return;
   }
 }
 
-Agent::Heard& Agent::count_heard(const Header& from) {
-  Heard& heard = heard_[{from.sender, from.incarnation}];
-  if (heard.count == 0) heard.first = from.sequence;
-  heard.last = std::max(heard.last, from.sequence);
-  ++heard.count;
-  return heard;
+void Agent::on(const Digest& theirs, Instant now) {
+  if (!table_ || follower_.entry_of(theirs.header.incarnation) == nullptr) return;
+  hearing_.count(theirs.header);
+  anti_entropy_->on(theirs, *table_, follower_.roster(), now, tick_);
+}
+
+void Agent::on(const Hello& hello, Instant now) {
+  if (!table_) return;
+  if (hello.header.sender == kWorld) world_asks_ = true;
+  const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
+  if (!knows_no_mission || mission_repeat_ || now - mission_repeated_ < kMissionRepeatGap) return;
+  const double share = uniform_pair(identity_.incarnation, Purpose::kAnswer, 0,
+                                    static_cast<std::uint64_t>(received_)).x();
+  mission_repeat_ = now + std::chrono::duration_cast<PacingClock::duration>(share * kLongestRepeatDelay);
 }
 
 void Agent::on(const AgentStatus& status) {
   if (table_ && follower_.entry_of(status.header.incarnation) != nullptr) {
-    count_heard(status.header);
+    hearing_.count(status.header);
   }
   if (phase_ != AgentPhase::kJoining || identity_.requested_id == kUnassigned ||
       status.header.sender != identity_.requested_id ||
@@ -122,8 +161,10 @@ void Agent::on(const AgentStatus& status) {
   }
 }
 
-void Agent::on(const WorldState& world) {
+void Agent::on(const WorldState& world, Instant now) {
   if (!follower_.mission() || phase_ == AgentPhase::kJoining) return;
+  world_heard_ = now;
+  radio_.on(world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (vehicle.id != self_.agent) continue;
@@ -143,11 +184,11 @@ void Agent::on(const WorldState& world) {
 void Agent::on(const Stop& stop) { finish(stop.failed, stop.reason); }
 
 void Agent::advance(Instant now, Outbox& out) {
-  const bool may_ask = phase_ == AgentPhase::kJoining && identity_.run != 0;
+  // A coordinator that was restarted may not know of us any more: then we ask again.
+  const bool may_ask = !finished() && identity_.run != 0 && !admitted();
   if (may_ask && now >= next_hello_) {
     next_hello_ = now + kHelloPeriod;
-    publish(Bus::kSwarm, Hello{{}, identity_.requested_id, identity_.host, identity_.version}, 0,
-            out);
+    publish(Bus::kSwarm, Hello{{}, self_.agent, identity_.host, identity_.version}, 0, out);
   }
   if (phase_ == AgentPhase::kRunning) {
     if (pending_) begin_tick(out);
@@ -155,8 +196,41 @@ void Agent::advance(Instant now, Outbox& out) {
     if (phase_ == AgentPhase::kRunning && answered_tick_ < tick_ && may_answer()) answer(out);
   }
   // Nobody can tell two joining processes apart by an id that neither has been given.
-  const bool has_id = table_.has_value();
-  if (has_id && (now >= next_status_ || tick_ >= next_status_tick_)) publish_status(now, out);
+  if (!table_) return;
+  if (!finished()) help_others(now, out);
+  if (next_status_.due(now, tick_)) publish_status(now, out);
+}
+
+void Agent::help_others(Instant now, Outbox& out) {
+  if (world_asks_) tell_world(out);
+  if (mission_repeat_ && now >= *mission_repeat_) {
+    mission_repeat_.reset();
+    mission_repeated_ = now;
+    repeat_mission(out);
+  }
+  for (Contribution& block : anti_entropy_->answers_due(*table_, now, tick_)) {
+    block.header.run = identity_.run;
+    out.push_back({Bus::kSwarm, block, self_.agent});
+  }
+  if (!next_digest_.due(now, tick_)) return;
+  const double dt_s = follower_.mission()->timing.dt_s;
+  next_digest_ = Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, dt_s, tick_);
+  for (const Digest& digest : AntiEntropy::digests(*table_, follower_.roster())) {
+    publish(Bus::kSwarm, digest, std::max<Tick>(tick_, 0), out);
+  }
+}
+
+void Agent::repeat_mission(Outbox& out) {
+  for (const MissionPart& part : follower_.parts()) {
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) out.push_back({bus, part});
+  }
+}
+
+void Agent::tell_world(Outbox& out) {
+  world_asks_ = false;
+  for (const Command& command : {command_before_, last_command_}) {
+    publish(Bus::kCommand, command, command.header.tick, out);
+  }
 }
 
 void Agent::begin_tick(Outbox& out) {
@@ -172,23 +246,23 @@ void Agent::begin_tick(Outbox& out) {
   if (tick_ >= 0) missed_ticks_ += view.tick - tick_ - 1;
   tick_ = view.tick;
   roster_revision_ = view.roster_revision;
+  for (const RosterEntry& entry : follower_.roster()) {
+    if (entry.forgotten_at(tick_)) table_->forget(entry.author);
+  }
   x_m_ = view.position_m.head<2>();
   basis_at_.emplace(x_m_, mission.domain, mission.basis);
   table_->add_sample(self_, *basis_at_);
   if (tick_ >= next_broadcast_tick_) broadcast(out);
 }
 
-Tick Agent::next_broadcast_after(Tick tick) const {
-  const Mission& mission = *follower_.mission();
-  const Tick period = mission.timing.broadcast_period_ticks;
-  const Tick team = std::max<Tick>(1, static_cast<Tick>(mission.starts_m.size()));
-  const Tick phase = self_.agent * period / team % period;
-  const Tick since = ((tick - phase) % period + period) % period;
-  return tick + period - since;
+int Agent::members() const {
+  return static_cast<int>(std::count_if(
+      follower_.roster().begin(), follower_.roster().end(),
+      [this](const RosterEntry& entry) { return entry.active_at(tick_); }));
 }
 
 void Agent::broadcast(Outbox& out) {
-  next_broadcast_tick_ = next_broadcast_after(tick_);
+  next_broadcast_tick_ = schedule_->next_after(tick_, *table_, team_coverage_, members());
   for (int b = 0; b < table_->block_count(); ++b) {
     Contribution& block = published_[static_cast<std::size_t>(b)];
     block = table_->block(self_, b);
@@ -213,6 +287,7 @@ bool Agent::may_answer() {
   if (follower_.revision() < roster_revision_) return false;
   for (const RosterEntry& entry : follower_.roster()) {
     if (entry.author == self_ || !entry.active_at(tick_)) continue;
+    if (!radio_.hears(self_.agent, entry.author.agent)) continue;
     if (!table_->holds_due(entry.author, tick_)) {
       waiting_for_ = entry.author.agent;
       return false;
@@ -225,6 +300,8 @@ void Agent::answer(Outbox& out) {
   table_->average(team_coverage_);
   const Eigen::Vector2d velocity =
       controller_->command(self_.agent, tick_, x_m_, *basis_at_, team_coverage_);
+  command_before_ = last_command_;
+  last_command_.header.tick = tick_;
   last_command_.position_m << x_m_, 0;
   last_command_.velocity_mps << velocity, 0;
   answered_tick_ = tick_;
@@ -235,55 +312,41 @@ void Agent::publish_status(Instant now, Outbox& out) {
   AgentStatus status;
   status.phase = phase_;
   if (tick_ >= 0) status.ergodic_metric = controller_->metric(team_coverage_);
-  status.max_staleness_s = max_staleness_s();
-  status.waiting_for = waiting_for_;
+  const double dt_s = follower_.mission()->timing.dt_s;
+  if (tick_ >= 0) {
+    status.max_staleness_s =
+        static_cast<double>(hearing_.oldest_news(follower_.roster(), self_, tick_)) * dt_s;
+  }
+  const bool world_is_silent = phase_ == AgentPhase::kRunning && now - world_heard_ > kWorldSilence;
+  status.waiting_for = world_is_silent ? kWorld : waiting_for_;
   status.answered_tick = answered_tick_;
   status.contributions_received = contributions_received_;
-  status.contributions_lost = messages_lost();
+  status.contributions_lost = hearing_.lost();
   status.messages_sent = sequencer_.total();
   status.messages_received = received_;
+  status.contributions_relayed = anti_entropy_->relayed();
   status.missed_ticks = missed_ticks_;
   status.refused = refused_;
   status.kernel_drops = kernel_drops_;
   status.host = identity_.host;
   publish(Bus::kSwarm, status, std::max<Tick>(tick_, 0), out);
-  next_status_ = now + kAgentStatusPeriod;
-  const double dt_s = follower_.mission()->timing.dt_s;
-  next_status_tick_ = tick_ + std::max<Tick>(1, static_cast<Tick>(kStatusMissionPeriod_s / dt_s));
-  if (!finished()) return;
-  next_status_ = Instant::max();
-  next_status_tick_ = std::numeric_limits<Tick>::max();
-}
-
-double Agent::max_staleness_s() const {
-  if (tick_ < 0) return 0;
-  Tick oldest = 0;
-  for (const RosterEntry& entry : follower_.roster()) {
-    if (entry.author == self_ || !entry.active_at(tick_)) continue;
-    const auto heard = heard_.find(entry.author);
-    const Tick news = heard == heard_.end() ? -1 : heard->second.news_tick;
-    oldest = std::max(oldest, tick_ - std::max(news, entry.active_from - 1));
-  }
-  return static_cast<double>(oldest) * follower_.mission()->timing.dt_s;
-}
-
-std::int64_t Agent::messages_lost() const {
-  std::int64_t lost = 0;
-  for (const auto& [author, heard] : heard_) lost += heard.lost();
-  return lost;
+  next_status_ = Deadline::in(kAgentStatusPeriod, now, kStatusMissionPeriod_s, dt_s, tick_);
+  if (finished()) next_status_ = {Instant::max(), std::numeric_limits<Tick>::max()};
 }
 
 Instant Agent::next_wakeup() const {
   if (finished()) return Instant::max();
-  if (phase_ != AgentPhase::kJoining) return next_status_;
-  return identity_.run == 0 ? Instant::max() : next_hello_;
+  Instant next = identity_.run != 0 && !admitted() ? next_hello_ : Instant::max();
+  if (!table_) return next;
+  if (mission_repeat_) next = std::min(next, *mission_repeat_);
+  return std::min({next, next_status_.at, next_digest_.at, anti_entropy_->next_answer()});
 }
 
 void Agent::finish(bool failed, std::string reason) {
   phase_ = AgentPhase::kFinished;
   failed_ = failed;
   reason_ = std::move(reason);
-  next_status_ = Instant{};  // the last status says that it has finished
+  next_status_ = {};  // the last status says that it has finished
 }
 
 Header Agent::header(Bus bus, Tick tick) {

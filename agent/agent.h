@@ -1,19 +1,24 @@
 // One agent: messages and time in, messages out. No socket, thread, clock, logger or file.
 //
 // Messages only update tables; the control step reads them. In lockstep a tick is answered once
-// every block due by it is held; in real time at once, with what is there.
+// every block due by it is held; in real time at once, with what is there. What teammates lack it
+// repeats to them (anti_entropy.h), and the mission itself to whoever asks for it.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "agent/anti_entropy.h"
+#include "agent/broadcast_schedule.h"
+#include "agent/hearing.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
+#include "core/deadline.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission_follower.h"
+#include "core/radio_range.h"
 
 namespace ergocast {
 
@@ -30,7 +35,11 @@ class Agent {
   Agent(AgentIdentity identity, PlanDecoder decode_plan);
 
   /// Takes in a message. Harmless when late, repeated, out of order or untrue.
-  void receive(const Message& message, Instant now);
+  /// @param transmitter  who it comes from: its sender, or an agent that repeats it
+  void receive(const Message& message, Instant now, AgentId transmitter);
+  void receive(const Message& message, Instant now) {
+    receive(message, now, header_of(message).sender);
+  }
 
   /// Does whatever is due at `now` and appends what to publish, in order.
   void advance(Instant now, Outbox& out);
@@ -48,9 +57,14 @@ class Agent {
 
   RunId run() const { return identity_.run; }
   AgentId id() const { return self_.agent; }
+  const Author& author() const { return self_; }
   AgentPhase phase() const { return phase_; }
   Tick tick() const { return tick_; }
   const CoverageTable* coverage() const { return table_ ? &*table_ : nullptr; }
+  /// c_k as of the last answered tick.
+  const Coefficients& team_coverage() const { return team_coverage_; }
+  const MissionFollower& follower() const { return follower_; }
+  const RefusalCounts& refused() const { return refused_; }
 
   /// What the transport counted; shown in the status.
   void count_refused(Refusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
@@ -62,35 +76,33 @@ class Agent {
     std::int64_t roster_revision;
     Eigen::Vector3d position_m;
   };
-  /// What was heard of one sender on the swarm bus, by its sequence numbers.
-  struct Heard {
-    std::int64_t first = 0, last = 0, count = 0;
-    Tick news_tick = -1;  ///< when its coverage last grew for us
-    std::int64_t lost() const { return std::max<std::int64_t>(0, last - first + 1 - count); }
-  };
 
-  void on(const MissionPart& part);
-  void on(const Contribution& theirs);
+  void on(const MissionPart& part, Instant now);
+  void on(const Contribution& theirs, AgentId transmitter, Instant now);
+  void on(const Digest& theirs, Instant now);
   void on(const AgentStatus& status);
-  Heard& count_heard(const Header& from);
-  void on(const WorldState& world);
+  void on(const WorldState& world, Instant now);
+  void on(const Hello& hello, Instant now);
   void on(const Stop& stop);
 
   void join();
+  bool admitted() const { return follower_.entry_of(identity_.incarnation) != nullptr; }
+  std::int64_t most_steps(const RosterEntry& author, Instant now) const;
   bool evicted(Tick tick);
   void begin_tick(Outbox& out);
   void broadcast(Outbox& out);
   void repeat(Outbox& out);
   bool may_answer();
   void answer(Outbox& out);
+  void help_others(Instant now, Outbox& out);
+  void repeat_mission(Outbox& out);
+  void tell_world(Outbox& out);
   void publish_status(Instant now, Outbox& out);
   void finish(bool failed, std::string reason);
   Header header(Bus bus, Tick tick);
   template <class M>
   void publish(Bus bus, const M& message, Tick tick, Outbox& out);
-  Tick next_broadcast_after(Tick tick) const;
-  double max_staleness_s() const;
-  std::int64_t messages_lost() const;
+  int members() const;
 
   AgentIdentity identity_;
   MissionFollower follower_;
@@ -101,6 +113,10 @@ class Agent {
 
   std::optional<CoverageTable> table_;
   std::optional<Controller> controller_;
+  std::optional<BroadcastSchedule> schedule_;
+  std::optional<AntiEntropy> anti_entropy_;
+  RadioRange radio_;
+  Hearing hearing_;
   Coefficients team_coverage_;
   std::vector<Contribution> published_;  // own blocks as last broadcast: what a repeat repeats
 
@@ -110,13 +126,16 @@ class Agent {
   Tick tick_ = -1, answered_tick_ = -1, next_broadcast_tick_ = 0;
   Eigen::Vector2d x_m_{0, 0};
   std::optional<BasisAt> basis_at_;
-  Command last_command_;
+  Command last_command_, command_before_;  // header.tick −1: none yet
   AgentId waiting_for_ = kUnassigned;
+  Instant world_heard_{};
+  bool world_asks_ = false;  // where we were: it has just started
 
-  Instant next_hello_{}, next_status_{};
-  Tick next_status_tick_ = 0;
+  Instant next_hello_{};
+  Deadline next_status_, next_digest_;
+  std::optional<Instant> mission_repeat_;  // somebody has asked for the mission
+  Instant mission_repeated_{};
   Sequencer sequencer_;
-  std::map<Author, Heard> heard_;
   std::int64_t received_ = 0, contributions_received_ = 0, missed_ticks_ = 0, kernel_drops_ = 0;
   RefusalCounts refused_{};
 

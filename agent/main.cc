@@ -15,8 +15,10 @@ int run(const NodeOptions& node, AgentId requested_id) {
   Agent agent({node.run, requested_id, random_identity(), host_name(), version()}, decode_plan);
   auto opened = Transport::open(
       node.url, node.run,
-      {{Bus::kSwarm, "MISSION|STOP|CONTRIBUTION_.*|AGENT_STATUS_.*"}, {Bus::kWorld, "WORLD_STATE"}},
-      {.on_message = [&agent](const Message& message) { agent.receive(message, now()); },
+      {{Bus::kSwarm, "MISSION|STOP|CONTRIBUTION_.*|DIGEST_.*|AGENT_STATUS_.*|HELLO"}, {Bus::kWorld, "WORLD_STATE|HELLO"}},
+      {.on_message = [&agent](const Message& message, AgentId transmitter) {
+         agent.receive(message, now(), transmitter);
+       },
        .on_refused = [&agent](Refusal refusal) { agent.count_refused(refusal); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);

@@ -153,7 +153,7 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, StopSignals& sig
   MissionWatch mission(setup.run, scenario.mission().timing.dt_s, display);
   auto opened = Transport::open(
       setup.url, setup.run, {{Bus::kSwarm, "TEAM_STATUS|MISSION"}},
-      {.on_message = [&mission](const Message& message) { mission.receive(message); }});
+      {.on_message = [&mission](const Message& message, AgentId) { mission.receive(message); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     return complain(kExitUnavailable, *problem);
   }

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <sstream>
 
+#include "core/require.h"
+
 namespace ergocast {
 namespace {
 
@@ -18,31 +20,129 @@ constexpr auto kSilence = 6 * kAgentStatusPeriod;
 constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 /// How long the end is repeated.
 constexpr auto kFarewell = 1s;
+/// How long to look for a mission under way: longer than any agent is silent.
+constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
+constexpr auto kQuestionPeriod = 250ms;
+/// After the first answer, for newer revisions from agents that heard more of the predecessor.
+constexpr auto kSecondOpinions = 200ms;
+constexpr auto kTakeoverPatience = 30s;
+/// The predecessor may have said some revisions that nobody has repeated to us.
+constexpr std::int64_t kRevisionLead = 1000;
+/// Real time: how long the team gets to hear of a change before it takes effect.
+constexpr double kNotice_s = 2;
 constexpr std::size_t kMaxRosterEntries = static_cast<std::size_t>(kMaxAgents) * 4;
 
 }  // namespace
 
-Coordinator::Coordinator(RunId run, Incarnation incarnation, Mission mission,
-                         std::vector<std::byte> plan)
+const char* to_string(Presence presence) {
+  constexpr const char* kNames[] = {"alive", "silent", "gone"};
+  return kNames[static_cast<int>(presence)];
+}
+
+Presence Coordinator::presence(const RosterEntry& entry, Instant now) const {
+  if (entry.active_until >= 0) return Presence::kGone;
+  return alive(entry, now) ? Presence::kAlive : Presence::kSilent;
+}
+
+Coordinator::Coordinator(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
+                         std::vector<std::byte> plan, Takeover takeover)
     : run_(run),
       incarnation_(incarnation),
-      mission_(std::move(mission)),
-      plan_(std::move(plan)) {}
+      plan_(std::move(plan)),
+      follower_(decode_plan),
+      takeover_(takeover) {
+  if (!plan_.empty()) mission_ = decode_plan(plan_).value();
+  ERGOCAST_REQUIRE(mission_ || takeover == Takeover::kMust);
+}
 
 void Coordinator::receive(const Message& message, Instant now) {
-  if (header_of(message).run != run_) return;
+  const Header& from = header_of(message);
+  const auto* status = std::get_if<AgentStatus>(&message);
+  const bool flying = status != nullptr && (status->phase == AgentPhase::kWaiting ||
+                                            status->phase == AgentPhase::kRunning);
+  if (takeover_ != Takeover::kNever && run_ == 0 && flying) run_ = from.run;
+  if (run_ == 0 || from.run != run_) return;
+  if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
+  if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
+  if (takeover_ != Takeover::kNever) return;
   if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);
   if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
-  if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
-  if (const auto* status = std::get_if<AgentStatus>(&message)) {
-    const auto at = members_.find({status->header.sender, status->header.incarnation});
-    if (at == members_.end()) return;
-    // Liveness advances only on what is new: a replay keeps nobody alive.
-    if (at->second.status && at->second.status->header.sequence >= status->header.sequence) return;
-    at->second.status = *status;
-    at->second.heard = now;
+  if (status != nullptr) return on(*status, now);
+}
+
+void Coordinator::on(const AgentStatus& status, Instant now) {
+  const auto at = members_.find({status.header.sender, status.header.incarnation});
+  if (at == members_.end()) return;
+  Member& member = at->second;
+  // Liveness advances only on what is new: a replay keeps nobody alive.
+  if (member.status && member.status->header.sequence >= status.header.sequence) return;
+  member.status = status;
+  member.heard = now;
+  RosterEntry* entry = active_entry(status.header.sender);
+  const bool leaves = status.phase == AgentPhase::kFinished && state_ == MissionState::kRunning &&
+                      status.header.tick < mission_->timing.tick_count;
+  if (!leaves || entry == nullptr || entry->author != at->first) return;
+  entry->active_until = std::max(tick_, status.header.tick);
+  change();
+}
+
+// ---- taking over ---------------------------------------------------------------------------------
+
+void Coordinator::on(const MissionPart& part, Instant now) {
+  if (part.header.incarnation == incarnation_) return;
+  if (takeover_ != Takeover::kNever) {
+    if (follower_.receive(part) && !found_) found_ = now;
+  } else if (part.revision > revision_) {
+    end(true, "another coordinator has taken the mission over", now);
+    finished_ = true;  // at once, without a word: the mission is not ours to end
   }
 }
+
+void Coordinator::look_for_mission(Instant now, Outbox& out) {
+  if (!looking_since_) looking_since_ = now;
+  if (found_ && now - *found_ >= kSecondOpinions) return take_over(now);
+  const auto looked = now - *looking_since_;
+  if (takeover_ == Takeover::kIfFlying && run_ == 0 && looked >= kLookAround) return begin_own();
+  if (looked >= kTakeoverPatience) {
+    end(true, "no agent on this URL knows a mission that could be taken over", now);
+    finished_ = true;
+  }
+  if (now < next_question_) return;
+  next_question_ = now + kQuestionPeriod;
+  if (run_ == 0) return;
+  Hello question;
+  question.header = header(Bus::kSwarm);
+  question.header.tick = -1;
+  out.push_back({Bus::kSwarm, question});
+}
+
+void Coordinator::begin_own() {
+  takeover_ = Takeover::kNever;
+  run_ = incarnation_;
+}
+
+void Coordinator::take_over(Instant now) {
+  takeover_ = Takeover::kNever;
+  took_over_ = true;
+  if (!follower_.mission() || (!plan_.empty() && follower_.plan() != plan_)) {
+    const std::string name = follower_.mission() ? follower_.mission()->name : "another version";
+    end(true, "run " + to_hex(run_) + " of another plan (" + name +
+                  ") is flying on this URL: choose another URL, or wait for its end", now);
+    finished_ = true;
+    return;
+  }
+  mission_ = follower_.mission();
+  plan_ = follower_.plan();
+  roster_ = follower_.roster();
+  state_ = follower_.state();
+  reason_ = follower_.reason();
+  revision_ = follower_.revision() + kRevisionLead;
+  if (follower_.over()) ended_ = now;
+  tick_since_ = now;
+  for (const RosterEntry& entry : roster_) members_[entry.author].heard = now;
+}
+
+// ---- admission -----------------------------------------------------------------------------------
 
 RosterEntry* Coordinator::active_entry(AgentId id) {
   const auto at = std::find_if(roster_.begin(), roster_.end(), [id](const RosterEntry& entry) {
@@ -52,7 +152,7 @@ RosterEntry* Coordinator::active_entry(AgentId id) {
 }
 
 std::optional<AgentId> Coordinator::free_id(Instant now) {
-  for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
+  for (AgentId id = 0; id < kMaxAgents; ++id) {
     const RosterEntry* holder = active_entry(id);
     if (holder == nullptr || !alive(*holder, now)) return id;
   }
@@ -62,7 +162,7 @@ std::optional<AgentId> Coordinator::free_id(Instant now) {
 void Coordinator::on(const Hello& hello, Instant now) {
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   const Incarnation nonce = hello.header.incarnation;
-  if (nonce == 0) return;  // the mark of nobody
+  if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
     return entry.author.incarnation == nonce;
   });
@@ -73,7 +173,7 @@ void Coordinator::on(const Hello& hello, Instant now) {
   }
   std::optional<AgentId> id = hello.requested_id;
   if (*id == kUnassigned) id = free_id(now);
-  if (!id || *id >= static_cast<AgentId>(mission_.starts_m.size())) return;  // the team is full
+  if (!id) return;  // the team is full
   const RosterEntry* holder = active_entry(*id);
   if (holder != nullptr && alive(*holder, now)) return;  // the younger has to give way
   admit({*id, nonce}, now);
@@ -103,7 +203,7 @@ void Coordinator::on(const WorldState& world, Instant now) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     answered_[vehicle.id] = vehicle.answered_tick;
   }
-  if (tick_ >= mission_.timing.tick_count) end(false, "mission complete", now);
+  if (tick_ >= mission_->timing.tick_count) end(false, "mission complete", now);
 }
 
 bool Coordinator::alive(const RosterEntry& entry, Instant now) const {
@@ -153,22 +253,22 @@ RosterEntry* Coordinator::culprit(Instant now) {
 }
 
 void Coordinator::check_admission(Instant now) {
-  if (now - *started_ < seconds(mission_.timing.admission_timeout_s)) return;
+  if (now - *started_ < seconds(mission_->timing.admission_timeout_s)) return;
   std::string missing;
-  for (AgentId id = 0; id < static_cast<AgentId>(mission_.starts_m.size()); ++id) {
+  for (AgentId id = 0; id < static_cast<AgentId>(mission_->starts_m.size()); ++id) {
     const RosterEntry* entry = active_entry(id);
     if (entry != nullptr && alive(*entry, now)) continue;
     missing += (missing.empty() ? "" : ", ") + std::to_string(id);
   }
   end(true, "only " + std::to_string(alive_count(now)) + " of the quorum of " +
-                std::to_string(mission_.quorum) + " agents were admitted; missing: " + missing, now);
+                std::to_string(mission_->quorum) + " agents were admitted; missing: " + missing, now);
 }
 
 void Coordinator::check_tick(Instant now) {
-  if (now - tick_since_ < seconds(mission_.timing.lockstep_timeout_s)) return;
+  if (now - tick_since_ < seconds(mission_->timing.lockstep_timeout_s)) return;
   RosterEntry* late = culprit(now);
   std::ostringstream since_text;
-  since_text << " for " << mission_.timing.lockstep_timeout_s << " s";
+  since_text << " for " << mission_->timing.lockstep_timeout_s << " s";
   const std::string since = since_text.str();
   if (late == nullptr) {
     if (alive_count(now) == 0) {
@@ -180,17 +280,40 @@ void Coordinator::check_tick(Instant now) {
   }
   const std::string who = "agent " + std::to_string(late->author.agent) +
                           " has not answered tick " + std::to_string(tick_) + since;
-  if (mission_.timing.on_timeout == OnTimeout::kEndMission) return end(true, who, now);
+  if (mission_->timing.on_timeout == OnTimeout::kEndMission) return end(true, who, now);
   late->active_until = tick_;
   tick_since_ = now;
   change();
 }
 
+void Coordinator::forget_silent(Instant now) {
+  if (mission_->forget_silent_after_s <= 0) return;
+  const auto patience = seconds(mission_->forget_silent_after_s);
+  const Timing& timing = mission_->timing;
+  const Tick notice = timing.pace == Pace::kLockstep
+                          ? 0
+                          : static_cast<Tick>(kNotice_s * timing.realtime_factor / timing.dt_s) + 1;
+  for (RosterEntry& entry : roster_) {
+    if (entry.forgotten_from >= 0 || now - members_[entry.author].heard < patience) continue;
+    const RosterEntry* holder = active_entry(entry.author.agent);
+    if (holder != nullptr && alive(*holder, now)) continue;
+    entry.forgotten_from = tick_ + notice;
+    change();
+  }
+}
+
 void Coordinator::advance(Instant now, Outbox& out) {
+  if (finished_) return;
+  if (takeover_ != Takeover::kNever) look_for_mission(now, out);
+  if (takeover_ == Takeover::kNever && !finished_) lead(now, out);
+}
+
+void Coordinator::lead(Instant now, Outbox& out) {
   if (!started_) started_ = now;
+  if (state_ == MissionState::kRunning) forget_silent(now);
   if (state_ == MissionState::kWaiting) check_admission(now);
-  if (state_ == MissionState::kRunning && mission_.timing.pace == Pace::kLockstep) check_tick(now);
-  if (state_ == MissionState::kWaiting && alive_count(now) >= mission_.quorum) {
+  if (state_ == MissionState::kRunning && mission_->timing.pace == Pace::kLockstep) check_tick(now);
+  if (state_ == MissionState::kWaiting && alive_count(now) >= mission_->quorum) {
     state_ = MissionState::kRunning;
     tick_since_ = now;
     change();
@@ -237,10 +360,14 @@ void Coordinator::publish_mission(Outbox& out) {
 void Coordinator::publish_team_status(Instant now, Outbox& out) {
   TeamStatus team;
   team.state = state_;
-  team.tick_count = mission_.timing.tick_count;
+  team.tick_count = mission_->timing.tick_count;
   team.missed_deadlines = missed_deadlines_;
   team.agents_alive = alive_count(now);
-  team.agents_expected = static_cast<std::int32_t>(mission_.starts_m.size());
+  const auto members = std::count_if(roster_.begin(), roster_.end(), [](const RosterEntry& entry) {
+    return entry.active_until < 0;
+  });
+  team.agents_expected = static_cast<std::int32_t>(
+      std::max(members, static_cast<std::ptrdiff_t>(mission_->starts_m.size())));
   std::vector<double> metrics;
   for (const RosterEntry& entry : roster_) {
     const auto& status = members_[entry.author].status;
@@ -265,6 +392,10 @@ Header Coordinator::header(Bus bus) {
 }
 
 Instant Coordinator::next_wakeup() const {
+  if (takeover_ != Takeover::kNever) {
+    const Instant decision = found_ ? *found_ + kSecondOpinions : Instant::max();
+    return looking_since_ ? std::min(next_question_, decision) : Instant{};
+  }
   if (!started_) return Instant{};
   return std::min(next_mission_, next_team_status_);
 }

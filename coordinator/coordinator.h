@@ -1,6 +1,7 @@
 // Admits agents, distributes the mission, starts, watches and ends it. Never steers.
 //
-// It repeats its whole state once a second, so that nothing it says needs an acknowledgement.
+// It repeats its whole state once a second, so that nothing it says needs an acknowledgement. One
+// that is restarted takes the mission over from the agents, who repeat it to whoever asks.
 #pragma once
 
 #include <map>
@@ -15,10 +16,23 @@
 
 namespace ergocast {
 
+/// What a coordinator does about a mission that is already under way on its buses.
+enum class Takeover {
+  kNever,     ///< starts a mission of its own at once
+  kIfFlying,  ///< listens for a moment; takes over what it hears, or starts its own
+  kMust,      ///< takes over, or fails
+};
+
+/// How a member of the roster, present or former, is doing.
+enum class Presence { kAlive, kSilent, kGone };
+const char* to_string(Presence presence);
+
 class Coordinator {
  public:
-  /// @param plan     the compiled plan as it travels; `mission` is what it decodes to
-  Coordinator(RunId run, Incarnation incarnation, Mission mission, std::vector<std::byte> plan);
+  /// @param run   its mission's; 0, unless kNever: whichever is flying, else `incarnation`
+  /// @param plan  the compiled plan as it travels; may be empty with kMust: any mission's
+  Coordinator(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
+              std::vector<std::byte> plan, Takeover takeover = Takeover::kNever);
 
   void receive(const Message& message, Instant now);
   void advance(Instant now, Outbox& out);
@@ -29,9 +43,15 @@ class Coordinator {
 
   /// True once the end has been repeated for long enough.
   bool finished() const { return finished_; }
+  RunId run() const { return run_; }
+  /// Null until it has one, which with a takeover takes a moment.
+  const Mission* mission() const { return mission_ ? &*mission_ : nullptr; }
+  /// Whether it took the mission over from a predecessor.
+  bool took_over() const { return took_over_; }
   MissionState state() const { return state_; }
   const std::string& reason() const { return reason_; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
+  Presence presence(const RosterEntry& entry, Instant now) const;
   Tick tick() const { return tick_; }
 
  private:
@@ -41,12 +61,19 @@ class Coordinator {
   };
 
   void on(const Hello& hello, Instant now);
+  void on(const AgentStatus& status, Instant now);
+  void on(const MissionPart& part, Instant now);
   void on(const WorldState& world, Instant now);
   void admit(const Author& author, Instant now);
   std::optional<AgentId> free_id(Instant now);
   RosterEntry* active_entry(AgentId id);
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;
+  void look_for_mission(Instant now, Outbox& out);
+  void take_over(Instant now);
+  void begin_own();
+  void lead(Instant now, Outbox& out);
+  void forget_silent(Instant now);
   void check_admission(Instant now);
   void check_tick(Instant now);
   AgentId waits_for(const RosterEntry& entry) const;
@@ -58,8 +85,13 @@ class Coordinator {
 
   RunId run_;
   Incarnation incarnation_;
-  Mission mission_;
+  std::optional<Mission> mission_;
   std::vector<std::byte> plan_;
+  MissionFollower follower_;  // what agents say of a mission under way
+  Takeover takeover_;
+  bool took_over_ = false;
+  std::optional<Instant> looking_since_, found_;
+  Instant next_question_{};
   Sequencer sequencer_;
 
   MissionState state_ = MissionState::kWaiting;

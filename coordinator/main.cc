@@ -1,6 +1,8 @@
 // ergocast-coordinator: admits agents, hands out the mission, starts, watches and ends it.
 #include <spdlog/spdlog.h>
 
+#include <map>
+
 #include "coordinator/coordinator.h"
 #include "runtime/event_loop.h"
 #include "runtime/node.h"
@@ -10,41 +12,78 @@
 namespace ergocast {
 namespace {
 
-int run(const NodeOptions& node, const Scenario& scenario) {
+/// One line for everybody who comes, falls silent, speaks again or goes.
+class RosterLog {
+ public:
+  void look(const Coordinator& coordinator, Instant now) {
+    for (const RosterEntry& entry : coordinator.roster()) {
+      const Presence presence = coordinator.presence(entry, now);
+      const auto [known, is_new] = seen_.try_emplace(entry.author, presence);
+      if (!is_new && known->second == presence) continue;
+      known->second = presence;
+      spdlog::log(presence == Presence::kAlive ? spdlog::level::info : spdlog::level::warn,
+                  "agent {} ({}) is {} at tick {}", entry.author.agent,
+                  to_hex(entry.author.incarnation), to_string(presence), coordinator.tick());
+    }
+  }
+
+ private:
+  std::map<Author, Presence> seen_;
+};
+
+class MissionLog {
+ public:
+  void look(const Coordinator& coordinator) {
+    if (const Mission* mission = coordinator.mission(); mission != nullptr && !announced_ &&
+                                                        coordinator.run() != 0) {
+      announced_ = true;
+      spdlog::info("run {} of scenario {}{}: quorum of {} agents", to_hex(coordinator.run()),
+                   mission->name, coordinator.took_over() ? ", taken over" : "", mission->quorum);
+    }
+    if (coordinator.state() == state_) return;
+    state_ = coordinator.state();
+    const std::string& reason = coordinator.reason();
+    spdlog::log(state_ == MissionState::kFailed ? spdlog::level::err : spdlog::level::info,
+                "mission {} at tick {}{}{}", to_string(state_), coordinator.tick(),
+                reason.empty() ? "" : ": ", reason);
+  }
+
+ private:
+  MissionState state_ = MissionState::kWaiting;
+  bool announced_ = false;
+};
+
+int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover) {
   StopSignals signals;
-  const RunId run_id = node.run != 0 ? node.run : random_identity();
-  Coordinator coordinator(run_id, random_identity(), scenario.mission(), scenario.plan());
+  Coordinator coordinator(node.run, random_identity(), decode_plan, std::move(plan), takeover);
   auto opened = Transport::open(
-      node.url, run_id,
-      {{Bus::kSwarm, "HELLO|AGENT_STATUS_.*|STOP"}, {Bus::kWorld, "WORLD_STATE"}},
-      {.on_message = [&](const Message& message) { coordinator.receive(message, now()); }});
+      node.url, node.run,
+      {{Bus::kSwarm, "HELLO|AGENT_STATUS_.*|STOP|MISSION"}, {Bus::kWorld, "WORLD_STATE"}},
+      {.on_message = [&](const Message& message, AgentId) { coordinator.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;
   }
   Transport& transport = *std::get<0>(opened);
   TrafficWatch watch(transport);
-  spdlog::info("run {} of scenario {} on {}: waiting for {} of {} agents", to_hex(run_id),
-               scenario.name(), node.url.base(), scenario.mission().quorum,
-               scenario.mission().starts_m.size());
+  if (takeover != Takeover::kNever) spdlog::info("looking for a mission on {}", node.url.base());
 
-  MissionState logged = MissionState::kWaiting;
-  std::size_t admitted = 0;
+  RosterLog roster;
+  MissionLog mission;
   const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
   live(coordinator, transport, signals, stop, [&] {
+    transport.set_run(coordinator.run());
     watch.look(now());
-    if (coordinator.roster().size() != admitted) {
-      admitted = coordinator.roster().size();
-      spdlog::info("agents admitted so far: {}", admitted);
-    }
-    if (coordinator.state() == logged) return;
-    logged = coordinator.state();
-    const std::string& reason = coordinator.reason();
-    spdlog::log(logged == MissionState::kFailed ? spdlog::level::err : spdlog::level::info,
-                "mission {} at tick {}{}{}", to_string(logged), coordinator.tick(),
-                reason.empty() ? "" : ": ", reason);
+    roster.look(coordinator, now());
+    mission.look(coordinator);
   });
   return coordinator.state() == MissionState::kFailed ? kExitFailed : kExitDone;
+}
+
+/// A run id given means a run to be started; else somebody may already fly this mission.
+Takeover takeover_of(const NodeOptions& node, bool resume) {
+  if (resume) return Takeover::kMust;
+  return node.run != 0 ? Takeover::kNever : Takeover::kIfFlying;
 }
 
 }  // namespace
@@ -56,14 +95,23 @@ int main(int argc, char** argv) {
                "ergocast-coordinator");
   NodeOptions node;
   std::string file;
+  bool resume = false;
   add_node_options(app, node);
-  app.add_option("SCENARIO", file, "Scenario file")->required();
+  auto* scenario = app.add_option("SCENARIO", file, "Scenario file; not needed with --resume");
+  app.add_flag("--resume", resume, "Take over the mission that the agents are flying, or fail");
+  app.footer("Without --run-id and --resume: takes over this scenario's mission if it is under way "
+             "on the URL, else starts a new one.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("coordinator");
+  if (scenario->count() == 0) {
+    if (resume) return run(node, {}, Takeover::kMust);
+    spdlog::error("no SCENARIO: name a scenario file, or take a mission over with --resume");
+    return kExitBadInput;
+  }
   const auto loaded = Scenario::load(file);
   if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
     for (const Problem& problem : *problems) spdlog::error("{}", to_string(problem));
     return kExitBadInput;
   }
-  return run(node, std::get<Scenario>(loaded));
+  return run(node, std::get<Scenario>(loaded).plan(), takeover_of(node, resume));
 }

@@ -52,7 +52,7 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
   if (incarnations >= kMaxIncarnationsPerAgent) return nullptr;
   if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
   const auto blocks = static_cast<std::size_t>(block_count_);
-  return &*rows_.insert(at, Row{author, std::vector<Block>(blocks),
+  return &*rows_.insert(at, Row{author, true, std::vector<Block>(blocks),
                                 std::vector<double>(blocks * kBlockSize)});
 }
 
@@ -77,7 +77,7 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (row == nullptr) return Merge::kRefusedLimit;
   Block& block = row->blocks[static_cast<std::size_t>(theirs.block)];
   if (theirs.steps <= block.steps) return Merge::kStale;
-  block = {theirs.steps, theirs.next_broadcast_tick};
+  block = {theirs.steps, theirs.next_broadcast_tick, theirs.header.sequence, theirs.header.tick};
   std::copy(theirs.sums.begin(), theirs.sums.end(), row->sums.begin() + theirs.block * kBlockSize);
   return Merge::kNewer;
 }
@@ -90,6 +90,8 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   out.mode_count = basis_.mode_count();
   if (const Row* row = find(author)) {
     const Block& held = row->blocks[static_cast<std::size_t>(block)];
+    out.header.sequence = held.sequence;
+    out.header.tick = held.tick;
     out.steps = held.steps;
     out.next_broadcast_tick = held.next_broadcast_tick;
     out.elapsed_s = static_cast<double>(held.steps) * dt_s_;
@@ -98,16 +100,25 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   return out;
 }
 
+void CoverageTable::forget(const Author& author) {
+  for (Row& row : rows_) {
+    if (row.author == author) row.counts = false;
+  }
+}
+
 void CoverageTable::average(Coefficients& coverage) const {
   for (int b = 0; b < block_count_; ++b) {
     std::int64_t steps = 0;
-    for (const Row& row : rows_) steps += row.blocks[static_cast<std::size_t>(b)].steps;
+    for (const Row& row : rows_) {
+      if (row.counts) steps += row.blocks[static_cast<std::size_t>(b)].steps;
+    }
     const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
     const int end = std::min((b + 1) * kBlockSize, basis_.mode_count());
     // A few modes at a time over all rows: their sums stay in registers.
     for (int first = b * kBlockSize; first < end; first += kModesAtOnce) {
       std::array<double, kModesAtOnce> team{};
       for (const Row& row : rows_) {
+        if (!row.counts) continue;
         const double* sums = row.sums.data() + first;
         for (int k = 0; k < kModesAtOnce; ++k) team[k] += sums[k];
       }
@@ -124,6 +135,29 @@ std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) cons
   return std::min_element(row->blocks.begin(), row->blocks.end(),
                           [](const Block& a, const Block& b) { return a.steps < b.steps; })
       ->steps;
+}
+
+Tick CoverageTable::announced_period(const Author& author) const {
+  const Row* row = find(author);
+  if (row == nullptr) return 0;
+  Tick longest = 0;
+  for (const Block& block : row->blocks) {
+    longest = std::max(longest, block.next_broadcast_tick - block.tick);
+  }
+  return longest;
+}
+
+const double* CoverageTable::sums_of(const Author& author) const {
+  const Row* row = find(author);
+  return row == nullptr ? nullptr : row->sums.data();
+}
+
+double CoverageTable::covered_s() const {
+  std::int64_t steps = 0;
+  for (const Row& row : rows_) {
+    if (row.counts) steps += row.blocks.front().steps;
+  }
+  return static_cast<double>(steps) * dt_s_;
 }
 
 bool CoverageTable::holds_due(const Author& author, Tick tick) const {

@@ -37,8 +37,11 @@ class CoverageTable {
   /// future would win for ever), a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
-  /// One block of a row, without header; all zero for an unknown author.
+  /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.
   Contribution block(const Author& author, int block) const;
+
+  /// From now on the row of `author`, if there is one, does not count; it is kept and passed on.
+  void forget(const Author& author);
 
   /// c_k = Σ_j S_j / Σ_j elapsed_j per block, (4) weighted by the time each row covers.
   /// Entries of blocks that nobody has covered are 0. Does not allocate.
@@ -46,6 +49,15 @@ class CoverageTable {
 
   /// The fewest steps among a row's blocks; nothing if the row is unknown.
   std::optional<std::int64_t> steps_held(const Author& author) const;
+
+  /// The longest silence that `author` has announced between two of its broadcasts; 0 if unknown.
+  Tick announced_period(const Author& author) const;
+
+  /// The sums of a row [s], mode_count() of them and then zeros; null if it is unknown.
+  const double* sums_of(const Author& author) const;
+
+  /// Time covered by all rows that count, by their first block: the denominator of c_k [s].
+  double covered_s() const;
 
   /// Whether every block that `author` was due to send by `tick` is held.
   bool holds_due(const Author& author, Tick tick) const;
@@ -56,9 +68,12 @@ class CoverageTable {
   struct Block {
     std::int64_t steps = 0;
     Tick next_broadcast_tick = 0;
+    std::int64_t sequence = 0;  // of the message that brought it, for who repeats it
+    Tick tick = 0;
   };
   struct Row {
     Author author;
+    bool counts = true;
     std::vector<Block> blocks;
     std::vector<double> sums;  // block_count · kBlockSize, zero beyond the last mode
   };

@@ -18,7 +18,8 @@ namespace ergocast {
 /// Doubles in one block of a contribution; the last block of a mission is padded with zeros.
 inline constexpr int kBlockSize = 128;
 inline constexpr int kMaxVehiclesPerState = 16;
-inline constexpr int kMaxRosterEntriesPerMessage = 12;
+inline constexpr int kMaxRosterEntriesPerMessage = 10;
+inline constexpr int kMaxDigestEntriesPerMessage = 56;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 128;
 inline constexpr int kMaxReasonLength = 191;
@@ -47,7 +48,9 @@ struct Header {
   Tick tick = 0;              ///< the sender's tick when it spoke
 };
 
-/// An agent asks to be admitted; its incarnation is the nonce that the roster will name.
+/// Somebody new speaks up. An agent asks to be admitted; its incarnation is the nonce that the roster
+/// will name. A coordinator or a world that has just started asks the agents what they know:
+/// header.tick is then −1 if it does not know the mission.
 struct Hello {
   Header header;
   AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one
@@ -59,9 +62,11 @@ struct RosterEntry {
   Author author;
   Tick active_from = 0;
   Tick active_until = -1;  ///< first tick without it; −1 while it is a member
+  Tick forgotten_from = -1;  ///< first tick at which its coverage no longer counts; −1: it does
   bool active_at(Tick tick) const {
     return tick >= active_from && (active_until < 0 || tick < active_until);
   }
+  bool forgotten_at(Tick tick) const { return forgotten_from >= 0 && tick >= forgotten_from; }
 };
 
 enum class MissionState { kWaiting, kRunning, kEnded, kFailed };
@@ -91,6 +96,19 @@ struct Contribution {
   Author author() const { return {header.sender, header.incarnation}; }
 };
 
+struct DigestEntry {
+  Author author;
+  std::int64_t steps = 0;  ///< of the oldest block held; 0: nothing
+};
+
+/// What an agent holds of whom: one entry for each (agent, incarnation) of the roster, in as many
+/// messages as it takes. Who holds more answers with contributions.
+struct Digest {
+  Header header;
+  std::int32_t entry_count = 0;
+  std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
+};
+
 enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished };
 const char* to_string(AgentPhase phase);
 
@@ -99,10 +117,11 @@ struct AgentStatus {
   AgentPhase phase = AgentPhase::kJoining;
   double ergodic_metric = 0;             ///< φ² as this agent sees it, once answered_tick ≥ 0
   double max_staleness_s = 0;            ///< age of the oldest teammate's contribution
-  AgentId waiting_for = kUnassigned;     ///< whose block the current tick waits for
+  AgentId waiting_for = kUnassigned;     ///< whose block the tick waits for; kWorld: no state comes
   std::int64_t answered_tick = -1;       ///< last tick that got a command
   std::int64_t contributions_received = 0, contributions_lost = 0, messages_sent = 0,
                messages_received = 0;
+  std::int64_t contributions_relayed = 0;  ///< blocks of others that it repeated
   std::int64_t missed_ticks = 0;         ///< world ticks that came and went without a command
   RefusalCounts refused{};
   std::int64_t kernel_drops = 0;
@@ -144,8 +163,9 @@ struct WorldState {
   std::array<Vehicle, kMaxVehiclesPerState> vehicles;
 };
 
+/// From tick and position a restarted world knows where it was.
 struct Command {
-  Header header;                           ///< header.tick is the tick it answers
+  Header header;                           ///< header.tick is the tick it answers; −1: none yet
   Eigen::Vector3d position_m{0, 0, 0};     ///< from which it was computed
   Eigen::Vector3d velocity_mps{0, 0, 0};
 };
@@ -156,7 +176,7 @@ struct RecordAck {
 };
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
-                             WorldState, Command, RecordAck>;
+                             WorldState, Command, RecordAck, Digest>;
 
 enum class Bus { kSwarm, kWorld, kCommand };
 inline constexpr int kBusCount = 3;
@@ -165,6 +185,7 @@ inline constexpr int kBusCount = 3;
 struct Outgoing {
   Bus bus;
   Message message;
+  AgentId relayer = kUnassigned;  ///< who repeats a message of somebody else's, if anybody does
 };
 using Outbox = std::vector<Outgoing>;
 

@@ -32,7 +32,9 @@ enum class OnTimeout { kEndMission, kEvict };
 struct Timing {
   double dt_s = 0.1;
   Tick tick_count = 0;  ///< the mission has ticks 0 … tick_count − 1
-  int broadcast_period_ticks = 1;
+  int broadcast_period_ticks = 1;      ///< the shortest, if periods adapt
+  double broadcast_error_budget = 0;   ///< share of φ that all silences together may cost; 0: fixed
+  int broadcast_heartbeat_ticks = 100; ///< the longest period, if periods adapt
   Pace pace = Pace::kLockstep;
   double realtime_factor = 1;         ///< mission seconds per wall second
   double lockstep_timeout_s = 10;     ///< wall time a tick may stay unanswered
@@ -52,8 +54,16 @@ struct Mission {
   Timing timing;
   std::vector<Eigen::Vector2d> starts_m;  ///< where agent i begins; one per planned agent
   int quorum = 1;                         ///< agents that must be admitted before the start
+  double forget_silent_after_s = 0;       ///< wall time; 0: a silent agent's coverage counts for ever
+  double goal_ergodic_metric = 0;         ///< what the mission is to reach; 0: nothing in particular
   double disturbance_intensity = 0;       ///< actuation noise in the world [m/√s]
+  double radio_range_m = 0;               ///< how far agents hear each other; 0: everywhere
   bool wait_for_logger = true;            ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
+
+/// Where agent `id` begins: as planned, or for those beyond the plan drawn from the seed.
+Eigen::Vector2d start_of(const Mission& mission, AgentId id);
+/// The draw itself: uniform in the domain.
+Eigen::Vector2d random_start(const Rectangle& domain, std::uint64_t seed, AgentId id);
 
 }  // namespace ergocast

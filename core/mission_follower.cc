@@ -29,9 +29,11 @@ void MissionFollower::commit() {
   reason_ = collected_.front()->reason;
   roster_.clear();
   plan_.clear();
-  for (const auto& part : collected_) {
+  parts_.clear();
+  for (auto& part : collected_) {
     roster_.insert(roster_.end(), part->roster.begin(), part->roster.end());
     plan_.insert(plan_.end(), part->plan.begin(), part->plan.end());
+    parts_.push_back(std::move(*part));
   }
   collected_.clear();
   // A run has one plan: it is decoded once, and later revisions change only roster and state.

@@ -36,6 +36,8 @@ class MissionFollower {
   const std::string& reason() const { return reason_; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
   const std::vector<std::byte>& plan() const { return plan_; }
+  /// The newest complete revision as its coordinator said it, to be repeated to whoever asks.
+  const std::vector<MissionPart>& parts() const { return parts_; }
 
   /// The entry of an incarnation, or null.
   const RosterEntry* entry_of(Incarnation incarnation) const;
@@ -51,6 +53,7 @@ class MissionFollower {
   std::string reason_;
   std::vector<RosterEntry> roster_;
   std::vector<std::byte> plan_;
+  std::vector<MissionPart> parts_;
 
   std::int64_t collecting_revision_ = -1;
   std::vector<std::optional<MissionPart>> collected_;

@@ -13,6 +13,7 @@ enum class Purpose : std::uint32_t {
   kStart = 3,         ///< random initial positions
   kIncarnation = 4,   ///< identities in a simulation
   kFault = 5,         ///< the laboratory's network
+  kAnswer = 6,        ///< who waits how long before it answers for others
 };
 
 /// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).

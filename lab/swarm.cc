@@ -22,7 +22,7 @@ Swarm::Swarm(Options options, std::ostream& trajectory, std::ostream& metrics)
       run_(incarnation_of(decoded(options_).seed, -1)),
       world_(run_, incarnation_of(decoded(options_).seed, kWorldSeat), options_.decode_plan),
       coordinator_(run_, incarnation_of(decoded(options_).seed, kCoordinatorSeat),
-                   decoded(options_), options_.plan),
+                   options_.decode_plan, options_.plan),
       recorder_(run_, incarnation_of(decoded(options_).seed, kLoggerSeat), options_.decode_plan,
                 trajectory, metrics) {
   const std::uint64_t seed = decoded(options_).seed;
@@ -77,7 +77,9 @@ void Swarm::send(Outbox& out) {
       spare_.pop_back();
     }
     encode(outgoing.message, bytes);
-    in_flight_.push_back({outgoing.bus, std::move(bytes)});
+    const AgentId sender = header_of(outgoing.message).sender;
+    const bool relayed = outgoing.relayer != kUnassigned;
+    in_flight_.push_back({outgoing.bus, relayed ? outgoing.relayer : sender, std::move(bytes)});
     ++messages_sent_;
   }
   out.clear();
@@ -95,7 +97,7 @@ void Swarm::deliver(const Datagram& datagram) {
   if (message == nullptr) return;
   if (datagram.bus != Bus::kCommand) {
     for (std::size_t i = 0; i < agents_.size(); ++i) {
-      if (reaches(*message, static_cast<int>(i))) agents_[i]->receive(*message, now_);
+      if (reaches(*message, static_cast<int>(i))) agents_[i]->receive(*message, now_, datagram.transmitter);
     }
     if (reaches(*message, kCoordinatorSeat)) coordinator_.receive(*message, now_);
   } else if (reaches(*message, kWorldSeat)) {

@@ -56,6 +56,7 @@ class Swarm {
  private:
   struct Datagram {
     Bus bus;
+    AgentId transmitter;
     std::vector<std::byte> bytes;
   };
 

@@ -1,6 +1,7 @@
 #include "lcmtypes/channels.h"
 
 #include <array>
+#include <charconv>
 #include <vector>
 
 namespace ergocast {
@@ -9,11 +10,11 @@ namespace {
 constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames = {
     "ERGOCAST_HELLO", "ERGOCAST_MISSION",     "ERGOCAST_CONTRIBUTION", "ERGOCAST_AGENT_STATUS",
     "ERGOCAST_TEAM_STATUS", "ERGOCAST_STOP",  "ERGOCAST_WORLD_STATE",  "ERGOCAST_COMMAND",
-    "ERGOCAST_RECORD_ACK"};
+    "ERGOCAST_RECORD_ACK",  "ERGOCAST_DIGEST"};
 
 template <class T>
 constexpr bool kPerAgent = std::is_same_v<T, Contribution> || std::is_same_v<T, AgentStatus> ||
-                           std::is_same_v<T, Command>;
+                           std::is_same_v<T, Command> || std::is_same_v<T, Digest>;
 
 bool per_agent(const Message& message) {
   return std::visit([](const auto& m) { return kPerAgent<std::decay_t<decltype(m)>>; }, message);
@@ -47,16 +48,24 @@ const std::string& name(std::size_t kind, AgentId id) {
 
 }  // namespace
 
-const std::string& channel_of(const Message& message) {
+const std::string& channel_of(const Message& message, AgentId relayer) {
   if (!per_agent(message)) return table().plain[message.index()];
-  return name(message.index(), header_of(message).sender);
+  return name(message.index(), relayer == kUnassigned ? header_of(message).sender : relayer);
 }
 
-bool belongs_on(const Message& message, std::string_view channel) {
-  if (std::holds_alternative<Contribution>(message)) {
-    return channel.starts_with("ERGOCAST_CONTRIBUTION_");
+std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel) {
+  const AgentId sender = header_of(message).sender;
+  if (channel == channel_of(message)) return sender;
+  constexpr std::string_view kContribution = "ERGOCAST_CONTRIBUTION_";
+  if (!std::holds_alternative<Contribution>(message) || !channel.starts_with(kContribution)) {
+    return std::nullopt;
   }
-  return channel == channel_of(message);
+  AgentId relayer = kUnassigned;
+  const std::string_view id = channel.substr(kContribution.size());
+  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), relayer);
+  const bool known = error == std::errc() && end == id.data() + id.size() && relayer >= 0 &&
+                     relayer < kMaxAgents;
+  return known ? std::optional(relayer) : std::nullopt;
 }
 
 }  // namespace ergocast

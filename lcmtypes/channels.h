@@ -1,6 +1,7 @@
 // Which channel carries what.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,13 +9,14 @@
 
 namespace ergocast {
 
-/// The name `message` travels under, transmitted by its own sender; valid for the program's life.
-/// Names: ERGOCAST_HELLO, _MISSION, _TEAM_STATUS, _STOP, _WORLD_STATE, _RECORD_ACK, and one per
-/// agent for _CONTRIBUTION_<id>, _AGENT_STATUS_<id>, _COMMAND_<id>.
-const std::string& channel_of(const Message& message);
+/// The name `message` travels under, transmitted by its sender or by whoever relays it; valid for
+/// the program's life. Names: ERGOCAST_HELLO, _MISSION, _TEAM_STATUS, _STOP, _WORLD_STATE,
+/// _RECORD_ACK, and one per agent for _CONTRIBUTION_<id>, _DIGEST_<id>, _AGENT_STATUS_<id>,
+/// _COMMAND_<id>.
+const std::string& channel_of(const Message& message, AgentId relayer = kUnassigned);
 
-/// Whether `message` may arrive under `channel`: its type's name and, but for contributions, which
-/// others may relay, its sender's id.
-bool belongs_on(const Message& message, std::string_view channel);
+/// Who transmitted what arrived under `channel`: the sender, or for contributions the agent whose
+/// channel it is. Nothing if `message` has no business there.
+std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel);
 
 }  // namespace ergocast

@@ -14,8 +14,9 @@ namespace {
 constexpr std::size_t kTagOffset = 44;
 constexpr std::size_t kTagBytes = 16;
 constexpr std::size_t kHeaderEnd = kTagOffset + kTagBytes;
-constexpr std::size_t kRosterEntryBytes = 28;
+constexpr std::size_t kRosterEntryBytes = 36;
 constexpr std::size_t kVehicleBytes = 60;
+constexpr std::size_t kDigestEntryBytes = 20;
 
 // ---- numbers on the wire: big-endian --------------------------------------------------------
 
@@ -105,7 +106,7 @@ bool sizes_match(const mission_t*, std::span<const std::byte> bytes) {
 
 bool sizes_match(const agent_status_t*, std::span<const std::byte> bytes) {
   Tail tail(bytes, kHeaderEnd);
-  return tail.skip(1 + 8 + 8 + 4 + 8 * 6 + 8 * kRefusalKinds + 8) && tail.string(kMaxHostLength) &&
+  return tail.skip(1 + 8 + 8 + 4 + 8 * 7 + 8 * kRefusalKinds + 8) && tail.string(kMaxHostLength) &&
          tail.ended();
 }
 
@@ -118,6 +119,12 @@ bool sizes_match(const world_state_t*, std::span<const std::byte> bytes) {
   std::size_t vehicles = 0;
   return count_at(bytes, kHeaderEnd + 32, kMaxVehiclesPerState, vehicles) &&
          bytes.size() == kHeaderEnd + 36 + vehicles * kVehicleBytes;
+}
+
+bool sizes_match(const digest_t*, std::span<const std::byte> bytes) {
+  std::size_t entries = 0;
+  return count_at(bytes, kHeaderEnd, kMaxDigestEntriesPerMessage, entries) &&
+         bytes.size() == kHeaderEnd + 4 + entries * kDigestEntryBytes;
 }
 
 template <class Fixed>
@@ -167,7 +174,7 @@ DecodeFunction decoder_for(std::uint64_t fingerprint) {
       entry<command_t, Command>(),           entry<agent_status_t, AgentStatus>(),
       entry<record_ack_t, RecordAck>(),      entry<mission_t, MissionPart>(),
       entry<team_status_t, TeamStatus>(),    entry<hello_t, Hello>(),
-      entry<stop_t, Stop>()};
+      entry<stop_t, Stop>(),                 entry<digest_t, Digest>()};
   for (const auto& [known, function] : kDecoders) {
     if (known == fingerprint) return function;
   }

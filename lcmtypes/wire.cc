@@ -73,6 +73,7 @@ mission_t to_wire(const MissionPart& m) {
     e.nonce = static_cast<std::int64_t>(entry.author.incarnation);
     e.active_from = entry.active_from;
     e.active_until = entry.active_until;
+    e.forgotten_from = entry.forgotten_from;
     w.roster.push_back(e);
   }
   w.plan.resize(m.plan.size());
@@ -91,10 +92,12 @@ bool from_wire(const mission_t& w, MissionPart& m) {
   m.part = w.part;
   m.parts = w.parts;
   for (const roster_entry_t& e : w.roster) {
-    if (e.id < 0 || e.id >= kMaxAgents || e.active_from < 0 || e.active_until < -1) {
+    if (e.id < 0 || e.id >= kMaxAgents || e.active_from < 0 || e.active_until < -1 ||
+        e.forgotten_from < -1) {
       return false;
     }
-    m.roster.push_back({{e.id, static_cast<Incarnation>(e.nonce)}, e.active_from, e.active_until});
+    m.roster.push_back({{e.id, static_cast<Incarnation>(e.nonce)}, e.active_from, e.active_until,
+                        e.forgotten_from});
   }
   m.plan.resize(w.plan.size());
   if (!w.plan.empty()) std::memcpy(m.plan.data(), w.plan.data(), w.plan.size());
@@ -140,6 +143,7 @@ agent_status_t to_wire(const AgentStatus& m) {
   w.contributions_lost = m.contributions_lost;
   w.messages_sent = m.messages_sent;
   w.messages_received = m.messages_received;
+  w.contributions_relayed = m.contributions_relayed;
   w.missed_ticks = m.missed_ticks;
   std::copy(m.refused.begin(), m.refused.end(), w.refused);
   w.kernel_drops = m.kernel_drops;
@@ -154,7 +158,8 @@ bool from_wire(const agent_status_t& w, AgentStatus& m) {
     return false;
   }
   for (const std::int64_t count : {w.contributions_received, w.contributions_lost, w.messages_sent,
-                                   w.messages_received, w.missed_ticks, w.kernel_drops}) {
+                                   w.messages_received, w.contributions_relayed, w.missed_ticks,
+                                   w.kernel_drops}) {
     if (!plausible_count(count)) return false;
   }
   m.header = from_wire(w.header);
@@ -167,6 +172,7 @@ bool from_wire(const agent_status_t& w, AgentStatus& m) {
   m.contributions_lost = w.contributions_lost;
   m.messages_sent = w.messages_sent;
   m.messages_received = w.messages_received;
+  m.contributions_relayed = w.contributions_relayed;
   m.missed_ticks = w.missed_ticks;
   std::copy_n(w.refused, kRefusalKinds, m.refused.begin());
   m.kernel_drops = w.kernel_drops;
@@ -262,8 +268,34 @@ command_t to_wire(const Command& m) {
 }
 bool from_wire(const command_t& w, Command& m) {
   m = {from_wire(w.header), vector3(w.command_position_m), vector3(w.command_velocity_mps)};
-  return m.header.sender >= 0 && m.header.sender < kMaxAgents && m.header.tick >= 0 &&
-         m.position_m.allFinite() && m.velocity_mps.allFinite();
+  return m.header.sender >= 0 && m.header.sender < kMaxAgents && m.position_m.allFinite() && m.velocity_mps.allFinite();
+}
+
+digest_t to_wire(const Digest& m) {
+  ERGOCAST_REQUIRE(m.entry_count >= 0 && m.entry_count <= kMaxDigestEntriesPerMessage);
+  digest_t w;
+  w.header = to_wire(m.header);
+  w.entry_count = m.entry_count;
+  w.entries.resize(static_cast<std::size_t>(m.entry_count));
+  for (std::size_t i = 0; i < w.entries.size(); ++i) {
+    w.entries[i].digest_id = m.entries[i].author.agent;
+    w.entries[i].digest_incarnation = static_cast<std::int64_t>(m.entries[i].author.incarnation);
+    w.entries[i].digest_steps = m.entries[i].steps;
+  }
+  return w;
+}
+bool from_wire(const digest_t& w, Digest& m) {
+  if (w.header.sender < 0 || w.header.sender >= kMaxAgents) return false;
+  m.header = from_wire(w.header);
+  m.entry_count = w.entry_count;
+  for (std::size_t i = 0; i < w.entries.size(); ++i) {
+    const digest_entry_t& e = w.entries[i];
+    if (e.digest_id < 0 || e.digest_id >= kMaxAgents || !plausible_count(e.digest_steps)) {
+      return false;
+    }
+    m.entries[i] = {{e.digest_id, static_cast<Incarnation>(e.digest_incarnation)}, e.digest_steps};
+  }
+  return true;
 }
 
 record_ack_t to_wire(const RecordAck& m) {

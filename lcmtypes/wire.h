@@ -5,6 +5,7 @@
 #include <ergocast/agent_status_t.hpp>
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
+#include <ergocast/digest_t.hpp>
 #include <ergocast/hello_t.hpp>
 #include <ergocast/mission_t.hpp>
 #include <ergocast/record_ack_t.hpp>
@@ -26,6 +27,7 @@ world_state_t to_wire(const WorldState& m);
 command_t to_wire(const Command& m);
 record_ack_t to_wire(const RecordAck& m);
 mission_t to_wire(const MissionPart& m);
+digest_t to_wire(const Digest& m);
 
 /// Fills `m`; false for what cannot be true: NaN, a count below 0, an id out of range.
 /// @pre counts within the arrays of `m`, as the codec has checked them.
@@ -38,6 +40,7 @@ bool from_wire(const world_state_t& w, WorldState& m);
 bool from_wire(const command_t& w, Command& m);
 bool from_wire(const record_ack_t& w, RecordAck& m);
 bool from_wire(const mission_t& w, MissionPart& m);
+bool from_wire(const digest_t& w, Digest& m);
 
 /// Whether a header can be anybody's.
 bool plausible(const Header& h);

@@ -108,7 +108,7 @@ int run(const NodeOptions& node, const fs::path& folder) {
   Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
       node.url, node.run, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
-      {.on_message = [&](const Message& message) { recorder.receive(message, now()); },
+      {.on_message = [&](const Message& message, AgentId) { recorder.receive(message, now()); },
        .on_accepted = [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
          logger.keep_event(bus, channel, bytes);
        }});

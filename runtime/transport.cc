@@ -114,7 +114,7 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
 void LcmTransport::publish(const Outgoing& outgoing) {
   encode(outgoing.message, bytes_);
   buses_[static_cast<std::size_t>(outgoing.bus)]->publish(
-      channel_of(outgoing.message), bytes_.data(), static_cast<unsigned>(bytes_.size()));
+      channel_of(outgoing.message, outgoing.relayer), bytes_.data(), static_cast<unsigned>(bytes_.size()));
 }
 
 void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
@@ -125,9 +125,10 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
     const auto decoded = decode(bytes, run_);
     if (const auto* refusal = std::get_if<Refusal>(&decoded)) return refuse(*refusal);
     const Message& message = std::get<Message>(decoded);
-    if (!belongs_on(message, channel)) return refuse(Refusal::kType);
+    const auto transmitter = transmitter_of(message, channel);
+    if (!transmitter) return refuse(Refusal::kType);
     if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);
-    handlers_.on_message(message);
+    handlers_.on_message(message, *transmitter);
   } catch (...) {  // an exception that passes through LCM's C frames would abort the next call
     refuse(Refusal::kLimit);
   }

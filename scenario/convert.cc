@@ -66,6 +66,8 @@ Timing timing_of(const proto::Time& time) {
   return {.dt_s = time.dt_s(),
           .tick_count = std::llround(time.duration_s() / time.dt_s()),
           .broadcast_period_ticks = time.broadcast_period_ticks(),
+          .broadcast_error_budget = time.broadcast_error_budget(),
+          .broadcast_heartbeat_ticks = time.broadcast_heartbeat_ticks(),
           .pace = time.pace() == proto::Time::REALTIME ? Pace::kRealtime : Pace::kLockstep,
           .realtime_factor = time.realtime_factor(),
           .lockstep_timeout_s = time.lockstep_timeout_s(),
@@ -88,6 +90,9 @@ Mission mission_of(const proto::Scenario& scenario) {
     mission.starts_m.emplace_back(start.x_m(), start.y_m());
   }
   mission.quorum = scenario.agents().quorum();
+  mission.forget_silent_after_s = scenario.agents().forget_silent_after_s();
+  mission.goal_ergodic_metric = scenario.goal_ergodic_metric();
+  mission.radio_range_m = scenario.world().radio_range_m();
   mission.disturbance_intensity = scenario.world().disturbance_intensity();
   return mission;
 }

@@ -112,9 +112,7 @@ void draw_starts(proto::Scenario& scenario) {
   const Rectangle domain = domain_of(scenario.domain());
   proto::Agents& agents = *scenario.mutable_agents();
   for (; agents.random_count() > 0; agents.set_random_count(agents.random_count() - 1)) {
-    const auto agent = static_cast<std::uint32_t>(agents.starts_size());
-    const Eigen::Vector2d share = uniform_pair(scenario.seed(), Purpose::kStart, agent, 0);
-    const Eigen::Vector2d x_m = domain.origin_m + share.cwiseProduct(domain.size_m);
+    const Eigen::Vector2d x_m = random_start(domain, scenario.seed(), agents.starts_size());
     proto::Start& start = *agents.add_starts();
     start.set_x_m(x_m.x());
     start.set_y_m(x_m.y());

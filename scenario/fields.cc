@@ -56,13 +56,19 @@ constexpr FieldRule kRules[] = {
     {"Time", "command_hold_s", between(0, 1e6), kDefaulted, 0.5},
     {"Time", "admission_timeout_s", above(0, kMaxWallTime_s), kDefaulted, 30},
     {"Time", "catch_up_limit_ticks", between(0, 1000), kDefaulted, 5},
+    {"Time", "broadcast_error_budget", between(0, 1), kDefaulted, 0},
+    {"Time", "broadcast_heartbeat_ticks", between(1, 10000), kDefaulted, 100},
 
     {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
     {"Agents", "quorum", between(1, kMaxAgents), kLeft},
+    {"Agents", "forget_silent_after_s", between(0, 1e6), kDefaulted, 0},
     {"Start", "x_m", kCoordinate, kRefused},
     {"Start", "y_m", kCoordinate, kRefused},
 
     {"World", "disturbance_intensity", kIntensity, kDefaulted, 0},
+    {"World", "radio_range_m", between(0, 1e13), kDefaulted, 0},
+
+    {"Scenario", "goal_ergodic_metric", above(0, 1e9), kLeft},
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ int run(const NodeOptions& node) {
   World world(node.run, random_identity(), decode_plan);
   auto opened = Transport::open(
       node.url, node.run, {{Bus::kCommand, "COMMAND_.*|MISSION|STOP|RECORD_ACK"}},
-      {.on_message = [&](const Message& message) { world.receive(message, now()); }});
+      {.on_message = [&](const Message& message, AgentId) { world.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;
@@ -24,11 +24,13 @@ int run(const NodeOptions& node) {
   TrafficWatch watch(transport);
   spdlog::info("waiting for a mission on {}", node.url.base());
 
-  bool logger_lost = false;
+  bool logger_lost = false, begun = false;
   const auto stop = [&] { world.stop("the world was told to stop"); };
   live(world, transport, signals, stop, [&] {
     transport.set_run(world.run());
     watch.look(now());
+    if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());
+    begun = world.begun_at().has_value();
     if (world.logger_lost() && !logger_lost) spdlog::warn("the logger is silent: going on without");
     logger_lost = world.logger_lost();
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "core/geometry.h"
 #include "core/noise.h"
@@ -16,6 +17,13 @@ using namespace std::chrono_literals;
 /// at once, and a team that is merely slow is not buried in repeats.
 constexpr std::chrono::nanoseconds kRepeatPeriod = 20ms;
 constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
+/// A world that begins asks the agents where they are, this often; and begins without those that
+/// have not answered for so long. Nobody can answer a tick then either.
+constexpr auto kQuestionPeriod = 100ms;
+constexpr auto kMissionPatience = 1500ms;
+constexpr auto kQuestionPatience = 2s;
+/// Commands for ticks so far ahead are answers to another world, which has taken our place.
+constexpr Tick kLeftBehindTicks = 64;
 /// How long the end is repeated to whoever has not heard of it, after the record's last progress.
 constexpr auto kFarewell = 2s;
 
@@ -40,7 +48,10 @@ void World::receive(const Message& message, Instant now) {
     return;
   }
   if (const auto* ack = std::get_if<RecordAck>(&message)) {
-    if (!recorded_ || ack->header.tick > *recorded_) {
+    // A restarted logger may have less than its predecessor had.
+    if (!recorded_ || ack->header.tick > *recorded_ || from.incarnation != logger_) {
+      logger_lost_ = logger_lost_ && from.incarnation == logger_;
+      logger_ = from.incarnation;
       recorded_ = ack->header.tick;
       record_progress_ = now;
     }
@@ -50,12 +61,60 @@ void World::receive(const Message& message, Instant now) {
   if (const auto* stop = std::get_if<Stop>(&message)) finish(stop->reason);
 }
 
+// ---- beginning -----------------------------------------------------------------------------------
+
 void World::start(Instant now) {
   started_ = true;
+  asking_since_ = now;
+  next_question_ = now;
+  take_roster();
+}
+
+/// The coordinator says it each second; with none left, the agents do if they are asked.
+void World::ask_for_mission(Instant now, Outbox& out) {
+  if (follower_.mission() || run_ == 0) return;
+  if (next_question_ != Instant{} && now >= next_question_) ask(-1, out);
+  if (now >= next_question_) next_question_ = now + kMissionPatience;
+}
+
+void World::ask(Tick known, Outbox& out) {
+  Hello question;
+  question.header = {run_, kWorld, incarnation_, sequencer_.next(Bus::kWorld), known};
+  out.push_back({Bus::kWorld, question});
+}
+
+void World::ask_team(Instant now, Outbox& out) {
+  if (team_has_answered() || now - *asking_since_ >= kQuestionPatience) return begin(now);
+  if (now < next_question_) return;
+  next_question_ = now + kQuestionPeriod;
+  ask(0, out);
+}
+
+bool World::team_has_answered() const {
+  return std::all_of(bodies_.begin(), bodies_.end(), [](const auto& one) {
+    return one.second.author.incarnation == 0 || one.second.command.has_value();
+  });
+}
+
+void World::begin(Instant now) {
+  asking_since_.reset();
   record_progress_ = now;
   next_tick_ = now;
   repeat_period_ = kRepeatPeriod;
-  take_roster();
+  for (const auto& [id, body] : bodies_) tick_ = std::max(tick_, body.answered());
+  begun_at_ = tick_;
+  for (auto& [id, body] : bodies_) recall(id, body);
+}
+
+/// Puts a body where it was at tick_, by its agent's last two commands.
+void World::recall(AgentId id, Body& body) {
+  if (body.answered() < 0) return;
+  const bool hold = follower_.mission()->timing.pace == Pace::kRealtime;
+  body.x_m = body.command->position_m.head<2>();
+  const bool in_a_row =
+      body.command_before && body.command_before->header.tick + 1 == body.answered();
+  if (in_a_row) body.applied_mps = body.command_before->velocity_mps.head<2>();
+  for (Tick tick = body.answered(); tick < tick_; ++tick) move(id, body, tick, hold);
 }
 
 void World::take_roster() {
@@ -70,11 +129,12 @@ void World::take_roster() {
   }
   for (const RosterEntry& entry : follower_.roster()) {
     if (entry.active_until >= 0) continue;
-    const auto id = static_cast<std::size_t>(entry.author.agent);
-    if (id >= mission.starts_m.size()) continue;
     auto [at, is_new] = bodies_.try_emplace(entry.author.agent);
-    if (is_new) at->second.x_m = mission.starts_m[id];
-    if (at->second.author != entry.author) at->second.command.reset();
+    if (is_new) at->second.x_m = start_of(mission, entry.author.agent);
+    if (at->second.author != entry.author) {
+      at->second.command.reset();
+      at->second.command_before.reset();
+    }
     at->second.author = entry.author;
   }
 }
@@ -82,11 +142,22 @@ void World::take_roster() {
 void World::on(const Command& command) {
   const auto at = bodies_.find(command.header.sender);
   if (at == bodies_.end() || at->second.author.incarnation != command.header.incarnation) return;
-  if (command.header.tick > tick_ || command.header.tick <= at->second.answered()) return;
-  const Eigen::Vector2d step_m =
-      command.velocity_mps.head<2>() * follower_.mission()->timing.dt_s;
+  Body& body = at->second;
+  const Mission& mission = *follower_.mission();
+  const Eigen::Vector2d step_m = command.velocity_mps.head<2>() * mission.timing.dt_s;
   if (!step_m.allFinite()) return;  // numbers that only overflow here are no velocities
-  at->second.command = command;
+  if (body.command && command.header.tick <= body.answered()) return;
+  if (asking_since_) {
+    if (command.header.tick > mission.timing.tick_count) return;
+    if (!mission.domain.contains(command.position_m.head<2>())) return;
+  } else if (command.header.tick > tick_) {
+    const bool left_behind = command.header.tick > tick_ + kLeftBehindTicks;
+    if (left_behind) {
+      finish("another world has gone on to tick " + std::to_string(command.header.tick));
+    }
+    return;
+  }
+  body.command_before = std::exchange(body.command, command);
 }
 
 bool World::everyone_answered() const {
@@ -115,7 +186,10 @@ void World::advance(Instant now, Outbox& out) {
   if (over_since_ && now - std::max(*over_since_, record_progress_) > kFarewell) {
     return finish("mission complete");
   }
-  if (!started_ || finished_) return;
+  if (finished_) return;
+  if (!started_) return ask_for_mission(now, out);
+  if (asking_since_) ask_team(now, out);
+  if (asking_since_) return;
   if (follower_.mission()->timing.pace == Pace::kLockstep || over_since_) {
     advance_lockstep(now, out);
   } else {
@@ -168,28 +242,30 @@ void World::advance_realtime(Instant now, Outbox& out) {
   if (tick_ >= timing.tick_count) over_since_ = now;
 }
 
-Eigen::Vector2d World::command_of(const Body& body, bool hold_old_commands) {
-  if (!body.command || body.author.incarnation == 0) return {0, 0};
+Eigen::Vector2d World::command_of(const Body& body, Tick tick, bool hold_old_commands) const {
+  if (body.answered() < 0 || body.author.incarnation == 0) return {0, 0};
   const Timing& timing = follower_.mission()->timing;
-  const double age_s = static_cast<double>(tick_ - body.answered()) * timing.dt_s;
+  const double age_s = static_cast<double>(tick - body.answered()) * timing.dt_s;
   if (age_s > (hold_old_commands ? timing.command_hold_s : 0)) return {0, 0};
   return body.command->velocity_mps.head<2>();
 }
 
 void World::step(bool hold_old_commands) {
+  for (auto& [id, body] : bodies_) move(id, body, tick_, hold_old_commands);
+  ++tick_;
+}
+
+void World::move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const {
   const Mission& mission = *follower_.mission();
   const double dt_s = mission.timing.dt_s;
-  for (auto& [id, body] : bodies_) {
-    body.applied_mps = command_of(body, hold_old_commands);
-    Eigen::Vector2d next_m = body.x_m + body.applied_mps * dt_s;
-    if (mission.disturbance_intensity > 0) {
-      next_m += mission.disturbance_intensity * std::sqrt(dt_s) *
-                normal_pair(mission.seed, Purpose::kDisturbance, static_cast<std::uint32_t>(id),
-                            static_cast<std::uint64_t>(tick_));
-    }
-    body.x_m = reflect(next_m, mission.domain);
+  body.applied_mps = command_of(body, tick, hold_old_commands);
+  Eigen::Vector2d next_m = body.x_m + body.applied_mps * dt_s;
+  if (mission.disturbance_intensity > 0) {
+    next_m += mission.disturbance_intensity * std::sqrt(dt_s) *
+              normal_pair(mission.seed, Purpose::kDisturbance, static_cast<std::uint32_t>(id),
+                          static_cast<std::uint64_t>(tick));
   }
-  ++tick_;
+  body.x_m = reflect(next_m, mission.domain);
 }
 
 std::vector<WorldState> World::snapshot() const {
@@ -260,7 +336,8 @@ void World::help_logger(Outbox& out) {
 
 Instant World::next_wakeup() const {
   if (finished_) return Instant::max();
-  if (!started_) return Instant::max();
+  if (!started_) return follower_.mission() || run_ == 0 ? Instant::max() : next_question_;
+  if (asking_since_) return next_question_;
   if (over_since_) return next_publish_;
   return follower_.mission()->timing.pace == Pace::kLockstep ? next_publish_ : next_tick_;
 }

@@ -36,6 +36,8 @@ class World {
   RunId run() const { return run_; }
   const std::string& reason() const { return reason_; }
   Tick tick() const { return tick_; }
+  /// The tick from which it goes on, once it moves; above 0 if another world began the mission.
+  std::optional<Tick> begun_at() const { return begun_at_; }
   /// Real time: commands that were not there when their tick was over.
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
   /// Real time: ticks that were dropped because the process had been held up for too long.
@@ -48,20 +50,27 @@ class World {
     Author author;
     Eigen::Vector2d x_m{0, 0};
     Eigen::Vector2d applied_mps{0, 0};
-    std::optional<Command> command;
+    std::optional<Command> command, command_before;
     Tick answered() const { return command ? command->header.tick : -1; }
   };
 
   void on(const Command& command);
   void take_roster();
   void start(Instant now);
+  void ask_for_mission(Instant now, Outbox& out);
+  void ask_team(Instant now, Outbox& out);
+  void ask(Tick known, Outbox& out);
+  bool team_has_answered() const;
+  void begin(Instant now);
+  void recall(AgentId id, Body& body);
+  void move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const;
   bool everyone_answered() const;
   bool record_is_close(Instant now);
   bool record_complete() const;
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
   void step(bool hold_old_commands);
-  Eigen::Vector2d command_of(const Body& body, bool hold_old_commands);
+  Eigen::Vector2d command_of(const Body& body, Tick tick, bool hold_old_commands) const;
   std::vector<WorldState> snapshot() const;
   void publish(const std::vector<WorldState>& states, Outbox& out);
   void remember_and_publish(Instant now, Outbox& out);
@@ -78,6 +87,10 @@ class World {
   Tick tick_ = 0;
   std::map<AgentId, Body> bodies_;
 
+  std::optional<Instant> asking_since_;  // where the team was
+  Instant next_question_{};
+  std::optional<Tick> begun_at_;
+
   Instant next_publish_{};
   std::chrono::nanoseconds repeat_period_{};
   Instant next_tick_{};
@@ -85,6 +98,7 @@ class World {
   std::optional<Instant> over_since_;
 
   std::optional<Tick> recorded_;  // what the logger has acknowledged
+  Incarnation logger_ = 0;
   Instant record_progress_{};
   bool logger_lost_ = false;
   std::deque<std::vector<WorldState>> history_;  // states of the last ticks, for the logger

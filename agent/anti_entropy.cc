@@ -1,0 +1,107 @@
+#include "agent/anti_entropy.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/noise.h"
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// An answer waits a random share of this, so that one of many answers first.
+constexpr double kLongestDelay_s = 0.25;
+/// Two complaints further apart are not in a row: a teammate that was cut off starts anew.
+constexpr auto kComplaintLife = 5s;
+constexpr std::size_t kMaxComplaints = 8192;
+constexpr std::size_t kMaxAnswers = 256;
+constexpr int kToleratedPeriods = 2;
+
+}  // namespace
+
+std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
+                                         const std::vector<RosterEntry>& roster) {
+  std::vector<Digest> digests;
+  for (const RosterEntry& entry : roster) {
+    if (digests.empty() || digests.back().entry_count == kMaxDigestEntriesPerMessage) {
+      digests.emplace_back();
+    }
+    Digest& digest = digests.back();
+    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {
+        entry.author, table.steps_held(entry.author).value_or(0)};
+  }
+  return digests;
+}
+
+void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
+                     const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
+  const Author requester{theirs.header.sender, theirs.header.incarnation};
+  for (int i = 0; i < theirs.entry_count; ++i) {
+    const DigestEntry& entry = theirs.entries[static_cast<std::size_t>(i)];
+    // Our own coverage we broadcast as it grows, never in between: in lockstep, ticks depend on it.
+    if (entry.author == self_ || entry.author == requester) continue;
+    const auto known = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& member) {
+      return member.author == entry.author;
+    });
+    if (known == roster.end()) continue;
+    consider(requester, entry, theirs.header.sequence, table, known->active_until < 0, now, tick);
+  }
+}
+
+void AntiEntropy::consider(const Author& requester, const DigestEntry& entry,
+                           std::int64_t sequence, const CoverageTable& table, bool will_speak,
+                           Instant now, Tick tick) {
+  const std::int64_t lag = table.steps_held(entry.author).value_or(0) - entry.steps;
+  const Tick tolerated = will_speak ? kToleratedPeriods * table.announced_period(entry.author) : 0;
+  const auto key = std::pair(requester, entry.author);
+  if (lag <= tolerated) {
+    complaints_.erase(key);
+    return;
+  }
+  const auto former = complaints_.find(key);
+  if (former == complaints_.end()) {
+    if (complaints_.size() < kMaxComplaints) complaints_.emplace(key, Complaint{sequence, now});
+    return;
+  }
+  if (sequence <= former->second.sequence) return;
+  const bool in_a_row = now - former->second.at <= kComplaintLife;
+  former->second = {sequence, now};
+  if (!in_a_row || answers_.count(entry.author) != 0 || answers_.size() >= kMaxAnswers) return;
+  const double delay_s = kLongestDelay_s * uniform_pair(seed_, Purpose::kAnswer,
+                                                        static_cast<std::uint32_t>(self_.agent),
+                                                        ++draws_).x();
+  answers_.emplace(entry.author, Deadline::in(seconds(delay_s), now, delay_s, dt_s_, tick));
+}
+
+void AntiEntropy::on_relayed(const Contribution& theirs, const CoverageTable& table) {
+  const auto planned = answers_.find(theirs.author());
+  if (planned == answers_.end()) return;
+  if (theirs.steps >= table.steps_held(theirs.author()).value_or(0)) answers_.erase(planned);
+}
+
+std::vector<Contribution> AntiEntropy::answers_due(const CoverageTable& table, Instant now,
+                                                   Tick tick) {
+  std::vector<Contribution> blocks;
+  for (auto at = answers_.begin(); at != answers_.end();) {
+    if (!at->second.due(now, tick)) {
+      ++at;
+      continue;
+    }
+    for (int b = 0; b < table.block_count(); ++b) {
+      Contribution block = table.block(at->first, b);
+      if (block.steps > 0) blocks.push_back(block);
+    }
+    at = answers_.erase(at);
+  }
+  relayed_ += static_cast<std::int64_t>(blocks.size());
+  return blocks;
+}
+
+Instant AntiEntropy::next_answer() const {
+  Instant next = Instant::max();
+  for (const auto& [author, deadline] : answers_) next = std::min(next, deadline.at);
+  return next;
+}
+
+}  // namespace ergocast

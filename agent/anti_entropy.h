@@ -1,0 +1,62 @@
+// Mends what teammates lack: reads their digests and repeats, for the authors that they cannot
+// hear, what those have said. Lost messages, late joiners, restarts, the dead agents' sums and
+// teams in which not all hear all need nothing else.
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/coverage_table.h"
+#include "core/deadline.h"
+#include "core/ids.h"
+#include "core/messages.h"
+
+namespace ergocast {
+
+class AntiEntropy {
+ public:
+  /// @param seed  of the delays before an answer
+  AntiEntropy(const Author& self, std::uint64_t seed, double dt_s)
+      : self_(self), seed_(seed), dt_s_(dt_s) {}
+
+  /// What `table` holds of everybody in `roster`, in as many messages as it takes, without headers.
+  static std::vector<Digest> digests(const CoverageTable& table,
+                                     const std::vector<RosterEntry>& roster);
+
+  /// A teammate says what it holds. An author is worth an answer if in two digests in a row its
+  /// coverage there was behind ours: by more than two of the author's broadcast periods, or by
+  /// anything if the author has left the roster and will not speak again.
+  void on(const Digest& theirs, const CoverageTable& table, const std::vector<RosterEntry>& roster,
+          Instant now, Tick tick);
+
+  /// Somebody else has repeated `theirs`: if it is as new as ours, we need not.
+  void on_relayed(const Contribution& theirs, const CoverageTable& table);
+
+  /// The blocks to be repeated now, as their authors said them.
+  std::vector<Contribution> answers_due(const CoverageTable& table, Instant now, Tick tick);
+
+  /// When answers_due() should be asked next.
+  Instant next_answer() const;
+
+  std::int64_t relayed() const { return relayed_; }
+
+ private:
+  struct Complaint {
+    std::int64_t sequence;  // of the digest it was in
+    Instant at;
+  };
+
+  void consider(const Author& requester, const DigestEntry& entry, std::int64_t sequence,
+                const CoverageTable& table, bool will_speak, Instant now, Tick tick);
+
+  Author self_;
+  std::uint64_t seed_;
+  double dt_s_;
+  std::map<std::pair<Author, Author>, Complaint> complaints_;  // (who lacks, whose coverage)
+  std::map<Author, Deadline> answers_;
+  std::uint64_t draws_ = 0;
+  std::int64_t relayed_ = 0;
+};
+
+}  // namespace ergocast

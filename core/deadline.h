@@ -1,0 +1,25 @@
+// When something is due that recurs in wall time and in mission time: a lockstep run passes
+// thousands of mission seconds in a wall second, a real-time run the other way round.
+#pragma once
+
+#include <algorithm>
+
+#include "core/ids.h"
+
+namespace ergocast {
+
+/// Due at `at` or at `tick`, whichever comes first. Due at once if it was never set.
+struct Deadline {
+  Instant at{};
+  Tick tick = 0;
+
+  bool due(Instant now, Tick current) const { return now >= at || current >= tick; }
+
+  /// In `wall`, or in `mission_s` of mission time, at least one tick.
+  static Deadline in(PacingClock::duration wall, Instant now, double mission_s, double dt_s,
+                     Tick current) {
+    return {now + wall, current + std::max<Tick>(1, static_cast<Tick>(mission_s / dt_s))};
+  }
+};
+
+}  // namespace ergocast
