@@ -17,7 +17,7 @@ using namespace test;
 const std::vector<std::byte> kPlan{std::byte{1}, std::byte{2}};
 
 Coordinator coordinator_of(const Mission& mission) {
-  return {kRun, kCoordinatorLife, mission, kPlan};
+  return {kRun, kCoordinatorLife, decoder_of(mission), kPlan};
 }
 
 Hello hello_of(AgentId id, Incarnation incarnation) {
@@ -211,7 +211,7 @@ TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogethe
   const Mission mission = small_mission(30);
   std::vector<std::byte> plan;
   for (int i = 0; i < 1100; ++i) plan.push_back(static_cast<std::byte>(i * 31));
-  Coordinator coordinator(kRun, kCoordinatorLife, mission, plan);
+  Coordinator coordinator(kRun, kCoordinatorLife, decoder_of(mission), plan);
   admit_all(coordinator, 30, at(0s));
   const auto parts = only<MissionPart>(advance(coordinator, at(0s)));
   ASSERT_EQ(parts.size(), 2u * 3u) << "three parts on two buses";

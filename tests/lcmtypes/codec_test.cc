@@ -8,6 +8,7 @@
 #include <ergocast/agent_status_t.hpp>
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
+#include <ergocast/digest_t.hpp>
 #include <ergocast/hello_t.hpp>
 #include <ergocast/mission_t.hpp>
 #include <ergocast/record_ack_t.hpp>
@@ -67,10 +68,21 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(status_wire.contributions_lost, 7);
   EXPECT_EQ(status_wire.messages_sent, 8);
   EXPECT_EQ(status_wire.messages_received, 9);
+  EXPECT_EQ(status_wire.contributions_relayed, 18);
   EXPECT_EQ(status_wire.missed_ticks, 10);
   for (int i = 0; i < kRefusalKinds; ++i) EXPECT_EQ(status_wire.refused[i], 11 + i);
   EXPECT_EQ(status_wire.kernel_drops, 17);
   EXPECT_EQ(status_wire.status_host, "host.example");
+
+  const auto digest_wire = read_by_lcm<digest_t>(encoded(digest()));
+  expect_header(digest_wire.header, 3);
+  ASSERT_EQ(digest_wire.entry_count, 2);
+  EXPECT_EQ(digest_wire.entries[0].digest_id, 0);
+  EXPECT_EQ(digest_wire.entries[0].digest_incarnation, -1);
+  EXPECT_EQ(digest_wire.entries[0].digest_steps, 0);
+  EXPECT_EQ(digest_wire.entries[1].digest_id, 127);
+  EXPECT_EQ(digest_wire.entries[1].digest_incarnation, 5);
+  EXPECT_EQ(digest_wire.entries[1].digest_steps, 4711);
 
   const auto command_wire = read_by_lcm<command_t>(encoded(command()));
   expect_header(command_wire.header, 2);
@@ -97,7 +109,9 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(part_wire.roster[0].active_until, -1);
   EXPECT_EQ(part_wire.roster[1].id, 127);
   EXPECT_EQ(part_wire.roster[1].active_from, 100);
+  EXPECT_EQ(part_wire.roster[0].forgotten_from, -1);
   EXPECT_EQ(part_wire.roster[1].active_until, 200);
+  EXPECT_EQ(part_wire.roster[1].forgotten_from, 300);
   ASSERT_EQ(part_wire.plan_size, 300);
   EXPECT_EQ(std::memcmp(part_wire.plan.data(), part.plan.data(), 300), 0);
   EXPECT_EQ(part_wire.reason, "because");

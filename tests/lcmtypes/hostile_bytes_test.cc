@@ -88,9 +88,11 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
   ASSERT_EQ(with_count(mission_part(), kRosterCount, 2), encoded(mission_part()));
   ASSERT_EQ(with_count(mission_part(), kPlanSize, 300), encoded(mission_part()));
   ASSERT_EQ(with_count(world_state(), kVehicleCount, 2), encoded(world_state()));
+  ASSERT_EQ(with_count(digest(), kHeaderBytes, 2), encoded(digest()));
   for (const std::int32_t count : {-1, 0, 1, 3, 12, 13, 100, 0x01000000, 0x7fffff00, kMost, kLeast}) {
     EXPECT_EQ(verdict(with_count(mission_part(), kRosterCount, count)), "size") << count;
     EXPECT_EQ(verdict(with_count(world_state(), kVehicleCount, count)), "size") << count;
+    EXPECT_EQ(verdict(with_count(digest(), kHeaderBytes, count)), "size") << count;
   }
   for (const std::int32_t count : {-1, 0, 299, 301, 512, 513, kMost, kLeast}) {
     EXPECT_EQ(verdict(with_count(mission_part(), kPlanSize, count)), "size") << count;
@@ -98,16 +100,16 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
 }
 
 TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
-  // 28 bytes less of roster and 28 more of plan: the whole adds up, so only its meaning changes.
+  // 36 bytes less of roster and 36 more of plan: the whole adds up, so only its meaning changes.
   Bytes shifted = encoded(mission_part());
   put32(shifted, kHeaderBytes + 17, 1);
-  put32(shifted, kHeaderBytes + 21, 328);
+  put32(shifted, kHeaderBytes + 21, 336);
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
-  EXPECT_EQ(part.plan.size(), 328u);
+  EXPECT_EQ(part.plan.size(), 336u);
   // Beyond a limit, it does not help that the sum is right.
-  put32(shifted, kHeaderBytes + 17, 13);
-  put32(shifted, kHeaderBytes + 21, 300 - 11 * 28 + 2 * 28);
+  put32(shifted, kHeaderBytes + 17, 11);
+  put32(shifted, kHeaderBytes + 21, 300 - 9 * 36);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
 }
 
@@ -216,7 +218,14 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<RecordAck>(record_ack(), [](RecordAck& m) { m.header.sender = kWorld; }),
       changed<Command>(command(), [](Command& m) { m.header.sender = kWorld; }),
       changed<Command>(command(), [](Command& m) { m.header.sender = kMaxAgents; }),
-      changed<Command>(command(), [](Command& m) { m.header.tick = -1; }),
+      changed<Command>(command(), [](Command& m) { m.header.tick = -2; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].forgotten_from = -2; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.contributions_relayed = -1; }),
+      changed<Digest>(digest(), [](Digest& m) { m.header.sender = kCoordinator; }),
+      changed<Digest>(digest(), [](Digest& m) { m.header.sender = kMaxAgents; }),
+      changed<Digest>(digest(), [](Digest& m) { m.entries[1].author.agent = -1; }),
+      changed<Digest>(digest(), [](Digest& m) { m.entries[1].author.agent = kMaxAgents; }),
+      changed<Digest>(digest(), [](Digest& m) { m.entries[1].steps = -1; }),
   };
   for (std::size_t i = 0; i < std::size(lies); ++i) EXPECT_EQ(verdict(lies[i]), "range") << "lie " << i;
 }

@@ -37,7 +37,7 @@ inline MissionPart mission_part() {
   m.state = MissionState::kRunning;
   m.part = 2;
   m.parts = 5;
-  m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200}};
+  m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, 300}};
   for (int i = 0; i < 300; ++i) m.plan.push_back(static_cast<std::byte>(i * 7));
   m.reason = "because";
   return m;
@@ -70,6 +70,7 @@ inline AgentStatus agent_status() {
   m.messages_sent = 8;
   m.messages_received = 9;
   m.missed_ticks = 10;
+  m.contributions_relayed = 18;
   m.refused = {11, 12, 13, 14, 15, 16};
   m.kernel_drops = 17;
   m.host = "host.example";
@@ -100,9 +101,18 @@ inline Command command() { return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5,
 
 inline RecordAck record_ack() { return {header_of_sender(kLogger)}; }
 
+inline Digest digest() {
+  Digest m;
+  m.header = header_of_sender(3);
+  m.entry_count = 2;
+  m.entries[0] = {{0, 0xffffffffffffffff}, 0};
+  m.entries[1] = {{127, 5}, 4711};
+  return m;
+}
+
 inline std::vector<Message> every_message() {
   return {hello(), mission_part(), contribution(), agent_status(), team_status(),
-          stop(),  world_state(),  command(),      record_ack()};
+          stop(),  world_state(),  command(),      record_ack(), digest()};
 }
 
 // ---- bytes ---------------------------------------------------------------------------------------

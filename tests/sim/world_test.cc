@@ -18,11 +18,17 @@ using namespace test;
 
 World world_of(const Mission& mission) { return {kRun, kWorldLife, decoder_of(mission)}; }
 
+/// Every agent's answer to the question where it was.
+void nobody_has_moved(World& world, int agents, Instant now) {
+  for (AgentId id = 0; id < agents; ++id) world.receive(command_of(id, -1, {0, 0}), now);
+}
+
 /// A world whose mission runs since `now`, all planned agents admitted; nothing published yet.
 World running_world(const Mission& mission, Instant now = at(0s)) {
   World world = world_of(mission);
   const auto team = static_cast<int>(mission.starts_m.size());
   world.receive(mission_part(0, MissionState::kRunning, roster_of(team)), now);
+  nobody_has_moved(world, team, now);
   return world;
 }
 

@@ -81,7 +81,7 @@ inline WorldState world_state(Tick tick, const std::vector<Eigen::Vector2d>& pos
 
 inline Command command_of(AgentId id, Tick tick, const Eigen::Vector2d& velocity_mps) {
   Command command;
-  command.header = {kRun, id, life_of(id), tick + 1, tick};
+  command.header = {kRun, id, life_of(id), tick + 2, tick};
   command.velocity_mps << velocity_mps, 0;
   return command;
 }
