@@ -22,8 +22,6 @@ constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
 constexpr auto kQuestionPeriod = 100ms;
 constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
-/// Commands for ticks so far ahead are answers to another world, which has taken our place.
-constexpr Tick kLeftBehindTicks = 64;
 /// How long the end is repeated to whoever has not heard of it, after the record's last progress.
 constexpr auto kFarewell = 2s;
 
@@ -151,10 +149,6 @@ void World::on(const Command& command) {
     if (command.header.tick > mission.timing.tick_count) return;
     if (!mission.domain.contains(command.position_m.head<2>())) return;
   } else if (command.header.tick > tick_) {
-    const bool left_behind = command.header.tick > tick_ + kLeftBehindTicks;
-    if (left_behind) {
-      finish("another world has gone on to tick " + std::to_string(command.header.tick));
-    }
     return;
   }
   body.command_before = std::exchange(body.command, command);
