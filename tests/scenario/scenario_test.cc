@@ -47,6 +47,11 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_EQ(mission.starts_m, std::vector<Eigen::Vector2d>{Eigen::Vector2d(10, 20)});
   EXPECT_EQ(mission.quorum, 1);
   EXPECT_EQ(mission.disturbance_intensity, 0);
+  EXPECT_EQ(mission.timing.broadcast_error_budget, 0);
+  EXPECT_EQ(mission.timing.broadcast_heartbeat_ticks, 100);
+  EXPECT_EQ(mission.forget_silent_after_s, 0);
+  EXPECT_EQ(mission.radio_range_m, 0);
+  EXPECT_EQ(mission.goal_ergodic_metric, 0);
 }
 
 TEST(Defaults, AbsoluteRegularizationIsClassicalUnlessEpsilonIsGiven) {
@@ -74,9 +79,16 @@ TEST(Reading, TakesEverySpellingOfEveryField) {
     }
     basis { modes_x: 3 modes_y: 4 normalized: true sobolev_form: NORM sobolev_exponent: 2 }
     law { u_max_mps: 5 contraction_center: POINT contraction_x_m: 1 contraction_y_m: 6 }
-    time { duration_s: 1 pace: REALTIME on_timeout: EVICT }
-    agents { starts: [ { x_m: -10 y_m: 5 }, { x_m: 90, y_m: 55 } ] random_count: 1 quorum: 2 }
-    world { disturbance_intensity: 0.25 }
+    time {
+      duration_s: 1 pace: REALTIME on_timeout: EVICT
+      broadcast_error_budget: 0.1 broadcast_heartbeat_ticks: 50
+    }
+    agents {
+      starts: [ { x_m: -10 y_m: 5 }, { x_m: 90, y_m: 55 } ] random_count: 1 quorum: 2
+      forget_silent_after_s: 60
+    }
+    world { disturbance_intensity: 0.25 radio_range_m: 40 }
+    goal_ergodic_metric: 0.01
   )")
                               .mission();
   EXPECT_EQ(mission.domain.origin_m, Eigen::Vector2d(-10, 5));
@@ -90,6 +102,11 @@ TEST(Reading, TakesEverySpellingOfEveryField) {
   EXPECT_EQ(mission.starts_m.size(), 3u);
   EXPECT_EQ(mission.quorum, 2);
   EXPECT_EQ(mission.disturbance_intensity, 0.25);
+  EXPECT_EQ(mission.timing.broadcast_error_budget, 0.1);
+  EXPECT_EQ(mission.timing.broadcast_heartbeat_ticks, 50);
+  EXPECT_EQ(mission.forget_silent_after_s, 60);
+  EXPECT_EQ(mission.radio_range_m, 40);
+  EXPECT_EQ(mission.goal_ergodic_metric, 0.01);
 }
 
 TEST(Reading, TargetAndItsCoefficientsBelongTogether) {
