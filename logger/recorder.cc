@@ -103,10 +103,11 @@ void Recorder::replay(const RunData& past) {
     facts_.ergodic_metric_first = facts_.ergodic_metric.front();
     facts_.ergodic_metric_last = facts_.ergodic_metric.back();
   }
-  std::size_t vehicles = 0;
+  std::size_t vehicles = 0, expected = follower_.mission()->starts_m.size();
   for_each_row(past, [&](AgentId id, const TrackPoint& row) {
     if (row.tick > former_end_.first) {
       if (vehicles > 0) write_due_metrics();
+      expected = std::max(expected, vehicles);
       next_row_ = row.tick;
       vehicles = 0;
       ++facts_.ticks;
@@ -117,11 +118,10 @@ void Recorder::replay(const RunData& past) {
   });
   facts_.former_ticks = facts_.ticks;
   facts_.gaps = former_end_.first + 1 - facts_.ticks;
-  // With fewer vehicles the last tick may have been cut off, and is recorded to its end.
-  if (vehicles == follower_.mission()->starts_m.size()) {
-    write_due_metrics();
-    ++next_row_;
-  }
+  // With fewer, the last tick may have been cut off amid its rows, and is recorded to its end.
+  if (vehicles == 0 || vehicles < expected) return;
+  write_due_metrics();
+  ++next_row_;
 }
 
 bool Recorder::is_lockstep() const {
