@@ -211,7 +211,7 @@ int main(int argc, char** argv) {
   std::filesystem::path folder;
   add_node_options(app, node);
   bool resume = false;
-  app.add_option("--out", folder, "Existing folder without a record")
+  app.add_option("--out", folder, "Existing folder, without a record unless it is resumed")
       ->required()
       ->check(CLI::ExistingDirectory);
   app.add_flag("--resume", resume, "Go on with the record of this mission in the folder, if there is one");
