@@ -1,13 +1,17 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/run_directory.h"
 #include "lab/swarm.h"
+#include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "logger/table_lines.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
@@ -49,26 +53,30 @@ std::string why_not_repeatable(const nlohmann::ordered_json& summary, std::size_
   }
 }
 
-/// Compares a recorded table with one that is simulated bit by bit.
+/// Tick and agent of a row of trajectory.csv, by which its rows ascend; nothing if it has none.
+using RowKey = std::pair<Tick, AgentId>;
+std::optional<RowKey> key_of(const std::string& row) {
+  long long tick = 0;
+  int agent = 0;
+  if (std::sscanf(row.c_str(), "%lld,%*[^,],%d,", &tick, &agent) != 2) return {};
+  return RowKey{tick, agent};
+}
+
+/// Compares the recorded trajectory with one that is simulated, row by row and bit by bit. Rows that
+/// the record lacks are counted.
 class Comparison {
  public:
-  explicit Comparison(const fs::path& recorded) : recorded_(recorded, std::ios::binary) {}
+  explicit Comparison(const fs::path& run_dir)
+      : lines_(run_dir, kTrajectoryFile, kTrajectoryHeader) {
+    read_next();
+  }
 
-  bool readable() const { return recorded_.good(); }
+  /// Why the record cannot be read, if so.
+  const std::optional<std::string>& problem() const { return lines_.problem(); }
   /// Compares as many whole lines as there are; false at the first difference.
   bool compare(std::istream& simulated) {
     for (std::string line; same_ && !recorded_over_ && std::getline(simulated, line);) {
-      std::string recorded;
-      std::getline(recorded_, recorded);
-      recorded_over_ = recorded_.eof();  // also a last line that was cut off
-      if (recorded_over_) break;
-      same_ = recorded == line;
-      if (same_) {
-        last_ = line;
-      } else {
-        difference_ = "recorded:  " + recorded + "\nsimulated: " + line + '\n';
-        first_ = line;
-      }
+      if (line != kTrajectoryHeader) compare_row(line);
     }
     return same_ && !recorded_over_;
   }
@@ -76,23 +84,46 @@ class Comparison {
   /// Whether the record ended before the simulation did.
   bool recorded_over() const { return recorded_over_; }
   /// Whether the record goes on after the simulation's end.
-  bool has_more() {
-    return recorded_.peek() != std::char_traits<char>::eof();
-  }
+  bool has_more() const { return recorded_.has_value(); }
   /// "tick 12, agent 3" of the first line that differs.
   std::string place() const {
-    std::istringstream fields(first_);
-    std::string tick, t_s, agent;
-    std::getline(std::getline(std::getline(fields, tick, ','), t_s, ','), agent, ',');
-    return "tick " + tick + ", agent " + agent;
+    const RowKey key = key_of(first_).value_or(RowKey{});
+    return "tick " + std::to_string(key.first) + ", agent " + std::to_string(key.second);
   }
   const std::string& difference() const { return difference_; }
   std::string last_tick() const { return last_.substr(0, last_.find(',')); }
+  /// Ticks up to the last compared row that lack rows.
+  Tick missing() const { return missing_; }
 
  private:
-  std::ifstream recorded_;
+  void read_next() {
+    std::string line;
+    recorded_ = lines_.next(line) ? std::optional(line) : std::nullopt;
+  }
+
+  void compare_row(const std::string& simulated) {
+    recorded_over_ = !recorded_;
+    if (recorded_over_) return;
+    if (*recorded_ == simulated) {
+      last_ = simulated;
+      return read_next();
+    }
+    const auto key = key_of(simulated), recorded_key = key_of(*recorded_);
+    if (recorded_key > key) {
+      if (key->first != last_missing_) ++missing_;
+      last_missing_ = key->first;
+      return;
+    }
+    same_ = false;
+    difference_ = "recorded:  " + *recorded_ + "\nsimulated: " + simulated + '\n';
+    first_ = simulated;
+  }
+
+  TableLines lines_;
+  std::optional<std::string> recorded_;  // the row to be compared next
   bool same_ = true, recorded_over_ = false;
   std::string last_, first_, difference_;
+  Tick missing_ = 0, last_missing_ = -1;
 };
 
 /// Simulates `scenario` until something differs or one of the two ends.
@@ -136,6 +167,9 @@ int verdict(const fs::path& run_dir, Comparison& comparison,
   }
   std::printf("%s: identical to its simulation, byte for byte, up to tick %s%s\n", run_dir.c_str(),
               comparison.last_tick().c_str(), complete ? "" : ", where the record ends");
+  if (const Tick missing = comparison.missing(); missing > 0) {
+    std::printf("%lld ticks before that are missing in the record\n", static_cast<long long>(missing));
+  }
   return kExitDone;
 }
 
@@ -145,8 +179,8 @@ int verify(const fs::path& run_dir) {
   std::ifstream plan_file(run_dir / kPlanFile, std::ios::binary);
   const std::string plan((std::istreambuf_iterator<char>(plan_file)), {});
   const auto scenario = Scenario::from_plan(std::as_bytes(std::span(plan)));
-  Comparison comparison(run_dir / kTrajectoryFile);
-  if (!scenario || !comparison.readable()) {
+  Comparison comparison(run_dir);
+  if (!scenario || comparison.problem()) {
     std::fprintf(stderr, "%s: missing, damaged, or written by another version than %s\n",
                  (run_dir / (scenario ? kTrajectoryFile : kPlanFile)).c_str(), version().c_str());
     return kExitBadInput;
@@ -170,6 +204,10 @@ int verify(const fs::path& run_dir) {
   }
 
   simulate_and_compare(*scenario, comparison);
+  if (const auto& problem = comparison.problem()) {
+    std::fprintf(stderr, "%s\n", problem->c_str());
+    return kExitBadInput;
+  }
   return verdict(run_dir, comparison, summary);
 }
 

@@ -2,8 +2,11 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <fstream>
+#include <iterator>
 
 #include "logger/recorder.h"
+#include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "runtime/event_log.h"
@@ -22,16 +25,46 @@ bool is_original(Bus bus, std::string_view channel) {
   return bus != Bus::kCommand || !(channel.ends_with("_MISSION") || channel.ends_with("_STOP"));
 }
 
+/// What a former process left in the run directory.
+struct Past {
+  RunData rows;
+  std::string plan;  ///< empty: not known
+};
+
+std::variant<Past, std::string> read_past(const fs::path& folder) {
+  Past past;
+  if (segment_count(folder) == 0) return past;
+  auto rows = read_run(folder);
+  if (auto* problem = std::get_if<std::string>(&rows)) return std::move(*problem);
+  past.rows = std::get<RunData>(std::move(rows));
+  std::ifstream plan(folder / kPlanFile, std::ios::binary);
+  past.plan.assign(std::istreambuf_iterator<char>(plan), {});
+  return past;
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 /// A recorder with the files it fills. The first write error ends the record.
 class RunLogger {
  public:
-  RunLogger(RunId run, RunRecord& record)
+  /// @param past  what to go on with, if anything
+  RunLogger(RunId run, RunRecord& record, std::optional<Past> past)
       : record_(record),
         events_(record.folder()),
-        recorder_(run, random_identity(), decode_plan, record.trajectory(), record.metrics()) {}
+        resumed_(past.has_value()),
+        recorder_(run, random_identity(), decoder_of(past ? past->plan : ""), record.trajectory(),
+                  record.metrics()) {
+    if (past) recorder_.resume(std::move(past->rows));
+  }
 
   Recorder& recorder() { return recorder_; }
   bool failed() const { return failed_; }
+  /// Whether the mission that was heard is not the one whose record is here.
+  bool wrong_mission() const { return wrong_mission_; }
+  /// Whether there is nothing that a former process has not written better.
+  bool idle() const { return resumed_ && !recorder_.follower().mission(); }
 
   void keep_event(Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
     if (is_original(bus, channel)) events_.write(channel, bytes);
@@ -39,11 +72,13 @@ class RunLogger {
 
   /// What is done every turn: times for the summary, and the plan once it is known.
   void attend(Instant now) {
-    if (recorder_.next_row() != seen_row_) {
-      seen_row_ = recorder_.next_row();
+    const Tick rows = recorder_.facts().ticks - recorder_.facts().former_ticks;
+    if (rows != seen_rows_) {
+      seen_rows_ = rows;
       last_row_ = now;
       if (!first_row_) first_row_ = now;
     }
+    if (wrong_mission_) recorder_.stop("another mission");
     if (plan_written_ || !recorder_.follower().mission()) return;
     plan_written_ = true;
     check(write_plan());
@@ -52,6 +87,12 @@ class RunLogger {
   void flush() {
     check(record_.flush());
     check(events_.flush());
+  }
+
+  /// As if this process had never been.
+  void discard() {
+    record_.discard();
+    events_.discard();
   }
 
   void write_summary(const Transport& transport) {
@@ -64,6 +105,7 @@ class RunLogger {
     if (first_row_) {
       context.wall_time_s = std::chrono::duration<double>(*last_row_ - *first_row_).count();
     }
+    context.segments = record_.segment() + 1;
     context.refused = transport.refused();
     context.kernel_drops = transport.kernel_drops();
     context.cpu_has_fma = cpu_has_fma();
@@ -71,6 +113,14 @@ class RunLogger {
   }
 
  private:
+  /// Takes only the plan of the record, so that no other mission hears a word of this logger.
+  PlanDecoder decoder_of(std::string plan) {
+    return [this, plan = std::move(plan)](std::span<const std::byte> heard) {
+      wrong_mission_ = !plan.empty() && plan != text_of(heard);
+      return wrong_mission_ ? std::nullopt : decode_plan(heard);
+    };
+  }
+
   void check(const std::optional<std::string>& problem) {
     if (!problem || failed_) return;
     failed_ = true;
@@ -81,8 +131,7 @@ class RunLogger {
   /// The plan as it was sent, and as people read it, unless a launcher has already written that.
   std::optional<std::string> write_plan() const {
     const std::vector<std::byte>& plan = recorder_.follower().plan();
-    const std::string_view bytes(reinterpret_cast<const char*>(plan.data()), plan.size());
-    if (auto problem = write_file(record_.folder() / kPlanFile, bytes)) return problem;
+    if (auto problem = write_file(record_.folder() / kPlanFile, text_of(plan))) return problem;
     std::error_code ignored;
     if (fs::exists(record_.folder() / kScenarioFile, ignored)) return std::nullopt;
     return write_file(record_.folder() / kScenarioFile, Scenario::from_plan(plan)->print());
@@ -91,20 +140,29 @@ class RunLogger {
   const std::string started_ = wall_clock_text();
   RunRecord& record_;
   EventLog events_;
+  const bool resumed_;
+  bool failed_ = false, plan_written_ = false, wrong_mission_ = false;
   Recorder recorder_;
-  bool failed_ = false, plan_written_ = false;
-  Tick seen_row_ = 0;
+  Tick seen_rows_ = 0;
   std::optional<Instant> first_row_, last_row_;
 };
 
-int run(const NodeOptions& node, const fs::path& folder) {
+int refuse(ExitCode code, const std::string& problem) {
+  spdlog::error("{}", problem);
+  return code;
+}
+
+int run(const NodeOptions& node, const fs::path& folder, bool resume) {
   StopSignals signals;
-  auto created = RunRecord::create(folder);
-  if (const auto* problem = std::get_if<std::string>(&created)) {
-    spdlog::error("{}", *problem);
-    return kExitBadInput;
+  std::optional<Past> past;
+  if (resume) {
+    auto read = read_past(folder);
+    if (const auto* problem = std::get_if<std::string>(&read)) return refuse(kExitBadInput, *problem);
+    past = std::get<Past>(std::move(read));
   }
-  RunLogger logger(node.run, *std::get<0>(created));
+  auto created = resume ? RunRecord::go_on(folder) : RunRecord::create(folder);
+  if (const auto* problem = std::get_if<std::string>(&created)) return refuse(kExitBadInput, *problem);
+  RunLogger logger(node.run, *std::get<0>(created), std::move(past));
   Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
       node.url, node.run, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
@@ -113,8 +171,8 @@ int run(const NodeOptions& node, const fs::path& folder) {
          logger.keep_event(bus, channel, bytes);
        }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
-    spdlog::error("{}", *problem);
-    return kExitUnavailable;
+    logger.discard();
+    return refuse(kExitUnavailable, *problem);
   }
   Transport& transport = *std::get<0>(opened);
   TrafficWatch watch(transport);
@@ -126,7 +184,17 @@ int run(const NodeOptions& node, const fs::path& folder) {
     logger.attend(now());
     if (watch.look(now())) logger.flush();
   });
+  if (logger.wrong_mission()) {
+    logger.discard();
+    return refuse(kExitBadInput, folder.string() + ": the record here is of another mission than the "
+                                                   "one that is heard; choose another folder with --out");
+  }
   logger.flush();
+  if (logger.idle()) {
+    logger.discard();
+    spdlog::info("no mission was heard; the record stays as it was");
+    return kExitDone;
+  }
   logger.write_summary(transport);
   spdlog::info("{} ticks recorded: {} ({})", recorder.facts().ticks, recorder.result(),
                recorder.reason());
@@ -142,10 +210,12 @@ int main(int argc, char** argv) {
   NodeOptions node;
   std::filesystem::path folder;
   add_node_options(app, node);
-  app.add_option("--out", folder, "Existing folder without a record")
+  bool resume = false;
+  app.add_option("--out", folder, "Existing folder, without a record unless it is resumed")
       ->required()
       ->check(CLI::ExistingDirectory);
+  app.add_flag("--resume", resume, "Go on with the record of this mission in the folder, if there is one");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("logger");
-  return run(node, folder);
+  return run(node, folder, resume);
 }

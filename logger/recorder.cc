@@ -20,6 +20,8 @@ constexpr std::size_t kGiveUpAfterStates = 16;
 /// Lockstep: states beyond this many ticks ahead cannot be honest. In real time the record may be
 /// behind by any number.
 constexpr Tick kLeadTicks = 1024;
+/// Lockstep: how long a state may take to be repeated that may be gone for good.
+constexpr auto kRepeatPatience = 500ms;
 /// How long after the end, or the last row, a missing state or an agent's last status may still come.
 constexpr auto kFarewell = 1s;
 
@@ -47,10 +49,16 @@ Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
   metrics_ << kMetricsHeader << '\n';
 }
 
+void Recorder::resume(RunData past) {
+  resumed_ = true;
+  for (const auto& [agent, track] : past.tracks) next_row_ = std::max(next_row_, track.back().tick);
+  past_ = std::move(past);
+}
+
 void Recorder::receive(const Message& message, Instant now) {
   const Header& from = header_of(message);
   if (finished_ || (run_ != 0 && from.run != run_)) return;
-  if (const auto* world = std::get_if<WorldState>(&message)) return on(*world);
+  if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
   if (const auto* status = std::get_if<AgentStatus>(&message)) {
     if (statuses_.size() > static_cast<std::size_t>(kMaxAgents) * kMaxIncarnationsPerAgent) return;
     AgentStatus& latest = statuses_[{from.sender, from.incarnation}];
@@ -61,11 +69,7 @@ void Recorder::receive(const Message& message, Instant now) {
     if (run_ == 0) run_ = from.run;
     const bool had_mission = follower_.mission().has_value();
     if (!follower_.receive(*part)) return;
-    if (!had_mission && follower_.mission()) {
-      const Mission& mission = *follower_.mission();
-      weights_ = sobolev_weights(mission.basis, mission.domain);
-      sums_s_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
-    }
+    if (!had_mission && follower_.mission()) begin();
     if (follower_.over() && !over_since_) {
       over_since_ = now;
       failed_ = follower_.state() == MissionState::kFailed;
@@ -80,16 +84,66 @@ void Recorder::receive(const Message& message, Instant now) {
   }
 }
 
-void Recorder::on(const WorldState& world) {
+void Recorder::begin() {
+  const Mission& mission = *follower_.mission();
+  weights_ = sobolev_weights(mission.basis, mission.domain);
+  sums_s_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  if (past_) replay(*past_);
+  past_.reset();
+  states_.erase(states_.begin(), states_.lower_bound(next_row_));
+}
+
+void Recorder::replay(const RunData& past) {
+  for (const MetricsRow& row : past.metrics) {
+    facts_.t_s.push_back(row.t_s);
+    facts_.ergodic_metric.push_back(row.ergodic_metric);
+  }
+  if (!past.metrics.empty()) {
+    former_metrics_ = past.metrics.back();
+    facts_.ergodic_metric_first = facts_.ergodic_metric.front();
+    facts_.ergodic_metric_last = facts_.ergodic_metric.back();
+  }
+  std::size_t vehicles = 0, expected = follower_.mission()->starts_m.size();
+  for_each_row(past, [&](AgentId id, const TrackPoint& row) {
+    if (row.tick > former_end_.first) {
+      if (vehicles > 0) write_due_metrics();
+      expected = std::max(expected, vehicles);
+      next_row_ = row.tick;
+      vehicles = 0;
+      ++facts_.ticks;
+    }
+    observe(id, row.x_m);
+    ++vehicles;
+    former_end_ = {row.tick, id};
+  });
+  facts_.former_ticks = facts_.ticks;
+  facts_.gaps = former_end_.first + 1 - facts_.ticks;
+  // With fewer, the last tick may have been cut off amid its rows, and is recorded to its end.
+  if (vehicles == 0 || vehicles < expected) return;
+  write_due_metrics();
+  ++next_row_;
+}
+
+bool Recorder::is_lockstep() const {
+  return !follower_.mission() || follower_.mission()->timing.pace == Pace::kLockstep;
+}
+
+void Recorder::on(const WorldState& world, Instant now) {
   const Tick tick = world.header.tick;
-  const auto& mission = follower_.mission();
-  const bool lockstep = !mission || mission->timing.pace == Pace::kLockstep;
-  if (tick < next_row_ || (lockstep && tick > next_row_ + kLeadTicks)) return;
+  if (follower_.mission()) {
+    if (tick > follower_.mission()->timing.tick_count) return;
+    meet(world.header, now);
+  }
+  const Tick horizon = std::max(next_row_, lost_before_) + kLeadTicks;
+  if (tick < next_row_ || (is_lockstep() && tick > horizon)) return;
   facts_.missed_deadlines = std::max(facts_.missed_deadlines, world.missed_deadlines);
   facts_.skipped_ticks = std::max(facts_.skipped_ticks, world.skipped_ticks);
   State& state = states_[tick];
-  if (state.parts.size() != static_cast<std::size_t>(world.parts)) {
-    state.parts.assign(static_cast<std::size_t>(world.parts), false);
+  // A repeat says nothing new; a restarted world may even have forgotten the velocities.
+  if (state.complete()) return;
+  const auto parts = static_cast<std::size_t>(world.parts);
+  if (state.world != world.header.incarnation || state.parts.size() != parts) {
+    state = {world.header.incarnation, std::vector<bool>(parts), {}};
   }
   state.parts[static_cast<std::size_t>(world.part)] = true;
   for (int i = 0; i < world.vehicle_count; ++i) {
@@ -98,28 +152,47 @@ void Recorder::on(const WorldState& world) {
   }
 }
 
+void Recorder::meet(const Header& world, Instant now) {
+  if (world.incarnation == world_) return;
+  const bool from_the_start = world_ == 0 && !resumed_;
+  world_ = world.incarnation;
+  if (from_the_start) return;
+  lost_before_ = std::max(lost_before_, world.tick);
+  progress_ = now;
+}
+
 void Recorder::advance(Instant now, Outbox& out) {
   if (finished_) return;
-  const std::optional<Mission>& mission = follower_.mission();
-  if (mission) {
-    while (write_next_row()) last_row_ = now;
-    const bool given_up = states_.size() >= kGiveUpAfterStates;
-    if (mission->timing.pace == Pace::kRealtime && given_up) skip_gap();
-    if (next_row_ >= mission->timing.tick_count && !over_since_) {
+  if (follower_.mission()) {
+    write_rows(now);
+    if (next_row_ >= follower_.mission()->timing.tick_count && !over_since_) {
       over_since_ = now;
       reason_ = "mission complete";
     }
   }
-  if (over_since_ && now - std::max(*over_since_, last_row_) >= kFarewell) close();
+  if (over_since_ && now - std::max(*over_since_, progress_) >= kFarewell) close();
+  if (follower_.mission()) acknowledge(now, out);
+}
+
+void Recorder::write_rows(Instant now) {
+  while (true) {
+    while (write_next_row()) progress_ = now;
+    if (!gap_ahead() || !gap_is_final(now)) return;
+    skip_gap();
+  }
+}
+
+void Recorder::acknowledge(Instant now, Outbox& out) {
   const Tick recorded = next_row_ - 1;
   const bool progress = recorded > acked_ + kAckEveryTicks - 1 || (finished_ && recorded > acked_);
-  if (mission && (progress || now >= next_ack_)) {
-    acked_ = recorded;
-    const bool hole = !states_.empty() && states_.rbegin()->first > next_row_ + 1;
-    next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
-    out.push_back({Bus::kCommand, RecordAck{{run_, kLogger, incarnation_,
-                                            sequencer_.next(Bus::kCommand), recorded}}});
-  }
+  if (!progress && now < next_ack_) return;
+  trajectory_.flush();
+  metrics_.flush();
+  acked_ = recorded;
+  const bool hole = !states_.empty() && states_.rbegin()->first > next_row_ + 1;
+  next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
+  out.push_back({Bus::kCommand, RecordAck{{run_, kLogger, incarnation_,
+                                          sequencer_.next(Bus::kCommand), recorded}}});
 }
 
 Instant Recorder::next_wakeup() const {
@@ -134,11 +207,8 @@ void Recorder::stop(std::string reason) {
 void Recorder::close() {
   if (finished_) return;
   finished_ = true;
-  const std::optional<Mission>& mission = follower_.mission();
-  if (!mission || mission->timing.pace != Pace::kRealtime) return;
   // What stands behind a gap is written now or never.
-  while (next_row_ < mission->timing.tick_count && !states_.empty() &&
-         states_.rbegin()->first > next_row_) {
+  while (gap_ahead()) {
     skip_gap();
     while (write_next_row()) {
     }
@@ -151,20 +221,32 @@ const char* Recorder::result() const {
   return complete ? "done" : "stopped";
 }
 
+bool Recorder::holds(Tick tick) const {
+  const auto state = states_.find(tick);
+  return state != states_.end() && state->second.complete();
+}
+
 bool Recorder::write_next_row() {
   if (next_row_ >= follower_.mission()->timing.tick_count) return false;
-  const auto now = states_.find(next_row_);
-  const auto next = states_.find(next_row_ + 1);
-  if (now == states_.end() || next == states_.end() || !now->second.complete() ||
-      !next->second.complete()) {
-    return false;
-  }
-  write_trajectory(now->second, next->second);
-  observe(now->second);
-  states_.erase(now);
+  if (!holds(next_row_) || !holds(next_row_ + 1)) return false;
+  write_trajectory(states_.at(next_row_), states_.at(next_row_ + 1));
+  write_due_metrics();
+  states_.erase(next_row_);
+  if (next_row_ > former_end_.first) ++facts_.ticks;
   ++next_row_;
-  ++facts_.ticks;
   return true;
+}
+
+/// Whether a state is missing that may never come, and newer ones are there.
+bool Recorder::gap_ahead() const {
+  const auto& mission = follower_.mission();
+  if (!mission || next_row_ >= mission->timing.tick_count || states_.empty()) return false;
+  const Tick missing = holds(next_row_) ? next_row_ + 1 : next_row_;
+  return states_.rbegin()->first > missing && (!is_lockstep() || missing < lost_before_);
+}
+
+bool Recorder::gap_is_final(Instant now) const {
+  return is_lockstep() ? now - progress_ >= kRepeatPatience : states_.size() >= kGiveUpAfterStates;
 }
 
 void Recorder::skip_gap() {
@@ -172,8 +254,9 @@ void Recorder::skip_gap() {
   const auto pair = std::adjacent_find(states_.begin(), states_.end(), [](const auto& a, const auto& b) {
     return b.first == a.first + 1 && a.second.complete() && b.second.complete();
   });
-  const Tick resume = pair == states_.end() ? std::prev(states_.end())->first : pair->first;
-  facts_.gaps += resume - next_row_;
+  Tick resume = pair == states_.end() ? std::prev(states_.end())->first : pair->first;
+  if (is_lockstep()) resume = std::min(resume, lost_before_);
+  facts_.gaps += resume - std::max(next_row_, former_end_.first + 1);
   next_row_ = resume;
   states_.erase(states_.begin(), states_.lower_bound(resume));
 }
@@ -183,7 +266,8 @@ void Recorder::write_trajectory(const State& now, const State& next) {
   std::string line;
   for (const auto& [id, vehicle] : now.vehicles) {
     const auto after = next.vehicles.find(id);
-    if (after == next.vehicles.end()) continue;
+    if (after == next.vehicles.end() || std::pair(next_row_, id) <= former_end_) continue;
+    observe(id, vehicle.position_m.head<2>());
     line += std::to_string(next_row_) + ',';
     append_number(line, t_s);
     line += ',' + std::to_string(id);
@@ -204,18 +288,20 @@ bool Recorder::is_member(AgentId id) const {
   });
 }
 
-void Recorder::observe(const State& now) {
+void Recorder::observe(AgentId id, const Eigen::Vector2d& x_m) {
   const Mission& mission = *follower_.mission();
-  for (const auto& [id, vehicle] : now.vehicles) {
-    const Eigen::Vector2d x_m = vehicle.position_m.head<2>();
-    if (!is_member(id) || !mission.domain.contains(x_m)) continue;
-    accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis,
-                     mission.timing.dt_s, sums_s_.data());
-    covered_s_ += mission.timing.dt_s;
-  }
+  if (!is_member(id) || !mission.domain.contains(x_m)) return;
+  accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis,
+                   mission.timing.dt_s, sums_s_.data());
+  covered_s_ += mission.timing.dt_s;
+}
+
+void Recorder::write_due_metrics() {
+  const Mission& mission = *follower_.mission();
   const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
   const bool last = next_row_ + 1 == mission.timing.tick_count;
   if (covered_s_ == 0 || (next_row_ % period != 0 && !last)) return;
+  if (next_row_ <= former_metrics_.tick) return;
   write_metrics(ergodic_metric(sums_s_ / covered_s_, mission.target_coefficients, weights_));
 }
 
@@ -235,6 +321,9 @@ void Recorder::write_metrics(double metric) {
     high = first ? status.ergodic_metric : std::max(high, status.ergodic_metric);
     first = false;
   }
+  // Until everybody has spoken again, what a former process had counted is nearer the truth.
+  received = std::max(received, static_cast<std::int64_t>(former_metrics_.received));
+  lost = std::max(lost, static_cast<std::int64_t>(former_metrics_.lost));
   std::string line = std::to_string(next_row_);
   for (const double value : {t_s, metric, high - low, staleness_s}) {
     line += ',';

@@ -2,28 +2,35 @@
 //
 // Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
 // the world applied in between. Rows are written in order and acknowledged to the world, which in
-// lockstep repeats whatever state is still missing.
+// lockstep repeats whatever state is still missing. What is acknowledged is in the file, so a
+// recorder that is killed is told again of all the rows it lost.
+//
+// In lockstep a row is left out only where nobody is left who could repeat its states: for ticks
+// before the first state that a resumed recorder heard, or that was heard of a new world.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/basis.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission_follower.h"
+#include "logger/run_data.h"
 
 namespace ergocast {
 
 /// What the record says about the whole run.
 struct RunFacts {
-  Tick ticks = 0;  ///< recorded
+  Tick ticks = 0;         ///< recorded
+  Tick former_ticks = 0;  ///< of these, recorded before this recorder resumed
   double ergodic_metric_first = 0, ergodic_metric_last = 0;
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
-  Tick gaps = 0;                            ///< ticks of which a state never came (real time)
+  Tick gaps = 0;                            ///< ticks without rows before the last row
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
 };
 
@@ -33,6 +40,12 @@ class Recorder {
   /// @param run  the run to record; 0: the run of the first mission heard
   Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan, std::ostream& trajectory,
            std::ostream& metrics);
+
+  /// Goes on with the record that a former process left, all its segments, or none. Its rows are
+  /// added to the observer's sums again in their order, with the roster that is heard now, so φ²
+  /// goes on bit for bit; metrics rows that are due for them and missing are written.
+  /// @pre nothing has been received
+  void resume(RunData past);
 
   void receive(const Message& message, Instant now);
   void advance(Instant now, Outbox& out);
@@ -53,19 +66,30 @@ class Recorder {
 
  private:
   struct State {
+    Incarnation world = 0;
     std::vector<bool> parts;
     std::map<AgentId, Vehicle> vehicles;
     bool complete() const;
   };
 
-  void on(const WorldState& world);
+  void on(const WorldState& world, Instant now);
+  void meet(const Header& world, Instant now);
+  void begin();
+  void replay(const RunData& past);
+  void write_rows(Instant now);
+  void acknowledge(Instant now, Outbox& out);
   bool write_next_row();
+  bool holds(Tick tick) const;
+  bool gap_ahead() const;
+  bool gap_is_final(Instant now) const;
   void skip_gap();
   void close();
+  bool is_lockstep() const;
   void write_trajectory(const State& now, const State& next);
   /// Whether somebody drives that vehicle at the row's tick: others stand still and cover nothing.
   bool is_member(AgentId id) const;
-  void observe(const State& now);
+  void observe(AgentId id, const Eigen::Vector2d& x_m);
+  void write_due_metrics();
   void write_metrics(double metric);
 
   RunId run_;
@@ -79,8 +103,15 @@ class Recorder {
   Tick next_row_ = 0, acked_ = -2;
   bool finished_ = false, failed_ = false;
   std::optional<Instant> over_since_;
-  Instant last_row_{};
+  Instant progress_{};  // last row, or first word of a new world
   std::string reason_;
+
+  Incarnation world_ = 0;  // the last heard
+  Tick lost_before_ = 0;   // states of earlier ticks may be gone for good
+  std::optional<RunData> past_;  // until the mission is known
+  bool resumed_ = false;
+  std::pair<Tick, AgentId> former_end_{-1, -1};  // tick and agent of the former process's last row
+  MetricsRow former_metrics_{.tick = -1};        // its last
 
   Coefficients sums_s_, weights_;
   double covered_s_ = 0;

@@ -4,14 +4,15 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "logger/recorder.h"
 #include "logger/run_record.h"
+#include "logger/table_lines.h"
 
 namespace ergocast {
 namespace {
@@ -37,38 +38,20 @@ std::optional<Fields> parse_fields(std::string_view line) {
   return fields;
 }
 
-std::string in_quotes(const std::string& line) {
-  constexpr std::size_t kLongest = 60;
-  return '"' + (line.size() <= kLongest ? line : line.substr(0, kLongest) + "…") + '"';
-}
-
 /// Hands each row to `accept`, which says what is wrong with it or nothing.
 std::optional<std::string> read_table(
-    const std::filesystem::path& file, const std::string& header,
-    const std::function<std::optional<std::string>(const Fields&)>& accept) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    return file.string() + ": cannot be opened: give the directory of a run, with trajectory.csv "
-                           "and metrics.csv readable in it";
-  }
-  std::string line;
-  for (std::int64_t number = 1; std::getline(in, line) && !in.eof(); ++number) {
-    const std::string place = file.string() + ':' + std::to_string(number) + ": ";
-    if (number == 1) {
-      if (line == header) continue;
-      return place + "the header is " + in_quotes(line) + ", not \"" + header +
-             "\": use the version of ergocast that recorded the run";
-    }
+    TableLines lines, const std::function<std::optional<std::string>(const Fields&)>& accept) {
+  for (std::string line; lines.next(line);) {
     const std::optional<Fields> fields = parse_fields(line);
     const std::optional<std::string> wrong =
         fields ? accept(*fields)
                : "expected 7 numbers separated by commas, found " + in_quotes(line);
     if (wrong) {
-      return place + *wrong + ": copy the file again from where it was recorded, or cut it off "
-                              "before this line";
+      return lines.place() + *wrong + ": copy the file again from where it was recorded, or cut it "
+                                      "off before this line";
     }
   }
-  return {};
+  return lines.problem();
 }
 
 bool is_count(double value) {
@@ -111,14 +94,29 @@ double RunData::end_s() const {
 
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
   RunData run;
-  auto problem = read_table(run_dir / kTrajectoryFile, kTrajectoryHeader,
+  auto problem = read_table({run_dir, kTrajectoryFile, kTrajectoryHeader},
                             [&run](const Fields& fields) { return add_point(run, fields); });
   if (!problem) {
-    problem = read_table(run_dir / kMetricsFile, kMetricsHeader,
+    problem = read_table({run_dir, kMetricsFile, kMetricsHeader},
                          [&run](const Fields& fields) { return add_metrics(run, fields); });
   }
   if (problem) return *problem;
   return run;
+}
+
+void for_each_row(const RunData& run,
+                  const std::function<void(AgentId, const TrackPoint&)>& visit) {
+  std::map<AgentId, std::span<const TrackPoint>> ahead(run.tracks.begin(), run.tracks.end());
+  while (!ahead.empty()) {
+    Tick tick = std::numeric_limits<Tick>::max();
+    for (const auto& [agent, rows] : ahead) tick = std::min(tick, rows.front().tick);
+    for (auto& [agent, rows] : ahead) {
+      if (rows.front().tick != tick) continue;
+      visit(agent, rows.front());
+      rows = rows.subspan(1);
+    }
+    std::erase_if(ahead, [](const auto& track) { return track.second.empty(); });
+  }
 }
 
 std::optional<PowerLaw> fit_last_decade(const RunData& run) {

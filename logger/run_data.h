@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -43,9 +44,14 @@ struct RunData {
   double end_s() const;  ///< time of the last row, 0 if there is none
 };
 
-/// Reads trajectory.csv and metrics.csv, or says which file and line is wrong and what to do.
-/// A last line without its line break is what a killed run leaves: it is not counted.
+/// Reads trajectory.csv and metrics.csv with all their segments, or says which file and line is
+/// wrong and what to do. A file's last line without its line break is what a killed run leaves: it
+/// is not counted.
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir);
+
+/// Visits trajectory.csv's rows in their order: ascending by tick, then by agent.
+void for_each_row(const RunData& run,
+                  const std::function<void(AgentId, const TrackPoint&)>& visit);
 
 /// φ² over the last decade of time, as slope.h fits it.
 std::optional<PowerLaw> fit_last_decade(const RunData& run);

@@ -1,34 +1,63 @@
 #include "logger/run_record.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 
 namespace ergocast {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// A stream that failed earlier does not remember why; whether the disk is full can still be seen.
-std::string error_at(const std::filesystem::path& file) {
+std::string error_at(const fs::path& file) {
   if (errno != 0) return file.string() + ": " + std::strerror(errno);
   std::error_code error;
-  const auto space = std::filesystem::space(file.parent_path(), error);
+  const auto space = fs::space(file.parent_path(), error);
   const bool full = !error && space.available < 65536;
   return file.string() + (full ? ": the disk is full" : ": cannot be written");
 }
 
 }  // namespace
 
-RunRecord::RunRecord(std::filesystem::path folder) : folder_(std::move(folder)) {}
+fs::path segment_file(const fs::path& folder, const std::string& table, int segment) {
+  if (segment == 0) return folder / table;
+  char number[16];
+  std::snprintf(number, sizeof number, "-%03d", segment);
+  const fs::path name(table);
+  return folder / (name.stem().string() + number + name.extension().string());
+}
 
-std::variant<std::unique_ptr<RunRecord>, std::string> RunRecord::create(
-    const std::filesystem::path& folder) {
-  auto record = std::unique_ptr<RunRecord>(new RunRecord(folder));
-  for (auto [stream, name] : {std::pair{&record->trajectory_, kTrajectoryFile},
-                              std::pair{&record->metrics_, kMetricsFile}}) {
-    const std::filesystem::path file = folder / name;
+int segment_count(const fs::path& folder) {
+  const auto exists = [&folder](const char* table, int segment) {
     std::error_code ignored;
-    if (std::filesystem::exists(file, ignored)) {
-      return file.string() + ": there is already a record; choose another folder with --out";
-    }
+    return fs::exists(segment_file(folder, table, segment), ignored);
+  };
+  int count = 0;
+  while (exists(kTrajectoryFile, count) && exists(kMetricsFile, count)) ++count;
+  return count;
+}
+
+RunRecord::RunRecord(fs::path folder, int segment) : folder_(std::move(folder)), segment_(segment) {}
+
+RunRecord::Created RunRecord::create(const fs::path& folder) {
+  return begin(folder, 0,
+               "there is already a record; go on with it by --resume, or choose another folder "
+               "with --out");
+}
+
+RunRecord::Created RunRecord::go_on(const fs::path& folder) {
+  return begin(folder, segment_count(folder),
+               "stands without the other table of its segment; copy that one back");
+}
+
+RunRecord::Created RunRecord::begin(const fs::path& folder, int segment, const char* if_taken) {
+  auto record = std::unique_ptr<RunRecord>(new RunRecord(folder, segment));
+  for (auto [stream, file] : {std::pair{&record->trajectory_, record->trajectory_file()},
+                              std::pair{&record->metrics_, record->metrics_file()}}) {
+    std::error_code error;
+    const bool taken = fs::file_size(file, error) > 0 && !error;
+    if (taken) return file.string() + ": " + if_taken;
     errno = 0;
     stream->open(file, std::ios::binary);
     if (!*stream) return error_at(file);
@@ -36,15 +65,27 @@ std::variant<std::unique_ptr<RunRecord>, std::string> RunRecord::create(
   return record;
 }
 
+fs::path RunRecord::trajectory_file() const {
+  return segment_file(folder_, kTrajectoryFile, segment_);
+}
+
+fs::path RunRecord::metrics_file() const { return segment_file(folder_, kMetricsFile, segment_); }
+
 std::optional<std::string> RunRecord::flush() {
   errno = 0;
-  if (!trajectory_.flush()) return error_at(folder_ / kTrajectoryFile);
-  if (!metrics_.flush()) return error_at(folder_ / kMetricsFile);
+  if (!trajectory_.flush()) return error_at(trajectory_file());
+  if (!metrics_.flush()) return error_at(metrics_file());
   return std::nullopt;
 }
 
-std::optional<std::string> write_file(const std::filesystem::path& file, std::string_view text) {
-  std::filesystem::path temporary = file;
+void RunRecord::discard() {
+  std::error_code ignored;
+  fs::remove(trajectory_file(), ignored);
+  fs::remove(metrics_file(), ignored);
+}
+
+std::optional<std::string> write_file(const fs::path& file, std::string_view text) {
+  fs::path temporary = file;
   temporary += ".tmp";
   errno = 0;
   std::ofstream out(temporary, std::ios::binary);
@@ -52,14 +93,14 @@ std::optional<std::string> write_file(const std::filesystem::path& file, std::st
   std::error_code error;
   if (!out) {
     const std::string problem = error_at(file);
-    std::filesystem::remove(temporary, error);
+    fs::remove(temporary, error);
     return problem;
   }
   out.close();
-  std::filesystem::rename(temporary, file, error);
+  fs::rename(temporary, file, error);
   if (!error) return std::nullopt;
   const std::string problem = file.string() + ": " + error.message();
-  std::filesystem::remove(temporary, error);
+  fs::remove(temporary, error);
   return problem;
 }
 

@@ -1,4 +1,5 @@
-// The files of a run directory that grow during the run.
+// The files of a run directory that grow during the run. Whoever goes on with a record begins files
+// of its own, so that a line which a killed process left unfinished stays the last of its file.
 #pragma once
 
 #include <filesystem>
@@ -18,13 +19,24 @@ inline constexpr const char* kScenarioFile = "scenario.textproto";
 /// The compiled plan as it was sent: what `ergocast verify` simulates again.
 inline constexpr const char* kPlanFile = "plan.binpb";
 
+/// File `segment` of a table: trajectory.csv, trajectory-001.csv, trajectory-002.csv …
+std::filesystem::path segment_file(const std::filesystem::path& folder, const std::string& table,
+                                   int segment);
+/// Segments of the record in `folder`, each of both tables; 0 if there is none.
+int segment_count(const std::filesystem::path& folder);
+
 class RunRecord {
  public:
+  using Created = std::variant<std::unique_ptr<RunRecord>, std::string>;
+
   /// Begins trajectory.csv and metrics.csv in an existing folder. An error names the file; a record
   /// that is already there is left alone.
-  static std::variant<std::unique_ptr<RunRecord>, std::string> create(
-      const std::filesystem::path& folder);
+  static Created create(const std::filesystem::path& folder);
+  /// The same for the next segment of the record in `folder`, the first if there is none.
+  static Created go_on(const std::filesystem::path& folder);
 
+  /// Number of the segment, from 0.
+  int segment() const { return segment_; }
   std::ostream& trajectory() { return trajectory_; }
   std::ostream& metrics() { return metrics_; }
   bool good() const { return trajectory_.good() && metrics_.good(); }
@@ -33,9 +45,17 @@ class RunRecord {
   /// Hands everything to the operating system. The first write error, such as a full disk, if any.
   std::optional<std::string> flush();
 
+  /// Removes the files of this segment.
+  void discard();
+
  private:
-  explicit RunRecord(std::filesystem::path folder);
+  RunRecord(std::filesystem::path folder, int segment);
+  static Created begin(const std::filesystem::path& folder, int segment, const char* if_taken);
+  std::filesystem::path trajectory_file() const;
+  std::filesystem::path metrics_file() const;
+
   std::filesystem::path folder_;
+  int segment_;
   std::ofstream trajectory_, metrics_;
 };
 

@@ -117,11 +117,13 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   if (mission) summary["conventions"] = conventions(mission->basis);
   summary["wall_time_s"] = context.wall_time_s;
   summary["ticks_per_s"] =
-      context.wall_time_s > 0 ? number(static_cast<double>(facts.ticks) / context.wall_time_s)
-                              : Json(nullptr);
+      context.wall_time_s > 0
+          ? number(static_cast<double>(facts.ticks - facts.former_ticks) / context.wall_time_s)
+          : Json(nullptr);
   summary["agents"] = agents(recorder);
   summary["messages"] = messages(recorder, context);
   summary["gaps"] = facts.gaps;
+  summary["segments"] = context.segments;
   summary["missed_deadlines"] = facts.missed_deadlines;
   summary["skipped_ticks"] = facts.skipped_ticks;
   return summary;

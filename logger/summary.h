@@ -18,7 +18,8 @@ struct RunContext {
   std::string version, build;
   std::string scenario_hash;  ///< of the compiled plan
   bool simulated = false;     ///< in one process, without a network
-  double wall_time_s = 0;
+  double wall_time_s = 0;     ///< of the present segment
+  int segments = 1;
   RefusalCounts refused{};    ///< by whoever records
   std::int64_t kernel_drops = 0;
   bool cpu_has_fma = false;

@@ -21,6 +21,9 @@ std::int64_t wall_clock_us() {
 
 EventLog::EventLog(std::filesystem::path folder, std::int64_t segment_bytes)
     : folder_(std::move(folder)), segment_bytes_(segment_bytes) {
+  std::error_code ignored;
+  while (std::filesystem::exists(segment_file(first_segment_), ignored)) ++first_segment_;
+  segment_ = first_segment_;
   open_next();
 }
 
@@ -30,11 +33,15 @@ void EventLog::fail() {
   if (!error_) error_ = file_.string() + ": " + std::strerror(errno);
 }
 
+std::filesystem::path EventLog::segment_file(int segment) const {
+  char name[32];
+  std::snprintf(name, sizeof name, "events-%03d.lcm", segment);
+  return folder_ / name;
+}
+
 void EventLog::open_next() {
   flush();
-  char name[32];
-  std::snprintf(name, sizeof name, "events-%03d.lcm", segment_++);
-  file_ = folder_ / name;
+  file_ = segment_file(segment_++);
   log_ = std::make_unique<lcm::LogFile>(file_.string(), "w");
   if (!log_->good()) fail();
   written_ = 0;
@@ -56,6 +63,13 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes)
 std::optional<std::string> EventLog::flush() {
   if (log_ && log_->good() && std::fflush(log_->getFilePtr()) != 0) fail();
   return error_;
+}
+
+void EventLog::discard() {
+  std::error_code ignored;
+  for (int segment = first_segment_; segment < segment_; ++segment) {
+    std::filesystem::remove(segment_file(segment), ignored);
+  }
 }
 
 }  // namespace ergocast

@@ -15,7 +15,8 @@ class LogFile;
 
 namespace ergocast {
 
-/// events-000.lcm, events-001.lcm, … in one folder.
+/// events-000.lcm, events-001.lcm, … in one folder, from the first number that is not taken: the
+/// log that a killed process left may end amid a message.
 class EventLog {
  public:
   /// A segment that has grown to this is closed and the next begun.
@@ -29,13 +30,17 @@ class EventLog {
   /// Hands everything to the operating system. The first write error since the start, if any.
   std::optional<std::string> flush();
 
+  /// Removes the segments that this log has begun.
+  void discard();
+
  private:
+  std::filesystem::path segment_file(int segment) const;
   void open_next();
   void fail();
 
   std::filesystem::path folder_, file_;
   std::int64_t segment_bytes_, written_ = 0;
-  int segment_ = 0;
+  int first_segment_ = 0, segment_ = 0;
   std::unique_ptr<lcm::LogFile> log_;
   std::optional<std::string> error_;
 };

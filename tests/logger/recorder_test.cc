@@ -4,65 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
 
 #include "core/noise.h"
-#include "tests/support/team.h"
+#include "tests/logger/record.h"
 
 namespace ergocast {
 namespace {
 
 using namespace test;
-
-/// A recorder with the streams it writes to.
-struct Record {
-  explicit Record(const Mission& mission)
-      : recorder(kRun, kLoggerLife, decoder_of(mission), trajectory, metrics) {
-    const auto team = static_cast<int>(mission.starts_m.size());
-    recorder.receive(mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
-  }
-
-  Outbox tell(const Message& message, Instant now = at(0s)) {
-    recorder.receive(message, now);
-    return advance(recorder, now);
-  }
-
-  /// Lines after the header.
-  static std::vector<std::string> rows(const std::ostringstream& file) {
-    std::istringstream lines(file.str());
-    std::vector<std::string> rows;
-    for (std::string line; std::getline(lines, line);) rows.push_back(line);
-    rows.erase(rows.begin());
-    return rows;
-  }
-  std::vector<std::string> trajectory_rows() const { return rows(trajectory); }
-  std::vector<std::string> metrics_rows() const { return rows(metrics); }
-
-  std::ostringstream trajectory, metrics;
-  Recorder recorder;
-};
-
-std::vector<std::string> columns(const std::string& row) {
-  std::vector<std::string> found;
-  std::istringstream fields(row);
-  for (std::string field; std::getline(fields, field, ',');) found.push_back(field);
-  return found;
-}
-double number(const std::string& row, std::size_t column) {
-  return std::strtod(columns(row).at(column).c_str(), nullptr);
-}
-
-/// Agent 0 at `tick`, after a step with `applied_mps`.
-WorldState state_of(Tick tick, const Eigen::Vector2d& x_m, const Eigen::Vector2d& applied_mps) {
-  WorldState state = world_state(tick, {x_m});
-  state.vehicles[0].velocity_mps << applied_mps, 0;
-  return state;
-}
-/// Agent 0 on a straight line, a metre a tick.
-WorldState state_of(Tick tick) {
-  return state_of(tick, {100 + static_cast<double>(tick), 500}, {10, 0});
-}
 
 // ---- trajectory.csv ------------------------------------------------------------------------------
 
@@ -153,19 +102,6 @@ TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
 
 // ---- acknowledgements ----------------------------------------------------------------------------
 
-std::vector<Tick> acks(const Outbox& out) {
-  std::vector<Tick> ticks;
-  for (const Outgoing& outgoing : out) {
-    if (const auto* ack = std::get_if<RecordAck>(&outgoing.message)) {
-      EXPECT_EQ(outgoing.bus, Bus::kCommand);
-      EXPECT_EQ(ack->header.sender, kLogger);
-      EXPECT_EQ(ack->header.run, kRun);
-      ticks.push_back(ack->header.tick);
-    }
-  }
-  return ticks;
-}
-
 TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
   std::ostringstream trajectory, metrics;
   Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
@@ -201,19 +137,14 @@ TEST(Acknowledgement, NeverNamesATickThatIsNotWritten) {
 
 // ---- gaps ----------------------------------------------------------------------------------------
 
-Mission realtime_mission() {
-  Mission mission = small_mission(1);
-  mission.timing.pace = Pace::kRealtime;
-  return mission;
-}
-
 TEST(Gap, InLockstepTheRecordWaitsForTheMissingStateBecauseItIsRepeated) {
   Record record(small_mission(1));
   for (Tick tick = 0; tick <= 60; ++tick) {
     if (tick != 3) record.tell(state_of(tick));
   }
+  advance(record.recorder, at(1h));
   EXPECT_EQ(record.recorder.next_row(), 2);
-  record.tell(state_of(3));
+  record.tell(state_of(3), at(1h));
   EXPECT_EQ(record.recorder.next_row(), 60);
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }

@@ -224,6 +224,26 @@ TEST_F(Report, TornLastLineIsLeftOut) {
   EXPECT_EQ(page(), whole);
 }
 
+TEST_F(Report, SegmentsReadAsOneTable) {
+  record(2, 50);
+  ASSERT_EQ(report(), std::nullopt);
+  const std::string whole = page();
+  for (const std::string table : {"trajectory", "metrics"}) {
+    const std::string text = read(dir / (table + ".csv")), header = text.substr(0, text.find('\n') + 1);
+    const auto first = text.find("\n20,") + 1, second = text.find("\n30,") + 1;
+    write(dir / (table + ".csv"), text.substr(0, first) + "20,2,0,1");
+    write(dir / (table + "-001.csv"), header + text.substr(first, second - first) + "30,3");
+    write(dir / (table + "-002.csv"), header.substr(0, 9));  // killed amid its header
+    write(dir / (table + "-003.csv"), header + text.substr(second));
+  }
+  ASSERT_EQ(report(), std::nullopt);
+  EXPECT_EQ(page(), whole);
+  write(dir / "trajectory-001.csv", std::string(kTrajectoryHeader) + "\n19,1.9,0,1,1,1,1\n");
+  const auto problem = report();
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("trajectory-001.csv:2: "), std::string::npos) << *problem;
+}
+
 TEST_F(Report, MalformedLineIsNamedAndNothingIsWritten) {
   const std::vector<std::string> lines = {
       "2,0.2,0,1,1,1",     "2,0.2,0,1,1,1,1,1",  "2,0.2,0,nan,1,1,1", "2,0.2,0,1e300,1,1,1",

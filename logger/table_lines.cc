@@ -1,0 +1,51 @@
+#include "logger/table_lines.h"
+
+#include <algorithm>
+
+#include "logger/run_record.h"
+
+namespace ergocast {
+
+TableLines::TableLines(std::filesystem::path run_dir, std::string table, std::string header)
+    : run_dir_(std::move(run_dir)),
+      table_(std::move(table)),
+      header_(std::move(header)),
+      segments_(std::max(1, segment_count(run_dir_))) {
+  open_next();
+}
+
+bool TableLines::open_next() {
+  if (problem_ || opened_ == segments_) return false;
+  file_ = segment_file(run_dir_, table_, opened_++);
+  line_ = 0;
+  in_ = std::ifstream(file_, std::ios::binary);
+  if (in_) return true;
+  problem_ = file_.string() + ": cannot be opened: give the directory of a run, with trajectory.csv "
+                              "and metrics.csv readable in it";
+  return false;
+}
+
+bool TableLines::next(std::string& line) {
+  while (!problem_) {
+    if (std::getline(in_, line) && !in_.eof()) {
+      if (++line_ > 1) return true;
+      if (line == header_) continue;
+      problem_ = place() + "the header is " + in_quotes(line) + ", not \"" + header_ +
+                 "\": use the version of ergocast that recorded the run";
+    } else if (!open_next()) {
+      return false;
+    }
+  }
+  return false;
+}
+
+std::string TableLines::place() const {
+  return file_.string() + ':' + std::to_string(line_) + ": ";
+}
+
+std::string in_quotes(const std::string& line) {
+  constexpr std::size_t kLongest = 60;
+  return '"' + (line.size() <= kLongest ? line : line.substr(0, kLongest) + "…") + '"';
+}
+
+}  // namespace ergocast

@@ -1,0 +1,39 @@
+// A recorded table read line by line, all its segments in order as one.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+namespace ergocast {
+
+class TableLines {
+ public:
+  /// Opens the first segment of `table` ("trajectory.csv") in `run_dir`.
+  TableLines(std::filesystem::path run_dir, std::string table, std::string header);
+
+  /// The next line after a header; false at the end, and from the first problem on. A last line
+  /// without its line break is what a killed process leaves: it is not counted.
+  bool next(std::string& line);
+  /// Where next()'s last line stands: "run/trajectory.csv:17: ".
+  std::string place() const;
+  /// Which file cannot be opened or has a foreign header, and what to do about it.
+  const std::optional<std::string>& problem() const { return problem_; }
+
+ private:
+  bool open_next();
+
+  std::filesystem::path run_dir_;
+  std::string table_, header_;
+  int segments_, opened_ = 0;
+  std::filesystem::path file_;
+  std::ifstream in_;
+  std::int64_t line_ = 0;
+  std::optional<std::string> problem_;
+};
+
+/// What a line says, for an error message.
+std::string in_quotes(const std::string& line);
+
+}  // namespace ergocast

@@ -1,0 +1,345 @@
+// A logger that was killed and goes on: nothing twice, nothing changed, and only what nobody can
+// repeat is missing.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/noise.h"
+#include "logger/run_record.h"
+#include "tests/logger/record.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+namespace fs = std::filesystem;
+
+constexpr Incarnation kNextWorldLife = kWorldLife + 1;
+
+/// Three agents that jump about, each with digits to the last place.
+WorldState team_at(Tick tick) {
+  WorldState state = world_state(tick, {{0, 0}, {0, 0}, {0, 0}});
+  for (AgentId id = 0; id < 3; ++id) {
+    Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(id)];
+    const auto step = static_cast<std::uint64_t>(tick);
+    vehicle.position_m << 2000 * uniform_pair(1, Purpose::kStart, static_cast<std::uint32_t>(id), step), 0;
+    vehicle.velocity_mps << normal_pair(2, Purpose::kStart, static_cast<std::uint32_t>(id), step), 0;
+  }
+  return state;
+}
+
+WorldState of_world(Incarnation incarnation, WorldState state) {
+  state.header.incarnation = incarnation;
+  return state;
+}
+
+/// The first columns, which do not depend on when statuses came.
+std::vector<std::string> observed(const std::vector<std::string>& metrics_rows) {
+  std::vector<std::string> rows;
+  for (const std::string& row : metrics_rows) {
+    const auto fields = columns(row);
+    rows.push_back(fields[0] + ',' + fields[1] + ',' + fields[2]);
+  }
+  return rows;
+}
+
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+class Resume : public testing::Test {
+ protected:
+  Resume() {
+    dir = fs::path(testing::TempDir()) /
+          (std::string("resume_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(dir);
+    fs::create_directories(dir);
+  }
+  ~Resume() override { fs::remove_all(dir); }
+
+  void write(const std::string& file, const std::string& text) const {
+    std::ofstream(dir / file, std::ios::binary) << text;
+  }
+  std::string read(const std::string& file) const {
+    std::ifstream in(dir / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  /// What a recorder finds that comes after a killed one with these files.
+  RunData past(const std::string& trajectory, const std::string& metrics) const {
+    write("trajectory.csv", trajectory);
+    write("metrics.csv", metrics);
+    return std::get<RunData>(read_run(dir));
+  }
+  /// After rows 0 … 9 of a single agent on its line.
+  RunData ten_rows() const {
+    Record former(small_mission(1));
+    for (Tick tick = 0; tick <= 10; ++tick) former.tell(state_of(tick));
+    return past(former.trajectory.str(), former.metrics.str());
+  }
+
+  fs::path dir;
+};
+
+// ---- the same record as without a kill -----------------------------------------------------------
+
+TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
+  const Mission mission = small_mission(3);
+  Record lived(mission), killed(mission);
+  for (Tick tick = 0; tick <= 100; ++tick) lived.tell(team_at(tick));
+  for (Tick tick = 0; tick <= 60; ++tick) killed.tell(team_at(tick));
+  ASSERT_EQ(lived.trajectory_rows().size(), 300u);
+  const std::string trajectory = killed.trajectory.str(), metrics = killed.metrics.str();
+  for (std::size_t cut = 0; cut < trajectory.size(); cut += 71) {
+    // Either table may have come further than the other.
+    const std::string rows = trajectory.substr(0, cut);
+    const std::string values = metrics.substr(0, cut * 13 % metrics.size());
+    Record resumed(mission, past(rows, values));
+    for (Tick tick = 0; tick <= 100; ++tick) resumed.tell(team_at(tick));
+    ASSERT_EQ(joined(rows_of(rows), resumed.trajectory_rows()), lived.trajectory_rows()) << cut;
+    ASSERT_EQ(observed(joined(rows_of(values), resumed.metrics_rows())),
+              observed(lived.metrics_rows())) << cut;
+    const RunFacts &facts = resumed.recorder.facts(), &all = lived.recorder.facts();
+    EXPECT_EQ(facts.ticks, 100);
+    EXPECT_EQ(facts.gaps, 0);
+    EXPECT_EQ(facts.t_s, all.t_s);
+    EXPECT_EQ(facts.ergodic_metric, all.ergodic_metric);
+    EXPECT_EQ(facts.ergodic_metric_first, all.ergodic_metric_first);
+    EXPECT_EQ(facts.ergodic_metric_last, all.ergodic_metric_last);
+  }
+}
+
+TEST_F(Resume, ACompleteRecordIsDone) {
+  Record former(small_mission(1));
+  for (Tick tick = 0; tick <= 100; ++tick) former.tell(state_of(tick));
+  Record resumed(small_mission(1), past(former.trajectory.str(), former.metrics.str()));
+  EXPECT_EQ(acks(advance(resumed.recorder, at(0s))), (std::vector<Tick>{99}));
+  advance(resumed.recorder, at(1s));
+  EXPECT_TRUE(resumed.recorder.finished());
+  EXPECT_STREQ(resumed.recorder.result(), "done");
+  EXPECT_EQ(resumed.recorder.facts().ticks, 100);
+  EXPECT_TRUE(resumed.trajectory_rows().empty());
+}
+
+TEST_F(Resume, WithoutARecordOneIsBegun) {
+  Record resumed(small_mission(1), RunData{});
+  for (Tick tick = 0; tick <= 20; ++tick) resumed.tell(state_of(tick));
+  EXPECT_EQ(resumed.trajectory_rows().size(), 20u);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 0);
+}
+
+TEST_F(Resume, GapsOfTheFormerProcessStayCounted) {
+  Record former(realtime_mission());
+  for (Tick tick = 0; tick <= 40; ++tick) {
+    if (tick != 10) former.tell(state_of(tick));
+  }
+  Record resumed(realtime_mission(), past(former.trajectory.str(), former.metrics.str()));
+  for (Tick tick = 40; tick <= 60; ++tick) resumed.tell(state_of(tick));
+  EXPECT_EQ(resumed.recorder.facts().gaps, 2);
+  EXPECT_EQ(resumed.recorder.facts().ticks, 58);
+}
+
+TEST_F(Resume, CountsOfMessagesDoNotFallBack) {
+  Record former(small_mission(1));
+  AgentStatus status = status_of(0, 1, 0);
+  status.contributions_received = 700;
+  status.contributions_lost = 7;
+  former.tell(status);
+  for (Tick tick = 0; tick <= 5; ++tick) former.tell(state_of(tick));
+  Record resumed(small_mission(1), past(former.trajectory.str(), former.metrics.str()));
+  for (Tick tick = 5; tick <= 15; ++tick) resumed.tell(state_of(tick));
+  ASSERT_EQ(resumed.metrics_rows().size(), 1u);
+  EXPECT_EQ(columns(resumed.metrics_rows()[0])[5], "700");
+  EXPECT_EQ(columns(resumed.metrics_rows()[0])[6], "7");
+}
+
+TEST_F(Resume, WhatIsAcknowledgedIsInTheFile) {
+  auto record = std::get<0>(RunRecord::create(dir));
+  const Mission mission = small_mission(1);
+  Recorder recorder(kRun, kLoggerLife, decoder_of(mission), record->trajectory(), record->metrics());
+  recorder.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  int seen = 0;
+  for (Tick tick = 0; tick <= 60; ++tick) {
+    recorder.receive(state_of(tick), at(0s));
+    for (const Tick ack : acks(advance(recorder, at(0s)))) {
+      EXPECT_EQ(rows_of(read("trajectory.csv")).size(), static_cast<std::size_t>(ack + 1));
+      EXPECT_EQ(rows_of(read("metrics.csv")).size(), static_cast<std::size_t>(ack + 10) / 10);
+      ++seen;
+    }
+  }
+  EXPECT_EQ(seen, 4);
+}
+
+// ---- gaps in lockstep ----------------------------------------------------------------------------
+
+TEST_F(Resume, AStateThatIsRepeatedInTimeIsNoGap) {
+  Record resumed(small_mission(1), ten_rows());
+  EXPECT_EQ(acks(resumed.tell(state_of(30), at(10s))), (std::vector<Tick>{9}));
+  for (Tick tick = 10; tick < 30; ++tick) resumed.tell(state_of(tick), at(10s + (tick - 9) * 200ms));
+  EXPECT_EQ(resumed.recorder.next_row(), 30);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 0);
+}
+
+TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
+  Record resumed(small_mission(1), ten_rows());
+  for (const Tick tick : {30, 31, 33, 34}) resumed.tell(state_of(tick), at(10s));
+  advance(resumed.recorder, at(10499ms));
+  EXPECT_EQ(resumed.recorder.next_row(), 10);
+  advance(resumed.recorder, at(10500ms));
+  EXPECT_EQ(resumed.recorder.next_row(), 31);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 20);
+  advance(resumed.recorder, at(1h));
+  EXPECT_EQ(resumed.recorder.next_row(), 31) << "32 came after the first that was heard";
+  resumed.tell(state_of(32), at(1h));
+  EXPECT_EQ(resumed.recorder.next_row(), 34);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 20);
+}
+
+TEST_F(Resume, AGapEndsWithTheFirstPairThatIsRepeated) {
+  Record resumed(small_mission(1), ten_rows());
+  for (const Tick tick : {30, 20, 21, 18}) resumed.tell(state_of(tick), at(10s));
+  advance(resumed.recorder, at(11s));
+  EXPECT_EQ(resumed.recorder.next_row(), 21);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 10);
+}
+
+TEST_F(Resume, NothingIsGivenUpWhileNoNewerStateIsHeld) {
+  Record resumed(small_mission(1), ten_rows());
+  advance(resumed.recorder, at(1h));
+  resumed.tell(state_of(10), at(2h));
+  advance(resumed.recorder, at(3h));
+  EXPECT_EQ(resumed.recorder.next_row(), 10);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 0);
+}
+
+TEST_F(Resume, ALastTickThatWasCutOffCannotBecomeAGap) {
+  const Mission mission = small_mission(3);
+  Record former(mission);
+  for (Tick tick = 0; tick <= 10; ++tick) former.tell(team_at(tick));
+  const std::string rows = former.trajectory.str();
+  const std::string cut = rows.substr(0, rows.rfind('\n', rows.size() - 2) + 5);  // 9's third row
+  Record resumed(mission, past(cut, former.metrics.str()));
+  for (const Tick tick : {20, 21}) resumed.tell(team_at(tick), at(10s));
+  advance(resumed.recorder, at(11s));
+  EXPECT_EQ(resumed.recorder.next_row(), 21);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 10) << "10 … 19: of 9 there are rows";
+  EXPECT_EQ(resumed.recorder.facts().ticks, 11);
+}
+
+TEST_F(Resume, TheWorldMayHaveGoneFarAheadButNotBeyondTheMission) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 9000;
+  Record resumed(mission, ten_rows());
+  for (const Tick tick : {9001, 8000, 8001}) resumed.tell(state_of(tick), at(10s));
+  advance(resumed.recorder, at(11s));
+  EXPECT_EQ(resumed.recorder.next_row(), 8001);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 7990);
+}
+
+TEST_F(Resume, ARecordThatEndsWritesWhatStandsBehindTheGap) {
+  Record resumed(small_mission(1), ten_rows());
+  for (const Tick tick : {30, 31, 32}) resumed.tell(state_of(tick), at(10s));
+  resumed.recorder.stop("SIGTERM");
+  EXPECT_EQ(resumed.recorder.next_row(), 32);
+  EXPECT_EQ(resumed.recorder.facts().gaps, 20);
+}
+
+TEST_F(Resume, ANewWorldMayLeaveAGapBeforeItsFirstState) {
+  Record record(small_mission(1));
+  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  for (const Tick tick : {14, 15, 17}) {
+    record.tell(of_world(kNextWorldLife, state_of(tick)), at(10s));
+  }
+  advance(record.recorder, at(10499ms));
+  EXPECT_EQ(record.recorder.next_row(), 10);
+  advance(record.recorder, at(1h));
+  EXPECT_EQ(record.recorder.next_row(), 15) << "16 is repeated by the world that said 17";
+  EXPECT_EQ(record.recorder.facts().gaps, 4);
+}
+
+TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
+  for (Mission mission : {small_mission(1), realtime_mission()}) {
+    Record record(mission);
+    for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+    // It does not know which velocities led there.
+    record.tell(of_world(kNextWorldLife, state_of(8, {108, 500}, {0, 0})), at(1s));
+    record.tell(of_world(kNextWorldLife, state_of(10, {110, 500}, {0, 0})), at(1s));
+    for (Tick tick = 11; tick <= 20; ++tick) {
+      record.tell(of_world(kNextWorldLife, state_of(tick)), at(1s));
+    }
+    const auto rows = record.trajectory_rows();
+    ASSERT_EQ(rows.size(), 20u);
+    for (const std::string& row : rows) EXPECT_EQ(number(row, 5), 10) << row;
+    EXPECT_EQ(record.recorder.facts().gaps, 0);
+  }
+}
+
+TEST_F(Resume, PartsOfTwoWorldsMakeNoState) {
+  Record record(small_mission(2));
+  const auto part_of = [](Incarnation world, Tick tick, int part) {
+    WorldState state = of_world(world, world_state(tick, {{100, 500}}));
+    state.vehicles[0].id = part;
+    state.part = part;
+    state.parts = 2;
+    return state;
+  };
+  for (const int part : {0, 1}) record.tell(part_of(kWorldLife, 0, part));
+  record.tell(part_of(kWorldLife, 1, 0));
+  record.tell(part_of(kNextWorldLife, 1, 1));
+  EXPECT_TRUE(record.trajectory_rows().empty());
+  record.tell(part_of(kNextWorldLife, 1, 0));
+  EXPECT_EQ(record.trajectory_rows().size(), 2u);
+}
+
+// ---- segments ------------------------------------------------------------------------------------
+
+TEST_F(Resume, EachProcessHasFilesOfItsOwn) {
+  EXPECT_EQ(segment_count(dir), 0);
+  for (int segment = 0; segment < 3; ++segment) {
+    const auto record = std::get<0>(RunRecord::go_on(dir));
+    EXPECT_EQ(record->segment(), segment);
+    record->trajectory() << "rows of " << segment << '\n';
+    EXPECT_EQ(record->flush(), std::nullopt);
+    EXPECT_EQ(segment_count(dir), segment + 1);
+  }
+  EXPECT_EQ(read("trajectory.csv"), "rows of 0\n");
+  EXPECT_EQ(read("trajectory-001.csv"), "rows of 1\n");
+  EXPECT_EQ(read("trajectory-002.csv"), "rows of 2\n");
+  EXPECT_TRUE(fs::exists(dir / "metrics-002.csv"));
+}
+
+TEST_F(Resume, WithoutBeingAskedToARecordIsNotGoneOnWith) {
+  write("trajectory.csv", "old");
+  const auto refused = RunRecord::create(dir);
+  ASSERT_TRUE(std::holds_alternative<std::string>(refused));
+  EXPECT_NE(std::get<std::string>(refused).find("--resume"), std::string::npos);
+  EXPECT_EQ(read("trajectory.csv"), "old");
+}
+
+TEST_F(Resume, AKillBetweenTheTwoFilesOfASegmentCostsNothing) {
+  write("trajectory.csv", "");
+  const auto record = std::get<0>(RunRecord::go_on(dir));
+  EXPECT_EQ(record->segment(), 0);
+  EXPECT_EQ(segment_count(dir), 1);
+}
+
+TEST_F(Resume, ATableThatLacksItsOtherIsNotOverwritten) {
+  write("trajectory.csv", "precious");
+  EXPECT_TRUE(std::holds_alternative<std::string>(RunRecord::go_on(dir)));
+  EXPECT_EQ(read("trajectory.csv"), "precious");
+}
+
+TEST_F(Resume, ADiscardedSegmentLeavesNoTrace) {
+  write("trajectory.csv", "rows\n");
+  write("metrics.csv", "");
+  std::get<0>(RunRecord::go_on(dir))->discard();
+  EXPECT_EQ(segment_count(dir), 1);
+  EXPECT_FALSE(fs::exists(dir / "trajectory-001.csv"));
+  EXPECT_FALSE(fs::exists(dir / "metrics-001.csv"));
+  EXPECT_EQ(read("trajectory.csv"), "rows\n");
+}
+
+}  // namespace
+}  // namespace ergocast
