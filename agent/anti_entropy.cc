@@ -37,25 +37,28 @@ std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
                      const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
   const Author requester{theirs.header.sender, theirs.header.incarnation};
+  // Digest, roster and table all ascend by author: one walk along all three.
+  std::size_t row = 0, member = 0;
   for (int i = 0; i < theirs.entry_count; ++i) {
-    const DigestEntry& entry = theirs.entries[static_cast<std::size_t>(i)];
+    const auto& [author, steps] = theirs.entries[static_cast<std::size_t>(i)];
+    while (member < roster.size() && roster[member].author < author) ++member;
+    while (row < table.row_count() && table.holding(row).author < author) ++row;
+    if (member == roster.size() || row == table.row_count()) return;
     // Our own coverage we broadcast as it grows, never in between: in lockstep, ticks depend on it.
-    if (entry.author == self_ || entry.author == requester) continue;
-    const auto known = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& member) {
-      return member.author == entry.author;
-    });
-    if (known == roster.end()) continue;
-    consider(requester, entry, theirs.header.sequence, table, known->active_until < 0, now, tick);
+    if (author == self_ || author == requester || roster[member].author != author) continue;
+    const CoverageTable::Holding ours = table.holding(row);
+    if (ours.author != author) continue;
+    const bool will_speak = roster[member].active_until < 0;
+    const Tick tolerated = will_speak ? kToleratedPeriods * ours.announced_period : 0;
+    consider(requester, author, ours.steps - steps > tolerated, theirs.header.sequence, now, tick);
   }
 }
 
-void AntiEntropy::consider(const Author& requester, const DigestEntry& entry,
-                           std::int64_t sequence, const CoverageTable& table, bool will_speak,
-                           Instant now, Tick tick) {
-  const std::int64_t lag = table.steps_held(entry.author).value_or(0) - entry.steps;
-  const Tick tolerated = will_speak ? kToleratedPeriods * table.announced_period(entry.author) : 0;
-  const auto key = std::pair(requester, entry.author);
-  if (lag <= tolerated) {
+void AntiEntropy::consider(const Author& requester, const Author& author, bool lacks,
+                           std::int64_t sequence, Instant now, Tick tick) {
+  if (!lacks && complaints_.empty()) return;
+  const auto key = std::pair(requester, author);
+  if (!lacks) {
     complaints_.erase(key);
     return;
   }
@@ -67,11 +70,11 @@ void AntiEntropy::consider(const Author& requester, const DigestEntry& entry,
   if (sequence <= former->second.sequence) return;
   const bool in_a_row = now - former->second.at <= kComplaintLife;
   former->second = {sequence, now};
-  if (!in_a_row || answers_.count(entry.author) != 0 || answers_.size() >= kMaxAnswers) return;
+  if (!in_a_row || answers_.count(author) != 0 || answers_.size() >= kMaxAnswers) return;
   const double delay_s = kLongestDelay_s * uniform_pair(seed_, Purpose::kAnswer,
                                                         static_cast<std::uint32_t>(self_.agent),
                                                         ++draws_).x();
-  answers_.emplace(entry.author, Deadline::in(seconds(delay_s), now, delay_s, dt_s_, tick));
+  answers_.emplace(author, Deadline::in(seconds(delay_s), now, delay_s, dt_s_, tick));
 }
 
 void AntiEntropy::on_relayed(const Contribution& theirs, const CoverageTable& table) {

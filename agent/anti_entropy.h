@@ -24,7 +24,7 @@ class AntiEntropy {
   static std::vector<Digest> digests(const CoverageTable& table,
                                      const std::vector<RosterEntry>& roster);
 
-  /// A teammate says what it holds. An author is worth an answer if in two digests in a row its
+  /// A teammate says what it holds, in ascending order of authors. An author is worth an answer if in two digests in a row its
   /// coverage there was behind ours: by more than two of the author's broadcast periods, or by
   /// anything if the author has left the roster and will not speak again.
   void on(const Digest& theirs, const CoverageTable& table, const std::vector<RosterEntry>& roster,
@@ -47,8 +47,8 @@ class AntiEntropy {
     Instant at;
   };
 
-  void consider(const Author& requester, const DigestEntry& entry, std::int64_t sequence,
-                const CoverageTable& table, bool will_speak, Instant now, Tick tick);
+  void consider(const Author& requester, const Author& author, bool lacks, std::int64_t sequence,
+                Instant now, Tick tick);
 
   Author self_;
   std::uint64_t seed_;

@@ -129,22 +129,33 @@ void CoverageTable::average(Coefficients& coverage) const {
   }
 }
 
-std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) const {
-  const Row* row = find(author);
-  if (row == nullptr) return std::nullopt;
-  return std::min_element(row->blocks.begin(), row->blocks.end(),
-                          [](const Block& a, const Block& b) { return a.steps < b.steps; })
-      ->steps;
+std::int64_t CoverageTable::Row::fewest_steps() const {
+  std::int64_t fewest = blocks.front().steps;
+  for (const Block& block : blocks) fewest = std::min(fewest, block.steps);
+  return fewest;
+}
+
+Tick CoverageTable::Row::announced_period() const {
+  Tick longest = 0;
+  for (const Block& block : blocks) {
+    longest = std::max(longest, block.next_broadcast_tick - block.tick);
+  }
+  return longest;
 }
 
 Tick CoverageTable::announced_period(const Author& author) const {
   const Row* row = find(author);
-  if (row == nullptr) return 0;
-  Tick longest = 0;
-  for (const Block& block : row->blocks) {
-    longest = std::max(longest, block.next_broadcast_tick - block.tick);
-  }
-  return longest;
+  return row == nullptr ? 0 : row->announced_period();
+}
+
+std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) const {
+  const Row* row = find(author);
+  return row == nullptr ? std::nullopt : std::optional(row->fewest_steps());
+}
+
+CoverageTable::Holding CoverageTable::holding(std::size_t i) const {
+  const Row& row = rows_[i];
+  return {row.author, row.fewest_steps(), row.announced_period()};
 }
 
 const double* CoverageTable::sums_of(const Author& author) const {

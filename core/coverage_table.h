@@ -53,6 +53,15 @@ class CoverageTable {
   /// The longest silence that `author` has announced between two of its broadcasts; 0 if unknown.
   Tick announced_period(const Author& author) const;
 
+  /// One row as a digest speaks of it.
+  struct Holding {
+    Author author;
+    std::int64_t steps;     ///< the fewest among its blocks
+    Tick announced_period;
+  };
+  /// Row `i` of row_count(), in ascending order of authors.
+  Holding holding(std::size_t i) const;
+
   /// The sums of a row [s], mode_count() of them and then zeros; null if it is unknown.
   const double* sums_of(const Author& author) const;
 
@@ -76,6 +85,8 @@ class CoverageTable {
     bool counts = true;
     std::vector<Block> blocks;
     std::vector<double> sums;  // block_count · kBlockSize, zero beyond the last mode
+    std::int64_t fewest_steps() const;
+    Tick announced_period() const;
   };
 
   const Row* find(const Author& author) const;
