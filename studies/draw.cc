@@ -1,0 +1,191 @@
+// Tables and figures of the network studies, from what studies/run has simulated.
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <optional>
+
+#include "logger/axes.h"
+#include "logger/figures.h"
+#include "logger/run_record.h"
+#include "studies/statistics.h"
+#include "studies/table.h"
+
+namespace ergocast::studies {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One thing that is varied; FOLDER/<name>-<agents>-<value>.csv has the seeds of one point, and
+/// FOLDER/<reference>-<agents>.csv what it is compared with.
+struct Study {
+  std::string name, reference, x_title;
+  std::vector<std::string> values;
+  double unit;  ///< x is the value times this
+};
+
+/// Everything about one team at one value.
+struct Point {
+  double x = 0, view_error = 0, metric = 0, contributions = 0;
+  std::size_t seeds = 0;
+  Ratio ratio;
+};
+
+struct Curve {
+  int agents;
+  std::vector<Point> points;
+};
+
+const Study kStudies[] = {
+    {"loss", "central", "messages lost [%]", {"0", "0.01", "0.05", "0.1", "0.3", "0.6", "0.8"}, 100},
+    {"delay", "central", "mean delay [s]", {"0", "0.5", "1", "2", "3.5", "5"}, 1},
+    {"budget", "every-tick", "error budget [% of the residual]",
+     {"0.01", "0.02", "0.05", "0.1", "0.2", "0.5"}, 100},
+    {"period", "every-tick", "broadcast period [ticks]", {"1", "2", "5", "10", "20", "50", "100"}, 1},
+};
+constexpr int kTeams[] = {4, 16, 64};
+
+/// The first rows of both, as many as the shorter has: the same seeds.
+Point compare(const Table& table, const Table& reference, double x) {
+  Point point;
+  std::vector<double> ours = table.at("ergodic_metric"), theirs = reference.at("ergodic_metric");
+  point.seeds = std::min(ours.size(), theirs.size());
+  ours.resize(point.seeds);
+  theirs.resize(point.seeds);
+  point.x = x;
+  point.ratio = ratio_of(ours, theirs);
+  point.metric = median_of(ours);
+  point.view_error = median_of(table.at("view_error"));
+  point.contributions = median_of(table.at("contributions"));
+  return point;
+}
+
+Curve curve_of(const Study& study, int agents, const fs::path& folder) {
+  Curve curve{agents, {}};
+  const std::string team = "-" + std::to_string(agents);
+  const fs::path reference_file = folder / (study.reference + team + ".csv");
+  if (!fs::exists(reference_file)) return curve;
+  const Table reference = read_table(reference_file);
+  for (const std::string& value : study.values) {
+    const fs::path file = folder / (study.name + team + "-" + value + ".csv");
+    if (!fs::exists(file)) continue;
+    curve.points.push_back(compare(read_table(file), reference, std::stod(value) * study.unit));
+  }
+  return curve;
+}
+
+void print(const Study& study, const std::vector<Curve>& curves) {
+  std::printf("| agents | %s | seeds | contributions | φ² (median) | φ² against %s (95 %%) | view error |\n"
+              "|---|---|---|---|---|---|---|\n",
+              study.x_title.c_str(), study.reference.c_str());
+  for (const Curve& curve : curves) {
+    for (const Point& p : curve.points) {
+      std::printf("| %d | %g | %zu | %.0f | %.3g | %.3f (%.3f to %.3f) | %.2g |\n", curve.agents, p.x,
+                  p.seeds, p.contributions, p.metric, p.ratio.value, p.ratio.low, p.ratio.high,
+                  p.view_error);
+    }
+  }
+  std::printf("\n");
+}
+
+// ---- figures -------------------------------------------------------------------------------------
+
+constexpr double kWidth = 1130, kHeight = 360, kPanelWidth = 470, kPanelHeight = 250;
+constexpr double kTop = 56, kLeft = 66;
+
+using ValueOf = double (*)(const Point&);
+
+/// One line a team, with its confidence interval where there is one.
+void draw_panel(Svg& svg, double left, const std::string& title, Axis x, Axis y,
+                const std::vector<Curve>& curves, ValueOf x_of, ValueOf y_of, bool intervals) {
+  const Box area{left, kTop, kPanelWidth, kPanelHeight};
+  svg.text({left, kTop - 12}, "class=\"head\"", title);
+  Plot plot(svg, area, std::move(x), std::move(y));
+  plot.grid();
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::string color = "stroke=\"" + agent_color(static_cast<AgentId>(i)) + '"';
+    Polyline line;
+    for (const Point& p : curves[i].points) {
+      line.push_back({x_of(p), y_of(p)});
+      if (!intervals) continue;
+      svg.line(plot.at(x_of(p), p.ratio.low), plot.at(x_of(p), p.ratio.high), color + " stroke-width=\"2\"");
+    }
+    plot.curve(line, "class=\"curve\" stroke-width=\"1.6\" " + color);
+  }
+  plot.frame();
+}
+
+void draw_key(Svg& svg, const std::vector<Curve>& curves) {
+  double left = kLeft;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    svg.line({left, 14}, {left + 24, 14}, "stroke-width=\"2\" stroke=\"" + agent_color(static_cast<AgentId>(i)) + '"');
+    svg.text({left + 30, 18}, "", std::to_string(curves[i].agents) + " agents");
+    left += 120;
+  }
+}
+
+struct Extent {
+  double low = 1e300, high = 0;
+  void add(double value) {
+    if (value > 0) low = std::min(low, value), high = std::max(high, value);
+  }
+};
+
+std::string draw(const Study& study, const std::vector<Curve>& curves) {
+  const bool by_messages = study.reference == "every-tick";
+  Extent x, ratio, error;
+  for (const Curve& curve : curves) {
+    for (const Point& p : curve.points) {
+      x.add(by_messages ? p.contributions : p.x);
+      ratio.add(p.ratio.low);
+      ratio.add(p.ratio.high);
+      error.add(p.view_error);
+    }
+  }
+  const ValueOf x_of = by_messages ? [](const Point& p) { return p.contributions; }
+                                   : [](const Point& p) { return p.x; };
+  const auto x_axis = [&] {
+    return by_messages ? log_axis("contributions sent", x.low / 1.2, x.high * 1.2)
+                       : range_axis(study.x_title, "", 0, x.high);
+  };
+  Svg svg(kWidth, kHeight, study.name, study.x_title);
+  draw_key(svg, curves);
+  draw_panel(svg, kLeft, "φ² at the end against " + study.reference, x_axis(),
+             log_axis("ratio", std::min(0.9, ratio.low / 1.1), std::max(1.1, ratio.high * 1.1)), curves,
+             x_of, [](const Point& p) { return p.ratio.value; }, true);
+  draw_panel(svg, kWidth - 18 - kPanelWidth, "What the worst-informed agent's c lacks at the end", x_axis(),
+             log_axis("√Σ λ (c_a − c)²", error.low / 1.5, error.high * 1.5), curves, x_of,
+             [](const Point& p) { return p.view_error; }, false);
+  return svg.str();
+}
+
+int run(const fs::path& folder, const fs::path& images) {
+  for (const Study& study : kStudies) {
+    std::vector<Curve> curves;
+    for (const int agents : kTeams) {
+      Curve curve = curve_of(study, agents, folder);
+      if (!curve.points.empty()) curves.push_back(std::move(curve));
+    }
+    if (curves.empty()) continue;
+    print(study, curves);
+    if (const auto problem = write_file(images / (study.name + ".svg"), draw(study, curves))) {
+      throw std::runtime_error(*problem);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace ergocast::studies
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: studies-draw FOLDER_OF_CSV_FILES FOLDER_OF_IMAGES\n");
+    return 2;
+  }
+  try {
+    return ergocast::studies::run(argv[1], argv[2]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "studies-draw: %s\n", error.what());
+    return 2;
+  }
+}
