@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "cli/workers.h"
 #include "runtime/lcm_url.h"
 #include "scenario/scenario.h"
 
@@ -22,6 +23,17 @@ int run(const MissionOptions& options);
 
 /// The mission in this process, in virtual time.
 int simulate(const MissionOptions& options);
+
+/// What `simulate --seeds` is told besides.
+struct TrialsOptions {
+  MissionOptions mission;  ///< `out` is a CSV file here; empty: none
+  std::string faults;      ///< a file, "swarm", or empty: none
+  Seeds seeds;
+  int jobs = 1;
+};
+
+/// One mission under faults for each seed.
+int trials(const TrialsOptions& options);
 
 /// Every problem of a scenario; with `print`, the scenario as it would be run.
 int check(const std::filesystem::path& scenario, bool print);

@@ -1,6 +1,10 @@
 // ergocast: the command a person types.
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <functional>
+#include <string_view>
+#include <thread>
 
 #include "cli/commands.h"
 #include "runtime/node.h"
@@ -8,9 +12,11 @@
 namespace ergocast::cli {
 namespace {
 
+constexpr std::uint64_t kMostSeeds = 1000000000;
 constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 verify: the run differs; 2 bad scenario, arguments or run directory;\n"
-    "3 LCM cannot be used on this machine; 4 the mission failed or its record broke off.";
+    "3 LCM cannot be used on this machine; 4 the mission failed or its record broke off, or\n"
+    "one of many missions broke an invariant.";
 
 void add_mission_options(CLI::App& command, MissionOptions& options) {
   command.add_option("SCENARIO", options.scenario, "Scenario file (scenarios/*.textproto)")
@@ -58,6 +64,43 @@ void add_url_option(CLI::App& command, MissionOptions& options) {
       ->type_name("URL");
 }
 
+/// "A:B" or "A".
+Seeds parse_seeds(const std::string& text) {
+  const auto number = [&text](std::string_view part) {
+    std::uint64_t value = 0;
+    const auto read = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (read.ec != std::errc() || read.ptr != part.data() + part.size()) {
+      throw CLI::ValidationError("--seeds", "\"" + text + "\" is neither a number nor FIRST:LAST");
+    }
+    return value;
+  };
+  const std::string_view view = text;
+  const std::size_t colon = view.find(':');
+  if (colon == std::string_view::npos) return {number(view), number(view)};
+  const Seeds seeds{number(view.substr(0, colon)), number(view.substr(colon + 1))};
+  if (seeds.last < seeds.first || seeds.last - seeds.first >= kMostSeeds) {
+    throw CLI::ValidationError("--seeds", text + ": the last must not be before the first, nor " +
+                                              std::to_string(kMostSeeds) + " after it");
+  }
+  return seeds;
+}
+
+void add_trial_options(CLI::App& command, TrialsOptions& options) {
+  auto* seeds = command
+                    .add_option_function<std::string>(
+                        "--seeds",
+                        [&options](const std::string& text) { options.seeds = parse_seeds(text); },
+                        "One mission for each seed, in the laboratory; --out is a CSV file then")
+                    ->type_name("FIRST:LAST")
+                    ->excludes("--seed");
+  command.add_option("--faults", options.faults, "What goes wrong: a file, or \"swarm\": each seed draws")
+      ->type_name("FILE|swarm")
+      ->needs(seeds);
+  command.add_option("--jobs", options.jobs, "Worker processes (default: one a processor)")
+      ->check(CLI::Range(1, 1024))
+      ->needs(seeds);
+}
+
 int parse_and_do(int argc, char** argv) {
   CLI::App app("Ergocast: teams of robots that spread their time over a region as a map demands.",
                "ergocast");
@@ -77,7 +120,16 @@ int parse_and_do(int argc, char** argv) {
   auto* simulate_command =
       app.add_subcommand("simulate", "Run a mission in this process, in virtual time");
   add_mission_options(*simulate_command, mission);
-  simulate_command->callback([&] { action = [&] { return simulate(mission); }; });
+  TrialsOptions trial_options;
+  trial_options.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  add_trial_options(*simulate_command, trial_options);
+  simulate_command->callback([&] {
+    action = [&] {
+      if (simulate_command->count("--seeds") == 0) return simulate(mission);
+      trial_options.mission = mission;
+      return trials(trial_options);
+    };
+  });
 
   auto* check_command = app.add_subcommand("check", "Name every problem of a scenario");
   check_command->add_option("SCENARIO", path, "Scenario file")->required()->type_name("FILE");

@@ -1,9 +1,9 @@
-// How far a mission is: a bar on a terminal, a plain line now and then elsewhere.
+// How far a mission is.
 #pragma once
 
-#include <chrono>
 #include <string>
 
+#include "cli/progress_line.h"
 #include "core/ids.h"
 
 namespace ergocast::cli {
@@ -19,27 +19,14 @@ struct MissionProgress {
 
 class ProgressDisplay {
  public:
-  ProgressDisplay();
-  ProgressDisplay(const ProgressDisplay&) = delete;
-  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
-  ~ProgressDisplay() { end(); }
-
   /// Shows it, if the last time is long enough ago.
   void show(const MissionProgress& progress);
-  /// A line of its own, above the bar.
-  void say(const std::string& line);
-  /// The bar's last state stays; what follows begins on a new line.
-  void end();
+  void say(const std::string& line) { line_.say(line); }
+  void end() { line_.end(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  void measure_rate(Tick tick, Clock::time_point now);
-
-  bool terminal_;
-  bool bar_shown_ = false;
-  Clock::time_point next_{}, rate_since_{};
-  Tick rate_from_ = 0;
-  double ticks_per_s_ = 0;
+  ProgressLine line_;
+  Rate ticks_;
 };
 
 }  // namespace ergocast::cli

@@ -1,0 +1,59 @@
+#include "cli/fault_file.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <fstream>
+
+namespace ergocast::cli {
+namespace {
+
+std::string known_names() {
+  std::string names;
+  for (const lab::FaultField& field : lab::fault_fields()) {
+    names += (names.empty() ? "" : ", ") + std::string(field.name);
+  }
+  return names;
+}
+
+/// Puts one line into `faults`; what is wrong with it otherwise.
+std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
+  for (const lab::FaultField& field : lab::fault_fields()) {
+    if (item.fullname() != field.name) continue;
+    const std::string text = item.inputs.size() == 1 ? item.inputs.front() : "";
+    double value = -1;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = read.ec == std::errc() && read.ptr == text.data() + text.size();
+    if (whole && value >= 0 && value <= field.most) {
+      faults.*field.value = value;
+      return "";
+    }
+    char range[64];
+    std::snprintf(range, sizeof range, "0 to %g", field.most);
+    return item.fullname() + ": \"" + text + "\" is not a number in range (write one from " + range + ")";
+  }
+  return item.fullname() + ": there is no such fault (write one of " + known_names() + ")";
+}
+
+}  // namespace
+
+std::variant<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file) {
+  const std::string where = file.string() + ": ";
+  std::ifstream stream(file);
+  if (!stream) {
+    return std::vector{where + "cannot be read (give the name of a file, or \"swarm\")"};
+  }
+  lab::Faults faults;
+  std::vector<std::string> problems;
+  try {
+    for (const CLI::ConfigItem& item : CLI::ConfigINI().from_config(stream)) {
+      const std::string problem = take(item, faults);
+      if (!problem.empty()) problems.push_back(where + problem);
+    }
+  } catch (const CLI::Error& error) {
+    problems.push_back(where + error.what());
+  }
+  if (!problems.empty()) return problems;
+  return faults;
+}
+
+}  // namespace ergocast::cli

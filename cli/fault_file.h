@@ -1,0 +1,16 @@
+// Faults as people write them: one `name = value` a line, '#' begins a comment.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "lab/faults.h"
+
+namespace ergocast::cli {
+
+/// The faults in a file, or all its problems, "file: field: what is wrong (remedy)".
+std::variant<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file);
+
+}  // namespace ergocast::cli

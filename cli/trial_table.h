@@ -1,0 +1,24 @@
+// What came of many trials: a CSV row a seed, and a summary for people.
+#pragma once
+
+#include <string>
+
+#include "cli/workers.h"
+
+namespace ergocast::cli {
+
+std::string csv_header();
+std::string csv_row(const TrialReport& report);
+
+/// Sums over all trials so far.
+struct TrialTotals {
+  lab::TrialFigures sums;  ///< of all that can be summed; recovery_max_s: the greatest
+  std::int64_t trials = 0, timed_out = 0, failed = 0;
+  double worst_metric = 0, worst_view_error = 0, recovery_sum_s = 0;
+
+  void add(const TrialReport& report);
+  /// Several lines.
+  std::string describe(double wall_s) const;
+};
+
+}  // namespace ergocast::cli

@@ -1,0 +1,147 @@
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <ostream>
+
+#include "cli/commands.h"
+#include "cli/fault_file.h"
+#include "cli/progress_line.h"
+#include "cli/run_directory.h"
+#include "cli/trial_table.h"
+#include "cli/workers.h"
+#include "lab/trial.h"
+#include "runtime/node.h"
+
+namespace ergocast::cli {
+namespace {
+
+constexpr const char* kSwarm = "swarm";
+constexpr std::int64_t kMostFailuresShown = 20;
+
+/// Faults by seed: of a file, or drawn. Nothing, after saying why, if the file is no good.
+std::optional<std::function<lab::Faults(std::uint64_t)>> faults_by_seed(const std::string& source) {
+  if (source == kSwarm) return lab::drawn;
+  if (source.empty()) return [](std::uint64_t) { return lab::Faults(); };
+  const auto read = read_faults(source);
+  if (const auto* problems = std::get_if<std::vector<std::string>>(&read)) {
+    for (const std::string& problem : *problems) std::fprintf(stderr, "%s\n", problem.c_str());
+    return std::nullopt;
+  }
+  return [faults = std::get<lab::Faults>(read)](std::uint64_t) { return faults; };
+}
+
+TrialReport report_of(const lab::TrialResult& result) {
+  TrialReport report;
+  report.figures = result.figures;
+  if (result.timed_out) report.verdict = Verdict::kTimedOut;
+  if (result.violation) {
+    report.verdict = Verdict::kViolated;
+    std::snprintf(report.what, sizeof report.what, "%s", to_string(*result.violation).c_str());
+  }
+  return report;
+}
+
+/// The command that flies one seed again.
+std::string replay_of(const TrialsOptions& options, std::uint64_t seed) {
+  std::string command = "ergocast simulate " + options.mission.scenario.string();
+  const Overrides& over = options.mission.overrides;
+  if (over.duration_s) command += " --duration " + text_of("%.17g", *over.duration_s);
+  if (over.agents) command += " --agents " + std::to_string(*over.agents);
+  if (over.pace == Pace::kLockstep) command += " --lockstep";
+  if (over.realtime_factor) command += " --realtime " + text_of("%.17g", *over.realtime_factor);
+  if (!options.faults.empty()) command += " --faults " + options.faults;
+  return command + " --seeds " + std::to_string(seed);
+}
+
+/// Takes the reports in as they come: rows, totals, a line of progress.
+class Desk {
+ public:
+  Desk(const TrialsOptions& options, std::ostream& csv) : options_(options), csv_(csv) {
+    csv_ << csv_header() << '\n';
+    next_row_ = options.seeds.first;
+  }
+
+  void take(const TrialReport& report) {
+    totals_.add(report);
+    rows_[report.figures.seed] = csv_row(report);
+    // In the order of the seeds, whichever worker was faster.
+    for (auto first = rows_.begin(); first != rows_.end() && first->first == next_row_;
+         first = rows_.erase(first), ++next_row_) {
+      csv_ << first->second << '\n';
+    }
+    if (report.verdict != Verdict::kViolated && report.verdict != Verdict::kDied) return;
+    if (totals_.failed > kMostFailuresShown) return;
+    progress_.say("seed " + std::to_string(report.figures.seed) + ": " + report.what +
+                  "\n  again: " + replay_of(options_, report.figures.seed));
+  }
+
+  void show() {
+    const auto now = ProgressLine::Clock::now();
+    const auto done = static_cast<double>(totals_.trials);
+    const auto all = static_cast<double>(options_.seeds.count());
+    const double per_s = rate_.measure(done, now);
+    if (!progress_.due(now) || totals_.trials == 0) return;
+    std::vector<std::string> facts{std::to_string(totals_.trials) + " of " +
+                                   std::to_string(options_.seeds.count()) + " seeds"};
+    if (per_s > 0) facts.push_back(clock_text((all - done) / per_s) + " left");
+    facts.push_back(std::to_string(totals_.failed) + " failed");
+    if (per_s > 0) facts.push_back(text_of("%.0f runs/s", per_s));
+    progress_.show(done / all, facts);
+  }
+
+  const TrialTotals& close() {
+    for (const auto& [seed, row] : rows_) csv_ << row << '\n';
+    csv_.flush();
+    progress_.end();
+    return totals_;
+  }
+
+ private:
+  const TrialsOptions& options_;
+  std::ostream& csv_;
+  ProgressLine progress_;
+  Rate rate_;
+  TrialTotals totals_;
+  std::map<std::uint64_t, std::string> rows_;  // that wait for smaller seeds
+  std::uint64_t next_row_;
+};
+
+int complain(const std::string& problem) {
+  std::fprintf(stderr, "%s\n", problem.c_str());
+  return kExitBadInput;
+}
+
+}  // namespace
+
+int trials(const TrialsOptions& options) {
+  const auto scenario = load_or_complain(options.mission.scenario, options.mission.overrides);
+  if (!scenario) return kExitBadInput;
+  const auto faults = faults_by_seed(options.faults);
+  if (!faults) return kExitBadInput;
+  const auto& path = options.mission.out;
+  std::ofstream csv;
+  if (!path.empty()) csv.open(path);
+  if (!path.empty() && !csv) return complain(path.string() + ": cannot be written (--out takes a file here)");
+
+  std::ostream nowhere(nullptr);
+  const auto fly = [&](std::uint64_t seed) {
+    return report_of(lab::fly_trial({scenario->plan(), decode_plan, (*faults)(seed), version()}, seed,
+                                    nowhere, nowhere));
+  };
+  StopSignals signals;
+  Desk desk(options, path.empty() ? nowhere : csv);
+  const auto start = std::chrono::steady_clock::now();
+  fly_in_processes(options.seeds, options.jobs, signals, fly,
+                   [&](const TrialReport& report) { desk.take(report); }, [&] { desk.show(); });
+  const double wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const TrialTotals& totals = desk.close();
+  std::printf("%lld of %llu missions flown in %.1f s\n%s", static_cast<long long>(totals.trials),
+              static_cast<unsigned long long>(options.seeds.count()), wall_s,
+              totals.describe(wall_s).c_str());
+  if (!path.empty() && !csv) return complain(path.string() + ": writing failed; rows are missing");
+  return totals.failed > 0 ? kExitFailed : kExitDone;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,35 @@
+// A process's own clock, as wrong as the laboratory wants it.
+#pragma once
+
+#include <cmath>
+
+#include "core/ids.h"
+
+namespace ergocast::lab {
+
+/// local = offset + rate · virtual.
+class SkewedClock {
+ public:
+  SkewedClock() = default;
+  SkewedClock(double rate, PacingClock::duration offset) : rate_(rate), offset_(offset) {}
+
+  Instant local(Instant virtual_time) const {
+    const auto ns = static_cast<double>(virtual_time.time_since_epoch().count());
+    return Instant(offset_ + PacingClock::duration(std::llround(rate_ * ns)));
+  }
+
+  /// The first virtual time at which local() is at least `wanted`.
+  Instant when(Instant wanted) const {
+    if (wanted == Instant::max()) return wanted;
+    const auto ns = static_cast<double>((wanted.time_since_epoch() - offset_).count());
+    Instant at(PacingClock::duration(std::llround(ns / rate_)));
+    while (local(at) < wanted) at += PacingClock::duration(1);
+    return at;
+  }
+
+ private:
+  double rate_ = 1;
+  PacingClock::duration offset_{};
+};
+
+}  // namespace ergocast::lab

@@ -1,0 +1,31 @@
+// A stream of random numbers that follows from a seed and a name alone.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/noise.h"
+
+namespace ergocast::lab {
+
+class Dice {
+ public:
+  Dice(std::uint64_t seed, std::uint32_t stream) : seed_(seed), stream_(stream) {}
+
+  std::uint64_t word() { return random_words(seed_, Purpose::kFault, stream_, ++draws_).first; }
+  /// In (0, 1).
+  double uniform() { return uniform_pair(seed_, Purpose::kFault, stream_, ++draws_).x(); }
+  bool coin() { return uniform() < 0.5; }
+  double exponential(double mean) { return -mean * std::log(uniform()); }
+  /// Between `least` and `most`, each power of ten as likely.
+  double log_uniform(double least, double most) {
+    return least * std::pow(most / least, uniform());
+  }
+
+ private:
+  std::uint64_t seed_;
+  std::uint32_t stream_;
+  std::uint64_t draws_ = 0;
+};
+
+}  // namespace ergocast::lab

@@ -1,0 +1,60 @@
+// What the laboratory does to a mission, and the schedule of it that a seed draws.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/ids.h"
+
+namespace ergocast::lab {
+
+/// Probabilities are per message and link (one transmitter, one receiver, one bus) unless they say
+/// otherwise. Times are virtual. By default nothing goes wrong.
+struct Faults {
+  double loss = 0;          ///< never arrives
+  double duplication = 0;   ///< arrives twice
+  double corruption = 0;    ///< arrives with bytes changed, cut off or added
+  double delay_mean_s = 0;  ///< every message: exponential; the order on a link is kept
+  double delay_max_s = 0;   ///< cut off there
+  double reordering = 0;    ///< held back alone, so that later ones overtake it
+  double reordering_max_s = 0;  ///< for up to so long, uniform
+  double clogging = 0;          ///< begins to hold its whole link back; then all arrive at once
+  double clog_max_s = 0;        ///< for up to so long, uniform
+  double partitions_per_s = 0;  ///< the processes fall into two parts that do not hear each other
+  double partition_max_s = 0;   ///< for up to so long, uniform
+  double one_way_share = 0;     ///< of the partitions: only one part is deaf to the other
+  double agent_crashes_per_s = 0;        ///< of the whole team
+  double coordinator_crashes_per_s = 0;
+  double world_crashes_per_s = 0;
+  double downtime_max_s = 0;     ///< until a crashed process is started again, uniform
+  double clock_rate_error = 0;   ///< a process's clock goes by 1 ± so much, uniform
+  double clock_offset_max_s = 0; ///< and began up to so long before, uniform
+};
+
+/// One member of Faults as people write it.
+struct FaultField {
+  const char* name;
+  double Faults::*value;
+  double most;  ///< the least is 0
+};
+std::span<const FaultField> fault_fields();
+
+/// "Swarm testing": which kinds of fault are on, each with probability 1/2, and how strong follow
+/// from the seed. All on at once would hide what happens when only one is.
+Faults drawn(std::uint64_t seed);
+
+/// Something that happens at a moment, whatever messages are sent.
+struct Incident {
+  enum class Kind { kSplit, kOneWayCut, kAgentCrash, kCoordinatorCrash, kWorldCrash };
+  Kind kind;
+  double at_s;        ///< after the mission's begin
+  double lasts_s;
+  std::uint64_t who;  ///< splits and cuts: bit i: seat i is in the first part; crash: which agent
+};
+
+/// The incidents of `horizon_s` seconds, by time.
+std::vector<Incident> incidents(const Faults& faults, std::uint64_t seed, int agents,
+                                double horizon_s);
+
+}  // namespace ergocast::lab

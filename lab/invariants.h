@@ -1,0 +1,124 @@
+// What must hold in every mission, whatever happens to its messages and processes.
+//
+// Safety holds always; liveness within a bounded time after everything has been healed. Nothing
+// here trusts the code it checks: every bound is computed again from the equations.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/coverage_table.h"
+#include "core/mission.h"
+#include "core/mission_follower.h"
+#include "lab/faults.h"
+#include "logger/recorder.h"
+
+namespace ergocast::lab {
+
+struct Violation {
+  std::string invariant;  ///< its name
+  std::string who;
+  double t_s = 0;  ///< virtual, since the mission's begin
+  std::string numbers;
+};
+/// "<invariant>: <who> at t = <t_s> s: <numbers>".
+std::string to_string(const Violation& violation);
+
+/// What one agent knows, as seen from outside.
+struct Holder {
+  Author self;
+  const CoverageTable* table = nullptr;
+  const Coefficients* coverage = nullptr;  ///< its c_k, as of `answered`
+  const std::vector<RosterEntry>* roster = nullptr;
+  Tick answered = -1;
+};
+
+/// Virtual time after healing by which every living agent is back in the mission and knows what
+/// the others know.
+double recovery_bound_s(const Mission& mission, const Faults& faults);
+
+class Invariants {
+ public:
+  explicit Invariants(const Mission& mission);
+
+  /// A new (agent, incarnation) begins to live.
+  void born(const Author& author);
+
+  // ---- safety ----
+
+  /// Somebody speaks: positions in the domain; |u| ≤ u_max; |S| ≤ S_00 = steps · dt; a digest that
+  /// says what its sender holds; at most one answer for each entry of a digest heard.
+  /// @param speaker  the agent, or null
+  void sent(double t_s, const Outgoing& outgoing, const Holder* speaker);
+  /// An agent has heard a digest.
+  void heard(const Author& listener, const Digest& digest);
+  /// Bytes were read: whole ones are accepted, damaged ones refused.
+  void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
+  /// An agent has answered a tick: what it holds never shrinks, nobody's steps exceed the ticks
+  /// there were, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1.
+  void answered(double t_s, const Holder& holder);
+  /// An agent's core has refused so many messages, of which none was damaged.
+  void refused(double t_s, const Author& who, const RefusalCounts& counts);
+  /// An agent has ended by itself.
+  void finished(double t_s, const Author& who, const std::string& reason, bool mission_over);
+  /// A process wants to be woken at a time that has passed: it would run at full load.
+  void wakeup(double t_s, const std::string& who, bool in_the_past);
+
+  // ---- liveness ----
+
+  /// To be called from recovery_bound_s() after healing on. Every living agent holds the rows that
+  /// any holds, of authors that have left the newest; |c − c_true|_∞ ≤ 2 δ / (T − δ), where δ sums
+  /// what the authors that still speak may not have said or delivered yet. Between two calls nobody
+  /// repeats anything, unless radios are limited.
+  void recovered(double t_s, const std::vector<Holder>& living);
+  /// Everybody has ended, or the time is up.
+  void ended(double t_s, const std::string& still_running, const std::string& failure,
+             const RunFacts& facts);
+
+  const std::optional<Violation>& violation() const { return violation_; }
+  /// max_a √(Σ λ (c_a − c_true)²) of the last recovered().
+  double largest_view_error() const { return largest_view_error_; }
+  Tick last_tick() const { return last_tick_; }
+  /// Every author there has been.
+  const std::vector<Author>& authors() const { return authors_; }
+
+ private:
+  struct Best {
+    std::int64_t steps = 0;
+    std::array<double, kBlockSize> sums{};
+  };
+  void violate(double t_s, const char* invariant, const std::string& who, std::string numbers);
+  void check(double t_s, const WorldState& world);
+  void check(double t_s, const Command& command);
+  void check(double t_s, const Contribution& block, AgentId relayer, const Holder* speaker);
+  void check(double t_s, const Digest& digest, const Holder& speaker);
+  void check_steps(double t_s, const Holder& holder);
+  void check_average(double t_s, const Holder& holder);
+  std::map<Author, std::vector<Best>> best_of(const std::vector<Holder>& living) const;
+  Coefficients average_of(const std::map<Author, std::vector<Best>>& rows) const;
+  void check_rows(double t_s, const Holder& holder,
+                  const std::map<Author, std::vector<Best>>& best);
+  void check_view(double t_s, const Holder& holder,
+                  const std::map<Author, std::vector<Best>>& best, const Coefficients& c_true);
+  void check_quiet(double t_s);
+
+  Mission mission_;
+  Coefficients weights_;
+  int block_count_;
+  std::optional<Violation> violation_;
+  std::vector<Author> authors_;
+  std::map<AgentId, int> lives_;
+  std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
+  std::map<Author, std::int64_t> relays_allowed_;
+  std::int64_t relayed_ = 0;  // since the last recovered()
+  bool recovered_ = false;
+  Tick last_tick_ = -1;
+  double largest_view_error_ = 0;
+};
+
+}  // namespace ergocast::lab

@@ -1,0 +1,148 @@
+#include "lab/network.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/noise.h"
+
+namespace ergocast::lab {
+namespace {
+
+/// Streams of dice beside lab/faults.cc's: one for each link and question.
+constexpr std::uint32_t kWhether = 1U << 20, kHowLong = 2U << 20, kDamage = 3U << 20;
+
+double unit(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
+
+bool quiet(const Faults& f) {
+  return f.loss <= 0 && f.duplication <= 0 && f.corruption <= 0 && f.delay_mean_s <= 0 &&
+         f.reordering <= 0 && f.clogging <= 0;
+}
+
+}  // namespace
+
+Network::Network(std::uint64_t seed, const Faults& faults, int seats)
+    : seed_(seed),
+      faults_(faults),
+      quiet_(quiet(faults)),
+      seats_(seats),
+      links_(static_cast<std::size_t>(seats * seats * kBusCount)),
+      link_cuts_(static_cast<std::size_t>(seats * seats)) {}
+
+int Network::send(Instant now, Seat from, const Seats& to, Bus bus, AgentId transmitter,
+                  std::shared_ptr<const Message> message) {
+  Seats at_once;  // all whom nothing special happens to
+  int corrupted = 0;
+  for (Seat seat = 0; seat < seats_; ++seat) {
+    const auto bit = static_cast<std::size_t>(seat);
+    if (!to.test(bit)) continue;
+    if (seat == from) {  // one's own voice does not cross the network
+      at_once.set(bit);
+      continue;
+    }
+    const Fate fate = fate_of(now, pair_index(from, seat), bus);
+    corrupted += fate.corrupted ? 1 : 0;
+    for (const auto& arrival : {fate.arrives, fate.arrives_again}) {
+      if (!arrival) continue;
+      if (*arrival == now + kLatency && !at_once.test(bit)) {
+        at_once.set(bit);
+      } else {
+        push(*arrival, transmitter, Seats().set(bit), message);
+      }
+    }
+  }
+  if (at_once.any()) push(now + kLatency, transmitter, at_once, message);
+  return corrupted;
+}
+
+Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
+  if (link_cuts_[pair] > 0) {
+    ++counted_.cut;
+    return {};
+  }
+  if (quiet_) return {now + kLatency, {}, false};
+  const auto index = static_cast<std::uint32_t>(pair) * kBusCount + static_cast<std::uint32_t>(bus);
+  Link& link = links_[index];
+  const Words dice = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);
+  const auto upper = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word >> 32)); };
+  const auto lower = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word)); };
+  // One die for what excludes each other.
+  const double what = upper(dice.first);
+  if (what < faults_.loss) {
+    ++counted_.lost;
+    return {};
+  }
+  if (what < faults_.loss + faults_.corruption) {
+    ++counted_.corrupted;
+    return {{}, {}, true};
+  }
+  Fate fate;
+  fate.arrives = arrival(now, link, index, upper(dice.second), lower(dice.second));
+  if (lower(dice.first) < faults_.duplication) {
+    ++counted_.duplicated;
+    fate.arrives_again = *fate.arrives + kLatency;
+  }
+  return fate;
+}
+
+Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, double reorders,
+                         double clogs) {
+  Instant at = now + kLatency;
+  const auto how_long = uniform_pair(seed_, Purpose::kFault, kHowLong | link_index, link.sent);
+  if (faults_.delay_mean_s > 0) {
+    const double delay_s = -faults_.delay_mean_s * std::log(how_long.x());
+    at += seconds(std::min(delay_s, faults_.delay_max_s));
+    ++counted_.delayed;
+  }
+  if (reorders < faults_.reordering) {
+    ++counted_.reordered;
+    return at + seconds(faults_.reordering_max_s * how_long.y());
+  }
+  if (now >= link.clogged_until && clogs < faults_.clogging) {
+    ++counted_.clogs;
+    link.clogged_until = now + seconds(faults_.clog_max_s * how_long.y());
+  }
+  if (at < link.clogged_until) {
+    ++counted_.clogged;
+    at = link.clogged_until;
+  }
+  return link.last_arrival = std::max(at, link.last_arrival);
+}
+
+void Network::push(Instant at, AgentId transmitter, const Seats& to,
+                   const std::shared_ptr<const Message>& message) {
+  queue_.push({at, pushed_++, transmitter, to, message});
+}
+
+Delivery Network::pop() {
+  Delivery delivery = queue_.top();
+  queue_.pop();
+  return delivery;
+}
+
+void Network::heal(Instant now) {
+  faults_ = {};
+  quiet_ = true;
+  std::fill(link_cuts_.begin(), link_cuts_.end(), 0);
+  // What is still held back comes in the order in which it would have come.
+  std::vector<Delivery> waiting;
+  while (!queue_.empty()) waiting.push_back(pop());
+  for (Delivery& delivery : waiting) {
+    delivery.at = std::min(delivery.at, now + kLatency);
+    delivery.order = pushed_++;
+    queue_.push(std::move(delivery));
+  }
+}
+
+void damage(std::vector<std::byte>& bytes, std::uint64_t seed, std::uint64_t copy) {
+  const Words dice = random_words(seed, Purpose::kFault, kDamage, copy);
+  const std::size_t where = dice.first % bytes.size();
+  switch (dice.second % 4) {
+    case 0: bytes.resize(where); return;
+    case 1: bytes.resize(bytes.size() + 1 + where, std::byte{0}); return;
+    case 2: bytes[where] ^= std::byte{1} << (dice.second >> 2) % 8; return;
+    default:
+      for (std::size_t i = where; i < std::min(where + 16, bytes.size()); ++i) bytes[i] ^= std::byte{0x5a};
+  }
+}
+
+}  // namespace ergocast::lab

@@ -1,0 +1,103 @@
+// Three buses on which things go wrong: an event queue ordered by (time, insertion).
+//
+// What happens to a message on a link follows from the seed, the link and how many messages the
+// link has carried, and from nothing else. One event carries a message to all whom it reaches at
+// the same moment.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <queue>
+#include <span>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/messages.h"
+#include "lab/faults.h"
+
+namespace ergocast::lab {
+
+/// Where a process sits: agents 0 … agents − 1, then coordinator, world, recorder.
+using Seat = int;
+inline constexpr int kMaxSeats = kMaxAgents + 3;
+using Seats = std::bitset<kMaxSeats>;
+
+/// How long a message takes that nothing happens to. Above 0, so that no loop stops time.
+inline constexpr PacingClock::duration kLatency = std::chrono::microseconds(200);
+
+/// What was done to messages, counted per link.
+struct MessageFaults {
+  std::int64_t lost = 0, cut = 0, duplicated = 0, corrupted = 0, delayed = 0, reordered = 0,
+               clogs = 0, clogged = 0;
+};
+
+struct Delivery {
+  Instant at;
+  std::uint64_t order;  ///< of insertion
+  AgentId transmitter;
+  Seats to;
+  std::shared_ptr<const Message> message;
+};
+
+class Network {
+ public:
+  Network(std::uint64_t seed, const Faults& faults, int seats);
+
+  /// Puts a message on its way from one seat to others.
+  /// @param transmitter  as receivers see it
+  /// @return  how many copies are to be corrupted; they are the caller's to damage and to refuse
+  int send(Instant now, Seat from, const Seats& to, Bus bus, AgentId transmitter,
+           std::shared_ptr<const Message> message);
+
+  /// Instant::max() if nothing is on its way.
+  Instant next() const { return queue_.empty() ? Instant::max() : queue_.top().at; }
+  Delivery pop();
+
+  /// From now on, `from` is not heard by `to`, until join() has been called as often.
+  void cut(Seat from, Seat to) { ++link_cuts_[pair_index(from, to)]; }
+  void join(Seat from, Seat to) { --link_cuts_[pair_index(from, to)]; }
+  /// No more faults: cuts end, and what clogged links hold arrives within kLatency.
+  void heal(Instant now);
+
+  const MessageFaults& counted() const { return counted_; }
+
+ private:
+  struct Link {
+    std::uint32_t sent = 0;
+    Instant last_arrival{}, clogged_until{};
+  };
+  struct Fate {
+    std::optional<Instant> arrives, arrives_again;
+    bool corrupted = false;
+  };
+  struct Later {
+    bool operator()(const Delivery& a, const Delivery& b) const {
+      return a.at != b.at ? a.at > b.at : a.order > b.order;
+    }
+  };
+
+  std::size_t pair_index(Seat from, Seat to) const {
+    return static_cast<std::size_t>(from * seats_ + to);
+  }
+  Fate fate_of(Instant now, std::size_t pair, Bus bus);
+  Instant arrival(Instant now, Link& link, std::uint32_t link_index, double reorders, double clogs);
+  void push(Instant at, AgentId transmitter, const Seats& to,
+            const std::shared_ptr<const Message>& message);
+
+  std::uint64_t seed_;
+  Faults faults_;
+  bool quiet_;  // nothing can happen to a message
+  int seats_;
+  std::vector<Link> links_;
+  std::vector<int> link_cuts_;
+  std::priority_queue<Delivery, std::vector<Delivery>, Later> queue_;
+  std::uint64_t pushed_ = 0;
+  MessageFaults counted_;
+};
+
+/// Changes some of `bytes`, cuts some off or adds some, as the seed says; never to what they were.
+void damage(std::vector<std::byte>& bytes, std::uint64_t seed, std::uint64_t copy);
+
+}  // namespace ergocast::lab
