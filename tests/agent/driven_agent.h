@@ -62,9 +62,9 @@ inline Outbox tell(Agent& agent, const Message& message, Instant now = at(0s)) {
   return advance(agent, now);
 }
 
-/// The agent's status, which is never older than the next half second.
+/// The agent's status, which is never older than half a second.
 inline AgentStatus status_after(Agent& agent, Instant now) {
-  const auto statuses = only<AgentStatus>(advance(agent, now + 1h));
+  const auto statuses = only<AgentStatus>(advance(agent, now + kAgentStatusPeriod));
   EXPECT_EQ(statuses.size(), 1u);
   return statuses.empty() ? AgentStatus{} : statuses.back();
 }
