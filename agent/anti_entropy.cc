@@ -37,6 +37,11 @@ std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
                      const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
   const Author requester{theirs.header.sender, theirs.header.incarnation};
+  if (complaints_.size() >= kMaxComplaints) {
+    std::erase_if(complaints_, [now](const auto& complaint) {
+      return now - complaint.second.at > kComplaintLife;
+    });
+  }
   for (int i = 0; i < theirs.entry_count; ++i) {
     const DigestEntry& entry = theirs.entries[static_cast<std::size_t>(i)];
     // Our own coverage we broadcast as it grows, never in between: in lockstep, ticks depend on it.
