@@ -45,6 +45,7 @@ inline std::vector<Contribution> blocks_of(const Mission& mission, const Author&
   for (int b = 0; b < table.block_count(); ++b) {
     blocks.push_back(table.block(author, b));
     blocks.back().header.run = kRun;
+    blocks.back().header.tick = static_cast<Tick>(path_m.size()) - 1;
     blocks.back().header.sequence =
         static_cast<std::int64_t>(path_m.size() - 1) * table.block_count() + b + 1;
     blocks.back().next_broadcast_tick = next_broadcast_tick;
