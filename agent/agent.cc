@@ -97,6 +97,12 @@ void Agent::join() {
   phase_ = AgentPhase::kWaiting;
 }
 
+/// Whose word it is, if it is that of a member, present or former, under its own number.
+const RosterEntry* Agent::member(const Header& from) const {
+  const RosterEntry* entry = follower_.entry_of(from.incarnation);
+  return entry != nullptr && entry->author.agent == from.sender ? entry : nullptr;
+}
+
 std::int64_t Agent::most_steps(const RosterEntry& author, Instant now) const {
   const Timing& timing = follower_.mission()->timing;
   Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
@@ -111,8 +117,8 @@ std::int64_t Agent::most_steps(const RosterEntry& author, Instant now) const {
 
 void Agent::on(const Contribution& theirs, AgentId transmitter, Instant now) {
   if (!table_) return;
-  const RosterEntry* entry = follower_.entry_of(theirs.header.incarnation);
-  if (entry == nullptr || entry->author != theirs.author()) return;  // nobody we know of yet
+  const RosterEntry* entry = member(theirs.header);
+  if (entry == nullptr) return;  // nobody we know of yet
   if (transmitter == theirs.header.sender) {
     hearing_.count(theirs.header);
   } else {
@@ -130,7 +136,7 @@ void Agent::on(const Contribution& theirs, AgentId transmitter, Instant now) {
 }
 
 void Agent::on(const Digest& theirs, Instant now) {
-  if (!table_ || follower_.entry_of(theirs.header.incarnation) == nullptr) return;
+  if (!table_ || member(theirs.header) == nullptr) return;
   hearing_.count(theirs.header);
   anti_entropy_->on(theirs, *table_, follower_.roster(), now, tick_);
 }
@@ -146,9 +152,7 @@ void Agent::on(const Hello& hello, Instant now) {
 }
 
 void Agent::on(const AgentStatus& status) {
-  if (table_ && follower_.entry_of(status.header.incarnation) != nullptr) {
-    hearing_.count(status.header);
-  }
+  if (table_ && member(status.header) != nullptr) hearing_.count(status.header);
   if (phase_ != AgentPhase::kJoining || identity_.requested_id == kUnassigned ||
       status.header.sender != identity_.requested_id ||
       status.header.sequence <= rival_sequence_) {

@@ -87,6 +87,7 @@ class Agent {
 
   void join();
   bool admitted() const { return follower_.entry_of(identity_.incarnation) != nullptr; }
+  const RosterEntry* member(const Header& from) const;
   std::int64_t most_steps(const RosterEntry& author, Instant now) const;
   bool evicted(Tick tick);
   void begin_tick(Outbox& out);

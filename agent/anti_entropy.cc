@@ -37,6 +37,11 @@ std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
                      const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
   const Author requester{theirs.header.sender, theirs.header.incarnation};
+  if (complaints_.size() >= kMaxComplaints) {
+    std::erase_if(complaints_, [now](const auto& complaint) {
+      return now - complaint.second.at > kComplaintLife;
+    });
+  }
   // Digest, roster and table all ascend by author: one walk along all three.
   std::size_t row = 0, member = 0;
   for (int i = 0; i < theirs.entry_count; ++i) {

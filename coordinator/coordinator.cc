@@ -163,6 +163,7 @@ void Coordinator::on(const Hello& hello, Instant now) {
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   const Incarnation nonce = hello.header.incarnation;
   if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
+  if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
     return entry.author.incarnation == nonce;
   });

@@ -28,6 +28,8 @@ constexpr FaultField kFields[] = {
     {"downtime_max_s", &Faults::downtime_max_s, 60},
     {"clock_rate_error", &Faults::clock_rate_error, 0.2},
     {"clock_offset_max_s", &Faults::clock_offset_max_s, 1e8},
+    {"swarm_bus_only", &Faults::swarm_bus_only, 1},
+    {"lasting_share", &Faults::lasting_share, 1},
 };
 
 /// Streams of dice, so that one kind of fault does not change what another draws.

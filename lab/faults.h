@@ -30,6 +30,9 @@ struct Faults {
   double downtime_max_s = 0;     ///< until a crashed process is started again, uniform
   double clock_rate_error = 0;   ///< a process's clock goes by 1 ± so much, uniform
   double clock_offset_max_s = 0; ///< and began up to so long before, uniform
+  double swarm_bus_only = 0;     ///< above 0: a vehicle and its agent share no radio, but a wire
+  /// Of the mission's time, until all is healed; 1: nothing is, and nobody has to recover.
+  double lasting_share = 0.6;
 };
 
 /// One member of Faults as people write it.

@@ -280,12 +280,23 @@ void Invariants::recovered(double t_s, const std::vector<Holder>& living) {
   }
   const auto best = best_of(living);
   const Coefficients c_true = average_of(best);
-  largest_view_error_ = 0;
+  compare_views(living);
   for (const Holder& holder : living) {
     check_rows(t_s, holder, best);
     check_view(t_s, holder, best, c_true);
   }
   check_quiet(t_s);
+}
+
+void Invariants::compare_views(const std::vector<Holder>& living) {
+  const Coefficients c_true = average_of(best_of(living));
+  largest_view_error_ = 0;
+  for (const Holder& holder : living) {
+    if (holder.coverage == nullptr || holder.answered < 0) continue;
+    const Coefficients difference = *holder.coverage - c_true;
+    largest_view_error_ = std::max(
+        largest_view_error_, std::sqrt((weights_.array() * difference.array().square()).sum()));
+  }
 }
 
 void Invariants::check_view(double t_s, const Holder& holder,
@@ -300,10 +311,7 @@ void Invariants::check_view(double t_s, const Holder& holder,
     const Tick period = holder.table->announced_period(author);
     stale_s += static_cast<double>(2 * period + 2) * mission_.timing.dt_s;
   }
-  const Coefficients difference = *holder.coverage - c_true;
-  const double error = difference.cwiseAbs().maxCoeff();
-  const double metric = std::sqrt((weights_.array() * difference.array().square()).sum());
-  largest_view_error_ = std::max(largest_view_error_, metric);
+  const double error = (*holder.coverage - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s || error <= 2 * stale_s / (covered_s - stale_s)) return;
   violate(t_s, "all agree on c_k within their staleness", name_of(holder.self),
           text("|c - c_true| = ", error, " > ", 2 * stale_s / (covered_s - stale_s), " with ", stale_s,

@@ -81,7 +81,9 @@ class Invariants {
              const RunFacts& facts);
 
   const std::optional<Violation>& violation() const { return violation_; }
-  /// max_a √(Σ λ (c_a − c_true)²) of the last recovered().
+  /// Only measures how far the living are from c_true, for largest_view_error().
+  void compare_views(const std::vector<Holder>& living);
+  /// max_a √(Σ λ (c_a − c_true)²) of the last recovered() or compare_views().
   double largest_view_error() const { return largest_view_error_; }
   Tick last_tick() const { return last_tick_; }
   /// Every author there has been.

@@ -59,7 +59,8 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
     ++counted_.cut;
     return {};
   }
-  if (quiet_) return {now + kLatency, {}, false};
+  const bool wired = faults_.swarm_bus_only > 0 && bus != Bus::kSwarm;
+  if (quiet_ || wired) return {now + kLatency, {}, false};
   const auto index = static_cast<std::uint32_t>(pair) * kBusCount + static_cast<std::uint32_t>(bus);
   Link& link = links_[index];
   const Words dice = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);

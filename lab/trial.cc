@@ -124,7 +124,7 @@ class Trial {
   std::vector<Incident> incidents_;
   std::size_t next_incident_ = 0;
   std::vector<Ending> endings_;
-  double planned_s_;
+  double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
   std::optional<Instant> healed_;
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
 
@@ -155,7 +155,8 @@ Trial::Trial(const TrialOptions& options, std::uint64_t seed, std::ostream& traj
       answered_(static_cast<std::size_t>(agents_count_), -1),
       recoveries_(static_cast<std::size_t>(agents_count_)) {
   figures_.seed = seed;
-  incidents_ = incidents(options.faults, seed, agents_count_, kFaultyShare * planned_s_);
+  faulty_s_ = options.faults.lasting_share * planned_s_;
+  incidents_ = incidents(options.faults, seed, agents_count_, faulty_s_);
   for (const Seat seat : {world_seat(), recorder_seat()}) {
     hears_bus_[static_cast<std::size_t>(Bus::kCommand)].set(static_cast<std::size_t>(seat));
   }
@@ -241,7 +242,7 @@ Instant Trial::next_time() {
   if (next_incident_ < incidents_.size()) {
     next = std::min(next, Instant(seconds(incidents_[next_incident_].at_s)));
   }
-  return std::min(next, Instant(seconds(kFaultyShare * planned_s_)));
+  return std::min(next, Instant(seconds(faulty_s_)));
 }
 
 TrialResult Trial::run() {
@@ -252,7 +253,7 @@ TrialResult Trial::run() {
     if (!healed_) {
       end_incidents();
       begin_incidents();
-      if (progress_s() >= kFaultyShare * planned_s_) heal();
+      if (progress_s() >= faulty_s_) heal();
     }
     restart_due();
     deliver_due();
@@ -526,7 +527,8 @@ void Trial::supervise_coordinator() {
 void Trial::check_recovered() {
   if (now_ < next_check_) return;
   next_check_ = now_ + kCheckPeriod;
-  if (!mission_over()) invariants_.recovered(in_seconds(now_), living());
+  if (mission_over() || options_.faults.lasting_share >= 1) return;
+  invariants_.recovered(in_seconds(now_), living());
 }
 
 std::string Trial::still_running() {
@@ -551,7 +553,8 @@ TrialResult Trial::result() {
   const double t_s = in_seconds(now_);
   if (!result.timed_out && !invariants_.violation()) {
     const bool failed = coordinator_->state() == MissionState::kFailed;
-    invariants_.recovered(t_s, living());
+    const bool healed = options_.faults.lasting_share < 1;
+    healed ? invariants_.recovered(t_s, living()) : invariants_.compare_views(living());
     invariants_.ended(t_s, still_running(), failed ? coordinator_->reason() : "", recorder_.facts());
   }
   result.violation = invariants_.violation();

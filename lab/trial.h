@@ -1,7 +1,7 @@
 // One mission under faults: the real cores and the real codec, each process with a clock of its
 // own, in virtual time. Everything follows from the plan, the faults and one seed.
 //
-// The first kFaultyShare of the mission is the safety half. Then all is healed at once: faults off,
+// The first Faults::lasting_share of the mission is the safety half. Then all is healed at once: faults off,
 // crashed processes started, links whole (clocks stay skewed); the rest is the liveness half.
 #pragma once
 
@@ -22,8 +22,6 @@
 #include "sim/world.h"
 
 namespace ergocast::lab {
-
-inline constexpr double kFaultyShare = 0.6;
 
 struct TrialOptions {
   std::vector<std::byte> plan;  ///< compiled; its seed is replaced by the trial's

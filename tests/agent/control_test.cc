@@ -137,11 +137,23 @@ TEST(AgentInLockstep, StatusNamesTheTeammateItWaitsFor) {
   Agent agent = running_agent(mission);
   agent.receive(block_of(mission, 1, {{200, 500}}, 1), at(0s));
   tell(agent, world_state(0, {{100, 500}, {200, 500}, {300, 500}}));
-  EXPECT_EQ(status_after(agent, at(0s)).waiting_for, 2);
-  EXPECT_EQ(status_after(agent, at(2h)).answered_tick, -1);
-  tell(agent, block_of(mission, 2, {{300, 500}}, 1), at(4h));
-  EXPECT_EQ(status_after(agent, at(4h)).waiting_for, kUnassigned);
-  EXPECT_EQ(status_after(agent, at(6h)).answered_tick, 0);
+  const AgentStatus waiting = status_after(agent, at(0s));
+  EXPECT_EQ(waiting.waiting_for, 2);
+  EXPECT_EQ(waiting.answered_tick, -1);
+  tell(agent, block_of(mission, 2, {{300, 500}}, 1), at(500ms));
+  const AgentStatus answered = status_after(agent, at(500ms));
+  EXPECT_EQ(answered.waiting_for, kUnassigned);
+  EXPECT_EQ(answered.answered_tick, 0);
+}
+
+TEST(AgentInLockstep, StatusNamesTheWorldOnceItHasBeenSilentForASecond) {
+  Agent agent = running_agent(small_mission(2));
+  const WorldState world = world_state(0, {{100, 500}, {200, 500}});
+  tell(agent, world, at(5s));
+  EXPECT_EQ(status_after(agent, at(5s)).waiting_for, 1) << "whose block the tick waits for";
+  EXPECT_EQ(status_after(agent, at(5501ms)).waiting_for, kWorld) << "whatever else is missing";
+  tell(agent, world, at(8s));
+  EXPECT_EQ(status_after(agent, at(8s)).waiting_for, 1) << "a repeat is a word, too";
 }
 
 TEST(AgentInLockstep, DoesNotWaitForWhatIsNotDue) {

@@ -45,6 +45,7 @@ inline std::vector<Contribution> blocks_of(const Mission& mission, const Author&
   for (int b = 0; b < table.block_count(); ++b) {
     blocks.push_back(table.block(author, b));
     blocks.back().header.run = kRun;
+    blocks.back().header.tick = static_cast<Tick>(path_m.size()) - 1;
     blocks.back().header.sequence =
         static_cast<std::int64_t>(path_m.size() - 1) * table.block_count() + b + 1;
     blocks.back().next_broadcast_tick = next_broadcast_tick;
@@ -62,9 +63,9 @@ inline Outbox tell(Agent& agent, const Message& message, Instant now = at(0s)) {
   return advance(agent, now);
 }
 
-/// The agent's status, which is never older than the next half second.
+/// The agent's status, which is never older than half a second.
 inline AgentStatus status_after(Agent& agent, Instant now) {
-  const auto statuses = only<AgentStatus>(advance(agent, now + 1h));
+  const auto statuses = only<AgentStatus>(advance(agent, now + kAgentStatusPeriod));
   EXPECT_EQ(statuses.size(), 1u);
   return statuses.empty() ? AgentStatus{} : statuses.back();
 }

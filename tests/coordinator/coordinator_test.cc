@@ -60,22 +60,45 @@ TEST(CoordinatorAdmits, EachAgentUnderTheNumberItAsksFor) {
 
 TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
   Coordinator coordinator = coordinator_of(small_mission(3));
-  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(hello_of(1), at(0s));
   coordinator.receive(hello_of(kUnassigned, 71), at(0s));
   coordinator.receive(hello_of(kUnassigned, 72), at(0s));
-  coordinator.receive(hello_of(kUnassigned, 73), at(0s));
-  ASSERT_EQ(coordinator.roster().size(), 3u) << "and nobody beyond the plan";
-  EXPECT_EQ(coordinator.roster()[1].author, (Author{1, 71}));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  EXPECT_EQ(coordinator.roster()[0].author, (Author{0, 71}));
   EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 72}));
+}
+
+TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  coordinator.receive(hello_of(5), at(0s));
+  for (Incarnation life = 1; life <= 200; ++life) {
+    coordinator.receive(hello_of(kUnassigned, life), at(0s));
+  }
+  ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));
+  EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 3})) << "the first beyond the plan";
+  EXPECT_EQ(coordinator.roster()[5].author, author_of(5)) << "whoever asks for a number gets it";
+  for (AgentId id = 0; id < kMaxAgents; ++id) {
+    EXPECT_EQ(coordinator.roster()[static_cast<std::size_t>(id)].author.agent, id);
+  }
+}
+
+TEST(CoordinatorAdmits, NobodyUnderANumberThatDoesNotExist) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  for (const AgentId id : {kMaxAgents, kMaxAgents + 70, -2, -70}) {
+    coordinator.receive(hello_of(id, 71), at(0s));
+  }
+  EXPECT_TRUE(coordinator.roster().empty());
 }
 
 TEST(CoordinatorAdmits, NobodyWhoIsNotOfThisMission) {
   Coordinator coordinator = coordinator_of(small_mission(2));
-  coordinator.receive(hello_of(2), at(0s));
   Hello foreign = hello_of(0);
   foreign.header.run = kRun + 1;
   coordinator.receive(foreign, at(0s));
   coordinator.receive(hello_of(0, 0), at(0s));
+  Hello no_agent = hello_of(0);
+  no_agent.header.sender = kWorld;
+  coordinator.receive(no_agent, at(0s));
   EXPECT_TRUE(coordinator.roster().empty());
 }
 

@@ -1,0 +1,188 @@
+// What a team knows in the end whose members could not all hear each other, or died: everything,
+// once, in its authors' own words.
+#include <gtest/gtest.h>
+
+#include "tests/agent/live_team.h"
+#include "tests/support/bytes.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+/// Where agent `id` is at `tick`: nobody is twice at one place, nor where a teammate was.
+Eigen::Vector2d place(AgentId id, Tick tick) {
+  return {100.0 + 300.0 * id + 3.0 * static_cast<double>(tick),
+          200.0 + 7.0 * static_cast<double>(tick)};
+}
+
+std::vector<Eigen::Vector2d> path_of(AgentId id, Tick from, Tick until) {
+  std::vector<Eigen::Vector2d> path;
+  for (Tick tick = from; tick < until; ++tick) path.push_back(place(id, tick));
+  return path;
+}
+
+Mission realtime(int agents) {
+  Mission mission = two_block_mission(agents);
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.tick_count = 1000;
+  return mission;
+}
+
+/// The world's ticks [from, until), 0.1 s each; all that the team says.
+Outbox fly(LiveTeam& team, int agents, Tick from, Tick until) {
+  Outbox said;
+  for (Tick tick = from; tick < until; ++tick) {
+    std::vector<Eigen::Vector2d> places;
+    for (AgentId id = 0; id < agents; ++id) places.push_back(place(id, tick));
+    for (Outgoing& word : team.tell(world_state(tick, places), at(tick * 100ms))) {
+      said.push_back(std::move(word));
+    }
+  }
+  return said;
+}
+
+Coefficients average_of(const Mission& mission, const CoverageTable& table) {
+  Coefficients average = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  table.average(average);
+  return average;
+}
+
+/// c_k of these lives, straight from where they were.
+Coefficients average_of(
+    const Mission& mission,
+    const std::vector<std::pair<Author, std::vector<Eigen::Vector2d>>>& lives) {
+  CoverageTable table(mission.basis, mission.timing.dt_s);
+  for (const auto& [author, path] : lives) {
+    for (const Contribution& block : blocks_of(mission, author, path, 0)) table.merge(block, 1000);
+  }
+  return average_of(mission, table);
+}
+
+TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
+  const Mission mission = realtime(3);
+  LiveTeam team(mission);
+  team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
+  fly(team, 3, 0, 30);
+  team.wait(at(3s), 3s);
+  EXPECT_GT(status_after(team[1], at(6s)).contributions_relayed, 0);
+  for (const AgentId end : {0, 2}) {
+    const AgentId other = 2 - end;
+    const auto held = team[end].coverage()->steps_held(author_of(other));
+    EXPECT_GE(held.value_or(0), 28) << "30 ticks, and two broadcasts are tolerated";
+    // Not something like the other's sums: its sums.
+    const auto words = blocks_of(mission, author_of(other), path_of(other, 0, *held), 0);
+    for (int b = 0; b < 2; ++b) {
+      EXPECT_EQ(team[end].coverage()->block(author_of(other), b).sums,
+                words[static_cast<std::size_t>(b)].sums);
+    }
+  }
+}
+
+TEST(Chain, NewsKeepUpWithAMissionThatIsFasterThanTheClock) {
+  const Mission mission = realtime(3);
+  LiveTeam team(mission);
+  team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
+  for (Tick tick = 0; tick < 200; ++tick) {
+    team.tell(world_state(tick, {place(0, tick), place(1, tick), place(2, tick)}), at(0s));
+    if (tick < 25) continue;
+    // A digest each 10 ticks, two to begin with, an answer within 3.
+    EXPECT_GE(team[0].coverage()->steps_held(author_of(2)).value_or(0), tick - 15) << tick;
+  }
+}
+
+TEST(Chain, WhatIsPassedOnIsWhatItsAuthorSaidByteForByte) {
+  const Mission mission = realtime(3);
+  LiveTeam team(mission);
+  team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
+  Outbox said = fly(team, 3, 0, 30);
+  for (Outgoing& word : team.wait(at(3s), 3s)) said.push_back(std::move(word));
+  std::map<std::pair<std::int64_t, std::int32_t>, std::vector<std::byte>> original;
+  int passed_on = 0;
+  for (const Outgoing& word : said) {
+    const auto* block = std::get_if<Contribution>(&word.message);
+    if (block == nullptr || block->header.sender != 2) continue;
+    const auto key = std::pair(block->steps, block->block);
+    if (word.relayer == kUnassigned) {
+      original.emplace(key, bytes_of(*block));
+    } else {
+      EXPECT_EQ(word.relayer, 1) << "who alone has heard it";
+      EXPECT_EQ(word.bus, Bus::kSwarm);
+      ASSERT_TRUE(original.contains(key));
+      EXPECT_EQ(bytes_of(*block), original[key]);
+      ++passed_on;
+    }
+  }
+  EXPECT_GE(passed_on, 4) << "two rows or more, in two blocks";
+}
+
+TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
+  const Mission mission = realtime(4);
+  LiveTeam team(mission);
+  team.hear_by([](AgentId a, AgentId b) { return a / 2 == b / 2; });
+  fly(team, 4, 0, 20);
+  EXPECT_EQ(team[0].coverage()->row_count(), 2u) << "its half";
+  // 3 dies while only 2 has heard of it; then the halves meet.
+  team.kill(3);
+  auto roster = roster_of(4);
+  roster[3].active_until = 20;
+  team.tell(mission_part(1, MissionState::kRunning, roster), at(2s));
+  team.hear_by([](AgentId, AgentId) { return true; });
+  fly(team, 4, 20, 22);
+  team.wait(at(2200ms), 3s);
+
+  std::vector<std::pair<Author, std::vector<Eigen::Vector2d>>> lives;
+  for (AgentId id = 0; id < 4; ++id) {
+    lives.emplace_back(author_of(id), path_of(id, 0, id == 3 ? 20 : 22));
+  }
+  const Coefficients everything = average_of(mission, lives);
+  for (AgentId id = 0; id < 3; ++id) {
+    EXPECT_EQ(team[id].coverage()->row_count(), 4u);
+    EXPECT_EQ(average_of(mission, *team[id].coverage()), everything) << "bit for bit, agent " << id;
+  }
+}
+
+TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
+  const Mission mission = realtime(2);
+  const Author former = author_of(0), reborn{0, 99};
+  LiveTeam team(mission);
+  fly(team, 2, 0, 20);
+  team.kill(0);
+  const MissionPart news = mission_part(
+      1, MissionState::kRunning, {{former, 0, 20}, {reborn, 20, -1}, {author_of(1), 0, -1}});
+  AgentIdentity identity = identity_of(0);
+  identity.incarnation = reborn.incarnation;
+  team.revive(0, Agent(identity, decoder_of(mission)));
+  team.tell(news, at(2s));
+  EXPECT_EQ(team[0].coverage()->steps_held(former), std::nullopt);
+  fly(team, 2, 20, 25);
+  team.wait(at(2500ms), 3s);
+
+  EXPECT_EQ(team[0].coverage()->steps_held(former), 20);
+  EXPECT_EQ(team[0].coverage()->steps_held(reborn), 5) << "never added into its new sum";
+  const Coefficients everything = average_of(mission, {{former, path_of(0, 0, 20)},
+                                                       {reborn, path_of(0, 20, 25)},
+                                                       {author_of(1), path_of(1, 0, 25)}});
+  for (const AgentId id : {0, 1}) {
+    EXPECT_EQ(average_of(mission, *team[id].coverage()), everything) << "agent " << id;
+  }
+}
+
+TEST(LostBroadcast, IsMendedByATeammateWhoHeardIt) {
+  // In real time the next broadcast mends it anyway; the last one of an agent has no next.
+  const Mission mission = realtime(3);
+  LiveTeam team(mission);
+  fly(team, 3, 0, 10);
+  team.hear_by([](AgentId listener, AgentId transmitter) { return listener != 0 || transmitter != 2; });
+  fly(team, 3, 10, 11);
+  team.kill(2);
+  auto roster = roster_of(3);
+  roster[2].active_until = 11;
+  team.tell(mission_part(1, MissionState::kRunning, roster), at(1100ms));
+  EXPECT_EQ(team[0].coverage()->steps_held(author_of(2)), 10);
+  team.wait(at(1100ms), 3s);
+  EXPECT_EQ(team[0].coverage()->steps_held(author_of(2)), 11);
+}
+
+}  // namespace
+}  // namespace ergocast

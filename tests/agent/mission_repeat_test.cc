@@ -1,0 +1,192 @@
+// Agents as the mission's memory: they repeat it to a coordinator or a world that has just started,
+// tell the world where they were, and ask anew when the roster has lost them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tests/agent/driven_agent.h"
+#include "tests/support/bytes.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+/// A mission in two parts, as a coordinator says it.
+std::array<MissionPart, 2> two_parts(std::int64_t revision) {
+  std::array<MissionPart, 2> parts;
+  for (std::int32_t p = 0; p < 2; ++p) {
+    MissionPart& part = parts[static_cast<std::size_t>(p)];
+    part = mission_part(revision, MissionState::kRunning, {{author_of(p), 0, -1}}, "so far");
+    part.header.sequence = 40 + p;
+    part.header.tick = 17;
+    part.part = p;
+    part.parts = 2;
+  }
+  return parts;
+}
+
+/// Agent 0 of two, which knows revision 3.
+Agent informed_agent(Mission mission = small_mission(2)) {
+  Agent agent(identity_of(0), decoder_of(std::move(mission)));
+  for (const MissionPart& part : two_parts(3)) agent.receive(part, at(0s));
+  advance(agent, at(10s));
+  return agent;
+}
+
+Hello question_of(AgentId who, Tick tick) {
+  return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, 1, tick}, kUnassigned, "", ""};
+}
+
+std::size_t repeated_after(Agent& agent, const Message& message) {
+  agent.receive(message, at(10s));
+  return only<MissionPart>(advance(agent, at(10s + 50ms))).size();
+}
+
+TEST(MissionRepeat, IsEveryPartAsItsCoordinatorSaidItOnBothBuses) {
+  for (const AgentId asker : {kCoordinator, kWorld}) {
+    Agent agent = informed_agent();
+    agent.receive(question_of(asker, -1), at(10s));
+    std::vector<std::vector<std::byte>> repeated[kBusCount];
+    for (const Outgoing& outgoing : advance(agent, at(10s + 50ms))) {
+      if (!std::holds_alternative<MissionPart>(outgoing.message)) continue;
+      repeated[static_cast<std::size_t>(outgoing.bus)].push_back(bytes_of(outgoing.message));
+    }
+    const auto parts = two_parts(3);
+    const std::vector<std::vector<std::byte>> original{bytes_of(parts[0]), bytes_of(parts[1])};
+    EXPECT_EQ(repeated[static_cast<std::size_t>(Bus::kSwarm)], original);
+    EXPECT_EQ(repeated[static_cast<std::size_t>(Bus::kCommand)], original);
+    EXPECT_TRUE(repeated[static_cast<std::size_t>(Bus::kWorld)].empty());
+  }
+}
+
+TEST(MissionRepeat, ComesAfterAWaitOfItsOwnWithin50Milliseconds) {
+  std::vector<Instant> due;
+  for (const AgentId id : {0, 1}) {
+    Agent agent(identity_of(id), decoder_of(small_mission(2)));
+    for (const MissionPart& part : two_parts(3)) agent.receive(part, at(0s));
+    advance(agent, at(10s));
+    agent.receive(question_of(kCoordinator, -1), at(10s));
+    due.push_back(agent.next_wakeup());
+    EXPECT_GT(due.back(), at(10s));
+    EXPECT_LE(due.back(), at(10s + 50ms));
+    EXPECT_TRUE(only<MissionPart>(advance(agent, due.back() - 1ns)).empty());
+    EXPECT_EQ(only<MissionPart>(advance(agent, due.back())).size(), 4u);
+    EXPECT_TRUE(only<MissionPart>(advance(agent, at(20s))).empty()) << "once";
+  }
+  EXPECT_NE(due[0], due[1]) << "one of many answers first";
+}
+
+TEST(MissionRepeat, IsNotForWhoKnowsTheMission) {
+  Agent agent = informed_agent();
+  EXPECT_EQ(repeated_after(agent, question_of(kWorld, 0)), 0u);
+  EXPECT_EQ(repeated_after(agent, question_of(kCoordinator, 0)), 0u);
+}
+
+TEST(MissionRepeat, IsNotForAnAgentThatJoins) {
+  Agent agent = informed_agent();
+  for (const Tick tick : {-1, 0}) {
+    EXPECT_EQ(repeated_after(agent, Hello{{kRun, kUnassigned, 71, 1, tick}, 1, "", ""}), 0u);
+    EXPECT_EQ(repeated_after(agent, Hello{{kRun, 1, life_of(1), 1, tick}, 1, "", ""}), 0u);
+  }
+}
+
+TEST(MissionRepeat, IsNotGivenBeforeTheMissionIsKnown) {
+  Agent agent(identity_of(0), decoder_of(small_mission(2)));
+  agent.receive(two_parts(3)[0], at(0s));
+  EXPECT_EQ(repeated_after(agent, question_of(kCoordinator, -1)), 0u);
+}
+
+TEST(MissionRepeat, IsNotNeededIfSomebodyElseHasSaidIt) {
+  for (const std::int64_t revision : {3, 4}) {
+    Agent agent = informed_agent();
+    agent.receive(question_of(kCoordinator, -1), at(10s));
+    agent.receive(two_parts(revision)[0], at(10s));
+    EXPECT_TRUE(only<MissionPart>(advance(agent, at(10s + 50ms))).empty());
+  }
+}
+
+TEST(MissionRepeat, IsNeededIfSomebodyElseKnowsLess) {
+  Agent agent = informed_agent();
+  agent.receive(question_of(kCoordinator, -1), at(10s));
+  agent.receive(two_parts(2)[0], at(10s));
+  EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 50ms))).size(), 4u);
+}
+
+TEST(MissionRepeat, ComesTwiceASecondAtMost) {
+  Agent agent = informed_agent();
+  std::size_t parts = 0;
+  for (int ms = 0; ms < 3000; ++ms) {
+    agent.receive(question_of(kCoordinator, -1), at(10s + ms * 1ms));
+    parts += only<MissionPart>(advance(agent, at(10s + ms * 1ms))).size();
+  }
+  EXPECT_EQ(parts, 4u * 6u) << "every 500 ms and a little";
+}
+
+// ---- where it was --------------------------------------------------------------------------------
+
+TEST(WorldQuestion, GetsTheLastTwoCommandsWithTheirTicksAndPlaces) {
+  Mission mission = small_mission(1);
+  Agent agent = running_agent(mission);
+  std::vector<Command> given;
+  for (Tick tick = 0; tick < 3; ++tick) {
+    const double x_m = 100.0 + static_cast<double>(tick);
+    for (const Command& command : only<Command>(tell(agent, world_state(tick, {{x_m, 500}})))) {
+      given.push_back(command);
+    }
+  }
+  const Outbox out = tell(agent, question_of(kWorld, 0));
+  const auto told = only<Command>(out);
+  ASSERT_EQ(told.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(told[i].header.tick, given[i + 1].header.tick);
+    EXPECT_EQ(told[i].position_m, given[i + 1].position_m);
+    EXPECT_EQ(told[i].velocity_mps, given[i + 1].velocity_mps);
+  }
+  EXPECT_TRUE(only<Command>(advance(agent, at(1ms))).empty()) << "once for each question";
+}
+
+TEST(WorldQuestion, BeforeTheFirstTickIsAnsweredByNowhereYet) {
+  Agent agent = running_agent(small_mission(1));
+  for (const Command& command : only<Command>(tell(agent, question_of(kWorld, 0)))) {
+    EXPECT_EQ(command.header.tick, -1);
+  }
+  EXPECT_EQ(only<Command>(tell(agent, question_of(kWorld, 0))).size(), 2u);
+}
+
+TEST(WorldQuestion, IsNotForTheCoordinatorToAsk) {
+  Agent agent = running_agent(small_mission(1));
+  EXPECT_TRUE(only<Command>(tell(agent, question_of(kCoordinator, 0))).empty());
+}
+
+// ---- lost from the roster ------------------------------------------------------------------------
+
+TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, {{100, 500}}), at(1s));
+  EXPECT_TRUE(only<Hello>(advance(agent, at(10s))).empty());
+
+  // A coordinator that took over from a memory in which agent 0 was not yet a member.
+  agent.receive(mission_part(1000, MissionState::kRunning, {{author_of(1), 0, -1}}), at(11s));
+  const auto hellos = only<Hello>(advance(agent, at(11s)));
+  ASSERT_EQ(hellos.size(), 1u);
+  EXPECT_EQ(hellos[0].requested_id, 0);
+  EXPECT_EQ(hellos[0].header.incarnation, life_of(0));
+  EXPECT_TRUE(only<Hello>(advance(agent, at(11s + 249ms))).empty());
+  EXPECT_EQ(only<Hello>(advance(agent, at(11s + 250ms))).size(), 1u);
+  EXPECT_LE(agent.next_wakeup(), at(11s + 500ms));
+  EXPECT_EQ(only<Command>(tell(agent, world_state(1, {{101, 500}}), at(11s + 300ms))).size(), 1u);
+
+  auto roster = roster_of(2);
+  roster[0].active_from = 1;
+  agent.receive(mission_part(1001, MissionState::kRunning, roster), at(12s));
+  EXPECT_TRUE(only<Hello>(advance(agent, at(13s))).empty());
+  EXPECT_EQ(agent.phase(), AgentPhase::kRunning);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 2) << "and has lost nothing";
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,73 @@
+// Agents whose radios reach only so far: what they do not hear, hear through others, and wait for.
+#include <gtest/gtest.h>
+
+#include "tests/agent/driven_agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+/// 1 is in reach of 0 and of 2, which do not reach each other.
+const std::vector<Eigen::Vector2d> kLine{{100, 500}, {500, 500}, {900, 500}};
+
+Mission short_range(Pace pace) {
+  Mission mission = small_mission(3);
+  mission.radio_range_m = 450;
+  mission.timing.pace = pace;
+  return mission;
+}
+
+TEST(AgentRadio, DoesNotHearWhoIsTooFar) {
+  const Mission mission = short_range(Pace::kRealtime);
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, kLine));
+  agent.receive(block_of(mission, 1, {kLine[1]}, 1), at(0s));
+  agent.receive(block_of(mission, 2, {kLine[2]}, 1), at(0s));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 1);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), std::nullopt);
+  EXPECT_EQ(status_after(agent, at(0s)).refused, RefusalCounts{}) << "nothing wrong with it";
+}
+
+TEST(AgentRadio, HearsItThroughATeammateInReach) {
+  const Mission mission = short_range(Pace::kRealtime);
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, kLine));
+  const Contribution far = block_of(mission, 2, {kLine[2]}, 1);
+  agent.receive(far, at(0s), 2);
+  EXPECT_EQ(agent.coverage()->row_count(), 1u);
+  agent.receive(far, at(0s), 1);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
+  // The other way round too: what a near one said does not come from afar.
+  agent.receive(block_of(mission, 1, {kLine[1]}, 1), at(0s), 2);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt);
+}
+
+TEST(AgentRadio, HearsAgainWhoComesCloser) {
+  const Mission mission = short_range(Pace::kRealtime);
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, kLine));
+  tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500}}));
+  agent.receive(block_of(mission, 2, {kLine[2]}, 1), at(0s));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
+}
+
+TEST(AgentRadio, LockstepDoesNotWaitForWhomItCannotHear) {
+  const Mission mission = short_range(Pace::kLockstep);
+  Agent agent = running_agent(mission);
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, kLine))).empty()) << "1 is in reach";
+  EXPECT_EQ(only<Command>(tell(agent, block_of(mission, 1, {kLine[1]}, 1))).size(), 1u);
+}
+
+TEST(AgentRadio, LockstepWaitsForWhoHasComeIntoReach) {
+  const Mission mission = short_range(Pace::kLockstep);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, {kLine[1]}, 9), at(0s));
+  EXPECT_EQ(only<Command>(tell(agent, world_state(0, kLine))).size(), 1u);
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500}}))).empty());
+  const Contribution theirs = block_of(mission, 2, {kLine[2], {400, 500}}, 2);
+  EXPECT_EQ(only<Command>(tell(agent, theirs)).size(), 1u);
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,353 @@
+// The rules of repair: what a digest says, which gap is worth an answer, who gives it and when.
+// What teams make of these rules is in divided_team_test.cc.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "agent/anti_entropy.h"
+#include "tests/agent/driven_agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+std::vector<Eigen::Vector2d> path_of(std::int64_t steps) {
+  return std::vector<Eigen::Vector2d>(static_cast<std::size_t>(steps), {700, 300});
+}
+
+/// Agent 0's table and its readiness to repair, in a team of five.
+class Repair : public ::testing::Test {
+ protected:
+  /// Agent 0 has heard `author` say `steps`, and that it speaks every `period` ticks.
+  void hold(const Author& author, std::int64_t steps, Tick period = 1) {
+    for (const Contribution& block :
+         blocks_of(mission, author, path_of(steps), steps - 1 + period)) {
+      ASSERT_EQ(table.merge(block, steps), Merge::kNewer);
+    }
+  }
+
+  /// `from` says in its next digest that it holds only `steps` of `author`.
+  void complain(AgentId from, const Author& author, std::int64_t steps, Instant now) {
+    Digest digest;
+    digest.header = {kRun, from, life_of(from), ++sequence, 0};
+    digest.entry_count = 1;
+    digest.entries[0] = {author, steps};
+    repair.on(digest, table, roster, now, 0);
+  }
+  void complain_twice(AgentId from, const Author& author, std::int64_t steps, Instant now) {
+    complain(from, author, steps, now);
+    complain(from, author, steps, now + 1s);
+  }
+
+  /// Whom it has decided to answer for by `now`, once the longest delay is over.
+  std::vector<Author> answered(Instant now) {
+    std::vector<Author> authors;
+    for (const Contribution& block : repair.answers_due(table, now + 250ms, 0)) {
+      authors.push_back(block.author());
+    }
+    return authors;
+  }
+
+  Mission mission = small_mission(5);
+  CoverageTable table{mission.basis, mission.timing.dt_s};
+  std::vector<RosterEntry> roster = roster_of(5);
+  AntiEntropy repair{author_of(0), mission.seed, mission.timing.dt_s};
+  std::int64_t sequence = 0;
+
+  const std::vector<Author> nobody{};
+  const std::vector<Author> two{author_of(2)};
+};
+
+// ---- digests -------------------------------------------------------------------------------------
+
+TEST_F(Repair, ADigestNamesEverybodyInTheRosterWithNothingForWhatIsNotHeld) {
+  const Author former{3, 33};
+  roster.push_back({former, 0, 4});
+  hold(author_of(2), 9);
+  hold(former, 4);
+  const auto digests = AntiEntropy::digests(table, roster);
+  ASSERT_EQ(digests.size(), 1u);
+  ASSERT_EQ(digests[0].entry_count, 6);
+  for (std::size_t i = 0; i < roster.size(); ++i) {
+    const DigestEntry& entry = digests[0].entries[i];
+    EXPECT_EQ(entry.author, roster[i].author);
+    EXPECT_EQ(entry.steps, entry.author == author_of(2) ? 9 : entry.author == former ? 4 : 0);
+  }
+}
+
+TEST_F(Repair, ADigestNamesTheOldestBlockOfARow) {
+  const Mission two_blocks = two_block_mission(2);
+  CoverageTable large(two_blocks.basis, two_blocks.timing.dt_s);
+  large.merge(blocks_of(two_blocks, author_of(1), path_of(8), 8)[0], 8);
+  const auto steps_of_1 = [&] {
+    return AntiEntropy::digests(large, roster_of(2)).at(0).entries[1].steps;
+  };
+  EXPECT_EQ(steps_of_1(), 0) << "the second block has never come";
+  large.merge(blocks_of(two_blocks, author_of(1), path_of(5), 5)[1], 8);
+  EXPECT_EQ(steps_of_1(), 5);
+}
+
+TEST_F(Repair, ALargeTeamTakesSeveralDigests) {
+  for (const int members : {1, 56, 57, 112, 113, 128}) {
+    std::set<Author> named;
+    for (const Digest& digest : AntiEntropy::digests(table, roster_of(members))) {
+      EXPECT_GE(digest.entry_count, 1);
+      EXPECT_LE(digest.entry_count, kMaxDigestEntriesPerMessage);
+      for (int i = 0; i < digest.entry_count; ++i) {
+        EXPECT_TRUE(named.insert(digest.entries[static_cast<std::size_t>(i)].author).second);
+      }
+    }
+    EXPECT_EQ(named.size(), static_cast<std::size_t>(members));
+    EXPECT_EQ(AntiEntropy::digests(table, roster_of(members)).size(),
+              static_cast<std::size_t>((members + 55) / 56));
+  }
+}
+
+TEST(AgentDigests, OnceASecond) {
+  Agent agent = running_agent(small_mission(3));
+  const auto digests_at = [&](Instant now) { return only<Digest>(advance(agent, now)); };
+  const auto first = digests_at(at(0s));
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].header.sender, 0);
+  EXPECT_EQ(first[0].header.incarnation, life_of(0));
+  EXPECT_EQ(first[0].entry_count, 3);
+  EXPECT_TRUE(digests_at(at(999ms)).empty());
+  EXPECT_LE(agent.next_wakeup(), at(1s));
+  EXPECT_EQ(digests_at(at(1s)).size(), 1u);
+}
+
+TEST(AgentDigests, AndEachMissionSecondHoweverFastTheClockOfTheMission) {
+  Agent agent = running_agent(small_mission(1));
+  int digests = 0;
+  for (Tick tick = 0; tick < 40; ++tick) {
+    for (const Outgoing& outgoing : tell(agent, world_state(tick, {{100, 500}}), at(0s))) {
+      const auto* digest = std::get_if<Digest>(&outgoing.message);
+      if (digest == nullptr) continue;
+      EXPECT_EQ(outgoing.bus, Bus::kSwarm);
+      EXPECT_EQ(digest->header.tick, tick);
+      EXPECT_EQ(digest->entries[0].steps, tick + 1) << "as of the tick that it has begun";
+      ++digests;
+    }
+  }
+  EXPECT_EQ(digests, 4) << "40 ticks of 0.1 s";
+}
+
+// ---- which gap is worth an answer ----------------------------------------------------------------
+
+TEST_F(Repair, AnswersTheSecondOfTwoDigestsInARow) {
+  hold(author_of(2), 20);
+  complain(1, author_of(2), 0, at(0s));
+  EXPECT_EQ(answered(at(0s)), nobody) << "its own next broadcast may mend it";
+  complain(1, author_of(2), 0, at(1s));
+  EXPECT_EQ(answered(at(1s)), two);
+  EXPECT_EQ(answered(at(2s)), nobody) << "once";
+  complain(1, author_of(2), 0, at(2s));
+  EXPECT_EQ(answered(at(2s)), two) << "the answer was lost: the gap is still there";
+}
+
+TEST_F(Repair, DigestsThatAreNotInARowBeginAnew) {
+  hold(author_of(2), 20);
+  complain(1, author_of(2), 0, at(0s));
+  complain(1, author_of(2), 20, at(1s));
+  complain(1, author_of(2), 0, at(2s));
+  EXPECT_EQ(answered(at(2s)), nobody) << "it had caught up in between";
+  complain(1, author_of(2), 0, at(7001ms));
+  EXPECT_EQ(answered(at(7001ms)), nobody) << "it had been cut off for longer than 5 s";
+  complain(1, author_of(2), 0, at(8s));
+  EXPECT_EQ(answered(at(8s)), two);
+}
+
+TEST_F(Repair, ARepeatedOrOvertakenDigestIsNoSecondOne) {
+  hold(author_of(2), 20);
+  complain(1, author_of(2), 0, at(0s));
+  for (const std::int64_t back : {1, 2}) {
+    sequence -= back;
+    complain(1, author_of(2), 0, at(1s));
+    EXPECT_EQ(answered(at(1s)), nobody);
+  }
+}
+
+TEST_F(Repair, TwoPeriodsBehindIsNotBehind) {
+  hold(author_of(2), 20, 3);
+  complain_twice(1, author_of(2), 14, at(0s));
+  EXPECT_EQ(answered(at(1s)), nobody) << "6 ticks: the next two broadcasts";
+  complain_twice(1, author_of(2), 13, at(2s));
+  EXPECT_EQ(answered(at(3s)), two);
+}
+
+TEST_F(Repair, AnyGapIsOneIfItsAuthorHasLeft) {
+  hold(author_of(2), 20, 3);
+  roster[2].active_until = 20;
+  complain_twice(1, author_of(2), 19, at(0s));
+  EXPECT_EQ(answered(at(1s)), two) << "it will not speak again";
+  complain_twice(1, author_of(2), 20, at(2s));
+  EXPECT_EQ(answered(at(3s)), nobody);
+}
+
+TEST_F(Repair, NobodyAnswersForItself) {
+  hold(author_of(0), 20);
+  complain_twice(1, author_of(0), 0, at(0s));
+  EXPECT_EQ(answered(at(1s)), nobody) << "in lockstep, ticks depend on when that is said";
+}
+
+TEST_F(Repair, NobodyIsToldOfItself) {
+  hold(author_of(1), 20);
+  complain_twice(1, author_of(1), 0, at(0s));
+  EXPECT_EQ(answered(at(1s)), nobody);
+}
+
+TEST_F(Repair, ButOfItsFormerLivesItIs) {
+  const Author former{1, 11};
+  roster.push_back({former, 0, 20});
+  hold(former, 20);
+  complain_twice(1, former, 0, at(0s));
+  EXPECT_EQ(answered(at(1s)), std::vector<Author>{former});
+}
+
+TEST_F(Repair, WhoKnowsNoMoreIsSilent) {
+  complain_twice(1, author_of(2), 0, at(0s));
+  EXPECT_EQ(answered(at(1s)), nobody) << "nothing is held";
+  hold(author_of(2), 20);
+  complain_twice(1, author_of(2), 50, at(2s));
+  EXPECT_EQ(answered(at(3s)), nobody) << "the other knows more";
+}
+
+// ---- who answers, and when -----------------------------------------------------------------------
+
+TEST_F(Repair, AnAnswerIsEveryBlockOfTheRow) {
+  mission = two_block_mission(5);
+  table = CoverageTable(mission.basis, mission.timing.dt_s);
+  hold(author_of(2), 20);
+  complain_twice(1, author_of(2), 0, at(0s));
+  EXPECT_EQ(answered(at(1s)), (std::vector<Author>{author_of(2), author_of(2)}));
+  EXPECT_EQ(repair.relayed(), 2);
+}
+
+TEST_F(Repair, OneAnswerIsForAllWhoLackIt) {
+  hold(author_of(2), 20);
+  for (const AgentId from : {1, 3, 4}) complain(from, author_of(2), 0, at(0s));
+  for (const AgentId from : {1, 3, 4}) complain(from, author_of(2), 0, at(1s));
+  EXPECT_EQ(answered(at(1s)), two);
+}
+
+TEST_F(Repair, AnAnswerWaitsARandomShareOfAQuarterOfASecond) {
+  hold(author_of(2), 20);
+  std::set<std::chrono::nanoseconds> delays;
+  for (int round = 0; round < 40; ++round) {
+    const Instant now = at(round * 10s);
+    complain_twice(1, author_of(2), 0, now);
+    const Instant due = repair.next_answer();
+    delays.insert(due - (now + 1s));
+    EXPECT_TRUE(repair.answers_due(table, due - 1ns, 0).empty());
+    EXPECT_EQ(repair.answers_due(table, due, 0).size(), 1u);
+    EXPECT_EQ(repair.next_answer(), Instant::max());
+  }
+  EXPECT_EQ(delays.size(), 40u) << "a new one each time";
+  EXPECT_GE(*delays.begin(), 0ns);
+  EXPECT_LT(*delays.begin(), 50ms);
+  EXPECT_LE(*delays.rbegin(), 250ms);
+  EXPECT_GT(*delays.rbegin(), 200ms);
+}
+
+TEST_F(Repair, TheShareIsAFunctionOfTheSeedAndTheAgent) {
+  hold(author_of(2), 20);
+  const auto due_of = [&](AgentId id, std::uint64_t seed) {
+    repair = AntiEntropy(author_of(id), seed, mission.timing.dt_s);
+    complain_twice(1, author_of(2), 0, at(0s));
+    return repair.next_answer();
+  };
+  EXPECT_EQ(due_of(0, 7), due_of(0, 7));
+  EXPECT_NE(due_of(0, 7), due_of(0, 8));
+  EXPECT_NE(due_of(0, 7), due_of(3, 7)) << "or all would answer at once";
+}
+
+TEST_F(Repair, TheWaitPassesInMissionTimeToo) {
+  hold(author_of(2), 20);
+  complain_twice(1, author_of(2), 0, at(0s));
+  EXPECT_TRUE(repair.answers_due(table, at(1s), 0).empty());
+  EXPECT_EQ(repair.answers_due(table, at(1s), 2).size(), 1u) << "0.25 s are two ticks of 0.1 s";
+}
+
+TEST_F(Repair, ATeammatesAnswerIsEnough) {
+  hold(author_of(2), 20);
+  complain_twice(1, author_of(2), 0, at(0s));
+  repair.on_relayed(block_of(mission, 2, path_of(20), 20), table);
+  EXPECT_EQ(answered(at(1s)), nobody);
+  EXPECT_EQ(repair.relayed(), 0);
+}
+
+TEST_F(Repair, ATeammatesOlderAnswerIsNot) {
+  hold(author_of(2), 20);
+  complain_twice(1, author_of(2), 0, at(0s));
+  repair.on_relayed(block_of(mission, 2, path_of(19), 19), table);
+  repair.on_relayed(block_of(mission, 3, path_of(20), 20), table);
+  EXPECT_EQ(answered(at(1s)), two);
+}
+
+TEST_F(Repair, SaysWhatItHoldsWhenItSpeaksNotWhenItDecided) {
+  hold(author_of(2), 20);
+  complain_twice(1, author_of(2), 0, at(0s));
+  hold(author_of(2), 25);
+  const auto blocks = repair.answers_due(table, at(2s), 0);
+  ASSERT_EQ(blocks.size(), 1u);
+  EXPECT_EQ(blocks[0].steps, 25);
+}
+
+// ---- digests that cannot be true -----------------------------------------------------------------
+
+TEST_F(Repair, StrangersInADigestAreNobody) {
+  const Author stranger{2, 4711};
+  hold(stranger, 20);
+  complain_twice(1, stranger, 0, at(0s));
+  EXPECT_EQ(answered(at(1s)), nobody);
+  complain_twice(1, author_of(3), std::numeric_limits<std::int64_t>::max(), at(2s));
+  EXPECT_EQ(answered(at(3s)), nobody);
+}
+
+TEST_F(Repair, AFloodOfDigestsGetsNoMoreThanOneAnswerAtATime) {
+  hold(author_of(2), 20);
+  hold(author_of(3), 20);
+  std::size_t blocks = 0;
+  for (int ms = 0; ms < 10000; ++ms) {
+    complain(1, author_of(2), 0, at(ms * 1ms));
+    complain(1, author_of(3), 0, at(ms * 1ms));
+    blocks += repair.answers_due(table, at(ms * 1ms), 0).size();
+  }
+  // Two authors, 10 s, one answer each 0.125 s on average; its spread is 0.07 s · √80.
+  EXPECT_LT(blocks, 2u * 100u);
+}
+
+TEST_F(Repair, WhoHasComplainedAndGoneMakesRoomForOthers) {
+  roster = roster_of(kMaxAgents);
+  for (AgentId id = 1; id < kMaxAgents; ++id) hold(author_of(id), 20);
+  for (AgentId from = 3; from < kMaxAgents; ++from) {
+    for (AgentId id = 1; id < kMaxAgents; ++id) complain(from, author_of(id), 0, at(0s));
+  }
+  complain_twice(1, author_of(2), 0, at(6s));
+  EXPECT_EQ(answered(at(7s)), two);
+}
+
+TEST(AgentDigests, OfWhoIsNoMemberAreNotRead) {
+  Mission mission = small_mission(3);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 2, path_of(20), 20), at(0s));
+  const auto answers_to = [&](const Author& from) {
+    Digest digest;
+    digest.entry_count = 1;
+    digest.entries[0] = {author_of(2), 0};
+    for (std::int64_t sequence = 1; sequence <= 5; ++sequence) {
+      digest.header = {kRun, from.agent, from.incarnation, sequence, 0};
+      agent.receive(digest, at(1s));
+    }
+    return only<Contribution>(advance(agent, at(2s))).size();
+  };
+  EXPECT_EQ(answers_to({1, 4711}), 0u) << "a member's number, but nobody's life";
+  EXPECT_EQ(answers_to({0, life_of(1)}), 0u) << "a member's life under another number";
+  EXPECT_EQ(answers_to(author_of(1)), 1u);
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,16 @@
+// A message as it travels: two are the same if their bytes are.
+#pragma once
+
+#include <vector>
+
+#include "lcmtypes/codec.h"
+
+namespace ergocast::test {
+
+inline std::vector<std::byte> bytes_of(const Message& message) {
+  std::vector<std::byte> bytes;
+  encode(message, bytes);
+  return bytes;
+}
+
+}  // namespace ergocast::test
