@@ -20,6 +20,13 @@ std::vector<Eigen::Vector2d> path_of(std::int64_t steps) {
 /// Agent 0's table and its readiness to repair, in a team of five.
 class Repair : public ::testing::Test {
  protected:
+  /// Rosters ascend by author.
+  void admit(const RosterEntry& entry) {
+    roster.push_back(entry);
+    std::sort(roster.begin(), roster.end(), [](const RosterEntry& a, const RosterEntry& b) {
+      return a.author < b.author;
+    });
+  }
   /// Agent 0 has heard `author` say `steps`, and that it speaks every `period` ticks.
   void hold(const Author& author, std::int64_t steps, Tick period = 1) {
     for (const Contribution& block :
@@ -64,7 +71,7 @@ class Repair : public ::testing::Test {
 
 TEST_F(Repair, ADigestNamesEverybodyInTheRosterWithNothingForWhatIsNotHeld) {
   const Author former{3, 33};
-  roster.push_back({former, 0, 4});
+  admit({former, 0, 4});
   hold(author_of(2), 9);
   hold(former, 4);
   const auto digests = AntiEntropy::digests(table, roster);
@@ -200,7 +207,7 @@ TEST_F(Repair, NobodyIsToldOfItself) {
 
 TEST_F(Repair, ButOfItsFormerLivesItIs) {
   const Author former{1, 11};
-  roster.push_back({former, 0, 20});
+  admit({former, 0, 20});
   hold(former, 20);
   complain_twice(1, former, 0, at(0s));
   EXPECT_EQ(answered(at(1s)), std::vector<Author>{former});
