@@ -142,8 +142,8 @@ void Agent::on(const Digest& theirs, Instant now) {
 }
 
 void Agent::on(const Hello& hello, Instant now) {
-  if (!table_) return;
-  if (hello.header.sender == kWorld) world_asks_ = true;
+  if (!follower_.mission()) return;
+  if (hello.header.sender == kWorld && table_) world_asks_ = true;
   const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
   if (!knows_no_mission || mission_repeat_ || now - mission_repeated_ < kMissionRepeatGap) return;
   const double share = uniform_pair(identity_.incarnation, Purpose::kAnswer, 0,
@@ -199,6 +199,7 @@ void Agent::advance(Instant now, Outbox& out) {
     if (repeat_wanted_) repeat(out);
     if (phase_ == AgentPhase::kRunning && answered_tick_ < tick_ && may_answer()) answer(out);
   }
+  if (!finished() && mission_repeat_ && now >= *mission_repeat_) repeat_mission(now, out);
   // Nobody can tell two joining processes apart by an id that neither has been given.
   if (!table_) return;
   if (!finished()) help_others(now, out);
@@ -207,11 +208,6 @@ void Agent::advance(Instant now, Outbox& out) {
 
 void Agent::help_others(Instant now, Outbox& out) {
   if (world_asks_) tell_world(out);
-  if (mission_repeat_ && now >= *mission_repeat_) {
-    mission_repeat_.reset();
-    mission_repeated_ = now;
-    repeat_mission(out);
-  }
   for (Contribution& block : anti_entropy_->answers_due(*table_, now, tick_)) {
     block.header.run = identity_.run;
     out.push_back({Bus::kSwarm, block, self_.agent});
@@ -224,7 +220,10 @@ void Agent::help_others(Instant now, Outbox& out) {
   }
 }
 
-void Agent::repeat_mission(Outbox& out) {
+/// Also before it is admitted: it may be the only one left who knows the mission.
+void Agent::repeat_mission(Instant now, Outbox& out) {
+  mission_repeat_.reset();
+  mission_repeated_ = now;
   for (const MissionPart& part : follower_.parts()) {
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) out.push_back({bus, part});
   }
@@ -341,8 +340,8 @@ void Agent::publish_status(Instant now, Outbox& out) {
 Instant Agent::next_wakeup() const {
   if (finished()) return Instant::max();
   Instant next = identity_.run != 0 && !admitted() ? next_hello_ : Instant::max();
-  if (!table_) return next;
   if (mission_repeat_) next = std::min(next, *mission_repeat_);
+  if (!table_) return next;
   return std::min({next, next_status_.at, next_digest_.at, anti_entropy_->next_answer()});
 }
 

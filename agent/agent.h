@@ -96,7 +96,7 @@ class Agent {
   bool may_answer();
   void answer(Outbox& out);
   void help_others(Instant now, Outbox& out);
-  void repeat_mission(Outbox& out);
+  void repeat_mission(Instant now, Outbox& out);
   void tell_world(Outbox& out);
   void publish_status(Instant now, Outbox& out);
   void finish(bool failed, std::string reason);

@@ -28,8 +28,9 @@ std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
       digests.emplace_back();
     }
     Digest& digest = digests.back();
-    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {
-        entry.author, table.steps_held(entry.author).value_or(0)};
+    const CoverageTable::Holding held = table.holding(entry.author);
+    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {entry.author, held.steps,
+                                                                      held.mark};
   }
   return digests;
 }
@@ -45,7 +46,7 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
   // Digest, roster and table all ascend by author: one walk along all three.
   std::size_t row = 0, member = 0;
   for (int i = 0; i < theirs.entry_count; ++i) {
-    const auto& [author, steps] = theirs.entries[static_cast<std::size_t>(i)];
+    const auto& [author, steps, mark] = theirs.entries[static_cast<std::size_t>(i)];
     while (member < roster.size() && roster[member].author < author) ++member;
     while (row < table.row_count() && table.holding(row).author < author) ++row;
     if (member == roster.size() || row == table.row_count()) return;
@@ -55,7 +56,10 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
     if (ours.author != author) continue;
     const bool will_speak = roster[member].active_until < 0;
     const Tick tolerated = will_speak ? kToleratedPeriods * ours.announced_period : 0;
-    consider(requester, author, ours.steps - steps > tolerated, theirs.header.sequence, now, tick);
+    // Two may each hold a block that the other lacks, and both say the same number of steps.
+    const bool lacks_a_block = !will_speak && mark != ours.mark && ours.newest_steps > steps;
+    consider(requester, author, ours.steps - steps > tolerated || lacks_a_block,
+             theirs.header.sequence, now, tick);
   }
 }
 
@@ -85,7 +89,7 @@ void AntiEntropy::consider(const Author& requester, const Author& author, bool l
 void AntiEntropy::on_relayed(const Contribution& theirs, const CoverageTable& table) {
   const auto planned = answers_.find(theirs.author());
   if (planned == answers_.end()) return;
-  if (theirs.steps >= table.steps_held(theirs.author()).value_or(0)) answers_.erase(planned);
+  if (theirs.steps >= table.holding(theirs.author()).newest_steps) answers_.erase(planned);
 }
 
 std::vector<Contribution> AntiEntropy::answers_due(const CoverageTable& table, Instant now,

@@ -24,9 +24,9 @@ class AntiEntropy {
   static std::vector<Digest> digests(const CoverageTable& table,
                                      const std::vector<RosterEntry>& roster);
 
-  /// A teammate says what it holds, in ascending order of authors. An author is worth an answer if in two digests in a row its
-  /// coverage there was behind ours: by more than two of the author's broadcast periods, or by
-  /// anything if the author has left the roster and will not speak again.
+  /// A teammate says what it holds, in ascending order of authors. An author is worth an answer if
+  /// in two digests in a row its coverage there was behind ours: by more than two of the author's
+  /// broadcast periods, or by any block if the author has left the roster and will not speak again.
   void on(const Digest& theirs, const CoverageTable& table, const std::vector<RosterEntry>& roster,
           Instant now, Tick tick);
 

@@ -153,9 +153,30 @@ std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) cons
   return row == nullptr ? std::nullopt : std::optional(row->fewest_steps());
 }
 
-CoverageTable::Holding CoverageTable::holding(std::size_t i) const {
-  const Row& row = rows_[i];
-  return {row.author, row.fewest_steps(), row.announced_period()};
+std::int64_t CoverageTable::Row::most_steps() const {
+  std::int64_t most = 0;
+  for (const Block& block : blocks) most = std::max(most, block.steps);
+  return most;
+}
+
+std::uint64_t CoverageTable::Row::mark() const {
+  std::uint64_t mark = 0;
+  for (const Block& block : blocks) {
+    mark = (mark ^ static_cast<std::uint64_t>(block.steps)) * 0x9e3779b97f4a7c15;
+    mark ^= mark >> 32;
+  }
+  return mark;
+}
+
+CoverageTable::Holding CoverageTable::Row::holding() const {
+  return {author, fewest_steps(), most_steps(), announced_period(), mark()};
+}
+
+CoverageTable::Holding CoverageTable::holding(std::size_t i) const { return rows_[i].holding(); }
+
+CoverageTable::Holding CoverageTable::holding(const Author& author) const {
+  const Row* row = find(author);
+  return row == nullptr ? Holding{author, 0, 0, 0, 0} : row->holding();
 }
 
 const double* CoverageTable::sums_of(const Author& author) const {

@@ -56,11 +56,15 @@ class CoverageTable {
   /// One row as a digest speaks of it.
   struct Holding {
     Author author;
-    std::int64_t steps;     ///< the fewest among its blocks
+    std::int64_t steps;         ///< the fewest among its blocks
+    std::int64_t newest_steps;  ///< the most
     Tick announced_period;
+    std::uint64_t mark;         ///< equal for equal steps of every block
   };
   /// Row `i` of row_count(), in ascending order of authors.
   Holding holding(std::size_t i) const;
+  /// The row of `author`; all 0 if it is unknown.
+  Holding holding(const Author& author) const;
 
   /// The sums of a row [s], mode_count() of them and then zeros; null if it is unknown.
   const double* sums_of(const Author& author) const;
@@ -86,6 +90,9 @@ class CoverageTable {
     std::vector<Block> blocks;
     std::vector<double> sums;  // block_count · kBlockSize, zero beyond the last mode
     std::int64_t fewest_steps() const;
+    std::int64_t most_steps() const;
+    std::uint64_t mark() const;
+    Holding holding() const;
     Tick announced_period() const;
   };
 

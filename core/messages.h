@@ -19,7 +19,7 @@ namespace ergocast {
 inline constexpr int kBlockSize = 128;
 inline constexpr int kMaxVehiclesPerState = 16;
 inline constexpr int kMaxRosterEntriesPerMessage = 10;
-inline constexpr int kMaxDigestEntriesPerMessage = 56;
+inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 128;
 inline constexpr int kMaxReasonLength = 191;
@@ -99,6 +99,7 @@ struct Contribution {
 struct DigestEntry {
   Author author;
   std::int64_t steps = 0;  ///< of the oldest block held; 0: nothing
+  std::uint64_t mark = 0;  ///< of the steps of all blocks held: equal if they are
 };
 
 /// What an agent holds of whom: one entry for each (agent, incarnation) of the roster, in as many

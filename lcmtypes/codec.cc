@@ -16,7 +16,7 @@ constexpr std::size_t kTagBytes = 16;
 constexpr std::size_t kHeaderEnd = kTagOffset + kTagBytes;
 constexpr std::size_t kRosterEntryBytes = 36;
 constexpr std::size_t kVehicleBytes = 60;
-constexpr std::size_t kDigestEntryBytes = 20;
+constexpr std::size_t kDigestEntryBytes = 28;
 
 // ---- numbers on the wire: big-endian --------------------------------------------------------
 

@@ -281,6 +281,7 @@ digest_t to_wire(const Digest& m) {
     w.entries[i].digest_id = m.entries[i].author.agent;
     w.entries[i].digest_incarnation = static_cast<std::int64_t>(m.entries[i].author.incarnation);
     w.entries[i].digest_steps = m.entries[i].steps;
+    w.entries[i].digest_mark = static_cast<std::int64_t>(m.entries[i].mark);
   }
   return w;
 }
@@ -293,7 +294,8 @@ bool from_wire(const digest_t& w, Digest& m) {
     if (e.digest_id < 0 || e.digest_id >= kMaxAgents || !plausible_count(e.digest_steps)) {
       return false;
     }
-    m.entries[i] = {{e.digest_id, static_cast<Incarnation>(e.digest_incarnation)}, e.digest_steps};
+    m.entries[i] = {{e.digest_id, static_cast<Incarnation>(e.digest_incarnation)}, e.digest_steps,
+                    static_cast<std::uint64_t>(e.digest_mark)};
   }
   return true;
 }

@@ -83,6 +83,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(digest_wire.entries[1].digest_id, 127);
   EXPECT_EQ(digest_wire.entries[1].digest_incarnation, 5);
   EXPECT_EQ(digest_wire.entries[1].digest_steps, 4711);
+  EXPECT_EQ(static_cast<std::uint64_t>(digest_wire.entries[1].digest_mark), 0xfedcba9876543210);
 
   const auto command_wire = read_by_lcm<command_t>(encoded(command()));
   expect_header(command_wire.header, 2);

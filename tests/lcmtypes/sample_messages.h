@@ -105,8 +105,8 @@ inline Digest digest() {
   Digest m;
   m.header = header_of_sender(3);
   m.entry_count = 2;
-  m.entries[0] = {{0, 0xffffffffffffffff}, 0};
-  m.entries[1] = {{127, 5}, 4711};
+  m.entries[0] = {{0, 0xffffffffffffffff}, 0, 0};
+  m.entries[1] = {{127, 5}, 4711, 0xfedcba9876543210};
   return m;
 }
 
