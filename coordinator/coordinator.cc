@@ -64,7 +64,10 @@ void Coordinator::receive(const Message& message, Instant now) {
   if (run_ == 0 || from.run != run_) return;
   if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
   if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
-  if (takeover_ != Takeover::kNever) return;
+  if (takeover_ != Takeover::kNever) {
+    if (const auto* world = std::get_if<WorldState>(&message)) tick_ = std::max(tick_, world->header.tick);
+    return;
+  }
   if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);
   if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
   if (status != nullptr) return on(*status, now);
@@ -92,7 +95,8 @@ void Coordinator::on(const MissionPart& part, Instant now) {
   if (part.header.incarnation == incarnation_) return;
   if (takeover_ != Takeover::kNever) {
     if (follower_.receive(part) && !found_) found_ = now;
-  } else if (part.revision > revision_) {
+  } else if (std::pair(part.revision, part.header.incarnation) >
+             std::pair(revision_, incarnation_)) {  // of two that took over at once, one stays
     end(true, "another coordinator has taken the mission over", now);
     finished_ = true;  // at once, without a word: the mission is not ours to end
   }
@@ -136,6 +140,8 @@ void Coordinator::take_over(Instant now) {
   roster_ = follower_.roster();
   state_ = follower_.state();
   reason_ = follower_.reason();
+  // The predecessor's, if the world has not spoken meanwhile.
+  for (const MissionPart& part : follower_.parts()) tick_ = std::max(tick_, part.header.tick);
   revision_ = follower_.revision() + kRevisionLead;
   if (follower_.over()) ended_ = now;
   tick_since_ = now;

@@ -101,9 +101,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
 }
 
 void CoverageTable::forget(const Author& author) {
-  for (Row& row : rows_) {
-    if (row.author == author) row.counts = false;
-  }
+  if (Row* row = find_or_add(author)) row->counts = false;
 }
 
 void CoverageTable::average(Coefficients& coverage) const {

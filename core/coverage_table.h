@@ -40,7 +40,7 @@ class CoverageTable {
   /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.
   Contribution block(const Author& author, int block) const;
 
-  /// From now on the row of `author`, if there is one, does not count; it is kept and passed on.
+  /// From now on the row of `author` does not count, whenever it comes; it is kept and passed on.
   void forget(const Author& author);
 
   /// c_k = Σ_j S_j / Σ_j elapsed_j per block, (4) weighted by the time each row covers.

@@ -89,8 +89,11 @@ void World::ask_team(Instant now, Outbox& out) {
 }
 
 bool World::team_has_answered() const {
+  // With its last two commands, or with one that says that there is none.
   return std::all_of(bodies_.begin(), bodies_.end(), [](const auto& one) {
-    return one.second.author.incarnation == 0 || one.second.command.has_value();
+    const Body& body = one.second;
+    return body.author.incarnation == 0 || body.command_before ||
+           (body.command && body.answered() < 0);
   });
 }
 
@@ -144,14 +147,20 @@ void World::on(const Command& command) {
   const Mission& mission = *follower_.mission();
   const Eigen::Vector2d step_m = command.velocity_mps.head<2>() * mission.timing.dt_s;
   if (!step_m.allFinite()) return;  // numbers that only overflow here are no velocities
-  if (body.command && command.header.tick <= body.answered()) return;
   if (asking_since_) {
     if (command.header.tick > mission.timing.tick_count) return;
     if (!mission.domain.contains(command.position_m.head<2>())) return;
   } else if (command.header.tick > tick_) {
     return;
   }
-  body.command_before = std::exchange(body.command, command);
+  const auto newer_than = [&](const std::optional<Command>& known) {
+    return !known || command.header.tick > known->header.tick;
+  };
+  if (newer_than(body.command)) {
+    body.command_before = std::exchange(body.command, command);
+  } else if (command.header.tick < body.answered() && newer_than(body.command_before)) {
+    body.command_before = command;  // overtaken by the one after it
+  }
 }
 
 bool World::everyone_answered() const {

@@ -1,50 +1,16 @@
 // The coordinator, driven by hand: who is admitted, when the mission starts, whom a time-out names,
 // and that the end reaches everybody.
-#include "coordinator/coordinator.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
-#include "tests/support/team.h"
+#include "tests/coordinator/driven_coordinator.h"
 
 namespace ergocast {
 namespace {
 
 using namespace test;
-
-const std::vector<std::byte> kPlan{std::byte{1}, std::byte{2}};
-
-Coordinator coordinator_of(const Mission& mission) {
-  return {kRun, kCoordinatorLife, decoder_of(mission), kPlan};
-}
-
-Hello hello_of(AgentId id, Incarnation incarnation) {
-  return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", "1.2.3"};
-}
-Hello hello_of(AgentId id) { return hello_of(id, life_of(id)); }
-
-void admit_all(Coordinator& coordinator, int agents, Instant now) {
-  for (AgentId id = 0; id < agents; ++id) coordinator.receive(hello_of(id), now);
-}
-
-/// A coordinator whose mission runs since `now`.
-Coordinator running_coordinator(const Mission& mission, Instant now = at(0s)) {
-  Coordinator coordinator = coordinator_of(mission);
-  advance(coordinator, now);
-  admit_all(coordinator, static_cast<int>(mission.starts_m.size()), now);
-  advance(coordinator, now);
-  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  return coordinator;
-}
-
-/// The world at `tick`, where agent i has answered `answered[i]`.
-WorldState world_where(Tick tick, const std::vector<Tick>& answered) {
-  WorldState state = world_state(tick, std::vector<Eigen::Vector2d>(answered.size(), {1, 1}));
-  for (std::size_t i = 0; i < answered.size(); ++i) state.vehicles[i].answered_tick = answered[i];
-  return state;
-}
 
 // ---- admission -----------------------------------------------------------------------------------
 

@@ -1,7 +1,5 @@
 // The simulated world, driven by hand: the integration, who may command, lockstep, the clock, the
 // record's window and the end.
-#include "sim/world.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,48 +7,12 @@
 
 #include "core/geometry.h"
 #include "core/noise.h"
-#include "tests/support/team.h"
+#include "tests/sim/driven_world.h"
 
 namespace ergocast {
 namespace {
 
 using namespace test;
-
-World world_of(const Mission& mission) { return {kRun, kWorldLife, decoder_of(mission)}; }
-
-/// Every agent's answer to the question where it was.
-void nobody_has_moved(World& world, int agents, Instant now) {
-  for (AgentId id = 0; id < agents; ++id) world.receive(command_of(id, -1, {0, 0}), now);
-}
-
-/// A world whose mission runs since `now`, all planned agents admitted; nothing published yet.
-World running_world(const Mission& mission, Instant now = at(0s)) {
-  World world = world_of(mission);
-  const auto team = static_cast<int>(mission.starts_m.size());
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(team)), now);
-  nobody_has_moved(world, team, now);
-  return world;
-}
-
-std::vector<WorldState> states_after(World& world, Instant now) {
-  return only<WorldState>(advance(world, now));
-}
-
-/// The one state that the world says now.
-WorldState state_after(World& world, Instant now) {
-  const auto states = states_after(world, now);
-  EXPECT_EQ(states.size(), 1u);
-  return states.empty() ? WorldState{} : states.back();
-}
-
-Eigen::Vector2d place(const WorldState& state, int vehicle = 0) {
-  return state.vehicles[static_cast<std::size_t>(vehicle)].position_m.head<2>();
-}
-Eigen::Vector2d applied(const WorldState& state, int vehicle = 0) {
-  return state.vehicles[static_cast<std::size_t>(vehicle)].velocity_mps.head<2>();
-}
-
-RecordAck ack_of(Tick tick) { return {{kRun, kLogger, kLoggerLife, tick + 2, tick}}; }
 
 // ---- lockstep ------------------------------------------------------------------------------------
 

@@ -1,0 +1,45 @@
+// A coordinator driven by hand, and what agents and the world tell it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "coordinator/coordinator.h"
+#include "tests/support/team.h"
+
+namespace ergocast::test {
+
+inline const std::vector<std::byte> kPlan{std::byte{1}, std::byte{2}};
+
+inline Coordinator coordinator_of(const Mission& mission) {
+  return {kRun, kCoordinatorLife, decoder_of(mission), kPlan};
+}
+
+inline Hello hello_of(AgentId id, Incarnation incarnation) {
+  return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", "1.2.3"};
+}
+inline Hello hello_of(AgentId id) { return hello_of(id, life_of(id)); }
+
+inline void admit_all(Coordinator& coordinator, int agents, Instant now) {
+  for (AgentId id = 0; id < agents; ++id) coordinator.receive(hello_of(id), now);
+}
+
+/// A coordinator whose mission runs since `now`.
+inline Coordinator running_coordinator(const Mission& mission, Instant now = at(0s)) {
+  Coordinator coordinator = coordinator_of(mission);
+  advance(coordinator, now);
+  admit_all(coordinator, static_cast<int>(mission.starts_m.size()), now);
+  advance(coordinator, now);
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  return coordinator;
+}
+
+/// The world at `tick`, where agent i has answered `answered[i]`.
+inline WorldState world_where(Tick tick, const std::vector<Tick>& answered) {
+  WorldState state = world_state(tick, std::vector<Eigen::Vector2d>(answered.size(), {1, 1}));
+  for (std::size_t i = 0; i < answered.size(); ++i) state.vehicles[i].answered_tick = answered[i];
+  return state;
+}
+
+}  // namespace ergocast::test

@@ -1,0 +1,310 @@
+// A coordinator that finds a mission already flying: it listens, takes over what the agents
+// remember, and never speaks against another.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/coordinator/driven_coordinator.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+constexpr Incarnation kSuccessorLife = 0xc1;
+
+Coordinator successor(Takeover takeover, RunId run = 0, Mission mission = small_mission(2),
+                      std::vector<std::byte> plan = kPlan) {
+  return {run, kSuccessorLife, decoder_of(std::move(mission)), std::move(plan), takeover};
+}
+
+/// What an agent remembers of the predecessor's word at `tick`.
+MissionPart memory_of(std::int64_t revision, std::vector<RosterEntry> roster = roster_of(2),
+                      Tick tick = 0, MissionState state = MissionState::kRunning) {
+  MissionPart part = mission_part(revision, state, std::move(roster));
+  part.header.tick = tick;
+  part.plan = kPlan;
+  return part;
+}
+
+/// A coordinator that has taken over `memory`, at 1 s.
+Coordinator taken_over(const MissionPart& memory, Mission mission = small_mission(2)) {
+  Coordinator coordinator = successor(Takeover::kIfFlying, 0, std::move(mission));
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  coordinator.receive(memory, at(0s));
+  advance(coordinator, at(1s));
+  EXPECT_TRUE(coordinator.took_over());
+  return coordinator;
+}
+
+const MissionPart& said_by(const Outbox& out) {
+  for (const Outgoing& outgoing : out) {
+    if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) return *part;
+  }
+  static const MissionPart nothing{};
+  ADD_FAILURE() << "no mission was said";
+  return nothing;
+}
+
+// ---- listening -----------------------------------------------------------------------------------
+
+TEST(TakeoverNever, SpeaksAtOnce) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  EXPECT_FALSE(only<MissionPart>(advance(coordinator, at(0s))).empty());
+  EXPECT_FALSE(coordinator.took_over());
+}
+
+TEST(TakeoverIfFlying, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilence) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  EXPECT_EQ(coordinator.next_wakeup(), Instant{}) << "at once, to listen";
+  for (int ms = 0; ms < 750; ms += 10) EXPECT_TRUE(advance(coordinator, at(5s + ms * 1ms)).empty());
+  EXPECT_LE(coordinator.next_wakeup(), at(5s + 750ms));
+  const MissionPart own = said_by(advance(coordinator, at(5s + 750ms)));
+  EXPECT_EQ(own.header.run, kSuccessorLife);
+  EXPECT_EQ(coordinator.run(), kSuccessorLife);
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  EXPECT_FALSE(coordinator.took_over());
+}
+
+TEST(TakeoverIfFlying, AgentsThatJoinOrHaveFinishedFlyNothing) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  for (const AgentPhase phase : {AgentPhase::kJoining, AgentPhase::kFinished}) {
+    AgentStatus status = status_of(0, 1);
+    status.phase = phase;
+    coordinator.receive(status, at(0s));
+  }
+  coordinator.receive(hello_of(0), at(0s));
+  EXPECT_EQ(coordinator.run(), 0u);
+  advance(coordinator, at(750ms));
+  EXPECT_EQ(coordinator.run(), kSuccessorLife);
+}
+
+TEST(Takeover, AsksTheAgentsFourTimesASecondOnceItKnowsTheRun) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  EXPECT_TRUE(advance(coordinator, at(0s)).empty()) << "whom?";
+  coordinator.receive(status_of(0, 1), at(200ms));
+  EXPECT_EQ(coordinator.run(), kRun);
+  int questions = 0;
+  for (int ms = 250; ms < 2250; ms += 10) {
+    for (const Outgoing& outgoing : advance(coordinator, at(ms * 1ms))) {
+      const auto* question = std::get_if<Hello>(&outgoing.message);
+      ASSERT_NE(question, nullptr) << "it has nothing else to say";
+      EXPECT_EQ(outgoing.bus, Bus::kSwarm);
+      EXPECT_EQ(question->header.run, kRun);
+      EXPECT_EQ(question->header.sender, kCoordinator);
+      EXPECT_EQ(question->header.tick, -1) << "it does not know the mission";
+      ++questions;
+    }
+  }
+  EXPECT_EQ(questions, 8);
+}
+
+TEST(Takeover, OfAGivenRunAsksBeforeItHearsAnybody) {
+  Coordinator coordinator = successor(Takeover::kMust, kRun);
+  EXPECT_EQ(only<Hello>(advance(coordinator, at(0s))).size(), 1u);
+  AgentStatus foreign = status_of(0, 1);
+  foreign.header.run = kRun + 1;
+  coordinator.receive(foreign, at(0s));
+  EXPECT_EQ(coordinator.run(), kRun);
+}
+
+TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
+  Coordinator coordinator = successor(Takeover::kMust, 0, small_mission(2), {});
+  for (int second = 0; second < 30; ++second) {
+    EXPECT_TRUE(advance(coordinator, at(second * 1s)).empty());
+    EXPECT_FALSE(coordinator.finished());
+  }
+  EXPECT_TRUE(advance(coordinator, at(30s)).empty());
+  EXPECT_TRUE(coordinator.finished());
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+  EXPECT_EQ(coordinator.reason(),
+            "no agent on this URL knows a mission that could be taken over");
+}
+
+TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  for (int ms = 0; ms < 30000; ms += 250) {
+    EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(ms * 1ms))).empty());
+  }
+  advance(coordinator, at(30s));
+  EXPECT_TRUE(coordinator.finished());
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+}
+
+// ---- what it takes over --------------------------------------------------------------------------
+
+TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
+  auto roster = roster_of(3);
+  roster[0].active_until = 6;
+  roster[0].forgotten_from = 9;
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  coordinator.receive(memory_of(5), at(100ms));
+  EXPECT_LE(coordinator.next_wakeup(), at(300ms)) << "a moment for other opinions";
+  coordinator.receive(memory_of(7, roster), at(250ms));
+  coordinator.receive(memory_of(6), at(260ms));
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(299ms))).empty());
+  const MissionPart said = said_by(advance(coordinator, at(300ms)));
+  EXPECT_TRUE(coordinator.took_over());
+  EXPECT_EQ(said.header.run, kRun);
+  EXPECT_EQ(said.header.incarnation, kSuccessorLife);
+  EXPECT_GT(said.revision, 7 + 100) << "the predecessor may have said more than was remembered";
+  EXPECT_EQ(said.state, MissionState::kRunning);
+  EXPECT_EQ(said.plan, kPlan);
+  ASSERT_EQ(said.roster.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(said.roster[i].author, roster[i].author);
+    EXPECT_EQ(said.roster[i].active_from, roster[i].active_from);
+    EXPECT_EQ(said.roster[i].active_until, roster[i].active_until);
+    EXPECT_EQ(said.roster[i].forgotten_from, roster[i].forgotten_from);
+  }
+}
+
+TEST(TakeoverMust, NeedsNoPlanOfItsOwn) {
+  Coordinator coordinator = successor(Takeover::kMust, 0, small_mission(2), {});
+  EXPECT_EQ(coordinator.mission(), nullptr);
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  coordinator.receive(memory_of(3), at(0s));
+  EXPECT_EQ(said_by(advance(coordinator, at(200ms))).plan, kPlan);
+  ASSERT_NE(coordinator.mission(), nullptr);
+  EXPECT_EQ(coordinator.mission()->name, "small");
+}
+
+TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
+  for (const Takeover takeover : {Takeover::kIfFlying, Takeover::kMust}) {
+    Coordinator coordinator = successor(takeover);
+    advance(coordinator, at(0s));
+    coordinator.receive(status_of(0, 1), at(0s));
+    MissionPart other = memory_of(3);
+    other.plan.push_back(std::byte{9});
+    coordinator.receive(other, at(0s));
+    const Outbox out = advance(coordinator, at(200ms));
+    EXPECT_TRUE(only<MissionPart>(out).empty());
+    EXPECT_TRUE(coordinator.finished());
+    EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+    EXPECT_EQ(coordinator.reason(), "run 0000000000001234 of another plan (small) is flying on this "
+                                    "URL: choose another URL, or wait for its end");
+  }
+}
+
+TEST(Takeover, OfAMissionThatWaitsStartsItWhenTheQuorumIsThere) {
+  Coordinator coordinator =
+      taken_over(memory_of(3, roster_of(1), 0, MissionState::kWaiting), small_mission(2));
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  coordinator.receive(status_of(0, 2), at(1s));
+  coordinator.receive(hello_of(1), at(1s));
+  EXPECT_EQ(said_by(advance(coordinator, at(1s))).state, MissionState::kRunning);
+}
+
+TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
+  Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 0, MissionState::kEnded));
+  EXPECT_EQ(said_by(advance(coordinator, at(1100ms))).state, MissionState::kEnded);
+  EXPECT_FALSE(coordinator.finished());
+  advance(coordinator, at(2s));
+  EXPECT_TRUE(coordinator.finished());
+}
+
+// ---- afterwards ----------------------------------------------------------------------------------
+
+TEST(TookOver, EverybodyHasTimeToSpeakAndTheTickHasItsTimeAnew) {
+  Mission mission = small_mission(2);
+  mission.timing.lockstep_timeout_s = 10;
+  Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 7), mission);
+  for (const RosterEntry& entry : coordinator.roster()) {
+    EXPECT_EQ(coordinator.presence(entry, at(3999ms)), Presence::kAlive);
+    EXPECT_EQ(coordinator.presence(entry, at(4s)), Presence::kSilent);
+  }
+  advance(coordinator, at(10999ms));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  advance(coordinator, at(11s));
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+}
+
+TEST(TookOver, AnAgentItDoesNotKnowComesBackUnderItsIncarnation) {
+  Coordinator coordinator = taken_over(memory_of(3, roster_of(1)));
+  coordinator.receive(world_where(12, {11, 11}), at(1s));
+  coordinator.receive(hello_of(1), at(1s));
+  ASSERT_EQ(coordinator.roster().size(), 2u);
+  EXPECT_EQ(coordinator.roster()[1].author, author_of(1));
+  EXPECT_EQ(coordinator.roster()[1].active_from, 12);
+}
+
+TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
+  // By the world's word while it looked around, or by the predecessor's last.
+  for (const Tick remembered : {12, 3}) {
+    Coordinator coordinator = successor(Takeover::kIfFlying);
+    advance(coordinator, at(0s));
+    coordinator.receive(status_of(0, 1), at(0s));
+    if (remembered < 12) coordinator.receive(world_where(12, {11, 11}), at(100ms));
+    coordinator.receive(memory_of(3, roster_of(2), remembered), at(100ms));
+    advance(coordinator, at(300ms));
+    ASSERT_TRUE(coordinator.took_over());
+    EXPECT_EQ(coordinator.tick(), 12);
+    // The restarted agent's former life covered twelve ticks, not none.
+    coordinator.receive(hello_of(1, 99), at(5s));
+    ASSERT_EQ(coordinator.roster().size(), 3u);
+    const auto former = std::find_if(coordinator.roster().begin(), coordinator.roster().end(),
+                                     [](const RosterEntry& e) { return e.author == author_of(1); });
+    EXPECT_EQ(former->active_until, 12);
+  }
+}
+
+TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
+  Coordinator coordinator = taken_over(memory_of(3));
+  coordinator.receive(world_where(100, {99, 99}), at(2s));
+  EXPECT_EQ(coordinator.state(), MissionState::kEnded);
+  EXPECT_EQ(coordinator.reason(), "mission complete");
+}
+
+// ---- the one that was taken over -----------------------------------------------------------------
+
+TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  advance(coordinator, at(1s));
+  MissionPart newer = memory_of(1000);
+  newer.header.incarnation = kSuccessorLife;
+  coordinator.receive(newer, at(1500ms));
+  EXPECT_TRUE(coordinator.finished());
+  EXPECT_EQ(coordinator.reason(), "another coordinator has taken the mission over");
+  EXPECT_TRUE(advance(coordinator, at(3s)).empty()) << "the mission is not its to end";
+}
+
+TEST(TakenOver, ItsOwnOrOlderWordsComingBackDoNotScareACoordinator) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  MissionPart echo = memory_of(1000);
+  echo.header.incarnation = kCoordinatorLife;
+  coordinator.receive(echo, at(1s));
+  MissionPart predecessors = memory_of(0);
+  predecessors.header.incarnation = 0xc2;
+  coordinator.receive(predecessors, at(1s));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+}
+
+TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
+  const auto both = [] {
+    std::vector<Coordinator> two;
+    for (const Incarnation life : {kSuccessorLife, kSuccessorLife + 1}) {
+      two.emplace_back(0, life, decoder_of(small_mission(2)), kPlan, Takeover::kIfFlying);
+      advance(two.back(), at(0s));
+      two.back().receive(status_of(0, 1), at(0s));
+      two.back().receive(memory_of(5), at(0s));
+    }
+    return two;
+  }();
+  Coordinator one = both[0], other = both[1];
+  const MissionPart ones = said_by(advance(one, at(200ms)));
+  const MissionPart others = said_by(advance(other, at(200ms)));
+  ASSERT_EQ(ones.revision, others.revision);
+  one.receive(others, at(201ms));
+  other.receive(ones, at(201ms));
+  EXPECT_NE(one.finished(), other.finished());
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,49 @@
+// A world driven by hand, and what it says.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "sim/world.h"
+#include "tests/support/team.h"
+
+namespace ergocast::test {
+
+inline World world_of(const Mission& mission) { return {kRun, kWorldLife, decoder_of(mission)}; }
+
+/// Every agent's answer to the question where it was.
+inline void nobody_has_moved(World& world, int agents, Instant now) {
+  for (AgentId id = 0; id < agents; ++id) world.receive(command_of(id, -1, {0, 0}), now);
+}
+
+/// A world whose mission runs since `now`, all planned agents admitted; nothing published yet.
+inline World running_world(const Mission& mission, Instant now = at(0s)) {
+  World world = world_of(mission);
+  const auto team = static_cast<int>(mission.starts_m.size());
+  world.receive(mission_part(0, MissionState::kRunning, roster_of(team)), now);
+  nobody_has_moved(world, team, now);
+  return world;
+}
+
+inline std::vector<WorldState> states_after(World& world, Instant now) {
+  return only<WorldState>(advance(world, now));
+}
+
+/// The one state that the world says now.
+inline WorldState state_after(World& world, Instant now) {
+  const auto states = states_after(world, now);
+  EXPECT_EQ(states.size(), 1u);
+  return states.empty() ? WorldState{} : states.back();
+}
+
+inline Eigen::Vector2d place(const WorldState& state, int vehicle = 0) {
+  return state.vehicles[static_cast<std::size_t>(vehicle)].position_m.head<2>();
+}
+inline Eigen::Vector2d applied(const WorldState& state, int vehicle = 0) {
+  return state.vehicles[static_cast<std::size_t>(vehicle)].velocity_mps.head<2>();
+}
+
+inline RecordAck ack_of(Tick tick) { return {{kRun, kLogger, kLoggerLife, tick + 2, tick}}; }
+
+}  // namespace ergocast::test

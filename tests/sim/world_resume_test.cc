@@ -1,0 +1,307 @@
+// A world that dies and is started again goes on where the team was, by what the agents tell it:
+// in lockstep as if nothing had happened, bit for bit, at whatever moment it died.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/agent/live_team.h"
+#include "tests/sim/driven_world.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+// ---- lockstep, with real agents ------------------------------------------------------------------
+
+/// Which of three agents still heard the tick at which the world died; none of their answers
+/// reached it.
+struct Death {
+  Tick tick;
+  bool heard[3];
+};
+
+/// A lockstep flight of three agents. Checks that no tick is ever told in two ways.
+class Flight {
+ public:
+  using Told = std::map<Tick, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>>;
+
+  explicit Flight(const Mission& mission) : mission_(mission), team_(mission), world_(begin(1)) {}
+
+  /// Until the team has answered tick `end`.
+  void fly_until(Tick end) {
+    while (world_.tick() < end) {
+      now_ += 10ms;
+      for (const WorldState& state : only<WorldState>(step_world())) obey(team_.tell(state, now_));
+    }
+  }
+
+  /// The world dies at `death` and another begins.
+  void restart(const Death& death) {
+    fly_until(death.tick - 1);
+    now_ += 10ms;
+    for (const WorldState& state : only<WorldState>(step_world())) {
+      for (AgentId id = 0; id < 3; ++id) {
+        if (death.heard[id]) team_[id].receive(state, now_);
+      }
+    }
+    team_.settle(now_);  // whatever they say, no world hears it
+    world_ = begin(++lives_);
+    while (!world_.begun_at()) {
+      now_ += 10ms;
+      for (const Hello& question : only<Hello>(step_world())) obey(team_.tell(question, now_));
+    }
+    EXPECT_GE(*world_.begun_at(), death.tick - 1);
+    EXPECT_LE(*world_.begun_at(), death.tick);
+  }
+
+  const Told& told() const { return told_; }
+
+ private:
+  World begin(Incarnation life) const {
+    World world(kRun, life, decoder_of(mission_));
+    world.receive(mission_part(0, MissionState::kRunning, roster_of(3)), now_);
+    if (life == 1) nobody_has_moved(world, 3, now_);
+    return world;
+  }
+
+  Outbox step_world() {
+    Outbox out = advance(world_, now_);
+    for (const WorldState& state : only<WorldState>(out)) {
+      std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> vehicles;
+      for (int i = 0; i < state.vehicle_count; ++i) {
+        const Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
+        vehicles.emplace_back(vehicle.position_m, vehicle.velocity_mps);
+      }
+      const auto [known, is_new] = told_.emplace(state.header.tick, vehicles);
+      EXPECT_EQ(known->second, vehicles) << "tick " << state.header.tick;
+    }
+    return out;
+  }
+
+  void obey(const Outbox& said) {
+    for (const Command& command : only<Command>(said)) world_.receive(command, now_);
+  }
+
+  Mission mission_;
+  LiveTeam team_;
+  Instant now_ = at(1s);
+  Incarnation lives_ = 1;
+  World world_;
+  Told told_;
+};
+
+/// Speaks every fourth tick, so that some may answer a tick that others have not heard of.
+Mission lively_mission(double disturbance) {
+  Mission mission = small_mission(3);
+  mission.target_coefficients(1, 0) = 0.3;
+  mission.law.noise_intensity = 2;
+  mission.timing.broadcast_period_ticks = 4;
+  mission.disturbance_intensity = disturbance;
+  return mission;
+}
+
+class WorldRestarted : public ::testing::TestWithParam<double> {};
+
+TEST_P(WorldRestarted, AtEveryMomentOfATickChangesNothing) {
+  const Mission mission = lively_mission(GetParam());
+  Flight undisturbed(mission);
+  undisturbed.fly_until(16);
+  for (Tick tick = 0; tick < 10; ++tick) {
+    for (unsigned heard = 0; heard < 8; ++heard) {
+      SCOPED_TRACE("died at tick " + std::to_string(tick) + ", heard by " + std::to_string(heard));
+      Flight flight(mission);
+      flight.restart({tick, {(heard & 1) != 0, (heard & 2) != 0, (heard & 4) != 0}});
+      flight.fly_until(16);
+      EXPECT_EQ(flight.told(), undisturbed.told());
+    }
+  }
+}
+
+TEST_P(WorldRestarted, AgainAndAgainChangesNothing) {
+  const Mission mission = lively_mission(GetParam());
+  Flight undisturbed(mission), flight(mission);
+  undisturbed.fly_until(16);
+  for (Tick tick = 0; tick < 15; ++tick) flight.restart({tick, {true, tick % 2 == 0, false}});
+  flight.fly_until(16);
+  EXPECT_EQ(flight.told(), undisturbed.told());
+}
+
+INSTANTIATE_TEST_SUITE_P(Disturbance, WorldRestarted, ::testing::Values(0.0, 3.0),
+                         [](const auto& of) { return of.param > 0 ? "On" : "Off"; });
+
+// ---- what the team's answers mean ----------------------------------------------------------------
+
+Command command_from(AgentId id, Tick tick, const Eigen::Vector2d& x_m, const Eigen::Vector2d& v_mps) {
+  Command command = command_of(id, tick, v_mps);
+  command.position_m << x_m, 0;
+  return command;
+}
+
+/// A world that asks its team where it was, since 0 s.
+World asking_world(const Mission& mission) {
+  World world = world_of(mission);
+  const auto team = static_cast<int>(mission.starts_m.size());
+  world.receive(mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
+  advance(world, at(0s));
+  return world;
+}
+
+TEST(WorldAsks, TenTimesASecondAndMovesNobodyMeanwhile) {
+  World world = asking_world(small_mission(2));
+  world.receive(command_of(0, -1, {0, 0}), at(0s));
+  int questions = 0;
+  for (int ms = 10; ms <= 1000; ms += 10) {
+    for (const Outgoing& outgoing : advance(world, at(ms * 1ms))) {
+      const auto* question = std::get_if<Hello>(&outgoing.message);
+      ASSERT_NE(question, nullptr);
+      EXPECT_EQ(question->header.tick, 0);
+      ++questions;
+    }
+  }
+  EXPECT_EQ(questions, 10);
+  EXPECT_LE(world.next_wakeup(), at(1100ms));
+}
+
+TEST(WorldAsks, BeginsWithoutASilentAgentAfterTwoSeconds) {
+  const Mission mission = small_mission(2);
+  World world = asking_world(mission);
+  world.receive(command_from(0, 8, {300, 400}, {1, 0}), at(0s));
+  world.receive(command_from(0, 9, {301, 401}, {0, 1}), at(0s));
+  EXPECT_TRUE(only<WorldState>(advance(world, at(1999ms))).empty());
+  const auto states = only<WorldState>(advance(world, at(2s)));
+  ASSERT_EQ(states.size(), 1u);
+  EXPECT_EQ(world.begun_at(), 9);
+  EXPECT_EQ(states[0].header.tick, 9);
+  EXPECT_EQ(place(states[0], 0), Eigen::Vector2d(301, 401));
+  EXPECT_EQ(applied(states[0], 0), Eigen::Vector2d(1, 0)) << "in the step that led here";
+  EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
+}
+
+/// The state with which a world of one agent begins that was told these commands, in this order.
+WorldState begun_with(const std::vector<Command>& told) {
+  World world = asking_world(small_mission(1));
+  for (const Command& command : told) world.receive(command, at(0s));
+  return state_after(world, at(1ms));
+}
+
+TEST(WorldAsks, TheOrderOfTheAnswersDoesNotMatter) {
+  const Command before = command_from(0, 8, {300, 400}, {1, 0});
+  const Command last = command_from(0, 9, {301, 401}, {0, 1});
+  for (const auto& told : {std::vector{before, last}, std::vector{last, before}}) {
+    const WorldState state = begun_with(told);
+    EXPECT_EQ(state.header.tick, 9);
+    EXPECT_EQ(place(state), Eigen::Vector2d(301, 401));
+    EXPECT_EQ(applied(state), Eigen::Vector2d(1, 0));
+  }
+}
+
+TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
+  World world = asking_world(small_mission(1));
+  world.receive(command_from(0, 9, {301, 401}, {0, 1}), at(0s));
+  EXPECT_TRUE(only<WorldState>(advance(world, at(1ms))).empty());
+  EXPECT_EQ(only<Hello>(advance(world, at(100ms))).size(), 1u) << "it asks again";
+  world.receive(command_from(0, 8, {300, 400}, {1, 0}), at(101ms));
+  EXPECT_EQ(applied(state_after(world, at(101ms))), Eigen::Vector2d(1, 0));
+}
+
+TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
+  const Mission mission = small_mission(1);
+  World world = asking_world(mission);
+  world.receive(command_from(0, mission.timing.tick_count + 1, {300, 400}, {0, 0}), at(0s));
+  world.receive(command_from(0, 50, {-1, 400}, {0, 0}), at(0s));
+  Command stranger = command_from(0, 50, {300, 400}, {0, 0});
+  stranger.header.incarnation = 99;
+  world.receive(stranger, at(0s));
+  const WorldState state = state_after(world, at(2s));
+  EXPECT_EQ(state.header.tick, 0);
+  EXPECT_EQ(place(state), mission.starts_m[0]);
+}
+
+// ---- real time -----------------------------------------------------------------------------------
+
+TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
+  for (const double hold_s : {10.0, 0.1}) {
+    Mission mission = small_mission(2);
+    mission.timing.pace = Pace::kRealtime;
+    mission.timing.command_hold_s = hold_s;
+    World world = asking_world(mission);
+    for (const Tick tick : {9, 10}) world.receive(command_from(0, tick, {500, 500}, {10, 0}), at(0s));
+    for (const Tick tick : {6, 7}) world.receive(command_from(1, tick, {700, 500}, {0, 10}), at(0s));
+    const WorldState state = state_after(world, at(5ms));
+    EXPECT_EQ(state.header.tick, 10);
+    EXPECT_EQ(place(state, 0), Eigen::Vector2d(500, 500));
+    // From 7 to 10 in three steps of 1 m; with a hold of 0.1 s the third has no command.
+    EXPECT_EQ(place(state, 1), Eigen::Vector2d(700, hold_s > 1 ? 503 : 502));
+    EXPECT_EQ(applied(state, 1), Eigen::Vector2d(0, hold_s > 1 ? 10 : 0));
+    EXPECT_EQ(state_after(world, at(105ms)).header.tick, 11) << "and the clock goes on from here";
+  }
+}
+
+// ---- the mission ---------------------------------------------------------------------------------
+
+TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
+  World world = world_of(small_mission(1));
+  EXPECT_TRUE(advance(world, at(10s)).empty());
+  EXPECT_EQ(world.next_wakeup(), at(11500ms)) << "the coordinator speaks each second";
+  EXPECT_TRUE(advance(world, at(11499ms)).empty());
+  for (const Instant now : {at(11500ms), at(13s)}) {
+    const Outbox out = advance(world, now);
+    ASSERT_EQ(out.size(), 1u);
+    EXPECT_EQ(out[0].bus, Bus::kWorld);
+    const auto& question = std::get<Hello>(out[0].message);
+    EXPECT_EQ(question.header.run, kRun);
+    EXPECT_EQ(question.header.sender, kWorld);
+    EXPECT_EQ(question.header.tick, -1) << "it does not know the mission";
+  }
+}
+
+TEST(WorldWithoutAMission, WaitsForTheFirstItHearsOfIfItKnowsNoRun) {
+  World world(0, kWorldLife, decoder_of(small_mission(1)));
+  for (int second = 0; second < 10; ++second) EXPECT_TRUE(advance(world, at(second * 1s)).empty());
+  EXPECT_EQ(world.next_wakeup(), Instant::max());
+  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(10s));
+  EXPECT_EQ(world.run(), kRun);
+}
+
+TEST(WorldWithoutAMission, AsksNoMoreOnceItWaitsForTheStart) {
+  World world = world_of(small_mission(1));
+  advance(world, at(10s));
+  world.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(11s));
+  EXPECT_TRUE(advance(world, at(20s)).empty());
+}
+
+// ---- the record ----------------------------------------------------------------------------------
+
+TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
+  Mission mission = small_mission(1);
+  mission.wait_for_logger = true;
+  World world = running_world(mission);
+  const auto run_while_it_goes = [&](Instant now) {
+    while (!states_after(world, now).empty()) {
+      world.receive(command_of(0, world.tick(), {1, 0}), now);
+    }
+  };
+  world.receive(ack_of(10), at(0s));
+  run_while_it_goes(at(0s));
+  EXPECT_EQ(world.tick(), 75);
+  RecordAck successors = ack_of(5);
+  successors.header.incarnation = kLoggerLife + 1;
+  world.receive(successors, at(1s));
+  std::vector<Tick> repeated;
+  for (const WorldState& state : states_after(world, at(2s))) repeated.push_back(state.header.tick);
+  // The next row that it lacks, and the state after it; what is no longer remembered is a gap.
+  ASSERT_FALSE(repeated.empty());
+  EXPECT_EQ(repeated.front(), 74);
+  world.receive(ack_of(3), at(2s));
+  run_while_it_goes(at(2s));
+  EXPECT_EQ(world.tick(), 75) << "it has still 64 ticks to go";
+  successors.header.tick = 20;
+  world.receive(successors, at(3s));
+  run_while_it_goes(at(3s));
+  EXPECT_EQ(world.tick(), 85);
+}
+
+}  // namespace
+}  // namespace ergocast
