@@ -48,12 +48,12 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
   for (int i = 0; i < theirs.entry_count; ++i) {
     const auto& [author, steps, mark] = theirs.entries[static_cast<std::size_t>(i)];
     while (member < roster.size() && roster[member].author < author) ++member;
-    while (row < table.row_count() && table.holding(row).author < author) ++row;
+    while (row < table.row_count() && table.author(row) < author) ++row;
     if (member == roster.size() || row == table.row_count()) return;
     // Our own coverage we broadcast as it grows, never in between: in lockstep, ticks depend on it.
     if (author == self_ || author == requester || roster[member].author != author) continue;
+    if (table.author(row) != author) continue;
     const CoverageTable::Holding ours = table.holding(row);
-    if (ours.author != author) continue;
     const bool will_speak = roster[member].active_until < 0;
     const Tick tolerated = will_speak ? kToleratedPeriods * ours.announced_period : 0;
     // Two may each hold a block that the other lacks, and both say the same number of steps.
