@@ -249,9 +249,6 @@ void Agent::begin_tick(Outbox& out) {
   if (tick_ >= 0) missed_ticks_ += view.tick - tick_ - 1;
   tick_ = view.tick;
   roster_revision_ = view.roster_revision;
-  for (const RosterEntry& entry : follower_.roster()) {
-    if (entry.forgotten_at(tick_)) table_->forget(entry.author);
-  }
   x_m_ = view.position_m.head<2>();
   basis_at_.emplace(x_m_, mission.domain, mission.basis);
   table_->add_sample(self_, *basis_at_);
@@ -300,6 +297,10 @@ bool Agent::may_answer() {
 }
 
 void Agent::answer(Outbox& out) {
+  // By the roster that the tick may have waited for.
+  for (const RosterEntry& entry : follower_.roster()) {
+    if (entry.forgotten_at(tick_)) table_->forget(entry.author);
+  }
   table_->average(team_coverage_);
   const Eigen::Vector2d velocity =
       controller_->command(self_.agent, tick_, x_m_, *basis_at_, team_coverage_);

@@ -65,7 +65,7 @@ void Coordinator::receive(const Message& message, Instant now) {
   if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
   if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
   if (takeover_ != Takeover::kNever) {
-    if (const auto* world = std::get_if<WorldState>(&message)) tick_ = std::max(tick_, world->header.tick);
+    if (std::holds_alternative<WorldState>(message)) tick_ = std::max(tick_, from.tick);
     return;
   }
   if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);

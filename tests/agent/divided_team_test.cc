@@ -69,7 +69,7 @@ TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
   for (const AgentId end : {0, 2}) {
     const AgentId other = 2 - end;
     const auto held = team[end].coverage()->steps_held(author_of(other));
-    EXPECT_GE(held.value_or(0), 28) << "30 ticks, and two broadcasts are tolerated";
+    ASSERT_GE(held.value_or(0), 28) << "30 ticks, and two broadcasts are tolerated";
     // Not something like the other's sums: its sums.
     const auto words = blocks_of(mission, author_of(other), path_of(other, 0, *held), 0);
     for (int b = 0; b < 2; ++b) {

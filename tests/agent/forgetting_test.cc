@@ -1,0 +1,80 @@
+// Coverage that the roster forgets: from a named tick on it does not steer, but it is passed on.
+#include <gtest/gtest.h>
+
+#include "tests/agent/driven_agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+const std::vector<Eigen::Vector2d> kGone{{900, 900}, {910, 900}};
+
+/// The plan's roster of two, where 1 has left at tick 2 and is forgotten from `tick` on.
+MissionPart forgetting_from(Tick tick, std::int64_t revision = 1) {
+  return mission_part(revision, MissionState::kRunning,
+                      {{author_of(0), 0, -1}, {author_of(1), 0, 2, tick}});
+}
+
+WorldState world_at(Tick tick, std::int64_t revision = 0) {
+  WorldState world = world_state(tick, {{100.0 + static_cast<double>(tick), 500}});
+  world.roster_revision = revision;
+  return world;
+}
+
+/// Whether agent 0 has steered by its own coverage alone, in the ticks [0, `ticks`).
+bool steered_alone(const Agent& agent, const Mission& mission, Tick ticks) {
+  CoverageTable own(mission.basis, mission.timing.dt_s);
+  for (Tick tick = 0; tick < ticks; ++tick) {
+    own.add_sample(author_of(0), BasisAt({100.0 + static_cast<double>(tick), 500}, mission.domain,
+                                         mission.basis));
+  }
+  Coefficients alone = agent.team_coverage();
+  own.average(alone);
+  return agent.team_coverage() == alone;
+}
+
+TEST(AgentForgets, FromTheNamedTickOn) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  agent.receive(forgetting_from(3), at(0s));
+  for (Tick tick = 0; tick < 6; ++tick) {
+    EXPECT_EQ(only<Command>(tell(agent, world_at(tick))).size(), 1u);
+    EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 3) << tick;
+  }
+}
+
+TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(forgetting_from(0), at(0s));
+  // While the tick waits for another revision, a teammate passes on what 1 had said.
+  EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 2))).empty());
+  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0, 2))).size(), 1u);
+  EXPECT_TRUE(steered_alone(agent, mission, 1));
+}
+
+TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
+  // All must forget at the same tick, whoever hears of it first.
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 1))).empty()) << "the world knows more";
+  EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0))).size(), 1u);
+  EXPECT_TRUE(steered_alone(agent, mission, 1));
+}
+
+TEST(AgentForgets, ButPassesItOn) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  agent.receive(forgetting_from(0), at(0s));
+  tell(agent, world_at(0));
+  EXPECT_EQ(agent.coverage()->block(author_of(1), 0).sums, block_of(mission, 1, kGone, 100).sums);
+  EXPECT_EQ(only<Digest>(advance(agent, at(5s))).at(0).entries[1].steps, 2);
+}
+
+}  // namespace
+}  // namespace ergocast
