@@ -178,8 +178,6 @@ void Coordinator::on(const Hello& hello, Instant now) {
     next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
     return;
   }
-  // After a takeover the tick from which somebody takes part is the world's to say.
-  if (took_over_ && state_ == MissionState::kRunning && !world_heard_) return;
   std::optional<AgentId> id = hello.requested_id;
   if (*id == kUnassigned) id = free_id(now);
   if (!id) return;  // the team is full

@@ -108,7 +108,7 @@ TEST_F(Repair, ALargeTeamTakesSeveralDigests) {
     }
     EXPECT_EQ(named.size(), static_cast<std::size_t>(members));
     EXPECT_EQ(AntiEntropy::digests(table, roster_of(members)).size(),
-              static_cast<std::size_t>((members + 55) / 56));
+              static_cast<std::size_t>((members + kMaxDigestEntriesPerMessage - 1) / kMaxDigestEntriesPerMessage));
   }
 }
 
