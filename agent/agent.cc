@@ -145,7 +145,8 @@ void Agent::on(const Hello& hello, Instant now) {
   if (!follower_.mission()) return;
   if (hello.header.sender == kWorld && table_) world_asks_ = true;
   const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
-  if (!knows_no_mission || mission_repeat_ || now - mission_repeated_ < kMissionRepeatGap) return;
+  if (!knows_no_mission || mission_repeat_) return;
+  if (mission_repeated_ && now - *mission_repeated_ < kMissionRepeatGap) return;
   const double share = uniform_pair(identity_.incarnation, Purpose::kAnswer, 0,
                                     static_cast<std::uint64_t>(received_)).x();
   mission_repeat_ = now + std::chrono::duration_cast<PacingClock::duration>(share * kLongestRepeatDelay);

@@ -135,7 +135,7 @@ class Agent {
   Instant next_hello_{};
   Deadline next_status_, next_digest_;
   std::optional<Instant> mission_repeat_;  // somebody has asked for the mission
-  Instant mission_repeated_{};
+  std::optional<Instant> mission_repeated_;
   Sequencer sequencer_;
   std::int64_t received_ = 0, contributions_received_ = 0, missed_ticks_ = 0, kernel_drops_ = 0;
   RefusalCounts refused_{};

@@ -18,6 +18,16 @@ constexpr std::size_t kMaxComplaints = 8192;
 constexpr std::size_t kMaxAnswers = 256;
 constexpr int kToleratedPeriods = 2;
 
+/// Whether who holds `steps` and `mark` of a row of ours is worth an answer.
+bool lacks_something(const CoverageTable& table, std::size_t row, bool will_speak,
+                     std::int64_t steps, std::uint64_t mark) {
+  if (will_speak && table.fewest_steps(row) <= steps) return false;  // nearly always
+  const CoverageTable::Holding ours = table.holding(row);
+  if (will_speak) return ours.steps - steps > kToleratedPeriods * ours.announced_period;
+  // Two may each hold a block that the other lacks, and both say the same number of steps.
+  return ours.steps > steps || (mark != ours.mark && ours.newest_steps > steps);
+}
+
 }  // namespace
 
 std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
@@ -53,13 +63,9 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
     // Our own coverage we broadcast as it grows, never in between: in lockstep, ticks depend on it.
     if (author == self_ || author == requester || roster[member].author != author) continue;
     if (table.author(row) != author) continue;
-    const CoverageTable::Holding ours = table.holding(row);
     const bool will_speak = roster[member].active_until < 0;
-    const Tick tolerated = will_speak ? kToleratedPeriods * ours.announced_period : 0;
-    // Two may each hold a block that the other lacks, and both say the same number of steps.
-    const bool lacks_a_block = !will_speak && mark != ours.mark && ours.newest_steps > steps;
-    consider(requester, author, ours.steps - steps > tolerated || lacks_a_block,
-             theirs.header.sequence, now, tick);
+    const bool lacks = lacks_something(table, row, will_speak, steps, mark);
+    consider(requester, author, lacks, theirs.header.sequence, now, tick);
   }
 }
 

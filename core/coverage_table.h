@@ -64,6 +64,7 @@ class CoverageTable {
   /// Row `i` of row_count(), in ascending order of authors.
   Holding holding(std::size_t i) const;
   const Author& author(std::size_t i) const { return rows_[i].author; }
+  std::int64_t fewest_steps(std::size_t i) const { return rows_[i].fewest_steps(); }
   /// The row of `author`; all 0 if it is unknown.
   Holding holding(const Author& author) const;
 

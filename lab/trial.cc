@@ -249,7 +249,7 @@ TrialResult Trial::run() {
   while (!everybody_finished() && !invariants_.violation()) {
     now_ = std::max(now_, next_time());
     if (now_ >= deadline_) break;
-    if (static_cast<double>(figures_.messages) > kMostMessagesPer_s * (in_seconds(now_) + 1)) break;
+    if (static_cast<double>(figures_.messages) > kMostMessagesPer_s * (progress_s() + 1)) break;
     if (!healed_) {
       end_incidents();
       begin_incidents();

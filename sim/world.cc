@@ -22,6 +22,9 @@ constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
 constexpr auto kQuestionPeriod = 100ms;
 constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
+/// So many states that the logger lacks it gets with each repeat. A row needs two: its tick's, and
+/// the next one's, which carries the applied velocity.
+constexpr Tick kHelpTicks = 16;
 /// How long the end is repeated to whoever has not heard of it, after the record's last progress.
 constexpr auto kFarewell = 2s;
 
@@ -333,11 +336,10 @@ void World::remember_and_publish(Instant now, Outbox& out) {
 }
 
 void World::help_logger(Outbox& out) {
-  // A row needs the state of its tick and the next one's, which carries the applied velocity.
   if (!recorded_) return;
   for (const auto& states : history_) {
     const Tick tick = states.front().header.tick;
-    if (tick > *recorded_ && tick <= *recorded_ + 2 && tick < tick_) publish(states, out);
+    if (tick > *recorded_ && tick <= *recorded_ + kHelpTicks && tick < tick_) publish(states, out);
   }
 }
 
