@@ -80,13 +80,13 @@ class Desk {
     const auto now = ProgressLine::Clock::now();
     const auto done = static_cast<double>(totals_.trials);
     const auto all = static_cast<double>(options_.seeds.count());
-    const double per_s = rate_.measure(done, now);
+    const double per_s = done / std::chrono::duration<double>(now - since_).count();
     if (!progress_.due(now) || totals_.trials == 0) return;
     std::vector<std::string> facts{std::to_string(totals_.trials) + " of " +
                                    std::to_string(options_.seeds.count()) + " seeds"};
-    if (per_s > 0) facts.push_back(clock_text((all - done) / per_s) + " left");
+    facts.push_back(clock_text((all - done) / per_s) + " left");
     facts.push_back(std::to_string(totals_.failed) + " failed");
-    if (per_s > 0) facts.push_back(text_of("%.0f runs/s", per_s));
+    facts.push_back(text_of("%.0f runs/s", per_s));
     progress_.show(done / all, facts);
   }
 
@@ -101,7 +101,7 @@ class Desk {
   const TrialsOptions& options_;
   std::ostream& csv_;
   ProgressLine progress_;
-  Rate rate_;
+  const ProgressLine::Clock::time_point since_ = ProgressLine::Clock::now();
   TrialTotals totals_;
   std::map<std::uint64_t, std::string> rows_;  // that wait for smaller seeds
   std::uint64_t next_row_;

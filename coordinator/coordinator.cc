@@ -66,6 +66,7 @@ void Coordinator::receive(const Message& message, Instant now) {
   if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
   if (takeover_ != Takeover::kNever) {
     if (std::holds_alternative<WorldState>(message)) tick_ = std::max(tick_, from.tick);
+    if (from.sender >= 0) team_tick_ = std::max(team_tick_, from.tick);
     return;
   }
   if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);
@@ -142,7 +143,10 @@ void Coordinator::take_over(Instant now) {
   reason_ = follower_.reason();
   // The predecessor's, if the world has not spoken meanwhile.
   for (const MissionPart& part : follower_.parts()) tick_ = std::max(tick_, part.header.tick);
-  revision_ = follower_.revision() + kRevisionLead;
+  // Above all that former successors have said, also what only agents know that we do not hear: the
+  // later a takeover, the higher its revisions.
+  const Tick now_tick = std::min(std::max(tick_, team_tick_), mission_->timing.tick_count);
+  revision_ = std::max(follower_.revision() + kRevisionLead, (now_tick + 1) * kRevisionLead);
   if (follower_.over()) ended_ = now;
   tick_since_ = now;
   for (const RosterEntry& entry : roster_) members_[entry.author].heard = now;

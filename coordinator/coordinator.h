@@ -91,6 +91,7 @@ class Coordinator {
   Takeover takeover_;
   bool took_over_ = false;
   std::optional<Instant> looking_since_, found_;
+  Tick team_tick_ = 0;  // the newest of any agent
   Instant next_question_{};
   Sequencer sequencer_;
 

@@ -3,39 +3,45 @@
 #include <algorithm>
 
 namespace ergocast {
+namespace {
+
+/// Incomplete revisions that are kept.
+constexpr std::size_t kMostRevisions = 4;
+
+}  // namespace
 
 bool MissionFollower::receive(const MissionPart& part) {
-  if (part.header.sender != kCoordinator || part.revision <= revision_ ||
-      part.revision < collecting_revision_ || part.parts < 1 || part.parts > kMaxPlanParts ||
-      part.part < 0 || part.part >= part.parts) {
+  if (part.header.sender != kCoordinator || part.revision <= revision_ || part.parts < 1 ||
+      part.parts > kMaxPlanParts || part.part < 0 || part.part >= part.parts) {
     return false;
   }
-  if (part.revision > collecting_revision_ ||
-      collected_.size() != static_cast<std::size_t>(part.parts)) {
-    collecting_revision_ = part.revision;
-    collected_.assign(static_cast<std::size_t>(part.parts), std::nullopt);
+  Parts& parts = collected_[part.revision];
+  if (parts.size() != static_cast<std::size_t>(part.parts)) {
+    parts.assign(static_cast<std::size_t>(part.parts), std::nullopt);
   }
-  collected_[static_cast<std::size_t>(part.part)] = part;
-  if (!std::all_of(collected_.begin(), collected_.end(), [](const auto& p) { return p.has_value(); })) {
-    return false;
+  parts[static_cast<std::size_t>(part.part)] = part;
+  if (std::all_of(parts.begin(), parts.end(), [](const auto& p) { return p.has_value(); })) {
+    commit(part.revision, parts);
+    collected_.erase(collected_.begin(), collected_.upper_bound(revision_));
+    return true;
   }
-  commit();
-  return true;
+  // Several at once: the rest of the newest may have died with its coordinator.
+  if (collected_.size() > kMostRevisions) collected_.erase(collected_.begin());
+  return false;
 }
 
-void MissionFollower::commit() {
-  revision_ = collecting_revision_;
-  state_ = collected_.front()->state;
-  reason_ = collected_.front()->reason;
+void MissionFollower::commit(std::int64_t revision, Parts& parts) {
+  revision_ = revision;
+  state_ = parts.front()->state;
+  reason_ = parts.front()->reason;
   roster_.clear();
   plan_.clear();
   parts_.clear();
-  for (auto& part : collected_) {
+  for (auto& part : parts) {
     roster_.insert(roster_.end(), part->roster.begin(), part->roster.end());
     plan_.insert(plan_.end(), part->plan.begin(), part->plan.end());
     parts_.push_back(std::move(*part));
   }
-  collected_.clear();
   // A run has one plan: it is decoded once, and later revisions change only roster and state.
   if (mission_ || plan_unreadable_) return;
   mission_ = decode_plan_(plan_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,8 +44,6 @@ class MissionFollower {
   const RosterEntry* entry_of(Incarnation incarnation) const;
 
  private:
-  void commit();
-
   PlanDecoder decode_plan_;
   std::optional<Mission> mission_;
   bool plan_unreadable_ = false;
@@ -55,8 +54,10 @@ class MissionFollower {
   std::vector<std::byte> plan_;
   std::vector<MissionPart> parts_;
 
-  std::int64_t collecting_revision_ = -1;
-  std::vector<std::optional<MissionPart>> collected_;
+  using Parts = std::vector<std::optional<MissionPart>>;
+  void commit(std::int64_t revision, Parts& parts);
+
+  std::map<std::int64_t, Parts> collected_;  // by revision, none of them complete
 };
 
 /// Sequence numbers for one sender, counted per bus, so that a gap on a bus is a loss on that bus.

@@ -99,7 +99,7 @@ class Trial {
   void supervise_coordinator();
   std::string still_running();
   bool timed_out();
-  bool mission_over();
+  bool mission_over() const;
   bool everybody_finished();
   void check_recovered();
   TrialResult result();
@@ -126,6 +126,7 @@ class Trial {
   std::vector<Ending> endings_;
   double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
   std::optional<Instant> healed_;
+  bool end_said_ = false;  // by a coordinator
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
 
   Outbox outbox_;
@@ -433,6 +434,9 @@ void Trial::publish(Seat seat) {
     invariants_.decoded(t_s, decoded, false);
     if (std::holds_alternative<Refusal>(decoded)) continue;
     ++figures_.messages;
+    if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) {
+      end_said_ |= part->state == MissionState::kEnded || part->state == MissionState::kFailed;
+    }
     figures_.digests += std::holds_alternative<Digest>(outgoing.message);
     figures_.contributions += std::holds_alternative<Contribution>(outgoing.message);
     figures_.relayed += outgoing.relayer != kUnassigned;
@@ -498,11 +502,8 @@ std::vector<Holder> Trial::living() {
   return living;
 }
 
-bool Trial::mission_over() {
-  const bool ended = coordinator_->mission() != nullptr &&
-                     (coordinator_->state() == MissionState::kEnded ||
-                      coordinator_->state() == MissionState::kFailed);
-  return ended || invariants_.last_tick() >= mission_.timing.tick_count;
+bool Trial::mission_over() const {
+  return end_said_ || invariants_.last_tick() >= mission_.timing.tick_count;
 }
 
 bool Trial::everybody_finished() {

@@ -85,6 +85,10 @@ void World::ask(Tick known, Outbox& out) {
 }
 
 void World::ask_team(Instant now, Outbox& out) {
+  // With no answer at all nobody could answer a tick either, and we would begin at the wrong one.
+  const bool heard = std::any_of(bodies_.begin(), bodies_.end(),
+                                 [](const auto& one) { return one.second.command.has_value(); });
+  if (!heard) asking_since_ = now;
   if (team_has_answered() || now - *asking_since_ >= kQuestionPatience) return begin(now);
   if (now < next_question_) return;
   next_question_ = now + kQuestionPeriod;
@@ -106,6 +110,10 @@ void World::begin(Instant now) {
   next_tick_ = now;
   repeat_period_ = kRepeatPeriod;
   for (const auto& [id, body] : bodies_) tick_ = std::max(tick_, body.answered());
+  // Even if only newcomers have answered: not before what the roster says has happened.
+  for (const RosterEntry& entry : follower_.roster()) {
+    tick_ = std::max({tick_, entry.active_from, entry.active_until});
+  }
   begun_at_ = tick_;
   for (auto& [id, body] : bodies_) recall(id, body);
 }

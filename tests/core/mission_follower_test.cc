@@ -72,13 +72,22 @@ TEST(MissionFollower, NeverMixesTwoRevisions) {
   MissionFollower follower = new_follower();
   follower.receive(part_of(1, 0));
   follower.receive(part_of(1, 1));
-  follower.receive(part_of(2, 2));  // the newer one starts afresh
-  follower.receive(part_of(1, 2));
-  EXPECT_FALSE(follower.receive(part_of(1, 3))) << "the older is given up";
+  follower.receive(part_of(2, 2));
   follower.receive(part_of(2, 3));
+  follower.receive(part_of(1, 2));
+  EXPECT_TRUE(follower.receive(part_of(1, 3)));
+  EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 11, 12, 13}));
   follower.receive(part_of(2, 0));
   EXPECT_TRUE(follower.receive(part_of(2, 1)));
   EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{20, 21, 22, 23}));
+}
+
+TEST(MissionFollower, APartOfARevisionThatNeverCompletesBlocksNoOlderOne) {
+  MissionFollower follower = new_follower();
+  for (int revision = 10; revision < 100; ++revision) follower.receive(part_of(revision, 0));
+  follower.receive(part_of(100, 0));
+  for (int p = 0; p < kParts - 1; ++p) EXPECT_FALSE(follower.receive(part_of(98, p)));
+  EXPECT_TRUE(follower.receive(part_of(98, kParts - 1)));
 }
 
 TEST(MissionFollower, KeepsWhatItHasUntilANewerRevisionIsComplete) {

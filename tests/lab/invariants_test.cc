@@ -1,0 +1,268 @@
+// Every invariant can fail: states that violate it, and the same states without the violation.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "lab/invariants.h"
+
+namespace ergocast::test {
+namespace {
+
+using lab::Holder;
+using lab::Invariants;
+
+class InvariantsTest : public ::testing::Test {
+ protected:
+  InvariantsTest() : mission_(mission()), team_(mission_) {
+    for (const Author& author : {kOne, kTwo, kLeft}) {
+      team_.born(author);
+      roster_.push_back({author, 0, author == kLeft ? 10 : -1});
+    }
+    team_.sent(0, world(99, {5, 5}), nullptr);
+  }
+
+  static Mission mission() {
+    Mission m;
+    m.domain = {{0, 0}, {10, 10}};
+    m.basis.modes_x = m.basis.modes_y = 12;
+    m.target_coefficients = Coefficients::Zero(12, 12);
+    m.law.u_max_mps = 2;
+    m.timing.dt_s = 0.1;
+    m.timing.tick_count = 100;
+    m.starts_m.resize(2);
+    m.goal_ergodic_metric = 0.1;
+    return m;
+  }
+
+  static Outgoing world(Tick tick, const Eigen::Vector2d& x_m) {
+    WorldState state;
+    state.header.tick = tick;
+    state.vehicle_count = 1;
+    state.vehicles[0].position_m << x_m, 0;
+    return {Bus::kWorld, state};
+  }
+  static Outgoing command(double speed_mps) {
+    Command c;
+    c.header.tick = 3;
+    c.velocity_mps = {speed_mps, 0, 0};
+    return {Bus::kCommand, c};
+  }
+  void cover(CoverageTable& table, const Author& author, int steps, double x_m = 3) {
+    for (int i = 0; i < steps; ++i) {
+      table.add_sample(author, BasisAt({x_m, 4}, mission_.domain, mission_.basis));
+    }
+  }
+  /// An agent that knows of everybody.
+  Holder holder(const CoverageTable& table, Coefficients& c, const Author& self = kOne) {
+    c = Coefficients::Zero(12, 12);
+    table.average(c);
+    return {self, &table, &c, &roster_, 90};
+  }
+  /// The name of what was violated.
+  std::string violated() const { return team_.violation() ? team_.violation()->invariant : ""; }
+
+  static constexpr Author kOne{0, 11}, kTwo{1, 22}, kLeft{1, 21};
+  Mission mission_;
+  Invariants team_;
+  std::vector<RosterEntry> roster_;
+  Coefficients c_one_, c_two_;
+};
+
+TEST_F(InvariantsTest, PositionsAreInTheDomain) {
+  EXPECT_EQ(violated(), "");
+  team_.sent(1, world(1, {10.1, 5}), nullptr);
+  EXPECT_EQ(violated(), "positions are in the domain");
+}
+
+TEST_F(InvariantsTest, InputsAreBounded) {
+  team_.sent(1, command(2), nullptr);
+  EXPECT_EQ(violated(), "");
+  team_.sent(1, command(2.0001), nullptr);
+  EXPECT_EQ(violated(), "|u| <= u_max");
+}
+
+TEST_F(InvariantsTest, NotANumberIsNoInput) {
+  team_.sent(1, command(std::numeric_limits<double>::quiet_NaN()), nullptr);
+  EXPECT_EQ(violated(), "|u| <= u_max");
+}
+
+TEST_F(InvariantsTest, SumsAreAtMostTheTimeCovered) {
+  CoverageTable table(mission_.basis, 0.1);
+  cover(table, kOne, 20);
+  Contribution block = table.block(kOne, 0);
+  team_.sent(1, {Bus::kSwarm, block}, nullptr);
+  EXPECT_EQ(violated(), "");
+  block.sums[5] = 2.1;
+  team_.sent(1, {Bus::kSwarm, block}, nullptr);
+  EXPECT_EQ(violated(), "|S_mn| <= S_00 = steps dt");
+}
+
+TEST_F(InvariantsTest, RelaysAnswerDigests) {
+  CoverageTable table(mission_.basis, 0.1);
+  cover(table, kTwo, 20);
+  const Holder one = holder(table, c_one_);
+  Digest asks;
+  asks.entry_count = 1;
+  team_.heard(kOne, asks);
+  const Outgoing relay{Bus::kSwarm, table.block(kTwo, 0), 0};
+  team_.sent(1, relay, &one);
+  team_.sent(1, relay, &one);
+  EXPECT_EQ(violated(), "");
+  team_.sent(1, relay, &one);
+  EXPECT_EQ(violated(), "a relay answers a digest");
+}
+
+TEST_F(InvariantsTest, DigestsSayWhatIsHeld) {
+  CoverageTable table(mission_.basis, 0.1);
+  cover(table, kOne, 20);
+  const Holder one = holder(table, c_one_);
+  Digest digest;
+  digest.entry_count = 3;
+  digest.entries[0] = {kOne, 20, 0};
+  digest.entries[1] = {kLeft, 0, 0};
+  digest.entries[2] = {kTwo, 0, 0};
+  team_.sent(1, {Bus::kSwarm, digest}, &one);
+  EXPECT_EQ(violated(), "");
+  digest.entries[0].steps = 21;
+  team_.sent(1, {Bus::kSwarm, digest}, &one);
+  EXPECT_EQ(violated(), "a digest says what is held");
+}
+
+TEST_F(InvariantsTest, DamagedMessagesAreRefusedAndOthersAreNot) {
+  team_.decoded(1, Refusal::kTag, true);
+  team_.decoded(1, RecordAck{}, false);
+  EXPECT_EQ(violated(), "");
+  Invariants other(mission_);
+  other.decoded(1, RecordAck{}, true);
+  EXPECT_EQ(other.violation()->invariant, "no damaged message is accepted");
+  team_.decoded(1, Refusal::kRange, false);
+  EXPECT_EQ(violated(), "no whole message is refused");
+}
+
+TEST_F(InvariantsTest, WhatIsHeldNeverShrinks) {
+  CoverageTable much(mission_.basis, 0.1), less(mission_.basis, 0.1);
+  cover(much, kTwo, 20);
+  cover(less, kTwo, 19);
+  team_.answered(1, holder(much, c_one_));
+  EXPECT_EQ(violated(), "");
+  team_.answered(2, holder(less, c_one_));
+  EXPECT_EQ(violated(), "what is held never shrinks");
+}
+
+TEST_F(InvariantsTest, NoStepCountsTwice) {
+  CoverageTable table(mission_.basis, 0.1);
+  cover(table, kTwo, 60);
+  cover(table, kLeft, 41);  // 100 ticks, and one sampled by both
+  team_.answered(1, holder(table, c_one_));
+  EXPECT_EQ(violated(), "");
+  cover(table, kLeft, 1);
+  team_.answered(2, holder(table, c_one_));
+  EXPECT_EQ(violated(), "no step counts twice");
+}
+
+TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {
+  CoverageTable table(mission_.basis, 0.1), one(mission_.basis, 0.1), two(mission_.basis, 0.1);
+  for (CoverageTable* rows : {&table, &one}) cover(*rows, kOne, 30, 2);
+  for (CoverageTable* rows : {&table, &two}) cover(*rows, kTwo, 10, 8);
+  const Holder right = holder(table, c_one_);
+  team_.answered(1, right);
+  EXPECT_EQ(violated(), "");
+  Coefficients a = Coefficients::Zero(12, 12), b = a;
+  one.average(a);
+  two.average(b);
+  c_one_ = (a + b) / 2;
+  team_.answered(2, right);
+  EXPECT_EQ(violated(), "c_k = sum S / sum elapsed of what is held");
+}
+
+TEST_F(InvariantsTest, HonestMessagesAreNotRefused) {
+  RefusalCounts counts{};
+  team_.refused(1, kOne, counts);
+  EXPECT_EQ(violated(), "");
+  counts[static_cast<std::size_t>(Refusal::kRange)] = 1;
+  team_.refused(1, kOne, counts);
+  EXPECT_EQ(violated(), "no honest message is refused");
+}
+
+TEST_F(InvariantsTest, NobodyEndsBeforeTheMission) {
+  team_.finished(1, kOne, "mission complete", true);
+  EXPECT_EQ(violated(), "");
+  team_.finished(1, kOne, "lonely", false);
+  EXPECT_EQ(violated(), "no agent ends before the mission");
+}
+
+TEST_F(InvariantsTest, NobodyAsksForThePast) {
+  team_.wakeup(1, "agent 0", false);
+  EXPECT_EQ(violated(), "");
+  team_.wakeup(1, "agent 0", true);
+  EXPECT_EQ(violated(), "nobody asks to be woken in the past");
+}
+
+TEST_F(InvariantsTest, EverybodyLearnsEveryRow) {
+  CoverageTable one(mission_.basis, 0.1), two(mission_.basis, 0.1);
+  for (CoverageTable* table : {&one, &two}) cover(*table, kTwo, 20);
+  cover(one, kLeft, 10);
+  cover(two, kLeft, 10);
+  team_.recovered(1, {holder(one, c_one_), holder(two, c_two_, kTwo)});
+  EXPECT_EQ(violated(), "");
+  cover(one, kLeft, 1);
+  team_.recovered(2, {holder(one, c_one_), holder(two, c_two_, kTwo)});
+  EXPECT_EQ(violated(), "everybody learns every row");
+}
+
+TEST_F(InvariantsTest, ViewsAgreeWithinTheirStaleness) {
+  CoverageTable one(mission_.basis, 0.1);
+  cover(one, kTwo, 50);
+  const Holder right = holder(one, c_one_);
+  team_.recovered(1, {right});
+  EXPECT_EQ(violated(), "");
+  c_one_(3, 3) += 0.5;
+  team_.recovered(2, {right});
+  EXPECT_EQ(violated(), "all agree on c_k within their staleness");
+  EXPECT_GT(team_.largest_view_error(), 0);
+}
+
+TEST_F(InvariantsTest, EverybodyIsBack) {
+  Holder outside;
+  outside.self = kOne;
+  team_.recovered(1, {outside});
+  EXPECT_EQ(violated(), "everybody is back in the mission");
+}
+
+TEST_F(InvariantsTest, RelaysStopOnceAllKnowAll) {
+  CoverageTable table(mission_.basis, 0.1);
+  cover(table, kTwo, 20);
+  const Holder one = holder(table, c_one_);
+  Digest asks;
+  asks.entry_count = 10;
+  team_.heard(kOne, asks);
+  const Outgoing relay{Bus::kSwarm, table.block(kTwo, 0), 0};
+  team_.sent(1, relay, &one);
+  team_.recovered(2, {one});
+  EXPECT_EQ(violated(), "");
+  team_.sent(3, relay, &one);
+  team_.recovered(4, {one});
+  EXPECT_EQ(violated(), "relays stop once all know all");
+}
+
+TEST_F(InvariantsTest, TheMissionEndsWell) {
+  RunFacts good;
+  good.ergodic_metric_last = 0.1;
+  const auto said = [&](const std::string& running, const std::string& failure, Tick tick, double metric) {
+    Invariants team(mission_);
+    team.sent(0, world(tick, {1, 1}), nullptr);
+    RunFacts facts;
+    facts.ergodic_metric_last = metric;
+    team.ended(1, running, failure, facts);
+    return team.violation() ? team.violation()->invariant : "";
+  };
+  EXPECT_EQ(said("", "", 100, 0.1), "");
+  EXPECT_EQ(said("agent 1", "", 100, 0.1), "everybody ends");
+  EXPECT_EQ(said("", "bad luck", 100, 0.1), "the mission does not fail");
+  EXPECT_EQ(said("", "", 99, 0.1), "the mission reaches its last tick");
+  EXPECT_EQ(said("", "", 100, 0.2), "the goal is reached");
+}
+
+}  // namespace
+}  // namespace ergocast::test

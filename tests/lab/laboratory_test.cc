@@ -1,0 +1,193 @@
+// Missions under faults: what a seed gives it gives again, every kind of fault happens, and without
+// any the laboratory flies the mission that lab/swarm.h flies.
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "lab/clock.h"
+#include "lab/network.h"
+#include "lab/swarm.h"
+#include "lab/trial.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::test {
+namespace {
+
+using lab::Faults;
+using lab::TrialFigures;
+using lab::TrialResult;
+
+const Scenario& faulty_team() {
+  static const Scenario scenario =
+      std::get<Scenario>(Scenario::load(ERGOCAST_SCENARIO_DIR "/faulty_team.textproto"));
+  return scenario;
+}
+
+const Scenario& in_lockstep() {
+  static const Scenario scenario = [] {
+    Overrides overrides;
+    overrides.pace = Pace::kLockstep;
+    overrides.duration_s = 20;
+    return std::get<Scenario>(
+        Scenario::load(ERGOCAST_SCENARIO_DIR "/paper_fig2b.textproto", overrides));
+  }();
+  return scenario;
+}
+
+struct Flight {
+  TrialResult result;
+  std::string trajectory;
+};
+
+Flight fly(const Faults& faults, std::uint64_t seed, const Scenario& scenario = faulty_team()) {
+  std::ostringstream trajectory, metrics;
+  Flight flight;
+  flight.result = lab::fly_trial({scenario.plan(), decode_plan, faults, "test"}, seed, trajectory, metrics);
+  flight.trajectory = trajectory.str();
+  return flight;
+}
+
+std::string problem(const TrialResult& result) {
+  return result.violation ? to_string(*result.violation) : "";
+}
+
+TEST(Laboratory, TheSameSeedGivesTheSameMission) {
+  for (const std::uint64_t seed : {1U, 10U, 17U}) {
+    const Flight first = fly(lab::drawn(seed), seed), second = fly(lab::drawn(seed), seed);
+    EXPECT_EQ(first.trajectory, second.trajectory) << seed;
+    EXPECT_EQ(first.result.figures.messages, second.result.figures.messages) << seed;
+    EXPECT_EQ(first.result.figures.faults.lost, second.result.figures.faults.lost) << seed;
+    EXPECT_EQ(first.result.figures.view_error, second.result.figures.view_error) << seed;
+  }
+  EXPECT_NE(fly(lab::drawn(1), 1).trajectory, fly(lab::drawn(2), 2).trajectory);
+}
+
+TEST(Laboratory, WithoutFaultsNothingIsDone) {
+  const TrialResult result = fly({}, 1).result;
+  EXPECT_EQ(problem(result), "");
+  const TrialFigures& f = result.figures;
+  EXPECT_EQ(f.faults.lost + f.faults.cut + f.faults.duplicated + f.faults.corrupted +
+                f.faults.delayed + f.faults.reordered + f.faults.clogged + f.faults.clogs,
+            0);
+  EXPECT_EQ(f.splits + f.one_way_cuts + f.agent_crashes + f.coordinator_crashes + f.world_crashes +
+                f.skewed_clocks,
+            0);
+  EXPECT_EQ(f.agent_steps, 4 * 600);
+  EXPECT_EQ(f.relayed, 0);
+}
+
+TEST(Laboratory, WithoutFaultsItFliesWhatTheFastSimulationFlies) {
+  const Scenario& scenario = in_lockstep();
+  std::ostringstream trajectory, metrics;
+  lab::Options options;
+  options.plan = scenario.plan();
+  options.decode_plan = decode_plan;
+  options.agents = static_cast<int>(scenario.mission().starts_m.size());
+  lab::Swarm swarm(std::move(options), trajectory, metrics);
+  swarm.run();
+  EXPECT_EQ(fly({}, scenario.mission().seed, scenario).trajectory, trajectory.str());
+}
+
+TEST(Laboratory, LostAndLateMessagesChangeNoLockstepTrajectory) {
+  Faults faults;
+  faults.loss = 0.2;
+  faults.duplication = 0.2;
+  faults.corruption = 0.1;
+  faults.reordering = 0.2;
+  faults.reordering_max_s = 0.05;
+  const Flight faulty = fly(faults, 3, in_lockstep()), clean = fly({}, 3, in_lockstep());
+  EXPECT_EQ(problem(faulty.result), "");
+  EXPECT_GT(faulty.result.figures.faults.lost, 1000);
+  EXPECT_EQ(faulty.trajectory, clean.trajectory);
+}
+
+struct Kind {
+  const char* name;
+  void (*set)(Faults&);
+  std::int64_t (*happened)(const TrialFigures&);
+};
+
+const Kind kKinds[] = {
+    {"Loss", [](Faults& f) { f.loss = 0.3; }, [](const TrialFigures& f) { return f.faults.lost; }},
+    {"Duplication", [](Faults& f) { f.duplication = 0.3; },
+     [](const TrialFigures& f) { return f.faults.duplicated; }},
+    {"Corruption", [](Faults& f) { f.corruption = 0.3; },
+     [](const TrialFigures& f) { return f.faults.corrupted; }},
+    {"Delay", [](Faults& f) { f.delay_mean_s = 0.05, f.delay_max_s = 0.3; },
+     [](const TrialFigures& f) { return f.faults.delayed; }},
+    {"Reordering", [](Faults& f) { f.reordering = 0.3, f.reordering_max_s = 0.5; },
+     [](const TrialFigures& f) { return f.faults.reordered; }},
+    {"Clogging", [](Faults& f) { f.clogging = 0.01, f.clog_max_s = 2; },
+     [](const TrialFigures& f) { return f.faults.clogged; }},
+    {"Split", [](Faults& f) { f.partitions_per_s = 0.3, f.partition_max_s = 5; },
+     [](const TrialFigures& f) { return f.splits * f.faults.cut; }},
+    {"OneWayCut",
+     [](Faults& f) { f.partitions_per_s = 0.3, f.partition_max_s = 5, f.one_way_share = 1; },
+     [](const TrialFigures& f) { return f.one_way_cuts * f.faults.cut; }},
+    {"AgentCrash", [](Faults& f) { f.agent_crashes_per_s = 0.3, f.downtime_max_s = 2; },
+     [](const TrialFigures& f) { return f.agent_crashes * f.recoveries; }},
+    {"CoordinatorCrash", [](Faults& f) { f.coordinator_crashes_per_s = 0.3, f.downtime_max_s = 2; },
+     [](const TrialFigures& f) { return f.coordinator_crashes; }},
+    {"WorldCrash", [](Faults& f) { f.world_crashes_per_s = 0.3, f.downtime_max_s = 2; },
+     [](const TrialFigures& f) { return f.world_crashes; }},
+    {"SkewedClocks", [](Faults& f) { f.clock_rate_error = 0.05, f.clock_offset_max_s = 1e6; },
+     [](const TrialFigures& f) { return f.skewed_clocks; }},
+};
+
+class EachFault : public ::testing::TestWithParam<Kind> {};
+
+TEST_P(EachFault, HappensAndIsSurvived) {
+  Faults faults;
+  GetParam().set(faults);
+  const TrialResult result = fly(faults, 5).result;
+  EXPECT_GT(GetParam().happened(result.figures), 0);
+  EXPECT_EQ(problem(result), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Laboratory, EachFault, ::testing::ValuesIn(kKinds),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {
+  for (const lab::FaultField& field : lab::fault_fields()) {
+    int on = 0;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+      const double value = lab::drawn(seed).*field.value;
+      EXPECT_GE(value, 0) << field.name;
+      EXPECT_LE(value, field.most) << field.name;
+      on += value > 0 ? 1 : 0;
+    }
+    EXPECT_GT(on, 20) << field.name;
+    if (std::string(field.name) != "downtime_max_s") {
+      EXPECT_LT(on, 80) << field.name;
+    }
+  }
+}
+
+TEST(Laboratory, ADamagedMessageIsNeverWhatItWas) {
+  std::vector<std::byte> bytes(300);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i);
+  for (std::uint64_t copy = 0; copy < 1000; ++copy) {
+    auto damaged = bytes;
+    lab::damage(damaged, 1, copy);
+    EXPECT_NE(damaged, bytes) << copy;
+  }
+}
+
+TEST(Laboratory, ASkewedClockIsReadBackToTheFirstMoment) {
+  const lab::SkewedClock clock(1.0371, seconds(12345.678));
+  for (std::int64_t ns = 1; ns < 100'000'000'000; ns = ns * 3 + 1) {
+    const Instant wanted = clock.local(Instant(PacingClock::duration(ns)));
+    const Instant at = clock.when(wanted);
+    EXPECT_GE(clock.local(at), wanted) << ns;
+    EXPECT_LT(clock.local(at - PacingClock::duration(2)), wanted) << ns;
+  }
+}
+
+TEST(Laboratory, TheMissionLeavesTimeForLiveness) {
+  const double healed_s = (1 - lab::kFaultyShare) * 60;
+  EXPECT_LT(lab::recovery_bound_s(faulty_team().mission(), {}), healed_s - 5);
+}
+
+}  // namespace
+}  // namespace ergocast::test
