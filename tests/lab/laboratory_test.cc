@@ -185,7 +185,7 @@ TEST(Laboratory, ASkewedClockIsReadBackToTheFirstMoment) {
 }
 
 TEST(Laboratory, TheMissionLeavesTimeForLiveness) {
-  const double healed_s = (1 - lab::kFaultyShare) * 60;
+  const double healed_s = (1 - lab::Faults().lasting_share) * 60;
   EXPECT_LT(lab::recovery_bound_s(faulty_team().mission(), {}), healed_s - 5);
 }
 
