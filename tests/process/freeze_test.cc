@@ -8,17 +8,15 @@ namespace {
 
 class Freeze : public FlyingMission {};
 
-struct InLockstep : Freeze, ::testing::WithParamInterface<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Processes, InLockstep,
-                         ::testing::Values("agent --id 1", "coordinator", "sim", "logger"),
-                         [](const auto& name) {
-                           const std::string text = name.param;
-                           return text.substr(0, text.find(' '));
-                         });
+struct FreezeInLockstep : Freeze, ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Processes, FreezeInLockstep,
+                         ::testing::Values("agent", "coordinator", "sim", "logger"),
+                         [](const auto& process) { return std::string(process.param); });
 
-TEST_P(InLockstep, EverybodyWaitsOrGoesOnAndTheTrajectoryIsTheSame) {
+TEST_P(FreezeInLockstep, EverybodyWaitsOrGoesOnAndTheTrajectoryIsTheSame) {
   Child mission = launch(scenario());
-  freeze({std::string("ergocast-") + GetParam()});
+  const std::string process = GetParam();
+  freeze(process == "agent" ? agent(1) : std::vector{"ergocast-" + process});
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["restarts"], 0);
