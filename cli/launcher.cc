@@ -91,13 +91,7 @@ void Launcher::attend(Instant now, Stage stage) {
 void Launcher::take_note(Process& process, Instant now, Stage stage) {
   process.end_noted = true;
   const auto code = process.child->exit_code();
-  if (process.role == Role::kCoordinator && (code == kExitDone || code == kExitFailed)) {
-    // Its last words may have been lost, or we may have been asleep.
-    if (code == kExitFailed) fail("the coordinator ended the mission; see log/coordinator.log");
-    return expect_end(now);
-  }
-  const bool sees_the_end = process.role == Role::kWorld || process.role == Role::kLogger;
-  if (code == kExitDone && sees_the_end && !runs(Role::kCoordinator)) expect_end(now);
+  if (tells_the_end(process)) expect_end(now);
   if (ended_as_expected(process)) return;
   // One that ends in order may have heard of the mission's end before us.
   if (code != kExitDone) explain(process);
@@ -106,14 +100,24 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   if (cannot_record) fail("the record cannot be written; see log/logger.log");
   if (process.role == Role::kLogger && (cannot_record || end_expected_)) record_broken_ = true;
   if (end_expected_ || failure_) return;
-  if (code != kExitDone && process.restarts >= kMaxRestarts) return give_up(process, stage);
+  // A coordinator gives way to another, or has found no mission to take over.
+  const bool gave_way = process.role == Role::kCoordinator && code == kExitFailed;
+  const bool too_often = code != kExitDone && process.restarts >= kMaxRestarts;
+  if (gave_way || too_often) return give_up(process, stage);
   process.restart_at = now + back_off(process.restarts);
+}
+
+/// Its last words may have been lost, or we may have been asleep.
+bool Launcher::tells_the_end(const Process& process) {
+  return process.child->exit_code() == kExitDone && process.role != Role::kAgent &&
+         !runs(Role::kCoordinator);
 }
 
 bool Launcher::ended_as_expected(const Process& process) const {
   if (!end_expected_) return false;
   const auto code = process.child->exit_code();
-  return code == kExitDone || (code == kExitFailed && process.role == Role::kAgent);
+  const bool knows_failure = process.role == Role::kAgent || process.role == Role::kCoordinator;
+  return code == kExitDone || (code == kExitFailed && knows_failure);
 }
 
 void Launcher::restart(Process& process, Stage stage) {
@@ -142,8 +146,9 @@ void Launcher::give_up(Process& process, Stage stage) {
 }
 
 std::string Launcher::loss_of(const Process& process) {
-  return process.name + " " + process.child->fate() + " after " + std::to_string(kMaxRestarts) +
-         " restarts";
+  const std::string loss = process.name + " " + process.child->fate();
+  if (process.restarts < kMaxRestarts) return loss;
+  return loss + " after " + std::to_string(kMaxRestarts) + " restarts";
 }
 
 void Launcher::explain(const Process& process) {

@@ -52,9 +52,9 @@ class Launcher {
   const std::optional<std::string>& failure() const { return failure_; }
   /// Whether the record was left unfinished for good.
   bool record_broken() const { return record_broken_; }
-  /// Whether the coordinator has died once too often.
+  /// Whether the coordinator has died once too often, or given way to another.
   bool leaderless() const;
-  /// "; NAME was killed by SIGSEGV after 3 restarts" for each process that the team went on without.
+  /// "; coordinator was killed by SIGSEGV after 3 restarts": whom the team went on without.
   std::string losses() const;
 
   /// Ends the remaining processes: 1 politely (SIGTERM), 2 at once (SIGKILL).
@@ -80,6 +80,7 @@ class Launcher {
   std::optional<std::string> launch(Process& process, bool resume = false);
   bool runs(Role role);
   void take_note(Process& process, Instant now, Stage stage);
+  bool tells_the_end(const Process& process);
   bool ended_as_expected(const Process& process) const;
   void restart(Process& process, Stage stage);
   void give_up(Process& process, Stage stage);

@@ -73,10 +73,12 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
     summary["result"] = "failed";
     summary["reason"] = reason;
   };
-  // A mission that came to its end, with a record that did not: the logger was given up.
   const bool complete = mission.stage() == Stage::kOver && !mission.failed() && !mission.stopping();
   const bool cut_short = complete && summary.value("result", "") != "done";
-  if (cut_short) fail("the mission is complete, but its record is not: the logger fell behind");
+  if (cut_short) {
+    const char* why = launcher.record_broken() ? "" : ": the logger fell behind";
+    fail(std::string("the mission is complete, but its record is not") + why);
+  }
   if (launcher.failure()) fail(*launcher.failure());
   if (mission.failed()) fail(mission.reason());
   summary["reason"] = summary.value("reason", "") + launcher.losses();

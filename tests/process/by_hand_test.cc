@@ -53,6 +53,18 @@ TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOver) {
   EXPECT_TRUE(moves_on()) << second.said();
 }
 
+TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
+  Child mission = launch(scenario(), {"--lcm-url", kUrl});
+  signal_to(agent(0), SIGSTOP);  // holds the mission
+  hand("ergocast-coordinator", {"--resume"});
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
+  signal_to(agent(0), SIGCONT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_TRUE(said("another coordinator has taken the mission over")) << said();
+  EXPECT_EQ(summary()["reason"], "mission complete; coordinator exited with code 4");
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
 TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
   begin_mission(endless_pair());
   Program& other = hand("ergocast-coordinator", {scenario_file("paper_fig2b")});
