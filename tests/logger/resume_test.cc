@@ -197,6 +197,15 @@ TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
 }
 
+TEST_F(Resume, AGapEndsAtTheFirstStateHeardEvenIfTheNextIsMissing) {
+  Record resumed(small_mission(1), ten_rows());
+  for (const Tick tick : {30, 32}) resumed.tell(state_of(tick), at(10s));
+  advance(resumed.recorder, at(1h));
+  EXPECT_EQ(resumed.recorder.next_row(), 30);
+  resumed.tell(state_of(31), at(1h));
+  EXPECT_EQ(resumed.recorder.next_row(), 32);
+}
+
 TEST_F(Resume, AGapEndsWithTheFirstPairThatIsRepeated) {
   Record resumed(small_mission(1), ten_rows());
   for (const Tick tick : {30, 20, 21, 18}) resumed.tell(state_of(tick), at(10s));
@@ -274,6 +283,17 @@ TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
     for (const std::string& row : rows) EXPECT_EQ(number(row, 5), 10) << row;
     EXPECT_EQ(record.recorder.facts().gaps, 0);
   }
+}
+
+TEST_F(Resume, AStateThatIsHeldIsNotReplacedByANewWorldsRepeat) {
+  Record record(small_mission(1));
+  for (const Tick tick : {0, 1, 3, 4}) record.tell(state_of(tick));
+  record.tell(of_world(kNextWorldLife, state_of(4, {104, 500}, {0, 0})), at(1s));
+  advance(record.recorder, at(2s));
+  const auto rows = record.trajectory_rows();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(columns(rows[1])[0], "3");
+  EXPECT_EQ(number(rows[1], 5), 10);
 }
 
 TEST_F(Resume, PartsOfTwoWorldsMakeNoState) {
