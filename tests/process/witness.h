@@ -65,16 +65,20 @@ class Witness {
     const auto tick = answered_.find(author);
     return tick == answered_.end() ? -1 : tick->second;
   }
-  AgentStatus status(const Author& author) const {
-    const auto status = statuses_.find(author);
-    return status == statuses_.end() ? AgentStatus{} : status->second;
+  /// Whether its last two statuses are of one tick: in lockstep, half a second without progress.
+  bool stands_still(const Author& author) const {
+    const auto ticks = status_ticks_.find(author);
+    return ticks != status_ticks_.end() && ticks->second.first == ticks->second.second;
   }
 
  private:
   void hear(const Message& message) {
     const Author author{header_of(message).sender, header_of(message).incarnation};
     if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
-    if (const auto* status = std::get_if<AgentStatus>(&message)) statuses_[author] = *status;
+    if (std::holds_alternative<AgentStatus>(message)) {
+      auto& [before_last, last] = status_ticks_.try_emplace(author, -2, -1).first->second;
+      before_last = std::exchange(last, header_of(message).tick);
+    }
     if (const auto* command = std::get_if<Command>(&message)) {
       answered_[author] = std::max(answered(author), command->header.tick);
     }
@@ -92,7 +96,7 @@ class Witness {
 
   std::unique_ptr<Transport> transport_;
   MissionFollower follower_{[](std::span<const std::byte>) { return std::nullopt; }};
-  std::map<Author, AgentStatus> statuses_;
+  std::map<Author, std::pair<Tick, Tick>> status_ticks_;  // of its last two
   std::map<std::pair<Author, int>, Contribution> blocks_;
   std::map<Author, Tick> answered_;
   std::map<std::pair<Author, Author>, std::int64_t> held_;
