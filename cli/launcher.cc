@@ -18,15 +18,13 @@ using namespace std::chrono_literals;
 
 constexpr int kMaxRestarts = 3;
 constexpr auto kFirstBackOff = 500ms;
-constexpr auto kLongestBackOff = 5s;
 /// How long processes may take to end by themselves, and then after SIGTERM.
 constexpr auto kPatience = 6s;
 constexpr auto kPoliteness = 2s;
 constexpr int kLinesOfExplanation = 5;
 
-std::chrono::nanoseconds back_off(int restarts) {
-  return std::min<std::chrono::nanoseconds>(kFirstBackOff * (1 << restarts), kLongestBackOff);
-}
+/// 0.5, 1 and 2 s.
+std::chrono::nanoseconds back_off(int restarts) { return kFirstBackOff * (1 << restarts); }
 
 }  // namespace
 
@@ -64,20 +62,25 @@ std::optional<std::string> Launcher::start() {
   return std::nullopt;
 }
 
-std::optional<std::string> Launcher::launch(Process& process) {
-  auto started = Child::start(process.program);
+std::optional<std::string> Launcher::launch(Process& process, bool resume) {
+  Child::Program program = process.program;
+  if (resume) program.command.push_back("--resume");
+  auto started = Child::start(program);
   if (auto* problem = std::get_if<std::string>(&started)) return std::move(*problem);
   process.child = std::get<Child>(std::move(started));
   process.end_noted = false;
   return std::nullopt;
 }
 
-void Launcher::attend(Instant now) {
+void Launcher::attend(Instant now, Stage stage) {
+  if (stage == Stage::kOver) expect_end(now);
   for (Process& process : processes_) {
-    if (process.child && !process.end_noted && !process.child->running()) take_note(process, now);
+    if (process.child && !process.end_noted && !process.child->running()) {
+      take_note(process, now, stage);
+    }
     if (process.restart_at && now >= *process.restart_at) {
       process.restart_at.reset();
-      if (!end_expected_) restart(process);
+      if (!end_expected_) restart(process, stage);
     }
   }
   if (!end_expected_) return;
@@ -85,42 +88,67 @@ void Launcher::attend(Instant now) {
   if (pressed_ < 2 && now - *end_expected_ > kPatience + kPoliteness) press(2);
 }
 
-void Launcher::take_note(Process& process, Instant now) {
+void Launcher::take_note(Process& process, Instant now, Stage stage) {
   process.end_noted = true;
   const auto code = process.child->exit_code();
-  if (process.role == Role::kAgent) {
-    // An agent that ends in order may simply have seen the mission's end before us.
-    if (code != kExitDone && !(end_expected_ && code == kExitFailed)) explain(process);
-    process.restart_at = now + back_off(process.restarts);
-    return;
-  }
-  if (process.role == Role::kCoordinator && (code == kExitDone || code == kExitFailed)) {
-    // Its last words may have been lost, or we may have been asleep.
-    if (code == kExitFailed) fail("the coordinator ended the mission; see log/coordinator.log");
-    return expect_end(now);
-  }
-  if (code == kExitDone) return;
-  explain(process);
-  if (process.role != Role::kLogger) {
-    if (!end_expected_) fail("the " + process.name + " process " + process.child->fate());
-    return;
-  }
-  // A record that cannot be written ends a run that exists for its record; after a crash the team
-  // goes on without.
-  record_broken_ = true;
-  if (code) fail("the record cannot be written; see log/logger.log");
+  if (tells_the_end(process)) expect_end(now);
+  if (ended_as_expected(process)) return;
+  // One that ends in order may have heard of the mission's end before us.
+  if (code != kExitDone) explain(process);
+  // A record that cannot be written ends a run that exists for its record.
+  const bool cannot_record = process.role == Role::kLogger && code && code != kExitDone;
+  if (cannot_record) fail("the record cannot be written; see log/logger.log");
+  if (process.role == Role::kLogger && (cannot_record || end_expected_)) record_broken_ = true;
+  if (end_expected_ || failure_) return;
+  // A coordinator gives way to another, or has found no mission to take over.
+  const bool gave_way = process.role == Role::kCoordinator && code == kExitFailed;
+  const bool too_often = code != kExitDone && process.restarts >= kMaxRestarts;
+  if (gave_way || too_often) return give_up(process, stage);
+  process.restart_at = now + back_off(process.restarts);
 }
 
-void Launcher::restart(Process& process) {
+/// Its last words may have been lost, or we may have been asleep.
+bool Launcher::tells_the_end(const Process& process) {
+  return process.child->exit_code() == kExitDone && process.role != Role::kAgent &&
+         !runs(Role::kCoordinator);
+}
+
+bool Launcher::ended_as_expected(const Process& process) const {
+  if (!end_expected_) return false;
+  const auto code = process.child->exit_code();
+  const bool knows_failure = process.role == Role::kAgent || process.role == Role::kCoordinator;
+  return code == kExitDone || (code == kExitFailed && knows_failure);
+}
+
+void Launcher::restart(Process& process, Stage stage) {
   if (process.child->exit_code() == kExitDone) explain(process);
-  if (process.restarts >= kMaxRestarts) {
-    return fail(process.name + " " + process.child->fate() + " after " +
-                std::to_string(kMaxRestarts) + " restarts");
-  }
+  if (process.restarts >= kMaxRestarts) return give_up(process, stage);
   ++process.restarts;
   display_.say(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
                std::to_string(kMaxRestarts) + ")");
-  if (const auto problem = launch(process)) fail(*problem);
+  // A mission that no agent knows has to be begun by the new coordinator, too.
+  const bool resume = process.role == Role::kLogger ||
+                      (process.role == Role::kCoordinator && stage != Stage::kGathering);
+  if (const auto problem = launch(process, resume)) fail(*problem);
+}
+
+void Launcher::give_up(Process& process, Stage stage) {
+  process.given_up = true;
+  const std::string loss = loss_of(process);
+  if (process.role == Role::kLogger) {
+    record_broken_ = true;
+    display_.say(loss + ": the team goes on without a record");
+  } else if (process.role == Role::kCoordinator && stage == Stage::kFlying) {
+    display_.say(loss + ": the team goes on to the plan's last tick");
+  } else {
+    fail(loss);
+  }
+}
+
+std::string Launcher::loss_of(const Process& process) {
+  const std::string loss = process.name + " " + process.child->fate();
+  if (process.restarts < kMaxRestarts) return loss;
+  return loss + " after " + std::to_string(kMaxRestarts) + " restarts";
 }
 
 void Launcher::explain(const Process& process) {
@@ -153,6 +181,26 @@ void Launcher::press(int how_hard) {
     display_.say(process.name + ": " + (how_hard == 1 ? "asked to end" : "killed"));
     process.child->send(how_hard == 1 ? SIGTERM : SIGKILL);
   }
+}
+
+bool Launcher::runs(Role role) {
+  return std::any_of(processes_.begin(), processes_.end(), [role](Process& process) {
+    return process.role == role && process.child && process.child->running();
+  });
+}
+
+bool Launcher::leaderless() const {
+  return std::any_of(processes_.begin(), processes_.end(), [](const Process& process) {
+    return process.role == Role::kCoordinator && process.given_up;
+  });
+}
+
+std::string Launcher::losses() const {
+  std::string losses;
+  for (const Process& process : processes_) {
+    if (process.given_up && failure_ != loss_of(process)) losses += "; " + loss_of(process);
+  }
+  return losses;
 }
 
 int Launcher::restarts() const {

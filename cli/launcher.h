@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/mission_watch.h"
 #include "core/ids.h"
-#include "core/messages.h"
 #include "runtime/child.h"
 #include "runtime/lcm_url.h"
 
@@ -37,21 +37,25 @@ class Launcher {
   /// Starts logger, world, coordinator and agents. An error if one cannot be started at all.
   std::optional<std::string> start();
 
-  /// Looks after the processes at `now`: names who died and why, restarts agents, and presses those
-  /// that do not end when they should.
-  void attend(Instant now);
+  /// Looks after the processes at `now`: names who died and why, starts them again as long as the
+  /// mission lasts, and presses those that do not end when they should.
+  void attend(Instant now, Stage stage);
 
   /// True when every process has ended and none will be started again.
   bool all_ended();
 
   /// The mission is to end: attend() restarts nobody any more and waits for the processes to go.
   void expect_end(Instant now);
-  bool end_expected() const { return end_expected_.has_value(); }
 
-  /// Something that makes the mission a failure; the first one counts.
+  /// Makes the mission a failure; the first reason counts.
+  void fail(std::string reason);
   const std::optional<std::string>& failure() const { return failure_; }
-  /// Whether the logger died with the record unfinished.
+  /// Whether the record was left unfinished for good.
   bool record_broken() const { return record_broken_; }
+  /// Whether the coordinator has died once too often, or given way to another.
+  bool leaderless() const;
+  /// "; coordinator was killed by SIGSEGV after 3 restarts": whom the team went on without.
+  std::string losses() const;
 
   /// Ends the remaining processes: 1 politely (SIGTERM), 2 at once (SIGKILL).
   void press(int how_hard);
@@ -66,18 +70,22 @@ class Launcher {
     Role role;
     Child::Program program;
     std::optional<Child> child;
-    bool end_noted = false;
+    bool end_noted = false, given_up = false;
     int restarts = 0;
     std::optional<Instant> restart_at;
   };
 
   void plan(Role role, std::string name, const std::string& program,
             std::vector<std::string> arguments);
-  std::optional<std::string> launch(Process& process);
-  void take_note(Process& process, Instant now);
+  std::optional<std::string> launch(Process& process, bool resume = false);
+  bool runs(Role role);
+  void take_note(Process& process, Instant now, Stage stage);
+  bool tells_the_end(const Process& process);
+  bool ended_as_expected(const Process& process) const;
+  void restart(Process& process, Stage stage);
+  void give_up(Process& process, Stage stage);
   void explain(const Process& process);
-  void restart(Process& process);
-  void fail(std::string reason);
+  static std::string loss_of(const Process& process);
 
   Setup setup_;
   ProgressDisplay& display_;

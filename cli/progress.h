@@ -15,6 +15,7 @@ struct MissionProgress {
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0;
   AgentId silent_agent = kUnassigned;
+  bool world_silent = false, coordinator_silent = false;
 };
 
 class ProgressDisplay {

@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
+#include "cli/mission_watch.h"
 #include "cli/progress.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
@@ -19,56 +20,6 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr auto kAttendPeriod = 50ms;
-constexpr auto kStopPeriod = 100ms;
-
-/// What the launcher knows of the mission: it hears the coordinator, and can say STOP.
-class MissionWatch {
- public:
-  MissionWatch(RunId run, double dt_s, ProgressDisplay& display)
-      : run_(run), dt_s_(dt_s), display_(display) {}
-
-  void receive(const Message& message) {
-    if (const auto* team = std::get_if<TeamStatus>(&message)) {
-      if (team->state == MissionState::kRunning || team->header.tick > 0) {
-        display_.show({team->header.tick, team->tick_count, dt_s_, team->ergodic_metric,
-                       team->agents_alive, team->agents_expected, team->missed_deadlines,
-                       team->silent_agent});
-      }
-      state_ = team->state;
-    } else if (const auto* part = std::get_if<MissionPart>(&message)) {
-      state_ = part->state;
-      if (!part->reason.empty()) reason_ = part->reason;
-    }
-  }
-  MissionState state() const { return state_; }
-  bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
-  const std::string& reason() const { return reason_; }
-
-  /// From now on repeat() says STOP; the first call counts.
-  void stop(bool failed, std::string reason) {
-    if (stop_) return;
-    stop_ = Stop{{run_, kOperator, incarnation_, 0, 0}, failed, std::move(reason)};
-  }
-  bool stopping() const { return stop_.has_value(); }
-  void repeat(Transport& transport, Instant now) {
-    if (!stop_ || now < next_stop_) return;
-    next_stop_ = now + kStopPeriod;
-    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
-      ++stop_->header.sequence;
-      transport.publish({bus, *stop_});
-    }
-  }
-
- private:
-  RunId run_;
-  double dt_s_;
-  ProgressDisplay& display_;
-  Incarnation incarnation_ = random_identity();
-  MissionState state_ = MissionState::kWaiting;
-  std::string reason_;
-  std::optional<Stop> stop_;
-  Instant next_stop_{};
-};
 
 /// Until all processes have ended.
 void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
@@ -83,12 +34,16 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
       if (asked > 2) launcher.press(2);
       mission.stop(false, "Ctrl-C or SIGTERM");
     }
-    if (mission.over() || mission.stopping()) launcher.expect_end(now());
-    launcher.attend(now());
+    if (mission.stopping()) launcher.expect_end(now());
+    launcher.attend(now(), mission.stage());
+    // Nobody else is left to notice.
+    if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
+      launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
+    }
     if (launcher.failure()) mission.stop(true, *launcher.failure());
     mission.repeat(transport, now());
   }
-  launcher.attend(now());
+  launcher.attend(now(), mission.stage());
 }
 
 /// What can be said of a run whose logger left no summary.
@@ -118,12 +73,15 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
     summary["result"] = "failed";
     summary["reason"] = reason;
   };
-  // A mission that came to its end, with a record that did not: the logger was given up.
-  const bool cut_short = mission.state() == MissionState::kEnded && !mission.stopping() &&
-                         summary.value("result", "") != "done";
-  if (cut_short) fail("the mission is complete, but its record is not: the logger fell behind");
+  const bool complete = mission.stage() == Stage::kOver && !mission.failed() && !mission.stopping();
+  const bool cut_short = complete && summary.value("result", "") != "done";
+  if (cut_short) {
+    const char* why = launcher.record_broken() ? "" : ": the logger fell behind";
+    fail(std::string("the mission is complete, but its record is not") + why);
+  }
   if (launcher.failure()) fail(*launcher.failure());
-  if (mission.state() == MissionState::kFailed) fail(mission.reason());
+  if (mission.failed()) fail(mission.reason());
+  summary["reason"] = summary.value("reason", "") + launcher.losses();
   summary["restarts"] = launcher.restarts();
   summary["record_complete"] = !launcher.record_broken() && !cut_short;
   auto processes = nlohmann::ordered_json::array();
@@ -150,10 +108,10 @@ int complain(ExitCode code, const std::string& problem) {
 /// Flies the mission on a network that works, into a run directory that is ready.
 int fly(const Scenario& scenario, const Launcher::Setup& setup, StopSignals& signals) {
   ProgressDisplay display;
-  MissionWatch mission(setup.run, scenario.mission().timing.dt_s, display);
+  MissionWatch mission(setup.run, scenario.mission().timing, display);
   auto opened = Transport::open(
-      setup.url, setup.run, {{Bus::kSwarm, "TEAM_STATUS|MISSION"}},
-      {.on_message = [&mission](const Message& message, AgentId) { mission.receive(message); }});
+      setup.url, setup.run, {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"}},
+      {.on_message = [&mission](const Message& message, AgentId) { mission.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     return complain(kExitUnavailable, *problem);
   }

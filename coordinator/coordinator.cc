@@ -104,6 +104,10 @@ void Coordinator::on(const MissionPart& part, Instant now) {
 }
 
 void Coordinator::look_for_mission(Instant now, Outbox& out) {
+  if (ended_) {
+    finished_ = true;  // told to stop; the mission is not ours yet
+    return;
+  }
   if (!looking_since_) looking_since_ = now;
   if (found_ && now - *found_ >= kSecondOpinions) return take_over(now);
   const auto looked = now - *looking_since_;

@@ -46,6 +46,8 @@ class Coordinator {
   RunId run() const { return run_; }
   /// Null until it has one, which with a takeover takes a moment.
   const Mission* mission() const { return mission_ ? &*mission_ : nullptr; }
+  /// Whether it has yet to find out if there is a mission to take over.
+  bool looking() const { return takeover_ != Takeover::kNever; }
   /// Whether it took the mission over from a predecessor.
   bool took_over() const { return took_over_; }
   MissionState state() const { return state_; }

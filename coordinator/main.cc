@@ -34,8 +34,8 @@ class RosterLog {
 class MissionLog {
  public:
   void look(const Coordinator& coordinator) {
-    if (const Mission* mission = coordinator.mission(); mission != nullptr && !announced_ &&
-                                                        coordinator.run() != 0) {
+    const Mission* mission = coordinator.mission();
+    if (mission != nullptr && !coordinator.looking() && !announced_) {
       announced_ = true;
       spdlog::info("run {} of scenario {}{}: quorum of {} agents", to_hex(coordinator.run()),
                    mission->name, coordinator.took_over() ? ", taken over" : "", mission->quorum);

@@ -70,6 +70,7 @@ Faults drawn(std::uint64_t seed) {
     faults.clock_rate_error = dice.log_uniform(1e-5, 0.05);
     faults.clock_offset_max_s = dice.log_uniform(1e-3, 1e6);
   }
+  if (dice.coin()) faults.swarm_bus_only = 1;
   return faults;
 }
 

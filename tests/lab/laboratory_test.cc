@@ -150,6 +150,7 @@ INSTANTIATE_TEST_SUITE_P(Laboratory, EachFault, ::testing::ValuesIn(kKinds),
 
 TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {
   for (const lab::FaultField& field : lab::fault_fields()) {
+    if (std::string(field.name) == "lasting_share") continue;  // no fault, and always there
     int on = 0;
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
       const double value = lab::drawn(seed).*field.value;

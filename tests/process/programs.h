@@ -83,13 +83,18 @@ class OwnHost : public ::testing::Test {
   std::filesystem::path out() const { return folder_ / "run"; }
   nlohmann::json summary() const { return nlohmann::json::parse(text_of(out() / "summary.json")); }
 
-  /// Waits until that many rows are on disk: a mission that is under way.
+  /// Size of the recorded trajectory, all segments.
+  std::uintmax_t recorded_bytes() const {
+    std::uintmax_t bytes = 0;
+    std::error_code none;
+    for (const auto& file : std::filesystem::directory_iterator(out(), none)) {
+      if (file.path().filename().string().starts_with("trajectory")) bytes += file.file_size();
+    }
+    return bytes;
+  }
+  /// Waits until so much is on disk: a mission that is under way.
   bool recorded(std::uintmax_t bytes) const {
-    return eventually([&] {
-      std::error_code error;
-      const auto size = std::filesystem::file_size(out() / "trajectory.csv", error);
-      return !error && size >= bytes;
-    });
+    return eventually([&] { return recorded_bytes() >= bytes; });
   }
 
   std::filesystem::path folder_, log_;

@@ -1,0 +1,83 @@
+#include "cli/mission_watch.h"
+
+#include <chrono>
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kStopPeriod = 100ms;
+/// A coordinator that says nothing for so long is worth a word.
+constexpr auto kCoordinatorSilence = 2s;
+
+}  // namespace
+
+void MissionWatch::receive(const Message& message, Instant now) {
+  if (const auto* team = std::get_if<TeamStatus>(&message)) on(*team, now);
+  if (const auto* agent = std::get_if<AgentStatus>(&message)) on(*agent, now);
+  if (const auto* part = std::get_if<MissionPart>(&message)) on(*part, now);
+  progress_.coordinator_silent =
+      coordinator_heard_ && now - *coordinator_heard_ > kCoordinatorSilence;
+  if (stage_ >= Stage::kFlying) display_.show(progress_);
+}
+
+void MissionWatch::on(const TeamStatus& team, Instant now) {
+  coordinator_heard_ = now;
+  reach(team.header.tick, now);
+  // One that was restarted has yet to learn the metric.
+  if (team.ergodic_metric > 0) progress_.ergodic_metric = team.ergodic_metric;
+  progress_.agents_alive = team.agents_alive;
+  progress_.agents_expected = team.agents_expected;
+  progress_.missed_deadlines = team.missed_deadlines;
+  progress_.silent_agent = team.silent_agent;
+}
+
+void MissionWatch::on(const AgentStatus& agent, Instant now) {
+  reach(agent.header.tick, now);
+  reach(agent.phase == AgentPhase::kRunning ? Stage::kFlying : Stage::kReady, now);
+  if (agent.phase == AgentPhase::kRunning) progress_.world_silent = agent.waiting_for == kWorld;
+  if (progress_.coordinator_silent) progress_.ergodic_metric = agent.ergodic_metric;
+  const bool at_the_end = agent.header.tick >= timing_.tick_count;
+  if (agent.phase == AgentPhase::kFinished && at_the_end) reach(Stage::kOver, now);
+}
+
+void MissionWatch::on(const MissionPart& part, Instant now) {
+  failed_ = failed_ || part.state == MissionState::kFailed;
+  if (!part.reason.empty()) reason_ = part.reason;
+  if (failed_ || part.state == MissionState::kEnded) reach(Stage::kOver, now);
+}
+
+void MissionWatch::reach(Stage stage, Instant now) {
+  if (stage <= stage_) return;
+  stage_ = stage;
+  tick_since_ = now;
+}
+
+void MissionWatch::reach(Tick tick, Instant now) {
+  if (tick <= progress_.tick) return;
+  progress_.tick = tick;
+  tick_since_ = now;
+}
+
+std::optional<std::string> MissionWatch::overdue(Instant now) const {
+  const bool waiting = timing_.pace == Pace::kLockstep && stage_ == Stage::kFlying;
+  if (!waiting || now - tick_since_ < seconds(timing_.lockstep_timeout_s)) return std::nullopt;
+  return "tick " + std::to_string(progress_.tick) + " was not answered in time";
+}
+
+void MissionWatch::stop(bool failed, std::string reason) {
+  if (stop_) return;
+  stop_ = Stop{{run_, kOperator, incarnation_, 0, 0}, failed, std::move(reason)};
+}
+
+void MissionWatch::repeat(Transport& transport, Instant now) {
+  if (!stop_ || now < next_stop_) return;
+  next_stop_ = now + kStopPeriod;
+  for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
+    ++stop_->header.sequence;
+    transport.publish({bus, *stop_});
+  }
+}
+
+}  // namespace ergocast::cli

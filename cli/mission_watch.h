@@ -1,0 +1,69 @@
+// What `ergocast run` hears of its mission and shows of it; and the one word it can say: STOP.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/progress.h"
+#include "core/ids.h"
+#include "core/messages.h"
+#include "core/mission.h"
+#include "runtime/node.h"
+#include "runtime/transport.h"
+
+namespace ergocast::cli {
+
+/// How far the mission has come. That it is over the coordinator says, or an agent at the last tick.
+enum class Stage {
+  kGathering,  ///< no agent knows the plan yet
+  kReady,      ///< agents know it
+  kFlying,     ///< agents are moving
+  kOver,
+};
+
+class MissionWatch {
+ public:
+  MissionWatch(RunId run, const Timing& timing, ProgressDisplay& display)
+      : run_(run), timing_(timing), display_(display) {
+    progress_.tick_count = timing.tick_count;
+    progress_.dt_s = timing.dt_s;
+  }
+
+  void receive(const Message& message, Instant now);
+
+  Stage stage() const { return stage_; }
+  /// Whether the coordinator has said that the mission failed; and why it ended, in any case.
+  bool failed() const { return failed_; }
+  const std::string& reason() const { return reason_; }
+
+  /// Lockstep: what to say of a tick that has stayed unanswered for too long.
+  std::optional<std::string> overdue(Instant now) const;
+
+  /// From now on repeat() says STOP; the first call counts.
+  void stop(bool failed, std::string reason);
+  bool stopping() const { return stop_.has_value(); }
+  void repeat(Transport& transport, Instant now);
+
+ private:
+  void on(const TeamStatus& team, Instant now);
+  void on(const AgentStatus& agent, Instant now);
+  void on(const MissionPart& part, Instant now);
+  void reach(Stage stage, Instant now);
+  void reach(Tick tick, Instant now);
+
+  RunId run_;
+  Timing timing_;
+  ProgressDisplay& display_;
+  MissionProgress progress_;
+  Stage stage_ = Stage::kGathering;
+  bool failed_ = false;
+  std::string reason_;
+  std::optional<Instant> coordinator_heard_;
+  Instant tick_since_{};  // when the last tick or stage was reached
+
+  Incarnation incarnation_ = random_identity();
+  std::optional<Stop> stop_;
+  Instant next_stop_{};
+};
+
+}  // namespace ergocast::cli

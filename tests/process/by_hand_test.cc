@@ -1,0 +1,84 @@
+// Programs that people start one by one, without `ergocast run`.
+#include "tests/process/mission.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+class StartedByHand : public ByHand {
+ protected:
+  /// A mission of two agents that is under way.
+  Program& begin_mission(const std::filesystem::path& scenario) {
+    Program& coordinator = hand_all_but_agents(scenario);
+    for (const char* id : {"0", "1"}) hand("ergocast-agent", {"--id", id});
+    EXPECT_TRUE(recorded(20000)) << coordinator.said();
+    return coordinator;
+  }
+  /// A scenario of two agents that goes on for as long as the test needs.
+  std::filesystem::path endless_pair() {
+    std::string text = text_of(scenario());
+    for (const char* start : {"starts { x_m: 0     y_m: 2000 }", "starts { x_m: 2000  y_m: 2000 }"}) {
+      text.erase(text.find(start), std::string(start).size());
+    }
+    text.replace(text.find("duration_s: 600"), 15, "duration_s: 100000");
+    const auto file = folder_ / "pair.textproto";
+    std::ofstream(file) << text;
+    return file;
+  }
+};
+
+TEST_F(StartedByHand, AnAgentThatIsToldToLeaveIsReportedAndNotWaitedFor) {
+  Program& coordinator = begin_mission(endless_pair());
+  Witness witness(kUrl);
+  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
+  const Author left = witness.member(1);
+  signal_to(agent(1), SIGTERM);
+  ASSERT_TRUE(witness.hears([&] {
+    const RosterEntry* entry = witness.entry(left);
+    return entry != nullptr && entry->active_until >= 0;
+  })) << coordinator.said();
+  const Tick tick = witness.entry(left)->active_until;
+  EXPECT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > tick + 100; }));
+  EXPECT_TRUE(coordinator.says("agent 1 (" + to_hex(left.incarnation) + ") is gone at tick"))
+      << coordinator.said();
+}
+
+TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOver) {
+  const auto file = endless_pair();
+  Program& first = begin_mission(file);
+  Program& second = hand("ergocast-coordinator", {file});
+  ASSERT_TRUE(second.says("taken over")) << second.said();
+  EXPECT_EQ(wait_for(first.child), 4) << first.said();
+  EXPECT_TRUE(first.says("another coordinator has taken the mission over")) << first.said();
+  EXPECT_TRUE(moves_on()) << second.said();
+}
+
+TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
+  Child mission = launch(scenario(), {"--lcm-url", kUrl});
+  signal_to(agent(0), SIGSTOP);  // holds the mission
+  hand("ergocast-coordinator", {"--resume"});
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
+  signal_to(agent(0), SIGCONT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_TRUE(said("another coordinator has taken the mission over")) << said();
+  EXPECT_EQ(summary()["reason"], "mission complete; coordinator exited with code 4");
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
+  begin_mission(endless_pair());
+  Program& other = hand("ergocast-coordinator", {scenario_file("paper_fig2b")});
+  EXPECT_EQ(wait_for(other.child), 4) << other.said();
+  EXPECT_TRUE(other.says("is flying on this URL: choose another URL")) << other.said();
+  EXPECT_TRUE(moves_on());
+}
+
+TEST_F(StartedByHand, ACoordinatorThatFindsNothingToTakeOverCanBeStopped) {
+  Program& coordinator = hand("ergocast-coordinator", {"--resume"});
+  ASSERT_TRUE(coordinator.says("looking for a mission")) << coordinator.said();
+  coordinator.child.send(SIGTERM);
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
+}
+
+}  // namespace
+}  // namespace ergocast::test

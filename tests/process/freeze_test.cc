@@ -1,0 +1,60 @@
+// A process that stands still for five seconds and then goes on, as on a machine that swaps or a
+// laptop whose lid was closed: nobody is lost, and in lockstep not a bit changes.
+#include "tests/process/mission.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+class Freeze : public FlyingMission {};
+
+struct FreezeInLockstep : Freeze, ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Processes, FreezeInLockstep,
+                         ::testing::Values("agent", "coordinator", "sim", "logger"),
+                         [](const auto& process) { return std::string(process.param); });
+
+TEST_P(FreezeInLockstep, EverybodyWaitsOrGoesOnAndTheTrajectoryIsTheSame) {
+  Child mission = launch(scenario());
+  const std::string process = GetParam();
+  freeze(process == "agent" ? agent(1) : std::vector{"ergocast-" + process});
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["restarts"], 0);
+  EXPECT_EQ(summary()["agents"].size(), 4U);
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+TEST_F(Freeze, InRealTimeTheTeamGoesOnWithoutAnAgentThatThenAgreesAgain) {
+  Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
+  Witness witness(kUrl);
+  const auto knows = [&witness](AgentId who, AgentId whose, std::int64_t steps) {
+    return witness.held(witness.member(who), witness.member(whose)) > steps;
+  };
+  ASSERT_TRUE(witness.hears([&] { return knows(1, 0, 0) && knows(0, 1, 0); }));
+  signal_to(agent(1), SIGSTOP);
+  const std::int64_t frozen_at = witness.said(witness.member(1));
+  const std::int64_t meanwhile = witness.said(witness.member(0)) + 5 * 50;
+  ASSERT_TRUE(witness.hears([&] { return knows(2, 0, meanwhile); })) << "the team goes on";
+  signal_to(agent(1), SIGCONT);
+  ASSERT_TRUE(witness.hears([&] {
+    return knows(1, 0, meanwhile) && knows(1, 2, meanwhile) && knows(0, 1, frozen_at + 10) &&
+           knows(2, 1, frozen_at + 10);
+  })) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["agents"].size(), 4U) << "it is still the same member";
+}
+
+TEST_F(Freeze, InRealTimeAWorldThatStoodStillSkipsAndGoesOn) {
+  Child mission = launch_endless(scenario(), {"--realtime=5"});
+  freeze({"ergocast-sim"});
+  ASSERT_TRUE(moves_on()) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_TRUE(said("waiting for the world")) << said();
+  EXPECT_GE(summary()["skipped_ticks"], 200);
+  EXPECT_EQ(summary()["agents"].size(), 4U);
+}
+
+}  // namespace
+}  // namespace ergocast::test

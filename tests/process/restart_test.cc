@@ -1,0 +1,242 @@
+// kill -9: nobody's death alone ends a mission, and what is started again goes on where it was.
+#include <lcm/lcm-cpp.hpp>
+
+#include "tests/process/mission.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+const std::vector<std::string> kSim{"ergocast-sim"}, kLogger{"ergocast-logger"},
+    kCoordinator{"ergocast-coordinator"};
+
+/// How many events an event log holds up to where it was cut off.
+int events_in(const std::filesystem::path& file) {
+  lcm::LogFile log(file, "r");
+  int events = 0;
+  while (log.good() && log.readNextEvent() != nullptr) ++events;
+  return events;
+}
+
+/// The tick of the last whole row of a table.
+Tick last_tick(const std::filesystem::path& table) {
+  const std::string text = text_of(table);
+  return std::stoll(text.substr(text.rfind('\n', text.rfind('\n') - 1) + 1));
+}
+
+class Restart : public FlyingMission {
+ protected:
+  /// What only a killed world knew may be missing in the record; nothing else may be.
+  void expect_identical_to_its_simulation(bool complete = true) {
+    EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+    EXPECT_NE(output().find("identical"), std::string::npos) << output();
+    EXPECT_TRUE(!complete || output().find("missing") == std::string::npos) << output();
+  }
+  /// Once more than it is started again.
+  void kill_for_good(const std::vector<std::string>& words) {
+    for (int death = 0; death <= 3; ++death) kill_next(words);
+  }
+};
+
+TEST_F(Restart, KilledAgentIsNamedAndItsSuccessorTakesPart) {
+  Child mission = launch_endless(scenario());
+  kill_next(agent(2));
+  ASSERT_TRUE(logs("agent-2", ": running", 2)) << said();
+  ASSERT_TRUE(moves_on()) << said();
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_TRUE(said("agent-2 (process")) << said();
+  EXPECT_TRUE(said("was killed by SIGKILL")) << said();
+  EXPECT_EQ(summary()["restarts"], 1);
+  EXPECT_EQ(summary()["agents"].size(), 5U);
+  EXPECT_EQ(ergocast({"verify", out()}), 2);
+  EXPECT_NE(output().find("restarted"), std::string::npos) << output();
+}
+
+/// A team whose agents broadcast every five ticks, in either pace.
+class RestartInEitherPace : public Restart, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Paces, RestartInEitherPace, ::testing::Values("--lockstep", "--realtime=5"),
+                         [](const auto& pace) { return pace.index == 0 ? "Lockstep" : "Realtime"; });
+
+TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
+  const bool lockstep = std::string(GetParam()) == "--lockstep";
+  Child mission = launch_endless(scenario("broadcast_period_ticks: 5"),
+                                 {GetParam(), "--lcm-url", kUrl});
+  Witness witness(kUrl);
+  const auto member = [&witness] { return witness.member(1); };
+  ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 0 && witness.answered(member()) > 0; }));
+  const Author former = member();
+  // One that does not answer holds lockstep until what was said last has been repeated.
+  if (lockstep) signal_to(agent(2), SIGSTOP);
+  ASSERT_TRUE(witness.hears([&] { return !lockstep || witness.stands_still(former); }));
+  kill_next(agent(1));
+  const Instant killed = now();
+  const auto since_kill = [killed] { return std::to_string((now() - killed) / 1.0s); };
+  if (lockstep) signal_to(agent(2), SIGCONT);
+  ASSERT_TRUE(witness.hears([&] { return member() != former && member().incarnation != 0; }));
+  RecordProperty("admitted_after_s", since_kill());
+  ASSERT_TRUE(witness.hears([&] { return witness.held(member(), former) >= witness.said(former); }));
+  RecordProperty("recovered_after_s", since_kill());
+  ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 10; }));
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+
+  EXPECT_EQ(witness.held(member(), former), witness.said(former)) << "no more than it had said";
+  EXPECT_LT(witness.answered(former), witness.block(former).next_broadcast_tick)
+      << "lost is only what it covered since its last broadcast";
+  for (const Author& life : {former, member()}) {
+    const Contribution block = witness.block(life);
+    const Tick ticks = block.header.tick + 1 - witness.entry(life)->active_from;
+    EXPECT_LE(block.steps, ticks);
+    EXPECT_TRUE(!lockstep || block.steps == ticks) << block.steps << " of " << ticks;
+    EXPECT_NEAR(block.sums[0], 0.1 * static_cast<double>(block.steps), 1e-9 * block.sums[0]);
+  }
+}
+
+TEST_F(Restart, KilledWorldGoesOnWhereTheAgentsWere) {
+  Child mission = launch(scenario());
+  kill_next(kSim);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_TRUE(said("sim: restarted (1 of 3)")) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["restarts"], 1);
+  expect_identical_to_its_simulation(false);
+}
+
+TEST_F(Restart, KilledCoordinatorTakesTheMissionOver) {
+  Child mission = launch(scenario());
+  // One that does not answer holds the mission until the coordinator is back.
+  signal_to(agent(0), SIGSTOP);
+  kill_next(kCoordinator);
+  ASSERT_TRUE(logs("coordinator", "taken over")) << said();
+  signal_to(agent(0), SIGCONT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["reason"], "mission complete");
+  EXPECT_EQ(summary()["restarts"], 1);
+  expect_identical_to_its_simulation();
+}
+
+TEST_F(Restart, KilledLoggerGoesOnInASecondSegmentAndLosesNothing) {
+  Child mission = launch(scenario());
+  kill_next(kLogger);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["segments"], 2);
+  EXPECT_EQ(summary()["record_complete"], true);
+  EXPECT_GT(std::filesystem::file_size(out() / "trajectory-001.csv"), 0U);
+  expect_identical_to_its_simulation();
+  EXPECT_EQ(ergocast({"report", out()}), 0) << output();
+}
+
+TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
+  Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
+  kill_next(kCoordinator);
+  ASSERT_TRUE(logs("coordinator", "taken over")) << said();
+  ASSERT_TRUE(moves_on()) << said();
+  kill_next(kSim);
+  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
+  ASSERT_TRUE(moves_on()) << said();
+  Witness witness(kUrl);
+  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
+  const Tick flown = witness.answered(witness.member(0));
+  kill_next(kLogger);
+  EXPECT_GE(last_tick(out() / "trajectory.csv"), flown - 50) << "more than a second lost";
+  ASSERT_TRUE(moves_on()) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["restarts"], 3);
+  EXPECT_EQ(summary()["segments"], 2);
+  EXPECT_EQ(summary()["record_complete"], true);
+  EXPECT_GT(events_in(out() / "events-000.lcm"), 0);
+  EXPECT_GT(events_in(out() / "events-001.lcm"), 0);
+  EXPECT_EQ(ergocast({"report", out()}), 0) << output();
+}
+
+TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
+  Child mission = launch(scenario());
+  signal_to(agent(0), SIGSTOP);  // holds the mission
+  kill_for_good(kCoordinator);
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
+  signal_to(agent(0), SIGCONT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["reason"],
+            "mission complete; coordinator was killed by SIGKILL after 3 restarts");
+  EXPECT_EQ(summary()["ticks"], 6000);
+  EXPECT_EQ(summary()["restarts"], 3);
+  expect_identical_to_its_simulation();
+}
+
+TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
+  Child mission = launch_endless(scenario("lockstep_timeout_s: 5"));
+  kill_for_good(kCoordinator);
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
+  kill_next(agent(1));
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  const std::string reason = summary()["reason"];
+  EXPECT_NE(reason.find("was not answered in time, and no coordinator is left"), std::string::npos)
+      << reason;
+}
+
+TEST_F(Restart, AMissionThatNobodyKnowsYetIsBegunByTheNextCoordinator) {
+  Child mission = start("ergocast", {"run", scenario(), "--out", out(), "--duration", "20"});
+  mission_log_ = log_;
+  kill_next(kCoordinator);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  expect_identical_to_its_simulation();
+}
+
+TEST_F(Restart, WorldThatDiesAgainAndAgainFailsTheMission) {
+  Child mission = launch_endless(scenario());
+  kill_for_good(kSim);
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(summary()["result"], "failed");
+  EXPECT_EQ(summary()["reason"], "sim was killed by SIGKILL after 3 restarts");
+}
+
+TEST_F(Restart, AgentThatDiesAgainAndAgainFailsTheMission) {
+  Child mission = launch_endless(scenario());
+  kill_for_good(agent(1));
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(summary()["result"], "failed");
+  EXPECT_EQ(summary()["restarts"], 3);
+  EXPECT_EQ(summary()["reason"], "agent-1 was killed by SIGKILL after 3 restarts");
+}
+
+TEST_F(Restart, WithoutALoggerTheTeamGoesOnAndTheRunSaysThatTheRecordIsNotComplete) {
+  Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
+  kill_for_good(kLogger);
+  ASSERT_TRUE(eventually([this] { return said("the team goes on without a record"); })) << said();
+  Witness witness(kUrl);
+  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
+  const Tick tick = witness.answered(witness.member(0));
+  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > tick + 20; }));
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(summary()["record_complete"], false);
+  EXPECT_EQ(summary()["reason"],
+            "the logger left no summary; logger was killed by SIGKILL after 3 restarts");
+  EXPECT_EQ(summary()["scenario"], "quadrimodal_corners");
+}
+
+TEST_F(Restart, AgentOrWorldThatIsToldToStopIsNamedAndReplaced) {
+  Child mission = launch_endless(scenario());
+  signal_to(agent(0), SIGTERM);
+  ASSERT_TRUE(logs("agent-0", ": running", 2)) << said();
+  signal_to(kSim, SIGTERM);
+  ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
+  ASSERT_TRUE(moves_on()) << said();
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_TRUE(said("agent-0 (process")) << said();
+  EXPECT_TRUE(said("told to stop by a signal")) << said();
+  EXPECT_TRUE(said("the world was told to stop")) << said();
+  EXPECT_EQ(summary()["restarts"], 2);
+}
+
+}  // namespace
+}  // namespace ergocast::test

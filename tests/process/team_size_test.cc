@@ -1,0 +1,87 @@
+// Teams of one and two, and teams that grow while they fly.
+#include "tests/process/mission.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+using TeamSize = FlyingMission;
+
+TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
+  ASSERT_EQ(ergocast({"run", scenario(), "--agents", "2", "--duration", "100", "--out", out()}), 0)
+      << output();
+  ASSERT_EQ(summary()["agents"].size(), 2U);
+  const double observed = summary()["ergodic_metric"]["last"];
+  for (const auto& one : summary()["agents"]) {
+    // Of its own coverage alone, either would compute another figure.
+    EXPECT_NEAR(one["ergodic_metric"].get<double>(), observed, 1e-9 * observed);
+  }
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
+  Child mission =
+      launch_endless(scenario(), {"--agents", "2", "--realtime=5", "--lcm-url", kUrl});
+  Witness witness(kUrl);
+  for (const AgentId id : {0, 1}) {
+    const auto held = [&] { return witness.held(witness.member(id), witness.member(1 - id)); };
+    ASSERT_TRUE(witness.hears([&] { return held() > 0; }));
+    const std::int64_t before = held();
+    EXPECT_TRUE(witness.hears([&] { return held() > before; })) << "and ever more of it";
+  }
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+}
+
+TEST_F(TeamSize, OneNeedsNobody) {
+  ASSERT_EQ(ergocast({"run", scenario(), "--agents", "1", "--duration", "100", "--out", out()}), 0)
+      << output();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["agents"].size(), 1U);
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+class LateAgent : public ByHand {
+ protected:
+  /// It is a member, knows what the others covered, and they know what it does.
+  static void expect_to_take_part(Witness& witness, AgentId newcomer, AgentId veteran) {
+    ASSERT_TRUE(witness.hears([&] { return witness.member(newcomer).incarnation != 0; }));
+    const Author late = witness.member(newcomer), early = witness.member(veteran);
+    EXPECT_GT(witness.entry(late)->active_from, 0) << "the mission was under way";
+    EXPECT_TRUE(witness.hears([&] {
+      return witness.held(late, early) >= witness.entry(late)->active_from / 2 &&
+             witness.held(early, late) > 0 && witness.answered(late) > 0;
+    }));
+  }
+};
+
+TEST_F(LateAgent, TakesTheFreePlaceInATeamThatBeganWithAQuorum) {
+  const auto file = scenario("", "quorum: 2");
+  std::filesystem::create_directory(out());
+  hand("ergocast-logger", {"--out", out()});
+  hand("ergocast-sim");
+  hand("ergocast-agent");
+  hand("ergocast-agent");
+  hand("ergocast-coordinator", {file});
+  ASSERT_TRUE(recorded(30000)) << output();
+  hand("ergocast-agent");
+  Witness witness(kUrl);
+  expect_to_take_part(witness, 2, 0);
+}
+
+struct LateAgentInEitherPace : LateAgent, ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Paces, LateAgentInEitherPace, ::testing::Values("--lockstep", "--realtime=5"),
+                         [](const auto& pace) { return pace.index == 0 ? "Lockstep" : "Realtime"; });
+
+TEST_P(LateAgentInEitherPace, IsWelcomeBeyondThePlan) {
+  Child mission = launch_endless(scenario(), {"--agents", "2", GetParam(), "--lcm-url", kUrl});
+  hand("ergocast-agent");
+  Witness witness(kUrl);
+  expect_to_take_part(witness, 2, 1);
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["agents"].size(), 3U);
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,105 @@
+// Somebody on the buses of a mission who only listens: what the team says of itself.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "core/messages.h"
+#include "core/mission_follower.h"
+#include "runtime/clock.h"
+#include "runtime/transport.h"
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+
+class Witness {
+ public:
+  explicit Witness(const std::string& url) {
+    transport_ = std::get<0>(Transport::open(
+        std::get<LcmUrl>(LcmUrl::parse(url)), 0,
+        {{Bus::kSwarm, "MISSION|CONTRIBUTION_.*|DIGEST_.*|AGENT_STATUS_.*"}, {Bus::kCommand, "COMMAND_.*"}},
+        {.on_message = [this](const Message& message, AgentId) { hear(message); }}));
+  }
+
+  /// Listens until `condition` holds; false if it does not come.
+  bool hears(const std::function<bool()>& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      transport_->deliver_until(now() + std::chrono::milliseconds(5), -1);
+    }
+    return true;
+  }
+
+  /// The newest member under that number; incarnation 0 if there is none.
+  Author member(AgentId id) const {
+    Author member;
+    for (const RosterEntry& entry : follower_.roster()) {
+      if (entry.author.agent == id && entry.active_until < 0) member = entry.author;
+    }
+    return member;
+  }
+  const RosterEntry* entry(const Author& author) const {
+    return follower_.entry_of(author.incarnation);
+  }
+  /// Steps of `whose` coverage that `who` holds, as its newest digest says; 0 if it says nothing.
+  std::int64_t held(const Author& who, const Author& whose) const {
+    const auto digest = held_.find({who, whose});
+    return digest == held_.end() ? 0 : digest->second;
+  }
+  /// The newest block `at` heard of `author`, from whomever; steps 0 if there is none.
+  Contribution block(const Author& author, int at = 0) const {
+    const auto block = blocks_.find({author, at});
+    return block == blocks_.end() ? Contribution{} : block->second;
+  }
+  /// Steps of the oldest of its two blocks: what a digest calls held.
+  std::int64_t said(const Author& author) const {
+    return std::min(block(author, 0).steps, block(author, 1).steps);
+  }
+  /// The last tick that `author` has answered; −1 if it has not been heard.
+  Tick answered(const Author& author) const {
+    const auto tick = answered_.find(author);
+    return tick == answered_.end() ? -1 : tick->second;
+  }
+  /// Whether its last two statuses are of one tick: in lockstep, half a second without progress.
+  bool stands_still(const Author& author) const {
+    const auto ticks = status_ticks_.find(author);
+    return ticks != status_ticks_.end() && ticks->second.first == ticks->second.second;
+  }
+
+ private:
+  void hear(const Message& message) {
+    const Author author{header_of(message).sender, header_of(message).incarnation};
+    if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
+    if (std::holds_alternative<AgentStatus>(message)) {
+      auto& [before_last, last] = status_ticks_.try_emplace(author, -2, -1).first->second;
+      before_last = std::exchange(last, header_of(message).tick);
+    }
+    if (const auto* command = std::get_if<Command>(&message)) {
+      answered_[author] = std::max(answered(author), command->header.tick);
+    }
+    if (const auto* digest = std::get_if<Digest>(&message)) {
+      for (int i = 0; i < digest->entry_count; ++i) {
+        const DigestEntry& entry = digest->entries[static_cast<std::size_t>(i)];
+        held_[{author, entry.author}] = entry.steps;
+      }
+    }
+    const auto* newer = std::get_if<Contribution>(&message);
+    if (newer != nullptr && newer->steps > block(author, newer->block).steps) {
+      blocks_[{author, newer->block}] = *newer;
+    }
+  }
+
+  std::unique_ptr<Transport> transport_;
+  MissionFollower follower_{[](std::span<const std::byte>) { return std::nullopt; }};
+  std::map<Author, std::pair<Tick, Tick>> status_ticks_;  // of its last two
+  std::map<std::pair<Author, int>, Contribution> blocks_;
+  std::map<Author, Tick> answered_;
+  std::map<std::pair<Author, Author>, std::int64_t> held_;
+};
+
+}  // namespace ergocast::test
