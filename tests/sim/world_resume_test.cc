@@ -214,11 +214,9 @@ TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
   Command stranger = command_from(0, 50, {300, 400}, {0, 0});
   stranger.header.incarnation = 99;
   world.receive(stranger, at(0s));
-  const Outbox out = advance(world, at(2s));
-  EXPECT_TRUE(only<WorldState>(out).empty()) << "nobody has answered yet";
-  EXPECT_EQ(only<Hello>(out).size(), 1u);
-  world.receive(command_from(0, -1, {0, 0}, {0, 0}), at(2s));
-  const WorldState state = state_after(world, at(2s));
+  EXPECT_TRUE(states_after(world, at(2s)).empty()) << "nobody has answered";
+  nobody_has_moved(world, 1, at(3s));
+  const WorldState state = state_after(world, at(3s));
   EXPECT_EQ(state.header.tick, 0);
   EXPECT_EQ(place(state), mission.starts_m[0]);
 }
