@@ -235,21 +235,6 @@ TEST(WorldAdmits, ALateAgentAtItsOwnStart) {
   EXPECT_EQ(place(state, 1), mission.starts_m[1]);
 }
 
-TEST(WorldAdmits, ALateAgentInTheMiddleOfATickWhichItThenWaitsFor) {
-  World world = running_world(small_mission(2));
-  EXPECT_EQ(state_after(world, at(0s)).vehicle_count, 2);
-  world.receive(mission_part(2, MissionState::kRunning, roster_of(3)), at(1ms));
-  world.receive(command_of(0, 0, {1, 1}), at(2ms));
-  world.receive(command_of(1, 0, {1, 1}), at(2ms));
-  const WorldState again = state_after(world, at(20ms));
-  EXPECT_EQ(again.header.tick, 0);
-  ASSERT_EQ(again.vehicle_count, 3) << "else it would never learn that it is waited for";
-  EXPECT_EQ(again.vehicles[1].answered_tick, 0);
-  EXPECT_EQ(again.vehicles[2].answered_tick, -1);
-  world.receive(command_of(2, 0, {1, 1}), at(21ms));
-  EXPECT_EQ(state_after(world, at(21ms)).header.tick, 1);
-}
-
 // ---- motion --------------------------------------------------------------------------------------
 
 TEST(WorldMotion, ReflectsAtEveryEdge) {
