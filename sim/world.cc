@@ -296,8 +296,12 @@ void World::publish(const std::vector<WorldState>& states, Outbox& out) {
 void World::repeat(Instant now, Outbox& out) {
   repeat_period_ = std::min(2 * repeat_period_, kLongestRepeatPeriod);
   next_publish_ = now + repeat_period_;
-  if (!history_.empty()) {
-    // The same state, but who has answered is news.
+  if (published_) {
+    // The same state, but who has answered, and who has joined, is news.
+    history_.back() = snapshot();
+    publish(history_.back(), out);
+  } else if (!history_.empty()) {
+    // The bodies have moved on already.
     for (WorldState& part : history_.back()) {
       for (int i = 0; i < part.vehicle_count; ++i) {
         Vehicle& vehicle = part.vehicles[static_cast<std::size_t>(i)];

@@ -54,14 +54,22 @@ RecordAck ack_of(Tick tick) { return {{kRun, kLogger, kLoggerLife, tick + 2, tic
 
 // ---- lockstep ------------------------------------------------------------------------------------
 
-TEST(WorldInLockstep, SaysNothingUntilTheMissionRunsAndThenEverybodysStart) {
+TEST(WorldInLockstep, SaysNothingUntilTheMissionRunsThenAsksTheTeamAndThenSaysEverybodysStart) {
   const Mission mission = small_mission(2);
   World world = world_of(mission);
   EXPECT_TRUE(advance(world, at(0s)).empty());
   world.receive(mission_part(0, MissionState::kWaiting, roster_of(2)), at(0s));
   EXPECT_TRUE(advance(world, at(1s)).empty());
   world.receive(mission_part(1, MissionState::kRunning, roster_of(2)), at(2s));
+  const Outbox question = advance(world, at(2s));
+  ASSERT_EQ(question.size(), 1u);
+  EXPECT_EQ(question[0].bus, Bus::kWorld);
+  EXPECT_EQ(std::get<Hello>(question[0].message).header.sender, kWorld);
+  EXPECT_EQ(std::get<Hello>(question[0].message).header.tick, 0) << "it knows the mission";
+  EXPECT_FALSE(world.begun_at());
+  nobody_has_moved(world, 2, at(2s));
   const Outbox out = advance(world, at(2s));
+  EXPECT_EQ(world.begun_at(), 0);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_EQ(out[0].bus, Bus::kWorld);
   const auto state = std::get<WorldState>(out[0].message);
@@ -215,22 +223,44 @@ TEST(WorldRefuses, ToRunOnWithNobodyLeft) {
   EXPECT_EQ(state_after(world, at(20ms)).header.tick, 0);
 }
 
-TEST(WorldRefuses, ARosterEntryBeyondThePlan) {
-  World world = running_world(small_mission(1));
-  world.receive(mission_part(1, MissionState::kRunning, roster_of(3)), at(0s));
-  EXPECT_EQ(state_after(world, at(0s)).vehicle_count, 1);
+TEST(WorldAdmits, AgentsBeyondThePlanAtStartsDrawnFromTheSeed) {
+  const auto strangers = [](std::uint64_t seed) {
+    Mission mission = small_mission(1);
+    mission.seed = seed;
+    World world = running_world(mission);
+    world.receive(mission_part(1, MissionState::kRunning, roster_of(3)), at(0s));
+    nobody_has_moved(world, 3, at(0s));
+    const WorldState state = state_after(world, at(0s));
+    EXPECT_EQ(state.vehicle_count, 3);
+    EXPECT_EQ(place(state, 0), mission.starts_m[0]) << "who is in the plan begins as planned";
+    for (const int stranger : {1, 2}) {
+      EXPECT_EQ(place(state, stranger), random_start(mission.domain, seed, stranger));
+      EXPECT_TRUE(mission.domain.contains(place(state, stranger)));
+    }
+    EXPECT_NE(place(state, 1), place(state, 2));
+    return std::pair(place(state, 1), place(state, 2));
+  };
+  EXPECT_EQ(strangers(7), strangers(7));
+  EXPECT_NE(strangers(7), strangers(8));
 }
 
 TEST(WorldAdmits, ALateAgentAtItsOwnStart) {
   const Mission mission = small_mission(2);
   World world = world_of(mission);
   world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  nobody_has_moved(world, 1, at(0s));
   EXPECT_EQ(state_after(world, at(0s)).vehicle_count, 1);
   world.receive(mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
   world.receive(command_of(0, 0, {0, 0}), at(0s));
   EXPECT_TRUE(advance(world, at(1ms)).empty()) << "the tick is the newcomer's too";
-  world.receive(command_of(1, 0, {0, 0}), at(0s));
-  const WorldState state = state_after(world, at(1ms));
+  const WorldState again = state_after(world, at(20ms));
+  EXPECT_EQ(again.header.tick, 0);
+  EXPECT_EQ(again.roster_revision, 1);
+  ASSERT_EQ(again.vehicle_count, 2) << "which has to see where it is";
+  EXPECT_EQ(place(again, 1), mission.starts_m[1]);
+  world.receive(command_of(1, 0, {0, 0}), at(20ms));
+  const WorldState state = state_after(world, at(20ms));
+  EXPECT_EQ(state.header.tick, 1);
   ASSERT_EQ(state.vehicle_count, 2);
   EXPECT_EQ(place(state, 1), mission.starts_m[1]);
 }
