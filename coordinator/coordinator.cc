@@ -23,6 +23,8 @@ constexpr auto kFarewell = 1s;
 /// How long to look for a mission under way: longer than any agent is silent.
 constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 constexpr auto kQuestionPeriod = 250ms;
+/// A coordinator whose TEAM_STATUS, which nobody repeats, was heard within this time is alive.
+constexpr auto kRivalLife = 4 * kTeamStatusPeriod;
 /// After the first answer, for newer revisions from agents that heard more of the predecessor.
 constexpr auto kSecondOpinions = 200ms;
 constexpr auto kTakeoverPatience = 30s;
@@ -62,6 +64,10 @@ void Coordinator::receive(const Message& message, Instant now) {
                                             status->phase == AgentPhase::kRunning);
   if (takeover_ != Takeover::kNever && run_ == 0 && flying) run_ = from.run;
   if (run_ == 0 || from.run != run_) return;
+  if (std::holds_alternative<TeamStatus>(message) && from.incarnation != incarnation_) {
+    rival_ = from.incarnation;
+    rival_heard_ = now;
+  }
   if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
   if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
   if (takeover_ != Takeover::kNever) {
@@ -96,8 +102,16 @@ void Coordinator::on(const MissionPart& part, Instant now) {
   if (part.header.incarnation == incarnation_) return;
   if (takeover_ != Takeover::kNever) {
     if (follower_.receive(part) && !found_) found_ = now;
-  } else if (std::pair(part.revision, part.header.incarnation) >
-             std::pair(revision_, incarnation_)) {  // of two that took over at once, one stays
+    return;
+  }
+  // Of two that took over at once, one stays.
+  if (std::pair(part.revision, part.header.incarnation) <= std::pair(revision_, incarnation_)) return;
+  const bool alive = part.header.incarnation == rival_ && now - rival_heard_ < kRivalLife;
+  if (!alive) {
+    // What a dead one said and an agent has repeated: the team has to listen to us again.
+    revision_ = part.revision;
+    change();
+  } else {
     end(true, "another coordinator has taken the mission over", now);
     finished_ = true;  // at once, without a word: the mission is not ours to end
   }

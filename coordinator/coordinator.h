@@ -94,6 +94,8 @@ class Coordinator {
   bool took_over_ = false;
   std::optional<Instant> looking_since_, found_;
   Tick team_tick_ = 0;  // the newest of any agent
+  Incarnation rival_ = 0;  // another coordinator of this run
+  Instant rival_heard_{};
   Instant next_question_{};
   Sequencer sequencer_;
 

@@ -58,7 +58,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   Coordinator coordinator(node.run, random_identity(), decode_plan, std::move(plan), takeover);
   auto opened = Transport::open(
       node.url, node.run,
-      {{Bus::kSwarm, "HELLO|AGENT_STATUS_.*|STOP|MISSION"}, {Bus::kWorld, "WORLD_STATE"}},
+      {{Bus::kSwarm, "HELLO|AGENT_STATUS_.*|STOP|MISSION|TEAM_STATUS"}, {Bus::kWorld, "WORLD_STATE"}},
       {.on_message = [&](const Message& message, AgentId) { coordinator.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);

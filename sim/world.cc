@@ -220,7 +220,6 @@ void World::advance_lockstep(Instant now, Outbox& out) {
     }
     remember_and_publish(now, out);
   } else if (!over && everyone_answered()) {
-    history_.back() = snapshot();
     step(false);
     published_ = false;
     return advance_lockstep(now, out);
@@ -283,7 +282,6 @@ void World::move(AgentId id, Body& body, Tick tick, bool hold_old_commands) cons
   body.x_m = reflect(next_m, mission.domain);
 }
 
-/// The tick as it is: a repeat says the same, but for who has answered, and who has joined since.
 std::vector<WorldState> World::snapshot() const {
   const auto parts = std::max<std::size_t>(
       1, (bodies_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState);
@@ -318,8 +316,21 @@ void World::publish(const std::vector<WorldState>& states, Outbox& out) {
 void World::repeat(Instant now, Outbox& out) {
   repeat_period_ = std::min(2 * repeat_period_, kLongestRepeatPeriod);
   next_publish_ = now + repeat_period_;
-  if (published_) history_.back() = snapshot();
-  if (!history_.empty()) publish(history_.back(), out);
+  if (published_) {
+    // The same state, but who has answered, and who has joined, is news.
+    history_.back() = snapshot();
+    publish(history_.back(), out);
+  } else if (!history_.empty()) {
+    // The bodies have moved on already.
+    for (WorldState& part : history_.back()) {
+      for (int i = 0; i < part.vehicle_count; ++i) {
+        Vehicle& vehicle = part.vehicles[static_cast<std::size_t>(i)];
+        vehicle.answered_tick = bodies_.at(vehicle.id).answered();
+      }
+      part.roster_revision = follower_.revision();
+    }
+    publish(history_.back(), out);
+  }
   help_logger(out);
 }
 

@@ -264,15 +264,34 @@ TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
 
 // ---- the one that was taken over -----------------------------------------------------------------
 
+/// What only a living coordinator says.
+TeamStatus alive(Incarnation life) {
+  TeamStatus status;
+  status.header = {kRun, kCoordinator, life, 1, 0};
+  return status;
+}
+
 TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   advance(coordinator, at(1s));
   MissionPart newer = memory_of(1000);
   newer.header.incarnation = kSuccessorLife;
+  coordinator.receive(alive(kSuccessorLife), at(1400ms));
   coordinator.receive(newer, at(1500ms));
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.reason(), "another coordinator has taken the mission over");
   EXPECT_TRUE(advance(coordinator, at(3s)).empty()) << "the mission is not its to end";
+}
+
+TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  advance(coordinator, at(1s));
+  MissionPart repeated = memory_of(1000);
+  repeated.header.incarnation = kSuccessorLife;
+  coordinator.receive(alive(kSuccessorLife), at(1s));
+  coordinator.receive(repeated, at(3s));  // by an agent, long after its last word
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  EXPECT_EQ(said_by(advance(coordinator, at(3s))).revision, 1001) << "or the team would not listen";
 }
 
 TEST(TakenOver, ItsOwnOrOlderWordsComingBackDoNotScareACoordinator) {
@@ -301,6 +320,8 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
   const MissionPart ones = said_by(advance(one, at(200ms)));
   const MissionPart others = said_by(advance(other, at(200ms)));
   ASSERT_EQ(ones.revision, others.revision);
+  one.receive(alive(kSuccessorLife + 1), at(200ms));
+  other.receive(alive(kSuccessorLife), at(200ms));
   one.receive(others, at(201ms));
   other.receive(ones, at(201ms));
   EXPECT_NE(one.finished(), other.finished());
