@@ -347,14 +347,15 @@ void Coordinator::lead(Instant now, Outbox& out) {
     tick_since_ = now;
     change();
   }
+  // First, so that a coordinator whom our mission outranks knows that we live.
+  if (now >= next_team_status_) {
+    publish_team_status(now, out);
+    next_team_status_ = now + kTeamStatusPeriod;
+  }
   if (now >= next_mission_) {
     publish_mission(out);
     last_mission_ = now;
     next_mission_ = now + (ended_ ? kMissionGap : kMissionPeriod);
-  }
-  if (now >= next_team_status_) {
-    publish_team_status(now, out);
-    next_team_status_ = now + kTeamStatusPeriod;
   }
   finished_ = ended_ && now - *ended_ >= kFarewell;
 }
