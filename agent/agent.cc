@@ -55,7 +55,9 @@ void Agent::receive(const Message& message, Instant now, AgentId transmitter) {
 
 void Agent::on(const MissionPart& part, Instant now) {
   if (identity_.run == 0) identity_.run = part.header.run;
-  if (part.revision >= follower_.revision()) mission_repeat_.reset();  // said by somebody else
+  // Said by somebody else; or by one who has not heard of what came later, or will not be heard.
+  if (part.revision >= follower_.revision()) mission_repeat_.reset();
+  if (part.revision < follower_.revision()) plan_mission_repeat(now);
   if (!follower_.receive(part)) return;
   if (follower_.plan_unreadable()) {
     return finish(true, "the mission plan is not readable by version " + identity_.version +
@@ -145,7 +147,11 @@ void Agent::on(const Hello& hello, Instant now) {
   if (!follower_.mission()) return;
   if (hello.header.sender == kWorld && table_) world_asks_ = true;
   const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
-  if (!knows_no_mission || mission_repeat_) return;
+  if (knows_no_mission) plan_mission_repeat(now);
+}
+
+void Agent::plan_mission_repeat(Instant now) {
+  if (mission_repeat_) return;
   if (mission_repeated_ && now - *mission_repeated_ < kMissionRepeatGap) return;
   const double share = uniform_pair(identity_.incarnation, Purpose::kAnswer, 0,
                                     static_cast<std::uint64_t>(received_)).x();
@@ -196,9 +202,13 @@ void Agent::advance(Instant now, Outbox& out) {
     publish(Bus::kSwarm, Hello{{}, self_.agent, identity_.host, identity_.version}, 0, out);
   }
   if (phase_ == AgentPhase::kRunning) {
-    if (pending_) begin_tick(out);
+    if (pending_) begin_tick(now, out);
     if (repeat_wanted_) repeat(out);
     if (phase_ == AgentPhase::kRunning && answered_tick_ < tick_ && may_answer()) answer(out);
+  }
+  if (phase_ == AgentPhase::kRunning && stalled(now)) {
+    stalled_said_ = now;
+    broadcast(out);
   }
   if (!finished() && mission_repeat_ && now >= *mission_repeat_) repeat_mission(now, out);
   // Nobody can tell two joining processes apart by an id that neither has been given.
@@ -237,7 +247,7 @@ void Agent::tell_world(Outbox& out) {
   }
 }
 
-void Agent::begin_tick(Outbox& out) {
+void Agent::begin_tick(Instant now, Outbox& out) {
   const Mission& mission = *follower_.mission();
   const WorldView view = *pending_;
   pending_.reset();
@@ -249,11 +259,19 @@ void Agent::begin_tick(Outbox& out) {
   if (evicted(view.tick)) return;
   if (tick_ >= 0) missed_ticks_ += view.tick - tick_ - 1;
   tick_ = view.tick;
+  tick_begun_ = now;
   roster_revision_ = view.roster_revision;
   x_m_ = view.position_m.head<2>();
   basis_at_.emplace(x_m_, mission.domain, mission.basis);
   table_->add_sample(self_, *basis_at_);
   if (tick_ >= next_broadcast_tick_) broadcast(out);
+}
+
+/// Whether the ticks have stopped coming: then what we have is said now and then without waiting for
+/// more. In lockstep nobody may hear of a tick before the broadcast that was announced.
+bool Agent::stalled(Instant now) const {
+  return follower_.mission()->timing.pace == Pace::kRealtime && tick_ >= 0 &&
+         now - std::max(tick_begun_, stalled_said_) >= kWorldSilence;
 }
 
 int Agent::members() const {

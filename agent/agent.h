@@ -90,12 +90,14 @@ class Agent {
   const RosterEntry* member(const Header& from) const;
   std::int64_t most_steps(const RosterEntry& author, Instant now) const;
   bool evicted(Tick tick);
-  void begin_tick(Outbox& out);
+  void begin_tick(Instant now, Outbox& out);
+  bool stalled(Instant now) const;
   void broadcast(Outbox& out);
   void repeat(Outbox& out);
   bool may_answer();
   void answer(Outbox& out);
   void help_others(Instant now, Outbox& out);
+  void plan_mission_repeat(Instant now);
   void repeat_mission(Instant now, Outbox& out);
   void tell_world(Outbox& out);
   void publish_status(Instant now, Outbox& out);
@@ -125,6 +127,7 @@ class Agent {
   bool repeat_wanted_ = false;
   std::int64_t roster_revision_ = 0;  // of the world, at tick_
   Tick tick_ = -1, answered_tick_ = -1, next_broadcast_tick_ = 0;
+  Instant tick_begun_{}, stalled_said_{};
   Eigen::Vector2d x_m_{0, 0};
   std::optional<BasisAt> basis_at_;
   Command last_command_, command_before_;  // header.tick −1: none yet
