@@ -217,8 +217,9 @@ TEST_F(InvariantsTest, ViewsAgreeWithinTheirStaleness) {
   const Holder right = holder(one, c_one_);
   team_.recovered(1, {right});
   EXPECT_EQ(violated(), "");
-  c_one_(3, 3) += 0.5;
-  team_.recovered(2, {right});
+  CoverageTable other(mission_.basis, 0.1);
+  cover(other, kTwo, 50, 7);  // as many steps, elsewhere
+  team_.recovered(2, {right, holder(other, c_two_, kTwo)});
   EXPECT_EQ(violated(), "all agree on c_k within their staleness");
   EXPECT_GT(team_.largest_view_error(), 0);
 }
