@@ -98,7 +98,8 @@ class Trial {
   void note_answer(Seat seat, const Message& message, const Holder& holder);
   void supervise_coordinator();
   std::string still_running();
-  bool timed_out();
+  bool timed_out() const;
+  bool failed() const;
   bool mission_over() const;
   bool everybody_finished();
   void check_recovered();
@@ -125,7 +126,7 @@ class Trial {
   std::size_t next_incident_ = 0;
   std::vector<Ending> endings_;
   double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
-  std::optional<Instant> healed_;
+  std::optional<Instant> healed_, failed_since_;
   bool end_said_ = false;  // by a coordinator
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
 
@@ -260,6 +261,7 @@ TrialResult Trial::run() {
     deliver_due();
     advance_due();
     supervise_coordinator();
+    if (failed() && !failed_since_) failed_since_ = now_;
     check_recovered();
   }
   return result();
@@ -542,10 +544,15 @@ std::string Trial::still_running() {
 }
 
 /// Whether a lockstep mission was given up because of what we did to it.
-bool Trial::timed_out() {
-  const bool failed = coordinator_->state() == MissionState::kFailed;
+bool Trial::timed_out() const {
   const auto patience = seconds(mission_.timing.lockstep_timeout_s + kFarewell_s);
-  return failed && mission_.timing.pace == Pace::kLockstep && (!healed_ || now_ < *healed_ + patience);
+  return failed_since_ && mission_.timing.pace == Pace::kLockstep &&
+         (!healed_ || *failed_since_ < *healed_ + patience);
+}
+
+/// A coordinator that came back when all was over has no mission that could fail.
+bool Trial::failed() const {
+  return coordinator_->state() == MissionState::kFailed && coordinator_->mission() != nullptr;
 }
 
 TrialResult Trial::result() {
@@ -553,10 +560,9 @@ TrialResult Trial::result() {
   result.timed_out = timed_out();
   const double t_s = in_seconds(now_);
   if (!result.timed_out && !invariants_.violation()) {
-    const bool failed = coordinator_->state() == MissionState::kFailed;
     const bool healed = options_.faults.lasting_share < 1;
     healed ? invariants_.recovered(t_s, living()) : invariants_.compare_views(living());
-    invariants_.ended(t_s, still_running(), failed ? coordinator_->reason() : "", recorder_.facts());
+    invariants_.ended(t_s, still_running(), failed() ? coordinator_->reason() : "", recorder_.facts());
   }
   result.violation = invariants_.violation();
   figures_.virtual_s = t_s;
