@@ -56,6 +56,11 @@ void print_summary(const Json& summary) {
               number("/ergodic_metric/first", "%.4g").c_str(),
               number("/ergodic_metric/last", "%.4g").c_str(),
               number("/log_log_slope", "%.2f").c_str());
+  if (summary.contains("goal")) {
+    const bool reached = summary["goal"].value("reached", false);
+    std::printf("  goal      %s, %s\n", number("/goal/ergodic_metric", "%.4g").c_str(),
+                reached ? "reached" : "not reached");
+  }
   std::printf("  messages  %s sent, %s received, %s lost, %s dropped by the kernel\n",
               text("/messages/sent").c_str(), text("/messages/received").c_str(),
               text("/messages/lost").c_str(), text("/messages/kernel_drops").c_str());

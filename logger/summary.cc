@@ -36,6 +36,7 @@ Json agents(const Recorder& recorder) {
       agent["messages_received"] = status.messages_received;
       agent["contributions_received"] = status.contributions_received;
       agent["contributions_lost"] = status.contributions_lost;
+      agent["contributions_relayed"] = status.contributions_relayed;
       agent["missed_ticks"] = status.missed_ticks;
       agent["kernel_drops"] = status.kernel_drops;
     }
@@ -112,6 +113,11 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   summary["ergodic_metric"] = {
       {"first", observed ? number(facts.ergodic_metric_first) : Json(nullptr)},
       {"last", observed ? number(facts.ergodic_metric_last) : Json(nullptr)}};
+  if (mission && mission->goal_ergodic_metric > 0) {
+    summary["goal"] = {
+        {"ergodic_metric", mission->goal_ergodic_metric},
+        {"reached", observed && facts.ergodic_metric_last <= mission->goal_ergodic_metric}};
+  }
   const auto slope = log_log_slope(facts.t_s, facts.ergodic_metric);
   summary["log_log_slope"] = slope ? number(*slope) : Json(nullptr);
   if (mission) summary["conventions"] = conventions(mission->basis);

@@ -19,6 +19,26 @@ TEST(Summary, IsWrittenWhateverBytesTheNetworkBrought) {
   EXPECT_EQ(read["reason"], "caf\xef\xbf\xbd") << "the replacement character";
 }
 
+/// What is said of the goal after one recorded tick.
+nlohmann::ordered_json goal_after_a_tick(double goal_ergodic_metric) {
+  Mission mission = small_mission(1);
+  mission.goal_ergodic_metric = goal_ergodic_metric;
+  std::ostringstream trajectory, metrics;
+  Recorder recorder(kRun, kLoggerLife, decoder_of(mission), trajectory, metrics);
+  recorder.receive(mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
+  for (const Tick tick : {0, 1}) recorder.receive(world_state(tick, {{100, 500}}), at(0s));
+  advance(recorder, at(0s));
+  const auto summary = summarize(recorder, {});
+  return summary.contains("goal") ? summary["goal"] : nlohmann::ordered_json();
+}
+
+TEST(Summary, SaysWhetherTheGoalIsReachedIfThereIsOne) {
+  EXPECT_TRUE(goal_after_a_tick(0).is_null());
+  EXPECT_EQ(goal_after_a_tick(1e6)["reached"], true);
+  EXPECT_EQ(goal_after_a_tick(1e-6)["reached"], false);
+  EXPECT_EQ(goal_after_a_tick(1e-6)["ergodic_metric"], 1e-6);
+}
+
 TEST(Summary, SaysNothingOfWhatIsNotKnown) {
   std::ostringstream trajectory, metrics;
   const Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
