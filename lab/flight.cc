@@ -1,0 +1,260 @@
+#include "lab/flight.h"
+
+#include <algorithm>
+
+#include "core/noise.h"
+#include "lab/dice.h"
+#include "lcmtypes/codec.h"
+
+namespace ergocast::lab {
+namespace {
+
+/// More events than this in a virtual second are a storm of messages.
+constexpr std::int64_t kMostMessagesPer_s = 100000;
+/// A stream of dice beside lab/faults.cc's.
+constexpr std::uint32_t kClocks = 16;
+
+/// The mission of a trial, decoded once; a plan with other bytes is another mission.
+PlanDecoder decoder_of(const Mission& mission, const TrialOptions& options) {
+  return [mission, &options](std::span<const std::byte> plan) {
+    return std::ranges::equal(plan, options.plan) ? std::optional(mission) : options.decode_plan(plan);
+  };
+}
+
+Mission mission_of(const TrialOptions& options, std::uint64_t seed) {
+  Mission mission = options.decode_plan(options.plan).value();
+  mission.seed = seed;
+  return mission;
+}
+
+}  // namespace
+
+Flight::Flight(const TrialOptions& options, std::uint64_t seed, std::ostream& trajectory,
+               std::ostream& metrics)
+    : options_(options),
+      seed_(seed),
+      mission_(mission_of(options, seed)),
+      decode_plan_(decoder_of(mission_, options)),
+      run_(random_words(seed, Purpose::kIncarnation, ~0U, 0).first | 1),
+      agents_count_(static_cast<int>(mission_.starts_m.size())),
+      seats_(agents_count_ + 3),
+      network_(seed, options.faults, seats_),
+      invariants_(mission_),
+      processes_(static_cast<std::size_t>(seats_)),
+      agents_(static_cast<std::size_t>(agents_count_)),
+      recorder_(run_, 1, decode_plan_, trajectory, metrics),
+      planned_s_(static_cast<double>(mission_.timing.tick_count) * mission_.timing.dt_s /
+                 mission_.timing.realtime_factor),
+      answered_(static_cast<std::size_t>(agents_count_), -1),
+      recoveries_(static_cast<std::size_t>(agents_count_)) {
+  figures_.seed = seed;
+  faulty_s_ = options.faults.lasting_share * planned_s_;
+  incidents_ = incidents(options.faults, seed, agents_count_, faulty_s_);
+  for (const Seat seat : {world_seat(), recorder_seat()}) {
+    hears_bus_[static_cast<std::size_t>(Bus::kCommand)].set(static_cast<std::size_t>(seat));
+  }
+  for (const Bus bus : {Bus::kSwarm, Bus::kWorld}) {
+    for (Seat seat = 0; seat < seats_; ++seat) {
+      if (seat != world_seat()) hears_bus_[static_cast<std::size_t>(bus)].set(static_cast<std::size_t>(seat));
+    }
+  }
+  set_clocks();
+  for (Seat seat = 0; seat < seats_; ++seat) start(seat);
+}
+
+std::string Flight::name_of(Seat seat) const {
+  if (seat < agents_count_) return "agent " + std::to_string(seat);
+  return seat == coordinator_seat() ? "the coordinator" : seat == world_seat() ? "the world" : "the logger";
+}
+
+Incarnation Flight::incarnation_of(Seat seat) const {
+  const std::uint32_t life = processes_[static_cast<std::size_t>(seat)].life;
+  return random_words(seed_, Purpose::kIncarnation, static_cast<std::uint32_t>(seat), life).first | 1;
+}
+
+void Flight::set_clocks() {
+  const Faults& faults = options_.faults;
+  if (faults.clock_rate_error <= 0 && faults.clock_offset_max_s <= 0) return;
+  Dice dice(seed_, kClocks);
+  for (Process& process : processes_) {
+    const double rate = 1 + faults.clock_rate_error * (2 * dice.uniform() - 1);
+    process.clock = SkewedClock(rate, seconds(faults.clock_offset_max_s * dice.uniform()));
+    ++figures_.skewed_clocks;
+  }
+}
+
+void Flight::start(Seat seat) {
+  Process& process = at(seat);
+  const Incarnation incarnation = incarnation_of(seat);
+  if (seat < agents_count_) {
+    agents_[static_cast<std::size_t>(seat)] = std::make_unique<Agent>(
+        AgentIdentity{run_, seat, incarnation, "laboratory", options_.version}, decode_plan_);
+    answered_[static_cast<std::size_t>(seat)] = -1;
+    invariants_.born({seat, incarnation});
+  } else if (seat == coordinator_seat()) {
+    const bool first = process.life == 0;
+    coordinator_ = std::make_unique<Coordinator>(
+        run_, incarnation, decode_plan_, first ? options_.plan : std::vector<std::byte>(),
+        first ? Takeover::kNever : Takeover::kMust);
+  } else if (seat == world_seat()) {
+    world_ = std::make_unique<World>(run_, incarnation, decode_plan_);
+  }
+  process.up = true;
+  process.restart = Instant::max();
+  process.wakeup = now_;
+  ++process.life;
+}
+
+// ---- time ----------------------------------------------------------------------------------------
+
+/// What the schedule of the faults goes by. A lockstep mission flies in no time where nobody is
+/// late, so there it is mission time; but a mission that stands still is to be healed as well.
+double Flight::progress_s() const {
+  const double virtual_s = in_seconds(now_);
+  if (mission_.timing.pace == Pace::kRealtime) return virtual_s;
+  return std::max(virtual_s,
+                  static_cast<double>(invariants_.last_tick()) * mission_.timing.dt_s /
+                      mission_.timing.realtime_factor);
+}
+
+Instant Flight::next_time() {
+  Instant next = std::min(network_.next(), next_check_);
+  for (const Process& process : processes_) {
+    next = std::min(next, process.up ? process.wakeup : process.restart);
+  }
+  for (const Ending& ending : endings_) next = std::min(next, ending.at);
+  if (healed_) return std::min(next, deadline_);
+  if (next_incident_ < incidents_.size()) {
+    next = std::min(next, Instant(seconds(incidents_[next_incident_].at_s)));
+  }
+  return std::min(next, Instant(seconds(faulty_s_)));
+}
+
+TrialResult Flight::run() {
+  while (!everybody_finished() && !invariants_.violation()) {
+    now_ = std::max(now_, next_time());
+    if (now_ >= deadline_) break;
+    if (static_cast<double>(figures_.messages) > kMostMessagesPer_s * (progress_s() + 1)) break;
+    if (!healed_) {
+      end_incidents();
+      begin_incidents();
+      if (progress_s() >= faulty_s_) heal();
+    }
+    restart_due();
+    deliver_due();
+    advance_due();
+    supervise_coordinator();
+    if (failed() && !failed_since_) failed_since_ = now_;
+    check_recovered();
+  }
+  return result();
+}
+
+// ---- messages ------------------------------------------------------------------------------------
+
+void Flight::deliver_due() {
+  while (network_.next() <= now_) {
+    const Delivery delivery = network_.pop();
+    for (Seat seat = 0; seat < seats_; ++seat) {
+      if (delivery.to.test(static_cast<std::size_t>(seat)) && at(seat).up) hear(seat, delivery);
+    }
+  }
+}
+
+void Flight::hear(Seat seat, const Delivery& delivery) {
+  Process& process = at(seat);
+  const Instant local = process.clock.local(now_);
+  const Message& message = *delivery.message;
+  process.heard = true;
+  if (seat >= agents_count_) {
+    if (seat == coordinator_seat()) return coordinator_->receive(message, local);
+    return seat == world_seat() ? world_->receive(message, local) : recorder_.receive(message, local);
+  }
+  if (const auto* digest = std::get_if<Digest>(&message)) invariants_.heard(agent(seat).author(), *digest);
+  agent(seat).receive(message, local, delivery.transmitter);
+}
+
+void Flight::advance_due() {
+  for (Seat seat = 0; seat < seats_; ++seat) {
+    if (at(seat).up && (at(seat).heard || at(seat).wakeup <= now_)) advance(seat);
+  }
+}
+
+void Flight::advance(Seat seat) {
+  Process& process = at(seat);
+  const Instant local = process.clock.local(now_);
+  process.heard = false;
+  with(seat, [&](auto& core) { core.advance(local, outbox_); });
+  publish(seat);
+  const Instant next = with(seat, [](auto& core) { return core.finished() ? Instant::max() : core.next_wakeup(); });
+  invariants_.wakeup(in_seconds(now_), name_of(seat), next <= local);
+  process.wakeup = process.clock.when(next);
+  if (seat < agents_count_) after_agent(seat);
+}
+
+void Flight::publish(Seat seat) {
+  const bool is_agent = seat < agents_count_;
+  const Holder speaker = is_agent ? holder_of(seat) : Holder();
+  for (const Outgoing& outgoing : outbox_) {
+    const double t_s = in_seconds(now_);
+    invariants_.sent(t_s, outgoing, speaker.table != nullptr ? &speaker : nullptr);
+    if (is_agent) note_answer(seat, outgoing.message, speaker);
+    encode(outgoing.message, bytes_);
+    auto decoded = decode(bytes_, run_);
+    invariants_.decoded(t_s, decoded, false);
+    if (std::holds_alternative<Refusal>(decoded)) continue;
+    ++figures_.messages;
+    if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) {
+      end_said_ |= part->state == MissionState::kEnded || part->state == MissionState::kFailed;
+    }
+    figures_.digests += std::holds_alternative<Digest>(outgoing.message);
+    figures_.contributions += std::holds_alternative<Contribution>(outgoing.message);
+    figures_.relayed += outgoing.relayer != kUnassigned;
+    const AgentId sender = header_of(outgoing.message).sender;
+    const int corrupted = network_.send(
+        now_, seat, hears_bus_[static_cast<std::size_t>(outgoing.bus)], outgoing.bus,
+        outgoing.relayer != kUnassigned ? outgoing.relayer : sender,
+        std::make_shared<const Message>(std::get<Message>(std::move(decoded))));
+    for (int i = 0; i < corrupted; ++i) {
+      damaged_ = bytes_;
+      damage(damaged_, seed_, static_cast<std::uint64_t>(network_.counted().corrupted - i));
+      invariants_.decoded(t_s, decode(damaged_, run_), true);
+    }
+  }
+  outbox_.clear();
+}
+
+void Flight::after_agent(Seat seat) {
+  const double t_s = in_seconds(now_);
+  Agent& one = agent(seat);
+  invariants_.refused(t_s, one.author(), one.refused());
+  look_for_recovery(seat);
+  if (one.finished()) invariants_.finished(t_s, one.author(), one.reason(), mission_over());
+}
+
+/// Once for each tick that an agent answers.
+void Flight::note_answer(Seat seat, const Message& message, const Holder& holder) {
+  const auto* command = std::get_if<Command>(&message);
+  Tick& answered = answered_[static_cast<std::size_t>(seat)];
+  if (command == nullptr || command->header.tick <= answered) return;
+  answered = command->header.tick;
+  ++figures_.agent_steps;
+  invariants_.answered(in_seconds(now_), holder);
+}
+
+void Flight::look_for_recovery(Seat seat) {
+  auto& recovery = recoveries_[static_cast<std::size_t>(seat)];
+  const CoverageTable* table = agent(seat).coverage();
+  if (!recovery || table == nullptr) return;
+  std::erase_if(recovery->lacks, [&](const auto& lack) {
+    return table->steps_held(lack.first).value_or(0) >= lack.second;
+  });
+  if (!recovery->lacks.empty()) return;
+  const double took_s = in_seconds(now_) - in_seconds(recovery->since);
+  recovery_sum_s_ += took_s;
+  figures_.recovery_max_s = std::max(figures_.recovery_max_s, took_s);
+  ++figures_.recoveries;
+  recovery.reset();
+}
+
+}  // namespace ergocast::lab

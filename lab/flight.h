@@ -1,0 +1,136 @@
+// The inside of a trial: who sits where, what time it is, what is wrong with whom. Its functions are
+// in flight.cc (time and messages), flight_faults.cc (what is done to processes and links) and
+// flight_verdict.cc (what came of it).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lab/clock.h"
+#include "lab/trial.h"
+
+namespace ergocast::lab {
+
+/// After the last tick: how long the slowest process may take to end.
+inline constexpr double kFarewell_s = 10;
+
+inline double in_seconds(Instant at) {
+  return std::chrono::duration<double>(at.time_since_epoch()).count();
+}
+
+class Flight {
+ public:
+  Flight(const TrialOptions& options, std::uint64_t seed, std::ostream& trajectory,
+         std::ostream& metrics);
+  TrialResult run();
+
+ private:
+  struct Process {
+    SkewedClock clock;
+    Instant wakeup{};
+    Instant restart = Instant::max();  // when it is started again, while it is down
+    std::uint32_t life = 0;
+    bool up = false, heard = false;
+  };
+  struct Ending {
+    Instant at;
+    Incident incident;
+  };
+  struct Recovery {
+    Instant since;
+    std::vector<std::pair<Author, std::int64_t>> lacks;
+  };
+
+  Seat coordinator_seat() const { return agents_count_; }
+  Seat world_seat() const { return agents_count_ + 1; }
+  Seat recorder_seat() const { return agents_count_ + 2; }
+  Process& at(Seat seat) { return processes_[static_cast<std::size_t>(seat)]; }
+  Agent& agent(Seat seat) { return *agents_[static_cast<std::size_t>(seat)]; }
+  template <class F>
+  auto with(Seat seat, F f);
+  std::string name_of(Seat seat) const;
+  Incarnation incarnation_of(Seat seat) const;
+
+  void set_clocks();
+  void start(Seat seat);
+  Instant next_time();
+  void pass_to(Instant now);
+  double progress_s() const;
+
+  // The driver of the faults.
+  void begin_incidents();
+  void end_incidents();
+  void begin(const Incident& incident);
+  void cut(const Incident& incident, bool join);
+  bool may_crash(Seat seat);
+  bool crash(Seat seat, double lasts_s);
+  void restart_due();
+  void heal();
+  bool anybody_else_knows_the_mission(Seat seat);
+
+  void deliver_due();
+  void hear(Seat seat, const Delivery& delivery);
+  void advance_due();
+  void advance(Seat seat);
+  void publish(Seat seat);
+  void after_agent(Seat seat);
+  void look_for_recovery(Seat seat);
+
+  Holder holder_of(Seat seat);
+  std::vector<Holder> living();
+  void note_answer(Seat seat, const Message& message, const Holder& holder);
+  void supervise_coordinator();
+  std::string still_running();
+  bool timed_out() const;
+  bool failed() const;
+  bool mission_over() const;
+  bool everybody_finished();
+  void check_recovered();
+  TrialResult result();
+
+  const TrialOptions& options_;
+  std::uint64_t seed_;
+  Mission mission_;
+  PlanDecoder decode_plan_;
+  RunId run_;
+  int agents_count_, seats_;
+  Network network_;
+  Invariants invariants_;
+  Seats hears_bus_[kBusCount];
+
+  std::vector<Process> processes_;
+  std::vector<std::unique_ptr<Agent>> agents_;
+  std::unique_ptr<Coordinator> coordinator_;
+  std::unique_ptr<World> world_;
+  Recorder recorder_;
+
+  Instant now_{};
+  std::vector<Incident> incidents_;
+  std::size_t next_incident_ = 0;
+  std::vector<Ending> endings_;
+  double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
+  std::optional<Instant> healed_, failed_since_;
+  bool end_said_ = false;  // by a coordinator
+  Instant next_check_ = Instant::max(), deadline_ = Instant::max();
+
+  Outbox outbox_;
+  std::vector<std::byte> bytes_, damaged_;
+  std::vector<Tick> answered_;  // by agent
+  std::vector<std::optional<Recovery>> recoveries_;
+  double recovery_sum_s_ = 0;
+  TrialFigures figures_;
+};
+
+template <class F>
+auto Flight::with(Seat seat, F f) {
+  if (seat < agents_count_) return f(agent(seat));
+  if (seat == coordinator_seat()) return f(*coordinator_);
+  if (seat == world_seat()) return f(*world_);
+  return f(recorder_);
+}
+
+}  // namespace ergocast::lab
