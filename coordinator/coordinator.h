@@ -73,6 +73,7 @@ class Coordinator {
   int alive_count(Instant now) const;
   void look_for_mission(Instant now, Outbox& out);
   void take_over(Instant now);
+  Instant next_look() const;
   void begin_own();
   void lead(Instant now, Outbox& out);
   void forget_silent(Instant now);

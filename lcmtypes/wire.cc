@@ -82,7 +82,7 @@ mission_t to_wire(const MissionPart& m) {
   return w;
 }
 bool from_wire(const mission_t& w, MissionPart& m) {
-  if (w.state < 0 || w.state > static_cast<int>(MissionState::kFailed) || w.revision < 0 ||
+  if (w.state < 0 || w.state > static_cast<int>(MissionState::kFailed) || !plausible_count(w.revision) ||
       w.parts < 1 || w.parts > kMaxPlanParts || w.part < 0 || w.part >= w.parts) {
     return false;
   }

@@ -185,6 +185,7 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<Part>(mission_part(), [](Part& m) { m.state = static_cast<MissionState>(4); }),
       changed<Part>(mission_part(), [](Part& m) { m.state = static_cast<MissionState>(-1); }),
       changed<Part>(mission_part(), [](Part& m) { m.revision = -1; }),
+      changed<Part>(mission_part(), [](Part& m) { m.revision = std::int64_t{1} << 49; }),
       changed<Part>(mission_part(), [](Part& m) { m.part = -1; }),
       changed<Part>(mission_part(), [](Part& m) { m.part = m.parts; }),
       changed<Part>(mission_part(), [](Part& m) { m.parts = kMaxPlanParts + 1; }),

@@ -1,0 +1,103 @@
+// How a coordinator comes by a mission that is already flying, and gives it up to another.
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "coordinator/coordinator.h"
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How long to look for a mission under way: longer than any agent is silent.
+constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
+constexpr auto kQuestionPeriod = 250ms;
+/// A coordinator whose TEAM_STATUS, which nobody repeats, was heard within this time is alive.
+constexpr auto kRivalLife = 1s;
+/// After the first answer, for newer revisions from agents that heard more of the predecessor.
+constexpr auto kSecondOpinions = 200ms;
+constexpr auto kTakeoverPatience = 30s;
+/// The predecessor may have said some revisions that nobody has repeated to us.
+constexpr std::int64_t kRevisionLead = 1000;
+
+}  // namespace
+
+void Coordinator::on(const MissionPart& part, Instant now) {
+  if (part.header.incarnation == incarnation_) return;
+  if (takeover_ != Takeover::kNever) {
+    if (follower_.receive(part) && !found_) found_ = now;
+    return;
+  }
+  // Of two that took over at once, one stays.
+  if (std::pair(part.revision, part.header.incarnation) <= std::pair(revision_, incarnation_)) return;
+  const bool alive = part.header.incarnation == rival_ && now - rival_heard_ < kRivalLife;
+  if (!alive) {
+    // What a dead one said and an agent has repeated: the team has to listen to us again.
+    revision_ = part.revision;
+    change();
+  } else {
+    end(true, "another coordinator has taken the mission over", now);
+    finished_ = true;  // at once, without a word: the mission is not ours to end
+  }
+}
+
+void Coordinator::look_for_mission(Instant now, Outbox& out) {
+  if (ended_) {
+    finished_ = true;  // told to stop; the mission is not ours yet
+    return;
+  }
+  if (!looking_since_) looking_since_ = now;
+  if (found_ && now - *found_ >= kSecondOpinions) return take_over(now);
+  const auto looked = now - *looking_since_;
+  if (takeover_ == Takeover::kIfFlying && run_ == 0 && looked >= kLookAround) return begin_own();
+  if (looked >= kTakeoverPatience) {
+    end(true, "no agent on this URL knows a mission that could be taken over", now);
+    finished_ = true;
+  }
+  if (now < next_question_) return;
+  next_question_ = now + kQuestionPeriod;
+  if (run_ == 0) return;
+  Hello question;
+  question.header = header(Bus::kSwarm);
+  question.header.tick = -1;
+  out.push_back({Bus::kSwarm, question});
+}
+
+Instant Coordinator::next_look() const {
+  if (!looking_since_) return Instant{};
+  return std::min(next_question_, found_ ? *found_ + kSecondOpinions : Instant::max());
+}
+
+void Coordinator::begin_own() {
+  takeover_ = Takeover::kNever;
+  run_ = incarnation_;
+}
+
+void Coordinator::take_over(Instant now) {
+  takeover_ = Takeover::kNever;
+  took_over_ = true;
+  if (!follower_.mission() || (!plan_.empty() && follower_.plan() != plan_)) {
+    const std::string name = follower_.mission() ? follower_.mission()->name : "another version";
+    end(true, "run " + to_hex(run_) + " of another plan (" + name +
+                  ") is flying on this URL: choose another URL, or wait for its end", now);
+    finished_ = true;
+    return;
+  }
+  mission_ = follower_.mission();
+  plan_ = follower_.plan();
+  roster_ = follower_.roster();
+  state_ = follower_.state();
+  reason_ = follower_.reason();
+  // The predecessor's, if the world has not spoken meanwhile.
+  for (const MissionPart& part : follower_.parts()) tick_ = std::max(tick_, part.header.tick);
+  // Above all that former successors have said, also what only agents know that we do not hear: the
+  // later a takeover, the higher its revisions.
+  const Tick now_tick = std::min(std::max(tick_, team_tick_), mission_->timing.tick_count);
+  revision_ = std::max(follower_.revision() + kRevisionLead, (now_tick + 1) * kRevisionLead);
+  if (follower_.over()) ended_ = now;
+  tick_since_ = now;
+  for (const RosterEntry& entry : roster_) members_[entry.author].heard = now;
+}
+
+}  // namespace ergocast
