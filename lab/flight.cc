@@ -49,6 +49,8 @@ Flight::Flight(const TrialOptions& options, std::uint64_t seed, std::ostream& tr
       recoveries_(static_cast<std::size_t>(agents_count_)) {
   figures_.seed = seed;
   faulty_s_ = options.faults.lasting_share * planned_s_;
+  // To the end means to the end of a mission that began late, too.
+  if (options.faults.lasting_share >= 1) faulty_s_ += mission_.timing.admission_timeout_s;
   incidents_ = incidents(options.faults, seed, agents_count_, faulty_s_);
   for (const Seat seat : {world_seat(), recorder_seat()}) {
     hears_bus_[static_cast<std::size_t>(Bus::kCommand)].set(static_cast<std::size_t>(seat));
@@ -138,7 +140,7 @@ TrialResult Flight::run() {
     if (!healed_) {
       end_incidents();
       begin_incidents();
-      if (progress_s() >= faulty_s_) heal();
+      if (progress_s() >= faulty_s_ || mission_over()) heal();
     }
     restart_due();
     deliver_due();
