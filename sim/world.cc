@@ -114,6 +114,7 @@ void World::begin(Instant now) {
   for (const RosterEntry& entry : follower_.roster()) {
     tick_ = std::max({tick_, entry.active_from, entry.active_until});
   }
+  tick_ = std::min(tick_, follower_.mission()->timing.tick_count);  // whatever the roster says
   begun_at_ = tick_;
   for (auto& [id, body] : bodies_) recall(id, body);
 }

@@ -221,6 +221,17 @@ TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
   EXPECT_EQ(place(state), mission.starts_m[0]);
 }
 
+TEST(WorldAsks, NotTheRosterForATickBeyondThePlan) {
+  const Mission mission = small_mission(1);
+  World world = world_of(mission);
+  auto roster = roster_of(1);
+  roster.push_back({{0, 99}, 0, Tick{1} << 47});
+  world.receive(mission_part(0, MissionState::kRunning, roster), at(0s));
+  nobody_has_moved(world, 1, at(0s));
+  advance(world, at(0s));
+  EXPECT_EQ(world.tick(), mission.timing.tick_count);
+}
+
 // ---- real time -----------------------------------------------------------------------------------
 
 TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
