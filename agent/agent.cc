@@ -321,8 +321,9 @@ void Agent::answer(Outbox& out) {
     if (entry.forgotten_at(tick_)) table_->forget(entry.author);
   }
   table_->average(team_coverage_);
+  controller_->see(team_coverage_);
   const Eigen::Vector2d velocity =
-      controller_->command(self_.agent, tick_, x_m_, *basis_at_, team_coverage_);
+      controller_->command(self_.agent, tick_, x_m_, *basis_at_);
   command_before_ = last_command_;
   last_command_.header.tick = tick_;
   last_command_.position_m << x_m_, 0;

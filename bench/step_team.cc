@@ -62,7 +62,8 @@ Eigen::Vector2d StepTeam::step() {
   const BasisAt at(x_m_, mission_.domain, mission_.basis);
   own_.add_sample(author_of(0), at);
   own_.average(coverage_);
-  return controller_.command(0, tick_, x_m_, at, coverage_);
+  controller_.see(coverage_);
+  return controller_.command(0, tick_, x_m_, at);
 }
 
 }  // namespace ergocast::bench

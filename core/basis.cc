@@ -28,7 +28,7 @@ double half_unless_zero(int mode) { return mode == 0 ? 1.0 : 0.5; }
 }  // namespace
 
 BasisAt::BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
-  ERGOCAST_REQUIRE(domain.contains(x_m));
+  ERGOCAST_REQUIRE(x_m.allFinite());
   ERGOCAST_REQUIRE(basis.modes_x <= kMaxModesPerAxis && basis.modes_y <= kMaxModesPerAxis);
   fill_axis(x_m.x() - domain.origin_m.x(), domain.size_m.x(), basis.modes_x, cos_x, slope_x);
   fill_axis(x_m.y() - domain.origin_m.y(), domain.size_m.y(), basis.modes_y, cos_y, slope_y);
@@ -66,6 +66,29 @@ Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const d
     gradient.y() += over_cos[n] * at.slope_y[n];
   }
   return gradient;
+}
+
+Eigen::Matrix2d weighted_hessian(const BasisAt& at, const Basis& basis, const Rectangle& domain,
+                                 const double* weights) {
+  const Eigen::Vector2d unit = (std::numbers::pi * domain.size_m.cwiseInverse()).cwiseAbs2();
+  BasisAt::Table over_bend, over_slope, over_cos;
+  for (int n = 0; n < basis.modes_y; ++n) over_bend[n] = over_slope[n] = over_cos[n] = 0;
+  for (int m = 0; m < basis.modes_x; ++m) {
+    const double* row = weights + m * basis.modes_y;
+    const double bend = -unit.x() * m * m * at.cos_x[m];
+    for (int n = 0; n < basis.modes_y; ++n) {
+      over_bend[n] += bend * row[n];
+      over_slope[n] += at.slope_x[m] * row[n];
+      over_cos[n] += at.cos_x[m] * row[n];
+    }
+  }
+  double xx = 0, xy = 0, yy = 0;
+  for (int n = 0; n < basis.modes_y; ++n) {
+    xx += over_bend[n] * at.cos_y[n];
+    xy += over_slope[n] * at.slope_y[n];
+    yy += over_cos[n] * -unit.y() * n * n * at.cos_y[n];
+  }
+  return Eigen::Matrix2d{{xx, xy}, {xy, yy}};
 }
 
 Coefficients sobolev_weights(const Basis& basis, const Rectangle& domain) {

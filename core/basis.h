@@ -39,7 +39,8 @@ struct BasisAt {
   Table cos_x, cos_y;    ///< cos(mπx/Lx), cos(nπy/Ly)
   Table slope_x, slope_y;  ///< their derivatives, −(mπ/Lx) sin(mπx/Lx) …  [1/m]
 
-  /// @pre domain.contains(x_m); up to kMaxModesPerAxis modes an axis.
+  /// @pre x_m is finite; up to kMaxModesPerAxis modes an axis.
+  /// Outside the domain f goes on as what it is, even about each edge and periodic.
   /// By recurrence from one cosine and sine an axis: |cos| may exceed 1 by about 1e-15 · modes.
   BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
 };
@@ -53,6 +54,10 @@ void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double
 /// Σ_mn weights(m,n) ∇f_mn: (6) when weights are λ_mn (c_mn − μ_mn) [unit of weights per metre].
 /// `weights` points to mode_count() doubles. Summed in a fixed order, whatever the processor.
 Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights);
+
+/// Σ_mn weights(m,n) ∂²f_mn, symmetric: the Jacobian of weighted_gradient() [its unit per metre].
+Eigen::Matrix2d weighted_hessian(const BasisAt& at, const Basis& basis, const Rectangle& domain,
+                                 const double* weights);
 
 /// λ_mn, divided by h_mn² where the basis is normalised: the one weight of both φ² and (6).
 Coefficients sobolev_weights(const Basis& basis, const Rectangle& domain);

@@ -29,17 +29,22 @@ Controller::Controller(const Mission& mission)
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
 }
 
-double Controller::weigh_residual(const Coefficients& coverage) {
+void Controller::see(const Coefficients& coverage) {
   const Eigen::Index count = residual_.size();
   const double* c = coverage.data();
   const double* mu = target_.data();
   const double* weight = weights_.data();
   double* residual = residual_.data();
   for (Eigen::Index k = 0; k < count; ++k) residual[k] = weight[k] * (c[k] - mu[k]);
-  if (law_.regularization == Regularization::kAbsolute) return law_.epsilon;
+  epsilon_ = law_.epsilon;
+  if (law_.regularization == Regularization::kRelative) epsilon_ *= residual_gradient();
+}
 
-  // Four partial sums in a fixed order: one chain of additions would cost more than all the rest.
+double Controller::residual_gradient() const {
+  const Eigen::Index count = residual_.size();
+  const double* residual = residual_.data();
   const double* energy = energies_.data();
+  // Four partial sums in a fixed order: one chain of additions would cost more than all the rest.
   double partial[4] = {0, 0, 0, 0};
   Eigen::Index k = 0;
   for (; k + 4 <= count; k += 4) {
@@ -48,12 +53,11 @@ double Controller::weigh_residual(const Coefficients& coverage) {
     }
   }
   for (; k < count; ++k) partial[0] += residual[k] * residual[k] * energy[k];
-  return law_.epsilon * std::sqrt((partial[0] + partial[1]) + (partial[2] + partial[3]));
+  return std::sqrt((partial[0] + partial[1]) + (partial[2] + partial[3]));
 }
 
 Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m,
-                                    const BasisAt& at, const Coefficients& coverage) {
-  epsilon_ = weigh_residual(coverage);
+                                    const BasisAt& at) {
   spectral_gradient_ = weighted_gradient(at, basis_, residual_.data());
   Eigen::Vector2d velocity = smooth_input(spectral_gradient_, epsilon_, law_.u_max_mps) -
                              law_.contraction_gain_per_s * (x_m - law_.contraction_center_m);

@@ -20,23 +20,26 @@ class Controller {
  public:
   explicit Controller(const Mission& mission);
 
+  /// Takes in the team's c_k as the agent knows it, mode_count() entries: what all later commands
+  /// answer to.
+  void see(const Coefficients& coverage);
+
   /// The velocity command of (10) at position `x_m`:
   ///   v = u − k (x − centre) + σ ξ / √dt,  ξ = the noise of (seed, agent, tick).
-  /// @param at        the basis at `x_m`
-  /// @param coverage  the team's c_k as this agent knows it, mode_count() entries
-  Eigen::Vector2d command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m, const BasisAt& at,
-                          const Coefficients& coverage);
+  /// @param at  the basis at `x_m`
+  Eigen::Vector2d command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m, const BasisAt& at);
 
-  /// B of (6) for the last command() [1/m], and the ε it used.
+  /// B of (6) for the last command() [1/m].
   const Eigen::Vector2d& spectral_gradient() const { return spectral_gradient_; }
+  /// The ε that belongs to what was last seen.
   double epsilon() const { return epsilon_; }
 
   /// φ² of `coverage` against the mission's target.
   double metric(const Coefficients& coverage) const;
 
  private:
-  /// Fills `residual_` with λ (c − μ) and returns the ε that belongs to it.
-  double weigh_residual(const Coefficients& coverage);
+  /// The RMS over the domain of ‖Σ λ (c − μ) ∇f‖ [1/m].
+  double residual_gradient() const;
 
   Basis basis_;
   ControlLaw law_;

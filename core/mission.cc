@@ -1,8 +1,22 @@
 #include "core/mission.h"
 
+#include <cmath>
+
 #include "core/noise.h"
 
 namespace ergocast {
+
+Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector2d& x_m,
+                      const Eigen::Vector2d& v_mps) {
+  const double dt_s = mission.timing.dt_s;
+  Eigen::Vector2d next_m = x_m + v_mps * dt_s;
+  if (mission.disturbance_intensity > 0) {
+    next_m += mission.disturbance_intensity * std::sqrt(dt_s) *
+              normal_pair(mission.seed, Purpose::kDisturbance, static_cast<std::uint32_t>(id),
+                          static_cast<std::uint64_t>(tick));
+  }
+  return next_m;
+}
 
 Eigen::Vector2d start_of(const Mission& mission, AgentId id) {
   const auto at = static_cast<std::size_t>(id);

@@ -61,6 +61,11 @@ struct Mission {
   bool wait_for_logger = true;            ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
 
+/// Where a vehicle at `x_m` with velocity `v_mps` is one step of `tick` later, edges not yet
+/// considered: x + v dt + disturbance_intensity √dt ξ.
+Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector2d& x_m,
+                      const Eigen::Vector2d& v_mps);
+
 /// Where agent `id` begins: as planned, or for those beyond the plan drawn from the seed.
 Eigen::Vector2d start_of(const Mission& mission, AgentId id);
 /// The draw itself: uniform in the domain.

@@ -272,15 +272,8 @@ void World::step(bool hold_old_commands) {
 
 void World::move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const {
   const Mission& mission = *follower_.mission();
-  const double dt_s = mission.timing.dt_s;
   body.applied_mps = command_of(body, tick, hold_old_commands);
-  Eigen::Vector2d next_m = body.x_m + body.applied_mps * dt_s;
-  if (mission.disturbance_intensity > 0) {
-    next_m += mission.disturbance_intensity * std::sqrt(dt_s) *
-              normal_pair(mission.seed, Purpose::kDisturbance, static_cast<std::uint32_t>(id),
-                          static_cast<std::uint64_t>(tick));
-  }
-  body.x_m = reflect(next_m, mission.domain);
+  body.x_m = reflect(moved(mission, id, tick, body.x_m, body.applied_mps), mission.domain);
 }
 
 std::vector<WorldState> World::snapshot() const {

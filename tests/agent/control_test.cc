@@ -44,7 +44,9 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
   table.merge(theirs, 10);
   Coefficients team = Coefficients::Zero(5, 4);
   table.average(team);
-  const Eigen::Vector2d expected = Controller(mission).command(0, 0, {100, 500}, here, team);
+  Controller controller(mission);
+  controller.see(team);
+  const Eigen::Vector2d expected = controller.command(0, 0, {100, 500}, here);
   EXPECT_EQ(commands[0].velocity_mps.head<2>(), expected) << "bit for bit";
   EXPECT_EQ(commands[0].velocity_mps.z(), 0);
   EXPECT_EQ(commands[0].position_m, Eigen::Vector3d(100, 500, 0));

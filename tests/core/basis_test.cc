@@ -208,8 +208,34 @@ TEST(ErgodicMetric, IsTheWeightedSquareOfTheDifference) {
   EXPECT_EQ(ergodic_metric(target, target, weights), 0);
 }
 
-TEST(BasisDeathTest, StopsACallerThatLooksOutsideTheDomain) {
-  EXPECT_DEATH(BasisAt({-31, 510}, kDomain, basis_of(2, 2)), "broken precondition");
+TEST(Basis, HessianIsTheSlopeOfTheGradient) {
+  const Basis basis = basis_of(9, 6);
+  const Coefficients weights = uneven_weights(9, 6);
+  constexpr double kStep_m = 1e-3;
+  const auto gradient = [&](const Eigen::Vector2d& x_m) {
+    return weighted_gradient(BasisAt(x_m, kDomain, basis), basis, weights.data());
+  };
+  for (const Eigen::Vector2d& x_m : {Eigen::Vector2d(-12.34, 501.5), {70, 535}, {103.25, 544.5}}) {
+    const Eigen::Matrix2d hessian =
+        weighted_hessian(BasisAt(x_m, kDomain, basis), basis, kDomain, weights.data());
+    for (const int axis : {0, 1}) {
+      const Eigen::Vector2d step_m = kStep_m * Eigen::Vector2d::Unit(axis);
+      const Eigen::Vector2d slope =
+          (gradient(x_m + step_m) - gradient(x_m - step_m)) / (2 * kStep_m);
+      EXPECT_LT((hessian.col(axis) - slope).norm(), 1e-6 * hessian.norm()) << x_m.transpose();
+    }
+  }
+}
+
+TEST(Basis, OutsideTheDomainItIsEvenAndPeriodic) {
+  const Basis basis = basis_of(9, 6);
+  const Coefficients inside = basis_values({0, 520}, kDomain, basis);
+  EXPECT_LT((basis_values({-60, 480}, kDomain, basis) - inside).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((basis_values({400, 660}, kDomain, basis) - inside).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST(BasisDeathTest, StopsACallerThatIsNowhere) {
+  EXPECT_DEATH(BasisAt({std::nan(""), 510}, kDomain, basis_of(2, 2)), "broken precondition");
 }
 
 }  // namespace

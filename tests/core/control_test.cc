@@ -54,7 +54,8 @@ Coefficients coverage_of(const Mission& mission, int steps) {
 
 Eigen::Vector2d command_at(Controller& controller, const Mission& mission, const Eigen::Vector2d& x_m,
                            const Coefficients& coverage, AgentId agent = 0, Tick tick = 0) {
-  return controller.command(agent, tick, x_m, BasisAt(x_m, mission.domain, mission.basis), coverage);
+  controller.see(coverage);
+  return controller.command(agent, tick, x_m, BasisAt(x_m, mission.domain, mission.basis));
 }
 
 // ---- (8) by itself -------------------------------------------------------------------------------

@@ -1,0 +1,36 @@
+// The sets of Proposition 1 that symmetric targets make invariant, and how far off them one is.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "core/geometry.h"
+
+namespace ergocast::lab {
+
+enum class ManifoldKind {
+  kEdge,      ///< x = 0 and y = 0 are the paper's axes; the edges opposite are alike by reflection
+  kMidline,   ///< x = Lx/2, y = Ly/2
+  kDiagonal,  ///< of a square only
+  kCorner,
+  kCenter,
+  kCrossing,  ///< of an edge and a midline
+};
+const char* to_string(ManifoldKind kind);
+
+struct Manifold {
+  ManifoldKind kind;
+  Eigen::Vector2d point_m;  ///< on it
+  Eigen::Vector2d normal;   ///< of length 1; (0, 0) if the set is the point alone
+
+  double distance_m(const Eigen::Vector2d& x_m) const;
+};
+
+/// The smallest of these sets that `x_m` lies on, up to 1e-9 of the domain's sides; none for a point
+/// in general position. Where two lines cross, the set is the point.
+std::optional<Manifold> manifold_at(const Eigen::Vector2d& x_m, const Rectangle& domain);
+
+/// Farther off than 1 % of the shorter side counts as escaped.
+double escape_distance_m(const Rectangle& domain);
+
+}  // namespace ergocast::lab
