@@ -68,27 +68,34 @@ Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const d
   return gradient;
 }
 
-Eigen::Matrix2d weighted_hessian(const BasisAt& at, const Basis& basis, const Rectangle& domain,
-                                 const double* weights) {
-  const Eigen::Vector2d unit = (std::numbers::pi * domain.size_m.cwiseInverse()).cwiseAbs2();
+FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Rectangle& domain,
+                       const double* weights) {
+  const Eigen::Vector2d wave_number_squared =
+      (std::numbers::pi * domain.size_m.cwiseInverse()).cwiseAbs2();
+  // As in weighted_gradient(), with one more column sum: of f'' along x.
   BasisAt::Table over_bend, over_slope, over_cos;
   for (int n = 0; n < basis.modes_y; ++n) over_bend[n] = over_slope[n] = over_cos[n] = 0;
   for (int m = 0; m < basis.modes_x; ++m) {
     const double* row = weights + m * basis.modes_y;
-    const double bend = -unit.x() * m * m * at.cos_x[m];
+    const double slope = at.slope_x[m], cosine = at.cos_x[m];
+    const double bend = -wave_number_squared.x() * m * m * cosine;
     for (int n = 0; n < basis.modes_y; ++n) {
       over_bend[n] += bend * row[n];
-      over_slope[n] += at.slope_x[m] * row[n];
-      over_cos[n] += at.cos_x[m] * row[n];
+      over_slope[n] += slope * row[n];
+      over_cos[n] += cosine * row[n];
     }
   }
+  FieldAt field;
   double xx = 0, xy = 0, yy = 0;
   for (int n = 0; n < basis.modes_y; ++n) {
+    field.gradient.x() += over_slope[n] * at.cos_y[n];
+    field.gradient.y() += over_cos[n] * at.slope_y[n];
     xx += over_bend[n] * at.cos_y[n];
     xy += over_slope[n] * at.slope_y[n];
-    yy += over_cos[n] * -unit.y() * n * n * at.cos_y[n];
+    yy -= over_cos[n] * (wave_number_squared.y() * n * n * at.cos_y[n]);
   }
-  return Eigen::Matrix2d{{xx, xy}, {xy, yy}};
+  field.hessian << xx, xy, xy, yy;
+  return field;
 }
 
 Coefficients sobolev_weights(const Basis& basis, const Rectangle& domain) {

@@ -55,9 +55,13 @@ void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double
 /// `weights` points to mode_count() doubles. Summed in a fixed order, whatever the processor.
 Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights);
 
-/// Σ_mn weights(m,n) ∂²f_mn, symmetric: the Jacobian of weighted_gradient() [its unit per metre].
-Eigen::Matrix2d weighted_hessian(const BasisAt& at, const Basis& basis, const Rectangle& domain,
-                                 const double* weights);
+/// weighted_gradient() and its Jacobian, Σ_mn weights(m,n) ∂²f_mn [its unit per metre].
+struct FieldAt {
+  Eigen::Vector2d gradient{0, 0};                        ///< bit for bit weighted_gradient()
+  Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();     ///< symmetric
+};
+FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Rectangle& domain,
+                       const double* weights);
 
 /// λ_mn, divided by h_mn² where the basis is normalised: the one weight of both φ² and (6).
 Coefficients sobolev_weights(const Basis& basis, const Rectangle& domain);

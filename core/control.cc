@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/noise.h"
+#include "core/perturbation.h"
 #include "core/require.h"
 
 namespace ergocast {
@@ -18,7 +19,8 @@ Eigen::Vector2d smooth_input(const Eigen::Vector2d& spectral_gradient, double ep
 }
 
 Controller::Controller(const Mission& mission)
-    : basis_(mission.basis),
+    : domain_(mission.domain),
+      basis_(mission.basis),
       law_(mission.law),
       seed_(mission.seed),
       dt_s_(mission.timing.dt_s),
@@ -58,13 +60,20 @@ double Controller::residual_gradient() const {
 
 Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m,
                                     const BasisAt& at) {
-  spectral_gradient_ = weighted_gradient(at, basis_, residual_.data());
-  Eigen::Vector2d velocity = smooth_input(spectral_gradient_, epsilon_, law_.u_max_mps) -
+  FieldAt field;
+  if (law_.perturbation == Perturbation::kAdaptive) {
+    field = weighted_field(at, basis_, domain_, residual_.data());
+  } else {
+    field.gradient = weighted_gradient(at, basis_, residual_.data());
+  }
+  spectral_gradient_ = field.gradient;
+  Eigen::Vector2d velocity = smooth_input(field.gradient, epsilon_, law_.u_max_mps) -
                              law_.contraction_gain_per_s * (x_m - law_.contraction_center_m);
-  if (law_.noise_intensity > 0) {
-    velocity += (law_.noise_intensity / std::sqrt(dt_s_)) *
-                normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
-                            static_cast<std::uint64_t>(tick));
+  if (law_.greatest_noise() > 0) {
+    const Eigen::Vector2d xi =
+        normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
+                    static_cast<std::uint64_t>(tick));
+    velocity += perturbation(law_, dt_s_, epsilon_, field, xi);
   }
   return velocity;
 }

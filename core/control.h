@@ -25,7 +25,8 @@ class Controller {
   void see(const Coefficients& coverage);
 
   /// The velocity command of (10) at position `x_m`:
-  ///   v = u − k (x − centre) + σ ξ / √dt,  ξ = the noise of (seed, agent, tick).
+  ///   v = u − k (x − centre) + σ ξ / √dt,  ξ = the noise of (seed, agent, tick),
+  /// σ as core/perturbation.h says.
   /// @param at  the basis at `x_m`
   Eigen::Vector2d command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m, const BasisAt& at);
 
@@ -41,6 +42,7 @@ class Controller {
   /// The RMS over the domain of ‖Σ λ (c − μ) ∇f‖ [1/m].
   double residual_gradient() const;
 
+  Rectangle domain_;
   Basis basis_;
   ControlLaw law_;
   std::uint64_t seed_;

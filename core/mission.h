@@ -16,14 +16,26 @@ enum class Regularization {
   kRelative,  ///< ε = epsilon · RMS over the domain of ‖Σ λ (c − μ) ∇f‖
 };
 
+enum class Perturbation {
+  kConstant,  ///< σ is noise_intensity, as in (9)
+  kAdaptive,  ///< between noise_intensity and noise_ceiling, see core/perturbation.h
+};
+
 /// The input (8) and the dynamics (10): dx = u dt − k (x − centre) dt + σ dW.
 struct ControlLaw {
   double u_max_mps = 1;
   Regularization regularization = Regularization::kAbsolute;
   double epsilon = 0;                         ///< 0 is the classical law (5), u = 0 where B = 0
-  double noise_intensity = 0;                 ///< σ [m/√s]
+  Perturbation perturbation = Perturbation::kConstant;
+  double noise_intensity = 0;                 ///< σ [m/√s]; adaptive: its least value
+  double noise_ceiling = 0;                   ///< adaptive: its greatest value [m/√s]
   double contraction_gain_per_s = 0;          ///< k
   Eigen::Vector2d contraction_center_m{0, 0};
+
+  /// What σ never exceeds [m/√s]: the σ of Theorem 2's bound.
+  double greatest_noise() const {
+    return perturbation == Perturbation::kAdaptive ? noise_ceiling : noise_intensity;
+  }
 };
 
 enum class Pace { kLockstep, kRealtime };

@@ -206,7 +206,9 @@ std::string law_text(const ControlLaw& law) {
   const bool relative = law.regularization == Regularization::kRelative;
   std::string text = "u<sub>max</sub> = " + readable(law.u_max_mps) + " m/s";
   text += ", ε = " + readable(law.epsilon) + (relative ? " × the residual gradient’s RMS" : "");
-  text += ", σ = " + readable(law.noise_intensity) + " m/√s";
+  text += ", σ = " + readable(law.noise_intensity);
+  if (law.perturbation == Perturbation::kAdaptive) text += " to " + readable(law.noise_ceiling);
+  text += " m/√s";
   text += ", k = " + readable(law.contraction_gain_per_s) + " /s";
   if (law.contraction_gain_per_s == 0) return text;
   return text + " towards " + point_text(law.contraction_center_m) + " m";

@@ -57,7 +57,10 @@ ControlLaw law_of(const proto::Law& law, const Rectangle& domain) {
                                 ? Regularization::kAbsolute
                                 : Regularization::kRelative,
           .epsilon = law.epsilon(),
+          .perturbation = law.perturbation() == proto::Law::CONSTANT ? Perturbation::kConstant
+                                                                     : Perturbation::kAdaptive,
           .noise_intensity = law.noise_intensity(),
+          .noise_ceiling = law.noise_ceiling(),
           .contraction_gain_per_s = law.contraction_gain_per_s(),
           .contraction_center_m = contraction_center_of(law, domain)};
 }

@@ -1,6 +1,7 @@
 #include "scenario/defaults.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "core/noise.h"
@@ -54,6 +55,31 @@ void fill_constants(Message& message) {
   }
 }
 
+/// What the length scale at which agents let go of each other and of symmetry lines is of the shorter
+/// side; and of u_max, what the contraction takes at most.
+constexpr double kLetGoShare = 0.01, kContractionShare = 0.01;
+constexpr double kFloorOfCeiling = 0.05;
+constexpr double kMostIntensity = 1e6;
+
+/// Defaults that follow from speed and domain, so that a law scales with them. What is itself
+/// outside its limits gives no default: validate() names it.
+void fill_law(const Rectangle& domain, proto::Law& law) {
+  if (!law.has_epsilon()) {
+    law.set_epsilon(law.regularization() == proto::Law::RELATIVE ? 0.2 : 0);
+  }
+  const double side_m = domain.size_m.minCoeff();
+  if (!(law.u_max_mps() > 0) || !(side_m > 0) || !domain.size_m.allFinite()) return;
+  // The diffusion that crosses the length kLetGoShare · side in the time the input needs for it.
+  const double ceiling = std::sqrt(law.u_max_mps() * kLetGoShare * side_m);
+  if (!law.has_noise_intensity()) law.set_noise_intensity(kFloorOfCeiling * ceiling);
+  if (!law.has_noise_ceiling() && law.perturbation() == proto::Law::ADAPTIVE) {
+    law.set_noise_ceiling(std::clamp(law.noise_intensity(), ceiling, kMostIntensity));
+  }
+  if (law.has_contraction_gain_per_s()) return;
+  const double reach_m = domain.farthest_distance_m(law_of(law, domain).contraction_center_m);
+  law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
+}
+
 void resize_team(int size, proto::Agents& agents) {
   if (agents.starts_size() > size) {
     agents.mutable_starts()->DeleteSubrange(size, agents.starts_size() - size);
@@ -96,10 +122,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   if (!scenario.has_description()) scenario.set_description("");
   if (!scenario.has_seed()) scenario.set_seed(kDefaultSeed);
   fill_constants(scenario);
-  proto::Law& law = *scenario.mutable_law();
-  if (!law.has_epsilon()) {
-    law.set_epsilon(law.regularization() == proto::Law::RELATIVE ? 0.2 : 0);
-  }
+  fill_law(domain_of(scenario.domain()), *scenario.mutable_law());
   proto::Agents& agents = *scenario.mutable_agents();
   if (!agents.has_quorum()) {
     const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();

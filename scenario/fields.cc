@@ -43,8 +43,9 @@ constexpr FieldRule kRules[] = {
 
     {"Law", "u_max_mps", above(0, 1e6), kRefused},
     {"Law", "epsilon", kIntensity, kLeft},
-    {"Law", "noise_intensity", kIntensity, kDefaulted, 1},
-    {"Law", "contraction_gain_per_s", between(0, 1e6), kDefaulted, 1e-4},
+    {"Law", "noise_intensity", kIntensity, kLeft},
+    {"Law", "noise_ceiling", kIntensity, kLeft},
+    {"Law", "contraction_gain_per_s", between(0, 1e6), kLeft},
     {"Law", "contraction_x_m", kCoordinate, kLeft},
     {"Law", "contraction_y_m", kCoordinate, kLeft},
 

@@ -262,7 +262,24 @@ class Validator {
     step("law.u_max_mps", law.u_max_mps(), scenario_.time().dt_s(), "u_max_mps · dt_s");
     step("law.noise_intensity", law.noise_intensity(), std::sqrt(scenario_.time().dt_s()),
          "noise_intensity · sqrt(dt_s)");
+    if (sound("law.noise_intensity")) step("law.noise_ceiling", law.noise_ceiling(), std::sqrt(scenario_.time().dt_s()),
+         "noise_ceiling · sqrt(dt_s)");
+    ceiling();
     contraction();
+  }
+
+  void ceiling() {
+    const proto::Law& law = scenario_.law();
+    if (!law.has_noise_ceiling() || !sound("law.noise") || !sound("law.perturbation")) return;
+    if (law.perturbation() == proto::Law::CONSTANT) {
+      problem("law.noise_ceiling", "has no effect with perturbation: CONSTANT",
+              "remove it, or write perturbation: ADAPTIVE");
+    } else if (law.noise_ceiling() < law.noise_intensity()) {
+      problem("law.noise_ceiling",
+              shortest(law.noise_ceiling()) + " is below noise_intensity, " +
+                  shortest(law.noise_intensity()),
+              "write at least that");
+    }
   }
 
   void contraction_point(const std::string& path, bool present) {

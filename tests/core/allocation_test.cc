@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "core/control.h"
@@ -93,21 +94,26 @@ TEST(Allocations, AreCountedWhateverTheWay) {
 }
 
 /// K = 400 modes, four agents, every feature of the law on.
-Mission full_mission(Regularization regularization) {
+Mission full_mission(Regularization regularization, Perturbation perturbation) {
   Mission mission = test::small_mission(4);
   mission.basis.modes_x = mission.basis.modes_y = 20;
   mission.target_coefficients = Coefficients::Zero(20, 20);
   mission.target_coefficients(0, 0) = 1;
   mission.law.regularization = regularization;
   mission.law.epsilon = 0.1;
+  mission.law.perturbation = perturbation;
   mission.law.noise_intensity = 1;
+  mission.law.noise_ceiling = 20;
   mission.law.contraction_gain_per_s = 1e-3;
   return mission;
 }
 
 TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
-  for (const Regularization how : {Regularization::kAbsolute, Regularization::kRelative}) {
-    const Mission mission = full_mission(how);
+  const std::pair<Regularization, Perturbation> laws[] = {
+      {Regularization::kAbsolute, Perturbation::kConstant},
+      {Regularization::kRelative, Perturbation::kAdaptive}};
+  for (const auto& [regularization, perturbation] : laws) {
+    const Mission mission = full_mission(regularization, perturbation);
     Controller controller(mission);
     CoverageTable own(mission.basis, mission.timing.dt_s);
     Coefficients coverage = Coefficients::Zero(20, 20);

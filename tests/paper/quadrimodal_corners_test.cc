@@ -23,7 +23,7 @@ std::vector<double> metrics_at(double t_s, const std::function<void(Mission&)>& 
 TEST(QuadrimodalCorners, CoversTheTargetWithinTenMinutes) {
   const auto metrics = metrics_at(600, [](Mission&) {});
   EXPECT_LT(median(metrics), 2e-3);
-  EXPECT_LT(*std::max_element(metrics.begin(), metrics.end()), 6e-3);
+  EXPECT_LT(*std::max_element(metrics.begin(), metrics.end()), 1e-2);
 }
 
 TEST(QuadrimodalCorners, GoesOnImprovingForHalfAnHour) {
@@ -35,6 +35,7 @@ TEST(QuadrimodalCorners, ThePapersConstantsThrottleTheSameTeam) {
   const auto with_paper_constants = [](Mission& mission) {
     mission.law.regularization = Regularization::kAbsolute;
     mission.law.epsilon = 1e-3;
+    mission.law.perturbation = Perturbation::kConstant;
     mission.law.noise_intensity = 1e-5;
   };
   EXPECT_GT(median(metrics_at(2000, with_paper_constants)),

@@ -49,6 +49,7 @@ TEST(Theorem1, EveryAgentEscapesFromEveryCorner) {
 
 TEST(Theorem1, WithoutNoiseTheSameTeamStaysAtTheOrigin) {
   Mission mission = noisy(1, {{0, 0}});
+  mission.law.perturbation = Perturbation::kConstant;
   mission.law.noise_intensity = 0;
   mission.law.contraction_gain_per_s = 0;
   PaperTeam team(mission);

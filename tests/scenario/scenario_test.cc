@@ -31,8 +31,10 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_EQ(mission.law.u_max_mps, 5);
   EXPECT_EQ(mission.law.regularization, Regularization::kRelative);
   EXPECT_EQ(mission.law.epsilon, 0.2);
-  EXPECT_EQ(mission.law.noise_intensity, 1);
-  EXPECT_EQ(mission.law.contraction_gain_per_s, 1e-4);
+  EXPECT_EQ(mission.law.perturbation, Perturbation::kAdaptive);
+  EXPECT_DOUBLE_EQ(mission.law.noise_ceiling, std::sqrt(5 * 0.5));
+  EXPECT_DOUBLE_EQ(mission.law.noise_intensity, 0.05 * std::sqrt(5 * 0.5));
+  EXPECT_DOUBLE_EQ(mission.law.contraction_gain_per_s, 0.05 / std::hypot(50, 25));
   EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(50, 25));
   EXPECT_EQ(mission.timing.dt_s, 0.1);
   EXPECT_EQ(mission.timing.tick_count, 600);
@@ -52,6 +54,19 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_EQ(mission.forget_silent_after_s, 0);
   EXPECT_EQ(mission.radio_range_m, 0);
   EXPECT_EQ(mission.goal_ergodic_metric, 0);
+}
+
+TEST(Defaults, OfNoiseRiseWithTheFloorThatIsGiven) {
+  const ControlLaw law = good(small_with("law {", "law { noise_intensity: 7")).mission().law;
+  EXPECT_EQ(law.noise_intensity, 7);
+  EXPECT_EQ(law.noise_ceiling, 7);
+}
+
+TEST(Defaults, ConstantNoiseHasNoCeiling) {
+  const Scenario scenario = good(small_with("law {", "law { perturbation: CONSTANT"));
+  EXPECT_EQ(scenario.mission().law.perturbation, Perturbation::kConstant);
+  EXPECT_EQ(scenario.print().find("noise_ceiling"), std::string::npos);
+  EXPECT_DOUBLE_EQ(scenario.mission().law.greatest_noise(), 0.05 * std::sqrt(5 * 0.5));
 }
 
 TEST(Defaults, AbsoluteRegularizationIsClassicalUnlessEpsilonIsGiven) {
@@ -226,7 +241,9 @@ TEST(Print, ShowsEveryFieldInTheFewestDigits) {
                            "sobolev_form: SQUARED_NORM",
                            "regularization: RELATIVE",
                            "epsilon: 0.2\n",
-                           "contraction_gain_per_s: 0.0001\n",
+                           "perturbation: ADAPTIVE",
+                           "noise_ceiling: ",
+                           "contraction_gain_per_s: ",
                            "contraction_center: DOMAIN_CENTER",
                            "dt_s: 0.1\n",
                            "pace: LOCKSTEP",
@@ -272,6 +289,7 @@ void expect_paper(const Scenario& scenario, bool stochastic) {
   EXPECT_EQ(mission.law.u_max_mps, 10);
   EXPECT_EQ(mission.law.regularization, Regularization::kAbsolute);
   EXPECT_EQ(mission.law.epsilon, stochastic ? 1e-3 : 0);
+  EXPECT_EQ(mission.law.perturbation, Perturbation::kConstant);
   EXPECT_EQ(mission.law.noise_intensity, stochastic ? 1e-5 : 0);
   EXPECT_EQ(mission.law.contraction_gain_per_s, stochastic ? 1e-3 : 0);
   if (stochastic) {
@@ -301,7 +319,9 @@ TEST(ShippedValues, QuadrimodalCornersIsTheRecommendedLawFromTheWorstStarts) {
   EXPECT_EQ(mission.starts_m, kCorners);
   EXPECT_EQ(mission.law.regularization, Regularization::kRelative);
   EXPECT_EQ(mission.law.epsilon, 0.2);
-  EXPECT_GT(mission.law.noise_intensity, 0);
+  EXPECT_EQ(mission.law.perturbation, Perturbation::kAdaptive);
+  EXPECT_EQ(mission.law.noise_intensity, 1);
+  EXPECT_EQ(mission.law.noise_ceiling, 20);
   EXPECT_EQ(mission.law.contraction_gain_per_s, 1e-4);
   EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(1000, 1000));
 }
