@@ -7,6 +7,7 @@
 
 #include "core/basis.h"
 #include "core/noise.h"
+#include "core/perturbation.h"
 
 namespace ergocast::bench {
 namespace {
@@ -53,9 +54,11 @@ void StepFloor::take(const std::vector<Contribution>& news) {
 Eigen::Vector2d StepFloor::step(Tick tick, const Eigen::Vector2d& x_m) {
   const double dt_s = mission_.timing.dt_s;
   const int count = modes_ * modes_;
-  Table cos_x, slope_x, cos_y, slope_y, over_slope{}, over_cos{}, power{};
+  Table cos_x, slope_x, cos_y, slope_y, over_bend{}, over_slope{}, over_cos{}, power{};
   waves_at(x_m.x(), mission_.domain.size_m.x(), modes_, cos_x, slope_x);
   waves_at(x_m.y(), mission_.domain.size_m.y(), modes_, cos_y, slope_y);
+  const double wave_x2 = std::pow(std::numbers::pi / mission_.domain.size_m.x(), 2);
+  const double wave_y2 = std::pow(std::numbers::pi / mission_.domain.size_m.y(), 2);
   const double per_second = 1 / (static_cast<double>(++steps_ * agents_) * dt_s);
 
   // Short loops over n without branches, each of which the compiler turns into vector instructions.
@@ -71,28 +74,35 @@ Eigen::Vector2d StepFloor::step(Tick tick, const Eigen::Vector2d& x_m) {
     const double* weight = weight_.data() + m * modes_;
     const double* target = target_.data() + m * modes_;
     const double* energy = energy_.data() + m * modes_;
-    const double slope = slope_x[m], value = cos_x[m];
+    const double slope = slope_x[m], value = cos_x[m], bend = -wave_x2 * m * m * value;
     for (int n = 0; n < modes_; ++n) {
       const double residual = weight[n] * (team[n] * per_second - target[n]);
       power[n] += residual * residual * energy[n];
+      over_bend[n] += bend * residual;
       over_slope[n] += slope * residual;
       over_cos[n] += value * residual;
     }
   }
 
-  Eigen::Vector2d gradient(0, 0);
-  double power_sum = 0;
+  FieldAt field;
+  double power_sum = 0, xx = 0, xy = 0, yy = 0;
   for (int n = 0; n < modes_; ++n) {
-    gradient.x() += over_slope[n] * cos_y[n];
-    gradient.y() += over_cos[n] * slope_y[n];
+    field.gradient.x() += over_slope[n] * cos_y[n];
+    field.gradient.y() += over_cos[n] * slope_y[n];
+    xx += over_bend[n] * cos_y[n];
+    xy += over_slope[n] * slope_y[n];
+    yy -= over_cos[n] * (wave_y2 * n * n * cos_y[n]);
     power_sum += power[n];
   }
   const ControlLaw& law = mission_.law;
-  const double length = std::sqrt(gradient.squaredNorm() + law.epsilon * law.epsilon * power_sum);
-  return -law.u_max_mps / length * gradient -
+  field.hessian << xx, xy, xy, yy;
+  const double epsilon = law.epsilon * std::sqrt(power_sum);
+  const double length = std::sqrt(field.gradient.squaredNorm() + epsilon * epsilon);
+  const Eigen::Vector2d xi =
+      normal_pair(mission_.seed, Purpose::kPerturbation, 0, static_cast<std::uint64_t>(tick));
+  return -law.u_max_mps / length * field.gradient -
          law.contraction_gain_per_s * (x_m - law.contraction_center_m) +
-         law.noise_intensity / std::sqrt(dt_s) *
-             normal_pair(mission_.seed, Purpose::kPerturbation, 0, static_cast<std::uint64_t>(tick));
+         perturbation(law, dt_s, epsilon, field, xi);
 }
 
 }  // namespace ergocast::bench

@@ -7,7 +7,7 @@
 namespace ergocast::bench {
 namespace {
 
-/// Every term of the law is there: relative ε, contraction and noise.
+/// The law that scenarios get by default: relative ε, contraction and adaptive noise.
 Mission full_mission(int modes_per_axis) {
   Mission mission;
   mission.seed = 7;
@@ -17,7 +17,9 @@ Mission full_mission(int modes_per_axis) {
   mission.law.u_max_mps = 20;
   mission.law.regularization = Regularization::kRelative;
   mission.law.epsilon = 0.2;
+  mission.law.perturbation = Perturbation::kAdaptive;
   mission.law.noise_intensity = 1;
+  mission.law.noise_ceiling = 20;
   mission.law.contraction_gain_per_s = 1e-4;
   mission.law.contraction_center_m = {1000, 1000};
   return mission;

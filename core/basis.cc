@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/require.h"
+#include "core/vectorized.h"
 
 namespace ergocast {
 namespace {
@@ -40,6 +41,7 @@ Coefficients basis_values(const Eigen::Vector2d& x_m, const Rectangle& domain, c
   return values;
 }
 
+ERGOCAST_VECTORIZED
 void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums) {
   for (int m = 0; m < basis.modes_x; ++m) {
     const double along_x = at.cos_x[m] * dt_s;
@@ -48,6 +50,7 @@ void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double
   }
 }
 
+ERGOCAST_VECTORIZED
 Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights) {
   // Column sums first: their loops run over n, so they vectorise without reordering an addition.
   BasisAt::Table over_slope, over_cos;
@@ -68,6 +71,7 @@ Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const d
   return gradient;
 }
 
+ERGOCAST_VECTORIZED
 FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Rectangle& domain,
                        const double* weights) {
   const Eigen::Vector2d wave_number_squared =

@@ -5,6 +5,7 @@
 #include "core/noise.h"
 #include "core/perturbation.h"
 #include "core/require.h"
+#include "core/vectorized.h"
 
 namespace ergocast {
 
@@ -31,6 +32,7 @@ Controller::Controller(const Mission& mission)
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
 }
 
+ERGOCAST_VECTORIZED
 void Controller::see(const Coefficients& coverage) {
   const Eigen::Index count = residual_.size();
   const double* c = coverage.data();
@@ -42,6 +44,7 @@ void Controller::see(const Coefficients& coverage) {
   if (law_.regularization == Regularization::kRelative) epsilon_ *= residual_gradient();
 }
 
+ERGOCAST_VECTORIZED
 double Controller::residual_gradient() const {
   const Eigen::Index count = residual_.size();
   const double* residual = residual_.data();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/require.h"
+#include "core/vectorized.h"
 
 namespace ergocast {
 namespace {
@@ -104,6 +105,7 @@ void CoverageTable::forget(const Author& author) {
   if (Row* row = find_or_add(author)) row->counts = false;
 }
 
+ERGOCAST_VECTORIZED
 void CoverageTable::average(Coefficients& coverage) const {
   for (int b = 0; b < block_count_; ++b) {
     std::int64_t steps = 0;

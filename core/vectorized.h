@@ -1,0 +1,13 @@
+// A second copy of a function for processors with AVX2; the program chooses when it starts.
+//
+// Both copies give the same bits: the loops meant here have independent lanes or sums in a fixed
+// order, and -ffp-contract=off keeps multiplications and additions apart.
+#pragma once
+
+// Sanitizers' runtimes are not there yet when the choice is made.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define ERGOCAST_VECTORIZED __attribute__((target_clones("avx2", "default")))
+#else
+#define ERGOCAST_VECTORIZED
+#endif
