@@ -1,0 +1,2 @@
+#include "cli/commands.h"
+namespace ergocast::cli { int study(const StudyOptions&) { return 0; } }
