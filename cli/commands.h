@@ -1,10 +1,12 @@
 // What `ergocast` can do, one function a command. Each returns the program's exit code.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "cli/workers.h"
 #include "runtime/lcm_url.h"
 #include "scenario/scenario.h"
 
@@ -24,6 +26,11 @@ int run(const MissionOptions& options);
 /// The mission in this process, in virtual time.
 int simulate(const MissionOptions& options);
 
+struct Seeds {
+  std::uint64_t first = 1, last = 1;
+  std::uint64_t count() const { return last - first + 1; }
+};
+
 /// What `simulate --seeds` is told besides.
 struct TrialsOptions {
   MissionOptions mission;  ///< `out` is a CSV file here; empty: none
@@ -34,6 +41,25 @@ struct TrialsOptions {
 
 /// One mission under faults for each seed.
 int trials(const TrialsOptions& options);
+
+/// A field and the values it takes one after the other.
+struct Variation {
+  std::string path;
+  std::vector<std::string> values;
+};
+
+/// What `study` is told.
+struct StudyOptions {
+  std::vector<std::filesystem::path> scenarios;
+  std::vector<Variation> variations;
+  std::optional<double> duration_s;
+  Seeds seeds;
+  int jobs = 1;
+  std::filesystem::path out;
+};
+
+/// Scenarios × variations × seeds, each flown once.
+int study(const StudyOptions& options);
 
 /// Every problem of a scenario; with `print`, the scenario as it would be run.
 int check(const std::filesystem::path& scenario, bool print);

@@ -101,6 +101,53 @@ void add_trial_options(CLI::App& command, TrialsOptions& options) {
       ->needs(seeds);
 }
 
+/// "field=a,b,c".
+Variation parse_variation(const std::string& text) {
+  const auto refuse = [&text](const std::string& why) {
+    throw CLI::ValidationError("--vary", "\"" + text + "\" " + why);
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) refuse("is not FIELD=VALUE,VALUE…");
+  Variation variation{text.substr(0, equals), {}};
+  for (std::size_t begin = equals + 1; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string value = text.substr(begin, end - begin);
+    if (value.find_first_not_of(" \t") == std::string::npos) refuse("has an empty value");
+    const auto& values = variation.values;
+    if (std::find(values.begin(), values.end(), value) != values.end()) refuse("has " + value + " twice");
+    variation.values.push_back(value);
+    begin = end + 1;
+  }
+  return variation;
+}
+
+void add_study_options(CLI::App& command, StudyOptions& options) {
+  command.add_option("SCENARIO", options.scenarios, "Scenario files (scenarios/*.textproto)")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--vary",
+          [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) options.variations.push_back(parse_variation(text));
+          },
+          "A field and its values, such as law.noise_intensity=0,0.1,1; again for another field")
+      ->allow_extra_args(false)
+      ->type_name("FIELD=VALUE,…");
+  command
+      .add_option_function<std::string>(
+          "--seeds", [&options](const std::string& text) { options.seeds = parse_seeds(text); },
+          "One mission of every combination for each seed")
+      ->required()
+      ->type_name("FIRST:LAST");
+  command.add_option("--out", options.out, "The study's folder: new, or one to go on in")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--duration", options.duration_s, "Mission time [s]");
+  command.add_option("--jobs", options.jobs, "Worker processes (default: one a processor)")
+      ->check(CLI::Range(1, 1024));
+}
+
 int parse_and_do(int argc, char** argv) {
   CLI::App app("Ergocast: teams of robots that spread their time over a region as a map demands.",
                "ergocast");
@@ -120,8 +167,9 @@ int parse_and_do(int argc, char** argv) {
   auto* simulate_command =
       app.add_subcommand("simulate", "Run a mission in this process, in virtual time");
   add_mission_options(*simulate_command, mission);
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   TrialsOptions trial_options;
-  trial_options.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  trial_options.jobs = processors;
   add_trial_options(*simulate_command, trial_options);
   simulate_command->callback([&] {
     action = [&] {
@@ -130,6 +178,13 @@ int parse_and_do(int argc, char** argv) {
       return trials(trial_options);
     };
   });
+
+  auto* study_command =
+      app.add_subcommand("study", "Compare many simulated missions: scenarios, varied fields, seeds");
+  StudyOptions study_options;
+  study_options.jobs = processors;
+  add_study_options(*study_command, study_options);
+  study_command->callback([&] { action = [&] { return study(study_options); }; });
 
   auto* check_command = app.add_subcommand("check", "Name every problem of a scenario");
   check_command->add_option("SCENARIO", path, "Scenario file")->required()->type_name("FILE");

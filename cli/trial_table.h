@@ -3,9 +3,18 @@
 
 #include <string>
 
-#include "cli/workers.h"
+#include "lab/trial.h"
 
 namespace ergocast::cli {
+
+enum class Verdict { kFine, kTimedOut, kViolated, kDied };
+
+/// What came of one seed, as it travels from a worker to us.
+struct TrialReport {
+  lab::TrialFigures figures;
+  Verdict verdict = Verdict::kFine;
+  char what[600] = "";  ///< what was violated, or how the process died
+};
 
 std::string csv_header();
 std::string csv_row(const TrialReport& report);

@@ -18,6 +18,8 @@ namespace {
 
 constexpr const char* kSwarm = "swarm";
 constexpr std::int64_t kMostFailuresShown = 20;
+/// A trial takes some hundredths of a second: one that takes so long hangs.
+constexpr unsigned kPatience_s = 120;
 
 /// Faults by seed: of a file, or drawn. Nothing, after saying why, if the file is no good.
 std::optional<std::function<lab::Faults(std::uint64_t)>> faults_by_seed(const std::string& source) {
@@ -39,6 +41,14 @@ TrialReport report_of(const lab::TrialResult& result) {
     report.verdict = Verdict::kViolated;
     std::snprintf(report.what, sizeof report.what, "%s", to_string(*result.violation).c_str());
   }
+  return report;
+}
+
+TrialReport report_of_death(std::uint64_t seed, const std::string& how) {
+  TrialReport report;
+  report.figures.seed = seed;
+  report.verdict = Verdict::kDied;
+  std::snprintf(report.what, sizeof report.what, "%s", how.c_str());
   return report;
 }
 
@@ -125,15 +135,24 @@ int trials(const TrialsOptions& options) {
   if (!path.empty() && !csv) return complain(path.string() + ": cannot be written (--out takes a file here)");
 
   std::ostream nowhere(nullptr);
-  const auto fly = [&](std::uint64_t seed) {
+  const auto fly = [&](std::uint64_t job) {
+    const std::uint64_t seed = options.seeds.first + job;
     return report_of(lab::fly_trial({scenario->plan(), decode_plan, (*faults)(seed), version()}, seed,
                                     nowhere, nowhere));
   };
   StopSignals signals;
   Desk desk(options, path.empty() ? nowhere : csv);
   const auto start = std::chrono::steady_clock::now();
-  fly_in_processes(options.seeds, options.jobs, signals, fly,
-                   [&](const TrialReport& report) { desk.take(report); }, [&] { desk.show(); });
+  Jobs jobs = jobs_with_results<TrialReport>(
+      fly, [&](std::uint64_t, const TrialReport& report) { desk.take(report); });
+  jobs.count = options.seeds.count();
+  jobs.processes = options.jobs;
+  jobs.patience_s = kPatience_s;
+  jobs.lost = [&](std::uint64_t job, const std::string& how) {
+    desk.take(report_of_death(options.seeds.first + job, how));
+  };
+  jobs.idle = [&] { desk.show(); };
+  work_in_processes(jobs, signals);
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const TrialTotals& totals = desk.close();

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <deque>
 #include <system_error>
@@ -16,33 +18,39 @@
 namespace ergocast::cli {
 namespace {
 
-/// Seeds a process flies before it makes room for a fresh one.
-constexpr std::uint64_t kMostSeedsPerWorker = 64;
-/// A trial takes some hundredths of a second: one that takes so long hangs.
-constexpr unsigned kPatience_s = 120;
+/// Jobs a process does before it makes room for a fresh one.
+constexpr std::uint64_t kMostJobsPerWorker = 64;
 constexpr int kIdlePeriod_ms = 100;
-// So that a report arrives whole or not at all.
-static_assert(sizeof(TrialReport) <= 4096);
+
+/// What a worker writes: the job's number, then its result.
+using Parcel = std::array<std::byte, sizeof(std::uint64_t) + kMostResultBytes>;
+static_assert(sizeof(Parcel) <= PIPE_BUF);
+
+/// Jobs first … last.
+struct Stretch {
+  std::uint64_t first, last;
+};
 
 struct Worker {
   pid_t pid = 0;
   int pipe = -1;
-  Seeds seeds;  // those it has not reported yet
+  Stretch jobs;  // those it has not reported yet
 };
 
-using Fly = std::function<TrialReport(std::uint64_t)>;
-
-[[noreturn]] void work(const Seeds& seeds, int pipe, const Fly& fly) {
+[[noreturn]] void work(const Stretch& stretch, int pipe, const Jobs& jobs) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
-    alarm(kPatience_s);
-    const TrialReport report = fly(seed);
-    if (write(pipe, &report, sizeof report) != sizeof report) _exit(1);
+  Parcel parcel;
+  const std::size_t size = sizeof(std::uint64_t) + jobs.result_bytes;
+  for (std::uint64_t job = stretch.first; job <= stretch.last; ++job) {
+    alarm(jobs.patience_s);
+    std::memcpy(parcel.data(), &job, sizeof job);
+    jobs.work(job, parcel.data() + sizeof job);
+    if (write(pipe, parcel.data(), size) != static_cast<ssize_t>(size)) _exit(1);
   }
   _exit(0);
 }
 
-Worker hire(const Seeds& seeds, const Fly& fly) {
+Worker hire(const Stretch& stretch, const Jobs& jobs) {
   int ends[2];
   if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   std::fflush(nullptr);
@@ -50,29 +58,27 @@ Worker hire(const Seeds& seeds, const Fly& fly) {
   if (pid < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (pid == 0) {
     close(ends[0]);
-    work(seeds, ends[1], fly);
+    work(stretch, ends[1], jobs);
   }
   close(ends[1]);
-  return {pid, ends[0], seeds};
+  return {pid, ends[0], stretch};
 }
 
-std::string how_it_died(int status) {
+std::string how_it_died(int status, unsigned patience_s) {
   if (!WIFSIGNALED(status)) return "its process ended with code " + std::to_string(WEXITSTATUS(status));
   if (WTERMSIG(status) == SIGALRM) {
-    return "no end after " + std::to_string(kPatience_s) + " s of wall time";
+    return "no end after " + std::to_string(patience_s) + " s of wall time";
   }
   return std::string("its process died of ") + signal_name(WTERMSIG(status));
 }
 
 class Pool {
  public:
-  Pool(const Seeds& seeds, int jobs) : jobs_(static_cast<std::size_t>(jobs)) {
-    const std::uint64_t share = std::max<std::uint64_t>(1, seeds.count() / (jobs_ * 4));
-    const std::uint64_t size = std::min(kMostSeedsPerWorker, share);
-    for (std::uint64_t first = seeds.first;; first += size) {
-      const bool last = seeds.last - first < size;
-      todo_.push_back({first, last ? seeds.last : first + size - 1});
-      if (last) break;
+  explicit Pool(const Jobs& jobs) : jobs_(jobs), processes_(static_cast<std::size_t>(jobs.processes)) {
+    const std::uint64_t share = std::max<std::uint64_t>(1, jobs.count / (processes_ * 4));
+    const std::uint64_t size = std::min(kMostJobsPerWorker, share);
+    for (std::uint64_t first = 0; first < jobs.count; first += size) {
+      todo_.push_back({first, std::min(first + size, jobs.count) - 1});
     }
   }
   ~Pool() {
@@ -87,20 +93,20 @@ class Pool {
 
   bool done() const { return todo_.empty() && workers_.empty(); }
 
-  void fill(const Fly& fly) {
-    while (workers_.size() < jobs_ && !todo_.empty()) {
-      workers_.push_back(hire(todo_.front(), fly));
+  void fill() {
+    while (workers_.size() < processes_ && !todo_.empty()) {
+      workers_.push_back(hire(todo_.front(), jobs_));
       todo_.pop_front();
     }
   }
 
-  /// Waits for a report or a signal, for a moment at most.
-  void wait(int signal_fd, const std::function<void(const TrialReport&)>& take) {
+  /// Waits for a result or a signal, for a moment at most.
+  void wait(int signal_fd) {
     std::vector<pollfd> polled{{signal_fd, POLLIN, 0}};
     for (const Worker& worker : workers_) polled.push_back({worker.pipe, POLLIN, 0});
     if (poll(polled.data(), polled.size(), kIdlePeriod_ms) <= 0) return;
     for (std::size_t i = workers_.size(); i-- > 0;) {
-      if (polled[i + 1].revents != 0 && !listen(workers_[i], take)) {
+      if (polled[i + 1].revents != 0 && !listen(workers_[i])) {
         workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(i));
       }
     }
@@ -108,41 +114,39 @@ class Pool {
 
  private:
   /// False once the worker has ended.
-  bool listen(Worker& worker, const std::function<void(const TrialReport&)>& take) {
-    TrialReport report;
-    if (read(worker.pipe, &report, sizeof report) == sizeof report) {
-      worker.seeds.first = report.figures.seed + 1;
-      take(report);
+  bool listen(Worker& worker) {
+    Parcel parcel;
+    const std::size_t size = sizeof(std::uint64_t) + jobs_.result_bytes;
+    if (read(worker.pipe, parcel.data(), size) == static_cast<ssize_t>(size)) {
+      std::uint64_t job = 0;
+      std::memcpy(&job, parcel.data(), sizeof job);
+      worker.jobs.first = job + 1;
+      jobs_.take(job, parcel.data() + sizeof job);
       return true;
     }
     int status = 0;
     waitpid(worker.pid, &status, 0);
     close(worker.pipe);
-    if (worker.seeds.first > worker.seeds.last) return false;
-    report = {};
-    report.figures.seed = worker.seeds.first;
-    report.verdict = Verdict::kDied;
-    std::snprintf(report.what, sizeof report.what, "%s", how_it_died(status).c_str());
-    take(report);
-    if (++worker.seeds.first <= worker.seeds.last) todo_.push_front(worker.seeds);
+    if (worker.jobs.first > worker.jobs.last) return false;
+    jobs_.lost(worker.jobs.first, how_it_died(status, jobs_.patience_s));
+    if (++worker.jobs.first <= worker.jobs.last) todo_.push_front(worker.jobs);
     return false;
   }
 
-  std::size_t jobs_;
-  std::deque<Seeds> todo_;
+  const Jobs& jobs_;
+  std::size_t processes_;
+  std::deque<Stretch> todo_;
   std::vector<Worker> workers_;
 };
 
 }  // namespace
 
-void fly_in_processes(const Seeds& seeds, int jobs, StopSignals& signals, const Fly& fly,
-                      const std::function<void(const TrialReport&)>& take,
-                      const std::function<void()>& idle) {
-  Pool pool(seeds, jobs);
+void work_in_processes(const Jobs& jobs, StopSignals& signals) {
+  Pool pool(jobs);
   while (!pool.done() && signals.take() == 0) {
-    pool.fill(fly);
-    pool.wait(signals.fd(), take);
-    idle();
+    pool.fill();
+    pool.wait(signals.fd());
+    jobs.idle();
   }
 }
 

@@ -1,36 +1,55 @@
-// Many trials over worker processes: one that crashes, aborts or hangs costs one seed.
+// Many jobs over worker processes: one that crashes, aborts or hangs costs one job.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <string>
 #include <type_traits>
 
-#include "lab/trial.h"
 #include "runtime/signals.h"
 
 namespace ergocast::cli {
 
-enum class Verdict { kFine, kTimedOut, kViolated, kDied };
+/// A result may have so many bytes: it then arrives whole or not at all.
+inline constexpr std::size_t kMostResultBytes = 4000;
 
-/// What came of one seed, as it travels from a worker to us.
-struct TrialReport {
-  lab::TrialFigures figures;
-  Verdict verdict = Verdict::kFine;
-  char what[600] = "";  ///< what was violated, or how the process died
+/// What is to be done with each of the jobs 0 … count − 1.
+struct Jobs {
+  std::uint64_t count = 0;
+  int processes = 1;
+  unsigned patience_s = 0;  ///< wall time after which a job counts as hung; 0: never
+  std::size_t result_bytes = 0;
+  /// Called in a worker; writes `result_bytes` bytes.
+  std::function<void(std::uint64_t job, std::byte* result)> work;
+  /// Called here with what came of a job, in any order.
+  std::function<void(std::uint64_t job, const std::byte* result)> take;
+  /// Called here for a job that ended its process, with how that died.
+  std::function<void(std::uint64_t job, const std::string& how)> lost;
+  /// Called here several times a second.
+  std::function<void()> idle;
 };
-static_assert(std::is_trivially_copyable_v<TrialReport>);
 
-struct Seeds {
-  std::uint64_t first = 1, last = 1;
-  std::uint64_t count() const { return last - first + 1; }
-};
+/// Does them all. Ends early when a signal arrives.
+void work_in_processes(const Jobs& jobs, StopSignals& signals);
 
-/// Calls `fly` once for each seed, in `jobs` processes, and `take` here with what came of it, in
-/// any order. `idle` is called several times a second. Ends early when a signal arrives.
-void fly_in_processes(const Seeds& seeds, int jobs, StopSignals& signals,
-                      const std::function<TrialReport(std::uint64_t seed)>& fly,
-                      const std::function<void(const TrialReport&)>& take,
-                      const std::function<void()>& idle);
+/// Jobs whose results are values.
+template <class Result, class Work, class Take>
+Jobs jobs_with_results(Work work, Take take) {
+  static_assert(std::is_trivially_copyable_v<Result> && sizeof(Result) <= kMostResultBytes);
+  Jobs jobs;
+  jobs.result_bytes = sizeof(Result);
+  jobs.work = [work](std::uint64_t job, std::byte* bytes) {
+    const Result result = work(job);
+    std::memcpy(bytes, &result, sizeof result);
+  };
+  jobs.take = [take](std::uint64_t job, const std::byte* bytes) {
+    Result result;
+    std::memcpy(&result, bytes, sizeof result);
+    take(job, result);
+  };
+  return jobs;
+}
 
 }  // namespace ergocast::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/noise.h"
+#include "scenario/assign.h"
 #include "scenario/convert.h"
 #include "scenario/fields.h"
 #include "scenario/names.h"
@@ -88,9 +89,7 @@ void resize_team(int size, proto::Agents& agents) {
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), size));
 }
 
-}  // namespace
-
-void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
+void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
   if (overrides.seed) scenario.set_seed(*overrides.seed);
   if (overrides.duration_s) {
     scenario.mutable_time()->set_duration_s(*overrides.duration_s);
@@ -113,6 +112,13 @@ void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& f
                          std::to_string(*overrides.agents) + " is outside the limits " + limits,
                          "write a number " + limits);
   }
+}
+
+}  // namespace
+
+void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
+  put_flags_over(overrides, scenario, findings);
+  for (const FieldValue& field : overrides.fields) assign(field, scenario, findings);
 }
 
 void fill_in(proto::Scenario& scenario, const std::string& file) {

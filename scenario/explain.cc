@@ -66,23 +66,13 @@ std::string block_with(const Descriptor& message, const std::string& field,
   return {};
 }
 
-std::string names_of_fields(const Descriptor& message) {
-  std::string names;
-  for (int i = 0; i < message.field_count(); ++i) {
-    names += (i == 0 ? "" : ", ") + message.field(i)->name();
-  }
-  return names;
-}
-
 std::string remedy_for_unknown_field(const std::string& type, const std::string& field) {
   const Descriptor* message = proto::Scenario::descriptor()->file()->FindMessageTypeByName(type);
   if (message == nullptr) return "remove it";
-  if (const FieldDescriptor* near = nearest_field(*message, field)) {
-    return "did you mean " + near->name() + "?";
-  }
-  const std::string block = block_with(*proto::Scenario::descriptor(), field, "");
-  if (!block.empty()) return "write it inside " + block + " { }";
-  return "the fields here are " + names_of_fields(*message);
+  const std::optional<MeantField> meant = field_meant(*message, field);
+  if (!meant) return "the fields here are " + names_of_fields(*message);
+  if (meant->block.empty()) return "did you mean " + meant->field + "?";
+  return "write it inside " + meant->block + " { }";
 }
 
 /// The values that an enumeration field of this name takes, wherever it is; empty if none.
@@ -123,6 +113,21 @@ Problem wrong_value(const std::string& subject, const std::string& text,
 }
 
 }  // namespace
+
+std::optional<MeantField> field_meant(const Descriptor& message, const std::string& wrong) {
+  if (const FieldDescriptor* near = nearest_field(message, wrong)) return MeantField{"", near->name()};
+  const std::string block = block_with(*proto::Scenario::descriptor(), wrong, "");
+  if (block.empty()) return std::nullopt;
+  return MeantField{block, wrong};
+}
+
+std::string names_of_fields(const Descriptor& message) {
+  std::string names;
+  for (int i = 0; i < message.field_count(); ++i) {
+    names += (i == 0 ? "" : ", ") + message.field(i)->name();
+  }
+  return names;
+}
 
 std::string enum_names(const EnumDescriptor& type) {
   std::string names;

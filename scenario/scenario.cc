@@ -48,9 +48,13 @@ struct Scenario::State {
   TargetDensity target;
   Mission mission;
   std::vector<std::byte> plan;
+  int listed_starts;  ///< the others were drawn
 
-  State(proto::Scenario scenario, Coefficients target_coefficients)
-      : text(std::move(scenario)), target(target_of(text.target())), mission(mission_of(text)) {
+  State(proto::Scenario scenario, Coefficients target_coefficients, int listed)
+      : text(std::move(scenario)),
+        target(target_of(text.target())),
+        mission(mission_of(text)),
+        listed_starts(listed) {
     mission.target_coefficients = std::move(target_coefficients);
     plan = encode_plan(text, mission.target_coefficients);
   }
@@ -73,6 +77,7 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   validate(scenario, findings);
   if (!findings.empty()) return findings.take();
 
+  const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
   TargetCoefficients target = target_coefficients(
       target_of(scenario.target()), domain_of(scenario.domain()), basis_of(scenario.basis()));
@@ -83,7 +88,20 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
                  "use wider or less correlated Gaussians");
     return findings.take();
   }
-  return Scenario(std::make_shared<State>(std::move(scenario), std::move(target.values)));
+  return Scenario(
+      std::make_shared<State>(std::move(scenario), std::move(target.values), listed_starts));
+}
+
+Scenario Scenario::with_seed(std::uint64_t seed) const {
+  proto::Scenario scenario = state_->text;
+  scenario.set_seed(seed);
+  proto::Agents& agents = *scenario.mutable_agents();
+  const int drawn = agents.starts_size() - state_->listed_starts;
+  agents.mutable_starts()->DeleteSubrange(state_->listed_starts, drawn);
+  agents.set_random_count(drawn);
+  draw_starts(scenario);
+  return Scenario(std::make_shared<State>(std::move(scenario), mission().target_coefficients,
+                                          state_->listed_starts));
 }
 
 std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noexcept try {
@@ -93,8 +111,9 @@ std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noe
   fill_in(decoded->scenario, "plan");
   validate(decoded->scenario, findings);
   if (!findings.empty()) return std::nullopt;
+  const int listed_starts = decoded->scenario.agents().starts_size();
   Scenario scenario(std::make_shared<State>(std::move(decoded->scenario),
-                                            std::move(decoded->target_coefficients)));
+                                            std::move(decoded->target_coefficients), listed_starts));
   // A plan has one spelling: what leaves something open, or adds something, was not compiled.
   const bool canonical =
       std::equal(plan.begin(), plan.end(), scenario.plan().begin(), scenario.plan().end());

@@ -27,6 +27,13 @@ struct Problem {
 /// "where: what (remedy)", one line.
 std::string to_string(const Problem& problem);
 
+/// A number, word or truth value for the field at `path`, such as "law.epsilon" or
+/// "agents.starts[0].x_m", as the text format writes it.
+struct FieldValue {
+  std::string path, value;
+  std::string flag;  ///< what its problems blame
+};
+
 /// What the command line says over the file.
 struct Overrides {
   std::optional<std::uint64_t> seed{};
@@ -35,6 +42,8 @@ struct Overrides {
   std::optional<double> realtime_factor{};
   /// The team's size: the listed starts are cut, or random ones added.
   std::optional<int> agents{};
+  /// In this order, after all others.
+  std::vector<FieldValue> fields{};
 };
 
 inline constexpr std::size_t kMaxScenarioBytes = std::size_t{1} << 20;
@@ -55,6 +64,9 @@ class Scenario {
   /// bytes are not a plan, are another version's, or break a limit of the scenario: plans come from
   /// the network. from_plan(s.plan())->plan() == s.plan().
   static std::optional<Scenario> from_plan(std::span<const std::byte> plan) noexcept;
+
+  /// The same with another seed, random starts drawn anew: what load() would give with that seed.
+  Scenario with_seed(std::uint64_t seed) const;
 
   Scenario(const Scenario&);
   Scenario(Scenario&&) noexcept;

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/progress_line.h"
+#include "cli/study_directory.h"
+#include "cli/study_points.h"
+#include "cli/workers.h"
+#include "lab/study_run.h"
+#include "runtime/node.h"
+
+namespace ergocast::cli {
+namespace {
+
+constexpr std::uint64_t kMostRuns = 1000000;
+constexpr std::size_t kMostFailuresShown = 20;
+
+/// One run: a point and a seed.
+using Run = std::pair<std::size_t, std::uint64_t>;
+
+int complain(const std::vector<std::string>& problems) {
+  for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
+  return kExitBadInput;
+}
+
+/// Those that are not done, seed by seed: whatever is there when somebody looks can be compared.
+std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds, const std::vector<Run>& done) {
+  std::vector<Run> missing;
+  for (std::uint64_t i = 0; i < seeds.count(); ++i) {
+    for (std::size_t point = 0; point < points; ++point) {
+      const Run run{point, seeds.first + i};
+      if (!std::binary_search(done.begin(), done.end(), run)) missing.push_back(run);
+    }
+  }
+  return missing;
+}
+
+/// Flies what is missing and writes it down as it comes.
+class Campaign {
+ public:
+  Campaign(const StudyPoints& points, std::vector<Run> missing, StudyDirectory& directory)
+      : points_(points), missing_(std::move(missing)), directory_(directory) {}
+
+  void fly(int processes) {
+    Jobs jobs = jobs_with_results<lab::StudyFigures>(
+        [this](std::uint64_t job) { return fly_one(missing_[job]); },
+        [this](std::uint64_t job, const lab::StudyFigures& figures) { take(missing_[job], figures); });
+    jobs.count = missing_.size();
+    jobs.processes = processes;
+    jobs.lost = [this](std::uint64_t job, const std::string& how) { fail(missing_[job], how); };
+    jobs.idle = [this] { show(); };
+    StopSignals signals;
+    work_in_processes(jobs, signals);
+    progress_.end();
+  }
+
+  std::size_t flown() const { return flown_; }
+  std::size_t failed() const { return failed_; }
+  std::size_t missing() const { return missing_.size() - flown_; }
+  bool written() const { return written_; }
+
+ private:
+  lab::StudyFigures fly_one(const Run& run) const {
+    const Scenario scenario = points_.scenarios[run.first].with_seed(run.second);
+    return lab::fly_study_run(scenario.plan(), decode_plan);
+  }
+
+  void take(const Run& run, const lab::StudyFigures& figures) {
+    if (!figures.complete) return fail(run, "the mission did not come to its last tick");
+    ++flown_;
+    written_ = directory_.add({run.first, figures}) && written_;
+  }
+
+  void fail(const Run& run, const std::string& how) {
+    if (++failed_ > kMostFailuresShown) return;
+    const lab::Study& study = points_.identity.study;
+    progress_.say(name_of(study.points[run.first], study) + ", seed " + std::to_string(run.second) + ": " + how);
+  }
+
+  void show() {
+    const auto now = ProgressLine::Clock::now();
+    if (flown_ == 0 || !progress_.due(now)) return;
+    const auto all = static_cast<double>(missing_.size());
+    const auto done = static_cast<double>(flown_ + failed_);
+    const double per_s = done / std::chrono::duration<double>(now - since_).count();
+    std::vector<std::string> facts{std::to_string(flown_ + failed_) + " of " +
+                                   std::to_string(missing_.size()) + " runs"};
+    facts.push_back(clock_text((all - done) / per_s) + " left");
+    if (failed_ > 0) facts.push_back(std::to_string(failed_) + " failed");
+    facts.push_back(text_of("%.3g runs/s", per_s));
+    progress_.show(done / all, facts);
+  }
+
+  const StudyPoints& points_;
+  const std::vector<Run> missing_;
+  StudyDirectory& directory_;
+  ProgressLine progress_;
+  const ProgressLine::Clock::time_point since_ = ProgressLine::Clock::now();
+  std::size_t flown_ = 0, failed_ = 0;
+  bool written_ = true;
+};
+
+/// Where everything is, and how to go on if something is missing.
+void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
+                     const StudyOptions& options) {
+  std::printf("%zu runs flown now, %zu in %s\n", campaign.flown(), directory.rows().size(),
+              (options.out / "study.csv").c_str());
+  if (campaign.missing() == 0) return;
+  std::printf("%zu runs are missing%s: the same command flies them\n", campaign.missing(),
+              campaign.failed() > 0 ? (", " + std::to_string(campaign.failed()) + " of them failed").c_str() : "");
+}
+
+}  // namespace
+
+int study(const StudyOptions& options) {
+  const auto compiled = study_points(options);
+  if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) return complain(*problems);
+  const auto& points = std::get<StudyPoints>(compiled);
+  const std::size_t count = points.scenarios.size();
+  if (options.seeds.count() > kMostRuns / count) {
+    return complain({"--seeds: " + std::to_string(count) + " points with " + std::to_string(options.seeds.count()) +
+                     " seeds each are above the limit, " + std::to_string(kMostRuns) + " runs (give fewer)"});
+  }
+  auto opened = StudyDirectory::open(options.out, points.identity);
+  if (const auto* problem = std::get_if<std::string>(&opened)) return complain({*problem});
+  StudyDirectory& directory = *std::get<0>(opened);
+
+  Campaign campaign(points, missing_runs(count, options.seeds, directory.done()), directory);
+  campaign.fly(options.jobs);
+  if (!campaign.written()) return complain({options.out.string() + ": writing failed; rows are missing"});
+  if (const auto problem = directory.sort()) return complain({*problem});
+  say_how_it_went(campaign, directory, options);
+  return campaign.failed() > 0 ? kExitFailed : kExitDone;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,23 @@
+// The points of a study: every scenario with every combination of the varied fields, compiled.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/study_directory.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::cli {
+
+struct StudyPoints {
+  StudyIdentity identity;
+  std::vector<Scenario> scenarios;  ///< one a point
+};
+
+/// All problems of all points, each once, if there are any.
+std::variant<StudyPoints, std::vector<std::string>> study_points(const StudyOptions& options);
+
+}  // namespace ergocast::cli
