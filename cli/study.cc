@@ -8,7 +8,9 @@
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
 #include "cli/workers.h"
+#include "lab/study_page.h"
 #include "lab/study_run.h"
+#include "logger/run_record.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
@@ -102,11 +104,36 @@ class Campaign {
   bool written_ = true;
 };
 
+/// The command that makes this study.
+std::string command_of(const StudyOptions& options) {
+  std::string command = "ergocast study";
+  for (const auto& file : options.scenarios) command += ' ' + file.string();
+  for (const Variation& variation : options.variations) {
+    command += " --vary " + variation.path + '=';
+    for (const std::string& value : variation.values) {
+      command += (&value == &variation.values.front() ? "" : ",") + value;
+    }
+  }
+  if (options.duration_s) command += " --duration " + text_of("%.17g", *options.duration_s);
+  return command + " --seeds " + std::to_string(options.seeds.first) + ':' +
+         std::to_string(options.seeds.last) + " --out " + options.out.string();
+}
+
+/// The table on the terminal, and the page.
+std::optional<std::string> show_results(const StudyIdentity& identity, const StudyDirectory& directory,
+                                        const StudyOptions& options) {
+  const auto summaries = lab::summarize(identity.study, directory.rows());
+  std::printf("%s", lab::study_text(identity.study, summaries).c_str());
+  return write_file(options.out / "report.html",
+                    lab::study_page({identity.study, version(), command_of(options)}, summaries));
+}
+
 /// Where everything is, and how to go on if something is missing.
 void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
                      const StudyOptions& options) {
-  std::printf("%zu runs flown now, %zu in %s\n", campaign.flown(), directory.rows().size(),
+  std::printf("\n%zu runs flown now, %zu in %s\n", campaign.flown(), directory.rows().size(),
               (options.out / "study.csv").c_str());
+  std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
   if (campaign.missing() == 0) return;
   std::printf("%zu runs are missing%s: the same command flies them\n", campaign.missing(),
               campaign.failed() > 0 ? (", " + std::to_string(campaign.failed()) + " of them failed").c_str() : "");
@@ -131,6 +158,7 @@ int study(const StudyOptions& options) {
   campaign.fly(options.jobs);
   if (!campaign.written()) return complain({options.out.string() + ": writing failed; rows are missing"});
   if (const auto problem = directory.sort()) return complain({*problem});
+  if (const auto problem = show_results(points.identity, directory, options)) return complain({*problem});
   say_how_it_went(campaign, directory, options);
   return campaign.failed() > 0 ? kExitFailed : kExitDone;
 }

@@ -1,0 +1,167 @@
+#include "lab/study_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <set>
+
+#include "lab/study_figures.h"
+#include "logger/html.h"
+#include "logger/markup.h"
+#include "logger/page.h"
+
+namespace ergocast::lab {
+namespace {
+
+using Summaries = std::vector<PointSummary>;
+using Cell = std::optional<std::string>;
+
+std::string interval(const Estimate& estimate) {
+  return readable(estimate.value) + " [" + readable(estimate.low) + ", " + readable(estimate.high) + ']';
+}
+
+std::string percent(double share) { return readable(std::round(share * 1000) / 10) + "\u00a0%"; }
+
+std::string seconds(double t_s) { return std::isinf(t_s) ? "never" : readable(t_s) + "\u00a0s"; }
+
+struct Described {
+  const char* title;
+  Cell (*cell)(const PointSummary&);
+};
+
+/// An escape column: nothing where no agent starts on a manifold.
+template <class Text>
+Cell of_escapes(const PointSummary& summary, Text text) {
+  if (summary.escape_times_s.empty()) return {};
+  return text(summary);
+}
+
+constexpr Described kResults[] = {
+    {"runs", [](const PointSummary& s) -> Cell { return readable(static_cast<double>(s.runs)); }},
+    {"φ² at the end [95 %]",
+     [](const PointSummary& s) -> Cell { return s.runs > 0 ? Cell(interval(s.metric)) : Cell(); }},
+    {"against the first [95 %]",
+     [](const PointSummary& s) -> Cell { return s.ratio ? Cell(interval(*s.ratio)) : Cell(); }},
+    {"slope", [](const PointSummary& s) -> Cell { return s.slope ? Cell(readable(std::round(*s.slope * 100) / 100)) : Cell(); }},
+    {"escaped ≤ 15 s",
+     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return percent(e.escaped_share(15)); }); }},
+    {"≤ 60 s",
+     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return percent(e.escaped_share(60)); }); }},
+    {"median",
+     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return seconds(quantile(e.escape_times_s, 0.5)); }); }},
+    {"99th percentile",
+     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return seconds(quantile(e.escape_times_s, 0.99)); }); }},
+};
+
+constexpr Described kMotion[] = {
+    {"mean ‖x − centre‖²", [](const PointSummary& s) -> Cell { return readable(s.offset2_mean_m2) + "\u00a0m²"; }},
+    {"greatest", [](const PointSummary& s) -> Cell { return readable(s.offset2_max_m2) + "\u00a0m²"; }},
+    {"time at the edge", [](const PointSummary& s) -> Cell { return percent(s.edge_share); }},
+    {"mean speed", [](const PointSummary& s) -> Cell { return with_unit(s.speed_mean_mps, "m/s"); }},
+    {"contributions a run", [](const PointSummary& s) -> Cell { return readable(std::round(s.messages)); }},
+};
+
+template <std::size_t Count>
+std::string points_table(const Study& study, const Summaries& summaries, const Described (&described)[Count]) {
+  std::vector<Column> columns{{"point", true}};
+  for (const StudyPoint& point : study.points) columns[0].cells.push_back(escape(name_of(point, study)));
+  for (const Described& column : described) {
+    columns.push_back({column.title, false});
+    for (const PointSummary& summary : summaries) {
+      columns.back().cells.push_back(summary.runs > 0 ? column.cell(summary) : Cell());
+    }
+  }
+  return table(std::move(columns), study.points.size());
+}
+
+std::string title_of(const Study& study) {
+  std::set<std::string> scenarios;
+  for (const StudyPoint& point : study.points) scenarios.insert(point.scenario);
+  std::string title;
+  for (const std::string& scenario : scenarios) title += (title.empty() ? "" : ", ") + scenario;
+  return title;
+}
+
+std::string counts(const Study& study, const Summaries& summaries) {
+  std::size_t runs = 0, fewest = summaries.front().runs, most = 0;
+  for (const PointSummary& summary : summaries) {
+    runs += summary.runs;
+    fewest = std::min(fewest, summary.runs);
+    most = std::max(most, summary.runs);
+  }
+  const std::string seeds = readable(static_cast<double>(most));
+  Facts facts("cards");
+  facts.add("runs", readable(static_cast<double>(runs)));
+  facts.add("points", readable(static_cast<double>(study.points.size())));
+  facts.add("seeds a point", fewest == most ? seeds : readable(static_cast<double>(fewest)) + " to " + seeds);
+  return facts.html();
+}
+
+std::string conventions() {
+  Facts facts("facts");
+  facts.add("φ²", "at the last tick; it can be compared only between points with the same weights and modes");
+  facts.add("[95 %] of a median", "order statistics, which assume nothing about the distribution; below six "
+                                  "seeds from the smallest to the largest, which is less sure");
+  facts.add("against the first", "the geometric mean of φ² over φ² of the first point with the same seed; "
+                                 "bootstrap over the seeds");
+  facts.add("slope", "the power of t that fits φ² over the last decade of time; median");
+  facts.add("escaped", "of the agents that start on a symmetry line or point of the domain, those that have been "
+                       "farther from it than 1 % of the shorter side");
+  facts.add("time at the edge", "share of all agents’ ticks closer to an edge than 0.1 % of the shorter side");
+  return "<section><h2>Conventions</h2>\n" + facts.html() + "</section>\n";
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string plain(const Estimate& estimate) {
+  return short_number(estimate.value) + " [" + short_number(estimate.low) + ", " + short_number(estimate.high) + ']';
+}
+
+/// What a terminal shows of a point, after its name.
+std::vector<std::string> terminal_cells(const PointSummary& s) {
+  if (s.runs == 0) return {"0", "-", "-", "-", "-"};
+  const bool held = !s.escape_times_s.empty();
+  return {std::to_string(s.runs), plain(s.metric), s.ratio ? plain(*s.ratio) : "-",
+          s.slope ? short_number(*s.slope) : "-",
+          held ? short_number(100 * s.escaped_share(60)) + " %" : "-"};
+}
+
+}  // namespace
+
+std::string study_page(const StudyFacts& facts, const Summaries& summaries) {
+  std::string html = counts(facts.study, summaries);
+  html += "<section><h2>Results</h2>\n" + points_table(facts.study, summaries, kResults) + "</section>\n";
+  html += figures_section(study_figures(facts.study, summaries));
+  html += "<section><h2>Motion and messages</h2>\n" + points_table(facts.study, summaries, kMotion) + "</section>\n";
+  html += conventions();
+  html += "<section><h2>How to reproduce</h2>\n<pre>" + escape(facts.command) +
+          "</pre>\n<p>Made by ergocast " + escape(facts.version) + ". Every number is in study.csv.</p></section>\n";
+  return framed_page(title_of(facts.study), "Ergocast study", "", html);
+}
+
+std::string study_text(const Study& study, const Summaries& summaries) {
+  std::vector<std::vector<std::string>> lines{
+      {"", "runs", "phi^2 [95 %]", "against the first [95 %]", "slope", "escaped in 60 s"}};
+  for (std::size_t i = 0; i < study.points.size(); ++i) {
+    lines.push_back({name_of(study.points[i], study)});
+    for (std::string& cell : terminal_cells(summaries[i])) lines.back().push_back(std::move(cell));
+  }
+  std::vector<std::size_t> widths(lines[0].size());
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  }
+  std::string text;
+  for (const auto& line : lines) {
+    std::string row = line[0] + std::string(widths[0] - line[0].size(), ' ');
+    for (std::size_t i = 1; i < line.size(); ++i) row += "  " + std::string(widths[i] - line[i].size(), ' ') + line[i];
+    text += row + '\n';
+  }
+  return text;
+}
+
+}  // namespace ergocast::lab
