@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 #include "cli/commands.h"
@@ -52,7 +53,10 @@ class Campaign {
     jobs.count = missing_.size();
     jobs.processes = processes;
     jobs.lost = [this](std::uint64_t job, const std::string& how) { fail(missing_[job], how); };
-    jobs.idle = [this] { show(); };
+    jobs.go_on = [this] {
+      show();
+      return !problem_;
+    };
     StopSignals signals;
     work_in_processes(jobs, signals);
     progress_.end();
@@ -61,7 +65,8 @@ class Campaign {
   std::size_t flown() const { return flown_; }
   std::size_t failed() const { return failed_; }
   std::size_t missing() const { return missing_.size() - flown_; }
-  bool written() const { return written_; }
+  /// Why rows could not be written.
+  const std::optional<std::string>& problem() const { return problem_; }
 
  private:
   lab::StudyFigures fly_one(const Run& run) const {
@@ -72,7 +77,7 @@ class Campaign {
   void take(const Run& run, const lab::StudyFigures& figures) {
     if (!figures.complete) return fail(run, "the mission did not come to its last tick");
     ++flown_;
-    written_ = directory_.add({run.first, figures}) && written_;
+    if (!problem_) problem_ = directory_.add({run.first, figures});
   }
 
   void fail(const Run& run, const std::string& how) {
@@ -101,7 +106,7 @@ class Campaign {
   ProgressLine progress_;
   const ProgressLine::Clock::time_point since_ = ProgressLine::Clock::now();
   std::size_t flown_ = 0, failed_ = 0;
-  bool written_ = true;
+  std::optional<std::string> problem_;
 };
 
 /// The command that makes this study.
@@ -156,9 +161,13 @@ int study(const StudyOptions& options) {
 
   Campaign campaign(points, missing_runs(count, options.seeds, directory.done()), directory);
   campaign.fly(options.jobs);
-  if (!campaign.written()) return complain({options.out.string() + ": writing failed; rows are missing"});
-  if (const auto problem = directory.sort()) return complain({*problem});
-  if (const auto problem = show_results(points.identity, directory, options)) return complain({*problem});
+  std::optional<std::string> problem = campaign.problem();
+  if (!problem) problem = directory.sort();
+  if (!problem) problem = show_results(points.identity, directory, options);
+  if (problem) {
+    std::fprintf(stderr, "%s; the same command goes on\n", problem->c_str());
+    return kExitFailed;
+  }
   say_how_it_went(campaign, directory, options);
   return campaign.failed() > 0 ? kExitFailed : kExitDone;
 }

@@ -143,10 +143,9 @@ class Pool {
 
 void work_in_processes(const Jobs& jobs, StopSignals& signals) {
   Pool pool(jobs);
-  while (!pool.done() && signals.take() == 0) {
+  while (!pool.done() && signals.take() == 0 && jobs.go_on()) {
     pool.fill();
     pool.wait(signals.fd());
-    jobs.idle();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "lab/study_figures.h"
 #include "logger/html.h"
@@ -30,28 +31,21 @@ struct Described {
   Cell (*cell)(const PointSummary&);
 };
 
-/// An escape column: nothing where no agent starts on a manifold.
-template <class Text>
-Cell of_escapes(const PointSummary& summary, Text text) {
-  if (summary.escape_times_s.empty()) return {};
-  return text(summary);
-}
-
 constexpr Described kResults[] = {
     {"runs", [](const PointSummary& s) -> Cell { return readable(static_cast<double>(s.runs)); }},
-    {"φ² at the end [95 %]",
-     [](const PointSummary& s) -> Cell { return s.runs > 0 ? Cell(interval(s.metric)) : Cell(); }},
+    {"φ² at the end [95 %]", [](const PointSummary& s) -> Cell { return interval(s.metric); }},
     {"against the first [95 %]",
      [](const PointSummary& s) -> Cell { return s.ratio ? Cell(interval(*s.ratio)) : Cell(); }},
-    {"slope", [](const PointSummary& s) -> Cell { return s.slope ? Cell(readable(std::round(*s.slope * 100) / 100)) : Cell(); }},
-    {"escaped ≤ 15 s",
-     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return percent(e.escaped_share(15)); }); }},
-    {"≤ 60 s",
-     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return percent(e.escaped_share(60)); }); }},
-    {"median",
-     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return seconds(quantile(e.escape_times_s, 0.5)); }); }},
-    {"99th percentile",
-     [](const PointSummary& s) { return of_escapes(s, [](const auto& e) { return seconds(quantile(e.escape_times_s, 0.99)); }); }},
+    {"slope",
+     [](const PointSummary& s) -> Cell { return s.slope ? Cell(readable(std::round(*s.slope * 100) / 100)) : Cell(); }},
+};
+
+constexpr Described kEscapes[] = {
+    {"agents", [](const PointSummary& s) -> Cell { return readable(static_cast<double>(s.escape_times_s.size())); }},
+    {"within 15 s", [](const PointSummary& s) -> Cell { return percent(s.escaped_share(15)); }},
+    {"within 60 s", [](const PointSummary& s) -> Cell { return percent(s.escaped_share(60)); }},
+    {"median", [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.5)); }},
+    {"99th percentile", [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.99)); }},
 };
 
 constexpr Described kMotion[] = {
@@ -62,17 +56,39 @@ constexpr Described kMotion[] = {
     {"contributions a run", [](const PointSummary& s) -> Cell { return readable(std::round(s.messages)); }},
 };
 
-template <std::size_t Count>
-std::string points_table(const Study& study, const Summaries& summaries, const Described (&described)[Count]) {
-  std::vector<Column> columns{{"point", true}};
-  for (const StudyPoint& point : study.points) columns[0].cells.push_back(escape(name_of(point, study)));
+/// What tells the points apart, a column each.
+std::vector<Column> point_columns(const Study& study) {
+  std::vector<Column> columns;
+  const bool several_scenarios = study.points.front().scenario != study.points.back().scenario;
+  if (several_scenarios || study.fields.empty()) {
+    columns.push_back({"scenario", true});
+    for (const StudyPoint& point : study.points) columns.back().cells.push_back(escape(point.scenario));
+  }
+  for (std::size_t i = 0; i < study.fields.size(); ++i) {
+    columns.push_back({escape(study.fields[i]), true});
+    for (const StudyPoint& point : study.points) columns.back().cells.push_back(escape(point.values[i]));
+  }
+  return columns;
+}
+
+/// A row for each point; empty where `holds` does not.
+std::string points_table(const Study& study, const Summaries& summaries, std::span<const Described> described,
+                         bool (*holds)(const PointSummary&)) {
+  std::vector<Column> columns = point_columns(study);
   for (const Described& column : described) {
     columns.push_back({column.title, false});
     for (const PointSummary& summary : summaries) {
-      columns.back().cells.push_back(summary.runs > 0 ? column.cell(summary) : Cell());
+      columns.back().cells.push_back(holds(summary) ? column.cell(summary) : Cell());
     }
   }
   return table(std::move(columns), study.points.size());
+}
+
+bool was_flown(const PointSummary& summary) { return summary.runs > 0; }
+bool has_escapes(const PointSummary& summary) { return !summary.escape_times_s.empty(); }
+
+std::string section(const std::string& title, const std::string& content) {
+  return "<section><h2>" + title + "</h2>\n" + content + "</section>\n";
 }
 
 std::string title_of(const Study& study) {
@@ -109,7 +125,7 @@ std::string conventions() {
   facts.add("escaped", "of the agents that start on a symmetry line or point of the domain, those that have been "
                        "farther from it than 1 % of the shorter side");
   facts.add("time at the edge", "share of all agents’ ticks closer to an edge than 0.1 % of the shorter side");
-  return "<section><h2>Conventions</h2>\n" + facts.html() + "</section>\n";
+  return facts.html();
 }
 
 std::string short_number(double value) {
@@ -135,12 +151,15 @@ std::vector<std::string> terminal_cells(const PointSummary& s) {
 
 std::string study_page(const StudyFacts& facts, const Summaries& summaries) {
   std::string html = counts(facts.study, summaries);
-  html += "<section><h2>Results</h2>\n" + points_table(facts.study, summaries, kResults) + "</section>\n";
+  html += section("Results", points_table(facts.study, summaries, kResults, was_flown));
   html += figures_section(study_figures(facts.study, summaries));
-  html += "<section><h2>Motion and messages</h2>\n" + points_table(facts.study, summaries, kMotion) + "</section>\n";
-  html += conventions();
-  html += "<section><h2>How to reproduce</h2>\n<pre>" + escape(facts.command) +
-          "</pre>\n<p>Made by ergocast " + escape(facts.version) + ". Every number is in study.csv.</p></section>\n";
+  if (std::any_of(summaries.begin(), summaries.end(), has_escapes)) {
+    html += section("Escapes", points_table(facts.study, summaries, kEscapes, has_escapes));
+  }
+  html += section("Motion and messages", points_table(facts.study, summaries, kMotion, was_flown));
+  html += section("Conventions", conventions());
+  html += section("How to reproduce", "<pre>" + escape(facts.command) + "</pre>\n<p>Made by ergocast " +
+                                          escape(facts.version) + ". Every run is a row of study.csv.</p>\n");
   return framed_page(title_of(facts.study), "Ergocast study", "", html);
 }
 
