@@ -56,8 +56,10 @@ void StudyFloor(benchmark::State& state) {
   report(state);
 }
 
-BENCHMARK(StudyRun)->Threads(1)->Threads(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(StudyFloor)->Threads(1)->Threads(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyRun)->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyRun)->Threads(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyFloor)->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyFloor)->Threads(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace ergocast::bench

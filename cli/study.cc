@@ -114,13 +114,13 @@ std::string command_of(const StudyOptions& options) {
   std::string command = "ergocast study";
   for (const auto& file : options.scenarios) command += ' ' + file.string();
   for (const Variation& variation : options.variations) {
-    command += " --vary " + variation.path + '=';
+    command += " \\\n  --vary " + variation.path + '=';
     for (const std::string& value : variation.values) {
       command += (&value == &variation.values.front() ? "" : ",") + value;
     }
   }
   if (options.duration_s) command += " --duration " + text_of("%.17g", *options.duration_s);
-  return command + " --seeds " + std::to_string(options.seeds.first) + ':' +
+  return command + " \\\n  --seeds " + std::to_string(options.seeds.first) + ':' +
          std::to_string(options.seeds.last) + " --out " + options.out.string();
 }
 

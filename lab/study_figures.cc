@@ -13,7 +13,7 @@ namespace ergocast::lab {
 namespace {
 
 constexpr double kWidth = 562, kHeight = 400, kWideWidth = 1130;
-constexpr double kLeft = 70, kRight = 18, kBelow = 48, kMargin = 1.3;
+constexpr double kLeft = 84, kRight = 18, kBelow = 48, kMargin = 1.3;
 /// More would not be looked at; the table has them all.
 constexpr std::size_t kMostPanels = 12;
 /// Positive values this far apart are drawn on a logarithmic axis.
@@ -62,12 +62,14 @@ std::string stroke(const std::string& color) {
   return "class=\"curve\" stroke-width=\"1.8\" stroke=\"" + color + '"';
 }
 
-void draw_band(Svg& svg, const Plot& plot, const PointSummary& summary, const std::string& color) {
+void draw_band(Svg& svg, const Plot& plot, const PointSummary& summary, const std::string& color,
+               std::size_t bands) {
+  const char* opacity = bands > 4 ? "0.1" : "0.2";
   Polyline outline;
   for (const auto& [t_s, median] : summary.metric_over_time) outline.push_back(plot.at(t_s, median.low));
   std::reverse(outline.begin(), outline.end());
   for (const auto& [t_s, median] : summary.metric_over_time) outline.push_back(plot.at(t_s, median.high));
-  svg.path(path_data(outline), "fill=\"" + color + "\" fill-opacity=\"0.2\"");
+  svg.path(path_data(outline), "fill=\"" + color + "\" fill-opacity=\"" + opacity + '"');
 }
 
 std::string in_series(const StudySeries& series) { return series.name.empty() ? "" : ": " + series.name; }
@@ -92,7 +94,7 @@ Figure over_time_figure(const StudyLayout& layout, std::size_t index, const Summ
   plot.grid();
   for (std::size_t i = 0; i < series.points.size(); ++i) {
     const PointSummary& summary = summaries[series.points[i]];
-    draw_band(svg, plot, summary, color_of(i, series.points.size()));
+    draw_band(svg, plot, summary, color_of(i, series.points.size()), series.points.size());
   }
   for (std::size_t i = 0; i < series.points.size(); ++i) {
     Polyline line;
@@ -131,18 +133,24 @@ FieldAxis axis_of(const StudyLayout& layout) {
   return named;
 }
 
-void draw_estimates(Svg& svg, Plot& plot, const StudySeries& series, const Summaries& summaries,
-                    const FieldAxis& field, const std::string& color) {
+/// Points with their intervals, joined where the field is a number.
+/// @param aside  pixels to the right, so that series do not hide each other
+void draw_estimates(Svg& svg, const Plot& plot, const StudyLayout& layout, const StudySeries& series,
+                    const Summaries& summaries, const FieldAxis& field, const std::string& color, double aside) {
   Polyline line;
   for (std::size_t i = 0; i < series.points.size(); ++i) {
     const PointSummary& summary = summaries[series.points[i]];
     if (summary.runs == 0) continue;
-    line.push_back({field.places[i], summary.metric.value});
-    svg.line(plot.at(field.places[i], summary.metric.low), plot.at(field.places[i], summary.metric.high),
+    const auto at = [&](double metric) -> Eigen::Vector2d {
+      return plot.at(field.places[i], metric) + Eigen::Vector2d(aside, 0);
+    };
+    svg.line(at(summary.metric.low), at(summary.metric.high),
              "stroke-width=\"2.4\" stroke-opacity=\"0.6\" stroke=\"" + color + '"');
-    svg.circle(plot.at(line.back()), 3.6, "fill=\"" + color + '"');
+    line.push_back(at(summary.metric.value));
+    svg.circle(line.back(), 3.6, "fill=\"" + color + '"');
   }
-  plot.curve(line, "class=\"curve\" stroke-width=\"1.4\" stroke=\"" + color + '"');
+  if (layout.numbers.empty()) return;
+  svg.path(path_data(line), "class=\"curve\" stroke-width=\"1.4\" stroke=\"" + color + '"');
 }
 
 Figure metric_figure(const StudyLayout& layout, const Summaries& summaries) {
@@ -161,8 +169,11 @@ Figure metric_figure(const StudyLayout& layout, const Summaries& summaries) {
   Plot plot(svg, {kLeft, top, kWideWidth - kLeft - kRight, kHeight - top - kBelow}, field.axis,
             metric.log("φ² at the end"));
   plot.grid();
-  for (std::size_t i = 0; i < layout.series.size(); ++i) {
-    draw_estimates(svg, plot, layout.series[i], summaries, field, color_of(i, layout.series.size()));
+  const std::size_t count = layout.series.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double aside = std::min(5.0, 30.0 / static_cast<double>(count)) *
+                         (static_cast<double>(i) - static_cast<double>(count - 1) / 2);
+    draw_estimates(svg, plot, layout, layout.series[i], summaries, field, color_of(i, count), aside);
   }
   plot.frame();
   return {"final-metric", "φ² at the end against " + layout.field,

@@ -18,8 +18,13 @@ namespace {
 using Summaries = std::vector<PointSummary>;
 using Cell = std::optional<std::string>;
 
+/// "1.1 [0.764, 1.46] × 10⁻³": a small value and its interval in the same power of ten.
 std::string interval(const Estimate& estimate) {
-  return readable(estimate.value) + " [" + readable(estimate.low) + ", " + readable(estimate.high) + ']';
+  const bool small = estimate.value > 0 && estimate.value < 0.01;
+  const int decade = small ? static_cast<int>(std::floor(std::log10(estimate.value))) : 0;
+  const auto scaled = [unit = std::pow(10, decade)](double value) { return readable(value / unit); };
+  const std::string text = scaled(estimate.value) + " [" + scaled(estimate.low) + ", " + scaled(estimate.high) + ']';
+  return small ? text + " × " + power_of_ten(decade, false) : text;
 }
 
 std::string percent(double share) { return readable(std::round(share * 1000) / 10) + "\u00a0%"; }

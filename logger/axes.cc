@@ -55,7 +55,9 @@ std::vector<AxisMark> log_marks(const Axis& axis) {
       if (!labelled && stride > 1) continue;
       std::string label;
       if (labelled && digit == 1) label = power_of_ten(decade, plain);
-      if (labelled && digit != 1) label = readable(value);
+      if (labelled && digit != 1) {
+        label = plain ? readable(value) : std::to_string(digit) + " × " + power_of_ten(decade, false);
+      }
       result.push_back({value, label});
     }
   }
