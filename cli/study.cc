@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 #include "cli/commands.h"
@@ -8,7 +9,9 @@
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
 #include "cli/workers.h"
+#include "lab/study_page.h"
 #include "lab/study_run.h"
+#include "logger/run_record.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
@@ -50,7 +53,10 @@ class Campaign {
     jobs.count = missing_.size();
     jobs.processes = processes;
     jobs.lost = [this](std::uint64_t job, const std::string& how) { fail(missing_[job], how); };
-    jobs.idle = [this] { show(); };
+    jobs.go_on = [this] {
+      show();
+      return !problem_;
+    };
     StopSignals signals;
     work_in_processes(jobs, signals);
     progress_.end();
@@ -59,7 +65,8 @@ class Campaign {
   std::size_t flown() const { return flown_; }
   std::size_t failed() const { return failed_; }
   std::size_t missing() const { return missing_.size() - flown_; }
-  bool written() const { return written_; }
+  /// Why rows could not be written.
+  const std::optional<std::string>& problem() const { return problem_; }
 
  private:
   lab::StudyFigures fly_one(const Run& run) const {
@@ -70,7 +77,7 @@ class Campaign {
   void take(const Run& run, const lab::StudyFigures& figures) {
     if (!figures.complete) return fail(run, "the mission did not come to its last tick");
     ++flown_;
-    written_ = directory_.add({run.first, figures}) && written_;
+    if (!problem_) problem_ = directory_.add({run.first, figures});
   }
 
   void fail(const Run& run, const std::string& how) {
@@ -99,14 +106,39 @@ class Campaign {
   ProgressLine progress_;
   const ProgressLine::Clock::time_point since_ = ProgressLine::Clock::now();
   std::size_t flown_ = 0, failed_ = 0;
-  bool written_ = true;
+  std::optional<std::string> problem_;
 };
+
+/// The command that makes this study.
+std::string command_of(const StudyOptions& options) {
+  std::string command = "ergocast study";
+  for (const auto& file : options.scenarios) command += ' ' + file.string();
+  for (const Variation& variation : options.variations) {
+    command += " \\\n  --vary " + variation.path + '=';
+    for (const std::string& value : variation.values) {
+      command += (&value == &variation.values.front() ? "" : ",") + value;
+    }
+  }
+  if (options.duration_s) command += " --duration " + text_of("%.17g", *options.duration_s);
+  return command + " \\\n  --seeds " + std::to_string(options.seeds.first) + ':' +
+         std::to_string(options.seeds.last) + " --out " + options.out.string();
+}
+
+/// The table on the terminal, and the page.
+std::optional<std::string> show_results(const StudyIdentity& identity, const StudyDirectory& directory,
+                                        const StudyOptions& options) {
+  const auto summaries = lab::summarize(identity.study, directory.rows());
+  std::printf("%s", lab::study_text(identity.study, summaries).c_str());
+  return write_file(options.out / "report.html",
+                    lab::study_page({identity.study, version(), command_of(options)}, summaries));
+}
 
 /// Where everything is, and how to go on if something is missing.
 void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
                      const StudyOptions& options) {
-  std::printf("%zu runs flown now, %zu in %s\n", campaign.flown(), directory.rows().size(),
+  std::printf("\n%zu runs flown now, %zu in %s\n", campaign.flown(), directory.rows().size(),
               (options.out / "study.csv").c_str());
+  std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
   if (campaign.missing() == 0) return;
   std::printf("%zu runs are missing%s: the same command flies them\n", campaign.missing(),
               campaign.failed() > 0 ? (", " + std::to_string(campaign.failed()) + " of them failed").c_str() : "");
@@ -129,8 +161,13 @@ int study(const StudyOptions& options) {
 
   Campaign campaign(points, missing_runs(count, options.seeds, directory.done()), directory);
   campaign.fly(options.jobs);
-  if (!campaign.written()) return complain({options.out.string() + ": writing failed; rows are missing"});
-  if (const auto problem = directory.sort()) return complain({*problem});
+  std::optional<std::string> problem = campaign.problem();
+  if (!problem) problem = directory.sort();
+  if (!problem) problem = show_results(points.identity, directory, options);
+  if (problem) {
+    std::fprintf(stderr, "%s; the same command goes on\n", problem->c_str());
+    return kExitFailed;
+  }
   say_how_it_went(campaign, directory, options);
   return campaign.failed() > 0 ? kExitFailed : kExitDone;
 }

@@ -87,10 +87,6 @@ std::optional<std::string> objection(const fs::path& folder, const Json& identit
   return said(folder, why);
 }
 
-bool write_all(int file, std::string_view text) {
-  return write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-}
-
 bool before(const lab::StudyRow& a, const lab::StudyRow& b) {
   return std::pair(a.point, a.figures.seed) < std::pair(b.point, b.figures.seed);
 }
@@ -152,9 +148,17 @@ std::vector<std::pair<std::size_t, std::uint64_t>> StudyDirectory::done() const 
   return runs;
 }
 
-bool StudyDirectory::add(const lab::StudyRow& row) {
-  rows_.push_back(row);
-  return write_all(file_, table_.line(row) + '\n');
+std::optional<std::string> StudyDirectory::add(const lab::StudyRow& row) {
+  const off_t end = lseek(file_, 0, SEEK_END);
+  const std::string line = table_.line(row) + '\n';
+  errno = 0;
+  if (write(file_, line.data(), line.size()) == static_cast<ssize_t>(line.size())) {
+    rows_.push_back(row);
+    return std::nullopt;
+  }
+  std::string problem = (folder_ / kTableFile).string() + ": " + (errno == 0 ? "the disk is full" : std::strerror(errno));
+  if (ftruncate(file_, end) != 0) problem += ", and its last line is torn";
+  return problem;
 }
 
 std::optional<std::string> StudyDirectory::sort() {

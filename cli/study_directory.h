@@ -38,8 +38,8 @@ class StudyDirectory {
   /// The runs of rows(): point and seed, ascending.
   std::vector<std::pair<std::size_t, std::uint64_t>> done() const;
 
-  /// A row more, in the file at once. False if it cannot be written.
-  bool add(const lab::StudyRow& row);
+  /// A row more, in the file at once and whole. What is wrong, if it cannot be written.
+  std::optional<std::string> add(const lab::StudyRow& row);
   /// Puts rows and file in the order of points and seeds. What is wrong, if it cannot be written.
   std::optional<std::string> sort();
 

@@ -151,7 +151,10 @@ int trials(const TrialsOptions& options) {
   jobs.lost = [&](std::uint64_t job, const std::string& how) {
     desk.take(report_of_death(options.seeds.first + job, how));
   };
-  jobs.idle = [&] { desk.show(); };
+  jobs.go_on = [&] {
+    desk.show();
+    return true;
+  };
   work_in_processes(jobs, signals);
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -69,7 +69,7 @@ std::string how_it_died(int status, unsigned patience_s) {
   if (WTERMSIG(status) == SIGALRM) {
     return "no end after " + std::to_string(patience_s) + " s of wall time";
   }
-  return std::string("its process died of ") + signal_name(WTERMSIG(status));
+  return std::string("its process died of SIG") + signal_name(WTERMSIG(status));
 }
 
 class Pool {
@@ -143,10 +143,9 @@ class Pool {
 
 void work_in_processes(const Jobs& jobs, StopSignals& signals) {
   Pool pool(jobs);
-  while (!pool.done() && signals.take() == 0) {
+  while (!pool.done() && signals.take() == 0 && jobs.go_on()) {
     pool.fill();
     pool.wait(signals.fd());
-    jobs.idle();
   }
 }
 

@@ -27,11 +27,11 @@ struct Jobs {
   std::function<void(std::uint64_t job, const std::byte* result)> take;
   /// Called here for a job that ended its process, with how that died.
   std::function<void(std::uint64_t job, const std::string& how)> lost;
-  /// Called here several times a second.
-  std::function<void()> idle;
+  /// Called here several times a second; false ends all early.
+  std::function<bool()> go_on;
 };
 
-/// Does them all. Ends early when a signal arrives.
+/// Does them all, unless a signal arrives.
 void work_in_processes(const Jobs& jobs, StopSignals& signals);
 
 /// Jobs whose results are values.

@@ -55,9 +55,19 @@ std::vector<AxisMark> log_marks(const Axis& axis) {
       if (!labelled && stride > 1) continue;
       std::string label;
       if (labelled && digit == 1) label = power_of_ten(decade, plain);
-      if (labelled && digit != 1) label = readable(value);
+      if (labelled && digit != 1) {
+        label = plain ? readable(value) : std::to_string(digit) + " × " + power_of_ten(decade, false);
+      }
       result.push_back({value, label});
     }
+  }
+  return result;
+}
+
+std::vector<AxisMark> named_marks(const Axis& axis) {
+  std::vector<AxisMark> result;
+  for (const std::string& name : axis.names) {
+    result.push_back({static_cast<double>(result.size() + 1), name});
   }
   return result;
 }
@@ -72,7 +82,7 @@ double Axis::position(double value) const {
 Axis range_axis(const std::string& title, const std::string& unit, double low, double high) {
   if (!(std::isfinite(low) && std::isfinite(high))) low = high = 0;
   if (!(low < high)) high = low + std::max(1.0, std::abs(low));
-  return {titled(title, unit), low, high, Scale::kLinear, 1};
+  return {titled(title, unit), low, high, Scale::kLinear, 1, {}};
 }
 
 Axis amount_axis(const std::string& title, const std::string& unit, double largest) {
@@ -89,10 +99,16 @@ Axis log_axis(const std::string& title, double low, double high) {
   if (!(high > 0 && std::isfinite(high))) high = 1;
   if (!(low > 0 && low <= high)) low = high / 10;
   if (low == high) high *= 10;
-  return {title, low, high, Scale::kLog, 1};
+  return {title, low, high, Scale::kLog, 1, {}};
+}
+
+Axis named_axis(const std::string& title, std::vector<std::string> names) {
+  const auto count = static_cast<double>(names.size());
+  return {title, 0.5, count + 0.5, Scale::kLinear, 1, std::move(names)};
 }
 
 std::vector<AxisMark> marks(const Axis& axis, int count) {
+  if (!axis.names.empty()) return named_marks(axis);
   return axis.scale == Scale::kLinear ? linear_marks(axis, count) : log_marks(axis);
 }
 

@@ -88,17 +88,6 @@ std::string mode_text(const Json& summary) {
   return mode;
 }
 
-std::string figures_section(const std::vector<Figure>& figures) {
-  std::string html = "<section class=\"figures\">\n";
-  for (const Figure& figure : figures) {
-    html += std::string("<figure") + (figure.wide ? " class=\"wide\"" : "") + "><h2>" +
-            escape(figure.title) + "</h2>\n<div class=\"scroll\">" + figure.svg +
-            "</div><figcaption>" +
-            escape(figure.caption) + "</figcaption></figure>\n";
-  }
-  return html + "</section>\n";
-}
-
 std::string point_text(const Eigen::Vector2d& x_m) {
   const auto tenth = [](double value) { return readable(std::round(value * 10) / 10); };
   return '(' + tenth(x_m.x()) + ", " + tenth(x_m.y()) + ')';
@@ -267,9 +256,29 @@ std::string identity_section(const Json& summary) {
 
 }  // namespace
 
+std::string figures_section(const std::vector<Figure>& figures) {
+  std::string html = "<section class=\"figures\">\n";
+  for (const Figure& figure : figures) {
+    html += std::string("<figure") + (figure.wide ? " class=\"wide\"" : "") + "><h2>" +
+            escape(figure.title) + "</h2>\n<div class=\"scroll\">" + figure.svg +
+            "</div><figcaption>" +
+            escape(figure.caption) + "</figcaption></figure>\n";
+  }
+  return html + "</section>\n";
+}
+
+std::string framed_page(const std::string& title, const std::string& kind, const std::string& header,
+                        const std::string& content) {
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n";
+  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
+  html += element("title", escape(title) + " – Ergocast") + element("style", kPageStyle);
+  html += "</head><body><main>\n<header><p>" + escape(kind) + "</p>\n" + element("h1", escape(title)) +
+          header + "</header>\n";
+  return html + content + "</main></body></html>\n";
+}
+
 std::string report_page(const RunData& run, const Mission& mission, const Json& summary,
                         const std::vector<Figure>& figures) {
-  const std::string name = mission.name.empty() ? "unnamed mission" : escape(mission.name);
   Facts origin("facts");
   origin.add("agents", std::to_string(std::max(run.tracks.size(), mission.starts_m.size())));
   origin.add("mode", mode_text(summary));
@@ -278,14 +287,11 @@ std::string report_page(const RunData& run, const Mission& mission, const Json& 
   origin.add("run", said(summary, "run_id"));
   origin.add("scenario hash", said(summary, "scenario_hash"));
 
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n";
-  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  html += element("title", name + " – Ergocast") + element("style", kPageStyle);
-  html += "</head><body><main>\n<header><p>Ergocast run</p>\n" + element("h1", name) +
-          result_line(summary) + "</header>\n";
-  html += cards(run, mission, summary) + origin.html() + figures_section(figures);
-  html += agents_section(run, summary) + conventions_section(mission) + identity_section(summary);
-  return html + "</main></body></html>\n";
+  const std::string content = cards(run, mission, summary) + origin.html() + figures_section(figures) +
+                              agents_section(run, summary) + conventions_section(mission) +
+                              identity_section(summary);
+  return framed_page(mission.name.empty() ? "unnamed mission" : mission.name, "Ergocast run",
+                     result_line(summary), content);
 }
 
 }  // namespace ergocast

@@ -11,6 +11,15 @@
 
 namespace ergocast {
 
+/// A page in the report's style around `content`, which is HTML.
+/// @param title  plain text
+/// @param kind   what stands above it, plain text
+std::string framed_page(const std::string& title, const std::string& kind, const std::string& header,
+                        const std::string& content);
+
+/// The figures, two side by side.
+std::string figures_section(const std::vector<Figure>& figures);
+
 /// The page, well-formed as XML too. Keys that `summary` lacks, or has with another type, are left
 /// out; all its text is escaped.
 std::string report_page(const RunData& run, const Mission& mission, const nlohmann::ordered_json& summary,

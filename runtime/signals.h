@@ -24,7 +24,7 @@ class StopSignals {
   int fd_;
 };
 
-/// The name of a signal, "SIGSEGV".
+/// The name of a signal without "SIG": "SEGV".
 const char* signal_name(int signal);
 
 }  // namespace ergocast

@@ -7,7 +7,7 @@
 #include "logger/axes.h"
 #include "logger/figures.h"
 #include "logger/run_record.h"
-#include "studies/statistics.h"
+#include "logger/statistics.h"
 #include "studies/table.h"
 
 namespace ergocast::studies {
@@ -27,7 +27,7 @@ struct Study {
 struct Point {
   double x = 0, view_error = 0, metric = 0, contributions = 0;
   std::size_t seeds = 0;
-  Ratio ratio;
+  Estimate ratio;
 };
 
 struct Curve {
@@ -53,9 +53,9 @@ Point compare(const Table& table, const Table& reference, double x) {
   theirs.resize(point.seeds);
   point.x = x;
   point.ratio = ratio_of(ours, theirs);
-  point.metric = median_of(ours);
-  point.view_error = median_of(table.at("view_error"));
-  point.contributions = median_of(table.at("contributions"));
+  point.metric = median_of(ours).value;
+  point.view_error = median_of(table.at("view_error")).value;
+  point.contributions = median_of(table.at("contributions")).value;
   return point;
 }
 

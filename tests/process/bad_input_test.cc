@@ -74,7 +74,7 @@ TEST_F(BadInput, EveryProgramKnowsHelpAndVersion) {
 }
 
 TEST_F(BadInput, EveryCommandKnowsHelpAndVersion) {
-  for (const char* command : {"run", "simulate", "check", "report", "verify"}) {
+  for (const char* command : {"run", "simulate", "study", "check", "report", "verify"}) {
     EXPECT_EQ(ergocast({command, "--help"}), 0) << command;
     EXPECT_EQ(ergocast({command, "--version"}), 0) << command;
     EXPECT_TRUE(said("LCM 1.")) << output();

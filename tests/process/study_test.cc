@@ -1,0 +1,224 @@
+// `ergocast study`: every combination once, whatever interrupts it.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+constexpr const char* kMission = R"(
+domain { size_x_m: 100 size_y_m: 100 }
+target { gaussians { mean_x_m: 30 mean_y_m: 60 sigma_m: 12 } }
+basis { modes_x: 5 modes_y: 5 }
+law { u_max_mps: 5 }
+time { duration_s: 30 }
+agents { starts { x_m: 50 y_m: 20 } random_count: 1 }
+)";
+
+class Study : public OwnHost {
+ protected:
+  Study() { write("mission.textproto", kMission); }
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+
+  /// The arguments of a study of two noises.
+  std::vector<std::string> arguments(const std::string& seeds, const std::filesystem::path& out) const {
+    return {"study", folder_ / "mission.textproto", "--vary", "law.noise_intensity=0.1,1",
+            "--seeds", seeds, "--jobs", "2", "--out", out};
+  }
+  int study(const std::string& seeds, const std::filesystem::path& out) { return ergocast(arguments(seeds, out)); }
+
+  /// The table of a study that nothing interrupts.
+  std::string fresh(const std::string& seeds) {
+    const auto folder = folder_ / ("fresh-" + seeds);
+    EXPECT_EQ(study(seeds, folder), 0) << output();
+    return text_of(folder / "study.csv");
+  }
+  std::string table() const { return text_of(out() / "study.csv"); }
+  static std::size_t lines(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+};
+
+/// The rows below a table's head, cell by cell.
+std::vector<std::vector<std::string>> rows_of(const std::string& table) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream in(table);
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+TEST_F(Study, FliesEveryCombinationOnceInOrder) {
+  auto words = arguments("4:6", out());
+  words.insert(words.end(), {"--vary", "law.regularization=ABSOLUTE,RELATIVE"});
+  ASSERT_EQ(ergocast(words), 0) << output();
+  EXPECT_TRUE(said("law.noise_intensity = 0.1, law.regularization = RELATIVE")) << output();
+  const auto rows = rows_of(table());
+  ASSERT_EQ(rows.size(), 12U);
+  std::size_t row = 0;
+  for (const char* noise : {"0.1", "1"}) {
+    for (const char* form : {"ABSOLUTE", "RELATIVE"}) {
+      for (const char* seed : {"4", "5", "6"}) {
+        const std::vector<std::string> expected{"mission", noise, form, seed};
+        EXPECT_TRUE(std::equal(expected.begin(), expected.end(), rows[row++].begin())) << row;
+      }
+    }
+  }
+  EXPECT_TRUE(text_of(out() / "report.html").ends_with("</html>\n"));
+}
+
+TEST_F(Study, DoesNotDependOnTheNumberOfJobs) {
+  auto words = arguments("1:9", out());
+  *std::find(words.begin(), words.end(), "2") = "5";
+  ASSERT_EQ(ergocast(words), 0);
+  EXPECT_EQ(table(), fresh("1:9"));
+}
+
+TEST_F(Study, ARunIsTheMissionThatSimulateFlies) {
+  ASSERT_EQ(study("7", out()), 0);
+  const auto simulated = folder_ / "simulated";
+  auto mission = std::string(kMission);
+  mission.replace(mission.find("u_max_mps: 5"), 12, "u_max_mps: 5 noise_intensity: 0.1");
+  write("one.textproto", mission);
+  ASSERT_EQ(ergocast({"simulate", folder_ / "one.textproto", "--seed", "7", "--out", simulated}), 0);
+  const auto summary = nlohmann::json::parse(text_of(simulated / "summary.json"));
+  const double metric = summary["ergodic_metric"]["last"];
+  const auto rows = rows_of(table());
+  ASSERT_EQ(rows.size(), 2U);
+  // The logger adds up in another order.
+  EXPECT_NEAR(std::stod(rows[0][5]) / metric, 1, 1e-9);
+}
+
+TEST_F(Study, GoesOnAfterCtrlCAndLosesNothing) {
+  Child child = start("ergocast", arguments("1:500000", out()));
+  ASSERT_TRUE(eventually([this] { return lines(table()) > 20; }));
+  child.send(SIGINT);
+  EXPECT_EQ(wait_for(child), 0);
+  EXPECT_TRUE(said("runs are missing: the same command flies them")) << output();
+  const auto before = rows_of(table());
+  ASSERT_LT(before.size(), 1000000U);
+  unsigned long last = 0;
+  for (const auto& row : before) last = std::max(last, std::stoul(row[2]));
+  const std::string seeds = "1:" + std::to_string(last + 5);
+  ASSERT_EQ(study(seeds, out()), 0) << output();
+  EXPECT_TRUE(said(std::to_string(2 * (last + 5) - before.size()) + " runs flown now")) << output();
+  EXPECT_EQ(table(), fresh(seeds));
+}
+
+TEST_F(Study, DropsALastLineThatIsTorn) {
+  ASSERT_EQ(study("1:3", out()), 0);
+  const std::string whole = table();
+  write("run/study.csv", whole.substr(0, whole.size() - 7));
+  ASSERT_EQ(study("1:3", out()), 0);
+  EXPECT_TRUE(said("1 runs flown now")) << output();
+  EXPECT_EQ(table(), whole);
+}
+
+TEST_F(Study, TakesMoreSeedsLaterAndKeepsThoseItHas) {
+  ASSERT_EQ(study("1:3", out()), 0);
+  ASSERT_EQ(study("2:8", out()), 0);
+  EXPECT_TRUE(said("10 runs flown now, 16 in")) << output();
+  EXPECT_EQ(table(), fresh("1:8"));
+}
+
+TEST_F(Study, DrawsAFinishedStudyAgain) {
+  ASSERT_EQ(study("1:3", out()), 0);
+  const std::string page = text_of(out() / "report.html");
+  std::filesystem::remove(out() / "report.html");
+  ASSERT_EQ(study("1:3", out()), 0);
+  EXPECT_TRUE(said("0 runs flown now, 6 in")) << output();
+  EXPECT_EQ(text_of(out() / "report.html"), page);
+}
+
+TEST_F(Study, AWorkerThatDiesCostsItsRun) {
+  auto words = arguments("1", out());
+  words.insert(words.end(), {"--duration", "1000000"});
+  Child child = start("ergocast", words);
+  std::vector<std::string> running;
+  ASSERT_TRUE(eventually([&] { return (running = processes_on_own_host()).size() == 3; }));
+  for (const std::string& process : running) {
+    const pid_t pid = std::stoi(process.substr(process.find("pid ") + 4));
+    if (pid != child.pid()) kill(pid, SIGKILL);
+  }
+  EXPECT_EQ(wait_for(child), 4);
+  EXPECT_TRUE(said("law.noise_intensity = 1, seed 1: its process died of SIGKILL")) << output();
+  EXPECT_TRUE(said("2 runs are missing, 2 of them failed")) << output();
+  EXPECT_EQ(lines(table()), 1U);
+}
+
+TEST_F(Study, RefusesAnotherStudysFolder) {
+  ASSERT_EQ(study("1:2", out()), 0);
+  const std::string before = table();
+  const auto refused = [&](std::vector<std::string> more, const std::string& why) {
+    std::vector<std::string> words{"study", folder_ / "mission.textproto", "--seeds", "1:2", "--out", out()};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(ergocast(words), 2) << why;
+    EXPECT_TRUE(said(why) && said("give a new folder")) << output();
+  };
+  refused({}, "its study varies [\"law.noise_intensity\"]");
+  refused({"--vary", "law.noise_intensity=0.1"}, "its study has 2 points, this one 1");
+  refused({"--vary", "law.noise_intensity=0.1,2"}, "differs at point 2");
+  refused({"--vary", "law.noise_intensity=0.1,1", "--duration", "31"}, "differs at point 1");
+  EXPECT_EQ(table(), before);
+}
+
+TEST_F(Study, RefusesAFolderWithOtherFilesAndADamagedTable) {
+  std::filesystem::create_directory(out());
+  write("run/precious", "data");
+  EXPECT_EQ(study("1", out()), 2);
+  EXPECT_TRUE(said("is not empty and no study")) << output();
+  std::filesystem::remove(out() / "precious");
+  ASSERT_EQ(study("1:3", out()), 0);
+  std::string damaged = table();
+  damaged.replace(damaged.find("\nmission,1,2,") + 1, 7, "mossion");
+  write("run/study.csv", damaged);
+  EXPECT_EQ(study("1:4", out()), 2);
+  EXPECT_TRUE(said("study.csv:6: is no row of this study")) << output();
+  EXPECT_EQ(table(), damaged);
+}
+
+TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
+  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+    words.insert(words.begin(), {"study", folder_ / "mission.textproto", "--out", out()});
+    EXPECT_EQ(ergocast(words), 2) << why;
+    EXPECT_TRUE(said(why)) << why << " in\n" << output();
+    EXPECT_FALSE(std::filesystem::exists(out()));
+  };
+  refused({}, "--seeds");
+  refused({"--seeds", "5:1"}, "--seeds");
+  const auto vary = [&](const std::string& text, const std::string& why) {
+    refused({"--seeds", "1:3", "--vary", text}, why);
+  };
+  vary("law.epsilom=1,2", "did you mean law.epsilon?");
+  vary("law.noise_intensity=0,-1", "--vary law.noise_intensity=-1: -1 is below the limit 0");
+  vary("law.regularization=NONE", "write one of RELATIVE or ABSOLUTE");
+  vary("law.epsilon=1,,2", "has an empty value");
+  vary("law.epsilon=", "has an empty value");
+  vary("law.epsilon", "is not FIELD=VALUE");
+  vary("law.epsilon=1,1", "has 1 twice");
+  vary("law.epsilon=0.1,1e-1", "is the same mission as");
+  vary("seed=1,2", "use --seeds");
+  vary("law.contraction_gain_per_s=0,1", "u_max_mps: 5 is too weak for contraction_gain_per_s 1");
+  EXPECT_TRUE(said(", with law.contraction_gain_per_s=1")) << output();
+  refused({"--seeds", "1", "--vary", "law.epsilon=1", "--vary", "law.epsilon=2"}, "is varied twice");
+  refused({"--seeds", "1", "--vary", "time.duration_s=1,2", "--duration", "3"}, "--duration says it too");
+  refused({"--seeds", "1:2000000"}, "are above the limit, 1000000 runs");
+  refused({"--seeds", "1", "--jobs", "0"}, "--jobs");
+  std::string many = "law.epsilon=0";
+  for (int i = 1; i < 1001; ++i) many += ',' + std::to_string(i);
+  vary(many, "1001 combinations are above the limit 1000");
+  EXPECT_EQ(ergocast({"study", folder_ / "nothing", "--seeds", "1", "--out", out()}), 2);
+  EXPECT_TRUE(said("there is no such file")) << output();
+}
+
+}  // namespace
+}  // namespace ergocast::test
