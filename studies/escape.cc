@@ -37,10 +37,9 @@ Mission from(const Start& start, Mission mission) {
   return mission;
 }
 
-std::optional<double> escape_time_s(const Mission& mission, double until_s) {
+std::optional<double> escape_time_s(const Mission& mission, double far_m, double until_s) {
   const auto set = lab::manifold_at(mission.starts_m.front(), mission.domain);
   ERGOCAST_REQUIRE(set.has_value());
-  const double far_m = lab::escape_distance_m(mission.domain);
   lab::IdealTeam team(mission);
   while (team.t_s() < until_s - 1e-9) {
     team.step();
@@ -49,18 +48,19 @@ std::optional<double> escape_time_s(const Mission& mission, double until_s) {
   return std::nullopt;
 }
 
-std::vector<double> escape_times_s(Mission mission, int seeds, double until_s) {
+std::vector<double> escape_times_s(Mission mission, int seeds, double far_m, double until_s) {
   std::vector<double> times_s;
   for (int seed = 1; seed <= seeds; ++seed) {
     mission.seed = static_cast<std::uint64_t>(seed);
-    times_s.push_back(escape_time_s(mission, until_s).value_or(std::numeric_limits<double>::infinity()));
+    times_s.push_back(
+        escape_time_s(mission, far_m, until_s).value_or(std::numeric_limits<double>::infinity()));
   }
   return times_s;
 }
 
-EscapeLaw::EscapeLaw(std::vector<double> spread, const Mission& mission)
+EscapeLaw::EscapeLaw(std::vector<double> spread, const Mission& mission, double far_m)
     : dt_s_(mission.timing.dt_s),
-      distance_m_(lab::escape_distance_m(mission.domain)),
+      far_m_(far_m),
       dimensions_(normal_of(mission).dimensions),
       spread_m_(std::move(spread)) {
   double largest = 0;
@@ -69,7 +69,7 @@ EscapeLaw::EscapeLaw(std::vector<double> spread, const Mission& mission)
 
 double EscapeLaw::probability(double t_s) const {
   const auto step = std::min(spread_m_.size() - 1, static_cast<std::size_t>(t_s / dt_s_ + 1e-9));
-  return spread_m_[step] > 0 ? 1 - share_within(distance_m_ / spread_m_[step], dimensions_) : 0;
+  return spread_m_[step] > 0 ? 1 - share_within(far_m_ / spread_m_[step], dimensions_) : 0;
 }
 
 double EscapeLaw::quantile_s(double p) const {

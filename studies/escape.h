@@ -23,20 +23,20 @@ std::span<const Start> starts();
 /// `mission` with one agent, at `start`.
 Mission from(const Start& start, Mission mission);
 
-/// When the mission's first agent is first farther off its set than lab::escape_distance_m() [s];
-/// nothing if it is not by `until_s`.
-std::optional<double> escape_time_s(const Mission& mission, double until_s);
+/// When the mission's first agent is first farther off its set than `far_m` [s]; nothing if it is not
+/// by `until_s`.
+std::optional<double> escape_time_s(const Mission& mission, double far_m, double until_s);
 
 /// The same for each seed from 1 on; infinite where it does not escape.
-std::vector<double> escape_times_s(Mission mission, int seeds, double until_s);
+std::vector<double> escape_times_s(Mission mission, int seeds, double far_m, double until_s);
 
 /// What the linearised recursion says about the time of escape. As long as the spread grows, how far
 /// off an agent gets is its standard deviation times one number z drawn at the beginning, and it
-/// escapes when spread · |z| reaches the distance.
+/// escapes when spread · |z| reaches `far_m`.
 class EscapeLaw {
  public:
   /// @param spread  of δ for σ = 1, step by step
-  EscapeLaw(std::vector<double> spread, const Mission& mission);
+  EscapeLaw(std::vector<double> spread, const Mission& mission, double far_m);
 
   /// Probability to have escaped by `t_s`.
   double probability(double t_s) const;
@@ -44,7 +44,7 @@ class EscapeLaw {
   double quantile_s(double p) const;
 
  private:
-  double dt_s_, distance_m_;
+  double dt_s_, far_m_;
   int dimensions_;
   std::vector<double> spread_m_;  // the largest so far, σ counted in
 };

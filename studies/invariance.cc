@@ -64,10 +64,10 @@ Team diagonal_and_another(const Share& share, const Rectangle& domain) {
 
 std::span<const InvariantSet> invariant_sets() {
   static const InvariantSet kSets[] = {
-      {"origin", "origin", edge_or_corner<0, 0>},
+      {"origin", "origin", edge_or_corner<0, 0>, true},
       {"axis-x", "axis x = 0", edge_or_corner<0, 2>},
       {"axis-y", "axis y = 0", edge_or_corner<2, 0>},
-      {"far-corner", "far corner (Lx, Ly)", edge_or_corner<1, 1>},
+      {"far-corner", "far corner (Lx, Ly)", edge_or_corner<1, 1>, true},
       {"far-edge-x", "far edge x = Lx", edge_or_corner<1, 2>},
       {"far-edge-y", "far edge y = Ly", edge_or_corner<2, 1>},
       {"midline-x", "midline x = Lx/2", on_midline_x},
@@ -76,8 +76,8 @@ std::span<const InvariantSet> invariant_sets() {
       {"diagonal", "diagonal y = x", on_diagonal},
       {"antidiagonal", "diagonal y = Lx − x", on_antidiagonal},
       {"diagonal-pair", "diagonal y = x, two others mirrored", diagonal_and_mirrored_pair},
-      {"midline-other", "midline x = Lx/2, one other anywhere", midline_and_another, false},
-      {"diagonal-other", "diagonal y = x, one other anywhere", diagonal_and_another, false},
+      {"midline-other", "midline x = Lx/2, one other anywhere", midline_and_another, false, false},
+      {"diagonal-other", "diagonal y = x, one other anywhere", diagonal_and_another, false, false},
   };
   return kSets;
 }

@@ -10,12 +10,13 @@
 
 namespace ergocast::studies {
 
-/// A set of Proposition 1 and a team that satisfies its premises: the first agent is on the set, the
-/// others mirror each other at it.
+/// A set of Proposition 1 and a team whose first agent is on it, while the others, if the premises are
+/// to hold, mirror each other at it.
 struct InvariantSet {
   std::string name, text;
   /// From two numbers in (0, 1).
   std::vector<Eigen::Vector2d> (*team)(const Eigen::Vector2d& share, const Rectangle& domain);
+  bool is_point = false;       ///< there is one place only
   bool symmetric_team = true;  ///< whether the premises are met
 };
 std::span<const InvariantSet> invariant_sets();

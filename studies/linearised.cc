@@ -77,7 +77,7 @@ std::vector<double> spread(const std::vector<LinearStep>& steps, const Mission& 
   Eigen::MatrixXd of_sums = Eigen::MatrixXd::Zero(weights.size(), weights.size());
   std::vector<double> result = {0};
   for (const LinearStep& step : steps) {
-    constexpr double kBeyondAnyDomain = 1e60;
+    constexpr double kBeyondAnyDomain = 1e200;
     if (variance > kBeyondAnyDomain) {
       result.push_back(result.back());
       continue;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "lab/manifolds.h"
 #include "logger/figures.h"
 #include "studies/escape.h"
 #include "studies/invariance.h"
@@ -21,11 +22,12 @@ constexpr double kUntil_s = 600;
 void write_set(const InvariantSet& set, int seeds, std::ostream& out) {
   out << "units,share_of_b,escape_s\n";
   const Mission paper = paper_mission();
-  for (int seed = 1; seed <= seeds; ++seed) {
+  const int places = set.is_point ? 1 : seeds;
+  for (int seed = 1; seed <= places; ++seed) {
     const Mission mission = classical(set, paper, static_cast<std::uint64_t>(seed));
     const NormalResidual residual = normal_residual(mission);
     out << residual.units << ',' << residual.share_of_b << ','
-        << escape_time_s(mission, kUntil_s).value_or(std::numeric_limits<double>::infinity()) << '\n';
+        << escape_time_s(mission, lab::escape_distance_m(mission.domain), kUntil_s).value_or(std::numeric_limits<double>::infinity()) << '\n';
   }
 }
 

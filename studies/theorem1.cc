@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPaperEnd_s = 150, kUntil_s = 600;
+/// Nearer than the finest mode's wavelength by far, where the linearised recursion should be exact.
+constexpr double kNear_m = 0.5;
 constexpr double kSigmas[] = {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1, 10};
 constexpr double kEpsilons[] = {1e-5, 1e-4, 1e-3, 1e-2};
 constexpr double kExponents[] = {1, 1.5};
@@ -32,12 +34,13 @@ constexpr int kOneOfEach[] = {0, 1, 3, 5};
 struct Point {
   int start;
   double exponent, epsilon, sigma;
+  bool near = false;  ///< farther off than kNear_m counts, in place of the usual distance
 };
 
 std::string name_of(const Point& p) {
   char text[96];
-  std::snprintf(text, sizeof text, "escape-%s-s%g-e%g-n%g", starts()[p.start].name.c_str(), p.exponent,
-                p.epsilon, p.sigma);
+  std::snprintf(text, sizeof text, "%s-%s-s%g-e%g-n%g", p.near ? "near" : "escape",
+                starts()[p.start].name.c_str(), p.exponent, p.epsilon, p.sigma);
   return text;
 }
 
@@ -46,6 +49,7 @@ std::vector<Point> all_points() {
   for (const double exponent : kExponents) {
     for (int start = 0; start < static_cast<int>(starts().size()); ++start) {
       for (const double sigma : kSigmas) points.push_back({start, exponent, kPaperEpsilon, sigma});
+      points.push_back({start, exponent, kPaperEpsilon, kPaperSigma, true});
     }
     for (const int start : kOneOfEach) {
       for (const double epsilon : kEpsilons) {
@@ -63,6 +67,8 @@ Mission mission_of(const Point& p) {
   mission.law.noise_intensity = p.sigma;
   return from(starts()[p.start], mission);
 }
+
+double far_m(const Point& p) { return p.near ? kNear_m : lab::escape_distance_m(paper_mission().domain); }
 
 /// Of one set under one law: for σ = 1, with and without what the past does.
 struct Spreads {
@@ -94,9 +100,9 @@ Row row_of(const Point& p, const Spreads& spreads, const fs::path& folder) {
   Row row{p, read_table(folder / (name_of(p) + ".csv")).at("escape_s")};
   std::sort(row.times_s.begin(), row.times_s.end());
   const Mission mission = mission_of(p);
-  const EscapeLaw law(spreads.counted, mission);
+  const EscapeLaw law(spreads.counted, mission, far_m(p));
   row.law_median_s = law.quantile_s(0.5);
-  row.without_past_s = EscapeLaw(spreads.neglected, mission).quantile_s(0.5);
+  row.without_past_s = EscapeLaw(spreads.neglected, mission, far_m(p)).quantile_s(0.5);
   for (double t_s = 0; t_s <= kUntil_s; t_s += mission.timing.dt_s) {
     row.distance = std::max(row.distance, std::abs(row.share_by(t_s) - law.probability(t_s)));
   }
@@ -197,7 +203,7 @@ Panel distributions(const std::vector<Row>& rows, const std::vector<Spreads>& sp
       const Point& p = rows[i].point;
       if (p.start != start || p.sigma != sigma || p.exponent != 1) continue;
       Curve measured{agent_color(color), {}, "none"}, law{"#333333", {}, "4 4"};
-      const EscapeLaw predicted(spreads[i].counted, mission_of(p));
+      const EscapeLaw predicted(spreads[i].counted, mission_of(p), far_m(p));
       for (double t_s = 0; t_s <= panel.x.high; t_s += 0.5) {
         measured.points.push_back({t_s, rows[i].share_by(t_s)});
         law.points.push_back({t_s, predicted.probability(t_s)});
@@ -230,7 +236,7 @@ void draw_growth(const std::vector<Row>& rows, const std::vector<Spreads>& sprea
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Point& p = rows[i].point;
     if (p.exponent != 1 || !one_of_each(p.start)) continue;
-    const double dt_s = mission_of(p).timing.dt_s, far_m = lab::escape_distance_m(mission_of(p).domain);
+    const double dt_s = mission_of(p).timing.dt_s;
     if (p.sigma == kPaperSigma) {
       Curve counted{color_of(p.start), {}, "none"}, neglected{color_of(p.start), {}, "5 4"};
       for (std::size_t j = 1; j < spreads[i].counted.size(); j += 5) {
@@ -244,7 +250,7 @@ void draw_growth(const std::vector<Row>& rows, const std::vector<Spreads>& sprea
     const double median_s = rows[i].quantile(0.5);
     if (!std::isfinite(median_s) || starts()[p.start].name == "corner") continue;
     const double reached = spreads[i].counted[static_cast<std::size_t>(std::lround(median_s / dt_s))];
-    const double needed = far_m / (kMedianOfNormal * p.sigma);
+    const double needed = far_m(p) / (kMedianOfNormal * p.sigma);
     collapse.intervals.push_back({color_of(p.start), reached, needed, needed, needed});
   }
   std::vector<KeyEntry> key = key_of_sets();
@@ -266,14 +272,14 @@ std::vector<Part> theorem1_parts(int seeds) {
   for (const Point& p : all_points()) {
     parts.push_back({name_of(p), [p, seeds](std::ostream& out) {
       out << "escape_s\n";
-      for (const double t_s : escape_times_s(mission_of(p), seeds, kUntil_s)) out << t_s << '\n';
+      for (const double t_s : escape_times_s(mission_of(p), seeds, far_m(p), kUntil_s)) out << t_s << '\n';
     }});
   }
   return parts;
 }
 
 void report_theorem1(const fs::path& folder, const fs::path& images) {
-  std::vector<Row> by_sigma, by_epsilon;
+  std::vector<Row> by_sigma, by_epsilon, near;
   std::vector<Spreads> spreads_by_sigma;
   Spreads spreads;
   Point last{-1, 0, 0, 0};
@@ -282,6 +288,10 @@ void report_theorem1(const fs::path& folder, const fs::path& images) {
     if (p.start != last.start || p.exponent != last.exponent || p.epsilon != last.epsilon) spreads = spreads_of(p);
     last = p;
     const Row row = row_of(p, spreads, folder);
+    if (p.near) {
+      near.push_back(row);
+      continue;
+    }
     if (p.sigma == kPaperSigma && one_of_each(p.start)) by_epsilon.push_back(row);
     if (p.epsilon != kPaperEpsilon) continue;
     by_sigma.push_back(row);
@@ -295,6 +305,11 @@ void report_theorem1(const fs::path& folder, const fs::path& images) {
     print_head("σ [m/√s]");
     for (const Row& row : by_sigma) {
       if (row.point.exponent == exponent && row.point.sigma == kPaperSigma) print(row, row.point.sigma);
+    }
+    std::printf("\n### The same, farther off than %g m\n\n", kNear_m);
+    print_head("σ [m/√s]");
+    for (const Row& row : near) {
+      if (row.point.exponent == exponent) print(row, row.point.sigma);
     }
     std::printf("\n### Escape by σ, %s\n\n", weight_text(exponent).c_str());
     print_head("σ [m/√s]");
