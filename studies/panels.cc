@@ -7,7 +7,8 @@
 namespace ergocast::studies {
 namespace {
 
-constexpr double kPanelWidth = 440, kPanelHeight = 270, kGap = 84, kLeft = 74, kRight = 18;
+constexpr double kPanelWidth = 440, kSinglePanelWidth = 700, kPanelHeight = 270;
+constexpr double kGap = 84, kLeft = 74, kRight = 18;
 constexpr double kKeyRow = 20, kBelow = 56, kTitle = 34;
 
 std::string stroke(const std::string& color, const std::string& dashes) {
@@ -20,7 +21,7 @@ void draw_dot(Svg& svg, const Eigen::Vector2d& at, const std::string& color) {
 
 /// The height it takes.
 double draw_key(Svg& svg, const std::vector<KeyEntry>& key, double width) {
-  constexpr double kPerLetter = 6.6, kSample = 28;
+  constexpr double kPerLetter = 6, kSample = 28;
   double x = kLeft, y = kKeyRow;
   for (const KeyEntry& entry : key) {
     const double needed = kSample + 26 + kPerLetter * static_cast<double>(entry.text.size());
@@ -56,15 +57,16 @@ void draw_panel(Svg& svg, const Box& area, const Panel& panel) {
 std::string figure(const std::string& name, const std::string& description,
                    const std::vector<KeyEntry>& key, const std::vector<Panel>& panels) {
   const auto count = static_cast<double>(panels.size());
-  const double width = kLeft + count * kPanelWidth + (count - 1) * kGap + kRight;
+  const double panel_width = panels.size() == 1 ? kSinglePanelWidth : kPanelWidth;
+  const double width = kLeft + count * panel_width + (count - 1) * kGap + kRight;
   Svg unused(width, 0, name, description);
   const double top = draw_key(unused, key, width) + kTitle;
   Svg svg(width, top + kPanelHeight + kBelow, name, description);
   draw_key(svg, key, width);
   double left = kLeft;
   for (const Panel& panel : panels) {
-    draw_panel(svg, {left, top, kPanelWidth, kPanelHeight}, panel);
-    left += kPanelWidth + kGap;
+    draw_panel(svg, {left, top, panel_width, kPanelHeight}, panel);
+    left += panel_width + kGap;
   }
   return svg.str();
 }

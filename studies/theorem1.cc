@@ -151,8 +151,8 @@ std::string weight_text(double exponent) {
 
 /// Median times against what is varied: dots with 10 % to 90 % measured, solid the law, dashed the
 /// law without the past.
-Panel panel_of(const std::vector<Row>& rows, double exponent, Axis x, double Point::*varied) {
-  Panel panel{weight_text(exponent), std::move(x), log_axis("time of escape [s]", 0.5, kUntil_s), {}, {}};
+Panel panel_of(const std::vector<Row>& rows, double exponent, Axis x, Axis y, double Point::*varied) {
+  Panel panel{weight_text(exponent), std::move(x), std::move(y), {}, {}};
   for (const int start : kOneOfEach) {
     Curve law{color_of(start), {}, "none"}, without{color_of(start), {}, "5 4"};
     for (const Row& row : rows) {
@@ -183,8 +183,10 @@ std::vector<KeyEntry> key_of_medians() {
 void draw_medians(const std::vector<Row>& by_sigma, const std::vector<Row>& by_epsilon, const fs::path& images) {
   std::vector<Panel> noise, smoothing;
   for (const double exponent : kExponents) {
-    noise.push_back(panel_of(by_sigma, exponent, log_axis("σ [m/√s]", 5e-9, 20), &Point::sigma));
-    smoothing.push_back(panel_of(by_epsilon, exponent, log_axis("ε [1/m]", 5e-6, 2e-2), &Point::epsilon));
+    noise.push_back(panel_of(by_sigma, exponent, log_axis("σ [m/√s]", 5e-9, 20),
+                             range_axis("time of escape", "s", 0, kUntil_s), &Point::sigma));
+    smoothing.push_back(panel_of(by_epsilon, exponent, log_axis("ε [1/m]", 5e-6, 2e-2),
+                                 log_axis("time of escape [s]", 0.5, kUntil_s), &Point::epsilon));
   }
   write_figure(images / "theorem_1_noise.svg",
                figure("theorem-1-noise", "Time of escape against the noise", key_of_medians(), noise));
@@ -229,9 +231,9 @@ void draw_distributions(const std::vector<Row>& rows, const std::vector<Spreads>
 void draw_growth(const std::vector<Row>& rows, const std::vector<Spreads>& spreads, const fs::path& images) {
   Panel growth{"Spread of the linearised recursion for σ = 1 m/√s", range_axis("time", "s", 0, 300),
                log_axis("standard deviation [m]", 0.1, 1e12), {}, {}};
-  Panel collapse{"ln(1/σ) against the growth: spread at the measured median",
-                 log_axis("predicted spread at that time, for σ = 1 m/√s [m]", 1, 1e11),
-                 log_axis("spread needed: 20 m / (0.674 σ)", 1, 1e11), {}, {}};
+  Panel collapse{"One dot for each set and σ: on the line if the law is exact",
+                 log_axis("predicted spread at the measured median time, σ = 1 m/√s [m]", 1, 1e11),
+                 log_axis("spread that escape takes: 20 m / (0.674 σ)", 1, 1e11), {}, {}};
   collapse.curves.push_back({"#333333", {{1, 1}, {1e11, 1e11}}, "none"});
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Point& p = rows[i].point;

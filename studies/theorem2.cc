@@ -114,7 +114,7 @@ void report_theorem2(const fs::path& folder, const fs::path& images) {
   std::printf("### Mean squares\n\n"
               "| case | runs | bound [m²] | largest share of it | mean at the end [m²] | share of the bound (95 %%) |\n"
               "|---|---|---|---|---|---|\n");
-  Panel panel{"Mean of ‖x − c‖² as a share of the bound", range_axis("time, as a share of the mission's", "", 0, 1),
+  Panel panel{"Mean of ‖x − c‖² as a share of the bound", range_axis("time / duration of the case", "", 0, 1),
               range_axis("measured / bound", "", 0, 1.1), {}, {}};
   panel.curves.push_back({"#333333", {{0, 1}, {1, 1}}, "2 3"});
   std::vector<KeyEntry> key = {{"bound", "#333333", "2 3"}};
