@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <variant>
 
 #include "core/require.h"
@@ -115,17 +116,56 @@ std::string seconds_text(double t_s) {
   return text;
 }
 
-void print_head(const char* varied) {
-  std::printf("| set | %s | out by 150 s | by 600 s | 10 %% | median | 90 %% | law: median | past neglected | law off by |\n"
-              "|---|---|---|---|---|---|---|---|---|---|\n", varied);
+/// Every set at the paper's σ and ε.
+void print_sets(const std::vector<Row>& rows, double exponent) {
+  std::printf("| set | out by 150 s | by 600 s | 10 %% | median | 90 %% | predicted median | past neglected | distance |\n"
+              "|---|---|---|---|---|---|---|---|---|\n");
+  for (const Row& row : rows) {
+    if (row.point.exponent != exponent || row.point.sigma != kPaperSigma) continue;
+    std::printf("| %s | %.1f %% | %.1f %% | %s | %s | %s | %s | %s | %.3f |\n", starts()[row.point.start].set.c_str(),
+                100 * row.share_by(kPaperEnd_s), 100 * row.share_by(kUntil_s), seconds_text(row.quantile(0.1)).c_str(),
+                seconds_text(row.quantile(0.5)).c_str(), seconds_text(row.quantile(0.9)).c_str(),
+                seconds_text(row.law_median_s).c_str(), seconds_text(row.without_past_s).c_str(), row.distance);
+  }
+  std::printf("\n");
 }
 
-void print(const Row& row, double varied) {
-  std::printf("| %s | %g | %.1f %% | %.1f %% | %s | %s | %s | %s | %s | %.3f |\n",
-              starts()[row.point.start].set.c_str(), varied, 100 * row.share_by(kPaperEnd_s),
-              100 * row.share_by(kUntil_s), seconds_text(row.quantile(0.1)).c_str(),
-              seconds_text(row.quantile(0.5)).c_str(), seconds_text(row.quantile(0.9)).c_str(),
-              seconds_text(row.law_median_s).c_str(), seconds_text(row.without_past_s).c_str(), row.distance);
+/// Medians, predictions and shares of one set each, by what is varied.
+void print_varied(const std::vector<Row>& rows, double exponent, const char* title, double Point::*varied) {
+  std::map<double, std::string> lines;
+  double farthest = 0;
+  for (const int start : kOneOfEach) {
+    for (const Row& row : rows) {
+      if (row.point.start != start || row.point.exponent != exponent) continue;
+      char cell[96];
+      std::snprintf(cell, sizeof cell, " %s (%s), %.0f %% |", seconds_text(row.quantile(0.5)).c_str(),
+                    seconds_text(row.law_median_s).c_str(), 100 * row.share_by(kPaperEnd_s));
+      lines[row.point.*varied] += cell;
+      if (start != 0 && row.point.sigma < 1) farthest = std::max(farthest, row.distance);
+    }
+  }
+  std::printf("| %s |", title);
+  for (const int start : kOneOfEach) std::printf(" %s |", starts()[start].set.c_str());
+  std::printf("\n|---|---|---|---|---|\n");
+  for (const auto& [value, cells] : lines) std::printf("| %g |%s\n", value, cells.c_str());
+  std::printf("\nLargest distance for σ < 1, without the origin: %.3f\n\n", farthest);
+}
+
+/// γ along the path, and what it makes of a noise of σ = 1.
+void print_growth(double exponent) {
+  std::printf("| set | γ at 0 s | 5 s | 20 s | 80 s | 150 s [1/s] | spread at 150 s [m] | past neglected [m] |\n"
+              "|---|---|---|---|---|---|---|---|\n");
+  for (int start = 0; start < static_cast<int>(starts().size()); ++start) {
+    const Mission mission = mission_of({start, exponent, kPaperEpsilon, 1});
+    const auto steps = linearised(mission, std::lround(kPaperEnd_s / mission.timing.dt_s) + 1);
+    std::printf("| %s |", starts()[start].set.c_str());
+    for (const double t_s : {0.0, 5.0, 20.0, 80.0, kPaperEnd_s}) {
+      std::printf(" %.3f |", steps[static_cast<std::size_t>(std::lround(t_s / mission.timing.dt_s))].rate_per_s);
+    }
+    std::printf(" %.3g | %.3g |\n", spread(steps, mission, Past::kCounted).back(),
+                spread(steps, mission, Past::kNeglected).back());
+  }
+  std::printf("\n");
 }
 
 // ---- figures -------------------------------------------------------------------------------------
@@ -303,27 +343,16 @@ void report_theorem1(const fs::path& folder, const fs::path& images) {
     return std::pair(a.point.start, a.point.epsilon) < std::pair(b.point.start, b.point.epsilon);
   });
   for (const double exponent : kExponents) {
-    std::printf("### Escape at σ = 1e-5, %s, %zu seeds\n\n", weight_text(exponent).c_str(), by_sigma.front().times_s.size());
-    print_head("σ [m/√s]");
-    for (const Row& row : by_sigma) {
-      if (row.point.exponent == exponent && row.point.sigma == kPaperSigma) print(row, row.point.sigma);
-    }
-    std::printf("\n### The same, farther off than %g m\n\n", kNear_m);
-    print_head("σ [m/√s]");
-    for (const Row& row : near) {
-      if (row.point.exponent == exponent) print(row, row.point.sigma);
-    }
-    std::printf("\n### Escape by σ, %s\n\n", weight_text(exponent).c_str());
-    print_head("σ [m/√s]");
-    for (const Row& row : by_sigma) {
-      if (row.point.exponent == exponent && one_of_each(row.point.start)) print(row, row.point.sigma);
-    }
-    std::printf("\n### Escape by ε at σ = 1e-5, %s\n\n", weight_text(exponent).c_str());
-    print_head("ε [1/m]");
-    for (const Row& row : by_epsilon) {
-      if (row.point.exponent == exponent) print(row, row.point.epsilon);
-    }
-    std::printf("\n");
+    std::printf("## %s, %zu seeds\n\n### Growth\n\n", weight_text(exponent).c_str(), by_sigma.front().times_s.size());
+    print_growth(exponent);
+    std::printf("### Escape at σ = 1e-5 m/√s\n\n");
+    print_sets(by_sigma, exponent);
+    std::printf("### The same, farther off than %g m\n\n", kNear_m);
+    print_sets(near, exponent);
+    std::printf("### Escape by σ\n\n");
+    print_varied(by_sigma, exponent, "σ [m/√s]", &Point::sigma);
+    std::printf("### Escape by ε\n\n");
+    print_varied(by_epsilon, exponent, "ε [1/m]", &Point::epsilon);
   }
   draw_medians(by_sigma, by_epsilon, images);
   draw_distributions(by_sigma, spreads_by_sigma, images);
