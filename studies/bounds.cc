@@ -82,6 +82,20 @@ std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges ed
   return result;
 }
 
+std::vector<double> shares_outside(Mission mission, int seeds) {
+  const double end_s = static_cast<double>(mission.timing.tick_count) * mission.timing.dt_s;
+  std::vector<double> shares(mission.starts_m.size(), 0);
+  for (int seed = 1; seed <= seeds; ++seed) {
+    mission.seed = static_cast<std::uint64_t>(seed);
+    lab::IdealTeam team(mission, lab::Edges::kNone);
+    team.run_until(end_s);
+    for (std::size_t i = 0; i < team.size(); ++i) {
+      if (!mission.domain.contains(team.x_m(i))) shares[i] += 1.0 / seeds;
+    }
+  }
+  return shares;
+}
+
 Mission driven_outward(const ControlLaw& law, double dt_s, double duration_s) {
   Mission mission;
   mission.law = law;

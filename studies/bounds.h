@@ -19,6 +19,10 @@ struct MeanSquare {
 /// For seeds 1 … `seeds`, at `points` times up to the mission's end.
 std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds, int points);
 
+/// Per agent, the share of seeds 1 … `seeds` in which it is outside the domain at the mission's end if no
+/// edge turns it back.
+std::vector<double> shares_outside(Mission mission, int seeds);
+
 /// One agent that is driven in one direction for ever: a single mode, whose target is never reached.
 /// Input, centre and gain are such that it is always `law.u_max_mps` long.
 Mission driven_outward(const ControlLaw& law, double dt_s, double duration_s);

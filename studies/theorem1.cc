@@ -4,9 +4,11 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <utility>
 #include <variant>
 
 #include "core/require.h"
+#include "lab/ideal_team.h"
 #include "lab/manifolds.h"
 #include "logger/figures.h"
 #include "scenario/scenario.h"
@@ -168,6 +170,37 @@ void print_growth(double exponent) {
   std::printf("\n");
 }
 
+/// How far off the agents of Fig. 2(a) are from the sets that they start on, at its end: from the origin,
+/// the two edges, and the diagonal that the last one runs down.
+void write_fig2a(int seeds, std::ostream& out) {
+  out << "origin_m,lower_edge_m,left_edge_m,diagonal_m\n";
+  Mission mission = paper_mission();
+  for (int seed = 1; seed <= seeds; ++seed) {
+    mission.seed = static_cast<std::uint64_t>(seed);
+    lab::IdealTeam team(mission);
+    team.run_until(kPaperEnd_s);
+    out << team.x_m(0).norm() << ',' << team.x_m(1).y() << ',' << team.x_m(2).x() << ','
+        << std::abs(team.x_m(3).x() - team.x_m(3).y()) / std::sqrt(2.0) << '\n';
+  }
+}
+
+void print_fig2a(const Table& table) {
+  constexpr std::pair<const char*, const char*> kAgents[] = {{"(0, 0), from the origin", "origin_m"},
+                                                             {"(2000, 0), from the lower edge", "lower_edge_m"},
+                                                             {"(0, 2000), from the left edge", "left_edge_m"},
+                                                             {"(2000, 2000), from the diagonal", "diagonal_m"}};
+  const double escaped_m = lab::escape_distance_m(paper_mission().domain);
+  std::printf("## Fig. 2(a) at 150 s\n\n| agent from | least [m] | median | most | within 20 m |\n|---|---|---|---|---|\n");
+  for (const auto& [text, column] : kAgents) {
+    std::vector<double> off_m = table.at(column);
+    std::sort(off_m.begin(), off_m.end());
+    const auto near = std::upper_bound(off_m.begin(), off_m.end(), escaped_m) - off_m.begin();
+    std::printf("| %s | %.2g | %.3g | %.3g | %.1f %% |\n", text, off_m.front(), off_m[off_m.size() / 2], off_m.back(),
+                100 * static_cast<double>(near) / static_cast<double>(off_m.size()));
+  }
+  std::printf("\n");
+}
+
 // ---- figures -------------------------------------------------------------------------------------
 
 std::string color_of(int start) {
@@ -317,6 +350,7 @@ std::vector<Part> theorem1_parts(int seeds) {
       for (const double t_s : escape_times_s(mission_of(p), seeds, far_m(p), kUntil_s)) out << t_s << '\n';
     }});
   }
+  parts.push_back({"fig2a", [seeds](std::ostream& out) { write_fig2a(seeds, out); }});
   return parts;
 }
 
@@ -354,6 +388,7 @@ void report_theorem1(const fs::path& folder, const fs::path& images) {
     std::printf("### Escape by ε\n\n");
     print_varied(by_epsilon, exponent, "ε [1/m]", &Point::epsilon);
   }
+  print_fig2a(read_table(folder / "fig2a.csv"));
   draw_medians(by_sigma, by_epsilon, images);
   draw_distributions(by_sigma, spreads_by_sigma, images);
   draw_growth(by_sigma, spreads_by_sigma, images);

@@ -107,6 +107,14 @@ std::vector<Part> theorem2_parts(int seeds) {
   for (const Case& c : cases()) {
     parts.push_back({name_of(c), [c, seeds](std::ostream& out) { write_case(c, seeds, out); }});
   }
+  parts.push_back({"outside", [seeds](std::ostream& out) {
+    out << "agent,start_x_m,start_y_m,share\n";
+    const Mission mission = paper_mission();
+    const std::vector<double> shares = shares_outside(mission, seeds);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      out << i << ',' << mission.starts_m[i].x() << ',' << mission.starts_m[i].y() << ',' << shares[i] << '\n';
+    }
+  }});
   return parts;
 }
 
@@ -123,6 +131,12 @@ void report_theorem2(const fs::path& folder, const fs::path& images) {
     print(c, table);
     panel.curves.push_back(curve_of(table, agent_color(static_cast<AgentId>(key.size() - 1)), c.edges));
     key.push_back({c.text, panel.curves.back().color, panel.curves.back().dashes});
+  }
+  std::printf("\n### Fig. 2(a) without edges\n\n| start [m] | outside the domain at 150 s |\n|---|---|\n");
+  const Table outside = read_table(folder / "outside.csv");
+  for (std::size_t i = 0; i < outside.at("agent").size(); ++i) {
+    std::printf("| (%g, %g) | %.1f %% |\n", outside.at("start_x_m")[i], outside.at("start_y_m")[i],
+                100 * outside.at("share")[i]);
   }
   std::printf("\n");
   write_figure(images / "theorem_2_mean_square.svg",

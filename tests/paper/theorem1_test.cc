@@ -115,6 +115,18 @@ TEST(Theorem1, AlmostSureEscapeMayTakeLongerThanTheMission) {
   EXPECT_LT(static_cast<double>(out) / kFew + studies::dkw_distance(kFew, kError), 0.25);
 }
 
+TEST(Theorem1, LastAgentOfFig2aIsStillOnItsDiagonalAtTheEnd) {
+  // The contraction leads it out of its corner and down the diagonal, which is what Fig. 1(a) complains of.
+  constexpr int kFew = 200;
+  Mission mission = shipped_mission("paper_fig2a");
+  for (mission.seed = 1; mission.seed <= kFew; ++mission.seed) {
+    PaperTeam team(mission);
+    team.run_until(150);
+    EXPECT_LT(std::abs(team.x_m(3).x() - team.x_m(3).y()) / std::sqrt(2.0), lab::escape_distance_m(mission.domain));
+  }
+  EXPECT_GT(studies::least_probability(kFew, kError), 0.9);
+}
+
 TEST(Theorem1, WithoutNoiseOrContractionTheOriginHolds) {
   Mission mission = paper_from(studies::starts()[0], 0);
   mission.law.contraction_gain_per_s = 0;
