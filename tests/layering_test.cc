@@ -56,7 +56,7 @@ const std::vector<Rule> kRules = {
     {"cli",
      {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
-    {"studies", {"core", "logger", "studies"}, {kFiles}},
+    {"studies", {"core", "scenario", "logger", "lab", "studies"}, {kFiles}},
 };
 
 /// Folders with code that may include everything.

@@ -4,48 +4,53 @@
 // form  ‖x_n − c‖ ≤ qⁿ ‖x_0 − c‖ + (u_max/k)(1 − qⁿ),  q = 1 − k·dt.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "core/noise.h"
-#include "tests/support/paper_team.h"
+#include "studies/bounds.h"
 
 namespace ergocast::test {
 namespace {
 
-/// A mission without noise, its numbers drawn from `seed`.
-Mission drawn(std::uint64_t seed) {
-  const auto uniform = [seed](std::uint64_t n) {
-    return uniform_pair(seed, Purpose::kStart, 7, n);
-  };
-  Mission mission = shipped_mission("paper_fig2a");
-  mission.law.noise_intensity = 0;
-  mission.law.epsilon = std::pow(10, -6 + 6 * uniform(0).x());
-  mission.law.u_max_mps = 1 + 40 * uniform(0).y();
-  mission.law.contraction_gain_per_s = std::pow(10, -4 + 4 * uniform(1).x());
-  mission.law.contraction_center_m = 2000 * uniform(2);
-  mission.starts_m = {2000 * uniform(3), 2000 * uniform(4)};
-  return mission;
-}
+using lab::Edges;
+using studies::Contraction;
+using studies::contraction_of;
 
-TEST(Corollary1, DiscreteBoundHoldsAtEveryStep) {
-  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    PaperTeam team(drawn(seed));
-    const ControlLaw& law = team.mission().law;
-    const Eigen::Vector2d center_m = law.contraction_center_m;
-    const double q = 1 - law.contraction_gain_per_s * team.mission().timing.dt_s;
-    double q_n = 1;
-    team.run_until(100, [&] {
-      q_n *= q;
-      for (std::size_t i = 0; i < team.size(); ++i) {
-        const double start_m = (team.mission().starts_m[i] - center_m).norm();
-        const double bound_m =
-            q_n * start_m + law.u_max_mps / law.contraction_gain_per_s * (1 - q_n);
-        ASSERT_LE((team.x_m(i) - center_m).norm(), bound_m * (1 + 1e-9) + 1e-9)
-            << "seed " << seed << ", agent " << i << ", t = " << team.t_s() << " s";
-      }
-    });
+TEST(Corollary1, DiscreteBoundHoldsAtEveryStepOfEveryRandomMission) {
+  for (const Edges edges : {Edges::kReflect, Edges::kNone}) {
+    double largest_allowance_m = 0;
+    for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+      const Contraction found = contraction_of(studies::random_mission(seed), edges);
+      EXPECT_EQ(found.violations, 0) << "seed " << seed;
+      largest_allowance_m = std::max(largest_allowance_m, found.allowance_m);
+    }
+    EXPECT_LT(largest_allowance_m, 1e-7) << "rounding cannot be that large";
   }
 }
+
+class DrivenOutward : public ::testing::TestWithParam<double> {
+ protected:
+  double k_dt() const { return GetParam(); }
+  Contraction found() const {
+    ControlLaw law;
+    law.u_max_mps = 10;
+    law.contraction_gain_per_s = k_dt() / 0.1;
+    return contraction_of(studies::driven_outward(law, 0.1, 100), Edges::kNone);
+  }
+};
+
+TEST_P(DrivenOutward, MeetsTheDiscreteBoundAndDoesNotExceedIt) {
+  EXPECT_EQ(found().violations, 0);
+  EXPECT_NEAR(found().largest_share, 1, 1e-12);
+}
+
+// In the first step it goes u_max dt, and the continuous statement allows (u_max/k)(1 − e^(−k·dt)):
+// a share of k·dt/(1 − e^(−k·dt)) = 1 + k·dt/2 + …
+TEST_P(DrivenOutward, BreaksTheContinuousBoundByHalfOfGainTimesStep) {
+  EXPECT_NEAR(found().largest_continuous_share, k_dt() / -std::expm1(-k_dt()), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Corollary1, DrivenOutward, ::testing::Values(1e-3, 1e-2, 0.1, 0.5, 1.0));
 
 }  // namespace
 }  // namespace ergocast::test

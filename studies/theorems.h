@@ -1,0 +1,34 @@
+// What docs/theorems.md reports: parts that are simulated, each into a file of its own, and the
+// tables and figures that are made of them.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "core/mission.h"
+
+namespace ergocast::studies {
+
+struct Part {
+  std::string name;  ///< of its file, without ".csv"
+  std::function<void(std::ostream&)> write;
+};
+
+/// The law, target and domain of the paper's Fig. 2, from its shipped scenario.
+Mission paper_mission();
+
+std::vector<Part> theorem1_parts(int seeds);
+std::vector<Part> theorem2_parts(int seeds);
+std::vector<Part> corollary1_parts(int seeds);
+std::vector<Part> proposition1_parts(int seeds);
+
+/// Prints tables, and draws theorem_*.svg into `images`, of the parts in `folder`.
+void report_theorem1(const std::filesystem::path& folder, const std::filesystem::path& images);
+void report_theorem2(const std::filesystem::path& folder, const std::filesystem::path& images);
+void report_corollary1(const std::filesystem::path& folder);
+void report_proposition1(const std::filesystem::path& folder, const std::filesystem::path& images);
+
+}  // namespace ergocast::studies
