@@ -4,6 +4,8 @@
 #include <fstream>
 #include <utility>
 
+#include "scenario/checks.h"
+#include "scenario/compile_target.h"
 #include "scenario/convert.h"
 #include "scenario/defaults.h"
 #include "scenario/findings.h"
@@ -16,9 +18,6 @@ namespace ergocast {
 namespace {
 
 using Problems = std::vector<Problem>;
-
-/// How far any μ_mn may be off; only correlated Gaussians mostly outside come near it.
-constexpr double kMaxTargetError = 1e-7;
 
 /// The contents of `file`, or why there are none.
 std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
@@ -45,13 +44,15 @@ std::variant<std::string, Problem> read_file(const std::filesystem::path& file) 
 
 struct Scenario::State {
   proto::Scenario text;  ///< defaults filled in, starts listed
-  TargetDensity target;
+  DensityGrid target_density;
   Mission mission;
   std::vector<std::byte> plan;
 
-  State(proto::Scenario scenario, Coefficients target_coefficients)
-      : text(std::move(scenario)), target(target_of(text.target())), mission(mission_of(text)) {
-    mission.target_coefficients = std::move(target_coefficients);
+  State(proto::Scenario scenario, CompiledTarget target)
+      : text(std::move(scenario)),
+        target_density(std::move(target.density)),
+        mission(mission_of(text)) {
+    mission.target_coefficients = std::move(target.coefficients);
     plan = encode_plan(text, mission.target_coefficients);
   }
 };
@@ -70,20 +71,16 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   if (!read_text(text, scenario, findings)) return findings.take();
   put_over(overrides, scenario, findings);
   fill_in(scenario, file);
-  validate(scenario, findings);
+  Checks checks(findings);
+  validate(scenario, checks);
+  std::optional<CompiledTarget> target;
+  if (checks.sound("domain") && checks.sound("basis") && checks.sound("target")) {
+    target = compile_target(scenario, checks);
+  }
   if (!findings.empty()) return findings.take();
 
   draw_starts(scenario);
-  TargetCoefficients target = target_coefficients(
-      target_of(scenario.target()), domain_of(scenario.domain()), basis_of(scenario.basis()));
-  if (!(target.error_bound <= kMaxTargetError)) {
-    findings.add("target",
-                 "its coefficients can be off by " + shortest(target.error_bound) +
-                     ", more than the limit " + shortest(kMaxTargetError),
-                 "use wider or less correlated Gaussians");
-    return findings.take();
-  }
-  return Scenario(std::make_shared<State>(std::move(scenario), std::move(target.values)));
+  return Scenario(std::make_shared<State>(std::move(scenario), std::move(*target)));
 }
 
 std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noexcept try {
@@ -91,10 +88,13 @@ std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noe
   if (!decoded) return std::nullopt;
   Findings findings("plan");
   fill_in(decoded->scenario, "plan");
-  validate(decoded->scenario, findings);
+  decoded->scenario.clear_target();
+  Checks checks(findings);
+  validate(decoded->scenario, checks);
   if (!findings.empty()) return std::nullopt;
-  Scenario scenario(std::make_shared<State>(std::move(decoded->scenario),
-                                            std::move(decoded->target_coefficients)));
+  Scenario scenario(std::make_shared<State>(
+      std::move(decoded->scenario),
+      CompiledTarget{std::move(decoded->target_coefficients), DensityGrid()}));
   // A plan has one spelling: what leaves something open, or adds something, was not compiled.
   const bool canonical =
       std::equal(plan.begin(), plan.end(), scenario.plan().begin(), scenario.plan().end());
@@ -124,7 +124,7 @@ Scenario& Scenario::operator=(Scenario other) noexcept {
 std::string Scenario::print() const { return print_text(state_->text); }
 const std::string& Scenario::name() const { return state_->text.name(); }
 const std::string& Scenario::description() const { return state_->text.description(); }
-const TargetDensity& Scenario::target() const { return state_->target; }
+const DensityGrid& Scenario::target_density() const { return state_->target_density; }
 const Mission& Scenario::mission() const { return state_->mission; }
 const std::vector<std::byte>& Scenario::plan() const { return state_->plan; }
 
