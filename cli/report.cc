@@ -4,15 +4,14 @@
 
 #include "cli/commands.h"
 #include "cli/run_directory.h"
-#include "logger/run_record.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
 
 int report(const std::filesystem::path& run_dir) {
-  const auto scenario = load_or_complain(run_dir / kScenarioFile, {});
+  const auto scenario = recorded_plan_or_complain(run_dir);
   if (!scenario) return kExitBadInput;
-  if (const auto problem = write_report(run_dir, scenario->mission(), scenario->target())) {
+  if (const auto problem = write_report(run_dir, scenario->mission())) {
     std::fprintf(stderr, "%s\n", problem->c_str());
     return kExitBadInput;
   }

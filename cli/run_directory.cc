@@ -5,9 +5,13 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <iterator>
+#include <span>
 
 #include "logger/report.h"
 #include "logger/run_record.h"
+#include "logger/target_density.h"
+#include "runtime/node.h"
 
 namespace ergocast::cli {
 namespace {
@@ -84,6 +88,17 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
   return std::nullopt;
 }
 
+std::optional<Scenario> recorded_plan_or_complain(const fs::path& run_dir) {
+  std::ifstream file(run_dir / kPlanFile, std::ios::binary);
+  const std::string plan((std::istreambuf_iterator<char>(file)), {});
+  auto scenario = Scenario::from_plan(std::as_bytes(std::span(plan)));
+  if (!scenario) {
+    std::fprintf(stderr, "%s: missing, damaged, or written by another version than %s\n",
+                 (run_dir / kPlanFile).c_str(), version().c_str());
+  }
+  return scenario;
+}
+
 std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted,
                                                           const Scenario& scenario) {
   const fs::path folder = wanted.empty() ? default_folder(scenario.name()) : wanted;
@@ -100,11 +115,14 @@ std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted
                               scenario.plan().size());
   if (auto problem = write_file(folder / kScenarioFile, scenario.print())) return *problem;
   if (auto problem = write_file(folder / kPlanFile, plan)) return *problem;
+  if (auto problem = write_target_density(folder / kTargetDensityFile, scenario.target_density())) {
+    return *problem;
+  }
   return folder;
 }
 
 void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scenario) {
-  const auto problem = write_report(run_dir, scenario.mission(), scenario.target());
+  const auto problem = write_report(run_dir, scenario.mission());
   print_summary(summary);
   std::printf("  record    %s\n", run_dir.c_str());
   if (!problem) std::printf("  report    %s\n", (fs::absolute(run_dir) / "report.html").c_str());

@@ -1,6 +1,4 @@
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -176,13 +174,12 @@ int verdict(const fs::path& run_dir, Comparison& comparison,
 }  // namespace
 
 int verify(const fs::path& run_dir) {
-  std::ifstream plan_file(run_dir / kPlanFile, std::ios::binary);
-  const std::string plan((std::istreambuf_iterator<char>(plan_file)), {});
-  const auto scenario = Scenario::from_plan(std::as_bytes(std::span(plan)));
+  const auto scenario = recorded_plan_or_complain(run_dir);
+  if (!scenario) return kExitBadInput;
   Comparison comparison(run_dir);
-  if (!scenario || comparison.problem()) {
+  if (comparison.problem()) {
     std::fprintf(stderr, "%s: missing, damaged, or written by another version than %s\n",
-                 (run_dir / (scenario ? kTrajectoryFile : kPlanFile)).c_str(), version().c_str());
+                 (run_dir / kTrajectoryFile).c_str(), version().c_str());
     return kExitBadInput;
   }
   auto read = read_summary(run_dir);

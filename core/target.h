@@ -6,6 +6,7 @@
 
 #include "core/basis.h"
 #include "core/geometry.h"
+#include "core/polygon.h"
 
 namespace ergocast {
 
@@ -16,11 +17,22 @@ struct Gaussian {
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();
 };
 
-/// Σ weight·N(mean, covariance) + uniform_weight / area, truncated to the domain and divided by
-/// what is left inside, so that it integrates to 1. Weights need not add up to 1.
+/// The same everywhere in a polygon, which may reach out of the domain.
+struct Region {
+  double weight = 1;
+  Polygon polygon;
+};
+
+/// Σ weight·N(mean, covariance) + Σ weight·[x in polygon]/area(polygon) + uniform_weight / area,
+/// zero in every keep-out, truncated to the domain and divided by what is left, so that it
+/// integrates to 1. A weight is thus the mass of the whole part, before anything is cut off it.
+/// Weights need not add up to 1. Maps, which are too large to be values, are added by
+/// RasterIntegral.
 struct TargetDensity {
   std::vector<Gaussian> gaussians;
   double uniform_weight = 0;
+  std::vector<Region> regions{};
+  std::vector<Polygon> keep_outs{};  ///< may overlap
 };
 
 struct TargetCoefficients {
@@ -30,16 +42,28 @@ struct TargetCoefficients {
 
 /// μ_mn = ∫ f_mn ρ over the domain, f not divided by h_k.
 ///
-/// A Gaussian with a diagonal covariance is a product of two one-dimensional integrals, exact to
-/// rounding (about 1e-14); one with correlation is integrated by Gauss–Legendre panels over the
-/// domain, doubled until two successive results agree to 1e-12 or the limit of panels is reached;
-/// `error_bound` says what was reached.
-/// @pre weights ≥ 0, covariances positive definite, some mass inside the domain
-///      (mass_inside() > 0).
+/// Exact to rounding: the uniform part, regions, and without keep-outs Gaussians with a diagonal
+/// covariance. The other Gaussians are integrated by Gauss–Legendre panels, doubled until two
+/// successive results agree to 1e-12 or the limit of panels is reached. `error_bound` says what was
+/// reached.
+/// @pre weights ≥ 0, covariances positive definite, polygons that do not cross themselves and have
+///      an area, some mass inside the domain (mass_inside() > 0).
 TargetCoefficients target_coefficients(const TargetDensity& target, const Rectangle& domain,
                                        const Basis& basis);
 
-/// Share of the un-normalised mixture that lies in the domain, by weight.
+/// The same before the division: entry (0,0) is mass_inside().
+TargetCoefficients target_integrals(const TargetDensity& target, const Rectangle& domain,
+                                    const Basis& basis);
+
+/// Of one region, without its weight: entry (0,0) is the share of it that is left.
+TargetCoefficients region_integrals(const Region& region, const TargetDensity& target,
+                                    const Rectangle& domain, const Basis& basis);
+
+/// `integrals` divided by their mass, entry (0,0).
+/// @pre it is above 0
+TargetCoefficients normalized(TargetCoefficients integrals);
+
+/// Mass of the un-normalised sum that is inside the domain and outside the keep-outs.
 double mass_inside(const TargetDensity& target, const Rectangle& domain);
 
 /// ρ(x) inside the domain [1/m²], before the division by mass_inside().

@@ -6,8 +6,7 @@
 
 namespace ergocast {
 
-std::vector<Figure> draw_figures(const RunData& run, const Mission& mission,
-                                 const TargetDensity& target) {
+std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target) {
   const Coefficients coverage = coverage_of(run, mission);
   return {trajectories_figure(run, mission, target), metric_figure(run, mission),
           coverage_figure(coverage, mission),        coefficients_figure(coverage, mission),

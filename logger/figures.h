@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/mission.h"
-#include "core/target.h"
+#include "logger/raster.h"
 #include "logger/run_data.h"
 #include "logger/svg.h"
 
@@ -20,7 +20,8 @@ struct Figure {
 };
 
 /// Where the agents went, over the target density: crosses are starts, circles are ends.
-Figure trajectories_figure(const RunData& run, const Mission& mission, const TargetDensity& target);
+/// @param target  in multiples of the uniform density; if empty, what μ_k say of it is drawn
+Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target);
 
 /// φ² against t, log–log, with the power of t that fits the last decade.
 Figure metric_figure(const RunData& run, const Mission& mission);
@@ -38,8 +39,7 @@ Figure speeds_figure(const RunData& run, const Mission& mission);
 Figure communication_figure(const RunData& run, const Mission& mission);
 
 /// All of them, in the order of the report.
-std::vector<Figure> draw_figures(const RunData& run, const Mission& mission,
-                                 const TargetDensity& target);
+std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target);
 
 /// "λ = (1 + |k|²)^−1.5, f not divided by hₖ, 15 × 15 modes": what a φ² means nothing without.
 std::string conventions_line(const Basis& basis);

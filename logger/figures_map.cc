@@ -56,14 +56,6 @@ Field sample(const Rectangle& domain, const Value& value) {
   return field;
 }
 
-/// ρ in multiples of the uniform density.
-Field density(const TargetDensity& target, const Rectangle& domain) {
-  const double scale = domain.size_m.prod() / mass_inside(target, domain);
-  return sample(domain, [&](const Eigen::Vector2d& x_m) {
-    return scale * density_unscaled(target, domain, x_m);
-  });
-}
-
 /// Σ a_k f_k / mean(f_k²): what the coefficients say of the density, in multiples of uniform.
 Field reconstruction(const Coefficients& coefficients, const Mission& mission) {
   Coefficients weights = coefficients;
@@ -209,13 +201,13 @@ Axis difference_axis(const Coefficients& difference) {
 
 }  // namespace
 
-Figure trajectories_figure(const RunData& run, const Mission& mission,
-                           const TargetDensity& target) {
+Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target) {
   const Box area = map_area(kLegend, mission.domain);
   Svg svg(area.right() + kBar, area.bottom() + kBelow, "trajectories", "Trajectories");
   Plot plot(svg, area, x_axis(mission.domain), y_axis(mission.domain));
 
-  const Field ground = density(target, mission.domain);
+  const Field ground =
+      target.size() > 0 ? target : reconstruction(mission.target_coefficients, mission);
   // A uniform target is to look like paper, not like its own peak.
   const double densest = std::max(2.0, ground.maxCoeff());
   plot.image(ground / densest, pencil(), true);

@@ -6,16 +6,15 @@
 #include <string>
 
 #include "core/mission.h"
-#include "core/target.h"
 
 namespace ergocast {
 
-/// Writes report.html and figures/*.svg into `run_dir` from its trajectory.csv, metrics.csv and,
-/// if there is one, summary.json; replaces what is there, each file at once or not at all. An
-/// empty run and a torn last line are fine. Nothing on success, otherwise what is wrong, where,
-/// and what to do about it.
-/// @pre `mission` and `target` are those of the run's scenario.
+/// Writes report.html and figures/*.svg into `run_dir` from its trajectory.csv, metrics.csv and, if
+/// they are there, summary.json and target_density.csv; replaces what is there, each file at once or
+/// not at all. An empty run and a torn last line are fine. Nothing on success, otherwise what is
+/// wrong, where, and what to do about it.
+/// @pre `mission` is that of the run's plan.
 std::optional<std::string> write_report(const std::filesystem::path& run_dir,
-                                        const Mission& mission, const TargetDensity& target);
+                                        const Mission& mission);
 
 }  // namespace ergocast

@@ -15,6 +15,13 @@ Eigen::Matrix2d covariance_of(const proto::Gaussian& gaussian) {
   return matrix;
 }
 
+template <class Vertices>
+Ring ring_of(const Vertices& vertices) {
+  Ring ring;
+  for (const proto::Vertex& vertex : vertices) ring.emplace_back(vertex.x_m(), vertex.y_m());
+  return ring;
+}
+
 Eigen::Vector2d contraction_center_of(const proto::Law& law, const Rectangle& domain) {
   switch (law.contraction_center()) {
     case proto::Law::COORDINATE_ORIGIN:
@@ -32,12 +39,28 @@ Rectangle domain_of(const proto::Domain& domain) {
   return {{domain.origin_x_m(), domain.origin_y_m()}, {domain.size_x_m(), domain.size_y_m()}};
 }
 
+Polygon polygon_of(const proto::Polygon& polygon) {
+  Polygon plain{ring_of(polygon.vertices()), {}};
+  for (const proto::Ring& hole : polygon.holes()) plain.holes.push_back(ring_of(hole.vertices()));
+  return plain;
+}
+
+Rectangle extent_of(const proto::Map& map) {
+  return {{map.origin_x_m(), map.origin_y_m()}, {map.size_x_m(), map.size_y_m()}};
+}
+
 TargetDensity target_of(const proto::Target& target) {
   TargetDensity density;
   density.uniform_weight = target.uniform_weight();
   for (const proto::Gaussian& gaussian : target.gaussians()) {
     density.gaussians.push_back(
         {gaussian.weight(), {gaussian.mean_x_m(), gaussian.mean_y_m()}, covariance_of(gaussian)});
+  }
+  for (const proto::Region& region : target.regions()) {
+    density.regions.push_back({region.weight(), polygon_of(region.polygon())});
+  }
+  for (const proto::Polygon& keep_out : target.keep_outs()) {
+    density.keep_outs.push_back(polygon_of(keep_out));
   }
   return density;
 }

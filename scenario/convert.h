@@ -8,7 +8,11 @@
 namespace ergocast {
 
 Rectangle domain_of(const proto::Domain& domain);
+Polygon polygon_of(const proto::Polygon& polygon);
+/// The whole target but for its maps.
 TargetDensity target_of(const proto::Target& target);
+/// Where the scenario says that the map lies.
+Rectangle extent_of(const proto::Map& map);
 Basis basis_of(const proto::Basis& basis);
 ControlLaw law_of(const proto::Law& law, const Rectangle& domain);
 Timing timing_of(const proto::Time& time);

@@ -81,6 +81,16 @@ void fill_law(const Rectangle& domain, proto::Law& law) {
   law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
 }
 
+/// A map's name counts from the scenario's folder, wherever the program was started.
+void make_absolute(const std::filesystem::path& scenario, proto::Target& target) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::absolute(scenario, error).parent_path();
+  for (proto::Map& map : *target.mutable_maps()) {
+    if (map.file().empty()) continue;
+    map.set_file((folder / map.file()).lexically_normal().string());
+  }
+}
+
 void resize_team(int size, proto::Agents& agents) {
   if (agents.starts_size() > size) {
     agents.mutable_starts()->DeleteSubrange(size, agents.starts_size() - size);
@@ -128,6 +138,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   if (!scenario.has_description()) scenario.set_description("");
   if (!scenario.has_seed()) scenario.set_seed(kDefaultSeed);
   fill_constants(scenario);
+  make_absolute(file, *scenario.mutable_target());
   fill_law(domain_of(scenario.domain()), *scenario.mutable_law());
   proto::Agents& agents = *scenario.mutable_agents();
   if (!agents.has_quorum()) {

@@ -37,6 +37,15 @@ constexpr FieldRule kRules[] = {
     {"Covariance", "yy_m2", kVariance, kRefused},
     {"Covariance", "xy_m2", between(-1e22, 1e22), kDefaulted, 0},
 
+    {"Map", "weight", above(0, 1e9), kDefaulted, 1},
+    {"Map", "origin_x_m", kCoordinate, kLeft},
+    {"Map", "origin_y_m", kCoordinate, kLeft},
+    {"Map", "size_x_m", between(1e-3, 1e9), kLeft},
+    {"Map", "size_y_m", between(1e-3, 1e9), kLeft},
+    {"Region", "weight", above(0, 1e9), kDefaulted, 1},
+    {"Vertex", "x_m", kCoordinate, kRefused},
+    {"Vertex", "y_m", kCoordinate, kRefused},
+
     {"Basis", "modes_x", kModes, kDefaulted, 16},
     {"Basis", "modes_y", kModes, kDefaulted, 16},
     {"Basis", "sobolev_exponent", above(0, 10), kDefaulted, 1.5},

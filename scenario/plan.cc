@@ -40,6 +40,7 @@ std::vector<std::byte> encode_plan(const proto::Scenario& scenario, const Coeffi
   plan.set_version(ERGOCAST_VERSION);
   *plan.mutable_scenario() = scenario;
   plan.mutable_scenario()->clear_description();
+  plan.mutable_scenario()->clear_target();
   plan.mutable_target_coefficients()->Add(target.data(), target.data() + target.size());
 
   std::vector<std::byte> bytes(plan.ByteSizeLong());

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <utility>
 
+#include "scenario/checks.h"
+#include "scenario/compile_target.h"
 #include "scenario/convert.h"
 #include "scenario/defaults.h"
 #include "scenario/findings.h"
@@ -16,9 +18,6 @@ namespace ergocast {
 namespace {
 
 using Problems = std::vector<Problem>;
-
-/// How far any μ_mn may be off; only correlated Gaussians mostly outside come near it.
-constexpr double kMaxTargetError = 1e-7;
 
 /// The contents of `file`, or why there are none.
 std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
@@ -45,17 +44,17 @@ std::variant<std::string, Problem> read_file(const std::filesystem::path& file) 
 
 struct Scenario::State {
   proto::Scenario text;  ///< defaults filled in, starts listed
-  TargetDensity target;
+  DensityGrid target_density;
   Mission mission;
   std::vector<std::byte> plan;
   int listed_starts;  ///< the others were drawn
 
-  State(proto::Scenario scenario, Coefficients target_coefficients, int listed)
+  State(proto::Scenario scenario, CompiledTarget target, int listed)
       : text(std::move(scenario)),
-        target(target_of(text.target())),
+        target_density(std::move(target.density)),
         mission(mission_of(text)),
         listed_starts(listed) {
-    mission.target_coefficients = std::move(target_coefficients);
+    mission.target_coefficients = std::move(target.coefficients);
     plan = encode_plan(text, mission.target_coefficients);
   }
 };
@@ -74,22 +73,17 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   if (!read_text(text, scenario, findings)) return findings.take();
   put_over(overrides, scenario, findings);
   fill_in(scenario, file);
-  validate(scenario, findings);
+  Checks checks(findings);
+  validate(scenario, checks);
+  std::optional<CompiledTarget> target;
+  if (checks.sound("domain") && checks.sound("basis") && checks.sound("target")) {
+    target = compile_target(scenario, checks);
+  }
   if (!findings.empty()) return findings.take();
 
   const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
-  TargetCoefficients target = target_coefficients(
-      target_of(scenario.target()), domain_of(scenario.domain()), basis_of(scenario.basis()));
-  if (!(target.error_bound <= kMaxTargetError)) {
-    findings.add("target",
-                 "its coefficients can be off by " + shortest(target.error_bound) +
-                     ", more than the limit " + shortest(kMaxTargetError),
-                 "use wider or less correlated Gaussians");
-    return findings.take();
-  }
-  return Scenario(
-      std::make_shared<State>(std::move(scenario), std::move(target.values), listed_starts));
+  return Scenario(std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts));
 }
 
 Scenario Scenario::with_seed(std::uint64_t seed) const {
@@ -100,8 +94,9 @@ Scenario Scenario::with_seed(std::uint64_t seed) const {
   agents.mutable_starts()->DeleteSubrange(state_->listed_starts, drawn);
   agents.set_random_count(drawn);
   draw_starts(scenario);
-  return Scenario(std::make_shared<State>(std::move(scenario), mission().target_coefficients,
-                                          state_->listed_starts));
+  return Scenario(std::make_shared<State>(
+      std::move(scenario), CompiledTarget{mission().target_coefficients, state_->target_density},
+      state_->listed_starts));
 }
 
 std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noexcept try {
@@ -109,11 +104,14 @@ std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noe
   if (!decoded) return std::nullopt;
   Findings findings("plan");
   fill_in(decoded->scenario, "plan");
-  validate(decoded->scenario, findings);
+  decoded->scenario.clear_target();
+  Checks checks(findings);
+  validate(decoded->scenario, checks);
   if (!findings.empty()) return std::nullopt;
   const int listed_starts = decoded->scenario.agents().starts_size();
-  Scenario scenario(std::make_shared<State>(std::move(decoded->scenario),
-                                            std::move(decoded->target_coefficients), listed_starts));
+  Scenario scenario(std::make_shared<State>(
+      std::move(decoded->scenario),
+      CompiledTarget{std::move(decoded->target_coefficients), DensityGrid()}, listed_starts));
   // A plan has one spelling: what leaves something open, or adds something, was not compiled.
   const bool canonical =
       std::equal(plan.begin(), plan.end(), scenario.plan().begin(), scenario.plan().end());
@@ -143,7 +141,7 @@ Scenario& Scenario::operator=(Scenario other) noexcept {
 std::string Scenario::print() const { return print_text(state_->text); }
 const std::string& Scenario::name() const { return state_->text.name(); }
 const std::string& Scenario::description() const { return state_->text.description(); }
-const TargetDensity& Scenario::target() const { return state_->target; }
+const DensityGrid& Scenario::target_density() const { return state_->target_density; }
 const Mission& Scenario::mission() const { return state_->mission; }
 const std::vector<std::byte>& Scenario::plan() const { return state_->plan; }
 

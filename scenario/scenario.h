@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/density_picture.h"
 #include "core/mission.h"
-#include "core/target.h"
 
 namespace ergocast {
 
@@ -51,18 +51,18 @@ inline constexpr std::size_t kMaxScenarioBytes = std::size_t{1} << 20;
 /// A scenario without problems, all defaults filled in, random starts drawn.
 class Scenario {
  public:
-  /// Reads a file of at most kMaxScenarioBytes, puts `overrides` over it and validates the result.
-  /// All problems at once.
+  /// Reads a file of at most kMaxScenarioBytes, puts `overrides` over it, validates the result and
+  /// integrates its target, for which maps are read. All problems at once.
   static std::variant<Scenario, std::vector<Problem>> load(const std::filesystem::path& file,
                                                            const Overrides& overrides = {});
-  /// The same for text; `file` is what the problems call it.
+  /// The same for text; `file` is what the problems call it, and maps are in its folder.
   static std::variant<Scenario, std::vector<Problem>> parse(std::string_view text,
                                                             const std::string& file,
                                                             const Overrides& overrides = {});
 
-  /// The scenario in a compiled plan, with the plan's μ and without a description. Nothing if the
-  /// bytes are not a plan, are another version's, or break a limit of the scenario: plans come from
-  /// the network. from_plan(s.plan())->plan() == s.plan().
+  /// The scenario in a compiled plan, with the plan's μ and without description and target. Nothing
+  /// if the bytes are not a plan, are another version's, or break a limit of the scenario: plans come
+  /// from the network. from_plan(s.plan())->plan() == s.plan().
   static std::optional<Scenario> from_plan(std::span<const std::byte> plan) noexcept;
 
   /// The same with another seed, random starts drawn anew: what load() would give with that seed.
@@ -73,12 +73,16 @@ class Scenario {
   Scenario& operator=(Scenario) noexcept;
   ~Scenario();
 
-  /// Text that load() reads back to an equal scenario: every field with its value.
+  /// Text that load() reads back to an equal scenario: every field with its value, maps with their
+  /// whole paths. That of a plan lacks the target, without which load() refuses it.
   std::string print() const;
 
   const std::string& name() const;
   const std::string& description() const;
-  const TargetDensity& target() const;
+
+  /// What is to be covered, in multiples of the uniform density, for people to look at: at most 256
+  /// cells along the longer side of the domain. Empty for a plan.
+  const DensityGrid& target_density() const;
 
   /// The mission in the form the cores use. μ is computed once, here.
   const Mission& mission() const;

@@ -43,7 +43,7 @@ class Collector : public google::protobuf::io::ErrorCollector {
   std::vector<Complaint> warnings;
 };
 
-/// Blocks lie at most three deep; the limit keeps a hostile file off our stack.
+/// Blocks lie at most five deep; the limit keeps a hostile file off our stack.
 constexpr int kMaxDepth = 16;
 
 /// Whether the parser can take `text`; if not, that is reported.
@@ -61,7 +61,7 @@ bool fit_to_parse(std::string_view text, Findings& findings) {
   if (const std::optional<std::size_t> deep = too_deep(text, kMaxDepth)) {
     findings.add_at(place_of(text, *deep),
                     {"", "blocks lie deeper than the limit, " + std::to_string(kMaxDepth),
-                     "a scenario's blocks lie at most three deep"});
+                     "a scenario's blocks lie at most five deep"});
     return false;
   }
   return true;
@@ -115,7 +115,8 @@ class Readable : public TextFormat::FastFieldValuePrinter {
   }
 };
 
-/// A start in one line: a team has up to 128 of them.
+/// A start or a vertex in one line: there may be many of them.
+template <class Point>
 class OneLine : public TextFormat::FastFieldValuePrinter {
  public:
   void PrintMessageStart(const Message&, int, int, bool,
@@ -124,8 +125,8 @@ class OneLine : public TextFormat::FastFieldValuePrinter {
   }
   bool PrintMessageContent(const Message& message, int, int, bool,
                            TextFormat::BaseTextGenerator* out) const override {
-    const auto& start = static_cast<const proto::Start&>(message);
-    out->PrintString("x_m: " + shortest(start.x_m()) + " y_m: " + shortest(start.y_m()));
+    const auto& point = static_cast<const Point&>(message);
+    out->PrintString("x_m: " + shortest(point.x_m()) + " y_m: " + shortest(point.y_m()));
     return true;
   }
   void PrintMessageEnd(const Message&, int, int, bool,
@@ -159,9 +160,13 @@ bool read_text(std::string_view file, proto::Scenario& scenario, Findings& findi
 
 std::string print_text(const proto::Scenario& scenario) {
   TextFormat::Printer printer;
-  printer.SetDefaultFieldValuePrinter(new Readable);  // the printer owns both
+  printer.SetDefaultFieldValuePrinter(new Readable);  // the printer owns all of them
   printer.RegisterFieldValuePrinter(proto::Agents::descriptor()->FindFieldByName("starts"),
-                                    new OneLine);
+                                    new OneLine<proto::Start>);
+  for (const auto* ring : {proto::Polygon::descriptor(), proto::Ring::descriptor()}) {
+    printer.RegisterFieldValuePrinter(ring->FindFieldByName("vertices"),
+                                      new OneLine<proto::Vertex>);
+  }
   std::string text;
   printer.PrintToString(scenario, &text);
   return text;

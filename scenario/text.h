@@ -14,7 +14,7 @@ namespace ergocast {
 /// @return false where that cannot be done: `scenario` is then of no use
 bool read_text(std::string_view text, proto::Scenario& scenario, Findings& findings);
 
-/// Every set field. Doubles in the fewest digits that read back exactly; a start takes one line.
+/// Every set field. Doubles in the fewest digits that read back exactly; a start or vertex takes one line.
 std::string print_text(const proto::Scenario& scenario);
 
 }  // namespace ergocast

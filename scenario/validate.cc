@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string_view>
 
 #include "core/ids.h"
@@ -11,6 +10,7 @@
 #include "scenario/fields.h"
 #include "scenario/names.h"
 #include "scenario/utf8.h"
+#include "scenario/validate_target.h"
 
 namespace ergocast {
 namespace {
@@ -20,31 +20,8 @@ using google::protobuf::Message;
 
 constexpr std::size_t kMaxDescriptionBytes = 2000;
 constexpr double kMaxOriginPerSize = 1e5;
-constexpr Range kSigmaPerSide{1e-4, 1e4};
-constexpr int kMaxGaussians = 64;
-/// Above this the ridge is too thin for the quadrature of μ.
-constexpr double kMaxCorrelation = 0.99;
-constexpr double kMinMassInside = 1e-6;
 constexpr double kMaxTicks = 1e8;
 constexpr double kMinWallStep_s = 1e-4;
-
-std::string indexed(const std::string& path, int index) {
-  return path + "[" + std::to_string(index) + "]";
-}
-
-/// `value` rounded up to four digits: a limit that a person would like to type.
-double rounded_up(double value) {
-  if (!(value > 0)) return 0;
-  const double scale = std::pow(10, 3 - std::floor(std::log10(value)));
-  return std::ceil(value * scale) / scale;
-}
-
-/// `value` rounded down likewise.
-double rounded_down(double value) {
-  if (!(value > 0)) return 0;
-  const double scale = std::pow(10, 3 - std::floor(std::log10(value)));
-  return std::floor(value * scale) / scale;
-}
 
 double number_in(const Message& message, const FieldDescriptor& field) {
   const auto* reflection = message.GetReflection();
@@ -55,14 +32,14 @@ double number_in(const Message& message, const FieldDescriptor& field) {
 
 class Validator {
  public:
-  Validator(const proto::Scenario& scenario, Findings& findings)
-      : scenario_(scenario), findings_(findings), unsound_(findings.given_up()) {}
+  Validator(const proto::Scenario& scenario, Checks& checks)
+      : scenario_(scenario), checks_(checks) {}
 
   void run() {
     each_field(scenario_, "");
     words();
     domain();
-    target();
+    if (scenario_.has_target()) validate_target(scenario_, checks_);
     basis();
     law();
     time();
@@ -72,24 +49,14 @@ class Validator {
 
  private:
   void problem(const std::string& path, const std::string& what, std::string remedy) {
-    unsound_.insert(path);
-    findings_.add(path, what, std::move(remedy));
+    checks_.problem(path, what, std::move(remedy));
   }
-
-  /// Whether nothing is wrong yet at `path` or below it. Fields are compared with each other only
-  /// where each is sound by itself: one mistake is one problem.
-  bool sound(const std::string& path) const {
-    const auto next = unsound_.lower_bound(path);
-    return next == unsound_.end() || !next->starts_with(path);
-  }
-
-  /// A field that nobody could read is not missing, nor is one in a block that nobody could read.
+  bool sound(const std::string& path) const { return checks_.sound(path); }
   void missing(const std::string& path, const std::string& what, std::string remedy) {
-    if (!sound(path)) return;
-    for (const std::string& lost : findings_.given_up()) {
-      if (path.starts_with(lost + ".")) return;
-    }
-    problem(path, what, std::move(remedy));
+    checks_.missing(path, what, std::move(remedy));
+  }
+  bool in_range(const std::string& path, double value, const Range& range) {
+    return checks_.in_range(path, value, range);
   }
 
   // Each field by itself.
@@ -129,22 +96,6 @@ class Validator {
             "write one of " + enum_names(*field.enum_type()));
   }
 
-  bool in_range(const std::string& path, double value, const Range& range) {
-    if (range.contains(value)) return true;
-    std::string what = shortest(value);
-    if (std::isnan(value)) {
-      what = "nan is not a number";
-    } else if (value > range.high) {
-      what += " is above the limit " + shortest(range.high);
-    } else if (range.low_excluded) {
-      what += " is not above " + shortest(range.low);
-    } else {
-      what += " is below the limit " + shortest(range.low);
-    }
-    problem(path, what, "write a number " + range.text());
-    return false;
-  }
-
   // Fields beside each other.
 
   void words() {
@@ -171,7 +122,6 @@ class Validator {
     origin("domain.origin_y_m", domain.origin_y_m(), "domain.size_y_m", domain.size_y_m());
     if (!sound("domain")) return;
     shorter_side_m_ = std::min(domain.size_x_m(), domain.size_y_m());
-    longer_side_m_ = std::max(domain.size_x_m(), domain.size_y_m());
   }
 
   void origin(const std::string& path, double origin_m, const std::string& size_path,
@@ -179,74 +129,6 @@ class Validator {
     if (!sound(path) || !sound(size_path)) return;
     const double limit_m = kMaxOriginPerSize * size_m;
     in_range(path, origin_m, {-limit_m, limit_m});
-  }
-
-  void target() {
-    const proto::Target& target = scenario_.target();
-    if (target.gaussians_size() > kMaxGaussians) {
-      problem("target",
-              std::to_string(target.gaussians_size()) + " Gaussians are above the limit " +
-                  std::to_string(kMaxGaussians),
-              "leave out the lightest");
-    }
-    for (int i = 0; i < target.gaussians_size(); ++i) {
-      width(target.gaussians(i), indexed("target.gaussians", i));
-    }
-    if (target.gaussians_size() == 0 && target.uniform_weight() == 0) {
-      return missing("target", "there is nothing to cover",
-                     "add gaussians { } or a uniform_weight above 0");
-    }
-    if (sound("target") && sound("domain")) mass();
-  }
-
-  void width(const proto::Gaussian& gaussian, const std::string& path) {
-    if (gaussian.has_sigma_m() == gaussian.has_covariance()) {
-      if (gaussian.has_sigma_m()) {
-        return problem(path, "has both sigma_m and covariance", "keep one of them");
-      }
-      if (!sound(path + ".sigma_m") || !sound(path + ".covariance")) return;
-      return problem(path, "has no width", "add sigma_m or covariance { }");
-    }
-    if (gaussian.has_sigma_m()) return deviation(path + ".sigma_m", gaussian.sigma_m());
-    if (sound(path + ".covariance")) covariance(gaussian.covariance(), path + ".covariance");
-  }
-
-  void deviation(const std::string& path, double sigma_m) {
-    if (!sound(path) || !sound("domain")) return;
-    in_range(path, sigma_m,
-             {kSigmaPerSide.low * longer_side_m_, kSigmaPerSide.high * longer_side_m_});
-  }
-
-  void covariance(const proto::Covariance& c, const std::string& path) {
-    const double limit_m2 = kMaxCorrelation * std::sqrt(c.xx_m2()) * std::sqrt(c.yy_m2());
-    if (!(std::abs(c.xy_m2()) <= limit_m2)) {
-      return problem(
-          path + ".xy_m2",
-          shortest(c.xy_m2()) + " leaves too little for the covariance to be positive " +
-              "definite: the limit is " + shortest(kMaxCorrelation) + " sqrt(xx_m2 yy_m2)",
-          "write " + shortest(-rounded_down(limit_m2)) + " to " + shortest(rounded_down(limit_m2)));
-    }
-    if (!sound("domain")) return;
-    variance(path + ".xx_m2", c.xx_m2());
-    variance(path + ".yy_m2", c.yy_m2());
-  }
-
-  void variance(const std::string& path, double variance_m2) {
-    const double low_m = kSigmaPerSide.low * longer_side_m_;
-    const double high_m = kSigmaPerSide.high * longer_side_m_;
-    in_range(path, variance_m2, {low_m * low_m, high_m * high_m});
-  }
-
-  void mass() {
-    const TargetDensity target = target_of(scenario_.target());
-    double all = target.uniform_weight;
-    for (const Gaussian& gaussian : target.gaussians) all += gaussian.weight;
-    const double inside = mass_inside(target, domain_of(scenario_.domain())) / all;
-    if (inside >= kMinMassInside) return;
-    problem("target",
-            "only " + shortest(inside) + " of its weight is inside the domain, below the limit " +
-                shortest(kMinMassInside),
-            "move the Gaussians into the domain, or widen them");
   }
 
   void basis() {
@@ -421,15 +303,14 @@ class Validator {
   }
 
   const proto::Scenario& scenario_;
-  Findings& findings_;
-  std::set<std::string> unsound_;
-  double shorter_side_m_ = 0, longer_side_m_ = 0;  // once the domain is sound
+  Checks& checks_;
+  double shorter_side_m_ = 0;  // once the domain is sound
 };
 
 }  // namespace
 
-void validate(const proto::Scenario& scenario, Findings& findings) {
-  Validator(scenario, findings).run();
+void validate(const proto::Scenario& scenario, Checks& checks) {
+  Validator(scenario, checks).run();
 }
 
 }  // namespace ergocast

@@ -1,13 +1,14 @@
 // Whether a scenario can be flown.
 #pragma once
 
-#include "scenario/findings.h"
+#include "scenario/checks.h"
 #include "scenario/scenario.pb.h"
 
 namespace ergocast {
 
-/// Reports everything in `scenario` that breaks a limit stated in scenario.proto.
+/// Reports everything in `scenario` that breaks a limit stated in scenario.proto, but for what only
+/// the integrals of its target show (compile_target.h). A scenario without a target is a plan's.
 /// @pre the defaults are filled in
-void validate(const proto::Scenario& scenario, Findings& findings);
+void validate(const proto::Scenario& scenario, Checks& checks);
 
 }  // namespace ergocast

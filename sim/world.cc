@@ -161,7 +161,9 @@ void World::on(const Command& command) {
   if (!step_m.allFinite()) return;  // numbers that only overflow here are no velocities
   if (asking_since_) {
     if (command.header.tick > mission.timing.tick_count) return;
-    if (!mission.domain.contains(command.position_m.head<2>())) return;
+    // A command of no tick yet is the answer of an agent that knows no position.
+    const bool somewhere = command.header.tick >= 0;
+    if (somewhere && !mission.domain.contains(command.position_m.head<2>())) return;
   } else if (command.header.tick > tick_) {
     return;
   }

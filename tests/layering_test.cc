@@ -25,6 +25,7 @@ enum class Outside {
   kJson,         // nlohmann
   kHash,         // xxHash
   kGenerator,    // Random123
+  kPng,          // libpng
   kFiles,        // files and standard streams
   kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
 };
@@ -39,13 +40,14 @@ struct Rule {
 
 const std::vector<Rule> kRules = {
     {"core", {"core"}, {kGenerator}},
-    {"scenario", {"core", "scenario"}, {kProtobuf, kHash, kFiles}},
+    {"maps", {"core", "maps"}, {kPng, kFiles}},
+    {"scenario", {"core", "maps", "scenario"}, {kProtobuf, kHash, kFiles}},
     {"lcmtypes", {"core", "lcmtypes"}, {kLcmTypes, kHash}},
     // The four kinds of process: they know the core, and not each other.
     {"agent", {"core", "agent"}, {}},
     {"coordinator", {"core", "coordinator"}, {}},
     {"sim", {"core", "sim"}, {}},
-    {"logger", {"core", "logger"}, {kFiles, kJson}},
+    {"logger", {"core", "maps", "logger"}, {kFiles, kJson}},
     // The same cores in one process: no network, no clock, no threads.
     {"lab", {"core", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab"}, {}},
     {"runtime", {"core", "lcmtypes", "runtime"}, {kLcm, kLog, kCommandLine, kFiles, kSystem}},
@@ -76,6 +78,7 @@ const std::vector<Kind> kKinds = {
     {kJson, {"nlohmann/*"}},
     {kHash, {"xxhash.h"}},
     {kGenerator, {"Random123/*"}},
+    {kPng, {"png.h"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},
     {kSystem,
      {"thread", "mutex", "shared_mutex", "condition_variable", "future", "semaphore", "latch",
@@ -220,6 +223,9 @@ TEST(LayeringChecker, NamesFileAndLineOfEveryPlantedViolation) {
       {"runtime/node.cc", "#include \"agent/agent.h\""},
       {"runtime/transport.cc", "#include <ergocast/hello_t.hpp>"},
       {"core/target.h", "#include <google/protobuf/message.h>"},
+      {"core/target.h", "#include \"maps/map_file.h\""},
+      {"scenario/scenario.cc", "#include <png.h>"},
+      {"agent/agent.cc", "#include \"maps/map_file.h\""},
       {"agent/agent.cc", "#include \"scenario/plan.pb.h\""},
       {"agent/agent.cc", "#include \"scenario/scenario.h\""},
       {"agent/agent.cc", "#include <spdlog/spdlog.h>"},

@@ -13,11 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/target.h"
 #include "logger/markup.h"
 #include "logger/polyline.h"
 #include "logger/raster.h"
 #include "logger/recorder.h"
 #include "logger/slope.h"
+#include "logger/target_density.h"
 
 namespace ergocast {
 namespace {
@@ -79,7 +81,6 @@ class Report : public testing::Test {
           (std::string("report_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(dir);
     fs::create_directories(dir);
-    target.gaussians.push_back({1, {500, 500}, Eigen::Matrix2d::Identity() * 1e4});
     mission.name = "two circles";
     mission.seed = 18446744073709551615u;
     mission.domain.size_m = {2000, 1000};
@@ -87,9 +88,13 @@ class Report : public testing::Test {
     mission.basis.modes_y = 6;
     mission.law.u_max_mps = 10;
     mission.timing.tick_count = 1000;
-    mission.target_coefficients = target_coefficients(target, mission.domain, mission.basis).values;
+    cover({{{1, {500, 500}, Eigen::Matrix2d::Identity() * 1e4}}, 0});
   }
   ~Report() override { fs::remove_all(dir); }
+
+  void cover(const TargetDensity& target) {
+    mission.target_coefficients = target_coefficients(target, mission.domain, mission.basis).values;
+  }
 
   /// Agents on noisy circles, φ² falling like 1/t.
   void record(int agents, int ticks) {
@@ -112,7 +117,7 @@ class Report : public testing::Test {
     write(dir / "metrics.csv", metrics.str());
   }
 
-  std::optional<std::string> report() { return write_report(dir, mission, target); }
+  std::optional<std::string> report() { return write_report(dir, mission); }
   std::string page() { return read(dir / "report.html"); }
 
   void expect_sound() {
@@ -129,7 +134,6 @@ class Report : public testing::Test {
 
   fs::path dir;
   Mission mission;
-  TargetDensity target;
 };
 
 TEST_F(Report, HasSixFiguresInOnePageThatLoadsNothing) {
@@ -275,17 +279,50 @@ TEST_F(Report, WhatCannotBeWrittenIsNamed) {
 }
 
 TEST_F(Report, UniformTargetAndExtremeDomainsAreDrawn) {
-  target = {{}, 1};
   for (const auto& [width_m, height_m] : {std::pair(1e5, 1.0), {1.0, 1e5}, {1.0, 1.0}}) {
     mission.domain.size_m = {width_m, height_m};
-    mission.target_coefficients = target_coefficients(target, mission.domain, mission.basis).values;
+    cover({{}, 1});
     record(3, 200);  // mostly outside: an observer takes what the files say
     ASSERT_EQ(report(), std::nullopt);
     expect_sound();
   }
 }
 
+/// The picture under the trajectories.
+std::string ground_in(const std::string& svg) {
+  const auto at = svg.find("data:image/png;base64,");
+  return svg.substr(at, svg.find('"', at) - at);
+}
+
+TEST_F(Report, DrawsTheRecordedTargetAndWithoutOneWhatTheCoefficientsSay) {
+  record(2, 50);
+  const auto drawn = [&] {
+    EXPECT_EQ(report(), std::nullopt);
+    return ground_in(read(dir / "figures" / "trajectories.svg"));
+  };
+  const std::string from_coefficients = drawn();
+  Field density(4, 2);
+  density << 0, 0, 1.25, 3, 0, 0, 0, 3.75;
+  ASSERT_EQ(write_target_density(dir / kTargetDensityFile, density), std::nullopt);
+  EXPECT_EQ(std::get<Field>(read_target_density(dir / kTargetDensityFile)), density);
+  const std::string recorded = drawn();
+  EXPECT_EQ(recorded, png_data_uri(density / 3.75, pencil()));
+  EXPECT_NE(recorded, from_coefficients);
+  expect_sound();
+}
+
+TEST_F(Report, NamesARecordedTargetThatIsDamaged) {
+  record(2, 50);
+  write(dir / kTargetDensityFile, "1,2\n1,x\n");
+  const auto problem = report();
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("target_density.csv, line 2: x is not a number"), std::string::npos)
+      << *problem;
+}
+
 TEST_F(Report, StaysBelowAMegabyteForALargeRun) {
+  ASSERT_EQ(write_target_density(dir / kTargetDensityFile, Field::Constant(256, 256, 1)),
+            std::nullopt);
   record(64, 3000);  // each tick turns sharply, so that hardly a point can be left out
   ASSERT_EQ(report(), std::nullopt);
   EXPECT_LT(fs::file_size(dir / "report.html"), 1'000'000u);

@@ -136,7 +136,7 @@ TEST_F(BadInput, WithoutAMulticastRouteTheCommandsThatMendItAreNamed) {
 
 TEST_F(BadInput, ReportAndVerifyNameWhatIsMissing) {
   EXPECT_EQ(ergocast({"report", folder_ / "nothing"}), 2);
-  EXPECT_TRUE(said("scenario.textproto")) << output();
+  EXPECT_TRUE(said("plan.binpb")) << output();
   EXPECT_EQ(ergocast({"verify", folder_ / "nothing"}), 2);
   EXPECT_TRUE(said("plan.binpb")) << output();
 }

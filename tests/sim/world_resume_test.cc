@@ -179,6 +179,19 @@ TEST(WorldAsks, BeginsWithoutASilentAgentAfterTwoSeconds) {
   EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
 }
 
+// Agents that have not been anywhere answer with (0, 0), which may lie outside.
+TEST(WorldAsks, BeginsAtOnceInADomainFarFromTheOrigin) {
+  Mission mission = small_mission(2);
+  const Eigen::Vector2d far_m(512300, 5403700);
+  mission.domain.origin_m += far_m;
+  for (Eigen::Vector2d& start_m : mission.starts_m) start_m += far_m;
+  World world = asking_world(mission);
+  nobody_has_moved(world, 2, at(0s));
+  const WorldState state = state_after(world, at(1ms));
+  EXPECT_EQ(state.header.tick, 0);
+  EXPECT_EQ(place(state, 1), mission.starts_m[1]);
+}
+
 /// The state with which a world of one agent begins that was told these commands, in this order.
 WorldState begun_with(const std::vector<Command>& told) {
   World world = asking_world(small_mission(1));

@@ -1,0 +1,28 @@
+// ∫ cos(mπx/Lx) cos(nπy/Ly) in closed form: over intervals, and over polygons by Green's theorem.
+//
+// Differences of sines, which cancel over short lengths, are written as products with
+// sinc(z) = sin(z)/z instead. Lengths count from the domain's lower left corner [m].
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "core/basis.h"
+
+namespace ergocast {
+
+/// ∫ cos(mπx/length) dx from `low` to `high`, m = 0 … modes − 1 [m].
+Eigen::VectorXd cosine_integrals(double low, double high, double length, int modes);
+
+/// sums(m,n) += density · ∫∫ f_mn over the polygon with these corners.
+///
+/// With a = mπ/Lx, b = nπ/Ly it is ∮ sin(ax)/a cos(by) dy for m > 0 and −∮ sin(by)/b dx for m = 0,
+/// and along a straight edge both are sums of sin · sinc.
+///
+/// @param corners  counter-clockwise; at least three, of a polygon that does not cross itself
+/// @param size_m   of the domain
+/// @return         how far any sum may be off by rounding, in the unit of `sums`
+double add_polygon(std::span<const Eigen::Vector2d> corners, double density,
+                   const Eigen::Vector2d& size_m, Coefficients& sums);
+
+}  // namespace ergocast

@@ -1,0 +1,29 @@
+// Polygons with holes, as plain values.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace ergocast {
+
+/// The corners in order [m]; the last is joined to the first.
+using Ring = std::vector<Eigen::Vector2d>;
+
+/// What lies inside the outline and outside all holes.
+struct Polygon {
+  Ring outline;
+  std::vector<Ring> holes;
+};
+
+/// Area of a ring that does not cross itself [m²], positive whichever way round it is written.
+double area_m2(const Ring& ring);
+
+/// Area without the holes' [m²].
+/// @pre the holes lie inside the outline and apart from each other
+double area_m2(const Polygon& polygon);
+
+/// Whether `x_m` is inside. On the edge it is either.
+bool contains(const Ring& ring, const Eigen::Vector2d& x_m);
+bool contains(const Polygon& polygon, const Eigen::Vector2d& x_m);
+
+}  // namespace ergocast

@@ -1,0 +1,63 @@
+// Target maps as people have them: PNG pictures, tables of numbers, ESRI ASCII grids.
+//
+// A map is read row by row, so that one of 8192 × 8192 cells needs the memory of a row.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "core/geometry.h"
+
+namespace ergocast {
+
+inline constexpr int kMaxMapSide = 8192;     ///< columns, and rows
+inline constexpr double kMaxMapValue = 1e30;  ///< so that no sum of values overflows
+
+/// Why a map cannot be used.
+struct MapProblem {
+  std::string what;    ///< with the file's name, and the line where there are lines
+  std::string remedy;  ///< what to do about it
+};
+
+class MapFile {
+ public:
+  virtual ~MapFile() = default;
+  MapFile(const MapFile&) = delete;
+  MapFile& operator=(const MapFile&) = delete;
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  /// What the file says of its place; only an ESRI ASCII grid does.
+  const std::optional<Rectangle>& extent() const { return extent_; }
+
+  /// Reads the next row into `values`, the westernmost first: densities from 0 to kMaxMapValue, 0
+  /// where there is no data. The rows come in the order of the file.
+  /// @pre `values` has columns() entries, and fewer than rows() rows have been read.
+  virtual std::optional<MapProblem> next_row(std::span<double> values) = 0;
+
+ protected:
+  MapFile() = default;
+  int columns_ = 0, rows_ = 0;
+  std::optional<Rectangle> extent_;
+};
+
+using OpenedMap = std::variant<std::unique_ptr<MapFile>, MapProblem>;
+
+enum class MapKind { kPng, kCsv, kAsciiGrid };
+
+/// By the name's end: .png, .csv, .asc, large or small; nothing for any other.
+std::optional<MapKind> map_kind(const std::filesystem::path& file);
+
+/// Opens a map and reads its dimensions.
+/// @pre map_kind(file)
+OpenedMap open_map(const std::filesystem::path& file);
+
+/// 1 to kMaxMapSide columns and rows, or what is wrong with them.
+std::optional<MapProblem> check_dimensions(const std::filesystem::path& file, long long columns,
+                                           long long rows);
+
+}  // namespace ergocast

@@ -1,0 +1,58 @@
+#include "scenario/checks.h"
+
+#include <cmath>
+#include <utility>
+
+namespace ergocast {
+
+std::string indexed(const std::string& path, int index) {
+  return path + "[" + std::to_string(index) + "]";
+}
+
+double rounded_up(double value) {
+  if (!(value > 0)) return 0;
+  const double scale = std::pow(10, 3 - std::floor(std::log10(value)));
+  return std::ceil(value * scale) / scale;
+}
+
+double rounded_down(double value) {
+  if (!(value > 0)) return 0;
+  const double scale = std::pow(10, 3 - std::floor(std::log10(value)));
+  return std::floor(value * scale) / scale;
+}
+
+void Checks::problem(const std::string& path, const std::string& what, std::string remedy) {
+  unsound_.insert(path);
+  findings_.add(path, what, std::move(remedy));
+}
+
+bool Checks::sound(const std::string& path) const {
+  const auto next = unsound_.lower_bound(path);
+  return next == unsound_.end() || !next->starts_with(path);
+}
+
+void Checks::missing(const std::string& path, const std::string& what, std::string remedy) {
+  if (!sound(path)) return;
+  for (const std::string& lost : findings_.given_up()) {
+    if (path.starts_with(lost + ".")) return;
+  }
+  problem(path, what, std::move(remedy));
+}
+
+bool Checks::in_range(const std::string& path, double value, const Range& range) {
+  if (range.contains(value)) return true;
+  std::string what = shortest(value);
+  if (std::isnan(value)) {
+    what = "nan is not a number";
+  } else if (value > range.high) {
+    what += " is above the limit " + shortest(range.high);
+  } else if (range.low_excluded) {
+    what += " is not above " + shortest(range.low);
+  } else {
+    what += " is below the limit " + shortest(range.low);
+  }
+  problem(path, what, "write a number " + range.text());
+  return false;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,151 @@
+#include "scenario/compile_target.h"
+
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/raster_integral.h"
+#include "maps/map_file.h"
+#include "scenario/convert.h"
+
+namespace ergocast {
+namespace {
+
+constexpr double kMinMassInside = 1e-6;
+/// How far any μ_mn may be off; only Gaussians with correlation or beside keep-outs, almost wholly
+/// cut off, come near it.
+constexpr double kMaxTargetError = 1e-7;
+
+/// As many cells as a person can tell apart in a picture, along the longer side of the domain, and
+/// enough along the shorter one of any domain.
+constexpr double kMostCells = 256, kFewestCells = 64;
+
+std::string span_text(double origin_m, double size_m) {
+  return shortest(origin_m) + " to " + shortest(origin_m + size_m) + " m";
+}
+
+std::string text_of(const Rectangle& rectangle) {
+  return "x " + span_text(rectangle.origin_m.x(), rectangle.size_m.x()) + ", y " +
+         span_text(rectangle.origin_m.y(), rectangle.size_m.y());
+}
+
+class TargetCompiler {
+ public:
+  TargetCompiler(const proto::Scenario& scenario, Checks& checks)
+      : written_(scenario.target()),
+        checks_(checks),
+        domain_(domain_of(scenario.domain())),
+        basis_(basis_of(scenario.basis())),
+        target_(target_of(written_)) {
+    const Eigen::Vector2d cells =
+        (domain_.size_m / domain_.size_m.maxCoeff() * kMostCells).cwiseMax(kFewestCells);
+    maps_ = DensityGrid::Zero(std::lround(cells.x()), std::lround(cells.y()));
+  }
+
+  std::optional<CompiledTarget> run() {
+    if (!target_.keep_outs.empty() || written_.maps_size() > 0) {
+      free_ = free_area(domain_, target_.keep_outs);
+    }
+    sum_ = target_integrals(target_, domain_, basis_);
+    for (int i = 0; i < written_.regions_size(); ++i) region(i);
+    for (int i = 0; i < written_.maps_size(); ++i) {
+      map(written_.maps(i), indexed("target.maps", i));
+    }
+    if (checks_.sound("target")) mass();
+    if (!checks_.sound("target")) return {};
+    const DensityGrid picture = density_picture(target_, maps_, domain_);
+    const double scale = domain_.size_m.prod() / sum_.values(0, 0);
+    return CompiledTarget{normalized(sum_).values, scale * picture};
+  }
+
+ private:
+  void region(int index) {
+    const Region& region = target_.regions[static_cast<std::size_t>(index)];
+    if (region_integrals(region, target_, domain_, Basis{}).values(0, 0) > 0) return;
+    checks_.problem(indexed("target.regions", index), "nothing of it is left" + cut_off(),
+                    "move it, or remove it");
+  }
+
+  void map(const proto::Map& map, const std::string& path) {
+    const std::string field = path + ".file";
+    OpenedMap opened = open_map(map.file());
+    if (const auto* problem = std::get_if<MapProblem>(&opened)) {
+      return checks_.problem(field, problem->what, problem->remedy);
+    }
+    MapFile& file = *std::get<0>(opened);
+    const RasterGrid grid{file.extent() ? *file.extent() : extent_of(map), file.columns(),
+                          file.rows()};
+    RasterIntegral integral(grid, domain_, basis_, free_);
+    RasterPicture picture(grid, domain_, static_cast<int>(maps_.rows()),
+                          static_cast<int>(maps_.cols()));
+    std::vector<double> row(static_cast<std::size_t>(grid.columns));
+    for (int i = 0; i < grid.rows; ++i) {
+      if (const auto problem = file.next_row(row)) {
+        return checks_.problem(field, problem->what, problem->remedy);
+      }
+      const int from_south = map.first_row() == proto::Map::SOUTH ? i : grid.rows - 1 - i;
+      integral.add_row(from_south, row);
+      picture.add_row(from_south, row);
+    }
+    if (!integral.has_mass()) {
+      return checks_.problem(field, map.file() + " has no number above 0",
+                             "write numbers above 0 where something is wanted");
+    }
+    const TargetCoefficients shares = integral.shares();
+    if (!(shares.values(0, 0) > 0)) return nothing_left(path, grid.extent);
+    sum_.values += map.weight() * shares.values;
+    sum_.error_bound += map.weight() * shares.error_bound;
+    maps_ += map.weight() * picture.density();
+    weight_of_maps_ += map.weight();
+  }
+
+  void nothing_left(const std::string& path, const Rectangle& extent) {
+    checks_.problem(path,
+                    "nothing of it is left" + cut_off() + ": its extent is " + text_of(extent) +
+                        ", the domain " + text_of(domain_),
+                    "move its extent over the domain");
+  }
+
+  std::string cut_off() const {
+    return std::string(" inside the domain") +
+           (target_.keep_outs.empty() ? "" : " and outside the keep-outs");
+  }
+
+  void mass() {
+    double all = target_.uniform_weight + weight_of_maps_;
+    for (const Gaussian& gaussian : target_.gaussians) all += gaussian.weight;
+    for (const Region& region : target_.regions) all += region.weight;
+    const double left = sum_.values(0, 0) / all;
+    if (!(left >= kMinMassInside)) {
+      return checks_.problem("target",
+                             "only " + shortest(left) + " of its weight is" + cut_off() +
+                                 ", below the limit " + shortest(kMinMassInside),
+                             "move its parts into the domain, or widen them");
+    }
+    const double error = normalized(sum_).error_bound;
+    if (error <= kMaxTargetError) return;
+    checks_.problem("target",
+                    "its coefficients can be off by " + shortest(error) +
+                        ", more than the limit " + shortest(kMaxTargetError),
+                    "use wider or less correlated Gaussians");
+  }
+
+  const proto::Target& written_;
+  Checks& checks_;
+  const Rectangle domain_;
+  const Basis basis_;
+  const TargetDensity target_;
+  std::vector<Trapezoid> free_;
+  TargetCoefficients sum_;
+  DensityGrid maps_;
+  double weight_of_maps_ = 0;
+};
+
+}  // namespace
+
+std::optional<CompiledTarget> compile_target(const proto::Scenario& scenario, Checks& checks) {
+  return TargetCompiler(scenario, checks).run();
+}
+
+}  // namespace ergocast

@@ -1,0 +1,22 @@
+// From a target as it is written to the numbers that the agents get.
+#pragma once
+
+#include <optional>
+
+#include "core/density_picture.h"
+#include "scenario/checks.h"
+#include "scenario/scenario.pb.h"
+
+namespace ergocast {
+
+struct CompiledTarget {
+  Coefficients coefficients;  ///< μ of (3)
+  DensityGrid density;        ///< in multiples of the uniform density, for people
+};
+
+/// Integrates the target and reads its maps, or reports what only that shows: maps that cannot be
+/// used, parts of which nothing is left, too little mass, a μ that is not exact enough.
+/// @pre validate() found nothing wrong with domain, basis and target
+std::optional<CompiledTarget> compile_target(const proto::Scenario& scenario, Checks& checks);
+
+}  // namespace ergocast

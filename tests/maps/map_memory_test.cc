@@ -1,0 +1,48 @@
+// A large map is read and transformed in far less memory than it has.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/raster_integral.h"
+#include "maps/map_file.h"
+#include "tests/support/grey_png.h"
+
+namespace ergocast {
+namespace {
+
+/// A line of /proc/self/status such as VmHWM, the most memory so far, in MiB.
+double memory_mib(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kib = 0;
+    if (word == key + ":" && status >> kib) return kib / 1024;
+  }
+  return 0;
+}
+
+TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
+  constexpr int kSide = 4096;
+  const auto file = std::filesystem::path(::testing::TempDir()) / "map_memory.png";
+  test::write_png(file, kSide, kSide, {.bits = 16},
+                  [](int column, int row, int) { return (column ^ row) & 1023; });
+  std::ofstream("/proc/self/clear_refs") << 5;  // from now on the peak counts anew
+  const double before = memory_mib("VmRSS");
+
+  const Rectangle domain{{0, 0}, {100, 100}};
+  OpenedMap opened = open_map(file);
+  MapFile& map = *std::get<0>(opened);
+  RasterIntegral integral({domain, kSide, kSide}, domain, {.modes_x = 16, .modes_y = 16},
+                          free_area(domain, {}));
+  std::vector<double> row(kSide);
+  for (int i = 0; i < kSide; ++i) {
+    ASSERT_FALSE(map.next_row(row));
+    integral.add_row(kSide - 1 - i, row);
+  }
+  EXPECT_NEAR(integral.shares().values(0, 0), 1, 1e-12);
+  // As numbers the map has 128 MiB, as pixels 32; a row of numbers and the cosines have 0.6.
+  EXPECT_LT(memory_mib("VmHWM") - before, 8);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace ergocast
