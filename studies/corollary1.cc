@@ -50,8 +50,8 @@ void print_random(const char* edges, const Table& table) {
     share = std::max(share, table.at("largest_share")[i]);
     allowance_m = std::max(allowance_m, table.at("allowance_m")[i]);
   }
-  std::printf("| %s | %zu | %.0f | %.0f | 1 %+.1e | %.1g |\n", edges, table.at("checked").size(), checked, violations,
-              share - 1, allowance_m);
+  std::printf("| %s | %zu | %.0f | %.0f | 1 %+.1e | %.1g |\n", edges, table.at("checked").size(), checked,
+              violations, share - 1, allowance_m);
 }
 
 }  // namespace

@@ -6,17 +6,21 @@
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
+#include <variant>
 
+#include "core/require.h"
+#include "scenario/scenario.h"
 #include "studies/theorems.h"
 
 namespace ergocast::studies {
-namespace {
 
 namespace fs = std::filesystem;
 
+namespace {
+
 std::vector<Part> all_parts(int seeds) {
   std::vector<Part> all;
-  for (const auto& parts : {theorem1_parts, theorem2_parts, corollary1_parts, proposition1_parts}) {
+  for (const auto& parts : {theorem1_parts, fig2a_parts, theorem2_parts, corollary1_parts, proposition1_parts}) {
     for (Part& part : parts(seeds)) all.push_back(std::move(part));
   }
   return all;
@@ -41,6 +45,7 @@ void simulate(const std::string& name, const fs::path& folder, int seeds) {
 
 void report(const fs::path& folder, const fs::path& images) {
   report_theorem1(folder, images);
+  report_fig2a(folder);
   report_theorem2(folder, images);
   report_corollary1(folder);
   report_proposition1(folder, images);
@@ -62,6 +67,13 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+
+Mission paper_mission() {
+  const auto loaded = Scenario::load(fs::path(ERGOCAST_SCENARIO_DIR) / "paper_fig2a.textproto");
+  ERGOCAST_REQUIRE(std::holds_alternative<Scenario>(loaded));
+  return std::get<Scenario>(loaded).mission();
+}
+
 }  // namespace ergocast::studies
 
 int main(int argc, char** argv) {

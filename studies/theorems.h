@@ -21,12 +21,14 @@ struct Part {
 Mission paper_mission();
 
 std::vector<Part> theorem1_parts(int seeds);
+std::vector<Part> fig2a_parts(int seeds);
 std::vector<Part> theorem2_parts(int seeds);
 std::vector<Part> corollary1_parts(int seeds);
 std::vector<Part> proposition1_parts(int seeds);
 
 /// Prints tables, and draws theorem_*.svg into `images`, of the parts in `folder`.
 void report_theorem1(const std::filesystem::path& folder, const std::filesystem::path& images);
+void report_fig2a(const std::filesystem::path& folder);
 void report_theorem2(const std::filesystem::path& folder, const std::filesystem::path& images);
 void report_corollary1(const std::filesystem::path& folder);
 void report_proposition1(const std::filesystem::path& folder, const std::filesystem::path& images);

@@ -1,0 +1,56 @@
+// What is varied in the study of Theorem 1: the set, the weights, ε and σ; and one such point, measured
+// and predicted.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/mission.h"
+
+namespace ergocast::studies {
+
+inline constexpr double kPaperEnd_s = 150, kUntil_s = 600;
+inline constexpr double kPaperSigma = 1e-5, kPaperEpsilon = 1e-3;
+inline constexpr double kExponents[] = {1, 1.5};
+/// Nearer than the finest mode's wavelength by far, where the linearised recursion should be exact.
+inline constexpr double kNear_m = 0.5;
+/// Of the sets that are alike by the square's symmetry, one each: indices of starts().
+inline constexpr int kOneOfEach[] = {0, 1, 3, 5};
+bool is_one_of_each(int start);
+
+struct Point {
+  int start;  ///< of starts()
+  double exponent, epsilon, sigma;
+  bool near = false;  ///< farther off than kNear_m counts, in place of the usual distance
+};
+std::vector<Point> all_points();
+/// Of its file, without ".csv".
+std::string name_of(const Point& point);
+Mission mission_of(const Point& point);
+/// How far off counts as escaped.
+double far_m(const Point& point);
+
+/// Of one set under one law: for σ = 1, with and without what the past does.
+struct Spreads {
+  std::vector<double> counted, neglected;
+};
+Spreads spreads_of(const Point& point);
+
+struct Row {
+  Point point;
+  Spreads spreads;
+  std::vector<double> times_s;  ///< ascending; infinite where an agent did not escape
+  double law_median_s = 0, without_past_s = 0;
+  double distance = 0;  ///< the largest between the measured and the predicted share, over all times
+
+  double quantile_s(double p) const;
+  double share_by(double t_s) const;
+};
+/// All points, in the order of all_points(), from the files in `folder`.
+std::vector<Row> read_rows(const std::filesystem::path& folder);
+
+/// "λ = …".
+std::string weight_text(double exponent);
+
+}  // namespace ergocast::studies
