@@ -10,6 +10,8 @@
 namespace ergocast {
 namespace {
 
+constexpr int kModesAtOnce = 16;
+
 /// Corners of a convex polygon that is cut out of a trapezoid by two verticals: at most six.
 struct Corners {
   std::array<Eigen::Vector2d, 8> at;
@@ -43,9 +45,9 @@ RasterIntegral::RasterIntegral(const RasterGrid& grid, const Rectangle& domain, 
       size_m_(domain.size_m),
       cell_m_(grid.extent.size_m.x() / grid.columns, grid.extent.size_m.y() / grid.rows),
       origin_m_(grid.extent.origin_m - domain.origin_m),
-      along_x_(basis.modes_x, grid.columns),
+      along_x_(Eigen::MatrixXd::Zero(
+          (basis.modes_x + kModesAtOnce - 1) / kModesAtOnce * kModesAtOnce, grid.columns)),
       free_(std::move(free)),
-      row_sum_(basis.modes_x),
       sums_(Coefficients::Zero(basis.modes_x, basis.modes_y)) {
   ERGOCAST_REQUIRE(grid.columns >= 1 && grid.rows >= 1);
   for (int column = 0; column < grid.columns; ++column) {
@@ -53,7 +55,7 @@ RasterIntegral::RasterIntegral(const RasterGrid& grid, const Rectangle& domain, 
     const double high = origin_m_.x() + (column + 1) * cell_m_.x();
     low_.push_back(std::clamp(low, 0.0, size_m_.x()));
     high_.push_back(std::clamp(high, 0.0, size_m_.x()));
-    along_x_.col(column) =
+    along_x_.col(column).head(basis.modes_x) =
         cosine_integrals(low_.back(), high_.back(), size_m_.x(), basis.modes_x);
   }
 }
@@ -78,25 +80,42 @@ void RasterIntegral::add_row(int row, std::span<const double> values) {
 void RasterIntegral::add_piece(const Trapezoid& piece, std::span<const double> values) {
   const auto [left, inner_left] = std::minmax(piece.left_low, piece.left_high);
   const auto [inner_right, right] = std::minmax(piece.right_low, piece.right_high);
-  const auto first = std::upper_bound(high_.begin(), high_.end(), left) - high_.begin();
-  row_sum_.setZero();
-  for (auto i = static_cast<std::size_t>(first); i < low_.size() && low_[i] < right; ++i) {
-    if (values[i] == 0 || low_[i] == high_[i]) continue;
-    if (low_[i] >= inner_left && high_[i] <= inner_right) {
-      row_sum_ += values[i] * along_x_.col(static_cast<Eigen::Index>(i));
-    } else {
-      add_cut_cell(static_cast<int>(i), piece, values[i]);
-    }
-  }
-  sums_ += row_sum_ * cosine_integrals(piece.low, piece.high, size_m_.y(),
-                                       static_cast<int>(sums_.cols())).transpose();
+  const auto column_at = [](auto found, const std::vector<double>& all) {
+    return static_cast<std::size_t>(found - all.begin());
+  };
+  // low_ and high_ ascend, so each of these is one place in the row.
+  const auto begin = column_at(std::upper_bound(high_.begin(), high_.end(), left), high_);
+  const auto end = column_at(std::lower_bound(low_.begin(), low_.end(), right), low_);
+  const auto whole_begin = std::clamp(
+      column_at(std::lower_bound(low_.begin(), low_.end(), inner_left), low_), begin, end);
+  const auto whole_end = std::clamp(
+      column_at(std::upper_bound(high_.begin(), high_.end(), inner_right), high_), whole_begin, end);
+  for (std::size_t i = begin; i < whole_begin; ++i) add_cut_cell(i, piece, values[i]);
+  sums_ += sum_of(values, whole_begin, whole_end) *
+           cosine_integrals(piece.low, piece.high, size_m_.y(), static_cast<int>(sums_.cols()))
+               .transpose();
+  for (std::size_t i = whole_end; i < end; ++i) add_cut_cell(i, piece, values[i]);
 }
 
-void RasterIntegral::add_cut_cell(int column, const Trapezoid& piece, double value) {
-  const auto i = static_cast<std::size_t>(column);
+/// A few modes at a time, whose sums stay in registers over the whole row.
+Eigen::VectorXd RasterIntegral::sum_of(std::span<const double> values, std::size_t begin,
+                                       std::size_t end) const {
+  Eigen::VectorXd sums(along_x_.rows());
+  for (Eigen::Index mode = 0; mode < sums.size(); mode += kModesAtOnce) {
+    Eigen::Matrix<double, kModesAtOnce, 1> few = Eigen::Matrix<double, kModesAtOnce, 1>::Zero();
+    for (std::size_t i = begin; i < end; ++i) {
+      few += values[i] * along_x_.block<kModesAtOnce, 1>(mode, static_cast<Eigen::Index>(i));
+    }
+    sums.segment<kModesAtOnce>(mode) = few;
+  }
+  return sums.head(sums_.rows());
+}
+
+void RasterIntegral::add_cut_cell(std::size_t column, const Trapezoid& piece, double value) {
+  if (value == 0) return;
   Corners shape;
   for (const Eigen::Vector2d& corner : piece.corners()) shape.add(corner);
-  const Corners inside = cut(cut(shape, low_[i], 1), high_[i], -1);
+  const Corners inside = cut(cut(shape, low_[column], 1), high_[column], -1);
   if (inside.count >= 3) rounding_ += add_polygon(inside.all(), value, size_m_, sums_);
 }
 

@@ -48,6 +48,22 @@ TEST_F(MissionRun, RecordedScenarioRunsAgainToTheSameTrajectory) {
   EXPECT_TRUE(text_of(out() / "trajectory.csv") == text_of(folder_ / "again" / "trajectory.csv"));
 }
 
+// Agents get the coefficients with the plan, and the report a picture with the record.
+TEST_F(MissionRun, OfAMapIsVerifiedAndReportedWithoutTheMap) {
+  const auto shipped = scenario_file("lake_search").parent_path();
+  std::filesystem::create_directories(folder_ / "maps");
+  std::filesystem::copy(shipped / "maps" / "lake.png", folder_ / "maps");
+  std::filesystem::copy(shipped / "lake_search.textproto", folder_);
+  ASSERT_EQ(ergocast({"run", folder_ / "lake_search.textproto", "--duration", "10", "--out", out()}), 0)
+      << output();
+  const std::string report = text_of(out() / "report.html");
+  std::filesystem::remove_all(folder_ / "maps");
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  std::filesystem::remove(out() / "report.html");
+  EXPECT_EQ(ergocast({"report", out()}), 0) << output();
+  EXPECT_TRUE(text_of(out() / "report.html") == report);
+}
+
 TEST_F(MissionRun, SeventeenAgentsFillTwoWorldStatesATick) {
   const auto scenario = scenario_file("quadrimodal_corners").string();
   ASSERT_EQ(ergocast({"run", scenario, "--duration", "5", "--agents", "17", "--out", out()}), 0)
