@@ -1,7 +1,7 @@
 // What a study makes of a core: missions without messages, and the numbers noted of them.
 //
-// An iteration is one mission. Two threads stand for the two worker processes of a study, which share
-// nothing either. The floor is as many bare control steps, each of an agent by itself.
+// An iteration is one mission. Two threads stand for the two worker processes of a study, which
+// share nothing either. The floor is as many bare control steps, each of an agent by itself.
 #include <benchmark/benchmark.h>
 
 #include <string>

@@ -29,7 +29,8 @@ int complain(const std::vector<std::string>& problems) {
 }
 
 /// Those that are not done, seed by seed: whatever is there when somebody looks can be compared.
-std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds, const std::vector<Run>& done) {
+std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds,
+                              const std::vector<Run>& done) {
   std::vector<Run> missing;
   for (std::uint64_t i = 0; i < seeds.count(); ++i) {
     for (std::size_t point = 0; point < points; ++point) {
@@ -49,7 +50,9 @@ class Campaign {
   void fly(int processes) {
     Jobs jobs = jobs_with_results<lab::StudyFigures>(
         [this](std::uint64_t job) { return fly_one(missing_[job]); },
-        [this](std::uint64_t job, const lab::StudyFigures& figures) { take(missing_[job], figures); });
+        [this](std::uint64_t job, const lab::StudyFigures& figures) {
+          take(missing_[job], figures);
+        });
     jobs.count = missing_.size();
     jobs.processes = processes;
     jobs.lost = [this](std::uint64_t job, const std::string& how) { fail(missing_[job], how); };
@@ -83,7 +86,8 @@ class Campaign {
   void fail(const Run& run, const std::string& how) {
     if (++failed_ > kMostFailuresShown) return;
     const lab::Study& study = points_.identity.study;
-    progress_.say(name_of(study.points[run.first], study) + ", seed " + std::to_string(run.second) + ": " + how);
+    progress_.say(name_of(study.points[run.first], study) + ", seed " + std::to_string(run.second) +
+                  ": " + how);
   }
 
   void show() {
@@ -125,7 +129,8 @@ std::string command_of(const StudyOptions& options) {
 }
 
 /// The table on the terminal, and the page.
-std::optional<std::string> show_results(const StudyIdentity& identity, const StudyDirectory& directory,
+std::optional<std::string> show_results(const StudyIdentity& identity,
+                                        const StudyDirectory& directory,
                                         const StudyOptions& options) {
   const auto summaries = lab::summarize(identity.study, directory.rows());
   std::printf("%s", lab::study_text(identity.study, summaries).c_str());
@@ -141,19 +146,23 @@ void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
   std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
   if (campaign.missing() == 0) return;
   std::printf("%zu runs are missing%s: the same command flies them\n", campaign.missing(),
-              campaign.failed() > 0 ? (", " + std::to_string(campaign.failed()) + " of them failed").c_str() : "");
+              campaign.failed() > 0
+                  ? (", " + std::to_string(campaign.failed()) + " of them failed").c_str()
+                  : "");
 }
 
 }  // namespace
 
 int study(const StudyOptions& options) {
   const auto compiled = study_points(options);
-  if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) return complain(*problems);
+  if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled))
+    return complain(*problems);
   const auto& points = std::get<StudyPoints>(compiled);
   const std::size_t count = points.scenarios.size();
   if (options.seeds.count() > kMostRuns / count) {
-    return complain({"--seeds: " + std::to_string(count) + " points with " + std::to_string(options.seeds.count()) +
-                     " seeds each are above the limit, " + std::to_string(kMostRuns) + " runs (give fewer)"});
+    return complain({"--seeds: " + std::to_string(count) + " points with " +
+                     std::to_string(options.seeds.count()) + " seeds each are above the limit, " +
+                     std::to_string(kMostRuns) + " runs (give fewer)"});
   }
   auto opened = StudyDirectory::open(options.out, points.identity);
   if (const auto* problem = std::get_if<std::string>(&opened)) return complain({*problem});

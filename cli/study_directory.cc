@@ -63,8 +63,8 @@ std::string difference(const Json& ours, const Json& theirs) {
   }
   for (std::size_t i = 0; i < ours["points"].size(); ++i) {
     if (ours["points"][i] == theirs["points"][i]) continue;
-    return "its study differs at point " + std::to_string(i + 1) + ", " + theirs["points"][i].dump() +
-           fresh;
+    return "its study differs at point " + std::to_string(i + 1) + ", " +
+           theirs["points"][i].dump() + fresh;
   }
   return "";
 }
@@ -78,7 +78,8 @@ std::optional<std::string> objection(const fs::path& folder, const Json& identit
   }
   if (!fs::exists(file, error)) {
     const bool taken = fs::exists(folder, error) && !fs::is_empty(folder, error);
-    if (taken) return said(folder, "is not empty and no study; give a new folder, or empty this one");
+    if (taken)
+      return said(folder, "is not empty and no study; give a new folder, or empty this one");
     return std::nullopt;
   }
   const Json theirs = Json::parse(content_of(file), nullptr, false);
@@ -133,7 +134,8 @@ std::optional<std::string> StudyDirectory::read_rows() {
     const auto row = number == 1 ? std::nullopt : table_.parse(line);
     if (row) rows_.push_back(*row);
     if (row || (number == 1 && line == table_.header())) continue;
-    return path.string() + ':' + std::to_string(number) + ": is no row of this study; remove the line";
+    return path.string() + ':' + std::to_string(number) +
+           ": is no row of this study; remove the line";
   }
   if (auto problem = write_file(path, text)) return problem;
   file_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
@@ -156,7 +158,8 @@ std::optional<std::string> StudyDirectory::add(const lab::StudyRow& row) {
     rows_.push_back(row);
     return std::nullopt;
   }
-  std::string problem = (folder_ / kTableFile).string() + ": " + (errno == 0 ? "the disk is full" : std::strerror(errno));
+  std::string problem = (folder_ / kTableFile).string() + ": " +
+                        (errno == 0 ? "the disk is full" : std::strerror(errno));
   if (ftruncate(file_, end) != 0) problem += ", and its last line is torn";
   return problem;
 }

@@ -24,7 +24,8 @@ Problems problems_of(const StudyOptions& options) {
     if (!fields.insert(variation.path).second) {
       problems.push_back(flag + ": is varied twice (give all its values in one --vary)");
     }
-    if (variation.path == "seed") problems.push_back(flag + ": every point gets the same seeds (use --seeds)");
+    if (variation.path == "seed")
+      problems.push_back(flag + ": every point gets the same seeds (use --seeds)");
     if (variation.path == "time.duration_s" && options.duration_s) {
       problems.push_back(flag + ": --duration says it too (leave out one of them)");
     }
@@ -51,7 +52,8 @@ std::vector<FieldValue> combination(const std::vector<Variation>& variations, st
 
 std::string text_of(const std::vector<FieldValue>& fields) {
   std::string text;
-  for (const FieldValue& field : fields) text += (text.empty() ? "" : ", ") + field.path + "=" + field.value;
+  for (const FieldValue& field : fields)
+    text += (text.empty() ? "" : ", ") + field.path + "=" + field.value;
   return text;
 }
 
@@ -128,7 +130,9 @@ class Compiler {
     const std::string hash = plan_hash(scenario.with_seed(0).plan());
     const std::string text = file.string() + (fields.empty() ? "" : " with " + text_of(fields));
     const auto [twin, is_new] = plans_.emplace(hash, text);
-    if (!is_new) problems_.push_back(text + ": is the same mission as " + twin->second + " (leave out one of them)");
+    if (!is_new)
+      problems_.push_back(text + ": is the same mission as " + twin->second +
+                          " (leave out one of them)");
     const auto [namesake, alone] = names_.emplace(point.scenario, file);
     if (!alone && namesake->second != file) {
       problems_.push_back(file.string() + ": is called " + point.scenario + " like " +

@@ -65,7 +65,8 @@ Worker hire(const Stretch& stretch, const Jobs& jobs) {
 }
 
 std::string how_it_died(int status, unsigned patience_s) {
-  if (!WIFSIGNALED(status)) return "its process ended with code " + std::to_string(WEXITSTATUS(status));
+  if (!WIFSIGNALED(status))
+    return "its process ended with code " + std::to_string(WEXITSTATUS(status));
   if (WTERMSIG(status) == SIGALRM) {
     return "no end after " + std::to_string(patience_s) + " s of wall time";
   }
@@ -74,7 +75,8 @@ std::string how_it_died(int status, unsigned patience_s) {
 
 class Pool {
  public:
-  explicit Pool(const Jobs& jobs) : jobs_(jobs), processes_(static_cast<std::size_t>(jobs.processes)) {
+  explicit Pool(const Jobs& jobs)
+      : jobs_(jobs), processes_(static_cast<std::size_t>(jobs.processes)) {
     const std::uint64_t share = std::max<std::uint64_t>(1, jobs.count / (processes_ * 4));
     const std::uint64_t size = std::min(kMostJobsPerWorker, share);
     for (std::uint64_t first = 0; first < jobs.count; first += size) {

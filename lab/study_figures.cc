@@ -21,7 +21,8 @@ constexpr double kWideRange = 20;
 
 using Summaries = std::vector<PointSummary>;
 
-/// A colour of its own for each of `count` curves: the agents' colours, or a scale if they are more.
+/// A colour of its own for each of `count` curves: the agents' colours, or a scale if they are
+/// more.
 std::string color_of(std::size_t curve, std::size_t count) {
   if (count <= kAgentColors) return agent_color(static_cast<AgentId>(curve));
   const Rgb rgb = viridis()[curve * 220 / (count - 1)];  // the scale's end is too light for a line
@@ -37,11 +38,14 @@ struct Extent {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  Axis log(const std::string& title) const { return log_axis(title, low / kMargin, high * kMargin); }
+  Axis log(const std::string& title) const {
+    return log_axis(title, low / kMargin, high * kMargin);
+  }
 };
 
 /// Names in rows beside their colours, below a line that says what they are; the pixels it took.
-double draw_key(Svg& svg, const std::string& title, const std::vector<std::string>& names, double width) {
+double draw_key(Svg& svg, const std::string& title, const std::vector<std::string>& names,
+                double width) {
   constexpr double kRow = 18, kSample = 18, kGap = 16;
   double x = kLeft, y = 4;
   if (!title.empty()) {
@@ -51,7 +55,8 @@ double draw_key(Svg& svg, const std::string& title, const std::vector<std::strin
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double needed = kSample + 5 + text_width(names[i], 11);
     if (x > kLeft && x + needed > width - kRight) x = kLeft, y += kRow;
-    svg.line({x, y + 8}, {x + kSample, y + 8}, "stroke-width=\"3\" stroke=\"" + color_of(i, names.size()) + '"');
+    svg.line({x, y + 8}, {x + kSample, y + 8},
+             "stroke-width=\"3\" stroke=\"" + color_of(i, names.size()) + '"');
     svg.text({x + kSample + 5, y + 12}, "class=\"tick\"", names[i]);
     x += needed + kGap;
   }
@@ -66,13 +71,17 @@ void draw_band(Svg& svg, const Plot& plot, const PointSummary& summary, const st
                std::size_t bands) {
   const char* opacity = bands > 4 ? "0.1" : "0.2";
   Polyline outline;
-  for (const auto& [t_s, median] : summary.metric_over_time) outline.push_back(plot.at(t_s, median.low));
+  for (const auto& [t_s, median] : summary.metric_over_time)
+    outline.push_back(plot.at(t_s, median.low));
   std::reverse(outline.begin(), outline.end());
-  for (const auto& [t_s, median] : summary.metric_over_time) outline.push_back(plot.at(t_s, median.high));
+  for (const auto& [t_s, median] : summary.metric_over_time)
+    outline.push_back(plot.at(t_s, median.high));
   svg.path(path_data(outline), "fill=\"" + color + "\" fill-opacity=\"" + opacity + '"');
 }
 
-std::string in_series(const StudySeries& series) { return series.name.empty() ? "" : ": " + series.name; }
+std::string in_series(const StudySeries& series) {
+  return series.name.empty() ? "" : ": " + series.name;
+}
 
 // --- φ² over time ---
 
@@ -123,20 +132,23 @@ FieldAxis axis_of(const StudyLayout& layout) {
   if (!numbers.empty() && numbers.front() > 0 && numbers.back() >= kWideRange * numbers.front()) {
     return {log_axis(layout.field, numbers.front() / kMargin, numbers.back() * kMargin), numbers};
   }
-  const bool ordinal = numbers.empty() || numbers.size() < 3 || numbers.back() >= kWideRange * numbers[1];
+  const bool ordinal =
+      numbers.empty() || numbers.size() < 3 || numbers.back() >= kWideRange * numbers[1];
   if (!ordinal) {
     const double room = 0.05 * (numbers.back() - numbers.front());
     return {range_axis(layout.field, "", numbers.front() - room, numbers.back() + room), numbers};
   }
   FieldAxis named{named_axis(layout.field, layout.values), {}};
-  for (std::size_t i = 0; i < layout.values.size(); ++i) named.places.push_back(static_cast<double>(i + 1));
+  for (std::size_t i = 0; i < layout.values.size(); ++i)
+    named.places.push_back(static_cast<double>(i + 1));
   return named;
 }
 
 /// Points with their intervals, joined where the field is a number.
 /// @param aside  pixels to the right, so that series do not hide each other
-void draw_estimates(Svg& svg, const Plot& plot, const StudyLayout& layout, const StudySeries& series,
-                    const Summaries& summaries, const FieldAxis& field, const std::string& color, double aside) {
+void draw_estimates(Svg& svg, const Plot& plot, const StudyLayout& layout,
+                    const StudySeries& series, const Summaries& summaries, const FieldAxis& field,
+                    const std::string& color, double aside) {
   Polyline line;
   for (std::size_t i = 0; i < series.points.size(); ++i) {
     const PointSummary& summary = summaries[series.points[i]];
@@ -173,7 +185,8 @@ Figure metric_figure(const StudyLayout& layout, const Summaries& summaries) {
   for (std::size_t i = 0; i < count; ++i) {
     const double aside = std::min(5.0, 30.0 / static_cast<double>(count)) *
                          (static_cast<double>(i) - static_cast<double>(count - 1) / 2);
-    draw_estimates(svg, plot, layout, layout.series[i], summaries, field, color_of(i, count), aside);
+    draw_estimates(svg, plot, layout, layout.series[i], summaries, field, color_of(i, count),
+                   aside);
   }
   plot.frame();
   return {"final-metric", "φ² at the end against " + layout.field,
@@ -210,13 +223,15 @@ Figure escapes_figure(const StudyLayout& layout, std::size_t index, const Summar
   const double top = draw_key(svg, layout.field, layout.values, kWidth);
   const double begin_s = std::min(time.low, time.high / 2) / kMargin;
   Plot plot(svg, {kLeft, top, kWidth - kLeft - kRight, kHeight - top - kBelow},
-            log_axis("t [s]", begin_s, time.high), range_axis("agents that have escaped", "%", -3, 103));
+            log_axis("t [s]", begin_s, time.high),
+            range_axis("agents that have escaped", "%", -3, 103));
   plot.grid();
   for (std::size_t i = 0; i < series.points.size(); ++i) {
     const PointSummary& summary = summaries[series.points[i]];
     if (summary.escape_times_s.empty()) continue;
     const double end_s = summary.metric_over_time.back().first;
-    plot.curve(distribution(summary.escape_times_s, begin_s, end_s), stroke(color_of(i, series.points.size())));
+    plot.curve(distribution(summary.escape_times_s, begin_s, end_s),
+               stroke(color_of(i, series.points.size())));
   }
   plot.frame();
   return {name, "Escapes" + in_series(series),
@@ -225,7 +240,8 @@ Figure escapes_figure(const StudyLayout& layout, std::size_t index, const Summar
           svg.str()};
 }
 
-bool any(const StudySeries& series, const Summaries& summaries, bool (*holds)(const PointSummary&)) {
+bool any(const StudySeries& series, const Summaries& summaries,
+         bool (*holds)(const PointSummary&)) {
   return std::any_of(series.points.begin(), series.points.end(),
                      [&](std::size_t point) { return holds(summaries[point]); });
 }
@@ -236,10 +252,12 @@ std::vector<Figure> study_figures(const Study& study, const Summaries& summaries
   const StudyLayout layout = layout_of(study);
   const std::size_t panels = std::min(layout.series.size(), kMostPanels);
   std::vector<Figure> figures;
-  if (std::all_of(summaries.begin(), summaries.end(), [](const auto& s) { return s.runs == 0; })) return figures;
+  if (std::all_of(summaries.begin(), summaries.end(), [](const auto& s) { return s.runs == 0; }))
+    return figures;
   if (layout.values.size() > 1) figures.push_back(metric_figure(layout, summaries));
   for (std::size_t i = 0; i < panels; ++i) {
-    const bool flown = any(layout.series[i], summaries, [](const PointSummary& s) { return s.runs > 0; });
+    const bool flown =
+        any(layout.series[i], summaries, [](const PointSummary& s) { return s.runs > 0; });
     if (flown) figures.push_back(over_time_figure(layout, i, summaries));
   }
   for (std::size_t i = 0; i < panels; ++i) {

@@ -49,7 +49,8 @@ StudyMeasure::StudyMeasure(const Mission& mission)
       at_edge_m_(kAtEdgeShare * mission.domain.size_m.minCoeff()),
       ladder_(ladder_ticks(mission.timing.dt_s, mission.timing.tick_count - 1)),
       decade_(decade_ticks(mission.timing.tick_count - 1)) {
-  std::merge(ladder_.begin(), ladder_.end(), decade_.begin(), decade_.end(), std::back_inserter(ticks_));
+  std::merge(ladder_.begin(), ladder_.end(), decade_.begin(), decade_.end(),
+             std::back_inserter(ticks_));
   ticks_.erase(std::unique(ticks_.begin(), ticks_.end()), ticks_.end());
   metrics_.assign(ticks_.size(), kNone);
   figures_.seed = mission.seed;
@@ -102,7 +103,8 @@ StudyFigures StudyMeasure::figures() const {
   StudyFigures figures = figures_;
   figures.complete = next_ == ticks_.size();
   figures.metric_at.fill(kNone);
-  for (std::size_t i = 0; i < ladder_.size(); ++i) figures.metric_at[i] = sampled_metric(ladder_[i]);
+  for (std::size_t i = 0; i < ladder_.size(); ++i)
+    figures.metric_at[i] = sampled_metric(ladder_[i]);
   figures.metric = metrics_.back();
   figures.slope = slope();
   figures.offset2_mean_m2 = offset2_sum_m2_ / static_cast<double>(positions_);

@@ -22,8 +22,11 @@ using Cell = std::optional<std::string>;
 std::string interval(const Estimate& estimate) {
   const bool small = estimate.value > 0 && estimate.value < 0.01;
   const int decade = small ? static_cast<int>(std::floor(std::log10(estimate.value))) : 0;
-  const auto scaled = [unit = std::pow(10, decade)](double value) { return readable(value / unit); };
-  const std::string text = scaled(estimate.value) + " [" + scaled(estimate.low) + ", " + scaled(estimate.high) + ']';
+  const auto scaled = [unit = std::pow(10, decade)](double value) {
+    return readable(value / unit);
+  };
+  const std::string text =
+      scaled(estimate.value) + " [" + scaled(estimate.low) + ", " + scaled(estimate.high) + ']';
   return small ? text + " × " + power_of_ten(decade, false) : text;
 }
 
@@ -42,23 +45,34 @@ constexpr Described kResults[] = {
     {"against the first [95 %]",
      [](const PointSummary& s) -> Cell { return s.ratio ? Cell(interval(*s.ratio)) : Cell(); }},
     {"slope",
-     [](const PointSummary& s) -> Cell { return s.slope ? Cell(readable(std::round(*s.slope * 100) / 100)) : Cell(); }},
+     [](const PointSummary& s) -> Cell {
+       return s.slope ? Cell(readable(std::round(*s.slope * 100) / 100)) : Cell();
+     }},
 };
 
 constexpr Described kEscapes[] = {
-    {"agents", [](const PointSummary& s) -> Cell { return readable(static_cast<double>(s.escape_times_s.size())); }},
+    {"agents",
+     [](const PointSummary& s) -> Cell {
+       return readable(static_cast<double>(s.escape_times_s.size()));
+     }},
     {"within 15 s", [](const PointSummary& s) -> Cell { return percent(s.escaped_share(15)); }},
     {"within 60 s", [](const PointSummary& s) -> Cell { return percent(s.escaped_share(60)); }},
-    {"median", [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.5)); }},
-    {"99th percentile", [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.99)); }},
+    {"median",
+     [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.5)); }},
+    {"99th percentile",
+     [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.99)); }},
 };
 
 constexpr Described kMotion[] = {
-    {"mean ‖x − centre‖²", [](const PointSummary& s) -> Cell { return readable(s.offset2_mean_m2) + "\u00a0m²"; }},
-    {"greatest", [](const PointSummary& s) -> Cell { return readable(s.offset2_max_m2) + "\u00a0m²"; }},
+    {"mean ‖x − centre‖²",
+     [](const PointSummary& s) -> Cell { return readable(s.offset2_mean_m2) + "\u00a0m²"; }},
+    {"greatest",
+     [](const PointSummary& s) -> Cell { return readable(s.offset2_max_m2) + "\u00a0m²"; }},
     {"time at the edge", [](const PointSummary& s) -> Cell { return percent(s.edge_share); }},
-    {"mean speed", [](const PointSummary& s) -> Cell { return with_unit(s.speed_mean_mps, "m/s"); }},
-    {"contributions a run", [](const PointSummary& s) -> Cell { return readable(std::round(s.messages)); }},
+    {"mean speed",
+     [](const PointSummary& s) -> Cell { return with_unit(s.speed_mean_mps, "m/s"); }},
+    {"contributions a run",
+     [](const PointSummary& s) -> Cell { return readable(std::round(s.messages)); }},
 };
 
 /// What tells the points apart, a column each.
@@ -67,18 +81,20 @@ std::vector<Column> point_columns(const Study& study) {
   const bool several_scenarios = study.points.front().scenario != study.points.back().scenario;
   if (several_scenarios || study.fields.empty()) {
     columns.push_back({"scenario", true});
-    for (const StudyPoint& point : study.points) columns.back().cells.push_back(escape(point.scenario));
+    for (const StudyPoint& point : study.points)
+      columns.back().cells.push_back(escape(point.scenario));
   }
   for (std::size_t i = 0; i < study.fields.size(); ++i) {
     columns.push_back({escape(study.fields[i]), true});
-    for (const StudyPoint& point : study.points) columns.back().cells.push_back(escape(point.values[i]));
+    for (const StudyPoint& point : study.points)
+      columns.back().cells.push_back(escape(point.values[i]));
   }
   return columns;
 }
 
 /// A row for each point; empty where `holds` does not.
-std::string points_table(const Study& study, const Summaries& summaries, std::span<const Described> described,
-                         bool (*holds)(const PointSummary&)) {
+std::string points_table(const Study& study, const Summaries& summaries,
+                         std::span<const Described> described, bool (*holds)(const PointSummary&)) {
   std::vector<Column> columns = point_columns(study);
   for (const Described& column : described) {
     columns.push_back({column.title, false});
@@ -115,21 +131,29 @@ std::string counts(const Study& study, const Summaries& summaries) {
   Facts facts("cards");
   facts.add("runs", readable(static_cast<double>(runs)));
   facts.add("points", readable(static_cast<double>(study.points.size())));
-  facts.add("seeds a point", fewest == most ? seeds : readable(static_cast<double>(fewest)) + " to " + seeds);
+  facts.add("seeds a point",
+            fewest == most ? seeds : readable(static_cast<double>(fewest)) + " to " + seeds);
   return facts.html();
 }
 
 std::string conventions() {
   Facts facts("facts");
-  facts.add("φ²", "at the last tick; it can be compared only between points with the same weights and modes");
-  facts.add("[95 %] of a median", "order statistics, which assume nothing about the distribution; below six "
-                                  "seeds from the smallest to the largest, which is less sure");
-  facts.add("against the first", "the geometric mean of φ² over φ² of the first point with the same seed; "
-                                 "bootstrap over the seeds");
+  facts.add(
+      "φ²",
+      "at the last tick; it can be compared only between points with the same weights and modes");
+  facts.add("[95 %] of a median",
+            "order statistics, which assume nothing about the distribution; below six "
+            "seeds from the smallest to the largest, which is less sure");
+  facts.add("against the first",
+            "the geometric mean of φ² over φ² of the first point with the same seed; "
+            "bootstrap over the seeds");
   facts.add("slope", "the power of t that fits φ² over the last decade of time; median");
-  facts.add("escaped", "of the agents that start on a symmetry line or point of the domain, those that have been "
-                       "farther from it than 1 % of the shorter side");
-  facts.add("time at the edge", "share of all agents’ ticks closer to an edge than 0.1 % of the shorter side");
+  facts.add(
+      "escaped",
+      "of the agents that start on a symmetry line or point of the domain, those that have been "
+      "farther from it than 1 % of the shorter side");
+  facts.add("time at the edge",
+            "share of all agents’ ticks closer to an edge than 0.1 % of the shorter side");
   return facts.html();
 }
 
@@ -140,7 +164,8 @@ std::string short_number(double value) {
 }
 
 std::string plain(const Estimate& estimate) {
-  return short_number(estimate.value) + " [" + short_number(estimate.low) + ", " + short_number(estimate.high) + ']';
+  return short_number(estimate.value) + " [" + short_number(estimate.low) + ", " +
+         short_number(estimate.high) + ']';
 }
 
 /// What a terminal shows of a point, after its name.
@@ -163,8 +188,9 @@ std::string study_page(const StudyFacts& facts, const Summaries& summaries) {
   }
   html += section("Motion and messages", points_table(facts.study, summaries, kMotion, was_flown));
   html += section("Conventions", conventions());
-  html += section("How to reproduce", "<pre>" + escape(facts.command) + "</pre>\n<p>Made by ergocast " +
-                                          escape(facts.version) + ". Every run is a row of study.csv.</p>\n");
+  html += section("How to reproduce", "<pre>" + escape(facts.command) +
+                                          "</pre>\n<p>Made by ergocast " + escape(facts.version) +
+                                          ". Every run is a row of study.csv.</p>\n");
   return framed_page(title_of(facts.study), "Ergocast study", "", html);
 }
 
@@ -182,7 +208,8 @@ std::string study_text(const Study& study, const Summaries& summaries) {
   std::string text;
   for (const auto& line : lines) {
     std::string row = line[0] + std::string(widths[0] - line[0].size(), ' ');
-    for (std::size_t i = 1; i < line.size(); ++i) row += "  " + std::string(widths[i] - line[i].size(), ' ') + line[i];
+    for (std::size_t i = 1; i < line.size(); ++i)
+      row += "  " + std::string(widths[i] - line[i].size(), ' ') + line[i];
     text += row + '\n';
   }
   return text;

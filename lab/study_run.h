@@ -15,9 +15,9 @@
 namespace ergocast::lab {
 
 /// Times at which φ² is noted [s]: 1, 2, 5, 10 … 10⁷, as far as a mission goes.
-inline constexpr std::array<double, 22> kLadder_s = {
-    1,    2,    5,    10,   20,   50,   100,  200,  500,  1e3,  2e3,
-    5e3,  1e4,  2e4,  5e4,  1e5,  2e5,  5e5,  1e6,  2e6,  5e6,  1e7};
+inline constexpr std::array<double, 22> kLadder_s = {1,   2,   5,   10,  20,  50,  100, 200,
+                                                     500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5,
+                                                     2e5, 5e5, 1e6, 2e6, 5e6, 1e7};
 
 /// Closer to an edge than this share of the domain's shorter side counts as at the edge.
 inline constexpr double kAtEdgeShare = 1e-3;
@@ -26,7 +26,7 @@ inline constexpr double kAtEdgeShare = 1e-3;
 struct StudyFigures {
   std::uint64_t seed = 0;
   std::int32_t agents = 0;
-  bool complete = false;  ///< the mission came to its last tick
+  bool complete = false;                           ///< the mission came to its last tick
   std::array<double, kLadder_s.size()> metric_at;  ///< φ² at the first tick with t ≥ kLadder_s
   double metric = 0;                               ///< φ² at the last tick
   /// The power of t that fits φ² over the last decade of time (logger/slope.h), by 21 ticks evenly

@@ -13,7 +13,8 @@ namespace {
 std::vector<std::string> values_of(const Study& study, int field) {
   std::vector<std::string> values;
   for (const StudyPoint& point : study.points) {
-    const std::string& value = field < 0 ? point.scenario : point.values[static_cast<std::size_t>(field)];
+    const std::string& value =
+        field < 0 ? point.scenario : point.values[static_cast<std::size_t>(field)];
     if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
   }
   return values;
@@ -75,8 +76,10 @@ StudyLayout layout_of(const Study& study) {
     const std::string name = series_of(point, study, main);
     const auto [at, is_new] = index.emplace(name, layout.series.size());
     if (is_new) layout.series.push_back({name, std::vector<std::size_t>(layout.values.size())});
-    const std::string& value = main < 0 ? point.scenario : point.values[static_cast<std::size_t>(main)];
-    const auto place = std::find(layout.values.begin(), layout.values.end(), value) - layout.values.begin();
+    const std::string& value =
+        main < 0 ? point.scenario : point.values[static_cast<std::size_t>(main)];
+    const auto place =
+        std::find(layout.values.begin(), layout.values.end(), value) - layout.values.begin();
     layout.series[at->second].points[static_cast<std::size_t>(place)] = i;
   }
   return layout;

@@ -51,8 +51,8 @@ std::vector<std::pair<double, Estimate>> over_time(const Runs& runs, double dura
 std::vector<double> escape_times_of(const Runs& runs) {
   std::vector<double> times_s;
   for (const auto& [seed, figures] : runs) {
-    std::copy_if(figures->escape_time_s.begin(), figures->escape_time_s.end(), std::back_inserter(times_s),
-                 [](double t_s) { return !std::isnan(t_s); });
+    std::copy_if(figures->escape_time_s.begin(), figures->escape_time_s.end(),
+                 std::back_inserter(times_s), [](double t_s) { return !std::isnan(t_s); });
   }
   std::sort(times_s.begin(), times_s.end());
   return times_s;
@@ -74,7 +74,8 @@ PointSummary summary_of(const Runs& runs, const Runs& first, double duration_s) 
   }
   summary.edge_share = mean_of(runs, [](const StudyFigures& f) { return f.edge_share; });
   summary.speed_mean_mps = mean_of(runs, [](const StudyFigures& f) { return f.speed_mean_mps; });
-  summary.messages = mean_of(runs, [](const StudyFigures& f) { return static_cast<double>(f.messages); });
+  summary.messages =
+      mean_of(runs, [](const StudyFigures& f) { return static_cast<double>(f.messages); });
   return summary;
 }
 
@@ -82,7 +83,8 @@ PointSummary summary_of(const Runs& runs, const Runs& first, double duration_s) 
 
 double PointSummary::escaped_share(double t_s) const {
   const auto end = std::upper_bound(escape_times_s.begin(), escape_times_s.end(), t_s);
-  return static_cast<double>(end - escape_times_s.begin()) / static_cast<double>(escape_times_s.size());
+  return static_cast<double>(end - escape_times_s.begin()) /
+         static_cast<double>(escape_times_s.size());
 }
 
 std::vector<PointSummary> summarize(const Study& study, const std::vector<StudyRow>& rows) {

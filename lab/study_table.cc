@@ -56,9 +56,9 @@ constexpr Quantity kQuantities[] = {
 }  // namespace
 
 std::string name_of(const StudyPoint& point, const Study& study) {
-  const bool one_scenario = std::all_of(study.points.begin(), study.points.end(), [&](const auto& other) {
-    return other.scenario == point.scenario;
-  });
+  const bool one_scenario =
+      std::all_of(study.points.begin(), study.points.end(),
+                  [&](const auto& other) { return other.scenario == point.scenario; });
   std::string name = one_scenario && !study.fields.empty() ? "" : point.scenario;
   for (std::size_t i = 0; i < study.fields.size(); ++i) {
     name += (name.empty() ? "" : ", ") + study.fields[i] + " = " + point.values[i];
@@ -100,9 +100,11 @@ std::string StudyTable::line(const StudyRow& row) const {
 }
 
 std::optional<std::size_t> StudyTable::point_of(const std::vector<std::string_view>& cells) const {
-  const auto found = std::find_if(study_.points.begin(), study_.points.end(), [&](const StudyPoint& p) {
-    return cells[0] == p.scenario && std::equal(p.values.begin(), p.values.end(), cells.begin() + 1);
-  });
+  const auto found =
+      std::find_if(study_.points.begin(), study_.points.end(), [&](const StudyPoint& p) {
+        return cells[0] == p.scenario &&
+               std::equal(p.values.begin(), p.values.end(), cells.begin() + 1);
+      });
   if (found == study_.points.end()) return std::nullopt;
   return static_cast<std::size_t>(found - study_.points.begin());
 }
@@ -122,7 +124,8 @@ std::optional<StudyRow> StudyTable::parse(std::string_view line) const {
   figures.metric_at.fill(std::numeric_limits<double>::quiet_NaN());
   figures.escape_time_s.fill(std::numeric_limits<double>::quiet_NaN());
   auto cell = cells.begin() + static_cast<std::ptrdiff_t>(numbers);
-  for (const Quantity& quantity : kQuantities) good = read(*cell++, figures.*quantity.value) && good;
+  for (const Quantity& quantity : kQuantities)
+    good = read(*cell++, figures.*quantity.value) && good;
   for (std::size_t i = 0; i < steps_; ++i) good = read(*cell++, figures.metric_at[i]) && good;
   for (std::size_t i = 0; i < agents_; ++i) good = read(*cell++, figures.escape_time_s[i]) && good;
   if (!good) return std::nullopt;

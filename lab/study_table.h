@@ -52,7 +52,8 @@ class StudyTable {
   std::optional<std::size_t> point_of(const std::vector<std::string_view>& cells) const;
 
   const Study& study_;
-  std::size_t agents_ = 0, steps_ = 0;  // that have columns: of the largest team, the longest mission
+  std::size_t agents_ = 0,
+              steps_ = 0;  // that have columns: of the largest team, the longest mission
 };
 
 }  // namespace ergocast::lab

@@ -19,7 +19,8 @@ double mean(const std::vector<double>& values) {
 }
 
 /// The mean of as many values as there are, each drawn anew.
-double resampled_mean(const std::vector<double>& values, std::uint64_t seed, std::uint32_t resample) {
+double resampled_mean(const std::vector<double>& values, std::uint64_t seed,
+                      std::uint32_t resample) {
   double sum = 0;
   for (std::size_t i = 0; i < values.size(); i += 2) {
     const Words words = random_words(seed, Purpose::kFault, resample, i);
@@ -35,8 +36,8 @@ std::size_t values_below_interval(std::size_t n) {
   double tail = 0;
   for (std::size_t k = 0; 2 * k < n; ++k) {
     const auto chosen = static_cast<double>(k);
-    tail += std::exp(std::lgamma(count + 1) - std::lgamma(chosen + 1) - std::lgamma(count - chosen + 1) -
-                     count * std::numbers::ln2);
+    tail += std::exp(std::lgamma(count + 1) - std::lgamma(chosen + 1) -
+                     std::lgamma(count - chosen + 1) - count * std::numbers::ln2);
     if (tail > 0.025) return k == 0 ? 0 : k - 1;
   }
   return 0;

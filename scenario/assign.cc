@@ -113,20 +113,23 @@ class Assignment {
   Message* element(Message& message, const FieldDescriptor& field, std::string_view brackets) {
     const int size = message.GetReflection()->FieldSize(message, &field);
     int index = -1;
-    const auto read = std::from_chars(brackets.data() + 1, brackets.data() + brackets.size(), index);
+    const auto read =
+        std::from_chars(brackets.data() + 1, brackets.data() + brackets.size(), index);
     const bool closed = std::string_view(read.ptr, brackets.data() + brackets.size()) == "]";
     if (closed && index >= 0 && index < size) {
       return message.GetReflection()->MutableRepeatedMessage(&message, &field, index);
     }
     const std::string lists = "the scenario lists " + std::to_string(size) + " " + field.name();
-    problem(lists, size == 0 ? "list them first" : "write [0] to [" + std::to_string(size - 1) + "]");
+    problem(lists,
+            size == 0 ? "list them first" : "write [0] to [" + std::to_string(size - 1) + "]");
     return nullptr;
   }
 
   void write(const Target& target) {
     const auto* words = target.field->enum_type();
     if (words != nullptr && words->FindValueByName(field_.value) == nullptr) {
-      return problem("unknown value \"" + field_.value + "\"", "write one of " + enum_names(*words));
+      return problem("unknown value \"" + field_.value + "\"",
+                     "write one of " + enum_names(*words));
     }
     FirstError error;
     google::protobuf::TextFormat::Parser parser;

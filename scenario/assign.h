@@ -6,8 +6,9 @@
 
 namespace ergocast {
 
-/// Writes `field` into `scenario`. A path that names no number, word or truth value, or a value that
-/// cannot be read, is reported; from now on all problems of the field are those of `field.flag`.
+/// Writes `field` into `scenario`. A path that names no number, word or truth value, or a value
+/// that cannot be read, is reported; from now on all problems of the field are those of
+/// `field.flag`.
 void assign(const FieldValue& field, proto::Scenario& scenario, Findings& findings);
 
 }  // namespace ergocast

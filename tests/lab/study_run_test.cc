@@ -156,7 +156,8 @@ TEST(StudyRun, IsTheSameWithMoreAgentsThanOneWorldStateHolds) {
   overrides.agents = 20;
   const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / "quadrimodal_corners.textproto";
   const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
-  expect_same(fly_without_messages(scenario.mission()), fly_with_messages(scenario.plan(), decode_plan));
+  expect_same(fly_without_messages(scenario.mission()),
+              fly_with_messages(scenario.plan(), decode_plan));
 }
 
 TEST(StudyRun, FliesRealTimeMissionsInVirtualTime) {

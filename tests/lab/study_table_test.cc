@@ -119,12 +119,14 @@ TEST(StudyPage, IsWholeForAnyStudyAlsoAnEmptyOne) {
   const Study study = two_by_two();
   std::vector<StudyRow> rows;
   for (int runs = 0; runs < 3; ++runs) {
-    const std::string page = study_page({study, "1.2.3", "ergocast study <&>"}, summarize(study, rows));
+    const std::string page =
+        study_page({study, "1.2.3", "ergocast study <&>"}, summarize(study, rows));
     EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
     EXPECT_TRUE(page.ends_with("</html>\n"));
     EXPECT_EQ(page.find("nan"), std::string::npos);
     EXPECT_EQ(page.find("<&>"), std::string::npos);
-    EXPECT_EQ(page.find("http://www.w3.org") == std::string::npos, page.find("<svg") == std::string::npos);
+    EXPECT_EQ(page.find("http://www.w3.org") == std::string::npos,
+              page.find("<svg") == std::string::npos);
     rows.push_back({static_cast<std::size_t>(runs), figures_of(1, 0.5)});
   }
 }
@@ -132,7 +134,8 @@ TEST(StudyPage, IsWholeForAnyStudyAlsoAnEmptyOne) {
 TEST(StudyText, NamesEveryPoint) {
   const Study study = two_by_two();
   const std::string text = study_text(study, summarize(study, {{1, figures_of(1, 0.5)}}));
-  EXPECT_NE(text.find("law.epsilon = 0.1, law.regularization = RELATIVE"), std::string::npos) << text;
+  EXPECT_NE(text.find("law.epsilon = 0.1, law.regularization = RELATIVE"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("0.5"), std::string::npos) << text;
 }
 

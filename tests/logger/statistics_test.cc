@@ -12,7 +12,8 @@ namespace ergocast {
 namespace {
 
 /// Numbers whose logarithms are normal about log(center) with deviation `spread`.
-std::vector<double> scattered(std::uint32_t stream, std::size_t count, double center, double spread) {
+std::vector<double> scattered(std::uint32_t stream, std::size_t count, double center,
+                              double spread) {
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
     values.push_back(center * std::exp(spread * normal_pair(7, Purpose::kFault, stream, i).x()));

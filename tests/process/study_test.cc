@@ -21,15 +21,23 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 1 }
 class Study : public OwnHost {
  protected:
   Study() { write("mission.textproto", kMission); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+  }
   bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
 
   /// The arguments of a study of two noises.
-  std::vector<std::string> arguments(const std::string& seeds, const std::filesystem::path& out) const {
-    return {"study", folder_ / "mission.textproto", "--vary", "law.noise_intensity=0.1,1",
-            "--seeds", seeds, "--jobs", "2", "--out", out};
+  std::vector<std::string> arguments(const std::string& seeds,
+                                     const std::filesystem::path& out) const {
+    return {"study",   folder_ / "mission.textproto",
+            "--vary",  "law.noise_intensity=0.1,1",
+            "--seeds", seeds,
+            "--jobs",  "2",
+            "--out",   out};
   }
-  int study(const std::string& seeds, const std::filesystem::path& out) { return ergocast(arguments(seeds, out)); }
+  int study(const std::string& seeds, const std::filesystem::path& out) {
+    return ergocast(arguments(seeds, out));
+  }
 
   /// The table of a study that nothing interrupts.
   std::string fresh(const std::string& seeds) {
@@ -89,7 +97,8 @@ TEST_F(Study, ARunIsTheMissionThatSimulateFlies) {
   auto mission = std::string(kMission);
   mission.replace(mission.find("u_max_mps: 5"), 12, "u_max_mps: 5 noise_intensity: 0.1");
   write("one.textproto", mission);
-  ASSERT_EQ(ergocast({"simulate", folder_ / "one.textproto", "--seed", "7", "--out", simulated}), 0);
+  ASSERT_EQ(ergocast({"simulate", folder_ / "one.textproto", "--seed", "7", "--out", simulated}),
+            0);
   const auto summary = nlohmann::json::parse(text_of(simulated / "summary.json"));
   const double metric = summary["ergodic_metric"]["last"];
   const auto rows = rows_of(table());
@@ -159,7 +168,8 @@ TEST_F(Study, RefusesAnotherStudysFolder) {
   ASSERT_EQ(study("1:2", out()), 0);
   const std::string before = table();
   const auto refused = [&](std::vector<std::string> more, const std::string& why) {
-    std::vector<std::string> words{"study", folder_ / "mission.textproto", "--seeds", "1:2", "--out", out()};
+    std::vector<std::string> words{
+        "study", folder_ / "mission.textproto", "--seeds", "1:2", "--out", out()};
     words.insert(words.end(), more.begin(), more.end());
     EXPECT_EQ(ergocast(words), 2) << why;
     EXPECT_TRUE(said(why) && said("give a new folder")) << output();
@@ -209,8 +219,10 @@ TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
   vary("seed=1,2", "use --seeds");
   vary("law.contraction_gain_per_s=0,1", "u_max_mps: 5 is too weak for contraction_gain_per_s 1");
   EXPECT_TRUE(said(", with law.contraction_gain_per_s=1")) << output();
-  refused({"--seeds", "1", "--vary", "law.epsilon=1", "--vary", "law.epsilon=2"}, "is varied twice");
-  refused({"--seeds", "1", "--vary", "time.duration_s=1,2", "--duration", "3"}, "--duration says it too");
+  refused({"--seeds", "1", "--vary", "law.epsilon=1", "--vary", "law.epsilon=2"},
+          "is varied twice");
+  refused({"--seeds", "1", "--vary", "time.duration_s=1,2", "--duration", "3"},
+          "--duration says it too");
   refused({"--seeds", "1:2000000"}, "are above the limit, 1000000 runs");
   refused({"--seeds", "1", "--jobs", "0"}, "--jobs");
   std::string many = "law.epsilon=0";

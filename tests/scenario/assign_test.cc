@@ -21,7 +21,10 @@ std::string said_of(const std::string& path, const std::string& value) {
 
 TEST(Assign, SetsNumbersWordsTruthValuesAndListedFields) {
   EXPECT_EQ(good(kSmall, with("law.epsilon", "1e-5")).mission().law.epsilon, 1e-5);
-  EXPECT_EQ(good(kSmall, with("time.broadcast_period_ticks", "10")).mission().timing.broadcast_period_ticks, 10);
+  EXPECT_EQ(good(kSmall, with("time.broadcast_period_ticks", "10"))
+                .mission()
+                .timing.broadcast_period_ticks,
+            10);
   EXPECT_EQ(good(kSmall, with("law.regularization", "ABSOLUTE")).mission().law.regularization,
             Regularization::kAbsolute);
   EXPECT_TRUE(good(kSmall, with("basis.normalized", "true")).mission().basis.normalized);
@@ -38,14 +41,16 @@ TEST(Assign, IsWhatTheFileWouldHaveSaid) {
 TEST(Assign, NamesUnknownFieldsWithWhatWasMeant) {
   EXPECT_EQ(said_of("law.epsilom", "1"),
             "--vary law.epsilom=1: unknown field \"epsilom\" in Law (did you mean law.epsilon?)\n");
-  EXPECT_EQ(said_of("epsilon", "1"),
-            "--vary epsilon=1: unknown field \"epsilon\" in Scenario (did you mean law.epsilon?)\n");
+  EXPECT_EQ(
+      said_of("epsilon", "1"),
+      "--vary epsilon=1: unknown field \"epsilon\" in Scenario (did you mean law.epsilon?)\n");
   EXPECT_TRUE(has(said_of("law.zzzzzz", "1"), "the fields there are u_max_mps, "));
   EXPECT_TRUE(has(said_of("", "1"), "unknown field \"\" in Scenario"));
 }
 
 TEST(Assign, RefusesPathsThatNameNoValue) {
-  EXPECT_TRUE(has(said_of("law", "1"), "is a block (name one of its fields, such as law.u_max_mps)"));
+  EXPECT_TRUE(
+      has(said_of("law", "1"), "is a block (name one of its fields, such as law.u_max_mps)"));
   EXPECT_TRUE(has(said_of("agents.starts", "1"), "such as agents.starts[0].x_m"));
   EXPECT_TRUE(has(said_of("law.epsilon.x", "1"), "epsilon has no fields of its own"));
   EXPECT_TRUE(has(said_of("agents.starts.x_m", "1"), "say which, such as starts[0]"));
@@ -55,7 +60,8 @@ TEST(Assign, RefusesPathsThatNameNoValue) {
                     "the scenario lists 1 starts (write [0] to [0])"))
         << index;
   }
-  EXPECT_TRUE(has(said_of("target.gaussians[0].sigma_m", "1"), "lists 0 gaussians (list them first)"));
+  EXPECT_TRUE(
+      has(said_of("target.gaussians[0].sigma_m", "1"), "lists 0 gaussians (list them first)"));
   EXPECT_TRUE(has(said_of("name", "\"a\""), "is a text"));
 }
 
@@ -65,7 +71,8 @@ TEST(Assign, RefusesValuesThatTheFieldDoesNotTakeAndBlamesTheFlag) {
   EXPECT_EQ(said_of("law.epsilon", "-1"),
             "--vary law.epsilon=-1: -1 is below the limit 0 (write a number 0 to 1000000)\n");
   EXPECT_EQ(said_of("law.regularization", "SOME"),
-            "--vary law.regularization=SOME: unknown value \"SOME\" (write one of RELATIVE or ABSOLUTE)\n");
+            "--vary law.regularization=SOME: unknown value \"SOME\" (write one of RELATIVE or "
+            "ABSOLUTE)\n");
   EXPECT_TRUE(has(said_of("time.broadcast_period_ticks", "1.5"), "is not a whole number"));
   EXPECT_TRUE(has(said_of("law.epsilon", "1 2"), "--vary law.epsilon=1 2: "));
   EXPECT_TRUE(has(said_of("law.epsilon", ""), "--vary law.epsilon=: "));

@@ -33,7 +33,8 @@ TEST_F(TableFile, GivesNumbersByColumn) {
 }
 
 TEST_F(TableFile, NamesWhatIsWrong) {
-  EXPECT_NE(problem("seed,result\n1,fine\n2,violated\n").find("seed 2 violated"), std::string::npos);
+  EXPECT_NE(problem("seed,result\n1,fine\n2,violated\n").find("seed 2 violated"),
+            std::string::npos);
   EXPECT_NE(problem("seed,result\n1\n").find("torn row"), std::string::npos);
   EXPECT_NE(problem("seed,result\n").find("no rows"), std::string::npos);
   EXPECT_NE(problem("").find("cannot be read"), std::string::npos);
