@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/bounds.h"
+#include "studies/theorems/bounds.h"
 
 namespace ergocast::test {
 namespace {

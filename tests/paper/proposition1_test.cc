@@ -11,8 +11,8 @@
 #include <numbers>
 
 #include "lab/manifolds.h"
-#include "studies/escape.h"
-#include "studies/invariance.h"
+#include "studies/theorems/escape.h"
+#include "studies/theorems/invariance.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {

@@ -10,8 +10,8 @@
 #include <limits>
 
 #include "lab/manifolds.h"
-#include "studies/confidence.h"
-#include "studies/escape.h"
+#include "studies/theorems/confidence.h"
+#include "studies/theorems/escape.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {

@@ -9,8 +9,8 @@
 
 #include <cmath>
 
-#include "studies/bounds.h"
-#include "studies/confidence.h"
+#include "studies/theorems/bounds.h"
+#include "studies/theorems/confidence.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {

@@ -1,5 +1,5 @@
 // Limits that are exceeded no more often than they say: tried with an error that can be seen.
-#include "studies/confidence.h"
+#include "studies/theorems/confidence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The linearised recursion against the method itself, noise for noise.
-#include "studies/linearised.h"
+#include "studies/theorems/linearised.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "lab/ideal_team.h"
 #include "lab/manifolds.h"
-#include "studies/escape.h"
+#include "studies/theorems/escape.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::studies {

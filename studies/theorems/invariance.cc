@@ -1,4 +1,4 @@
-#include "studies/invariance.h"
+#include "studies/theorems/invariance.h"
 
 #include <cmath>
 #include <numbers>

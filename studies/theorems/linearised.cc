@@ -1,4 +1,4 @@
-#include "studies/linearised.h"
+#include "studies/theorems/linearised.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "studies/bounds.h"
+#include "studies/theorems/bounds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/mission.h"
-#include "studies/linearised.h"
+#include "studies/theorems/linearised.h"
 
 namespace ergocast::studies {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "studies/escape_points.h"
+#include "studies/theorems/escape_points.h"
 
 namespace ergocast::studies {
 

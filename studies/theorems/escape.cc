@@ -1,4 +1,4 @@
-#include "studies/escape.h"
+#include "studies/theorems/escape.h"
 
 #include <algorithm>
 #include <cmath>

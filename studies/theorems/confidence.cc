@@ -1,4 +1,4 @@
-#include "studies/confidence.h"
+#include "studies/theorems/confidence.h"
 
 #include <cmath>
 

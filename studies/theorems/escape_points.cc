@@ -1,14 +1,14 @@
-#include "studies/escape_points.h"
+#include "studies/theorems/escape_points.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "lab/manifolds.h"
-#include "studies/escape.h"
-#include "studies/linearised.h"
+#include "studies/theorems/escape.h"
+#include "studies/theorems/linearised.h"
 #include "studies/table.h"
-#include "studies/theorems.h"
+#include "studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 namespace {

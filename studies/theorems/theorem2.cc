@@ -3,10 +3,10 @@
 #include <cstdio>
 
 #include "logger/figures.h"
-#include "studies/bounds.h"
+#include "studies/theorems/bounds.h"
 #include "studies/panels.h"
 #include "studies/table.h"
-#include "studies/theorems.h"
+#include "studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 namespace {

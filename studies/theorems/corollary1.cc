@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "studies/bounds.h"
+#include "studies/theorems/bounds.h"
 #include "studies/table.h"
-#include "studies/theorems.h"
+#include "studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 namespace {

@@ -1,4 +1,4 @@
-// The program of studies/theorems: lists the parts, simulates one, reports on all.
+// The program of studies/theorems/run: lists the parts, simulates one, reports on all.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -10,7 +10,7 @@
 
 #include "core/require.h"
 #include "scenario/scenario.h"
-#include "studies/theorems.h"
+#include "studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 

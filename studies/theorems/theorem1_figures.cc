@@ -1,10 +1,10 @@
-#include "studies/theorem1_figures.h"
+#include "studies/theorems/theorem1_figures.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "logger/figures.h"
-#include "studies/escape.h"
+#include "studies/theorems/escape.h"
 #include "studies/panels.h"
 
 namespace ergocast::studies {

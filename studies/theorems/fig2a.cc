@@ -7,7 +7,7 @@
 #include "lab/ideal_team.h"
 #include "lab/manifolds.h"
 #include "studies/table.h"
-#include "studies/theorems.h"
+#include "studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 namespace {

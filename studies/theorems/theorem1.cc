@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <map>
 
-#include "studies/escape.h"
-#include "studies/escape_points.h"
-#include "studies/linearised.h"
-#include "studies/theorem1_figures.h"
-#include "studies/theorems.h"
+#include "studies/theorems/escape.h"
+#include "studies/theorems/escape_points.h"
+#include "studies/theorems/linearised.h"
+#include "studies/theorems/theorem1_figures.h"
+#include "studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 namespace {

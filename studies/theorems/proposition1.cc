@@ -6,11 +6,11 @@
 
 #include "lab/manifolds.h"
 #include "logger/figures.h"
-#include "studies/escape.h"
-#include "studies/invariance.h"
+#include "studies/theorems/escape.h"
+#include "studies/theorems/invariance.h"
 #include "studies/panels.h"
 #include "studies/table.h"
-#include "studies/theorems.h"
+#include "studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 namespace {

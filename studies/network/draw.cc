@@ -1,4 +1,4 @@
-// Tables and figures of the network studies, from what studies/run has simulated.
+// Tables and figures of the network studies, from what studies/network/run has simulated.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -179,13 +179,13 @@ int run(const fs::path& folder, const fs::path& images) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: studies-draw FOLDER_OF_CSV_FILES FOLDER_OF_IMAGES\n");
+    std::fprintf(stderr, "usage: studies-network FOLDER_OF_CSV_FILES FOLDER_OF_IMAGES\n");
     return 2;
   }
   try {
     return ergocast::studies::run(argv[1], argv[2]);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "studies-draw: %s\n", error.what());
+    std::fprintf(stderr, "studies-network: %s\n", error.what());
     return 2;
   }
 }
