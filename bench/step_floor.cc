@@ -100,9 +100,11 @@ Eigen::Vector2d StepFloor::step(Tick tick, const Eigen::Vector2d& x_m) {
   const double length = std::sqrt(field.gradient.squaredNorm() + epsilon * epsilon);
   const Eigen::Vector2d xi =
       normal_pair(mission_.seed, Purpose::kPerturbation, 0, static_cast<std::uint64_t>(tick));
+  const Eigen::Vector2d eta = normal_pair(mission_.seed, Purpose::kPush, 0,
+                                          static_cast<std::uint64_t>(tick / push_ticks(law, dt_s)));
   return -law.u_max_mps / length * field.gradient -
          law.contraction_gain_per_s * (x_m - law.contraction_center_m) +
-         perturbation(law, dt_s, epsilon, field, xi);
+         perturbation(law, dt_s, epsilon, field, xi, eta);
 }
 
 }  // namespace ergocast::bench

@@ -25,6 +25,7 @@ Controller::Controller(const Mission& mission)
       law_(mission.law),
       seed_(mission.seed),
       dt_s_(mission.timing.dt_s),
+      push_ticks_(push_ticks(mission.law, mission.timing.dt_s)),
       target_(mission.target_coefficients),
       weights_(sobolev_weights(mission.basis, mission.domain)),
       energies_(gradient_energies(mission.basis, mission.domain)),
@@ -76,7 +77,10 @@ Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vecto
     const Eigen::Vector2d xi =
         normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
                     static_cast<std::uint64_t>(tick));
-    velocity += perturbation(law_, dt_s_, epsilon_, field, xi);
+    const Eigen::Vector2d eta =
+        normal_pair(seed_, Purpose::kPush, static_cast<std::uint32_t>(agent),
+                    static_cast<std::uint64_t>(tick / push_ticks_));
+    velocity += perturbation(law_, dt_s_, epsilon_, field, xi, eta);
   }
   return velocity;
 }

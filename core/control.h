@@ -25,8 +25,7 @@ class Controller {
   void see(const Coefficients& coverage);
 
   /// The velocity command of (10) at position `x_m`:
-  ///   v = u − k (x − centre) + σ ξ / √dt,  ξ = the noise of (seed, agent, tick),
-  /// σ as core/perturbation.h says.
+  ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.
   /// @param at  the basis at `x_m`
   Eigen::Vector2d command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m, const BasisAt& at);
 
@@ -47,6 +46,7 @@ class Controller {
   ControlLaw law_;
   std::uint64_t seed_;
   double dt_s_;
+  Tick push_ticks_;
   Coefficients target_, weights_, energies_, residual_;
   Eigen::Vector2d spectral_gradient_{0, 0};
   double epsilon_ = 0;

@@ -32,7 +32,7 @@ struct ControlLaw {
   double contraction_gain_per_s = 0;          ///< k
   Eigen::Vector2d contraction_center_m{0, 0};
 
-  /// What σ never exceeds [m/√s]: the σ of Theorem 2's bound.
+  /// What σ never exceeds [m/√s].
   double greatest_noise() const {
     return perturbation == Perturbation::kAdaptive ? noise_ceiling : noise_intensity;
   }

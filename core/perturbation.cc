@@ -6,14 +6,12 @@
 namespace ergocast {
 namespace {
 
-/// σ_v for the curvature vᵀHv and the part v·B of the field.
-double intensity_along(const ControlLaw& law, double epsilon, double curvature, double part) {
-  if (!(curvature < 0)) return law.noise_intensity;
+/// √s for the curvature vᵀHv and the part v·B of the field.
+double share_along(double epsilon, double curvature, double part) {
+  if (!(curvature < 0)) return 0;
   // hypot and a ratio: ε falls with the residual, and its square would be lost first.
   const double length = std::hypot(epsilon, part);
-  const double share = length == 0 ? 1 : epsilon / length;
-  const double floor = law.noise_intensity, ceiling = law.noise_ceiling;
-  return std::sqrt(floor * floor + (ceiling * ceiling - floor * floor) * (share * share));
+  return length == 0 ? 1 : epsilon / length;
 }
 
 /// The principal direction in which H bends upwards the most, of length 1.
@@ -26,19 +24,32 @@ Eigen::Vector2d steepest_bend(const Eigen::Vector2d& difference, double spread) 
 
 }  // namespace
 
+Tick push_ticks(const ControlLaw& law, double dt_s) {
+  const double held_s = std::pow(law.noise_ceiling / law.u_max_mps, 2);
+  // Not for longer than any mission lasts.
+  return static_cast<Tick>(std::clamp(std::ceil(held_s / dt_s - 1e-9), 1.0, 1e9));
+}
+
+double greatest_push_mps(const ControlLaw& law, double dt_s) {
+  const double floor = law.noise_intensity, ceiling = law.noise_ceiling;
+  const double held_s = static_cast<double>(push_ticks(law, dt_s)) * dt_s;
+  return std::sqrt((ceiling - floor) * (ceiling + floor) / held_s);
+}
+
 Eigen::Vector2d perturbation(const ControlLaw& law, double dt_s, double epsilon,
-                             const FieldAt& field, const Eigen::Vector2d& xi) {
-  const double root_dt = std::sqrt(dt_s);
-  if (law.perturbation == Perturbation::kConstant) return law.noise_intensity / root_dt * xi;
+                             const FieldAt& field, const Eigen::Vector2d& xi,
+                             const Eigen::Vector2d& eta) {
+  const Eigen::Vector2d noise_mps = law.noise_intensity / std::sqrt(dt_s) * xi;
+  if (law.perturbation == Perturbation::kConstant) return noise_mps;
   // H = mean·1 + spread·(v vᵀ − w wᵀ) with its principal directions v and w, spread ≥ 0.
   const Eigen::Matrix2d& hessian = field.hessian;
   const double mean = 0.5 * (hessian(0, 0) + hessian(1, 1));
   const Eigen::Vector2d difference(0.5 * (hessian(0, 0) - hessian(1, 1)), hessian(0, 1));
   const double spread = std::hypot(difference.x(), difference.y());
   const Eigen::Vector2d v = steepest_bend(difference, spread), w(-v.y(), v.x());
-  const double along_v = intensity_along(law, epsilon, mean + spread, field.gradient.dot(v));
-  const double along_w = intensity_along(law, epsilon, mean - spread, field.gradient.dot(w));
-  return along_v / root_dt * xi.dot(v) * v + along_w / root_dt * xi.dot(w) * w;
+  const double along_v = share_along(epsilon, mean + spread, field.gradient.dot(v));
+  const double along_w = share_along(epsilon, mean - spread, field.gradient.dot(w));
+  return noise_mps + greatest_push_mps(law, dt_s) * (along_v * eta.dot(v) * v + along_w * eta.dot(w) * w);
 }
 
 }  // namespace ergocast

@@ -1,4 +1,4 @@
-// The perturbation σ dW of (9) and (10): how strong, and in which direction.
+// The perturbation σ dW of (9) and (10): how strong, in which direction, and for how long.
 //
 // Where the agents must choose between two sides, the field does not tell them which: on a corner B
 // vanishes, on a midline or diagonal only its part across does. There the potential
@@ -14,16 +14,27 @@
 
 namespace ergocast {
 
-/// The velocity that stands for σ dW over one step, σ ξ / √dt [m/s]. Constant: with one σ, as in the
-/// paper. Adaptive: along each of the two principal directions v
-/// of H, which are orthogonal,
-///   σ_v² = σ² + (σ_max² − σ²) · ε² / (ε² + (v·B)²)   where U bends down: vᵀHv < 0
-///   σ_v² = σ²                                         elsewhere
-/// with σ = noise_intensity and σ_max = noise_ceiling: strong where B along v is small against ε, at
-/// which (8) too becomes weak; σ ≤ σ_v ≤ σ_max always. Where ε and v·B are both 0 the share is 1.
+/// For how many steps an adaptive law holds its push: (σ_max / u_max)², at least one step, so that
+/// the push is no faster than u_max along each direction (one standard deviation).
+Tick push_ticks(const ControlLaw& law, double dt_s);
+
+/// The push along a direction that is wholly open, √((σ_max² − σ²) / T): one standard deviation.
+double greatest_push_mps(const ControlLaw& law, double dt_s);
+
+/// The velocity that stands for σ dW over one step [m/s].
+///
+/// Constant: σ ξ / √dt, the paper's. Adaptive: besides, along each of the two principal directions v
+/// of H, which are orthogonal, a push of
+///   √(s (σ_max² − σ²) / T) · v·η,   s = ε² / (ε² + (v·B)²) where U bends down, vᵀHv < 0, else 0
+/// with σ = noise_intensity, σ_max = noise_ceiling and T the time for which η is held: strong where B
+/// along v is small against ε, at which (8) too becomes weak. Where ε and v·B are both 0, s is 1.
+/// Over times longer than T what is added along v spreads like σ_v dW with
+/// σ_v² = σ² + s (σ_max² − σ²), which lies between σ² and σ_max².
 /// @param field  B, in the unit of ε, and H; H is not read by the constant law
-/// @param xi     two independent standard normal numbers
+/// @param xi     two independent standard normal numbers of this step
+/// @param eta    two of the push_ticks() steps that it belongs to
 Eigen::Vector2d perturbation(const ControlLaw& law, double dt_s, double epsilon,
-                             const FieldAt& field, const Eigen::Vector2d& xi);
+                             const FieldAt& field, const Eigen::Vector2d& xi,
+                             const Eigen::Vector2d& eta);
 
 }  // namespace ergocast

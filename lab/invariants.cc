@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/noise.h"
+#include "core/perturbation.h"
 
 namespace ergocast::lab {
 namespace {
@@ -117,14 +118,21 @@ void Invariants::check(double t_s, const Command& command) {
                                          static_cast<std::uint64_t>(command.header.tick));
   const Eigen::Vector2d noise_mps = law.noise_intensity / root_dt * xi;
   // What an adaptive law may add to that, in a direction that only the agent knows.
-  const double more_noise_mps =
-      (law.greatest_noise() - law.noise_intensity) / root_dt * xi.norm();
+  double push_mps = 0;
+  if (law.perturbation == Perturbation::kAdaptive) {
+    const double dt_s = mission_.timing.dt_s;
+    push_mps = greatest_push_mps(law, dt_s) *
+               normal_pair(mission_.seed, Purpose::kPush,
+                           static_cast<std::uint32_t>(command.header.sender),
+                           static_cast<std::uint64_t>(command.header.tick / push_ticks(law, dt_s)))
+                   .norm();
+  }
   const Eigen::Vector2d v_mps = command.velocity_mps.head<2>();
   const double u_mps = (v_mps + contraction_mps - noise_mps).norm();
   // Each of the three was rounded when v was put together.
   const double margin_mps =
       8 * 0x1p-53 * (v_mps.norm() + contraction_mps.norm() + noise_mps.norm());
-  if (u_mps <= (law.u_max_mps + more_noise_mps) * (1 + 1e-12) + margin_mps) return;
+  if (u_mps <= (law.u_max_mps + push_mps) * (1 + 1e-12) + margin_mps) return;
   violate(t_s, "|u| <= u_max", "agent " + std::to_string(command.header.sender),
           text("|u| = ", u_mps, " m/s > ", law.u_max_mps, " m/s at tick ", command.header.tick));
 }

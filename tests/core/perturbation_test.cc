@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <cmath>
@@ -14,11 +15,12 @@
 namespace ergocast {
 namespace {
 
-constexpr double kEpsilon = 2e-5, kFloor = 0.5, kCeiling = 8;
+constexpr double kEpsilon = 2e-5, kFloor = 0.5, kCeiling = 8, kSpeed_mps = 4;
 
 ControlLaw adaptive() {
   ControlLaw law;
   law.perturbation = Perturbation::kAdaptive;
+  law.u_max_mps = kSpeed_mps;
   law.noise_intensity = kFloor;
   law.noise_ceiling = kCeiling;
   return law;
@@ -31,42 +33,51 @@ FieldAt field(const Eigen::Vector2d& gradient, double xx, double xy, double yy) 
   return at;
 }
 
-/// The response to ξ along x and along y, as a matrix; dt = 1, so that σ is what comes out.
+/// A step in which the push is held for one step only, so that ξ and η are on a par.
+const double kStep_s = std::pow(kCeiling / kSpeed_mps, 2);
+
+/// The intensity along x and along y, with what is off the diagonal: the root of the covariance of
+/// one step a second.
 Eigen::Matrix2d intensities(const FieldAt& at, double epsilon = kEpsilon) {
-  Eigen::Matrix2d sigma;
-  sigma << perturbation(adaptive(), 1, epsilon, at, {1, 0}),
-      perturbation(adaptive(), 1, epsilon, at, {0, 1});
-  return sigma;
+  const auto response = [&](const Eigen::Vector2d& xi, const Eigen::Vector2d& eta) {
+    return (perturbation(adaptive(), kStep_s, epsilon, at, xi, eta) * std::sqrt(kStep_s)).eval();
+  };
+  Eigen::Matrix<double, 2, 4> all;
+  all << response({1, 0}, {0, 0}), response({0, 1}, {0, 0}), response({0, 0}, {1, 0}),
+      response({0, 0}, {0, 1});
+  const Eigen::Matrix2d covariance = all * all.transpose();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).operatorSqrt();
 }
 
-Eigen::Matrix2d diagonal(double along_x, double along_y) {
-  return Eigen::Vector2d(along_x, along_y).asDiagonal();
+void expect_near(const Eigen::Matrix2d& sigma, double along_x, double along_y) {
+  const Eigen::Matrix2d expected = Eigen::Vector2d(along_x, along_y).asDiagonal();
+  EXPECT_LT((sigma - expected).norm(), 1e-12 * kCeiling) << sigma;
 }
 
 TEST(Perturbation, OnARidgeIsStrongAcrossAndWeakAlong) {
   // B points along y, U bends down across: a midline between two peaks.
-  EXPECT_EQ(intensities(field({0, 1e-3}, -4e-7, 0, 1e-7)), diagonal(kCeiling, kFloor));
+  expect_near(intensities(field({0, 1e-3}, -4e-7, 0, 1e-7)), kCeiling, kFloor);
 }
 
 TEST(Perturbation, InAValleyIsWeak) {
-  EXPECT_EQ(intensities(field({0, 1e-3}, 4e-7, 0, 1e-7)), diagonal(kFloor, kFloor));
+  expect_near(intensities(field({0, 1e-3}, 4e-7, 0, 1e-7)), kFloor, kFloor);
 }
 
 TEST(Perturbation, WhereBVanishesOnAPeakIsStrongAllRound) {
-  EXPECT_EQ(intensities(field({0, 0}, -4e-7, 0, -4e-7)), diagonal(kCeiling, kCeiling));
+  expect_near(intensities(field({0, 0}, -4e-7, 0, -4e-7)), kCeiling, kCeiling);
 }
 
 TEST(Perturbation, OfASaddleIsStrongOneWay) {
-  EXPECT_EQ(intensities(field({0, 0}, 4e-7, 0, -4e-7)), diagonal(kFloor, kCeiling));
+  expect_near(intensities(field({0, 0}, 4e-7, 0, -4e-7)), kFloor, kCeiling);
 }
 
 TEST(Perturbation, FadesAsTheFieldAcrossGrowsBeyondEpsilon) {
   const auto across = [](double part) {
     return intensities(field({part, 1e-3}, -4e-7, 0, 1e-7))(0, 0);
   };
-  EXPECT_DOUBLE_EQ(across(kEpsilon), std::sqrt((kFloor * kFloor + kCeiling * kCeiling) / 2));
-  EXPECT_DOUBLE_EQ(across(3 * kEpsilon),
-                   std::sqrt(0.9 * kFloor * kFloor + 0.1 * kCeiling * kCeiling));
+  EXPECT_NEAR(across(kEpsilon), std::sqrt((kFloor * kFloor + kCeiling * kCeiling) / 2), 1e-12);
+  EXPECT_NEAR(across(3 * kEpsilon),
+              std::sqrt(0.9 * kFloor * kFloor + 0.1 * kCeiling * kCeiling), 1e-12);
   EXPECT_NEAR(across(1e4 * kEpsilon), kFloor, 1e-5);
 }
 
@@ -97,24 +108,53 @@ TEST(Perturbation, IsNeverBelowItsFloorNorAboveItsCeiling) {
 }
 
 TEST(Perturbation, OfNothingIsTheFloor) {
-  EXPECT_EQ(intensities(field({0, 0}, 0, 0, 0), 0), diagonal(kFloor, kFloor));
+  expect_near(intensities(field({0, 0}, 0, 0, 0), 0), kFloor, kFloor);
 }
 
 TEST(Perturbation, WithoutEpsilonAnswersToExactZerosAlone) {
-  EXPECT_EQ(intensities(field({0, 1e-3}, -1, 0, -1), 0), diagonal(kCeiling, kFloor));
+  expect_near(intensities(field({0, 1e-3}, -1, 0, -1), 0), kCeiling, kFloor);
 }
 
 TEST(Perturbation, SurvivesResidualsWhoseSquaresVanish) {
-  EXPECT_EQ(intensities(field({1e-200, 0}, -1e-190, 0, -1e-190), 1e-200).allFinite(), true);
   const double across = intensities(field({1e-200, 0}, -1e-190, 0, -1e-190), 1e-200)(0, 0);
-  EXPECT_DOUBLE_EQ(across, std::sqrt((kFloor * kFloor + kCeiling * kCeiling) / 2));
+  EXPECT_NEAR(across, std::sqrt((kFloor * kFloor + kCeiling * kCeiling) / 2), 1e-12);
 }
 
 TEST(Perturbation, ConstantIsSigmaWhateverTheField) {
   ControlLaw law;
   law.noise_intensity = 0.75;
   const Eigen::Vector2d xi(0.3, -2);
-  EXPECT_EQ(perturbation(law, 0.125, 0, field({1, 2}, -1, 0, -1), xi), 0.75 / std::sqrt(0.125) * xi);
+  EXPECT_EQ(perturbation(law, 0.125, 0, field({1, 2}, -1, 0, -1), xi, {5, 7}),
+            0.75 / std::sqrt(0.125) * xi);
+}
+
+TEST(Perturbation, PushesNoFasterThanTheInput) {
+  for (const double dt_s : {0.01, 0.1, 1.0, 3.0, 4.0, 100.0}) {
+    EXPECT_EQ(push_ticks(adaptive(), dt_s), std::ceil(4 / dt_s)) << dt_s;
+    EXPECT_LE(greatest_push_mps(adaptive(), dt_s), kSpeed_mps) << dt_s;
+  }
+  EXPECT_NEAR(greatest_push_mps(adaptive(), 0.1), kSpeed_mps, 0.01);
+}
+
+TEST(Perturbation, SpreadsLikeItsCeilingOverManyPushes) {
+  // Along x on a ridge: the sum over many steps has the variance of the ceiling's Brownian motion.
+  constexpr double kDt_s = 0.5;
+  constexpr int kTicks = 64, kWalks = 4000;
+  const FieldAt ridge = field({0, 1e-3}, -4e-7, 0, 1e-7);
+  double square_m2 = 0;
+  for (std::uint32_t walk = 0; walk < kWalks; ++walk) {
+    double x_m = 0;
+    for (Tick n = 0; n < kTicks; ++n) {
+      const auto step = static_cast<std::uint64_t>(n);
+      const auto push = static_cast<std::uint64_t>(n / push_ticks(adaptive(), kDt_s));
+      x_m += kDt_s * perturbation(adaptive(), kDt_s, kEpsilon, ridge,
+                                  normal_pair(1, Purpose::kPerturbation, walk, step),
+                                  normal_pair(1, Purpose::kPush, walk, push)).x();
+    }
+    square_m2 += x_m * x_m / kWalks;
+  }
+  // A variance from 4000 walks is known to 2.2 % (one standard deviation).
+  EXPECT_NEAR(square_m2, kCeiling * kCeiling * kTicks * kDt_s, 0.12 * square_m2);
 }
 
 }  // namespace
