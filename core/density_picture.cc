@@ -48,8 +48,27 @@ DensityGrid shares_of(const std::vector<Trapezoid>& pieces, const Rectangle& dom
   return shares;
 }
 
-/// Adds the weighted Gaussian, averaged over 4 × 4 points of each cell.
-void add_gaussian(const Gaussian& gaussian, const Rectangle& domain, DensityGrid& sum) {
+/// The averages of a one-dimensional Gaussian density over `cells` equal parts of [0, size].
+Eigen::VectorXd averages_along(double mean, double deviation, double size, Eigen::Index cells) {
+  const double cell = size / static_cast<double>(cells);
+  const auto below = [&](Eigen::Index i) {
+    return 0.5 * std::erf((static_cast<double>(i) * cell - mean) / (deviation * std::sqrt(2)));
+  };
+  Eigen::VectorXd averages(cells);
+  for (Eigen::Index i = 0; i < cells; ++i) averages[i] = (below(i + 1) - below(i)) / cell;
+  return averages;
+}
+
+void add_separable(const Gaussian& gaussian, const Rectangle& domain, DensityGrid& sum) {
+  const Eigen::Vector2d mean_m = gaussian.mean_m - domain.origin_m;
+  const Eigen::Vector2d deviation_m = gaussian.covariance_m2.diagonal().cwiseSqrt();
+  sum += gaussian.weight *
+         averages_along(mean_m.x(), deviation_m.x(), domain.size_m.x(), sum.rows()) *
+         averages_along(mean_m.y(), deviation_m.y(), domain.size_m.y(), sum.cols()).transpose();
+}
+
+/// One with correlation, averaged over 4 × 4 points of each cell.
+void add_correlated(const Gaussian& gaussian, const Rectangle& domain, DensityGrid& sum) {
   constexpr int kPoints = 4;
   const Eigen::Vector2d step(domain.size_m.x() / static_cast<double>(kPoints * sum.rows()),
                              domain.size_m.y() / static_cast<double>(kPoints * sum.cols()));
@@ -96,7 +115,13 @@ DensityGrid density_picture(const TargetDensity& target, const DensityGrid& maps
                             const Rectangle& domain) {
   DensityGrid sum = maps;
   sum.array() += target.uniform_weight / (domain.size_m.x() * domain.size_m.y());
-  for (const Gaussian& gaussian : target.gaussians) add_gaussian(gaussian, domain, sum);
+  for (const Gaussian& gaussian : target.gaussians) {
+    if (gaussian.covariance_m2(0, 1) == 0) {
+      add_separable(gaussian, domain, sum);
+    } else {
+      add_correlated(gaussian, domain, sum);
+    }
+  }
   if (!target.keep_outs.empty()) {
     sum = sum.cwiseProduct(shares_of(free_area(domain, target.keep_outs), domain, sum)).eval();
   }

@@ -31,7 +31,8 @@ class RasterPicture {
 
 /// Σ of the target's parts [1/m²], before the division by its mass. `maps` holds the weighted
 /// densities of the maps. The edges of regions and keep-outs are exact along x and sampled eight
-/// times a cell along y; Gaussians are averages of 4 × 4 points.
+/// times a cell along y; Gaussians are exact
+/// without correlation, with it averages of 4 × 4 points.
 DensityGrid density_picture(const TargetDensity& target, const DensityGrid& maps,
                             const Rectangle& domain);
 

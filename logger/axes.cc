@@ -109,7 +109,12 @@ Axis named_axis(const std::string& title, std::vector<std::string> names) {
 
 std::vector<AxisMark> marks(const Axis& axis, int count) {
   if (!axis.names.empty()) return named_marks(axis);
-  return axis.scale == Scale::kLinear ? linear_marks(axis, count) : log_marks(axis);
+  if (axis.scale == Scale::kLinear) return linear_marks(axis, count);
+  std::vector<AxisMark> result = log_marks(axis);
+  const auto labelled = std::count_if(result.begin(), result.end(),
+                                      [](const AxisMark& mark) { return !mark.label.empty(); });
+  // Over less than about half a decade round steps say more than powers of ten.
+  return labelled >= 3 ? result : linear_marks(axis, count);
 }
 
 Plot::Plot(Svg& svg, const Box& area, Axis x, Axis y)

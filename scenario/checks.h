@@ -27,6 +27,9 @@ class Checks {
   /// where each is sound by itself: one mistake is one problem.
   bool sound(const std::string& path) const;
 
+  /// Whether nothing is wrong anywhere.
+  bool nothing_found() const { return findings_.empty(); }
+
   /// A field that nobody could read is not missing, nor is one in a block that nobody could read.
   void missing(const std::string& path, const std::string& what, std::string remedy);
 

@@ -53,7 +53,7 @@ class TargetCompiler {
       map(written_.maps(i), indexed("target.maps", i));
     }
     if (checks_.sound("target")) mass();
-    if (!checks_.sound("target")) return {};
+    if (!checks_.nothing_found()) return {};
     const DensityGrid picture = density_picture(target_, maps_, domain_);
     const double scale = domain_.size_m.prod() / sum_.values(0, 0);
     return CompiledTarget{normalized(sum_).values, scale * picture};

@@ -14,8 +14,9 @@ struct CompiledTarget {
   DensityGrid density;        ///< in multiples of the uniform density, for people
 };
 
-/// Integrates the target and reads its maps, or reports what only that shows: maps that cannot be
-/// used, parts of which nothing is left, too little mass, a μ that is not exact enough.
+/// Integrates the target and reads its maps; nothing if anything in the scenario is wrong. Reports
+/// what only that shows: maps that cannot be used, parts of which nothing is left, too little mass,
+/// a μ that is not exact enough.
 /// @pre validate() found nothing wrong with domain, basis and target
 std::optional<CompiledTarget> compile_target(const proto::Scenario& scenario, Checks& checks);
 
