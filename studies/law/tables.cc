@@ -107,7 +107,7 @@ const Ladder kLadders[] = {
 };
 
 void print_ladder(const Ladder& ladder, const Points& points) {
-  std::printf("| %s | start | φ² against that of %s | left within 15 s | mean speed [m/s] "
+  std::printf("| %s | start | φ² against its value at %s | left within 15 s | mean speed [m/s] "
               "| share of time at the edge |\n|---|---|---|---|---|---|\n",
               ladder.title.c_str(), ladder.usual.c_str());
   for (const StudyRuns& runs : points) {
@@ -125,8 +125,8 @@ void print_ladder(const Ladder& ladder, const Points& points) {
 }
 
 Panel panel_of(const Ladder& ladder, const Points& points) {
-  Panel panel{"φ² against that of " + ladder.usual, range_axis("", "", 0, 1),
-              log_axis("ratio", 0.5, 3), {}, {}};
+  Panel panel{"φ²(2000 s) against its value at " + ladder.usual, range_axis("", "", 0, 1),
+              log_axis("ratio", 0.7, 1.6), {}, {}};
   double low = 1e300, high = 0;
   for (std::size_t i = 0; i < ladder.starts.size(); ++i) {
     Curve curve{agent_color(static_cast<AgentId>(i)), {}};
