@@ -101,8 +101,8 @@ void RasterPicture::add_row(int row, std::span<const double> values) {
                      domain_.size_m.x(), mass_.rows(),
                      [&](Eigen::Index i, double length) { along[i] += value * length; });
   }
-  for_each_overlap(low.y() + row * cell_m.y(), low.y() + (row + 1) * cell_m.y(),
-                   domain_.size_m.y(), mass_.cols(),
+  for_each_overlap(low.y() + row * cell_m.y(), low.y() + (row + 1) * cell_m.y(), domain_.size_m.y(),
+                   mass_.cols(),
                    [&](Eigen::Index j, double length) { mass_.col(j) += length * along; });
 }
 

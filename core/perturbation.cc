@@ -49,7 +49,8 @@ Eigen::Vector2d perturbation(const ControlLaw& law, double dt_s, double epsilon,
   const Eigen::Vector2d v = steepest_bend(difference, spread), w(-v.y(), v.x());
   const double along_v = share_along(epsilon, mean + spread, field.gradient.dot(v));
   const double along_w = share_along(epsilon, mean - spread, field.gradient.dot(w));
-  return noise_mps + greatest_push_mps(law, dt_s) * (along_v * eta.dot(v) * v + along_w * eta.dot(w) * w);
+  return noise_mps +
+         greatest_push_mps(law, dt_s) * (along_v * eta.dot(v) * v + along_w * eta.dot(w) * w);
 }
 
 }  // namespace ergocast

@@ -15,7 +15,8 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
   for (const Eigen::Vector2d& start_m : mission_.starts_m) {
     const Author author{static_cast<AgentId>(agents_.size()), 1};
     table_.add_row(author);
-    agents_.push_back({author, start_m, {0, 0}, {0, 0}, BasisAt(start_m, mission_.domain, mission_.basis)});
+    agents_.push_back(
+        {author, start_m, {0, 0}, {0, 0}, BasisAt(start_m, mission_.domain, mission_.basis)});
   }
 }
 

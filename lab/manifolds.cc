@@ -7,7 +7,7 @@
 namespace ergocast::lab {
 namespace {
 
-constexpr double kOnIt = 1e-9;         // of the sides
+constexpr double kOnIt = 1e-9;  // of the sides
 constexpr double kEscapedShare = 0.01;
 
 bool near(double a, double b) { return std::abs(a - b) <= kOnIt; }
@@ -17,7 +17,8 @@ std::vector<Manifold> lines_at(const Eigen::Vector2d& s, const Eigen::Vector2d& 
   std::vector<Manifold> lines;
   const Eigen::Vector2d along[] = {{1, 0}, {0, 1}};
   for (int axis = 0; axis < 2; ++axis) {
-    if (near(s[axis], 0) || near(s[axis], 1)) lines.push_back({ManifoldKind::kEdge, x_m, along[axis]});
+    if (near(s[axis], 0) || near(s[axis], 1))
+      lines.push_back({ManifoldKind::kEdge, x_m, along[axis]});
     if (near(s[axis], 0.5)) lines.push_back({ManifoldKind::kMidline, x_m, along[axis]});
   }
   const double r = std::sqrt(0.5);
@@ -28,7 +29,8 @@ std::vector<Manifold> lines_at(const Eigen::Vector2d& s, const Eigen::Vector2d& 
 
 ManifoldKind crossing_of(const std::vector<Manifold>& lines) {
   const auto count = [&lines](ManifoldKind kind) {
-    return std::count_if(lines.begin(), lines.end(), [&](const Manifold& m) { return m.kind == kind; });
+    return std::count_if(lines.begin(), lines.end(),
+                         [&](const Manifold& m) { return m.kind == kind; });
   };
   if (count(ManifoldKind::kEdge) == 2) return ManifoldKind::kCorner;
   if (count(ManifoldKind::kMidline) == 2) return ManifoldKind::kCenter;

@@ -56,9 +56,10 @@ void fill_constants(Message& message) {
   }
 }
 
-/// What the length scale at which agents let go of each other and of symmetry lines is of the shorter
-/// side; and of u_max, what the contraction takes at most.
-constexpr double kLetGoShare = 0.01, kContractionShare = 0.01;
+/// How far a push is to carry, as a share of the shorter side.
+constexpr double kPushShare = 0.01;
+/// What the contraction takes of u_max, at most.
+constexpr double kContractionShare = 0.01;
 constexpr double kFloorOfCeiling = 0.05;
 constexpr double kMostIntensity = 1e6;
 
@@ -70,8 +71,8 @@ void fill_law(const Rectangle& domain, proto::Law& law) {
   }
   const double side_m = domain.size_m.minCoeff();
   if (!(law.u_max_mps() > 0) || !(side_m > 0) || !domain.size_m.allFinite()) return;
-  // The diffusion that crosses the length kLetGoShare · side in the time the input needs for it.
-  const double ceiling = std::sqrt(law.u_max_mps() * kLetGoShare * side_m);
+  // The diffusion that crosses this length in the time the input needs for it.
+  const double ceiling = std::sqrt(law.u_max_mps() * kPushShare * side_m);
   if (!law.has_noise_intensity()) law.set_noise_intensity(kFloorOfCeiling * ceiling);
   if (!law.has_noise_ceiling() && law.perturbation() == proto::Law::ADAPTIVE) {
     law.set_noise_ceiling(std::clamp(law.noise_intensity(), ceiling, kMostIntensity));

@@ -144,8 +144,10 @@ class Validator {
     step("law.u_max_mps", law.u_max_mps(), scenario_.time().dt_s(), "u_max_mps · dt_s");
     step("law.noise_intensity", law.noise_intensity(), std::sqrt(scenario_.time().dt_s()),
          "noise_intensity · sqrt(dt_s)");
-    if (sound("law.noise_intensity")) step("law.noise_ceiling", law.noise_ceiling(), std::sqrt(scenario_.time().dt_s()),
-         "noise_ceiling · sqrt(dt_s)");
+    if (sound("law.noise_intensity")) {
+      step("law.noise_ceiling", law.noise_ceiling(), std::sqrt(scenario_.time().dt_s()),
+           "noise_ceiling · sqrt(dt_s)");
+    }
     ceiling();
     contraction();
   }

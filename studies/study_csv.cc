@@ -45,8 +45,10 @@ std::vector<StudyRuns> read_study(const std::filesystem::path& file) {
   std::vector<StudyRuns> all;
   while (std::getline(stream, line)) {
     std::vector<std::string> cells = cells_of(line);
-    if (cells.size() != header.size()) throw std::runtime_error(file.string() + ": has a torn line");
-    const std::vector<std::string> name(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(names));
+    if (cells.size() != header.size())
+      throw std::runtime_error(file.string() + ": has a torn line");
+    const std::vector<std::string> name(cells.begin(),
+                                        cells.begin() + static_cast<std::ptrdiff_t>(names));
     if (all.empty() || all.back().names != name) all.push_back({name, {}});
     for (std::size_t i = names; i < cells.size(); ++i) {
       all.back().columns[header[i]].push_back(number_of(cells[i]));

@@ -57,9 +57,10 @@ double mean(const std::vector<double>& values) {
 // ---- the laws ----
 
 void print_laws(const Points& ours, const Points& papers, const StudyRuns& classical) {
-  std::printf("| four agents start | runs | φ²(2000 s), default | against classical from random starts "
-              "| φ²(2000 s), the paper's constants | the paper's against the default |\n"
-              "|---|---|---|---|---|---|\n");
+  std::printf(
+      "| four agents start | runs | φ²(2000 s), default | against classical from random starts "
+      "| φ²(2000 s), the paper's constants | the paper's against the default |\n"
+      "|---|---|---|---|---|---|\n");
   for (const StudyRuns& runs : ours) {
     const std::string& start = runs.names.front();
     std::printf("| %s | %zu | %.3g | %s |", start.c_str(), runs.of(kMetric).size(),
@@ -77,8 +78,9 @@ void print_laws(const Points& ours, const Points& papers, const StudyRuns& class
 }
 
 void print_escapes(const Points& ours, const Points& papers) {
-  std::printf("| start | agents | within 15 s | median [s] | 99 %% within [s] | last [s] "
-              "| the paper's constants: within 15 s | median [s] |\n|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| start | agents | within 15 s | median [s] | 99 %% within [s] | last [s] "
+      "| the paper's constants: within 15 s | median [s] |\n|---|---|---|---|---|---|---|---|\n");
   for (const StudyRuns& theirs : papers) {
     const std::string& start = theirs.names.front();
     const std::vector<double> fast = named(ours, start).escape_times_s(),
@@ -107,9 +109,10 @@ const Ladder kLadders[] = {
 };
 
 void print_ladder(const Ladder& ladder, const Points& points) {
-  std::printf("| %s | start | φ² against its value at %s | left within 15 s | mean speed [m/s] "
-              "| share of time at the edge |\n|---|---|---|---|---|---|\n",
-              ladder.title.c_str(), ladder.usual.c_str());
+  std::printf(
+      "| %s | start | φ² against its value at %s | left within 15 s | mean speed [m/s] "
+      "| share of time at the edge |\n|---|---|---|---|---|---|\n",
+      ladder.title.c_str(), ladder.usual.c_str());
   for (const StudyRuns& runs : points) {
     const std::vector<double> times_s = runs.escape_times_s();
     char left[32] = "";
@@ -125,8 +128,11 @@ void print_ladder(const Ladder& ladder, const Points& points) {
 }
 
 Panel panel_of(const Ladder& ladder, const Points& points) {
-  Panel panel{"φ²(2000 s) against its value at " + ladder.usual, range_axis("", "", 0, 1),
-              log_axis("ratio", 0.7, 1.6), {}, {}};
+  Panel panel{"φ²(2000 s) against its value at " + ladder.usual,
+              range_axis("", "", 0, 1),
+              log_axis("ratio", 0.7, 1.6),
+              {},
+              {}};
   double low = 1e300, high = 0;
   for (std::size_t i = 0; i < ladder.starts.size(); ++i) {
     Curve curve{agent_color(static_cast<AgentId>(i)), {}};
@@ -157,8 +163,9 @@ void draw_ladder(const Ladder& ladder, const Points& points, const fs::path& ima
 // ---- teams of other sizes, and the uniform target ----
 
 void print_sizes(const fs::path& folder) {
-  std::printf("| agents | φ²(2000 s), default | against constant noise | against classical |\n"
-              "|---|---|---|---|\n");
+  std::printf(
+      "| agents | φ²(2000 s), default | against constant noise | against classical |\n"
+      "|---|---|---|---|\n");
   for (const char* size : {"1", "2", "8", "16"}) {
     const auto runs = [&](const std::string& law) {
       return read_study(folder / ("size-" + law + "-" + size) / "study.csv").front();
@@ -182,7 +189,9 @@ void print_uniform(const Points& points) {
 }
 
 void run(const fs::path& folder, const fs::path& images) {
-  const auto study = [&](const std::string& name) { return read_study(folder / name / "study.csv"); };
+  const auto study = [&](const std::string& name) {
+    return read_study(folder / name / "study.csv");
+  };
   const Points ours = study("default"), papers = study("paper");
   print_laws(ours, papers, study("classical").front());
   print_escapes(ours, papers);

@@ -76,8 +76,8 @@ TEST(Perturbation, FadesAsTheFieldAcrossGrowsBeyondEpsilon) {
     return intensities(field({part, 1e-3}, -4e-7, 0, 1e-7))(0, 0);
   };
   EXPECT_NEAR(across(kEpsilon), std::sqrt((kFloor * kFloor + kCeiling * kCeiling) / 2), 1e-12);
-  EXPECT_NEAR(across(3 * kEpsilon),
-              std::sqrt(0.9 * kFloor * kFloor + 0.1 * kCeiling * kCeiling), 1e-12);
+  EXPECT_NEAR(across(3 * kEpsilon), std::sqrt(0.9 * kFloor * kFloor + 0.1 * kCeiling * kCeiling),
+              1e-12);
   EXPECT_NEAR(across(1e4 * kEpsilon), kFloor, 1e-5);
 }
 
@@ -149,7 +149,8 @@ TEST(Perturbation, SpreadsLikeItsCeilingOverManyPushes) {
       const auto push = static_cast<std::uint64_t>(n / push_ticks(adaptive(), kDt_s));
       x_m += kDt_s * perturbation(adaptive(), kDt_s, kEpsilon, ridge,
                                   normal_pair(1, Purpose::kPerturbation, walk, step),
-                                  normal_pair(1, Purpose::kPush, walk, push)).x();
+                                  normal_pair(1, Purpose::kPush, walk, push))
+                         .x();
     }
     square_m2 += x_m * x_m / kWalks;
   }

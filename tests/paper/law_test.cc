@@ -16,7 +16,8 @@ namespace {
 constexpr double kError = 1e-9;
 
 Mission mission_from(const std::string& start, std::uint64_t seed = 1) {
-  const auto file = std::filesystem::path(ERGOCAST_SOURCE_DIR) / "studies/law" / (start + ".textproto");
+  const auto file =
+      std::filesystem::path(ERGOCAST_SOURCE_DIR) / "studies/law" / (start + ".textproto");
   Overrides overrides;
   overrides.seed = seed;
   return std::get<Scenario>(Scenario::load(file, overrides)).mission();
@@ -33,7 +34,8 @@ double last_escape_s(const Mission& mission, double limit_s) {
   while (team.t_s() < limit_s) {
     team.step();
     for (std::size_t i = 0; i < team.size(); ++i) {
-      if (held_by[i].distance_m(team.x_m(i)) > lab::escape_distance_m(mission.domain)) free[i] = true;
+      if (held_by[i].distance_m(team.x_m(i)) > lab::escape_distance_m(mission.domain))
+        free[i] = true;
     }
     if (std::count(free.begin(), free.end(), true) == static_cast<std::ptrdiff_t>(team.size())) {
       return team.t_s();
@@ -53,7 +55,8 @@ TEST_P(DefaultLaw, FreesEveryAgentWithinAMinute) {
     ASSERT_LE(time_s, 60) << "seed " << mission.seed;
     if (time_s <= 15) ++within_15_s;
   }
-  EXPECT_GT(studies::least_probability(kSeeds, kError), 0.96) << "of a team that all leave within 60 s";
+  EXPECT_GT(studies::least_probability(kSeeds, kError), 0.96)
+      << "of a team that all leave within 60 s";
   EXPECT_GT(static_cast<double>(within_15_s) / kSeeds - studies::dkw_distance(kSeeds, kError), 0.8)
       << "of a team that all leave within 15 s";
 }
