@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/step_floor.h"
-#include "lab/study_run.h"
+#include "studies/study_run.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::bench {
@@ -36,7 +36,7 @@ void report(benchmark::State& state) {
 
 void StudyRun(benchmark::State& state) {
   for (auto _ : state) {
-    const lab::StudyFigures figures = lab::fly_without_messages(mission());
+    const studies::StudyFigures figures = studies::fly_without_messages(mission());
     benchmark::DoNotOptimize(figures.metric);
   }
   report(state);

@@ -9,8 +9,8 @@
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
 #include "cli/workers.h"
-#include "lab/study_page.h"
-#include "lab/study_run.h"
+#include "studies/study_page.h"
+#include "studies/study_run.h"
 #include "logger/run_record.h"
 #include "runtime/node.h"
 
@@ -48,9 +48,9 @@ class Campaign {
       : points_(points), missing_(std::move(missing)), directory_(directory) {}
 
   void fly(int processes) {
-    Jobs jobs = jobs_with_results<lab::StudyFigures>(
+    Jobs jobs = jobs_with_results<studies::StudyFigures>(
         [this](std::uint64_t job) { return fly_one(missing_[job]); },
-        [this](std::uint64_t job, const lab::StudyFigures& figures) {
+        [this](std::uint64_t job, const studies::StudyFigures& figures) {
           take(missing_[job], figures);
         });
     jobs.count = missing_.size();
@@ -72,12 +72,12 @@ class Campaign {
   const std::optional<std::string>& problem() const { return problem_; }
 
  private:
-  lab::StudyFigures fly_one(const Run& run) const {
+  studies::StudyFigures fly_one(const Run& run) const {
     const Scenario scenario = points_.scenarios[run.first].with_seed(run.second);
-    return lab::fly_study_run(scenario.plan(), decode_plan);
+    return studies::fly_study_run(scenario.plan(), decode_plan);
   }
 
-  void take(const Run& run, const lab::StudyFigures& figures) {
+  void take(const Run& run, const studies::StudyFigures& figures) {
     if (!figures.complete) return fail(run, "the mission did not come to its last tick");
     ++flown_;
     if (!problem_) problem_ = directory_.add({run.first, figures});
@@ -85,7 +85,7 @@ class Campaign {
 
   void fail(const Run& run, const std::string& how) {
     if (++failed_ > kMostFailuresShown) return;
-    const lab::Study& study = points_.identity.study;
+    const studies::Study& study = points_.identity.study;
     progress_.say(name_of(study.points[run.first], study) + ", seed " + std::to_string(run.second) +
                   ": " + how);
   }
@@ -132,10 +132,10 @@ std::string command_of(const StudyOptions& options) {
 std::optional<std::string> show_results(const StudyIdentity& identity,
                                         const StudyDirectory& directory,
                                         const StudyOptions& options) {
-  const auto summaries = lab::summarize(identity.study, directory.rows());
-  std::printf("%s", lab::study_text(identity.study, summaries).c_str());
+  const auto summaries = studies::summarize(identity.study, directory.rows());
+  std::printf("%s", studies::study_text(identity.study, summaries).c_str());
   return write_file(options.out / "report.html",
-                    lab::study_page({identity.study, version(), command_of(options)}, summaries));
+                    studies::study_page({identity.study, version(), command_of(options)}, summaries));
 }
 
 /// Where everything is, and how to go on if something is missing.

@@ -35,7 +35,7 @@ std::string said(const fs::path& path, const std::string& problem) {
 Json to_json(const StudyIdentity& identity) {
   Json points = Json::array();
   for (std::size_t i = 0; i < identity.study.points.size(); ++i) {
-    const lab::StudyPoint& point = identity.study.points[i];
+    const studies::StudyPoint& point = identity.study.points[i];
     points.push_back({{"scenario", point.scenario},
                       {"values", point.values},
                       {"agents", point.agents},
@@ -88,7 +88,7 @@ std::optional<std::string> objection(const fs::path& folder, const Json& identit
   return said(folder, why);
 }
 
-bool before(const lab::StudyRow& a, const lab::StudyRow& b) {
+bool before(const studies::StudyRow& a, const studies::StudyRow& b) {
   return std::pair(a.point, a.figures.seed) < std::pair(b.point, b.figures.seed);
 }
 
@@ -145,12 +145,12 @@ std::optional<std::string> StudyDirectory::read_rows() {
 
 std::vector<std::pair<std::size_t, std::uint64_t>> StudyDirectory::done() const {
   std::vector<std::pair<std::size_t, std::uint64_t>> runs;
-  for (const lab::StudyRow& row : rows_) runs.emplace_back(row.point, row.figures.seed);
+  for (const studies::StudyRow& row : rows_) runs.emplace_back(row.point, row.figures.seed);
   std::sort(runs.begin(), runs.end());
   return runs;
 }
 
-std::optional<std::string> StudyDirectory::add(const lab::StudyRow& row) {
+std::optional<std::string> StudyDirectory::add(const studies::StudyRow& row) {
   const off_t end = lseek(file_, 0, SEEK_END);
   const std::string line = table_.line(row) + '\n';
   errno = 0;
@@ -167,7 +167,7 @@ std::optional<std::string> StudyDirectory::add(const lab::StudyRow& row) {
 std::optional<std::string> StudyDirectory::sort() {
   std::sort(rows_.begin(), rows_.end(), before);
   std::string text = table_.header() + '\n';
-  for (const lab::StudyRow& row : rows_) text += table_.line(row) + '\n';
+  for (const studies::StudyRow& row : rows_) text += table_.line(row) + '\n';
   return write_file(folder_ / kTableFile, text);
 }
 

@@ -11,13 +11,13 @@
 #include <variant>
 #include <vector>
 
-#include "lab/study_table.h"
+#include "studies/study_table.h"
 
 namespace ergocast::cli {
 
 /// A study and what its points are compiled to, which tells two studies of equal names apart.
 struct StudyIdentity {
-  lab::Study study;
+  studies::Study study;
   std::vector<std::string> plan_hashes;  ///< one a point
   std::string version;
 };
@@ -34,12 +34,12 @@ class StudyDirectory {
   StudyDirectory& operator=(const StudyDirectory&) = delete;
   ~StudyDirectory();
 
-  const std::vector<lab::StudyRow>& rows() const { return rows_; }
+  const std::vector<studies::StudyRow>& rows() const { return rows_; }
   /// The runs of rows(): point and seed, ascending.
   std::vector<std::pair<std::size_t, std::uint64_t>> done() const;
 
   /// A row more, in the file at once and whole. What is wrong, if it cannot be written.
-  std::optional<std::string> add(const lab::StudyRow& row);
+  std::optional<std::string> add(const studies::StudyRow& row);
   /// Puts rows and file in the order of points and seeds. What is wrong, if it cannot be written.
   std::optional<std::string> sort();
 
@@ -48,9 +48,9 @@ class StudyDirectory {
   std::optional<std::string> read_rows();
 
   std::filesystem::path folder_;
-  lab::StudyTable table_;
+  studies::StudyTable table_;
   int lock_ = -1, file_ = -1;
-  std::vector<lab::StudyRow> rows_;
+  std::vector<studies::StudyRow> rows_;
 };
 
 }  // namespace ergocast::cli

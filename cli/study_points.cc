@@ -120,7 +120,7 @@ class Compiler {
 
   void add(const Scenario& scenario, const std::vector<FieldValue>& fields,
            const std::filesystem::path& file) {
-    lab::StudyPoint point;
+    studies::StudyPoint point;
     point.scenario = scenario.name();
     for (const FieldValue& field : fields) point.values.push_back(field.value);
     point.agents = static_cast<int>(scenario.mission().starts_m.size());

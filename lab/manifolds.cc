@@ -39,11 +39,6 @@ ManifoldKind crossing_of(const std::vector<Manifold>& lines) {
 
 }  // namespace
 
-const char* to_string(ManifoldKind kind) {
-  constexpr const char* kNames[] = {"edge", "midline", "diagonal", "corner", "center", "crossing"};
-  return kNames[static_cast<int>(kind)];
-}
-
 double Manifold::distance_m(const Eigen::Vector2d& x_m) const {
   const Eigen::Vector2d off_m = x_m - point_m;
   return normal.isZero() ? off_m.norm() : std::abs(off_m.dot(normal));

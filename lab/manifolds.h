@@ -16,7 +16,6 @@ enum class ManifoldKind {
   kCenter,
   kCrossing,  ///< of an edge and a midline
 };
-const char* to_string(ManifoldKind kind);
 
 struct Manifold {
   ManifoldKind kind;

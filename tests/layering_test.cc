@@ -56,7 +56,7 @@ const std::vector<Rule> kRules = {
     {"sim/main.cc", {"sim", "scenario", "runtime"}, {kLog}},
     {"logger/main.cc", {"logger", "scenario", "runtime", "lcmtypes"}, {kLcm, kLog, kFiles, kSystem}},
     {"cli",
-     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "cli"},
+     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     {"studies", {"core", "scenario", "logger", "lab", "studies"}, {kFiles}},
 };

@@ -1,4 +1,4 @@
-#include "lab/study_measure.h"
+#include "studies/study_measure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "core/require.h"
 #include "logger/slope.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -45,7 +45,7 @@ double distance_to_edge_m(const Eigen::Vector2d& x_m, const Rectangle& domain) {
 
 StudyMeasure::StudyMeasure(const Mission& mission)
     : mission_(mission),
-      escape_distance_m_(escape_distance_m(mission.domain)),
+      escape_distance_m_(lab::escape_distance_m(mission.domain)),
       at_edge_m_(kAtEdgeShare * mission.domain.size_m.minCoeff()),
       ladder_(ladder_ticks(mission.timing.dt_s, mission.timing.tick_count - 1)),
       decade_(decade_ticks(mission.timing.tick_count - 1)) {
@@ -57,7 +57,7 @@ StudyMeasure::StudyMeasure(const Mission& mission)
   figures_.agents = static_cast<std::int32_t>(mission.starts_m.size());
   figures_.escape_time_s.fill(kNone);
   for (std::size_t i = 0; i < mission.starts_m.size(); ++i) {
-    manifolds_.push_back(manifold_at(mission.starts_m[i], mission.domain));
+    manifolds_.push_back(lab::manifold_at(mission.starts_m[i], mission.domain));
     if (manifolds_.back()) figures_.escape_time_s[i] = kNever;
   }
 }
@@ -113,4 +113,4 @@ StudyFigures StudyMeasure::figures() const {
   return figures;
 }
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "lab/study_summary.h"
+#include "studies/study_summary.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 
 struct StudyFacts {
   const Study& study;
@@ -20,4 +20,4 @@ std::string study_page(const StudyFacts& facts, const std::vector<PointSummary>&
 /// One line a point below a head.
 std::string study_text(const Study& study, const std::vector<PointSummary>& summaries);
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

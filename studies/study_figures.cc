@@ -1,15 +1,15 @@
-#include "lab/study_figures.h"
+#include "studies/study_figures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "lab/study_series.h"
+#include "studies/study_series.h"
 #include "logger/axes.h"
 #include "logger/markup.h"
 #include "logger/raster.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 constexpr double kWidth = 562, kHeight = 400, kWideWidth = 1130;
@@ -268,4 +268,4 @@ std::vector<Figure> study_figures(const Study& study, const Summaries& summaries
   return figures;
 }
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -1,4 +1,4 @@
-#include "lab/study_run.h"
+#include "studies/study_run.h"
 
 #include <algorithm>
 #include <ostream>
@@ -8,10 +8,10 @@
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "lab/ideal_team.h"
-#include "lab/study_measure.h"
+#include "studies/study_measure.h"
 #include "lab/swarm.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 int blocks_of(const Basis& basis) { return (basis.mode_count() + kBlockSize - 1) / kBlockSize; }
@@ -89,7 +89,7 @@ class Observer {
 
 StudyFigures fly_without_messages(const Mission& mission) {
   StudyMeasure measure(mission);
-  IdealTeam team(mission);
+  lab::IdealTeam team(mission);
   for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
     for (std::size_t i = 0; i < team.size(); ++i) measure.position(i, tick, team.x_m(i));
     team.step();
@@ -104,23 +104,23 @@ StudyFigures fly_without_messages(const Mission& mission) {
 StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
   const Mission mission = decode_plan(plan).value();
   Observer observer(mission);
-  Options options;
+  lab::Options options;
   options.plan.assign(plan.begin(), plan.end());
   options.decode_plan = decode_plan;
   options.agents = static_cast<int>(mission.starts_m.size());
   options.delivers = [&observer](const Message& message, int seat) {
-    if (seat == kLoggerSeat) observer.hear(message);
+    if (seat == lab::kLoggerSeat) observer.hear(message);
     return true;
   };
   std::ostream nowhere(nullptr);
-  Swarm(std::move(options), nowhere, nowhere).run();
+  lab::Swarm(std::move(options), nowhere, nowhere).run();
   return observer.figures();
 }
 
 StudyFigures fly_study_run(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
   const Mission mission = decode_plan(plan).value();
-  if (IdealTeam::stands_for(mission)) return fly_without_messages(mission);
+  if (lab::IdealTeam::stands_for(mission)) return fly_without_messages(mission);
   return fly_with_messages(plan, decode_plan);
 }
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

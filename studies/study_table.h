@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "lab/study_run.h"
+#include "studies/study_run.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 
 /// One combination of what is compared: a scenario, and a value for each varied field.
 struct StudyPoint {
@@ -56,4 +56,4 @@ class StudyTable {
               steps_ = 0;  // that have columns: of the largest team, the longest mission
 };
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -1,4 +1,4 @@
-#include "lab/study_table.h"
+#include "studies/study_table.h"
 
 #include <algorithm>
 #include <charconv>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 std::string text_of(double value) {
@@ -132,4 +132,4 @@ std::optional<StudyRow> StudyTable::parse(std::string_view line) const {
   return row;
 }
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

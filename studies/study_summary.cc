@@ -1,10 +1,10 @@
-#include "lab/study_summary.h"
+#include "studies/study_summary.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 using Runs = std::map<std::uint64_t, const StudyFigures*>;  // by seed
@@ -97,4 +97,4 @@ std::vector<PointSummary> summarize(const Study& study, const std::vector<StudyR
   return summaries;
 }
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

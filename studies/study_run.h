@@ -12,7 +12,7 @@
 #include "core/ids.h"
 #include "core/mission_follower.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 
 /// Times at which φ² is noted [s]: 1, 2, 5, 10 … 10⁷, as far as a mission goes.
 inline constexpr std::array<double, 22> kLadder_s = {1,   2,   5,   10,  20,  50,  100, 200,
@@ -32,7 +32,7 @@ struct StudyFigures {
   /// The power of t that fits φ² over the last decade of time (logger/slope.h), by 21 ticks evenly
   /// spaced in log t.
   double slope = 0;
-  /// When each agent was first farther than escape_distance_m() from the manifold_at() its start;
+  /// When each agent was first farther than escape_distance_m() from the manifold_at() its start:
   /// infinite if it never was, nan if the start lies on none.
   std::array<double, kMaxAgents> escape_time_s;
   /// ‖x − centre of contraction‖², over all agents and ticks.
@@ -51,4 +51,4 @@ StudyFigures fly_study_run(std::span<const std::byte> plan, const PlanDecoder& d
 StudyFigures fly_without_messages(const Mission& mission);
 StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecoder& decode_plan);
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

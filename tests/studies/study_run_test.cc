@@ -1,5 +1,5 @@
 // What a study notes of one mission.
-#include "lab/study_run.h"
+#include "studies/study_run.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cstring>
 #include <limits>
 
-#include "lab/study_measure.h"
+#include "studies/study_measure.h"
 #include "scenario/scenario.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 Scenario shipped(const std::string& name, double duration_s) {
@@ -174,4 +174,4 @@ TEST(StudyRun, DiffersBySeed) {
 }
 
 }  // namespace
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -6,13 +6,13 @@
 
 #include <vector>
 
-#include "lab/study_summary.h"
+#include "studies/study_summary.h"
 #include "logger/figures.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 
 /// φ² against the field, then φ² over time and the escapes of each series.
 /// @pre a summary for each point
 std::vector<Figure> study_figures(const Study& study, const std::vector<PointSummary>& summaries);
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "lab/study_table.h"
+#include "studies/study_table.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 
 /// Points that differ in one field only.
 struct StudySeries {
@@ -24,4 +24,4 @@ struct StudyLayout {
 
 StudyLayout layout_of(const Study& study);
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "lab/study_table.h"
+#include "studies/study_table.h"
 #include "logger/statistics.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 
 struct PointSummary {
   std::size_t runs = 0;
@@ -33,4 +33,4 @@ struct PointSummary {
 /// One a point; a point without runs has runs == 0 and nothing else.
 std::vector<PointSummary> summarize(const Study& study, const std::vector<StudyRow>& rows);
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -6,9 +6,9 @@
 
 #include "core/mission.h"
 #include "lab/manifolds.h"
-#include "lab/study_run.h"
+#include "studies/study_run.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 
 class StudyMeasure {
  public:
@@ -31,7 +31,7 @@ class StudyMeasure {
 
   const Mission& mission_;
   double escape_distance_m_, at_edge_m_;
-  std::vector<std::optional<Manifold>> manifolds_;
+  std::vector<std::optional<lab::Manifold>> manifolds_;
   std::vector<Tick> ladder_, decade_;  // first ticks at or after kLadder_s; those the slope is of
   std::vector<Tick> ticks_;            // all at which φ² is wanted, ascending
   std::vector<double> metrics_;        // φ² at ticks_
@@ -41,4 +41,4 @@ class StudyMeasure {
   std::int64_t positions_ = 0, at_edge_ = 0, commands_ = 0;
 };
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -1,15 +1,15 @@
 // A study's rows as text, and what they say together.
-#include "lab/study_table.h"
+#include "studies/study_table.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "lab/study_page.h"
-#include "lab/study_summary.h"
+#include "studies/study_page.h"
+#include "studies/study_summary.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -140,4 +140,4 @@ TEST(StudyText, NamesEveryPoint) {
 }
 
 }  // namespace
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

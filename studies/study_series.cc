@@ -1,4 +1,4 @@
-#include "lab/study_series.h"
+#include "studies/study_series.h"
 
 #include <algorithm>
 #include <charconv>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 /// The values of field `field` (−1: the scenarios), each once.
@@ -85,4 +85,4 @@ StudyLayout layout_of(const Study& study) {
   return layout;
 }
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies

@@ -1,4 +1,4 @@
-#include "lab/study_page.h"
+#include "studies/study_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <set>
 #include <span>
 
-#include "lab/study_figures.h"
+#include "studies/study_figures.h"
 #include "logger/html.h"
 #include "logger/markup.h"
 #include "logger/page.h"
 
-namespace ergocast::lab {
+namespace ergocast::studies {
 namespace {
 
 using Summaries = std::vector<PointSummary>;
@@ -215,4 +215,4 @@ std::string study_text(const Study& study, const Summaries& summaries) {
   return text;
 }
 
-}  // namespace ergocast::lab
+}  // namespace ergocast::studies
