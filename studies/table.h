@@ -1,4 +1,4 @@
-// A CSV file of `ergocast simulate --seeds … --out FILE`: one row a seed.
+// The CSV files that tables and figures are made of: numbers by column.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,24 @@
 
 namespace ergocast::studies {
 
-/// Numbers by column, in the order of the file. Throws std::runtime_error, which names the file, if
-/// it cannot be read, has no rows, or one of them failed.
 using Table = std::map<std::string, std::vector<double>>;
+
+/// A file of `ergocast simulate --seeds … --out FILE` or of a part of a study: numbers by column, in
+/// the order of the file. Throws std::runtime_error, which names the file, if it cannot be read, has
+/// no rows or a torn one, or if one of its missions failed.
 Table read_table(const std::filesystem::path& file);
+
+/// All runs of one point of a study, ascending by seed.
+struct StudyRuns {
+  std::vector<std::string> names;  ///< the scenario, then the values of the varied fields
+  Table columns;                   ///< what does not exist is nan
+
+  const std::vector<double>& of(const std::string& column) const { return columns.at(column); }
+  /// escape_time_<i>_s of all agents together, ascending; infinite where one did not escape.
+  std::vector<double> escape_times_s() const;
+};
+
+/// The study.csv of `ergocast study`, point by point in the order of the file. Throws as read_table().
+std::vector<StudyRuns> read_study(const std::filesystem::path& file);
 
 }  // namespace ergocast::studies

@@ -8,7 +8,7 @@
 #include "logger/figures.h"
 #include "logger/statistics.h"
 #include "studies/panels.h"
-#include "studies/study_csv.h"
+#include "studies/table.h"
 
 namespace ergocast::studies {
 namespace {
