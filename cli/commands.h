@@ -1,8 +1,10 @@
 // What `ergocast` can do, one function a command. Each returns the program's exit code.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +13,10 @@
 #include "scenario/scenario.h"
 
 namespace ergocast::cli {
+
+/// What the command line asks for; returns the program's exit code. A command that says what its
+/// options are (`add_…`) puts it here when it is the one that was typed.
+using Action = std::function<int()>;
 
 /// What `run` and `simulate` are told.
 struct MissionOptions {

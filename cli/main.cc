@@ -157,7 +157,7 @@ int parse_and_do(int argc, char** argv) {
   MissionOptions mission;
   std::filesystem::path path;
   bool print = false;
-  std::function<int()> action;
+  Action action;
 
   auto* run_command = app.add_subcommand("run", "Run a mission as processes over LCM on this host");
   add_mission_options(*run_command, mission);

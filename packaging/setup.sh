@@ -1,4 +1,5 @@
-# Sourced by ./run and ./test (bash): installs what is missing and builds $target of build/release.
+# Sourced by ./run and ./test (bash): installs what is missing of the packages in the lists $packages
+# of this folder, and builds $target of build/release.
 #   ERGOCAST_NO_INSTALL=1   never install anything
 #   ERGOCAST_CMAKE_ARGS     more arguments for the configuration, separated by spaces
 # All messages go to stderr. Exit code 3: the machine lacks something that only its owner can add.
@@ -19,7 +20,7 @@ quietly() {
 
 missing_packages() {
   local package
-  sed 's/#.*//' "$root/packaging/packages.txt" | while read -r package; do
+  cat "${packages[@]/#/$root/packaging/}" | sed 's/#.*//' | while read -r package; do
     [ -n "$package" ] || continue
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       printf '%s\n' "$package"
@@ -34,17 +35,17 @@ missing_tools() {
 }
 
 install_packages() {
-  local packages tools as_root=() install
-  mapfile -t packages < <(missing_packages)
-  [ "${#packages[@]}" -gt 0 ] || return 0
+  local missing tools as_root=() install
+  mapfile -t missing < <(missing_packages)
+  [ "${#missing[@]}" -gt 0 ] || return 0
 
   install=(env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends
-    "${packages[@]}")
-  local by_hand="  apt-get update && apt-get install -y --no-install-recommends ${packages[*]}"
+    "${missing[@]}")
+  local by_hand="  apt-get update && apt-get install -y --no-install-recommends ${missing[*]}"
   [ "$(id -u)" -eq 0 ] || as_root=(sudo)
 
   if [ "${ERGOCAST_NO_INSTALL:-0}" = 1 ] || ! command -v apt-get >/dev/null; then
-    say "Missing Debian packages, not installed here: ${packages[*]}"
+    say "Missing Debian packages, not installed here: ${missing[*]}"
     say "As root:"
     say "$by_hand"
     mapfile -t tools < <(missing_tools)
@@ -56,7 +57,7 @@ install_packages() {
     say "$by_hand"
     exit 3
   fi
-  say "Installing ${#packages[@]} Debian packages (and what they need): ${packages[*]}"
+  say "Installing ${#missing[@]} Debian packages (and what they need): ${missing[*]}"
   if ! quietly "${as_root[@]}" apt-get -qq update || ! quietly "${as_root[@]}" "${install[@]}"; then
     say "The installation failed. By hand, as root:"
     say "$by_hand"
