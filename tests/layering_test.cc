@@ -58,6 +58,9 @@ const std::vector<Rule> kRules = {
     {"cli",
      {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
+    // What a user copies: a process like the four, with its main beside it.
+    {"examples/driver", {"core", "examples"}, {}},
+    {"examples/driver/main.cc", {"examples", "scenario", "runtime"}, {kLog}},
     {"studies", {"core", "scenario", "logger", "lab", "studies"}, {kFiles}},
 };
 

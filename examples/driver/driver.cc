@@ -1,0 +1,120 @@
+#include "examples/driver/driver.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ergocast::example {
+
+Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan)
+    : run_(run),
+      incarnation_(incarnation),
+      speed_limit_mps_(speed_limit_mps),
+      follower_(std::move(decode_plan)) {}
+
+void Driver::receive(const Message& message, Instant now) {
+  if (finished_ || (run_ != 0 && header_of(message).run != run_)) return;
+  if (const auto* command = std::get_if<Command>(&message)) return on(*command);
+  if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
+  if (const auto* over = std::get_if<Stop>(&message)) stop(over->reason);
+}
+
+void Driver::on(const MissionPart& part, Instant now) {
+  run_ = part.header.run;
+  if (!follower_.receive(part)) return;
+  if (follower_.over()) return stop(follower_.reason());
+  if (!follower_.mission()) return;
+  if (follower_.mission()->timing.pace == Pace::kLockstep) {
+    failed_ = true;
+    return stop("the mission is in lockstep, which robots cannot be: give it pace: REALTIME");
+  }
+  take_roster();
+  if (running_ || follower_.state() != MissionState::kRunning) return;
+  running_ = true;
+  tick_ = part.header.tick;
+  next_tick_ = now;
+}
+
+/// Every member gets a robot. Here they are made where the plan says that they begin; yours stand
+/// somewhere already.
+void Driver::take_roster() {
+  std::map<AgentId, Author> members;
+  for (const RosterEntry& entry : follower_.roster()) {
+    if (entry.active_until < 0) members[entry.author.agent] = entry.author;
+  }
+  for (auto& [id, drive] : drives_) {
+    if (!members.contains(id)) drive.author = {};
+  }
+  for (const auto& [id, author] : members) {
+    const Robot robot(start_of(*follower_.mission(), id), speed_limit_mps_);
+    Drive& drive = drives_.try_emplace(id, Drive{author, robot}).first->second;
+    if (drive.author != author) drive.answered = -1;
+    drive.author = author;
+  }
+}
+
+void Driver::on(const Command& command) {
+  const auto at = drives_.find(command.header.sender);
+  if (at == drives_.end() || at->second.author.incarnation != command.header.incarnation) return;
+  Drive& drive = at->second;
+  if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
+  drive.answered = command.header.tick;
+  drive.robot.drive(command.velocity_mps.head<2>());
+}
+
+void Driver::advance(Instant now, Outbox& out) {
+  if (!running_ || finished_ || now < next_tick_) return;
+  const Timing& timing = follower_.mission()->timing;
+  if (said_ && tick_ < timing.tick_count) pass_tick();
+  say_where(out);
+  said_ = true;
+  // At the end the last state is repeated until the coordinator has ended the mission.
+  const auto period = seconds(timing.dt_s / timing.realtime_factor);
+  next_tick_ = std::max(next_tick_ + period, now);  // what was missed is not made up for
+}
+
+/// A robot never goes on for long without being told to.
+void Driver::pass_tick() {
+  const Timing& timing = follower_.mission()->timing;
+  for (auto& [id, drive] : drives_) {
+    const bool driven = drive.author.incarnation != 0;
+    const double age_s = static_cast<double>(tick_ - drive.answered) * timing.dt_s;
+    if (driven && drive.answered < tick_) ++missed_deadlines_;
+    if (!driven || age_s > timing.command_hold_s) drive.robot.drive({0, 0});
+    drive.robot.move(timing.dt_s);
+  }
+  ++tick_;
+}
+
+void Driver::say_where(Outbox& out) {
+  const Rectangle& domain = follower_.mission()->domain;
+  const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
+  auto drive = drives_.begin();
+  for (std::size_t part = 0; part < parts; ++part) {
+    WorldState state;
+    state.header = {run_, kWorld, incarnation_, sequencer_.next(Bus::kWorld), tick_};
+    state.roster_revision = follower_.revision();
+    state.missed_deadlines = missed_deadlines_;
+    state.part = static_cast<std::int32_t>(part);
+    state.parts = static_cast<std::int32_t>(parts);
+    for (; drive != drives_.end() && state.vehicle_count < kMaxVehiclesPerState; ++drive) {
+      Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(state.vehicle_count++)];
+      const auto& [id, one] = *drive;
+      vehicle.id = id;
+      vehicle.answered_tick = one.answered;
+      // Agents refuse a place outside of the domain; a robot that overshoots is at the edge.
+      vehicle.position_m << one.robot.position_m()
+                                .cwiseMax(domain.origin_m)
+                                .cwiseMin(domain.origin_m + domain.size_m), 0;
+      vehicle.velocity_mps << one.robot.velocity_mps(), 0;
+    }
+    out.push_back({Bus::kWorld, state});
+  }
+}
+
+void Driver::stop(std::string reason) {
+  finished_ = true;
+  reason_ = std::move(reason);
+  for (auto& [id, drive] : drives_) drive.robot.drive({0, 0});
+}
+
+}  // namespace ergocast::example

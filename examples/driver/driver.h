@@ -1,0 +1,70 @@
+// A driver in the place of the simulated world: it says where the robots are, and has them do what
+// the agents command. Copy this folder and replace robot.h; the rest may stay.
+//
+//   MISSION    → which robots take part, the tick's length, when the mission ends
+//   WORLD_STATE ← every dt: the tick, and where each robot is
+//   COMMAND_<id> → a velocity for one robot; it is held for `command_hold_s`, then the robot stops
+//
+// One driver speaks for all robots, from motion capture or from a gateway that collects their
+// positions. If it is started again it goes on at the tick that the coordinator names.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/ids.h"
+#include "core/messages.h"
+#include "core/mission_follower.h"
+#include "examples/driver/robot.h"
+
+namespace ergocast::example {
+
+class Driver {
+ public:
+  /// @param run              0: the first mission heard
+  /// @param speed_limit_mps  of the robots
+  Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan);
+
+  void receive(const Message& message, Instant now);
+  void advance(Instant now, Outbox& out);
+  Instant next_wakeup() const { return running_ && !finished_ ? next_tick_ : Instant::max(); }
+
+  /// Stops all robots and ends.
+  void stop(std::string reason);
+
+  bool finished() const { return finished_; }
+  bool failed() const { return failed_; }
+  const std::string& reason() const { return reason_; }
+  RunId run() const { return run_; }
+  Tick tick() const { return tick_; }
+  /// Ticks at which some robot had no command of that tick in time, summed over robots.
+  std::int64_t missed_deadlines() const { return missed_deadlines_; }
+  const Robot& robot(AgentId id) const { return drives_.at(id).robot; }
+
+ private:
+  struct Drive {
+    Author author;  ///< the agent that may command this robot; incarnation 0: nobody
+    Robot robot;
+    Tick answered = -1;  ///< newest tick that a command was for
+  };
+
+  void on(const MissionPart& part, Instant now);
+  void on(const Command& command);
+  void take_roster();
+  void pass_tick();
+  void say_where(Outbox& out);
+
+  RunId run_;
+  Incarnation incarnation_;
+  double speed_limit_mps_;
+  MissionFollower follower_;
+  Sequencer sequencer_;
+  std::map<AgentId, Drive> drives_;
+  bool running_ = false, said_ = false, finished_ = false, failed_ = false;
+  std::string reason_;
+  Tick tick_ = 0;
+  Instant next_tick_{};
+  std::int64_t missed_deadlines_ = 0;
+};
+
+}  // namespace ergocast::example

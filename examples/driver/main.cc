@@ -1,0 +1,49 @@
+// ergocast-example-driver: robots instead of the simulated world.
+#include <spdlog/spdlog.h>
+
+#include "examples/driver/driver.h"
+#include "runtime/event_loop.h"
+#include "runtime/node.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::example {
+namespace {
+
+int run(const NodeOptions& node, double speed_limit_mps) {
+  StopSignals signals;
+  Driver driver(node.run, random_identity(), speed_limit_mps, decode_plan);
+  auto opened = Transport::open(
+      node.url, node.run, {{Bus::kCommand, "COMMAND_.*|MISSION|STOP"}},
+      {.on_message = [&](const Message& message, AgentId) { driver.receive(message, now()); }});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    spdlog::error("{}", *problem);
+    return kExitUnavailable;
+  }
+  Transport& transport = *std::get<0>(opened);
+  spdlog::info("waiting for a mission on {}", node.url.base());
+
+  live(driver, transport, signals, [&] { driver.stop("the driver was told to stop"); },
+       [&] { transport.set_run(driver.run()); });
+  spdlog::log(driver.failed() ? spdlog::level::err : spdlog::level::info,
+              "finished at tick {}: {}; {} commands too late", driver.tick(), driver.reason(),
+              driver.missed_deadlines());
+  return driver.failed() ? kExitFailed : kExitDone;
+}
+
+}  // namespace
+}  // namespace ergocast::example
+
+int main(int argc, char** argv) {
+  using namespace ergocast;
+  CLI::App app("Example of a driver: wheeled robots in the place of ergocast-sim.",
+               "ergocast-example-driver");
+  NodeOptions node;
+  double speed_limit_mps = 30;
+  add_node_options(app, node);
+  app.add_option("--speed-limit", speed_limit_mps, "Of the robots [m/s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
+  set_up_logging("driver");
+  return example::run(node, speed_limit_mps);
+}

@@ -1,0 +1,25 @@
+#include "examples/driver/robot.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ergocast::example {
+namespace {
+
+constexpr double kTurnLimit_radps = 2;
+
+}  // namespace
+
+void Robot::move(double dt_s) {
+  const double wanted_heading_rad = std::atan2(wanted_mps_.y(), wanted_mps_.x());
+  const double error_rad = std::remainder(wanted_heading_rad - heading_rad_, 2 * M_PI);
+  const double turn_limit_rad = kTurnLimit_radps * dt_s;
+  heading_rad_ += std::clamp(error_rad, -turn_limit_rad, turn_limit_rad);
+  // Forwards only as far as it already looks where it is to go.
+  const double speed_mps =
+      std::min(wanted_mps_.norm(), speed_limit_mps_) * std::max(0.0, std::cos(error_rad));
+  velocity_mps_ = speed_mps * Eigen::Vector2d(std::cos(heading_rad_), std::sin(heading_rad_));
+  position_m_ += velocity_mps_ * dt_s;
+}
+
+}  // namespace ergocast::example

@@ -1,0 +1,129 @@
+// The example driver, driven by hand.
+#include "examples/driver/driver.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/team.h"
+
+namespace ergocast::example {
+namespace {
+
+using namespace test;
+
+constexpr double kSpeedLimit_mps = 5;
+
+Mission mission_of(Pace pace, double command_hold_s = 0.5) {
+  Mission mission = small_mission(2);
+  mission.timing.pace = pace;
+  mission.timing.command_hold_s = command_hold_s;
+  return mission;
+}
+
+/// A driver that has heard at 0 s that the mission of two agents runs.
+Driver running_driver(const Mission& mission) {
+  Driver driver(kRun, kWorldLife, kSpeedLimit_mps, decoder_of(mission));
+  driver.receive(mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
+  return driver;
+}
+
+WorldState state_at(Driver& driver, Instant now) {
+  const auto states = only<WorldState>(advance(driver, now));
+  EXPECT_EQ(states.size(), 1u);
+  return states.empty() ? WorldState{} : states.front();
+}
+
+TEST(ExampleDriver, SaysEachTickWhereItsRobotsAre) {
+  Driver driver = running_driver(mission_of(Pace::kRealtime));
+  const WorldState first = state_at(driver, at(0s));
+  EXPECT_EQ(first.header.tick, 0);
+  EXPECT_EQ(first.vehicle_count, 2);
+  EXPECT_EQ(first.vehicles[1].position_m, Eigen::Vector3d(200, 500, 0));
+  EXPECT_EQ(first.vehicles[1].answered_tick, -1);
+  EXPECT_EQ(driver.next_wakeup(), at(100ms));
+  EXPECT_TRUE(advance(driver, at(99ms)).empty());
+  driver.receive(command_of(1, 0, {4, 0}), at(99ms));
+  const WorldState second = state_at(driver, at(100ms));
+  EXPECT_EQ(second.header.tick, 1);
+  EXPECT_EQ(second.vehicles[1].answered_tick, 0);
+  EXPECT_NEAR(second.vehicles[1].position_m.x(), 200.4, 1e-9);
+  EXPECT_EQ(second.vehicles[1].velocity_mps, Eigen::Vector3d(4, 0, 0));
+  EXPECT_EQ(second.vehicles[0].position_m, first.vehicles[0].position_m) << "nobody moved it";
+  EXPECT_EQ(second.missed_deadlines, 1);
+}
+
+TEST(ExampleDriver, ObeysOnlyTheAgentOfTheRobotAndNothingOld) {
+  Driver driver = running_driver(mission_of(Pace::kRealtime));
+  advance(driver, at(0s));
+  advance(driver, at(100ms));
+  Command stranger = command_of(0, 1, {5, 0});
+  stranger.header.incarnation = 99;
+  driver.receive(stranger, at(101ms));
+  driver.receive(command_of(0, 2, {5, 0}), at(102ms));  // of a tick that is yet to come
+  EXPECT_EQ(state_at(driver, at(200ms)).vehicles[0].position_m.x(), 100);
+  driver.receive(command_of(0, 2, {5, 0}), at(201ms));
+  driver.receive(command_of(0, 1, {0, 0}), at(202ms));  // overtaken
+  EXPECT_NEAR(state_at(driver, at(300ms)).vehicles[0].position_m.x(), 100.5, 1e-9);
+}
+
+TEST(ExampleDriver, StopsARobotWhoseCommandsDoNotComeAnyMore) {
+  Driver driver = running_driver(mission_of(Pace::kRealtime, 0.25));
+  advance(driver, at(0s));
+  driver.receive(command_of(0, 0, {5, 0}), at(0s));
+  for (int tick = 1; tick <= 6; ++tick) {
+    const WorldState state = state_at(driver, at(tick * 100ms));
+    EXPECT_EQ(state.vehicles[0].velocity_mps.x(), tick <= 3 ? 5 : 0) << tick;
+  }
+}
+
+TEST(ExampleDriver, ARobotThatOvershootsIsSaidToBeAtTheEdge) {
+  Driver driver = running_driver(mission_of(Pace::kRealtime, 1000));
+  advance(driver, at(0s));
+  driver.receive(command_of(0, 0, {-5, 0}), at(0s));
+  WorldState state;
+  for (int tick = 1; tick <= 90; ++tick) {
+    driver.receive(command_of(0, tick - 1, {-1e6, 0}), at(tick * 1s));
+    state = state_at(driver, at(tick * 1s));
+    EXPECT_GE(state.vehicles[0].position_m.x(), 0);
+  }
+  EXPECT_LE(driver.robot(0).position_m().x(), 60) << "it turned round and drove";
+}
+
+TEST(ExampleDriver, GoesOnAtTheTickThatTheCoordinatorNames) {
+  Driver driver(kRun, kWorldLife, kSpeedLimit_mps, decoder_of(mission_of(Pace::kRealtime)));
+  MissionPart part = mission_part(7, MissionState::kRunning, roster_of(2));
+  part.header.tick = 41;
+  driver.receive(part, at(3s));
+  EXPECT_EQ(state_at(driver, at(3s)).header.tick, 41);
+  EXPECT_EQ(state_at(driver, at(3100ms)).header.tick, 42);
+}
+
+TEST(ExampleDriver, EndsWithTheMissionAndStopsItsRobots) {
+  Driver driver = running_driver(mission_of(Pace::kRealtime));
+  advance(driver, at(0s));
+  driver.receive(command_of(0, 0, {5, 0}), at(0s));
+  driver.receive(mission_part(2, MissionState::kEnded, roster_of(2), "mission complete"), at(1s));
+  EXPECT_TRUE(driver.finished());
+  EXPECT_FALSE(driver.failed());
+  EXPECT_EQ(driver.reason(), "mission complete");
+}
+
+TEST(ExampleDriver, RefusesAMissionInLockstep) {
+  Driver driver = running_driver(mission_of(Pace::kLockstep));
+  EXPECT_TRUE(driver.failed());
+  EXPECT_NE(driver.reason().find("REALTIME"), std::string::npos);
+}
+
+TEST(ExampleRobot, TurnsBeforeItDrivesAndNeverExceedsItsSpeed) {
+  Robot robot({0, 0}, kSpeedLimit_mps);
+  robot.drive({-100, 0});
+  robot.move(0.1);
+  EXPECT_EQ(robot.velocity_mps().norm(), 0) << "it looks the other way";
+  for (int i = 0; i < 40; ++i) {
+    robot.move(0.1);
+    EXPECT_LE(robot.velocity_mps().norm(), kSpeedLimit_mps * (1 + 1e-12));
+  }
+  EXPECT_NEAR(robot.velocity_mps().x(), -kSpeedLimit_mps, 1e-9);
+}
+
+}  // namespace
+}  // namespace ergocast::example

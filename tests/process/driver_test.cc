@@ -1,0 +1,44 @@
+// The example driver in the place of ergocast-sim, with everything else as it is.
+#include "tests/process/mission.h"
+
+namespace ergocast::test {
+namespace {
+
+class DrivenRobots : public ByHand {
+ protected:
+  /// The default mission by the clock, ten times as fast, for 30 s.
+  std::filesystem::path realtime_scenario() {
+    std::string text = text_of(scenario("realtime_factor: 10"));
+    text.replace(text.find("duration_s: 600"), 15, "duration_s: 30");
+    text.replace(text.find("LOCKSTEP"), 8, "REALTIME");
+    const auto file = folder_ / "robots.textproto";
+    std::ofstream(file) << text;
+    return file;
+  }
+};
+
+TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
+  std::filesystem::create_directory(out());
+  Program& logger = hand("ergocast-logger", {"--out", out()});
+  Program& driver = hand("ergocast-example-driver");
+  for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
+  Program& coordinator = hand("ergocast-coordinator", {realtime_scenario()});
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
+  EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  EXPECT_TRUE(driver.says("finished at tick 300: mission complete")) << driver.said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["ticks"], 300);
+}
+
+TEST_F(DrivenRobots, RefuseAMissionInLockstep) {
+  Program& driver = hand("ergocast-example-driver");
+  for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
+  Program& coordinator = hand("ergocast-coordinator", {scenario()});
+  EXPECT_EQ(wait_for(driver.child), 4) << driver.said();
+  EXPECT_TRUE(driver.says("give it pace: REALTIME")) << driver.said();
+  EXPECT_TRUE(coordinator.says("running")) << coordinator.said();
+}
+
+}  // namespace
+}  // namespace ergocast::test
