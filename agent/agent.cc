@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "core/noise.h"
 #include "core/require.h"
@@ -58,11 +59,11 @@ void Agent::on(const MissionPart& part, Instant now) {
   // Said by somebody else; or by one who has not heard of what came later, or will not be heard.
   if (part.revision >= follower_.revision()) mission_repeat_.reset();
   if (part.revision < follower_.revision()) plan_mission_repeat(now);
-  if (!follower_.receive(part)) return;
-  if (follower_.plan_unreadable()) {
-    return finish(true, "the mission plan is not readable by version " + identity_.version +
-                            ": run the same version everywhere");
-  }
+  const std::int64_t foreign_plans = follower_.foreign_plans();
+  const bool news = follower_.receive(part);
+  if (follower_.foreign_plans() != foreign_plans) count_refused(Refusal::kRange);
+  if (!news) return;
+  if (follower_.plan_problem()) return finish(true, *follower_.plan_problem());
   if (follower_.over()) {
     return finish(follower_.state() == MissionState::kFailed, follower_.reason());
   }
@@ -352,10 +353,26 @@ void Agent::publish_status(Instant now, Outbox& out) {
   status.missed_ticks = missed_ticks_;
   status.refused = refused_;
   status.kernel_drops = kernel_drops_;
+  status.loop_lag_s = std::exchange(loop_lag_s_, 0);
   status.host = identity_.host;
   publish(Bus::kSwarm, status, std::max<Tick>(tick_, 0), out);
   next_status_ = Deadline::in(kAgentStatusPeriod, now, kStatusMissionPeriod_s, dt_s, tick_);
   if (finished()) next_status_ = {Instant::max(), std::numeric_limits<Tick>::max()};
+}
+
+std::string Agent::obstacle() const {
+  if (finished()) return "";
+  if (follower_.revision() < 0) return "no coordinator is heard";
+  const std::string as_agent = "admitted as agent " + std::to_string(self_.agent) + ", waiting for ";
+  if (phase_ == AgentPhase::kWaiting) return as_agent + "the quorum";
+  if (phase_ == AgentPhase::kRunning) return tick_ < 0 ? as_agent + "the world" : "";
+  const auto& roster = follower_.roster();
+  const bool taken = std::any_of(roster.begin(), roster.end(), [this](const RosterEntry& entry) {
+    return entry.author.agent == identity_.requested_id && entry.active_until < 0;
+  });
+  if (!taken) return "waiting to be admitted";
+  return "waiting to be admitted: the roster has another agent " +
+         std::to_string(identity_.requested_id) + ", which may have died and not be missed yet";
 }
 
 Instant Agent::next_wakeup() const {

@@ -5,6 +5,7 @@
 // repeats to them (anti_entropy.h), and the mission itself to whoever asks for it.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,8 @@ class Agent {
   /// Why it finished; `failed()` if that is an error of this agent or of the mission.
   const std::string& reason() const { return reason_; }
   bool failed() const { return failed_; }
+  /// What keeps it from taking part in the mission, in words; empty if nothing does.
+  std::string obstacle() const;
 
   RunId run() const { return identity_.run; }
   AgentId id() const { return self_.agent; }
@@ -69,6 +72,8 @@ class Agent {
   /// What the transport counted; shown in the status.
   void count_refused(Refusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
   void set_kernel_drops(std::int64_t drops) { kernel_drops_ = drops; }
+  /// How late or deaf its process was; the next status tells the worst since the last.
+  void note_loop_lag(double lag_s) { loop_lag_s_ = std::max(loop_lag_s_, lag_s); }
 
  private:
   struct WorldView {
@@ -141,6 +146,7 @@ class Agent {
   std::optional<Instant> mission_repeated_;
   Sequencer sequencer_;
   std::int64_t received_ = 0, contributions_received_ = 0, missed_ticks_ = 0, kernel_drops_ = 0;
+  double loop_lag_s_ = 0;
   RefusalCounts refused_{};
 
   // A teammate that already speaks under the id we ask for.

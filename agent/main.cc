@@ -1,14 +1,34 @@
 // ergocast-agent: one agent of the team as a process.
 #include <spdlog/spdlog.h>
 
+#include <chrono>
+#include <string>
+
 #include "agent/agent.h"
 #include "runtime/event_loop.h"
+#include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
 #include "scenario/scenario.h"
 
 namespace ergocast {
 namespace {
+
+/// Says now and then what an agent waits for that cannot take part.
+class WaitingLog {
+ public:
+  void look(const Agent& agent, Instant now) {
+    const std::string obstacle = agent.obstacle();
+    if (obstacle.empty() || next_ == Instant{}) next_ = now + kFirst;
+    if (obstacle.empty() || now < next_) return;
+    next_ = now + kPeriod;
+    spdlog::warn("{}", obstacle);
+  }
+
+ private:
+  static constexpr auto kFirst = std::chrono::seconds(3), kPeriod = std::chrono::seconds(10);
+  Instant next_{};
+};
 
 int run(const NodeOptions& node, AgentId requested_id) {
   StopSignals signals;
@@ -26,18 +46,24 @@ int run(const NodeOptions& node, AgentId requested_id) {
   }
   Transport& transport = *std::get<0>(opened);
   TrafficWatch watch(transport);
+  WaitingLog waiting;
+  LoopLag lag;
   AgentPhase logged = AgentPhase::kJoining;
   spdlog::info("joining on {}", node.url.base());
 
   live(agent, transport, signals, [&] { agent.leave("told to stop by a signal"); }, [&] {
     transport.set_run(agent.run());
-    if (watch.look(now())) agent.set_kernel_drops(watch.kernel_drops());
+    agent.note_loop_lag(lag.take_s());
+    if (watch.look(now())) {
+      agent.set_kernel_drops(watch.kernel_drops());
+      waiting.look(agent, now());
+    }
     if (agent.phase() == logged) return;
     logged = agent.phase();
     if (!agent.finished()) {
       spdlog::info("agent {} of run {}: {}", agent.id(), to_hex(agent.run()), to_string(logged));
     }
-  });
+  }, lag);
   spdlog::log(agent.failed() ? spdlog::level::err : spdlog::level::info, "finished at tick {}: {}",
               agent.tick(), agent.reason());
   return agent.failed() ? kExitFailed : kExitDone;
@@ -56,6 +82,7 @@ int main(int argc, char** argv) {
   app.add_option("--id", requested_id, "Be this agent; without it, whichever is free")
       ->check(CLI::Range(0, kMaxAgents - 1));
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
-  set_up_logging(requested_id == kUnassigned ? "agent" : "agent-" + std::to_string(requested_id));
+  set_up_logging(requested_id == kUnassigned ? "agent" : "agent-" + std::to_string(requested_id),
+                 node.log_level);
   return run(node, requested_id);
 }

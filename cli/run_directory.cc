@@ -91,12 +91,15 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
 std::optional<Scenario> recorded_plan_or_complain(const fs::path& run_dir) {
   std::ifstream file(run_dir / kPlanFile, std::ios::binary);
   const std::string plan((std::istreambuf_iterator<char>(file)), {});
-  auto scenario = Scenario::from_plan(std::as_bytes(std::span(plan)));
-  if (!scenario) {
-    std::fprintf(stderr, "%s: missing, damaged, or written by another version than %s\n",
-                 (run_dir / kPlanFile).c_str(), version().c_str());
+  if (!file.is_open()) {
+    std::fprintf(stderr, "%s: missing or not readable: is this a run directory?\n",
+                 (run_dir / kPlanFile).c_str());
+    return std::nullopt;
   }
-  return scenario;
+  auto read = Scenario::from_plan(std::as_bytes(std::span(plan)));
+  if (auto* scenario = std::get_if<Scenario>(&read)) return std::move(*scenario);
+  std::fprintf(stderr, "%s: %s\n", (run_dir / kPlanFile).c_str(), std::get<std::string>(read).c_str());
+  return std::nullopt;
 }
 
 std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted,

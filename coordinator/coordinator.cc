@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <sstream>
+#include <utility>
 
 #include "core/require.h"
 
@@ -22,6 +23,7 @@ constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 constexpr auto kFarewell = 1s;
 /// Real time: how long the team gets to hear of a change before it takes effect.
 constexpr double kNotice_s = 2;
+constexpr std::size_t kMaxStrangers = 64;
 constexpr std::size_t kMaxRosterEntries = static_cast<std::size_t>(kMaxAgents) * 4;
 
 }  // namespace
@@ -36,14 +38,16 @@ Presence Coordinator::presence(const RosterEntry& entry, Instant now) const {
   return alive(entry, now) ? Presence::kAlive : Presence::kSilent;
 }
 
-Coordinator::Coordinator(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
+Coordinator::Coordinator(CoordinatorIdentity identity, PlanDecoder decode_plan,
                          std::vector<std::byte> plan, Takeover takeover)
-    : run_(run),
-      incarnation_(incarnation),
+    : run_(identity.run),
+      incarnation_(identity.incarnation),
+      host_(std::move(identity.host)),
+      version_(std::move(identity.version)),
       plan_(std::move(plan)),
       follower_(decode_plan),
       takeover_(takeover) {
-  if (!plan_.empty()) mission_ = decode_plan(plan_).value();
+  if (!plan_.empty()) mission_ = std::get<Mission>(decode_plan(plan_));
   ERGOCAST_REQUIRE(mission_ || takeover == Takeover::kMust);
 }
 
@@ -108,6 +112,10 @@ void Coordinator::on(const Hello& hello, Instant now) {
   const Incarnation nonce = hello.header.incarnation;
   if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
   if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
+  if (hello.version != version_) {
+    if (strangers_.size() < kMaxStrangers) strangers_.emplace(hello.host, hello.version);
+    return;
+  }
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
     return entry.author.incarnation == nonce;
   });
@@ -329,6 +337,7 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
     return entry.active_until < 0 && !alive(entry, now);
   });
   if (silent != roster_.end()) team.silent_agent = silent->author.agent;
+  team.host = host_;
   team.header = header(Bus::kSwarm);
   out.push_back({Bus::kSwarm, team});
 }

@@ -6,7 +6,9 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/ids.h"
@@ -27,12 +29,18 @@ enum class Takeover {
 enum class Presence { kAlive, kSilent, kGone };
 const char* to_string(Presence presence);
 
+struct CoordinatorIdentity {
+  RunId run = 0;  ///< its mission's; 0, unless kNever: whichever is flying, else `incarnation`
+  Incarnation incarnation = 0;
+  std::string host;
+  std::string version;
+};
+
 class Coordinator {
  public:
-  /// @param run   its mission's; 0, unless kNever: whichever is flying, else `incarnation`
   /// @param plan  the compiled plan as it travels; may be empty with kMust: any mission's
-  Coordinator(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
-              std::vector<std::byte> plan, Takeover takeover = Takeover::kNever);
+  Coordinator(CoordinatorIdentity identity, PlanDecoder decode_plan, std::vector<std::byte> plan,
+              Takeover takeover = Takeover::kNever);
 
   void receive(const Message& message, Instant now);
   void advance(Instant now, Outbox& out);
@@ -54,6 +62,8 @@ class Coordinator {
   const std::string& reason() const { return reason_; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
   Presence presence(const RosterEntry& entry, Instant now) const;
+  /// Hosts and versions of agents that were not admitted because their version is not ours.
+  const std::set<std::pair<std::string, std::string>>& strangers() const { return strangers_; }
   Tick tick() const { return tick_; }
 
  private:
@@ -72,6 +82,7 @@ class Coordinator {
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;
   void look_for_mission(Instant now, Outbox& out);
+  std::optional<std::string> not_ours() const;
   void take_over(Instant now);
   Instant next_look() const;
   void begin_own();
@@ -88,6 +99,8 @@ class Coordinator {
 
   RunId run_;
   Incarnation incarnation_;
+  std::string host_, version_;
+  std::set<std::pair<std::string, std::string>> strangers_;
   std::optional<Mission> mission_;
   std::vector<std::byte> plan_;
   MissionFollower follower_;  // what agents say of a mission under way

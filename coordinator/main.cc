@@ -2,9 +2,12 @@
 #include <spdlog/spdlog.h>
 
 #include <map>
+#include <set>
+#include <utility>
 
 #include "coordinator/coordinator.h"
 #include "runtime/event_loop.h"
+#include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
 #include "scenario/scenario.h"
@@ -31,6 +34,23 @@ class RosterLog {
   std::map<Author, Presence> seen_;
 };
 
+/// One line for each host and version whose agents are not admitted.
+class StrangersLog {
+ public:
+  void look(const Coordinator& coordinator) {
+    if (coordinator.strangers().size() == seen_.size()) return;
+    for (const auto& stranger : coordinator.strangers()) {
+      if (!seen_.insert(stranger).second) continue;
+      const auto& [host, theirs] = stranger;
+      spdlog::warn("agent on {} runs version {}, this mission is flown by {}: install {} there", host,
+                   theirs, version(), version());
+    }
+  }
+
+ private:
+  std::set<std::pair<std::string, std::string>> seen_;
+};
+
 class MissionLog {
  public:
   void look(const Coordinator& coordinator) {
@@ -55,7 +75,8 @@ class MissionLog {
 
 int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover) {
   StopSignals signals;
-  Coordinator coordinator(node.run, random_identity(), decode_plan, std::move(plan), takeover);
+  Coordinator coordinator({node.run, random_identity(), host_name(), version()}, decode_plan,
+                          std::move(plan), takeover);
   auto opened = Transport::open(
       node.url, node.run,
       {{Bus::kSwarm, "HELLO|AGENT_STATUS_.*|STOP|MISSION|TEAM_STATUS"}, {Bus::kWorld, "WORLD_STATE"}},
@@ -69,12 +90,14 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   if (takeover != Takeover::kNever) spdlog::info("looking for a mission on {}", node.url.base());
 
   RosterLog roster;
+  StrangersLog strangers;
   MissionLog mission;
   const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
   live(coordinator, transport, signals, stop, [&] {
     transport.set_run(coordinator.run());
     watch.look(now());
     roster.look(coordinator, now());
+    strangers.look(coordinator);
     mission.look(coordinator);
   });
   return coordinator.state() == MissionState::kFailed ? kExitFailed : kExitDone;
@@ -102,7 +125,7 @@ int main(int argc, char** argv) {
   app.footer("Without --run-id and --resume: takes over this scenario's mission if it is under way "
              "on the URL, else starts a new one.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
-  set_up_logging("coordinator");
+  set_up_logging("coordinator", node.log_level);
   if (scenario->count() == 0) {
     if (resume) return run(node, {}, Takeover::kMust);
     spdlog::error("no SCENARIO: name a scenario file, or take a mission over with --resume");

@@ -74,13 +74,20 @@ void Coordinator::begin_own() {
   run_ = incarnation_;
 }
 
+/// Why the mission under way cannot be taken over.
+std::optional<std::string> Coordinator::not_ours() const {
+  const std::string run = "run " + to_hex(run_);
+  if (follower_.plan_problem()) return run + ": " + *follower_.plan_problem();
+  if (plan_.empty() || follower_.plan() == plan_) return std::nullopt;
+  return run + " of another plan (" + follower_.mission()->name +
+         ") is flying on this URL: choose another URL, or wait for its end";
+}
+
 void Coordinator::take_over(Instant now) {
   takeover_ = Takeover::kNever;
   took_over_ = true;
-  if (!follower_.mission() || (!plan_.empty() && follower_.plan() != plan_)) {
-    const std::string name = follower_.mission() ? follower_.mission()->name : "another version";
-    end(true, "run " + to_hex(run_) + " of another plan (" + name +
-                  ") is flying on this URL: choose another URL, or wait for its end", now);
+  if (const auto problem = not_ours()) {
+    end(true, *problem, now);
     finished_ = true;
     return;
   }

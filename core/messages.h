@@ -126,6 +126,7 @@ struct AgentStatus {
   std::int64_t missed_ticks = 0;         ///< world ticks that came and went without a command
   RefusalCounts refused{};
   std::int64_t kernel_drops = 0;
+  double loop_lag_s = 0;  ///< the worst since its last status: how late or deaf its process was
   std::string host;
 };
 
@@ -137,6 +138,7 @@ struct TeamStatus {
   double ergodic_metric = 0;  ///< median of the agents' own φ²; 0 until one has answered a tick
   AgentId silent_agent = kUnassigned;  ///< the first that is not alive, if any
   std::int64_t missed_deadlines = 0;  ///< as the world counts them
+  std::string host;                   ///< the coordinator's
 };
 
 /// Ends the run for whoever hears it; final.

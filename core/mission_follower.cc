@@ -1,6 +1,7 @@
 #include "core/mission_follower.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace ergocast {
 namespace {
@@ -21,31 +22,39 @@ bool MissionFollower::receive(const MissionPart& part) {
   }
   parts[static_cast<std::size_t>(part.part)] = part;
   if (std::all_of(parts.begin(), parts.end(), [](const auto& p) { return p.has_value(); })) {
-    commit(part.revision, parts);
+    const bool committed = commit(part.revision, parts);
+    collected_.erase(part.revision);
     collected_.erase(collected_.begin(), collected_.upper_bound(revision_));
-    return true;
+    return committed;
   }
   // Several at once: the rest of the newest may have died with its coordinator.
   if (collected_.size() > kMostRevisions) collected_.erase(collected_.begin());
   return false;
 }
 
-void MissionFollower::commit(std::int64_t revision, Parts& parts) {
+bool MissionFollower::commit(std::int64_t revision, Parts& parts) {
+  std::vector<std::byte> plan;
+  for (const auto& part : parts) plan.insert(plan.end(), part->plan.begin(), part->plan.end());
+  const bool first = !mission_ && !plan_problem_;
+  if (!first && plan != plan_) {
+    ++foreign_plans_;
+    return false;
+  }
+  plan_ = std::move(plan);
   revision_ = revision;
   state_ = parts.front()->state;
   reason_ = parts.front()->reason;
   roster_.clear();
-  plan_.clear();
   parts_.clear();
   for (auto& part : parts) {
     roster_.insert(roster_.end(), part->roster.begin(), part->roster.end());
-    plan_.insert(plan_.end(), part->plan.begin(), part->plan.end());
     parts_.push_back(std::move(*part));
   }
-  // A run has one plan: it is decoded once, and later revisions change only roster and state.
-  if (mission_ || plan_unreadable_) return;
-  mission_ = decode_plan_(plan_);
-  plan_unreadable_ = !mission_;
+  if (!first) return true;
+  auto decoded = decode_plan_(plan_);
+  if (auto* mission = std::get_if<Mission>(&decoded)) mission_ = std::move(*mission);
+  if (auto* problem = std::get_if<std::string>(&decoded)) plan_problem_ = std::move(*problem);
+  return true;
 }
 
 const RosterEntry* MissionFollower::entry_of(Incarnation incarnation) const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/ids.h"
@@ -15,21 +16,24 @@
 
 namespace ergocast {
 
-/// Turns the compiled plan's bytes into a checked Mission, or nothing if they are not one.
+/// Turns the compiled plan's bytes into a checked Mission, or says in a sentence why it cannot.
 /// The plan's format belongs to scenario/, which the cores do not know.
-using PlanDecoder = std::function<std::optional<Mission>(std::span<const std::byte>)>;
+using PlanDecoder = std::function<std::variant<Mission, std::string>(std::span<const std::byte>)>;
 
 class MissionFollower {
  public:
   explicit MissionFollower(PlanDecoder decode_plan) : decode_plan_(std::move(decode_plan)) {}
 
-  /// Takes in one part, in any order. True if it completed a newer revision.
+  /// Takes in one part, in any order. True if it completed a newer revision. A run has one plan: a
+  /// revision that comes with another has no effect but on foreign_plans().
   bool receive(const MissionPart& part);
 
   /// The mission, once a whole plan has arrived and decoded.
   const std::optional<Mission>& mission() const { return mission_; }
-  /// True when a complete plan arrived that this program cannot read: another version's.
-  bool plan_unreadable() const { return plan_unreadable_; }
+  /// Why this program cannot read the plan that has arrived: it is another version's, or damaged.
+  const std::optional<std::string>& plan_problem() const { return plan_problem_; }
+  /// Complete revisions that were ignored because their plan is not this run's.
+  std::int64_t foreign_plans() const { return foreign_plans_; }
 
   std::int64_t revision() const { return revision_; }
   MissionState state() const { return state_; }
@@ -46,7 +50,8 @@ class MissionFollower {
  private:
   PlanDecoder decode_plan_;
   std::optional<Mission> mission_;
-  bool plan_unreadable_ = false;
+  std::optional<std::string> plan_problem_;
+  std::int64_t foreign_plans_ = 0;
   std::int64_t revision_ = -1;
   MissionState state_ = MissionState::kWaiting;
   std::string reason_;
@@ -55,7 +60,7 @@ class MissionFollower {
   std::vector<MissionPart> parts_;
 
   using Parts = std::vector<std::optional<MissionPart>>;
-  void commit(std::int64_t revision, Parts& parts);
+  bool commit(std::int64_t revision, Parts& parts);
 
   std::map<std::int64_t, Parts> collected_;  // by revision, none of them complete
 };

@@ -17,12 +17,13 @@ constexpr std::uint32_t kClocks = 16;
 /// The mission of a trial, decoded once; a plan with other bytes is another mission.
 PlanDecoder decoder_of(const Mission& mission, const TrialOptions& options) {
   return [mission, &options](std::span<const std::byte> plan) {
-    return std::ranges::equal(plan, options.plan) ? std::optional(mission) : options.decode_plan(plan);
+    if (!std::ranges::equal(plan, options.plan)) return options.decode_plan(plan);
+    return std::variant<Mission, std::string>(mission);
   };
 }
 
 Mission mission_of(const TrialOptions& options, std::uint64_t seed) {
-  Mission mission = options.decode_plan(options.plan).value();
+  auto mission = std::get<Mission>(options.decode_plan(options.plan));
   mission.seed = seed;
   return mission;
 }
@@ -96,7 +97,8 @@ void Flight::start(Seat seat) {
   } else if (seat == coordinator_seat()) {
     const bool first = process.life == 0;
     coordinator_ = std::make_unique<Coordinator>(
-        run_, incarnation, decode_plan_, first ? options_.plan : std::vector<std::byte>(),
+        CoordinatorIdentity{run_, incarnation, "laboratory", options_.version}, decode_plan_,
+        first ? options_.plan : std::vector<std::byte>(),
         first ? Takeover::kNever : Takeover::kMust);
   } else if (seat == world_seat()) {
     world_ = std::make_unique<World>(run_, incarnation, decode_plan_);

@@ -13,7 +13,9 @@ Incarnation incarnation_of(std::uint64_t seed, int seat) {
   return random_words(seed, Purpose::kIncarnation, static_cast<std::uint32_t>(seat), 0).first | 1;
 }
 
-Mission decoded(const Options& options) { return options.decode_plan(options.plan).value(); }
+Mission decoded(const Options& options) {
+  return std::get<Mission>(options.decode_plan(options.plan));
+}
 
 }  // namespace
 
@@ -21,7 +23,8 @@ Swarm::Swarm(Options options, std::ostream& trajectory, std::ostream& metrics)
     : options_(std::move(options)),
       run_(incarnation_of(decoded(options_).seed, -1)),
       world_(run_, incarnation_of(decoded(options_).seed, kWorldSeat), options_.decode_plan),
-      coordinator_(run_, incarnation_of(decoded(options_).seed, kCoordinatorSeat),
+      coordinator_({run_, incarnation_of(decoded(options_).seed, kCoordinatorSeat), options_.host,
+                    options_.version},
                    options_.decode_plan, options_.plan),
       recorder_(run_, incarnation_of(decoded(options_).seed, kLoggerSeat), options_.decode_plan,
                 trajectory, metrics) {

@@ -106,8 +106,13 @@ bool sizes_match(const mission_t*, std::span<const std::byte> bytes) {
 
 bool sizes_match(const agent_status_t*, std::span<const std::byte> bytes) {
   Tail tail(bytes, kHeaderEnd);
-  return tail.skip(1 + 8 + 8 + 4 + 8 * 7 + 8 * kRefusalKinds + 8) && tail.string(kMaxHostLength) &&
+  return tail.skip(1 + 8 + 8 + 4 + 8 * 7 + 8 * kRefusalKinds + 8 + 8) && tail.string(kMaxHostLength) &&
          tail.ended();
+}
+
+bool sizes_match(const team_status_t*, std::span<const std::byte> bytes) {
+  Tail tail(bytes, kHeaderEnd);
+  return tail.skip(1 + 8 + 4 + 4 + 8 + 4 + 8) && tail.string(kMaxHostLength) && tail.ended();
 }
 
 bool sizes_match(const stop_t*, std::span<const std::byte> bytes) {

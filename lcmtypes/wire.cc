@@ -28,13 +28,25 @@ constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
 
 bool plausible_count(std::int64_t count) { return count >= 0 && count <= kMostEver; }
 
-/// At most `limit` characters and no NUL, so that what we send is what we accept.
+bool plausible_quantity(double value) { return std::isfinite(value) && value >= 0; }
+bool plausible_sender(std::int32_t id) { return id >= kOperator && id < kMaxAgents; }
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+/// What others say of themselves ends up in logs and on terminals.
+bool plausible_text(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), is_control);
+}
+
+/// At most `limit` characters, none of which means something to a terminal, up to a NUL: so that
+/// what we send is what we accept.
 std::string bounded(const std::string& text, int limit) {
   auto size = static_cast<std::size_t>(limit);
   // Not in the middle of a UTF-8 character.
   while (text.size() > size && size > 0 && (text[size] & 0xC0) == 0x80) --size;
-  const std::string cut = text.substr(0, size);
-  return cut.substr(0, cut.find('\0'));
+  std::string cut = text.substr(0, size);
+  cut = cut.substr(0, cut.find('\0'));
+  std::replace_if(cut.begin(), cut.end(), is_control, ' ');
+  return cut;
 }
 
 void copy3(const Eigen::Vector3d& from, double* to) { std::copy_n(from.data(), 3, to); }
@@ -51,7 +63,10 @@ hello_t to_wire(const Hello& m) {
   return w;
 }
 bool from_wire(const hello_t& w, Hello& m) {
-  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents) return false;
+  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents || !plausible_text(w.host) ||
+      !plausible_text(w.version)) {
+    return false;
+  }
   m = {from_wire(w.header), w.requested_id, w.host, w.version};
   return true;
 }
@@ -83,7 +98,8 @@ mission_t to_wire(const MissionPart& m) {
 }
 bool from_wire(const mission_t& w, MissionPart& m) {
   if (w.state < 0 || w.state > static_cast<int>(MissionState::kFailed) || !plausible_count(w.revision) ||
-      w.parts < 1 || w.parts > kMaxPlanParts || w.part < 0 || w.part >= w.parts) {
+      w.parts < 1 || w.parts > kMaxPlanParts || w.part < 0 || w.part >= w.parts ||
+      !plausible_text(w.reason)) {
     return false;
   }
   m.header = from_wire(w.header);
@@ -147,13 +163,16 @@ agent_status_t to_wire(const AgentStatus& m) {
   w.missed_ticks = m.missed_ticks;
   std::copy(m.refused.begin(), m.refused.end(), w.refused);
   w.kernel_drops = m.kernel_drops;
+  w.loop_lag_s = m.loop_lag_s;
   w.status_host = bounded(m.host, kMaxHostLength);
   return w;
 }
 bool from_wire(const agent_status_t& w, AgentStatus& m) {
   if (w.phase < 0 || w.phase > static_cast<int>(AgentPhase::kFinished) ||
       w.header.sender < kUnassigned || w.header.sender >= kMaxAgents ||
-      !std::isfinite(w.ergodic_metric) || !std::isfinite(w.max_staleness_s) ||
+      !plausible_sender(w.waiting_for) || !plausible_quantity(w.ergodic_metric) ||
+      !plausible_quantity(w.max_staleness_s) || !plausible_quantity(w.loop_lag_s) ||
+      w.answered_tick < -1 || w.answered_tick > kMostEver || !plausible_text(w.status_host) ||
       !std::all_of(std::begin(w.refused), std::end(w.refused), plausible_count)) {
     return false;
   }
@@ -176,6 +195,7 @@ bool from_wire(const agent_status_t& w, AgentStatus& m) {
   m.missed_ticks = w.missed_ticks;
   std::copy_n(w.refused, kRefusalKinds, m.refused.begin());
   m.kernel_drops = w.kernel_drops;
+  m.loop_lag_s = w.loop_lag_s;
   m.host = w.status_host;
   return true;
 }
@@ -190,17 +210,20 @@ team_status_t to_wire(const TeamStatus& m) {
   w.median_ergodic_metric = m.ergodic_metric;
   w.silent_agent = m.silent_agent;
   w.team_missed_deadlines = m.missed_deadlines;
+  w.team_host = bounded(m.host, kMaxHostLength);
   return w;
 }
 bool from_wire(const team_status_t& w, TeamStatus& m) {
   if (w.mission_state < 0 || w.mission_state > static_cast<int>(MissionState::kFailed) ||
-      !std::isfinite(w.median_ergodic_metric)) {
+      !plausible_count(w.tick_count) || w.agents_alive < 0 || w.agents_expected < 0 ||
+      !plausible_quantity(w.median_ergodic_metric) || !plausible_sender(w.silent_agent) ||
+      !plausible_count(w.team_missed_deadlines) || !plausible_text(w.team_host)) {
     return false;
   }
   m = {from_wire(w.header), static_cast<MissionState>(w.mission_state),
        w.tick_count,        w.agents_alive,
        w.agents_expected,   w.median_ergodic_metric,
-       w.silent_agent,  w.team_missed_deadlines};
+       w.silent_agent,  w.team_missed_deadlines, w.team_host};
   return true;
 }
 
@@ -212,6 +235,7 @@ stop_t to_wire(const Stop& m) {
   return w;
 }
 bool from_wire(const stop_t& w, Stop& m) {
+  if (!plausible_text(w.stop_reason)) return false;
   m = {from_wire(w.header), w.stop_failed != 0, w.stop_reason};
   return true;
 }
@@ -311,7 +335,7 @@ bool from_wire(const record_ack_t& w, RecordAck& m) {
 }
 
 bool plausible(const Header& h) {
-  return h.sender >= kOperator && h.sender < kMaxAgents && plausible_count(h.sequence) &&
+  return plausible_sender(h.sender) && plausible_count(h.sequence) &&
          h.tick >= -1 && h.tick <= kMostEver;
 }
 

@@ -29,7 +29,8 @@ record_ack_t to_wire(const RecordAck& m);
 mission_t to_wire(const MissionPart& m);
 digest_t to_wire(const Digest& m);
 
-/// Fills `m`; false for what cannot be true: NaN, a count below 0, an id out of range.
+/// Fills `m`; false for what cannot be true: NaN, a count below 0, an id out of range, a text with
+/// control characters.
 /// @pre counts within the arrays of `m`, as the codec has checked them.
 bool from_wire(const contribution_t& w, Contribution& m);
 bool from_wire(const agent_status_t& w, AgentStatus& m);

@@ -11,6 +11,7 @@
 #include "logger/summary.h"
 #include "runtime/event_log.h"
 #include "runtime/event_loop.h"
+#include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
 #include "scenario/scenario.h"
@@ -78,7 +79,6 @@ class RunLogger {
       last_row_ = now;
       if (!first_row_) first_row_ = now;
     }
-    if (wrong_mission_) recorder_.stop("another mission");
     if (plan_written_ || !recorder_.follower().mission()) return;
     plan_written_ = true;
     check(write_plan());
@@ -117,7 +117,8 @@ class RunLogger {
   PlanDecoder decoder_of(std::string plan) {
     return [this, plan = std::move(plan)](std::span<const std::byte> heard) {
       wrong_mission_ = !plan.empty() && plan != text_of(heard);
-      return wrong_mission_ ? std::nullopt : decode_plan(heard);
+      if (wrong_mission_) return std::variant<Mission, std::string>("another mission");
+      return decode_plan(heard);
     };
   }
 
@@ -134,7 +135,7 @@ class RunLogger {
     if (auto problem = write_file(record_.folder() / kPlanFile, text_of(plan))) return problem;
     std::error_code ignored;
     if (fs::exists(record_.folder() / kScenarioFile, ignored)) return std::nullopt;
-    return write_file(record_.folder() / kScenarioFile, Scenario::from_plan(plan)->print());
+    return write_file(record_.folder() / kScenarioFile, std::get<Scenario>(Scenario::from_plan(plan)).print());
   }
 
   const std::string started_ = wall_clock_text();
@@ -189,6 +190,10 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume) {
     return refuse(kExitBadInput, folder.string() + ": the record here is of another mission than the "
                                                    "one that is heard; choose another folder with --out");
   }
+  if (const auto& problem = recorder.follower().plan_problem()) {
+    logger.discard();
+    return refuse(kExitFailed, *problem);
+  }
   logger.flush();
   if (logger.idle()) {
     logger.discard();
@@ -216,6 +221,6 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingDirectory);
   app.add_flag("--resume", resume, "Go on with the record of this mission in the folder, if there is one");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
-  set_up_logging("logger");
+  set_up_logging("logger", node.log_level);
   return run(node, folder, resume);
 }

@@ -62,13 +62,17 @@ void Recorder::receive(const Message& message, Instant now) {
   if (const auto* status = std::get_if<AgentStatus>(&message)) {
     if (statuses_.size() > static_cast<std::size_t>(kMaxAgents) * kMaxIncarnationsPerAgent) return;
     AgentStatus& latest = statuses_[{from.sender, from.incarnation}];
-    if (from.sequence > latest.header.sequence) latest = *status;
+    if (from.sequence <= latest.header.sequence) return;
+    const double worst_lag_s = std::max(latest.loop_lag_s, status->loop_lag_s);
+    latest = *status;
+    latest.loop_lag_s = worst_lag_s;
     return;
   }
   if (const auto* part = std::get_if<MissionPart>(&message)) {
     if (run_ == 0) run_ = from.run;
     const bool had_mission = follower_.mission().has_value();
     if (!follower_.receive(*part)) return;
+    if (follower_.plan_problem()) return fail(*follower_.plan_problem());
     if (!had_mission && follower_.mission()) begin();
     if (follower_.over() && !over_since_) {
       over_since_ = now;
@@ -202,6 +206,11 @@ Instant Recorder::next_wakeup() const {
 void Recorder::stop(std::string reason) {
   if (!over_since_) reason_ = std::move(reason);
   close();
+}
+
+void Recorder::fail(std::string reason) {
+  failed_ = true;
+  stop(std::move(reason));
 }
 
 void Recorder::close() {

@@ -61,6 +61,7 @@ class Recorder {
   const char* result() const;
   const std::string& reason() const { return reason_; }
   const RunFacts& facts() const { return facts_; }
+  /// The newest of each, but with the worst loop lag of all.
   const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
   Tick next_row() const { return next_row_; }
 
@@ -83,6 +84,7 @@ class Recorder {
   bool gap_ahead() const;
   bool gap_is_final(Instant now) const;
   void skip_gap();
+  void fail(std::string reason);
   void close();
   bool is_lockstep() const;
   void write_trajectory(const State& now, const State& next);

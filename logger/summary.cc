@@ -39,6 +39,7 @@ Json agents(const Recorder& recorder) {
       agent["contributions_relayed"] = status.contributions_relayed;
       agent["missed_ticks"] = status.missed_ticks;
       agent["kernel_drops"] = status.kernel_drops;
+      agent["loop_lag_max_s"] = number(status.loop_lag_s);
     }
     list.push_back(std::move(agent));
   }

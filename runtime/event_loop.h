@@ -1,23 +1,31 @@
 // The life of every process: deliver what arrives, let the core act, publish what it says.
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <functional>
 #include <utility>
 
 #include "core/messages.h"
 #include "runtime/clock.h"
+#include "runtime/loop_lag.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
 
 namespace ergocast {
 
+/// A process looks around at least this often, whatever its core wants.
+inline constexpr std::chrono::nanoseconds kLongestWait = std::chrono::seconds(1);
+
 /// Runs `core` until it has finished. A core has receive() (called by the transport's handler),
 /// advance(now, out), next_wakeup() and finished().
 /// @param on_signal  called for SIGINT or SIGTERM; it tells the core to finish
-/// @param each_turn  called after every turn, for what only the process knows
+/// @param each_turn  called in every turn, for what only the process knows
+/// @param lag        learns of every turn
 template <class Core>
 void live(Core& core, Transport& transport, StopSignals& signals,
-          const std::function<void()>& on_signal, const std::function<void()>& each_turn = [] {}) {
+          const std::function<void()>& on_signal, const std::function<void()>& each_turn,
+          LoopLag& lag) {
   Outbox out;
   const auto act = [&] {
     core.advance(now(), out);
@@ -27,10 +35,20 @@ void live(Core& core, Transport& transport, StopSignals& signals,
   };
   act();
   while (!core.finished()) {
-    transport.deliver_until(core.next_wakeup(), signals.fd());
+    const Instant before = now();
+    const Instant planned = std::clamp(core.next_wakeup(), before, before + kLongestWait);
+    lag.woke(planned, transport.deliver_until(planned, signals.fd()));
     if (signals.take() > 0) on_signal();
     act();
+    lag.done(now());
   }
+}
+
+template <class Core>
+void live(Core& core, Transport& transport, StopSignals& signals,
+          const std::function<void()>& on_signal, const std::function<void()>& each_turn = [] {}) {
+  LoopLag nobody_asks;
+  live(core, transport, signals, on_signal, each_turn, nobody_asks);
 }
 
 }  // namespace ergocast

@@ -1,23 +1,25 @@
 #include "runtime/node.h"
 
 #include <lcm/lcm.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #include <sys/random.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <ctime>
 
+#include "runtime/logging.h"
+
 namespace ergocast {
 namespace {
 
-std::string default_url() {
-  const char* from_environment = std::getenv("LCM_DEFAULT_URL");
-  return from_environment != nullptr && *from_environment != '\0' ? from_environment
-                                                                  : LcmUrl{}.base();
+/// A variable's value, or `otherwise` if it is not set or empty.
+std::string from_environment(const char* name, const std::string& otherwise) {
+  const char* value = std::getenv(name);
+  return value != nullptr && *value != '\0' ? value : otherwise;
 }
+std::string default_url() { return from_environment("LCM_DEFAULT_URL", LcmUrl{}.base()); }
 
 void read_url(const std::string& text, LcmUrl& url) {
   auto parsed = LcmUrl::parse(text);
@@ -33,9 +35,23 @@ void read_run_id(const std::string& text, RunId& run) {
   }
 }
 
+/// What was not given.
+void complete(const CLI::App& app, BusOptions& options) {
+  if (app.count("--lcm-url") == 0) read_url(default_url(), options.url);
+}
+
+void read_log_level_from_environment(std::string& level) {
+  const std::string wanted = from_environment("ERGOCAST_LOG_LEVEL", level);
+  if (std::find(kLogLevels.begin(), kLogLevels.end(), wanted) == kLogLevels.end()) {
+    throw CLI::ValidationError("ERGOCAST_LOG_LEVEL", "'" + wanted +
+                                   "' is none of trace, debug, info, warn, error");
+  }
+  level = wanted;
+}
+
 }  // namespace
 
-void add_node_options(CLI::App& app, NodeOptions& options) {
+void add_bus_options(CLI::App& app, BusOptions& options) {
   app.add_option_function<std::string>(
          "--lcm-url", [&options](const std::string& text) { read_url(text, options.url); },
          "Base URL: swarm, world and command buses are this port and the next two")
@@ -43,11 +59,21 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->type_name("URL");
   app.add_option_function<std::string>(
          "--run-id", [&options](const std::string& text) { read_run_id(text, options.run); },
-         "Take part in this run only")
+         "This run only")
       ->type_name("HEX");
+  app.parse_complete_callback([&app, &options] { complete(app, options); });
+}
+
+void add_node_options(CLI::App& app, NodeOptions& options) {
+  add_bus_options(app, options);
+  app.add_option("--log-level", options.log_level, "What is logged: this and what is worse")
+      ->default_str(from_environment("ERGOCAST_LOG_LEVEL", options.log_level))
+      ->check(CLI::IsMember(kLogLevels))
+      ->type_name("LEVEL");
   app.set_version_flag("--version", version_text());
   app.parse_complete_callback([&app, &options] {
-    if (app.count("--lcm-url") == 0) read_url(default_url(), options.url);
+    complete(app, options);
+    if (app.count("--log-level") == 0) read_log_level_from_environment(options.log_level);
   });
 }
 
@@ -99,13 +125,6 @@ std::string wall_clock_text() {
   std::array<char, 32> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
   return text.data();
-}
-
-void set_up_logging(const std::string& process_name) {
-  auto logger = spdlog::stderr_color_mt(process_name);
-  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %v");
-  logger->flush_on(spdlog::level::trace);
-  spdlog::set_default_logger(logger);
 }
 
 }  // namespace ergocast

@@ -19,12 +19,20 @@ enum ExitCode {
   kExitFailed = 4,       ///< the mission failed
 };
 
-struct NodeOptions {
+struct BusOptions {
   LcmUrl url;
   RunId run = 0;  ///< 0: not given
 };
 
-/// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group), --run-id and --version.
+/// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group) and --run-id.
+void add_bus_options(CLI::App& app, BusOptions& options);
+
+/// Of the programs that take part in a mission.
+struct NodeOptions : BusOptions {
+  std::string log_level = "info";
+};
+
+/// Besides, --log-level (default: $ERGOCAST_LOG_LEVEL, or info) and --version.
 void add_node_options(CLI::App& app, NodeOptions& options);
 
 /// Parses; the exit code if the program has to end here (0 after --help), −1 if it goes on.
@@ -44,8 +52,5 @@ std::uint64_t random_identity();
 std::string host_name();
 /// Now, by the wall clock, as "2026-01-31T12:00:00Z".
 std::string wall_clock_text();
-
-/// One line per event on the standard error stream: time, level, process, text.
-void set_up_logging(const std::string& process_name);
 
 }  // namespace ergocast

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <string>
 
+#include "runtime/node.h"
+
 namespace ergocast {
 
 using namespace std::chrono_literals;
@@ -13,6 +15,7 @@ bool TrafficWatch::look(Instant now) {
   if (now < next_look_) return false;
   next_look_ = now + 1s;
   kernel_drops_ = transport_.kernel_drops();
+  warn_of_unknown_format(now);
   const RefusalCounts& refused = transport_.refused();
   if (now < next_log_ || (refused == logged_ && kernel_drops_ == logged_drops_)) return true;
   next_log_ = now + 10s;
@@ -30,6 +33,15 @@ bool TrafficWatch::look(Instant now) {
   logged_ = refused;
   logged_drops_ = kernel_drops_;
   return true;
+}
+
+void TrafficWatch::warn_of_unknown_format(Instant now) {
+  const Transport::UnknownFormat& unknown = transport_.unknown_format();
+  if (unknown.count == warned_unknown_ || now < next_warning_) return;
+  warned_unknown_ = unknown.count;
+  next_warning_ = now + 10s;
+  spdlog::warn("{} arrives in a format that version {} does not know: another version of Ergocast is "
+               "on this URL", unknown.channel, version());
 }
 
 }  // namespace ergocast

@@ -17,8 +17,11 @@ class TrafficWatch {
   std::int64_t kernel_drops() const { return kernel_drops_; }
 
  private:
+  void warn_of_unknown_format(Instant now);
+
   const Transport& transport_;
-  Instant next_look_{}, next_log_{};
+  Instant next_look_{}, next_log_{}, next_warning_{};
+  std::int64_t warned_unknown_ = 0;
   std::int64_t kernel_drops_ = 0, logged_drops_ = 0;
   RefusalCounts logged_{};
 };

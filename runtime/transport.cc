@@ -59,7 +59,7 @@ class LcmTransport final : public Transport {
 
   void set_run(RunId run) override { run_ = run; }
   void publish(const Outgoing& outgoing) override;
-  void deliver_until(Instant deadline, int wake_fd) override;
+  Instant deliver_until(Instant deadline, int wake_fd) override;
   std::int64_t kernel_drops() const override { return drops_of(sockets_); }
 
  private:
@@ -74,6 +74,14 @@ class LcmTransport final : public Transport {
   void refuse(Refusal refusal) noexcept {
     ++refused_[static_cast<std::size_t>(refusal)];
     if (handlers_.on_refused) handlers_.on_refused(refusal);
+  }
+  void note_unknown_format(const std::string& channel) {
+    ++unknown_format_.count;
+    // Whoever invents channels is not to write into our log.
+    const bool plain = std::all_of(channel.begin(), channel.end(), [](char c) {
+      return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    });
+    unknown_format_.channel = plain ? channel : std::string(kPrefix) + "…";
   }
   void take(Bus bus, const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
 
@@ -123,7 +131,10 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
                                          buffer->data_size);
   try {
     const auto decoded = decode(bytes, run_);
-    if (const auto* refusal = std::get_if<Refusal>(&decoded)) return refuse(*refusal);
+    if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
+      if (*refusal == Refusal::kType) note_unknown_format(channel);
+      return refuse(*refusal);
+    }
     const Message& message = std::get<Message>(decoded);
     const auto transmitter = transmitter_of(message, channel);
     if (!transmitter) return refuse(Refusal::kType);
@@ -134,7 +145,7 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
   }
 }
 
-void LcmTransport::deliver_until(Instant deadline, int wake_fd) {
+Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
   using std::chrono::nanoseconds;
   constexpr nanoseconds kLongest = std::chrono::seconds(1);
   const Instant start = now();
@@ -143,12 +154,15 @@ void LcmTransport::deliver_until(Instant deadline, int wake_fd) {
   ready_.back().fd = wake_fd;
   const timespec timeout{static_cast<time_t>(wait.count() / 1000000000),
                          static_cast<long>(wait.count() % 1000000000)};
-  if (ppoll(ready_.data(), ready_.size(), &timeout, nullptr) <= 0) return;
+  const int ready = ppoll(ready_.data(), ready_.size(), &timeout, nullptr);
+  const Instant woke = now();
+  if (ready <= 0) return woke;
   for (std::size_t i = 0; i < listened_.size(); ++i) {
     if ((ready_[i].revents & POLLIN) == 0) continue;
     for (int n = 0; n < kMaxDatagramsPerTurn && listened_[i]->handleTimeout(0) > 0; ++n) {
     }
   }
+  return woke;
 }
 
 }  // namespace

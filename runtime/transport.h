@@ -45,16 +45,25 @@ class Transport {
   /// Waits until something arrives, `deadline` has come or `wake_fd` (−1: none) is readable, and
   /// hands over what has arrived; at most a bounded number of datagrams, so that a flood cannot
   /// keep the caller from its work. Nothing that arrives makes it throw.
-  virtual void deliver_until(Instant deadline, int wake_fd) = 0;
+  /// @return when it stopped waiting
+  virtual Instant deliver_until(Instant deadline, int wake_fd) = 0;
 
   /// How many datagrams were refused, by reason.
   const RefusalCounts& refused() const { return refused_; }
+
+  /// Datagrams on our channels whose LCM type is none of ours, and the channel of the last one.
+  struct UnknownFormat {
+    std::int64_t count = 0;
+    std::string channel;
+  };
+  const UnknownFormat& unknown_format() const { return unknown_format_; }
 
   /// Datagrams that the kernel dropped at our sockets for want of buffer space.
   virtual std::int64_t kernel_drops() const = 0;
 
  protected:
   RefusalCounts refused_{};
+  UnknownFormat unknown_format_;
 };
 
 }  // namespace ergocast

@@ -5,7 +5,9 @@
 #include <google/protobuf/stubs/logging.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/messages.h"
 #include "core/require.h"
@@ -33,7 +35,26 @@ std::optional<Coefficients> coefficients_of(const proto::MissionPlan& plan) {
   return Eigen::Map<const Coefficients>(values.data(), basis.modes_x(), basis.modes_y());
 }
 
+/// What a version looks like; the word of a stranger is not to reach a terminal as it is.
+bool is_version(const std::string& text) {
+  return !text.empty() && text.size() <= static_cast<std::size_t>(kMaxVersionLength) &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
+}
+
+constexpr const char* kRemedy = ": install the same version on every host";
+
+/// Of bytes in which not even a version can be found.
+std::string unreadable_plan() {
+  return std::string("the mission's plan is damaged or of a much newer version than this program, "
+                     "which is " ERGOCAST_VERSION) + kRemedy;
+}
+
 }  // namespace
+
+std::string broken_plan() {
+  return std::string("the mission's plan says that it is of version " ERGOCAST_VERSION
+                     ", but breaks that version's rules: it is damaged or another build's") + kRemedy;
+}
 
 std::vector<std::byte> encode_plan(const proto::Scenario& scenario, const Coefficients& target) {
   proto::MissionPlan plan;
@@ -53,16 +74,21 @@ std::vector<std::byte> encode_plan(const proto::Scenario& scenario, const Coeffi
   return bytes;
 }
 
-std::optional<Plan> parse_plan(std::span<const std::byte> bytes) {
-  if (bytes.size() > kMaxPlanBytes) return std::nullopt;
+std::variant<Plan, std::string> parse_plan(std::span<const std::byte> bytes) {
+  if (bytes.size() > kMaxPlanBytes) return unreadable_plan();
   // Protobuf prints what it thinks of a string that is not UTF-8; whoever sends rubbish is not to
   // fill our terminal.
   const google::protobuf::LogSilencer silence;
   proto::MissionPlan plan;
-  if (!plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
-  if (plan.version() != ERGOCAST_VERSION) return std::nullopt;
+  const bool whole = plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
+  // What follows the version may be written in a way that only that version knows.
+  if (!is_version(plan.version())) return unreadable_plan();
+  if (plan.version() != ERGOCAST_VERSION) {
+    return "the mission's plan is of version " + plan.version() +
+           ", this program is " ERGOCAST_VERSION + kRemedy;
+  }
   std::optional<Coefficients> target = coefficients_of(plan);
-  if (!target) return std::nullopt;
+  if (!whole || !target) return broken_plan();
   plan.DiscardUnknownFields();
   return Plan{std::move(*plan.mutable_scenario()), std::move(*target)};
 }

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "core/basis.h"
@@ -20,8 +21,11 @@ struct Plan {
 /// Equal arguments give equal bytes.
 std::vector<std::byte> encode_plan(const proto::Scenario& scenario, const Coefficients& target);
 
-/// Nothing for bytes that are no plan or another version's, or whose μ has not one entry for each
+/// A sentence for bytes that are no plan or another version's, or whose μ has not one entry for each
 /// mode. A μ that comes back is one: finite, |μ| ≤ 1, μ_00 = 1.
-std::optional<Plan> parse_plan(std::span<const std::byte> bytes);
+std::variant<Plan, std::string> parse_plan(std::span<const std::byte> bytes);
+
+/// What is wrong with a plan that only claims to be of this version.
+std::string broken_plan();
 
 }  // namespace ergocast

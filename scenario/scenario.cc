@@ -99,34 +99,36 @@ Scenario Scenario::with_seed(std::uint64_t seed) const {
       state_->listed_starts));
 }
 
-std::optional<Scenario> Scenario::from_plan(std::span<const std::byte> plan) noexcept try {
-  std::optional<Plan> decoded = parse_plan(plan);
-  if (!decoded) return std::nullopt;
+std::variant<Scenario, std::string> Scenario::from_plan(
+    std::span<const std::byte> plan) noexcept try {
+  auto parsed = parse_plan(plan);
+  if (auto* problem = std::get_if<std::string>(&parsed)) return std::move(*problem);
+  Plan& decoded = std::get<Plan>(parsed);
   Findings findings("plan");
-  fill_in(decoded->scenario, "plan");
-  decoded->scenario.clear_target();
+  fill_in(decoded.scenario, "plan");
+  decoded.scenario.clear_target();
   Checks checks(findings);
-  validate(decoded->scenario, checks);
-  if (!findings.empty()) return std::nullopt;
-  const int listed_starts = decoded->scenario.agents().starts_size();
+  validate(decoded.scenario, checks);
+  if (!findings.empty()) return broken_plan();
+  const int listed_starts = decoded.scenario.agents().starts_size();
   Scenario scenario(std::make_shared<State>(
-      std::move(decoded->scenario),
-      CompiledTarget{std::move(decoded->target_coefficients), DensityGrid()}, listed_starts));
+      std::move(decoded.scenario),
+      CompiledTarget{std::move(decoded.target_coefficients), DensityGrid()}, listed_starts));
   // A plan has one spelling: what leaves something open, or adds something, was not compiled.
   const bool canonical =
       std::equal(plan.begin(), plan.end(), scenario.plan().begin(), scenario.plan().end());
-  if (!canonical || scenario.state_->text.agents().random_count() != 0) return std::nullopt;
+  if (!canonical || scenario.state_->text.agents().random_count() != 0) return broken_plan();
   return scenario;
 } catch (...) {
-  return std::nullopt;
+  return "out of memory";
 }
 
-std::optional<Mission> decode_plan(std::span<const std::byte> plan) noexcept try {
-  const std::optional<Scenario> scenario = Scenario::from_plan(plan);
-  if (!scenario) return std::nullopt;
-  return scenario->mission();
+std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept try {
+  auto read = Scenario::from_plan(plan);
+  if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
+  return std::get<Scenario>(read).mission();
 } catch (...) {
-  return std::nullopt;
+  return "out of memory";
 }
 
 Scenario::Scenario(std::shared_ptr<const State> state) : state_(std::move(state)) {}

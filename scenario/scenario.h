@@ -60,10 +60,10 @@ class Scenario {
                                                             const std::string& file,
                                                             const Overrides& overrides = {});
 
-  /// The scenario in a compiled plan, with the plan's μ and without description and target. Nothing
-  /// if the bytes are not a plan, are another version's, or break a limit of the scenario: plans come
-  /// from the network. from_plan(s.plan())->plan() == s.plan().
-  static std::optional<Scenario> from_plan(std::span<const std::byte> plan) noexcept;
+  /// The scenario in a compiled plan, with the plan's μ and without description and target; of the
+  /// same bytes, if it is compiled again. A sentence if they are not a plan, are another version's, or
+  /// break a limit of the scenario: plans come from the network.
+  static std::variant<Scenario, std::string> from_plan(std::span<const std::byte> plan) noexcept;
 
   /// The same with another seed, random starts drawn anew: what load() would give with that seed.
   Scenario with_seed(std::uint64_t seed) const;
@@ -97,8 +97,8 @@ class Scenario {
   std::shared_ptr<const State> state_;
 };
 
-/// The mission of from_plan(), or nothing.
-std::optional<Mission> decode_plan(std::span<const std::byte> plan) noexcept;
+/// The mission of from_plan(), or what is wrong with the plan.
+std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept;
 
 /// 32 hex digits that name a plan: XXH3-128 of its bytes.
 std::string plan_hash(std::span<const std::byte> plan);

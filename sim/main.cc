@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "runtime/event_loop.h"
+#include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
 #include "scenario/scenario.h"
@@ -34,6 +35,10 @@ int run(const NodeOptions& node) {
     if (world.logger_lost() && !logger_lost) spdlog::warn("the logger is silent: going on without");
     logger_lost = world.logger_lost();
   });
+  if (world.failed()) {
+    spdlog::error("{}", world.reason());
+    return kExitFailed;
+  }
   spdlog::info("finished at tick {}: {}; {} commands too late, {} ticks skipped", world.tick(),
                world.reason(), world.missed_deadlines(), world.skipped_ticks());
   return kExitDone;
@@ -49,6 +54,6 @@ int main(int argc, char** argv) {
   NodeOptions node;
   add_node_options(app, node);
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
-  set_up_logging("sim");
+  set_up_logging("sim", node.log_level);
   return run(node);
 }

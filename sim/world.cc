@@ -41,7 +41,7 @@ void World::receive(const Message& message, Instant now) {
   if (const auto* part = std::get_if<MissionPart>(&message)) {
     if (run_ == 0) run_ = from.run;
     if (!follower_.receive(*part)) return;
-    if (follower_.plan_unreadable()) return finish("the mission plan is another version's");
+    if (follower_.plan_problem()) return finish(*follower_.plan_problem());
     // At its own end the world stays until the record, too, has the last states.
     if (follower_.over() && (!over_since_ || record_complete())) return finish(follower_.reason());
     if (started_) take_roster();

@@ -33,6 +33,8 @@ class World {
   void stop(std::string reason) { finish(std::move(reason)); }
 
   bool finished() const { return finished_; }
+  /// Whether it has finished because it cannot take part at all.
+  bool failed() const { return follower_.plan_problem().has_value(); }
   RunId run() const { return run_; }
   const std::string& reason() const { return reason_; }
   Tick tick() const { return tick_; }

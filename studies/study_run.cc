@@ -102,7 +102,7 @@ StudyFigures fly_without_messages(const Mission& mission) {
 }
 
 StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
-  const Mission mission = decode_plan(plan).value();
+  const Mission mission = std::get<Mission>(decode_plan(plan));
   Observer observer(mission);
   lab::Options options;
   options.plan.assign(plan.begin(), plan.end());
@@ -118,7 +118,7 @@ StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecode
 }
 
 StudyFigures fly_study_run(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
-  const Mission mission = decode_plan(plan).value();
+  const Mission mission = std::get<Mission>(decode_plan(plan));
   if (lab::IdealTeam::stands_for(mission)) return fly_without_messages(mission);
   return fly_with_messages(plan, decode_plan);
 }

@@ -115,12 +115,50 @@ TEST(AgentJoining, OnceAdmittedItDoesNotGiveWay) {
 }
 
 TEST(AgentJoining, RefusesAPlanItCannotReadAndSaysWhatToDo) {
-  Agent agent(identity_of(0), [](auto) { return std::nullopt; });
+  Agent agent(identity_of(0), [](auto) { return "install another version"; });
   agent.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
-  EXPECT_EQ(agent.reason(),
-            "the mission plan is not readable by version 1.2.3: run the same version everywhere");
+  EXPECT_EQ(agent.reason(), "install another version");
+}
+
+TEST(AgentJoining, SaysWhatItWaitsFor) {
+  const Mission mission = small_mission(2);
+  Agent agent(identity_of(1), decoder_of(mission));
+  EXPECT_EQ(agent.obstacle(), "no coordinator is heard");
+  agent.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
+  EXPECT_EQ(agent.obstacle(), "waiting to be admitted");
+  agent.receive(mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
+  EXPECT_EQ(agent.obstacle(), "waiting to be admitted: the roster has another agent 1, which may have "
+                              "died and not be missed yet");
+  agent.receive(mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
+  EXPECT_EQ(agent.obstacle(), "admitted as agent 1, waiting for the quorum");
+  agent.receive(mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));
+  EXPECT_EQ(agent.obstacle(), "admitted as agent 1, waiting for the world");
+  agent.receive(world_state(0, mission.starts_m), at(0s));
+  advance(agent, at(0s));
+  EXPECT_EQ(agent.obstacle(), "");
+  agent.leave("enough");
+  EXPECT_EQ(agent.obstacle(), "");
+}
+
+TEST(Agent, IgnoresAndCountsAPlanThatIsNotItsRuns) {
+  Agent agent = running_agent(small_mission(2));
+  MissionPart other = mission_part(1000, MissionState::kFailed, {});
+  other.plan.push_back(std::byte{9});
+  agent.receive(other, at(0s));
+  EXPECT_FALSE(agent.finished());
+  EXPECT_NE(agent.follower().revision(), 1000);
+  EXPECT_EQ(agent.refused()[static_cast<std::size_t>(Refusal::kRange)], 1);
+}
+
+TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
+  Agent agent = running_agent(small_mission(2));
+  for (const double lag_s : {0.1, 0.7, 0.2}) agent.note_loop_lag(lag_s);
+  const auto told = only<AgentStatus>(advance(agent, at(10s)));
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].loop_lag_s, 0.7);
+  EXPECT_EQ(only<AgentStatus>(advance(agent, at(20s))).at(0).loop_lag_s, 0);
 }
 
 // ---- restarts and the end ------------------------------------------------------------------------

@@ -196,11 +196,33 @@ TEST(CoordinatorRepeats, SoonerToWhoeverHasNotHeardButWithoutAFlood) {
   EXPECT_EQ(missions, 2 * 10) << "every 100 ms, on two buses";
 }
 
+TEST(CoordinatorAdmission, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  Hello hello = hello_of(0);
+  hello.version = "9.9.9";
+  coordinator.receive(hello, at(0s));
+  coordinator.receive(hello, at(0s));
+  EXPECT_TRUE(coordinator.roster().empty());
+  EXPECT_EQ(coordinator.strangers(), (std::set<std::pair<std::string, std::string>>{{"somewhere", "9.9.9"}}));
+  for (int i = 0; i < 1000; ++i) {
+    hello.host = std::to_string(i);
+    coordinator.receive(hello, at(0s));
+  }
+  EXPECT_LE(coordinator.strangers().size(), 64u) << "whoever invents hosts costs no memory";
+  coordinator.receive(hello_of(0), at(0s));
+  EXPECT_EQ(coordinator.roster().size(), 1u);
+}
+
+TEST(CoordinatorRepeats, TheHostItRunsOn) {
+  Coordinator coordinator = coordinator_of(small_mission(1));
+  EXPECT_EQ(only<TeamStatus>(advance(coordinator, at(0s))).at(0).host, "here");
+}
+
 TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogether) {
   const Mission mission = small_mission(30);
   std::vector<std::byte> plan;
   for (int i = 0; i < 1100; ++i) plan.push_back(static_cast<std::byte>(i * 31));
-  Coordinator coordinator(kRun, kCoordinatorLife, decoder_of(mission), plan);
+  Coordinator coordinator({kRun, kCoordinatorLife, "here", kVersion}, decoder_of(mission), plan);
   admit_all(coordinator, 30, at(0s));
   const auto parts = only<MissionPart>(advance(coordinator, at(0s)));
   ASSERT_EQ(parts.size(), 2u * 3u) << "three parts on two buses";

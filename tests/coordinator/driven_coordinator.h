@@ -12,12 +12,14 @@ namespace ergocast::test {
 
 inline const std::vector<std::byte> kPlan{std::byte{1}, std::byte{2}};
 
+inline const std::string kVersion = "1.2.3";
+
 inline Coordinator coordinator_of(const Mission& mission) {
-  return {kRun, kCoordinatorLife, decoder_of(mission), kPlan};
+  return {{kRun, kCoordinatorLife, "here", kVersion}, decoder_of(mission), kPlan};
 }
 
 inline Hello hello_of(AgentId id, Incarnation incarnation) {
-  return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", "1.2.3"};
+  return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", kVersion};
 }
 inline Hello hello_of(AgentId id) { return hello_of(id, life_of(id)); }
 

@@ -15,7 +15,8 @@ constexpr Incarnation kSuccessorLife = 0xc1;
 
 Coordinator successor(Takeover takeover, RunId run = 0, Mission mission = small_mission(2),
                       std::vector<std::byte> plan = kPlan) {
-  return {run, kSuccessorLife, decoder_of(std::move(mission)), std::move(plan), takeover};
+  return {{run, kSuccessorLife, "here", kVersion}, decoder_of(std::move(mission)), std::move(plan),
+          takeover};
 }
 
 /// What an agent remembers of the predecessor's word at `tick`.
@@ -174,6 +175,18 @@ TEST(TakeoverMust, NeedsNoPlanOfItsOwn) {
   EXPECT_EQ(said_by(advance(coordinator, at(200ms))).plan, kPlan);
   ASSERT_NE(coordinator.mission(), nullptr);
   EXPECT_EQ(coordinator.mission()->name, "small");
+}
+
+TEST(Takeover, OfAnotherVersionsPlanIsRefusedWithItsDecodersSentence) {
+  Coordinator coordinator({0, kSuccessorLife, "here", kVersion}, [](auto) { return "too new"; }, {},
+                          Takeover::kMust);
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  coordinator.receive(memory_of(3), at(0s));
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(200ms))).empty());
+  EXPECT_TRUE(coordinator.finished());
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+  EXPECT_EQ(coordinator.reason(), "run 0000000000001234: too new");
 }
 
 TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {

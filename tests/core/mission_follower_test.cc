@@ -15,7 +15,7 @@ using namespace test;
 
 constexpr int kParts = 4;
 
-/// Part `p` of revision `revision`: agent 10·revision + p, and one byte that says the same.
+/// Part `p` of revision `revision`: agent 10·revision + p, and byte p of the plan.
 MissionPart part_of(std::int64_t revision, int p, int parts = kParts,
                     MissionState state = MissionState::kWaiting) {
   MissionPart part = mission_part(revision, state, {});
@@ -23,7 +23,7 @@ MissionPart part_of(std::int64_t revision, int p, int parts = kParts,
   part.part = p;
   part.parts = parts;
   part.roster = {{author_of(mark), 0, -1}};
-  part.plan = {static_cast<std::byte>(mark)};
+  part.plan = {static_cast<std::byte>(p)};
   return part;
 }
 
@@ -45,8 +45,8 @@ TEST(MissionFollower, PutsThePartsTogetherInAnyOrder) {
       EXPECT_EQ(follower.mission().has_value(), i == kParts - 1);
     }
     EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 11, 12, 13}));
-    EXPECT_EQ(follower.plan(), (std::vector<std::byte>{std::byte{10}, std::byte{11}, std::byte{12},
-                                                       std::byte{13}}));
+    EXPECT_EQ(follower.plan(), (std::vector<std::byte>{std::byte{0}, std::byte{1}, std::byte{2},
+                                                       std::byte{3}}));
     EXPECT_EQ(follower.revision(), 1);
   } while (std::next_permutation(order.begin(), order.end()));
 }
@@ -159,17 +159,35 @@ TEST(MissionFollower, DecodesThePlanOnce) {
 
 TEST(MissionFollower, SaysThatAPlanIsUnreadableAndDoesNotTryAgain) {
   int decoded = 0;
-  MissionFollower follower([&](std::span<const std::byte>) -> std::optional<Mission> {
+  MissionFollower follower([&](std::span<const std::byte>) {
     ++decoded;
-    return std::nullopt;
+    return "it is in verse";
   });
-  EXPECT_FALSE(follower.plan_unreadable());
+  EXPECT_FALSE(follower.plan_problem());
   for (std::int64_t revision = 0; revision < 3; ++revision) {
     EXPECT_TRUE(follower.receive(part_of(revision, 0, 1)));
-    EXPECT_TRUE(follower.plan_unreadable());
+    EXPECT_EQ(follower.plan_problem(), "it is in verse");
     EXPECT_FALSE(follower.mission().has_value());
   }
   EXPECT_EQ(decoded, 1);
+}
+
+TEST(MissionFollower, ARevisionWithAnotherPlanChangesNothing) {
+  MissionFollower follower = new_follower();
+  for (int p = 0; p < kParts; ++p) follower.receive(part_of(1, p));
+  for (int p = 0; p < kParts; ++p) {
+    MissionPart other = part_of(2, p, kParts, MissionState::kFailed);
+    if (p == 2) other.plan.push_back(std::byte{9});
+    EXPECT_FALSE(follower.receive(other));
+  }
+  EXPECT_EQ(follower.foreign_plans(), 1);
+  EXPECT_EQ(follower.revision(), 1);
+  EXPECT_EQ(follower.state(), MissionState::kWaiting);
+  EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 11, 12, 13}));
+  EXPECT_EQ(follower.plan().size(), 4u);
+  for (int p = 0; p < kParts; ++p) follower.receive(part_of(2, p));
+  EXPECT_EQ(follower.revision(), 2) << "the same number with our plan is heard";
+  EXPECT_EQ(follower.foreign_plans(), 1);
 }
 
 TEST(MissionFollower, FindsAnEntryByItsIncarnation) {

@@ -72,6 +72,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(status_wire.missed_ticks, 10);
   for (int i = 0; i < kRefusalKinds; ++i) EXPECT_EQ(status_wire.refused[i], 11 + i);
   EXPECT_EQ(status_wire.kernel_drops, 17);
+  EXPECT_EQ(status_wire.loop_lag_s, 0.25);
   EXPECT_EQ(status_wire.status_host, "host.example");
 
   const auto digest_wire = read_by_lcm<digest_t>(encoded(digest()));
@@ -126,6 +127,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(team_wire.median_ergodic_metric, 1.0 / 7);
   EXPECT_EQ(team_wire.silent_agent, 2);
   EXPECT_EQ(team_wire.team_missed_deadlines, 9);
+  EXPECT_EQ(team_wire.team_host, "base.example");
 
   const auto stop_wire = read_by_lcm<stop_t>(encoded(stop()));
   expect_header(stop_wire.header, kOperator);
@@ -196,7 +198,9 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
   world.vehicle_count = kMaxVehiclesPerState;
   AgentStatus status = agent_status();
   status.host.assign(kMaxHostLength, 'h');
-  for (const Message& message : {Message(part), Message(world), Message(status)}) {
+  TeamStatus team = team_status();
+  team.host.assign(kMaxHostLength, 'h');
+  for (const Message& message : {Message(part), Message(world), Message(status), Message(team)}) {
     EXPECT_LE(encoded(message).size(), kMaxDatagramBytes);
     EXPECT_EQ(verdict(message), "accepted");
   }
@@ -214,6 +218,9 @@ TEST(Codec, StringsAreCutAtTheirLimitsAndAtANul) {
   const auto nul = decoded_as<Stop>(
       encoded(Stop{header_of_sender(kOperator), true, std::string("one\0two", 7)}));
   EXPECT_EQ(nul.reason, "one");
+  const auto escape = decoded_as<Stop>(
+      encoded(Stop{header_of_sender(kOperator), true, "red \x1b[31m\nand bell\a"}));
+  EXPECT_EQ(escape.reason, "red  [31m and bell ");
 }
 
 TEST(CodecDeathTest, StopsACallerThatExceedsACount) {

@@ -122,6 +122,7 @@ TEST(Codec, HostileStringLengthsAreRefused) {
                  {hello(), kHeaderBytes + 4 + 4 + 13, 6},
                  {stop(), kHeaderBytes + 1, 7},
                  {agent_status(), encoded(agent_status()).size() - 17, 13},
+                 {team_status(), encoded(team_status()).size() - 17, 13},
                  {mission_part(), encoded(mission_part()).size() - 12, 8}};
   for (const auto& text : strings) {
     ASSERT_EQ(with_count(text.message, text.offset, text.length), encoded(text.message))
@@ -135,6 +136,20 @@ TEST(Codec, HostileStringLengthsAreRefused) {
     unterminated[text.offset + 4 + static_cast<std::size_t>(text.length) - 1] = std::byte{'x'};
     EXPECT_EQ(verdict(retagged(unterminated)), "size");
   }
+}
+
+TEST(Codec, TextsThatMeanSomethingToATerminalAreRefused) {
+  for (const Message& message : {Message(hello()), Message(stop()), Message(agent_status()),
+                                 Message(team_status()), Message(mission_part())}) {
+    for (const int control : {1, 7, '\n', '\r', 0x1b, 0x7f}) {
+      Bytes bytes = encoded(message);
+      bytes[bytes.size() - 2] = static_cast<std::byte>(control);  // the last string's last character
+      EXPECT_EQ(verdict(retagged(bytes)), "range") << "message kind " << message.index();
+    }
+  }
+  Bytes host = encoded(hello());
+  host[kHeaderBytes + 8] = std::byte{0x1b};
+  EXPECT_EQ(verdict(retagged(host)), "range");
 }
 
 TEST(Codec, StringsLongerThanTheirLimitAreRefusedEvenIfTheBytesAreThere) {
@@ -156,6 +171,7 @@ TEST(Codec, NumbersThatAreNotNumbersAreRefused) {
   const auto the_status = [&] { return status; };
   refused_with(the_status, status.ergodic_metric);
   refused_with(the_status, status.max_staleness_s);
+  refused_with(the_status, status.loop_lag_s);
   TeamStatus team = team_status();
   refused_with([&] { return team; }, team.ergodic_metric);
   Contribution sums = contribution();
@@ -203,6 +219,17 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
                            [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(4); }),
       changed<AgentStatus>(agent_status(),
                            [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(-1); }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.loop_lag_s = -1e-9; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.max_staleness_s = -1; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.ergodic_metric = -1; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.waiting_for = kMaxAgents; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.answered_tick = -2; }),
+      changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.ergodic_metric = -1; }),
+      changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.tick_count = -1; }),
+      changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.agents_alive = -1; }),
+      changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.agents_expected = -1; }),
+      changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.silent_agent = kMaxAgents; }),
+      changed<TeamStatus>(team_status(), [](TeamStatus& m) { m.missed_deadlines = -1; }),
       changed<TeamStatus>(team_status(),
                           [](TeamStatus& m) { m.state = static_cast<MissionState>(9); }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.header.tick = -1; }),

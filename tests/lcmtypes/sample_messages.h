@@ -73,12 +73,14 @@ inline AgentStatus agent_status() {
   m.contributions_relayed = 18;
   m.refused = {11, 12, 13, 14, 15, 16};
   m.kernel_drops = 17;
+  m.loop_lag_s = 0.25;
   m.host = "host.example";
   return m;
 }
 
 inline TeamStatus team_status() {
-  return {header_of_sender(kCoordinator), MissionState::kEnded, 1500, 3, 4, 1.0 / 7, 2, 9};
+  return {header_of_sender(kCoordinator), MissionState::kEnded, 1500, 3, 4, 1.0 / 7, 2, 9,
+          "base.example"};
 }
 
 inline Stop stop() { return {header_of_sender(kOperator), true, "enough"}; }

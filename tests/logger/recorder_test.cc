@@ -341,5 +341,27 @@ TEST(RecordEnd, ItsOwnProcessMayEndIt) {
   EXPECT_EQ(record.trajectory_rows().size(), 3u);
 }
 
+TEST(RecordedStatuses, AreTheNewestWithTheWorstLagOfAll) {
+  Record record(small_mission(1));
+  AgentStatus status = status_of(0, 1);
+  for (const double lag_s : {0.1, 0.7, 0.2}) {
+    status.loop_lag_s = lag_s;
+    record.tell(status);
+    ++status.header.sequence;
+  }
+  EXPECT_EQ(record.recorder.statuses().at(author_of(0)).loop_lag_s, 0.7);
+  EXPECT_EQ(record.recorder.statuses().at(author_of(0)).header.sequence, 3);
+}
+
+TEST(RecordEnd, APlanItCannotReadEndsItAtOnce) {
+  std::ostringstream trajectory, metrics;
+  Recorder recorder(kRun, kLoggerLife, [](auto) { return "install another version"; }, trajectory,
+                    metrics);
+  recorder.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  EXPECT_TRUE(recorder.finished());
+  EXPECT_STREQ(recorder.result(), "failed");
+  EXPECT_EQ(recorder.reason(), "install another version");
+}
+
 }  // namespace
 }  // namespace ergocast

@@ -95,7 +95,7 @@ class Witness {
   }
 
   std::unique_ptr<Transport> transport_;
-  MissionFollower follower_{[](std::span<const std::byte>) { return std::nullopt; }};
+  MissionFollower follower_{[](std::span<const std::byte>) { return "not needed"; }};
   std::map<Author, std::pair<Tick, Tick>> status_ticks_;  // of its last two
   std::map<std::pair<Author, int>, Contribution> blocks_;
   std::map<Author, Tick> answered_;

@@ -68,6 +68,20 @@ Bytes with_double(Bytes plan, double from, double to) {
   return plan;
 }
 
+/// The mission in a plan, if there is one.
+std::optional<Mission> decoded(std::span<const std::byte> plan) {
+  auto read = decode_plan(plan);
+  auto* mission = std::get_if<Mission>(&read);
+  return mission == nullptr ? std::nullopt : std::optional(std::move(*mission));
+}
+
+/// What is wrong with one.
+std::string problem_of(std::span<const std::byte> plan) {
+  const auto read = decode_plan(plan);
+  const auto* problem = std::get_if<std::string>(&read);
+  return problem == nullptr ? "nothing" : *problem;
+}
+
 /// The plan of a scenario whose numbers are all different.
 Bytes small_plan() {
   return good(R"(
@@ -86,13 +100,14 @@ TEST(Plan, OfEveryShippedScenarioReadsBack) {
   for (const char* name : kShipped) {
     SCOPED_TRACE(name);
     const Scenario scenario = good(Scenario::load(shipped(name)));
-    const std::optional<Scenario> again = Scenario::from_plan(scenario.plan());
-    ASSERT_TRUE(again);
+    const auto read = Scenario::from_plan(scenario.plan());
+    const auto* again = std::get_if<Scenario>(&read);
+    ASSERT_NE(again, nullptr) << std::get<std::string>(read);
     EXPECT_EQ(again->plan(), scenario.plan());
     EXPECT_EQ(again->description(), "");
     EXPECT_EQ(again->target_density().size(), 0);
     expect_equal(again->mission(), scenario.mission());
-    expect_equal(decode_plan(scenario.plan()).value(), scenario.mission());
+    expect_equal(decoded(scenario.plan()).value(), scenario.mission());
     EXPECT_EQ(good(Scenario::parse(scenario.print(), "again")).plan(), scenario.plan());
   }
 }
@@ -122,14 +137,14 @@ TEST(Plan, OfTheLargestScenarioFitsItsMessages) {
   text += "basis { modes_x: 64 modes_y: 64 } name: \"" + std::string(64, 'x') + "\"";
   const Scenario largest = good(text, {.seed = ~std::uint64_t{0}, .agents = 128});
   EXPECT_LE(largest.plan().size(), std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage);
-  EXPECT_TRUE(decode_plan(largest.plan()));
+  EXPECT_TRUE(decoded(largest.plan()));
 }
 
 TEST(HostilePlan, CutShortIsRefused) {
   const Bytes plan = small_plan();
-  ASSERT_TRUE(decode_plan(plan));
+  ASSERT_TRUE(decoded(plan));
   for (std::size_t length = 0; length < plan.size(); ++length) {
-    EXPECT_FALSE(decode_plan(std::span(plan).first(length))) << length;
+    EXPECT_FALSE(decoded(std::span(plan).first(length))) << length;
   }
 }
 
@@ -138,7 +153,8 @@ TEST(HostilePlan, WithAnyBitFlippedIsRefusedOrFlyable) {
   for (std::size_t bit = 0; bit < 8 * plan.size(); ++bit) {
     const std::byte mask{static_cast<unsigned char>(1u << bit % 8)};
     plan[bit / 8] ^= mask;
-    if (const auto scenario = Scenario::from_plan(plan)) {
+    const auto read = Scenario::from_plan(plan);
+    if (const auto* scenario = std::get_if<Scenario>(&read)) {
       expect_flyable(scenario->mission());
       EXPECT_EQ(scenario->plan(), plan);
       const std::string text = scenario->print() + "target { uniform_weight: 1 }";
@@ -157,47 +173,63 @@ TEST(HostilePlan, OfRandomBytesIsRefusedOrFlyable) {
     for (int changes = 1 + i % 8; changes > 0 && !noisy.empty(); --changes) {
       noisy[random() % noisy.size()] = std::byte{static_cast<unsigned char>(random())};
     }
-    if (const auto mission = decode_plan(noisy)) expect_flyable(*mission);
+    if (const auto mission = decoded(noisy)) expect_flyable(*mission);
   }
 }
 
 TEST(HostilePlan, WithANumberOutOfItsLimitsIsRefused) {
   const Bytes plan = small_plan();
   const double nan = std::nan(""), inf = INFINITY;
-  EXPECT_TRUE(decode_plan(with_double(plan, 5.5, 6.5)));
+  EXPECT_TRUE(decoded(with_double(plan, 5.5, 6.5)));
   for (const double number :
        {101., 52., 1.75, 5.5, 0.25, 0.75, 0.0002, 0.125, 60., 17., 21.}) {
     for (const double bad : {nan, inf, -inf, -1e300}) {
-      EXPECT_FALSE(decode_plan(with_double(plan, number, bad))) << number << " " << bad;
+      EXPECT_FALSE(decoded(with_double(plan, number, bad))) << number << " " << bad;
     }
   }
-  EXPECT_FALSE(decode_plan(with_double(plan, 17, 102)));      // outside the domain
-  EXPECT_FALSE(decode_plan(with_double(plan, 5.5, 521)));     // longer steps than the domain
-  EXPECT_FALSE(decode_plan(with_double(plan, 0.0002, 0.5)));  // too weak at the corner
-  EXPECT_FALSE(decode_plan(with_double(plan, 60, 0.01)));     // no step at all
+  EXPECT_FALSE(decoded(with_double(plan, 17, 102)));      // outside the domain
+  EXPECT_FALSE(decoded(with_double(plan, 5.5, 521)));     // longer steps than the domain
+  EXPECT_FALSE(decoded(with_double(plan, 0.0002, 0.5)));  // too weak at the corner
+  EXPECT_FALSE(decoded(with_double(plan, 60, 0.01)));     // no step at all
 }
 
 TEST(HostilePlan, WithCoefficientsThatCannotBeIsRefused) {
   const Bytes plan = small_plan();
-  const Coefficients mu = decode_plan(plan)->target_coefficients;
-  EXPECT_TRUE(decode_plan(with_double(plan, mu(2, 1), 0.5)));
+  const Coefficients mu = decoded(plan)->target_coefficients;
+  EXPECT_TRUE(decoded(with_double(plan, mu(2, 1), 0.5)));
   for (const double bad :
        {1.001, -1.001, std::nan(""), -std::nan(""), double{INFINITY}, double{-INFINITY}}) {
-    EXPECT_FALSE(decode_plan(with_double(plan, mu(2, 1), bad))) << bad;
+    EXPECT_FALSE(decoded(with_double(plan, mu(2, 1), bad))) << bad;
   }
   // μ_00 follows the tag and length of the six coefficients.
   Bytes off = plan;
   const double less = 0.999;
   std::memcpy(off.data() + find_double(plan, mu(0, 1)) - sizeof less, &less, sizeof less);
-  EXPECT_FALSE(decode_plan(off));
+  EXPECT_FALSE(decoded(off));
 }
 
-TEST(HostilePlan, OfAnotherVersionIsRefused) {
+TEST(HostilePlan, OfAnotherVersionIsRefusedWithBothVersionsNamed) {
   Bytes plan = small_plan();
   ASSERT_EQ(plan[0], std::byte{0x0A});  // the version string comes first
   const auto length = static_cast<std::size_t>(plan[1]);
-  plan[1 + length] ^= std::byte{1};
-  EXPECT_FALSE(decode_plan(plan));
+  const std::string ours(reinterpret_cast<const char*>(plan.data()) + 2, length);
+  std::string theirs = ours;
+  theirs.back() = theirs.back() == '7' ? '8' : '7';
+  plan[1 + length] = std::byte{static_cast<unsigned char>(theirs.back())};
+  const std::string sentence = "the mission's plan is of version " + theirs + ", this program is " +
+                               ours + ": install the same version on every host";
+  EXPECT_EQ(problem_of(plan), sentence);
+  // What follows may be written in a way that we cannot even take apart.
+  plan.resize(2 + length + 1);
+  EXPECT_EQ(problem_of(plan), sentence);
+}
+
+TEST(HostilePlan, WithoutAVersionIsDamagedOrMuchNewer) {
+  EXPECT_TRUE(has(problem_of({}), "damaged or of a much newer version"));
+  Bytes plan = small_plan();
+  plan[3] = std::byte{0x1b};  // no word of a stranger moves the cursor of a terminal
+  EXPECT_TRUE(has(problem_of(plan), "damaged or of a much newer version"));
+  EXPECT_TRUE(has(problem_of(with_double(small_plan(), 17, 102)), "breaks that version's rules"));
 }
 
 // Protobuf would read these: unknown fields, a field given twice, padding.
@@ -208,14 +240,14 @@ TEST(HostilePlan, WithASpellingOfItsOwnIsRefused) {
     for (const int byte : bytes) longer.push_back(std::byte{static_cast<unsigned char>(byte)});
     return longer;
   };
-  EXPECT_FALSE(decode_plan(appended({0x78, 0x01})));              // field 15
-  EXPECT_FALSE(decode_plan(appended({0x12, 0x00})));              // an empty scenario to be merged
-  EXPECT_FALSE(decode_plan(appended({0x12, 0x02, 0x18, 0x09})));  // another seed
-  EXPECT_FALSE(decode_plan(appended({0x00})));
+  EXPECT_FALSE(decoded(appended({0x78, 0x01})));              // field 15
+  EXPECT_FALSE(decoded(appended({0x12, 0x00})));              // an empty scenario to be merged
+  EXPECT_FALSE(decoded(appended({0x12, 0x02, 0x18, 0x09})));  // another seed
+  EXPECT_FALSE(decoded(appended({0x00})));
   Bytes twice = plan;
   twice.insert(twice.end(), plan.begin(), plan.end());
-  EXPECT_FALSE(decode_plan(twice));
-  EXPECT_FALSE(decode_plan(Bytes(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage + 1)));
+  EXPECT_FALSE(decoded(twice));
+  EXPECT_FALSE(decoded(Bytes(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage + 1)));
 }
 
 }  // namespace

@@ -277,10 +277,11 @@ TEST(WorldEnd, TheMissionsEndAStopAndItsProcessEndItAtOnce) {
 }
 
 TEST(WorldEnd, APlanItCannotReadEndsIt) {
-  World world(kRun, kWorldLife, [](auto) { return std::nullopt; });
+  World world(kRun, kWorldLife, [](auto) { return "install another version"; });
   world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   EXPECT_TRUE(world.finished());
-  EXPECT_EQ(world.reason(), "the mission plan is another version's");
+  EXPECT_TRUE(world.failed());
+  EXPECT_EQ(world.reason(), "install another version");
 }
 
 }  // namespace

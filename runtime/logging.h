@@ -1,0 +1,25 @@
+// Where a process's log lines go, and how they look.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ergocast {
+
+/// What --log-level takes, from everything to errors only.
+inline const std::vector<std::string> kLogLevels{"trace", "debug", "info", "warn", "error"};
+
+/// One line per event on the standard error stream: time, level, process, text. If that stream is
+/// the journal's, a syslog priority takes the place of time and level, on every line of a text that
+/// has several. A line that is repeated within 5 s is counted, not written.
+/// @param level  one of kLogLevels
+void set_up_logging(const std::string& process_name, const std::string& level);
+
+/// Whether `fd` is the stream that systemd names in `journal_stream` ("device:inode"), its
+/// $JOURNAL_STREAM; null: there is none.
+bool is_journal(const char* journal_stream, int fd);
+
+/// `text` as the journal wants it: "<N>process: line", for each of its lines that is not empty.
+std::string journal_lines(int priority, const std::string& process_name, const std::string& text);
+
+}  // namespace ergocast

@@ -1,0 +1,67 @@
+// What the programs log: how much, and how it looks in the journal.
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <sstream>
+
+#include "tests/process/mission.h"
+
+namespace ergocast::test {
+namespace {
+
+class Log : public ByHand {
+ protected:
+  void TearDown() override {
+    unsetenv("ERGOCAST_LOG_LEVEL");
+    unsetenv("JOURNAL_STREAM");
+    ByHand::TearDown();
+  }
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+};
+
+TEST_F(Log, KeepsToItsLevel) {
+  Program& quiet = hand("ergocast-agent", {"--log-level", "warn"});
+  ASSERT_TRUE(quiet.says("warning agent: no coordinator is heard")) << quiet.said();
+  EXPECT_FALSE(has(quiet.said(), "joining on")) << quiet.said();
+}
+
+TEST_F(Log, TakesItsLevelFromTheEnvironmentUnlessTheCommandLineHasOne) {
+  setenv("ERGOCAST_LOG_LEVEL", "error", 1);
+  Program& silent = hand("ergocast-agent");
+  Program& told = hand("ergocast-agent", {"--log-level", "info"});
+  ASSERT_TRUE(told.says("no coordinator is heard")) << told.said();
+  EXPECT_TRUE(has(told.said(), "info agent: joining on")) << told.said();
+  EXPECT_EQ(silent.said(), "");
+}
+
+TEST_F(Log, RefusesALevelThatIsNone) {
+  EXPECT_EQ(run("ergocast-sim", {"--log-level", "loud"}), 2);
+  EXPECT_TRUE(has(output(), "trace")) << output();
+  setenv("ERGOCAST_LOG_LEVEL", "loud", 1);
+  EXPECT_EQ(run("ergocast-sim", {}), 2);
+  EXPECT_TRUE(has(output(), "'loud' is none of trace, debug, info, warn, error")) << output();
+}
+
+TEST_F(Log, InTheJournalHasAPriorityOnEveryLineAndNoTimeOfItsOwn) {
+  const auto journal = folder_ / "output-1";  // where the first program's output goes
+  std::ofstream(journal).close();
+  struct stat info {};
+  ASSERT_EQ(stat(journal.c_str(), &info), 0);
+  setenv("JOURNAL_STREAM", (std::to_string(info.st_dev) + ':' + std::to_string(info.st_ino)).c_str(), 1);
+  ASSERT_EQ(std::system("ip route del 224.0.0.0/4 dev lo"), 0);
+  EXPECT_EQ(run("ergocast-sim", {}), 3);
+  const std::string said = output();
+  EXPECT_EQ(run("ergocast-sim", {}), 3);
+  EXPECT_TRUE(has(output(), " error sim: ")) << "another file is no journal";
+  ASSERT_EQ(std::system("ip route add 224.0.0.0/4 dev lo"), 0);
+  EXPECT_TRUE(has(said, "<3>sim:   ip route add 224.0.0.0/4 dev lo")) << said;
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_TRUE(line.starts_with("<3>sim: ")) << line;
+  }
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,38 @@
+// Somebody on the buses who says what a test wants him to.
+#pragma once
+
+#include <cstdint>
+#include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/messages.h"
+#include "runtime/lcm_url.h"
+#include "runtime/transport.h"
+
+namespace ergocast::test {
+
+class Stranger {
+ public:
+  explicit Stranger(const std::string& url)
+      : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
+        transport_(std::get<0>(Transport::open(url_, 0, {}, {.on_message = [](const Message&, AgentId) {}}))) {}
+
+  void say(Bus bus, Message message) {
+    std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);
+    transport_->publish({bus, message});
+  }
+  /// Bytes as they are.
+  void say(Bus bus, const std::string& channel, const std::vector<std::byte>& bytes) {
+    lcm::LCM raw(url_.of(bus));
+    raw.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+  }
+
+ private:
+  LcmUrl url_;
+  std::unique_ptr<Transport> transport_;
+  std::int64_t sequence_ = 0;
+};
+
+}  // namespace ergocast::test

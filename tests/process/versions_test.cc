@@ -1,0 +1,89 @@
+// Hosts with different versions of Ergocast: nobody takes part in a mission it may misunderstand,
+// and both sides say so.
+#include "runtime/node.h"
+#include "tests/process/mission.h"
+#include "tests/process/stranger.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+constexpr RunId kTheirRun = 0xabc;
+
+/// What a coordinator of version 9.9.9 says, whose plan only begins as ours do.
+MissionPart their_mission() {
+  MissionPart part;
+  part.header = {kTheirRun, kCoordinator, 71, 0, 0};
+  part.state = MissionState::kRunning;
+  for (const int byte : {0x0A, 5, int{'9'}, int{'.'}, int{'9'}, int{'.'}, int{'9'}, 0xFF, 0xFF, 1, 2, 3}) {
+    part.plan.push_back(std::byte{static_cast<unsigned char>(byte)});
+  }
+  return part;
+}
+
+AgentStatus their_status() {
+  AgentStatus status;
+  status.header = {kTheirRun, 5, 72, 0, 0};
+  status.phase = AgentPhase::kRunning;
+  return status;
+}
+
+class OtherVersion : public ByHand {
+ protected:
+  Stranger stranger_{kUrl};
+};
+
+TEST_F(OtherVersion, OfACoordinatorEndsEverybodyWithBothVersionsNamed) {
+  std::filesystem::create_directory(out());
+  std::vector<Program*> programs{&hand("ergocast-logger", {"--out", out()}), &hand("ergocast-sim"),
+                                 &hand("ergocast-agent"), &hand("ergocast-coordinator", {"--resume"})};
+  ASSERT_TRUE(eventually([&] {
+    stranger_.say(Bus::kSwarm, their_status());
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) stranger_.say(bus, their_mission());
+    return std::none_of(programs.begin(), programs.end(), [](Program* p) { return p->child.running(); });
+  }));
+  for (Program* program : programs) {
+    EXPECT_EQ(wait_for(program->child), 4) << program->said();
+    EXPECT_NE(program->said().find("the mission's plan is of version 9.9.9, this program is " + version() +
+                                   ": install the same version on every host"),
+              std::string::npos)
+        << program->said();
+  }
+  EXPECT_FALSE(std::filesystem::exists(out() / "trajectory.csv")) << "as if no logger had been";
+}
+
+TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
+  Program& coordinator =
+      hand("ergocast-coordinator", {scenario(), "--run-id", to_hex(kTheirRun)});
+  Witness witness(kUrl);
+  const Hello theirs{{kTheirRun, kUnassigned, 73, 0, 0}, 2, "old-robot", "9.9.9"};
+  const std::string warning = "agent on old-robot runs version 9.9.9, this mission is flown by " +
+                              version() + ": install " + version() + " there";
+  ASSERT_TRUE(eventually([&] {
+    stranger_.say(Bus::kSwarm, theirs);
+    return coordinator.said().find(warning) != std::string::npos;
+  })) << coordinator.said();
+  // An honest agent of our version is admitted, to the number that the other has asked for.
+  hand("ergocast-agent", {"--id", "2"});
+  ASSERT_TRUE(witness.hears([&] {
+    stranger_.say(Bus::kSwarm, theirs);
+    return witness.member(2).incarnation != 0;
+  })) << coordinator.said();
+  EXPECT_EQ(witness.entry({2, 73}), nullptr);
+  const std::string said = coordinator.said();
+  EXPECT_EQ(said.find(warning), said.rfind(warning)) << "once";
+}
+
+TEST_F(OtherVersion, OfAMessagesLayoutIsNamedWithItsChannelByAnAgentThatWaits) {
+  Program& agent = hand("ergocast-agent");
+  const std::string warning = "ERGOCAST_MISSION arrives in a format that version " + version() +
+                              " does not know: another version of Ergocast is on this URL";
+  ASSERT_TRUE(eventually([&] {
+    stranger_.say(Bus::kSwarm, "ERGOCAST_MISSION", std::vector<std::byte>(300, std::byte{0xAB}));
+    return agent.said().find(warning) != std::string::npos;
+  })) << agent.said();
+  EXPECT_TRUE(agent.says("no coordinator is heard")) << agent.said();
+}
+
+}  // namespace
+}  // namespace ergocast::test
