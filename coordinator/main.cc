@@ -9,6 +9,7 @@
 #include "runtime/event_loop.h"
 #include "runtime/logging.h"
 #include "runtime/node.h"
+#include "runtime/shipped_scenarios.h"
 #include "runtime/traffic_watch.h"
 #include "scenario/scenario.h"
 
@@ -120,7 +121,10 @@ int main(int argc, char** argv) {
   std::string file;
   bool resume = false;
   add_node_options(app, node);
-  auto* scenario = app.add_option("SCENARIO", file, "Scenario file; not needed with --resume");
+  auto* scenario =
+      app.add_option("SCENARIO", file, "Scenario file, or the name of a shipped one; not needed with --resume")
+          ->transform(shipped_scenario())
+          ->type_name("FILE");
   app.add_flag("--resume", resume, "Take over the mission that the agents are flying, or fail");
   app.footer("Without --run-id and --resume: takes over this scenario's mission if it is under way "
              "on the URL, else starts a new one.");
