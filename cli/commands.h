@@ -76,4 +76,7 @@ int report(const std::filesystem::path& run_dir);
 /// Simulates a recorded run again and compares the trajectories.
 int verify(const std::filesystem::path& run_dir);
 
+/// `spy`: LCM's viewer on one bus of a mission.
+void add_spy(CLI::App& app, Action& action);
+
 }  // namespace ergocast::cli

@@ -35,20 +35,24 @@ void read_run_id(const std::string& text, RunId& run) {
 
 }  // namespace
 
-void add_node_options(CLI::App& app, NodeOptions& options) {
+void add_url_option(CLI::App& app, LcmUrl& url) {
   app.add_option_function<std::string>(
-         "--lcm-url", [&options](const std::string& text) { read_url(text, options.url); },
+         "--lcm-url", [&url](const std::string& text) { read_url(text, url); },
          "Base URL: swarm, world and command buses are this port and the next two")
       ->default_str(default_url())
       ->type_name("URL");
+  app.parse_complete_callback([&app, &url] {
+    if (app.count("--lcm-url") == 0) read_url(default_url(), url);
+  });
+}
+
+void add_node_options(CLI::App& app, NodeOptions& options) {
+  add_url_option(app, options.url);
   app.add_option_function<std::string>(
          "--run-id", [&options](const std::string& text) { read_run_id(text, options.run); },
          "Take part in this run only")
       ->type_name("HEX");
   app.set_version_flag("--version", version_text());
-  app.parse_complete_callback([&app, &options] {
-    if (app.count("--lcm-url") == 0) read_url(default_url(), options.url);
-  });
 }
 
 int parse_command_line(CLI::App& app, int argc, char** argv) {

@@ -24,7 +24,10 @@ struct NodeOptions {
   RunId run = 0;  ///< 0: not given
 };
 
-/// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group), --run-id and --version.
+/// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group).
+void add_url_option(CLI::App& app, LcmUrl& url);
+
+/// --lcm-url, --run-id and --version.
 void add_node_options(CLI::App& app, NodeOptions& options);
 
 /// Parses; the exit code if the program has to end here (0 after --help), −1 if it goes on.
