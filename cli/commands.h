@@ -78,5 +78,7 @@ int verify(const std::filesystem::path& run_dir);
 
 /// `deploy`: the texts that start a mission on several hosts.
 void add_deploy(CLI::App& app, Action& action);
+/// `spy`: LCM's viewer on one bus of a mission.
+void add_spy(CLI::App& app, Action& action);
 
 }  // namespace ergocast::cli

@@ -207,6 +207,7 @@ int parse_and_do(int argc, char** argv) {
   verify_command->callback([&] { action = [&] { return verify(path); }; });
 
   add_deploy(app, action);
+  add_spy(app, action);
 
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version_text());

@@ -4,7 +4,6 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <ctime>
@@ -13,13 +12,6 @@
 
 namespace ergocast {
 namespace {
-
-/// A variable's value, or `otherwise` if it is not set or empty.
-std::string from_environment(const char* name, const std::string& otherwise) {
-  const char* value = std::getenv(name);
-  return value != nullptr && *value != '\0' ? value : otherwise;
-}
-std::string default_url() { return from_environment("LCM_DEFAULT_URL", LcmUrl{}.base()); }
 
 void read_url(const std::string& text, LcmUrl& url) {
   auto parsed = LcmUrl::parse(text);
@@ -35,46 +27,33 @@ void read_run_id(const std::string& text, RunId& run) {
   }
 }
 
-/// What was not given.
-void complete(const CLI::App& app, BusOptions& options) {
-  if (app.count("--lcm-url") == 0) read_url(default_url(), options.url);
-}
-
-void read_log_level_from_environment(std::string& level) {
-  const std::string wanted = from_environment("ERGOCAST_LOG_LEVEL", level);
-  if (std::find(kLogLevels.begin(), kLogLevels.end(), wanted) == kLogLevels.end()) {
-    throw CLI::ValidationError("ERGOCAST_LOG_LEVEL", "'" + wanted +
-                                   "' is none of trace, debug, info, warn, error");
-  }
-  level = wanted;
-}
-
 }  // namespace
 
-void add_bus_options(CLI::App& app, BusOptions& options) {
+void add_url_option(CLI::App& app, LcmUrl& url) {
   app.add_option_function<std::string>(
-         "--lcm-url", [&options](const std::string& text) { read_url(text, options.url); },
+         "--lcm-url", [&url](const std::string& text) { read_url(text, url); },
          "Base URL: swarm, world and command buses are this port and the next two")
-      ->default_str(default_url())
+      ->default_str(url.base())
+      ->envname("LCM_DEFAULT_URL")
       ->type_name("URL");
+}
+
+void add_bus_options(CLI::App& app, BusOptions& options) {
+  add_url_option(app, options.url);
   app.add_option_function<std::string>(
          "--run-id", [&options](const std::string& text) { read_run_id(text, options.run); },
          "This run only")
       ->type_name("HEX");
-  app.parse_complete_callback([&app, &options] { complete(app, options); });
 }
 
 void add_node_options(CLI::App& app, NodeOptions& options) {
   add_bus_options(app, options);
   app.add_option("--log-level", options.log_level, "What is logged: this and what is worse")
-      ->default_str(from_environment("ERGOCAST_LOG_LEVEL", options.log_level))
+      ->capture_default_str()
+      ->envname("ERGOCAST_LOG_LEVEL")
       ->check(CLI::IsMember(kLogLevels))
       ->type_name("LEVEL");
   app.set_version_flag("--version", version_text());
-  app.parse_complete_callback([&app, &options] {
-    complete(app, options);
-    if (app.count("--log-level") == 0) read_log_level_from_environment(options.log_level);
-  });
 }
 
 int parse_command_line(CLI::App& app, int argc, char** argv) {

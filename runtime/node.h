@@ -24,7 +24,10 @@ struct BusOptions {
   RunId run = 0;  ///< 0: not given
 };
 
-/// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group) and --run-id.
+/// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group).
+void add_url_option(CLI::App& app, LcmUrl& url);
+
+/// Besides, --run-id.
 void add_bus_options(CLI::App& app, BusOptions& options);
 
 /// Of the programs that take part in a mission.

@@ -1,0 +1,158 @@
+// `ergocast spy`: LCM's own viewer, lcm-spy, with Ergocast's message types and pictures.
+//
+// Debian 12's script of that name does not start with Java 17, so the viewer's class is started
+// here.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "runtime/lcm_url.h"
+#include "runtime/node.h"
+
+namespace ergocast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SpyOptions {
+  LcmUrl url;
+  Bus bus = Bus::kSwarm;
+  bool print = false;
+};
+
+/// The first of `places` where there is something; nothing if there is none.
+std::optional<fs::path> first_of(const std::vector<fs::path>& places) {
+  std::error_code none;
+  for (const fs::path& place : places) {
+    if (fs::exists(place, none)) return fs::canonical(place, none);
+  }
+  return std::nullopt;
+}
+
+std::optional<fs::path> java_on_path() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
+  std::vector<fs::path> places;
+  for (std::string folder; std::getline(folders, folder, ':');)
+    places.push_back(fs::path(folder) / "java");
+  return first_of(places);
+}
+
+/// Whether this Java lacks what windows need: Debian's "headless" packages.
+bool is_headless(const fs::path& java) {
+  const fs::path libraries = java.parent_path().parent_path() / "lib";
+  return fs::exists(libraries / "libawt_headless.so") && !fs::exists(libraries / "libawt_xawt.so");
+}
+
+/// What is started, and what is missing for it.
+struct Viewer {
+  std::vector<std::string> command;
+  std::string packages;  ///< Debian packages to be installed, each after a space
+  bool jar_missing = false;
+};
+
+Viewer viewer_for(const SpyOptions& options) {
+  Viewer viewer;
+  const auto need = [&viewer](const std::optional<fs::path>& found, const char* package) {
+    if (!found) viewer.packages += std::string(" ") + package;
+    return found.value_or("").string();
+  };
+  auto java = java_on_path();
+  if (java && is_headless(*java)) java.reset();
+  const fs::path programs = fs::read_symlink("/proc/self/exe").parent_path();
+  const auto ours = first_of(
+      {programs / "../spy/ergocast-spy.jar", programs / "../share/ergocast/java/ergocast-spy.jar"});
+  viewer.jar_missing = !ours;
+  const std::string program = need(java, "default-jre");
+  const std::string jars =
+      need(first_of({"/usr/share/java/lcm.jar", "/usr/local/share/java/lcm.jar"}), "liblcm-java") +
+      ":" +
+      need(first_of({"/usr/share/java/jchart2d.jar",
+                     "/usr/local/share/java/jchart2d-code/ext/jchart2d.jar",
+                     "/usr/local/share/java/jchart2d-3.2.2.jar"}),
+           "libjchart2d-java") +
+      ":" + ours.value_or("").string();
+  viewer.command = {program,
+                    "-Djava.net.preferIPv4Stack=true",
+                    "-Xmx256m",
+                    "-Dergocast.url=" + options.url.base(),
+                    "-cp",
+                    jars,
+                    "lcm.spy.Spy",
+                    "-l",
+                    options.url.of(options.bus)};
+  return viewer;
+}
+
+int complain(const std::string& problem) {
+  std::fprintf(stderr, "%s\n", problem.c_str());
+  return kExitUnavailable;
+}
+
+/// A word for a shell.
+std::string quoted(const std::string& word) {
+  return word.find_first_of("?&; '") == word.npos ? word : "'" + word + "'";
+}
+
+int print_command(const Viewer& viewer) {
+  std::string line;
+  for (const std::string& word : viewer.command) line += (line.empty() ? "" : " ") + quoted(word);
+  std::printf("%s\n", line.c_str());
+  return kExitDone;
+}
+
+int spy(const SpyOptions& options) {
+  Viewer viewer = viewer_for(options);
+  if (!viewer.packages.empty()) {
+    return complain(
+        "lcm-spy needs Debian packages that are not installed. As root:\n"
+        "  apt-get install" +
+        viewer.packages);
+  }
+  if (viewer.jar_missing) {
+    return complain(
+        "ergocast-spy.jar was not built, because a JDK or lcm.jar was missing. As root:\n"
+        "  apt-get install default-jdk liblcm-java\n"
+        "Then configure and build again: cmake BUILD && cmake --build BUILD --target spy");
+  }
+  if (options.print) return print_command(viewer);
+  const char* display = std::getenv("DISPLAY");
+  if (display == nullptr || *display == '\0') {
+    return complain(
+        "lcm-spy draws windows, and there is no screen: DISPLAY is not set. Start it from a "
+        "desktop, or log in with ssh -X");
+  }
+  if (const auto problem = why_unreachable(options.url)) return complain(*problem);
+  std::vector<char*> arguments;
+  for (std::string& word : viewer.command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execv(arguments.front(), arguments.data());
+  return complain(viewer.command.front() + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+void add_spy(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("spy", "Watch a mission's messages in LCM's viewer, with pictures");
+  const auto options = std::make_shared<SpyOptions>();
+  add_url_option(*command, options->url);
+  const std::map<std::string, Bus> buses{
+      {"swarm", Bus::kSwarm}, {"world", Bus::kWorld}, {"command", Bus::kCommand}};
+  command->add_option("--bus", options->bus, "The bus whose channels are listed")
+      ->transform(CLI::CheckedTransformer(buses))
+      ->default_str("swarm")
+      ->type_name("swarm|world|command");
+  command->add_flag("--print", options->print, "Print the command that starts the viewer, and end");
+  command->callback([options, &action] { action = [options] { return spy(*options); }; });
+}
+
+}  // namespace ergocast::cli

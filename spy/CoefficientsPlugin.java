@@ -1,0 +1,21 @@
+package ergocast.spy;
+
+import java.awt.Dimension;
+import javax.swing.Action;
+import javax.swing.JDesktopPane;
+import lcm.spy.ChannelData;
+import lcm.spy.SpyPlugin;
+
+/** CONTRIBUTION: the coefficients that target, team and each agent's coverage have. */
+public final class CoefficientsPlugin implements SpyPlugin {
+  @Override
+  public boolean canHandle(long fingerprint) {
+    return fingerprint == ergocast.contribution_t.LCM_FINGERPRINT;
+  }
+
+  @Override
+  public Action getAction(JDesktopPane desktop, ChannelData channel) {
+    return new Viewer(
+        "Coefficients", desktop, channel, CoefficientsView::new, new Dimension(860, 500));
+  }
+}

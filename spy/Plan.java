@@ -1,0 +1,97 @@
+package ergocast.spy;
+
+import java.nio.ByteBuffer;
+import java.nio.ByteOrder;
+import java.nio.charset.StandardCharsets;
+import java.util.HashMap;
+import java.util.Map;
+
+/** What a picture needs of a compiled plan, message MissionPlan of scenario/plan.proto. */
+final class Plan {
+  static final int MAX_MODES = 64;
+
+  final String name;
+  final double originX, originY, sizeX, sizeY; // [m]
+  final double dt, duration; // [s]
+  final int modesX, modesY;
+  final double[] target; // mu, m * modesY + n
+
+  /**
+   * Reads Protobuf's wire format; an example of it has the field numbers of scenario/*.proto.
+   *
+   * @throws RuntimeException for bytes that are no plan
+   */
+  Plan(byte[] bytes) {
+    Map<Integer, ByteBuffer> plan = fields(ByteBuffer.wrap(bytes));
+    Map<Integer, ByteBuffer> scenario = fields(plan.get(2));
+    Map<Integer, ByteBuffer> domain = fields(scenario.get(4));
+    Map<Integer, ByteBuffer> basis = fields(scenario.get(6));
+    Map<Integer, ByteBuffer> time = fields(scenario.get(8));
+    name = StandardCharsets.UTF_8.decode(scenario.get(1)).toString();
+    originX = number(domain, 1, -1e13, 1e13);
+    originY = number(domain, 2, -1e13, 1e13);
+    sizeX = number(domain, 3, 1e-6, 1e9);
+    sizeY = number(domain, 4, 1e-6, 1e9);
+    modesX = modes(basis, 1);
+    modesY = modes(basis, 2);
+    dt = number(time, 1, 1e-9, 1e6);
+    duration = number(time, 2, dt / 2, 1e9);
+    ByteBuffer coefficients = plan.get(3);
+    require(name.length() <= 64 && coefficients.remaining() == 8 * modesX * modesY);
+    target = new double[modesX * modesY];
+    for (int k = 0; k < target.length; ++k)
+      target[k] = within(coefficients.getDouble(), -1.001, 1.001);
+  }
+
+  long lastTick() {
+    return Math.round(duration / dt);
+  }
+
+  /** The values of a message's fields by number: the last of each, as bytes still to be read. */
+  private static Map<Integer, ByteBuffer> fields(ByteBuffer message) {
+    Map<Integer, ByteBuffer> found = new HashMap<>();
+    while (message.hasRemaining()) {
+      long key = varint(message);
+      int kind = (int) (key & 7);
+      int begin = message.position();
+      if (kind == 0) varint(message);
+      long length = kind == 0 ? message.position() - begin : kind == 1 ? 8 : kind == 5 ? 4 : 0;
+      if (kind == 2) length = varint(message);
+      if (kind != 0) begin = message.position();
+      require((kind <= 2 || kind == 5) && length >= 0 && length <= message.limit() - begin);
+      ByteBuffer value = message.duplicate().order(ByteOrder.LITTLE_ENDIAN);
+      value.limit(begin + (int) length).position(begin);
+      found.put((int) (key >>> 3), value);
+      message.position(begin + (int) length);
+    }
+    return found;
+  }
+
+  private static long varint(ByteBuffer in) {
+    long value = 0;
+    for (int shift = 0; shift < 64; shift += 7) {
+      byte part = in.get();
+      value |= (part & 127L) << shift;
+      if (part >= 0) return value;
+    }
+    throw new IllegalArgumentException("no varint");
+  }
+
+  private static int modes(Map<Integer, ByteBuffer> basis, int field) {
+    return (int) within(varint(basis.get(field)), 1, MAX_MODES);
+  }
+
+  private static double number(
+      Map<Integer, ByteBuffer> message, int field, double low, double high) {
+    return within(message.get(field).getDouble(), low, high);
+  }
+
+  private static double within(double value, double low, double high) {
+    require(value >= low && value <= high);
+    return value;
+  }
+
+  private static void require(boolean condition) {
+    if (!condition) throw new IllegalArgumentException("no plan");
+  }
+}

@@ -1,0 +1,186 @@
+package ergocast.spy;
+
+import java.io.ByteArrayOutputStream;
+import java.io.DataInput;
+import java.io.EOFException;
+import java.io.IOException;
+import java.lang.reflect.Proxy;
+import java.util.Arrays;
+import java.util.Map;
+import java.util.TreeMap;
+import lcm.lcm.LCMDataInputStream;
+
+/**
+ * What one run's messages say, as far as it is drawn. Its methods are called with its lock held.
+ * The hash that every message carries is not checked here, so nothing but a picture follows from
+ * it.
+ */
+final class Team {
+  private static final int MAX_AGENTS = 128;
+  private static final int MAX_PARTS = 128;
+  private static final int MAX_COUNT = 100000;
+  private static final int MAX_PART_BYTES = 1024;
+  private static final long SILENCE_NS = 3_000_000_000L;
+
+  /** One agent's way and how well the team does as it sees it. */
+  static final class Agent {
+    final History track = new History();
+    double x, y; // newest [m]
+    long tick = -1; // of the newest position
+    double metric = Double.NaN;
+    long metricTick = -1;
+  }
+
+  final Map<Integer, Agent> agents = new TreeMap<>();
+  History metric = new History(); // median of the agents' over time [s]
+  Plan plan; // null until it has come
+  Coverage coverage;
+  long tick; // newest heard
+  String status = ""; // the coordinator's words
+
+  private long run;
+  private long heardNs;
+  private long revision = -1;
+  private byte[][] parts = new byte[0][];
+
+  /** Takes in a message; what is none, or of another run while this one goes on, has no effect. */
+  void receive(LCMDataInputStream bytes) {
+    try {
+      long fingerprint = bytes.readLong();
+      bytes.reset();
+      DataInput in = bounded(bytes);
+      if (fingerprint == ergocast.mission_t.LCM_FINGERPRINT) on(new ergocast.mission_t(in));
+      if (fingerprint == ergocast.world_state_t.LCM_FINGERPRINT) on(new ergocast.world_state_t(in));
+      if (fingerprint == ergocast.agent_status_t.LCM_FINGERPRINT) {
+        on(new ergocast.agent_status_t(in));
+      }
+      if (fingerprint == ergocast.team_status_t.LCM_FINGERPRINT) on(new ergocast.team_status_t(in));
+      if (fingerprint == ergocast.contribution_t.LCM_FINGERPRINT) {
+        on(new ergocast.contribution_t(in));
+      }
+    } catch (IOException | RuntimeException notOurs) {
+      // Whatever comes of bytes that are no message ends here: LCM's thread has to go on.
+    }
+  }
+
+  /** Refuses large counts: generated decoders make room for as many as a message claims to have. */
+  private static DataInput bounded(DataInput in) {
+    Class<?>[] type = {DataInput.class};
+    return (DataInput) Proxy.newProxyInstance(Team.class.getClassLoader(), type, (self, read, to) -> {
+      Object value = read.invoke(in, to);
+      if (read.getName().equals("readInt") && (int) value > MAX_COUNT) throw new EOFException();
+      return value;
+    });
+  }
+
+  private void on(ergocast.mission_t message) throws IOException {
+    if (!isOfThisRun(message.header) && !begins(message.header)) return;
+    int count = message.parts;
+    if (plan != null || count < 1 || count > MAX_PARTS || message.part < 0 || message.part >= count
+        || message.plan.length > MAX_PART_BYTES) {
+      return;
+    }
+    if (message.revision != revision || parts.length != count) {
+      revision = message.revision;
+      parts = new byte[count][];
+    }
+    parts[message.part] = message.plan;
+    if (Arrays.asList(parts).contains(null)) return;
+    ByteArrayOutputStream whole = new ByteArrayOutputStream();
+    for (byte[] part : parts) whole.write(part);
+    plan = new Plan(whole.toByteArray());
+    coverage = new Coverage(plan.target.length);
+  }
+
+  private void on(ergocast.world_state_t message) {
+    if (!isUnderWay(message.header)) return;
+    for (ergocast.vehicle_t vehicle : message.vehicles) {
+      Agent agent = agent(vehicle.vehicle_id);
+      double x = vehicle.position_m[0];
+      double y = vehicle.position_m[1];
+      if (agent == null || !isInside(x, y) || message.header.tick < agent.tick) continue;
+      agent.x = x;
+      agent.y = y;
+      agent.tick = message.header.tick;
+      agent.track.add(agent.tick, x, y);
+    }
+    tick = Math.max(tick, message.header.tick);
+  }
+
+  private void on(ergocast.agent_status_t message) {
+    Agent agent = isUnderWay(message.header) ? agent(message.header.sender) : null;
+    if (agent == null || !(message.ergodic_metric > 1e-30 && message.ergodic_metric < 1e12)) return;
+    agent.metric = message.ergodic_metric;
+    agent.metricTick = message.header.tick;
+    tick = Math.max(tick, message.header.tick);
+    double[] all = agents.values()
+                       .stream()
+                       .filter(this::isCurrent)
+                       .mapToDouble(a -> a.metric)
+                       .sorted()
+                       .toArray();
+    if (all.length > 0) {
+      double median = (all[all.length / 2] + all[(all.length - 1) / 2]) / 2;
+      metric.add(message.header.tick, message.header.tick * plan.dt, median);
+    }
+  }
+
+  private void on(ergocast.team_status_t message) {
+    if (!isOfThisRun(message.header)) return;
+    String[] states = {"waiting", "running", "ended", "failed"};
+    int state = message.mission_state;
+    status = (state >= 0 && state < states.length ? states[state] : "?") + ", "
+        + message.agents_alive + " of " + message.agents_expected + " agents alive"
+        + (message.silent_agent >= 0 ? ", agent " + message.silent_agent + " is silent" : "");
+  }
+
+  private void on(ergocast.contribution_t message) {
+    if (isUnderWay(message.header) && agent(message.header.sender) != null) coverage.add(message);
+  }
+
+  /** Whether what an agent says of phi^2 is of the last ten seconds. */
+  private boolean isCurrent(Agent agent) {
+    return agent.metricTick >= 0 && (tick - agent.metricTick) * plan.dt <= 10;
+  }
+
+  private boolean isOfThisRun(ergocast.header_t header) {
+    if (run == 0 || header.run_id != run || isSilent()) return false;
+    heardNs = System.nanoTime();
+    return true;
+  }
+
+  private boolean isUnderWay(ergocast.header_t header) {
+    return isOfThisRun(header) && plan != null && header.tick >= 0
+        && header.tick <= plan.lastTick();
+  }
+
+  private boolean isSilent() {
+    return System.nanoTime() - heardNs > SILENCE_NS;
+  }
+
+  /** A new run, or a replay's second time, takes the place of one that has become silent. */
+  private boolean begins(ergocast.header_t header) {
+    if (run != 0 && !isSilent()) return false;
+    run = header.run_id;
+    heardNs = System.nanoTime();
+    agents.clear();
+    metric = new History();
+    plan = null;
+    coverage = null;
+    status = "";
+    tick = 0;
+    parts = new byte[0][];
+    return run != 0;
+  }
+
+  private boolean isInside(double x, double y) {
+    double slackX = plan.sizeX / 100;
+    double slackY = plan.sizeY / 100;
+    return x >= plan.originX - slackX && x <= plan.originX + plan.sizeX + slackX
+        && y >= plan.originY - slackY && y <= plan.originY + plan.sizeY + slackY;
+  }
+
+  private Agent agent(int id) {
+    return id < 0 || id >= MAX_AGENTS ? null : agents.computeIfAbsent(id, added -> new Agent());
+  }
+}

@@ -1,0 +1,37 @@
+package ergocast.spy;
+
+import java.awt.Dimension;
+import java.awt.GridLayout;
+import javax.swing.Action;
+import javax.swing.JComponent;
+import javax.swing.JDesktopPane;
+import javax.swing.JPanel;
+import lcm.spy.ChannelData;
+import lcm.spy.SpyPlugin;
+
+/** WORLD_STATE and TEAM_STATUS: where the team is, where it was, and how well it covers. */
+public final class TeamPlugin implements SpyPlugin {
+  /** Listens from lcm-spy's start on where the base URL is known, so that tracks are whole. */
+  public TeamPlugin() {
+    String base = System.getProperty(Buses.BASE_URL);
+    if (base != null) Buses.team(base);
+  }
+
+  @Override
+  public boolean canHandle(long fingerprint) {
+    return fingerprint == ergocast.world_state_t.LCM_FINGERPRINT
+        || fingerprint == ergocast.team_status_t.LCM_FINGERPRINT;
+  }
+
+  @Override
+  public Action getAction(JDesktopPane desktop, ChannelData channel) {
+    return new Viewer("Team", desktop, channel, TeamPlugin::picture, new Dimension(1040, 560));
+  }
+
+  private static JComponent picture(Team team) {
+    JPanel both = new JPanel(new GridLayout(1, 2));
+    both.add(new MapView(team));
+    both.add(new MetricView(team));
+    return both;
+  }
+}

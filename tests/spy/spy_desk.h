@@ -1,0 +1,178 @@
+// A screen that nobody sees, with LCM's viewer on it.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "tests/process/mission.h"
+
+namespace ergocast::test {
+
+/// What of the tests' needs this machine lacks: " xvfb xdotool"; empty if nothing.
+inline std::string missing_for_spy(bool with_screen) {
+  const std::string jar = std::string(ERGOCAST_BIN_DIR) + "/../spy/ergocast-spy.jar";
+  std::vector<std::pair<std::string, std::string>> needs{{jar, " default-jdk liblcm-java"}};
+  if (with_screen) {
+    needs.insert(needs.end(), {{"/usr/share/java/jchart2d.jar", " libjchart2d-java"},
+                               {"/usr/bin/Xvfb", " xvfb"},
+                               {"/usr/bin/openbox", " openbox"},
+                               {"/usr/bin/xdotool", " xdotool"}});
+  }
+  std::string missing;
+  for (const auto& [file, package] : needs) {
+    if (!std::filesystem::exists(file)) missing += package;
+  }
+  return missing;
+}
+
+/// A part of the screen.
+struct Area {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+using Pixel = std::pair<int, int>;
+
+/// What Xvfb shows: a file in the format of xwd, which it keeps up to date.
+class Screenshot {
+ public:
+  explicit Screenshot(const std::filesystem::path& file) : bytes_(text_of(file)) {
+    width_ = number(4), height_ = number(5), stride_ = number(12);
+    first_ = number(0) + 12 * number(19);  // after the header and the colour map
+  }
+  /// 0xrrggbb; white outside the screen.
+  int color(int x, int y) const {
+    const auto at = static_cast<std::size_t>(first_ + y * stride_ + 4 * x);
+    if (x < 0 || y < 0 || x >= width_ || y >= height_ || at + 3 > bytes_.size()) return 0xffffff;
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes_[at + i]); };
+    return byte(2) << 16 | byte(1) << 8 | byte(0);
+  }
+  std::map<int, std::set<Pixel>> pixels_by_color(const Area& area) const {
+    std::map<int, std::set<Pixel>> found;
+    for (int y = area.y; y < area.y + area.height; ++y) {
+      for (int x = area.x; x < area.x + area.width; ++x) found[color(x, y)].insert({x, y});
+    }
+    return found;
+  }
+
+ private:
+  /// The i-th 32-bit number of the header, most significant byte first.
+  int number(std::size_t i) const {
+    std::uint32_t value = 0;
+    for (std::size_t k = 4 * i; k < 4 * i + 4 && k < bytes_.size(); ++k) {
+      value = value << 8 | static_cast<unsigned char>(bytes_[k]);
+    }
+    return static_cast<int>(value);
+  }
+  std::string bytes_;
+  int width_ = 0, height_ = 0, stride_ = 0, first_ = 0;
+};
+
+/// Asks Java; see SpyProbe.java.
+class WithProbe : public FlyingMission {
+ protected:
+  std::vector<std::string> probe_command(const std::vector<std::string>& question) const {
+    std::vector<std::string> command{ERGOCAST_JAVA,
+                                     "-Xmx64m",
+                                     "-Djava.awt.headless=true",
+                                     "-Djava.net.preferIPv4Stack=true",
+                                     "-cp",
+                                     ERGOCAST_SPY_CLASSES,
+                                     "ergocast.spy.SpyProbe"};
+    command.insert(command.end(), question.begin(), question.end());
+    return command;
+  }
+  /// A program that is not ours; its output goes to log_.
+  Child begin(const std::vector<std::string>& command) {
+    log_ = folder_ / ("tool-" + std::to_string(++begun_));
+    return std::get<Child>(Child::start({command, log_, SIGKILL}));
+  }
+  /// Runs one to its end; what it said.
+  std::string said_by(const std::vector<std::string>& command) {
+    Child child = begin(command);
+    EXPECT_TRUE(eventually([&child] { return !child.running(); })) << command.front();
+    return output();
+  }
+  std::string ask(const std::vector<std::string>& question) {
+    return said_by(probe_command(question));
+  }
+
+ private:
+  int begun_ = 0;
+};
+
+/// With a screen and a window manager.
+class Desk : public WithProbe {
+ protected:
+  void SetUp() override {
+    const std::string missing = missing_for_spy(true);
+    if (!missing.empty()) GTEST_SKIP() << "not installed:" << missing;
+    screen_ = begin({"/usr/bin/Xvfb", "-screen", "0", "1600x1000x24", "-nolisten", "tcp", "-fbdir",
+                     folder_, "-displayfd", "1"});
+    const auto log = log_;
+    ASSERT_TRUE(eventually([&] { return text_of(log).find('\n') != std::string::npos; }));
+    const std::string said = text_of(log);
+    const auto end = said.rfind('\n');
+    const auto begin_of_number = said.find_last_not_of("0123456789", end - 1) + 1;
+    setenv("DISPLAY", (":" + said.substr(begin_of_number, end - begin_of_number)).c_str(), 1);
+    manager_ = begin({"/usr/bin/openbox"});
+  }
+  void TearDown() override {
+    for (std::optional<Child>* child : {&manager_, &screen_}) {
+      if (!*child) continue;
+      (*child)->send(SIGTERM);
+      wait_for(**child);
+    }
+    unsetenv("DISPLAY");
+    OwnHost::TearDown();
+  }
+
+  Screenshot look() const { return Screenshot(folder_ / "Xvfb_screen0"); }
+  std::string xdotool(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "/usr/bin/xdotool");
+    return said_by(arguments);
+  }
+  /// The id of the window with that name, or nothing.
+  std::string window(const std::string& name) {
+    const std::string found = xdotool({"search", "--onlyvisible", "--name", "^" + name + "$"});
+    return found.substr(0, found.find('\n'));
+  }
+  bool sees(const std::string& name) {
+    return eventually([&] { return !window(name).empty(); });
+  }
+  /// Brings it to the front; where it is.
+  Area front(const std::string& name) {
+    const std::string id = window(name);
+    xdotool({"windowactivate", "--sync", id});
+    std::istringstream lines(xdotool({"getwindowgeometry", "--shell", id}));
+    std::map<std::string, int> values;
+    for (std::string line; std::getline(lines, line);) {
+      const auto equals = line.find('=');
+      if (equals != line.npos)
+        values[line.substr(0, equals)] = std::atoi(line.c_str() + equals + 1);
+    }
+    return {values["X"], values["Y"], values["WIDTH"], values["HEIGHT"]};
+  }
+  /// Double-clicks a row of the viewer's table until the window of that channel is there.
+  bool open(const std::string& channel, int row) {
+    return eventually([&] {
+      const Area table = front("LCM Spy");
+      // A header and rows of 16 pixels each.
+      const std::string y = std::to_string(table.y + 24 + 16 * row);
+      xdotool({"mousemove", std::to_string(table.x + 60), y, "click", "--repeat", "2", "--delay",
+               "60", "1"});
+      for (int i = 0; i < 20; ++i) {
+        if (!window(channel).empty()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+      return false;
+    });
+  }
+
+ private:
+  std::optional<Child> screen_, manager_;
+};
+
+}  // namespace ergocast::test

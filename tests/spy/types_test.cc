@@ -1,0 +1,103 @@
+// The jar that lcm-spy gets: types, the plan's reader, and pictures of given messages.
+#include <cmath>
+
+#include "core/target.h"
+#include "lcm_types.h"
+#include "scenario/scenario.h"
+#include "tests/spy/spy_desk.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+class SpyJar : public WithProbe {
+ protected:
+  void SetUp() override {
+    const std::string missing = missing_for_spy(false);
+    if (!missing.empty()) GTEST_SKIP() << "not installed when this was built:" << missing;
+  }
+  /// The plan that agents of a scenario get, and its file.
+  Scenario plan_of(const std::string& name) {
+    auto loaded = Scenario::load(scenario_file(name));
+    const auto& scenario = std::get<Scenario>(loaded);
+    const auto plan = scenario.plan();
+    std::ofstream(plan_file(), std::ios::binary)
+        .write(reinterpret_cast<const char*>(plan.data()),
+               static_cast<std::streamsize>(plan.size()));
+    return scenario;
+  }
+  std::filesystem::path plan_file() const { return folder_ / "plan.binpb"; }
+};
+
+TEST_F(SpyJar, LcmSpyKnowsEveryTypeByTheFingerprintThatTravels) {
+  std::vector<std::string> question{"types"};
+  std::string expected;
+  for (const auto& [name, fingerprint] : kLcmTypes) {
+    question.push_back(std::to_string(fingerprint));
+    expected += std::to_string(fingerprint) + " ergocast." + name + "\n";
+  }
+  ASSERT_GE(question.size(), 15U);
+  EXPECT_NE(ask(question).find(expected), std::string::npos) << output() << "expected\n"
+                                                             << expected;
+}
+
+/// Reads as Java's Double.toHexString writes.
+double next_number(std::istream& in) {
+  std::string word;
+  in >> word;
+  return std::strtod(word.c_str(), nullptr);
+}
+
+TEST_F(SpyJar, APlanIsReadToTheLastBit) {
+  for (const char* name : {"quadrimodal_corners", "harbour_patrol", "uniform_square"}) {
+    SCOPED_TRACE(name);
+    const Scenario scenario = plan_of(name);
+    const Mission& mission = scenario.mission();
+    std::istringstream said(ask({"plan", plan_file()}));
+    std::string read_name;
+    said >> read_name;
+    EXPECT_EQ(read_name, scenario.name());
+    for (const double value :
+         {mission.domain.origin_m.x(), mission.domain.origin_m.y(), mission.domain.size_m.x(),
+          mission.domain.size_m.y(), mission.timing.dt_s,
+          mission.timing.dt_s * static_cast<double>(mission.timing.tick_count)}) {
+      EXPECT_DOUBLE_EQ(next_number(said), value);
+    }
+    EXPECT_EQ(next_number(said), mission.basis.modes_x);
+    EXPECT_EQ(next_number(said), mission.basis.modes_y);
+    for (const double value : mission.target_coefficients.reshaped<Eigen::RowMajor>()) {
+      ASSERT_EQ(next_number(said), value);
+    }
+  }
+}
+
+TEST_F(SpyJar, TheMapHasXToTheRightAndYUpwards) {
+  // One bell at a place whose four mirror images are other places.
+  std::string text = text_of(scenario_file("quadrimodal_corners"));
+  const auto target = text.find("target {"), end = text.find("\n}", target);
+  text.replace(target, end - target,
+               "target { gaussians { mean_x_m: 600 mean_y_m: 1600 sigma_m: 150 }");
+  std::ofstream(folder_ / "one_bell.textproto") << text;
+  auto loaded = Scenario::load(folder_ / "one_bell.textproto");
+  const auto plan = std::get<Scenario>(loaded).plan();
+  std::ofstream(plan_file(), std::ios::binary)
+      .write(reinterpret_cast<const char*>(plan.data()), static_cast<std::streamsize>(plan.size()));
+
+  std::istringstream said(ask({"map", plan_file()}));
+  std::map<std::string, std::pair<double, double>> places;
+  for (std::string what; said >> what;) said >> places[what].first >> places[what].second;
+  constexpr double kPixels = 0.01;  // four of 400
+  EXPECT_NEAR(places["target"].first, 0.3, kPixels) << output();
+  EXPECT_NEAR(places["target"].second, 0.8, kPixels);
+  EXPECT_NEAR(places["agent"].first, 0.75, kPixels);  // where SpyProbe puts it
+  EXPECT_NEAR(places["agent"].second, 0.125, kPixels);
+}
+
+TEST_F(SpyJar, NoBytesHarmIt) {
+  plan_of("quadrimodal_corners");
+  EXPECT_NE(ask({"hostile", plan_file()}).find("unharmed"), std::string::npos) << output();
+}
+
+}  // namespace
+}  // namespace ergocast
