@@ -2,6 +2,7 @@
 // that open sockets neither hear nor disturb anybody, and can see which processes they left.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,16 @@ namespace ergocast::test {
 /// new user namespace. Throws std::runtime_error with the reason where the system forbids it.
 void enter_own_host();
 
+/// Whether it was root's process that moved.
+bool is_root();
+
 /// Whether mounting is possible there without anybody else seeing it.
 bool may_mount();
 
-/// "agent (pid 12)" of every process in this network namespace but this one, zombies left out.
+/// "agent (pid 12)" of every process in one of these network namespaces (as /proc/PID/ns/net shows
+/// them) but this one, zombies left out.
+std::vector<std::string> processes_in(const std::set<std::string>& networks);
+/// Those in this process's own.
 std::vector<std::string> processes_on_own_host();
 
 }  // namespace ergocast::test
