@@ -118,7 +118,8 @@ TEST_F(ThreeHosts, CountPacketsAndFragments) {
 TEST_F(ThreeHosts, SpeakWhereTheRouteLeads) {
   lan_->add_interface(2);
   lan_->route_multicast(2, "eth1");
-  EXPECT_EQ(hearers(2), "2");
+  EXPECT_EQ(hearers(2), "") << "not even itself, who listens to eth0";
+  EXPECT_EQ(hearers(0), "012");
   lan_->route_multicast(2, "");
   EXPECT_EQ(hearers(2), "");
   lan_->route_multicast(2, "eth0");

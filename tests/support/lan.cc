@@ -41,12 +41,12 @@ std::string output_of(const std::string& command) {
 
 constexpr const char* kCounters = R"(
 table bridge counted {
-  counter packets { }
-  counter fragments { }
+  counter ip_packets { }
+  counter ip_fragments { }
   chain forward {
     type filter hook forward priority -10
-    ether type ip counter name packets
-    ip frag-off & 0x3fff != 0 counter name fragments
+    ether type ip counter name ip_packets
+    ip frag-off & 0x3fff != 0 counter name ip_fragments
   }
 }
 )";
@@ -193,7 +193,7 @@ void Lan::route_multicast(int host, const std::string& interface) {
 std::int64_t Lan::count_of(const std::string& counter) const {
   const Visit there(switch_, home_);
   const std::string text = output_of("nft list counter bridge counted " + counter);
-  std::istringstream number(text.substr(text.find("packets ", text.find('{')) + 8));
+  std::istringstream number(text.substr(text.rfind("packets ") + 8));
   std::int64_t count = -1;
   number >> count;
   return count;

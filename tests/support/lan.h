@@ -76,8 +76,8 @@ class Lan {
   void route_multicast(int host, const std::string& interface);
 
   /// IP packets that the switch was to carry since the start, and fragments of packets among them.
-  std::int64_t packets() const { return count_of("packets"); }
-  std::int64_t fragments() const { return count_of("fragments"); }
+  std::int64_t packets() const { return count_of("ip_packets"); }
+  std::int64_t fragments() const { return count_of("ip_fragments"); }
 
   /// "agent (pid 12)" of every process on these hosts, zombies left out.
   std::vector<std::string> processes() const;
