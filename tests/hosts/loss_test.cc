@@ -13,7 +13,8 @@ INSTANTIATE_TEST_SUITE_P(Percent, LossInLockstep, ::testing::Values(1, 10, 30),
 
 TEST_P(LossInLockstep, LeavesTheTrajectoryAsItIsSimulated) {
   lan_->lose(GetParam());
-  const auto file = mission(GetParam() == 30 ? "12" : "40");
+  const auto file =
+      mission(std::map<int, const char*>{{1, "60"}, {10, "20"}, {30, "6"}}.at(GetParam()));
   start(file);
   expect_all_to_end();
   expect_complete_record();

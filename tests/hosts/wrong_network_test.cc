@@ -7,12 +7,13 @@ namespace {
 class WrongNetwork : public TeamOnHosts {
  protected:
   /// Starts a team whose agent 2 is alone on host 2 and is given `url`.
-  void start_team(const std::string& time, const std::string& url) {
+  void start_team(const std::string& time, std::string url) {
     start_all_but_agents(mission("20", time));
     for (const AgentId id : {0, 1, 3}) agents_.push_back(&agent_on(id % 2, id));
-    const std::string right = std::exchange(url_, url);
+    std::swap(url_, url);
     agents_.push_back(&agent_on(2, 2));
-    url_ = right;
+    std::swap(url_, url);
+    EXPECT_TRUE(agents_.back()->says("joining on")) << agents_.back()->said();
   }
   void expect_agent_2_to_be_missing() {
     EXPECT_EQ(wait_for(coordinator_->child), 4) << coordinator_->said();

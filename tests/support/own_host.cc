@@ -48,7 +48,7 @@ void enter_own_host() {
   const uid_t user = geteuid();
   const gid_t group = getegid();
   root = user == 0;
-  if (unshare((root ? 0 : CLONE_NEWUSER) | CLONE_NEWNET | CLONE_NEWNS) != 0) {
+  if (unshare((root ? 0 : CLONE_NEWUSER) | CLONE_NEWNET | CLONE_NEWNS | CLONE_NEWUTS) != 0) {
     throw std::runtime_error(std::string("this system allows no network namespaces: ") +
                              std::strerror(errno));
   }

@@ -8,8 +8,8 @@
 
 namespace ergocast::test {
 
-/// Moves this process into a new network namespace (and mount namespace). As an ordinary user in a
-/// new user namespace. Throws std::runtime_error with the reason where the system forbids it.
+/// Moves this process into new namespaces: network, mounts and the host's name; as an ordinary user
+/// in a new user namespace. Throws std::runtime_error with the reason where the system forbids it.
 void enter_own_host();
 
 /// Whether it was root's process that moved.
