@@ -7,6 +7,7 @@
 
 #include "core/noise.h"
 #include "core/require.h"
+#include "core/silence.h"
 
 namespace ergocast {
 namespace {
@@ -56,6 +57,7 @@ void Agent::receive(const Message& message, Instant now, AgentId transmitter) {
 
 void Agent::on(const MissionPart& part, Instant now) {
   if (identity_.run == 0) identity_.run = part.header.run;
+  coordinator_heard_ = now;
   // Said by somebody else; or by one who has not heard of what came later, or will not be heard.
   if (part.revision >= follower_.revision()) mission_repeat_.reset();
   if (part.revision < follower_.revision()) plan_mission_repeat(now);
@@ -211,6 +213,10 @@ void Agent::advance(Instant now, Outbox& out) {
     stalled_said_ = now;
     broadcast(out);
   }
+  if (phase_ == AgentPhase::kRunning && abandoned(now)) {
+    finish(true, "neither the world nor the coordinator can be heard, and the mission must be over by "
+                 "now: check this host's network");
+  }
   if (!finished() && mission_repeat_ && now >= *mission_repeat_) repeat_mission(now, out);
   // Nobody can tell two joining processes apart by an id that neither has been given.
   if (!table_) return;
@@ -273,6 +279,11 @@ void Agent::begin_tick(Instant now, Outbox& out) {
 bool Agent::stalled(Instant now) const {
   return follower_.mission()->timing.pace == Pace::kRealtime && tick_ >= 0 &&
          now - std::max(tick_begun_, stalled_said_) >= kWorldSilence;
+}
+
+bool Agent::abandoned(Instant now) const {
+  return must_be_over(follower_.mission()->timing, tick_,
+                      now - std::max(world_heard_, coordinator_heard_));
 }
 
 int Agent::members() const {

@@ -97,6 +97,7 @@ class Agent {
   bool evicted(Tick tick);
   void begin_tick(Instant now, Outbox& out);
   bool stalled(Instant now) const;
+  bool abandoned(Instant now) const;
   void broadcast(Outbox& out);
   void repeat(Outbox& out);
   bool may_answer();
@@ -137,7 +138,7 @@ class Agent {
   std::optional<BasisAt> basis_at_;
   Command last_command_, command_before_;  // header.tick −1: none yet
   AgentId waiting_for_ = kUnassigned;
-  Instant world_heard_{};
+  Instant world_heard_{}, coordinator_heard_{};  // the latter also through a teammate
   bool world_asks_ = false;  // where we were: it has just started
 
   Instant next_hello_{};

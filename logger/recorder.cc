@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/silence.h"
+
 namespace ergocast {
 namespace {
 
@@ -70,6 +72,7 @@ void Recorder::receive(const Message& message, Instant now) {
   }
   if (const auto* part = std::get_if<MissionPart>(&message)) {
     if (run_ == 0) run_ = from.run;
+    heard_ = now;
     const bool had_mission = follower_.mission().has_value();
     if (!follower_.receive(*part)) return;
     if (follower_.plan_problem()) return fail(*follower_.plan_problem());
@@ -134,6 +137,7 @@ bool Recorder::is_lockstep() const {
 
 void Recorder::on(const WorldState& world, Instant now) {
   const Tick tick = world.header.tick;
+  heard_ = now;
   if (follower_.mission()) {
     if (tick > follower_.mission()->timing.tick_count) return;
     meet(world.header, now);
@@ -175,6 +179,9 @@ void Recorder::advance(Instant now, Outbox& out) {
     }
   }
   if (over_since_ && now - std::max(*over_since_, progress_) >= kFarewell) close();
+  if (abandoned(now)) {
+    stop("neither the world nor the coordinator can be heard, and the mission must be over by now");
+  }
   if (follower_.mission()) acknowledge(now, out);
 }
 
@@ -197,6 +204,13 @@ void Recorder::acknowledge(Instant now, Outbox& out) {
   next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
   out.push_back({Bus::kCommand, RecordAck{{run_, kLogger, incarnation_,
                                           sequencer_.next(Bus::kCommand), recorded}}});
+}
+
+bool Recorder::abandoned(Instant now) const {
+  if (finished_ || over_since_ || !follower_.mission()) return false;
+  if (follower_.state() != MissionState::kRunning) return false;
+  const Tick newest = states_.empty() ? next_row_ : states_.rbegin()->first;
+  return must_be_over(follower_.mission()->timing, newest, now - heard_);
 }
 
 Instant Recorder::next_wakeup() const {

@@ -85,6 +85,7 @@ class Recorder {
   bool gap_is_final(Instant now) const;
   void skip_gap();
   void fail(std::string reason);
+  bool abandoned(Instant now) const;
   void close();
   bool is_lockstep() const;
   void write_trajectory(const State& now, const State& next);
@@ -105,6 +106,7 @@ class Recorder {
   Tick next_row_ = 0, acked_ = -2;
   bool finished_ = false, failed_ = false;
   std::optional<Instant> over_since_;
+  Instant heard_{};     // of world or coordinator
   Instant progress_{};  // last row, or first word of a new world
   std::string reason_;
 

@@ -260,6 +260,51 @@ TEST(AgentEnd, LeavingIsNoFailure) {
   EXPECT_EQ(only<AgentStatus>(advance(agent, at(0s))).at(0).phase, AgentPhase::kFinished);
 }
 
+TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.realtime_factor = 2;
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(40, {{100, 500}}), at(5s));  // 60 ticks of 0.05 s are left
+  agent.receive(status_of(1, 1), at(37s));  // a teammate may be cut off as we are
+  advance(agent, at(38s));
+  EXPECT_FALSE(agent.finished());
+  const auto last = only<AgentStatus>(advance(agent, at(38s + 1ms)));
+  EXPECT_TRUE(agent.finished());
+  EXPECT_TRUE(agent.failed());
+  EXPECT_EQ(agent.reason(), "neither the world nor the coordinator can be heard, and the mission must "
+                            "be over by now: check this host's network");
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_EQ(last[0].phase, AgentPhase::kFinished);
+}
+
+TEST(AgentEnd, IsNotThereForAsLongAsTheWorldOrTheCoordinatorSpeaks) {
+  Mission mission = small_mission(1);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  for (auto now = 0s; now < 1h; now += 35s) {  // 10 s are planned
+    agent.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(now));
+    advance(agent, at(now + 34s));
+    EXPECT_FALSE(agent.finished());
+  }
+  for (auto now = 1h + 0s; now < 2h; now += 35s) {
+    agent.receive(world_state(7, {{100, 500}}), at(now));
+    advance(agent, at(now + 34s));
+    EXPECT_FALSE(agent.finished());
+  }
+}
+
+TEST(AgentEnd, ComesByItselfInLockstepOnceNoTickCouldHaveWaitedForIt) {
+  Mission mission = small_mission(1);
+  mission.timing.lockstep_timeout_s = 600;
+  Agent agent = running_agent(mission);
+  tell(agent, world_state(0, {{100, 500}}), at(5s));
+  advance(agent, at(635s));
+  EXPECT_FALSE(agent.finished());
+  advance(agent, at(636s));
+  EXPECT_TRUE(agent.finished());
+}
+
 TEST(AgentEnd, AnEvictedAgentStopsAtTheNamedTick) {
   std::vector<RosterEntry> roster = roster_of(2);
   roster[0].active_until = 3;

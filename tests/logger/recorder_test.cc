@@ -331,6 +331,22 @@ TEST(RecordEnd, AStopEndsItWithTheStopsReason) {
   }
 }
 
+TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
+  Record record(realtime_mission());  // 10 s
+  for (const Tick tick : {0, 1, 40}) record.tell(state_of(tick), at(4s));
+  advance(record.recorder, at(40s));  // 6 s after tick 40, and 30 s more
+  EXPECT_FALSE(record.recorder.finished());
+  record.tell(mission_part(0, MissionState::kRunning, roster_of(1)), at(40s));
+  advance(record.recorder, at(76s));
+  EXPECT_FALSE(record.recorder.finished()) << "the coordinator has spoken";
+  advance(record.recorder, at(76s + 1ms));
+  EXPECT_TRUE(record.recorder.finished());
+  EXPECT_STREQ(record.recorder.result(), "stopped");
+  EXPECT_EQ(record.recorder.reason(),
+            "neither the world nor the coordinator can be heard, and the mission must be over by now");
+  EXPECT_EQ(record.trajectory_rows().size(), 1u);
+}
+
 TEST(RecordEnd, ItsOwnProcessMayEndIt) {
   Record record(small_mission(1));
   for (Tick tick = 0; tick <= 3; ++tick) record.tell(state_of(tick));

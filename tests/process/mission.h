@@ -116,7 +116,7 @@ class ByHand : public FlyingMission {
   };
 
   Program& hand(const std::string& program, std::vector<std::string> arguments = {}) {
-    arguments.insert(arguments.end(), {"--lcm-url", kUrl});
+    arguments.insert(arguments.end(), {"--lcm-url", url_});
     Child child = start(program, arguments);
     return programs_.emplace_back(Program{child, log_});
   }
@@ -129,10 +129,15 @@ class ByHand : public FlyingMission {
   }
 
   void TearDown() override {
-    for (Program& program : programs_) program.child.send(SIGTERM);
+    for (Program& program : programs_) {
+      program.child.send(SIGTERM);
+      program.child.send(SIGCONT);  // it may have been stopped
+    }
     for (Program& program : programs_) wait_for(program.child);
     OwnHost::TearDown();
   }
+
+  std::string url_ = kUrl;
 
  private:
   std::deque<Program> programs_;

@@ -30,10 +30,12 @@ class Witness {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (!condition()) {
       if (std::chrono::steady_clock::now() > deadline) return false;
-      transport_->deliver_until(now() + std::chrono::milliseconds(5), -1);
+      listen();
     }
     return true;
   }
+  /// For a moment; for conditions that several witnesses have to meet.
+  void listen() { transport_->deliver_until(now() + std::chrono::milliseconds(5), -1); }
 
   /// The newest member under that number; incarnation 0 if there is none.
   Author member(AgentId id) const {

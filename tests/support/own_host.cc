@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool root = false;
 bool mounts_are_private = false;
 
 void write_text(const char* file, const std::string& text) {
@@ -46,8 +47,8 @@ std::pair<char, std::string> state_of(const fs::path& process) {
 void enter_own_host() {
   const uid_t user = geteuid();
   const gid_t group = getegid();
-  const bool root = user == 0;
-  if (unshare((root ? 0 : CLONE_NEWUSER) | CLONE_NEWNET | CLONE_NEWNS) != 0) {
+  root = user == 0;
+  if (unshare((root ? 0 : CLONE_NEWUSER) | CLONE_NEWNET | CLONE_NEWNS | CLONE_NEWUTS) != 0) {
     throw std::runtime_error(std::string("this system allows no network namespaces: ") +
                              std::strerror(errno));
   }
@@ -63,20 +64,23 @@ void enter_own_host() {
   must_run("ip route add 224.0.0.0/4 dev lo");
 }
 
+bool is_root() { return root; }
+
 bool may_mount() { return mounts_are_private; }
 
-std::vector<std::string> processes_on_own_host() {
-  const std::string own = network_of("/proc/self");
+std::vector<std::string> processes_in(const std::set<std::string>& networks) {
   std::vector<std::string> found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator("/proc", error)) {
     const std::string pid = entry.path().filename();
     if (pid.find_first_not_of("0123456789") != pid.npos || pid == std::to_string(getpid())) continue;
-    if (network_of(entry.path()) != own) continue;
+    if (networks.count(network_of(entry.path())) == 0) continue;
     const auto [state, name] = state_of(entry.path());
     if (state != 'Z' && state != 'X') found.push_back(name + " (pid " + pid + ")");
   }
   return found;
 }
+
+std::vector<std::string> processes_on_own_host() { return processes_in({network_of("/proc/self")}); }
 
 }  // namespace ergocast::test

@@ -2,19 +2,26 @@
 // that open sockets neither hear nor disturb anybody, and can see which processes they left.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
 namespace ergocast::test {
 
-/// Moves this process into a new network namespace (and mount namespace). As an ordinary user in a
-/// new user namespace. Throws std::runtime_error with the reason where the system forbids it.
+/// Moves this process into new namespaces: network, mounts and the host's name; as an ordinary user
+/// in a new user namespace. Throws std::runtime_error with the reason where the system forbids it.
 void enter_own_host();
+
+/// Whether it was root's process that moved.
+bool is_root();
 
 /// Whether mounting is possible there without anybody else seeing it.
 bool may_mount();
 
-/// "agent (pid 12)" of every process in this network namespace but this one, zombies left out.
+/// "agent (pid 12)" of every process in one of these network namespaces (as /proc/PID/ns/net shows
+/// them) but this one, zombies left out.
+std::vector<std::string> processes_in(const std::set<std::string>& networks);
+/// Those in this process's own.
 std::vector<std::string> processes_on_own_host();
 
 }  // namespace ergocast::test

@@ -1,0 +1,124 @@
+// Hosts that do not hear each other for a while: in real time everybody goes on with what there is,
+// and afterwards the team agrees again.
+#include "tests/hosts/team_on_hosts.h"
+
+namespace ergocast::test {
+namespace {
+
+constexpr Tick kTicksPerSecond = 50;  // of wall time, at kRealtime
+
+class Partition : public TeamOnHosts {
+ protected:
+  /// Steps of each of the four, as `witness` has heard them say.
+  using Coverage = std::array<std::int64_t, 4>;
+  static Coverage said(const Witness& witness) {
+    Coverage coverage{};
+    for (AgentId id = 0; id < 4; ++id) {
+      coverage[static_cast<std::size_t>(id)] = witness.said(witness.member(id));
+    }
+    return coverage;
+  }
+  /// Whether `who` says that it holds at least so much of everybody else.
+  static bool holds(const Witness& witness, AgentId who, const Coverage& coverage) {
+    for (AgentId whose = 0; whose < 4; ++whose) {
+      const std::int64_t held = witness.held(witness.member(who), witness.member(whose));
+      if (held == 0 || held < coverage[static_cast<std::size_t>(whose)]) return false;
+    }
+    return true;
+  }
+  static bool all_hold(const Witness& witness, const Coverage& coverage) {
+    return holds(witness, 0, coverage) && holds(witness, 1, coverage) &&
+           holds(witness, 2, coverage) && holds(witness, 3, coverage);
+  }
+  static bool agree_on(Witness& witness, const Coverage& coverage) {
+    return witness.hears([&] { return all_hold(witness, coverage); });
+  }
+  /// What everybody has covered so far and a little more.
+  static Coverage more_than(Coverage coverage, std::int64_t steps) {
+    for (std::int64_t& one : coverage) one += steps;
+    return coverage;
+  }
+  void expect_same_members_to_end_in_order() {
+    end_mission();
+    expect_all_to_end();
+    EXPECT_EQ(summary()["agents"].size(), 4U);
+    for (const auto& agent : summary()["agents"]) EXPECT_TRUE(agent["active_until"].is_null());
+  }
+};
+
+struct CutOffHost : Partition, ::testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(Hosts, CutOffHost, ::testing::Values(0, 2), [](const auto& host) {
+  return host.param == 0 ? "WithAgents" : "WithAgentsAndTheCoordinator";
+});
+
+TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
+  start_all_but_agents(mission("100000", kRealtime), GetParam());
+  start_agents();
+  Witness with_world = witness_on(1), cut_off = witness_on(2);
+  ASSERT_TRUE(agree_on(with_world, {1, 1, 1, 1})) << coordinator_->said();
+  ASSERT_TRUE(agree_on(cut_off, {1, 1, 1, 1}));
+
+  lan_->unplug(2);
+  const Coverage before = said(with_world);
+  ASSERT_TRUE(eventually([&] {
+    with_world.listen();
+    cut_off.listen();
+    const auto holds_more = [&](AgentId who, AgentId whose) {
+      return with_world.held(with_world.member(who), with_world.member(whose)) >=
+             before[static_cast<std::size_t>(whose)] + 20 * kTicksPerSecond;
+    };
+    return holds_more(0, 1) && holds_more(1, 0);
+  })) << "who hears the world goes on";
+  const auto stands_still = [&](AgentId id) { return cut_off.stands_still(cut_off.member(id)); };
+  EXPECT_TRUE(stands_still(2) && stands_still(3)) << "and the others do not";
+  for (const AgentId id : {2, 3}) {
+    EXPECT_EQ(cut_off.held(cut_off.member(5 - id), cut_off.member(id)),
+              cut_off.said(cut_off.member(id)))
+        << "but each holds all that the other has";
+  }
+  const Coverage apart = said(with_world), theirs = said(cut_off);
+
+  lan_->heal();
+  const Coverage all{apart[0], apart[1], theirs[2], theirs[3]};
+  ASSERT_TRUE(agree_on(with_world, all));
+  EXPECT_TRUE(agree_on(with_world, more_than(all, 2 * kTicksPerSecond))) << "and goes on";
+  expect_same_members_to_end_in_order();
+}
+
+TEST_F(Partition, InAChainOfHostsTheOneBetweenPassesOnWhatTheOthersCover) {
+  start(mission("100000", kRealtime));
+  Witness between = witness_on(1);
+  ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->said();
+  lan_->block(0, 2);
+  lan_->block(2, 0);
+  EXPECT_TRUE(agree_on(between, more_than(said(between), 5 * kTicksPerSecond)));
+  lan_->heal();
+  EXPECT_TRUE(agree_on(between, more_than(said(between), kTicksPerSecond)));
+  expect_same_members_to_end_in_order();
+}
+
+TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThird) {
+  start(mission("100000", kRealtime));
+  Witness between = witness_on(1);
+  ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->said();
+  lan_->block(0, 2);
+  EXPECT_TRUE(agree_on(between, more_than(said(between), 5 * kTicksPerSecond)));
+  lan_->heal();
+  expect_same_members_to_end_in_order();
+}
+
+TEST_F(Partition, AnAgentThatIsCutOffWhenTheMissionEndsDoesNotWaitForEver) {
+  start(mission("100", "pace: REALTIME realtime_factor: 20"));
+  for (Program* agent : agents_) ASSERT_TRUE(agent->says(": running")) << agent->said();
+  lan_->unplug(2);
+  for (Program* program : {coordinator_, world_, logger_, agents_[0], agents_[1]}) {
+    EXPECT_EQ(wait_for(program->child), 0) << program->said();
+  }
+  for (Program* agent : {agents_[2], agents_[3]}) {
+    EXPECT_EQ(wait_for(agent->child), 4) << agent->said();
+    EXPECT_TRUE(agent->says("neither the world nor the coordinator can be heard")) << agent->said();
+  }
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,60 @@
+// Hosts that are gone for good: what ran there goes on elsewhere.
+#include "tests/hosts/team_on_hosts.h"
+
+namespace ergocast::test {
+namespace {
+
+using Takeover = TeamOnHosts;
+
+TEST_F(Takeover, ACoordinatorOnAnotherHostTakesTheMissionOver) {
+  const auto file = mission("600");
+  start(file);
+  ASSERT_TRUE(recorded(30000)) << coordinator_->said();
+  agents_[3]->child.send(SIGSTOP);  // holds the mission
+  coordinator_->child.send(SIGKILL);
+  wait_for(coordinator_->child);
+  coordinator_ = &on(2, "ergocast-coordinator", {"--resume"});
+  ASSERT_TRUE(coordinator_->says("taken over")) << coordinator_->said();
+  agents_[3]->child.send(SIGCONT);
+  expect_all_to_end();
+  expect_complete_record();
+  EXPECT_EQ(summary()["reason"], "mission complete");
+  expect_simulated(file);
+}
+
+TEST_F(Takeover, TheSuccessorsOfADeadHostsAgentsGetBackWhatThoseHadCovered) {
+  start(mission("100000", kRealtime));
+  Witness witness = witness_on(1);
+  const auto knows = [&](AgentId who, const Author& whose) {
+    return witness.held(witness.member(who), whose) >=
+           std::max<std::int64_t>(1, witness.said(whose));
+  };
+  ASSERT_TRUE(witness.hears([&] {
+    return knows(0, witness.member(2)) && knows(0, witness.member(3));
+  })) << coordinator_->said();
+
+  const Author former[] = {witness.member(2), witness.member(3)};
+  lan_->unplug(2);
+  for (const std::size_t id : {2U, 3U}) {
+    agents_[id]->child.send(SIGKILL);
+    wait_for(agents_[id]->child);
+  }
+  agents_ = {agents_[0], agents_[1], &agent_on(0, 2), &agent_on(1, 3)};
+  ASSERT_TRUE(witness.hears([&] {
+    const Author two = witness.member(2), three = witness.member(3);
+    return two != former[0] && three != former[1] && witness.said(two) > 50 &&
+           witness.said(three) > 50;
+  })) << coordinator_->said();
+  for (const Author& dead : former) {
+    for (const AgentId id : {0, 1, 2, 3}) {
+      EXPECT_TRUE(witness.hears([&] { return knows(id, dead); })) << id << " of " << dead.agent;
+      EXPECT_EQ(witness.held(witness.member(id), dead), witness.said(dead)) << "no more than that";
+    }
+  }
+  end_mission();
+  expect_all_to_end();
+  EXPECT_EQ(summary()["agents"].size(), 6U);
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,59 @@
+// A host whose multicast goes elsewhere, or nowhere: its agent is missed, by its number.
+#include "tests/hosts/team_on_hosts.h"
+
+namespace ergocast::test {
+namespace {
+
+class WrongNetwork : public TeamOnHosts {
+ protected:
+  /// Starts a team whose agent 2 is alone on host 2 and is given `url`.
+  void start_team(const std::string& time, std::string url) {
+    start_all_but_agents(mission("20", time));
+    for (const AgentId id : {0, 1, 3}) agents_.push_back(&agent_on(id % 2, id));
+    std::swap(url_, url);
+    agents_.push_back(&agent_on(2, 2));
+    std::swap(url_, url);
+    EXPECT_TRUE(agents_.back()->says("joining on")) << agents_.back()->said();
+  }
+  void expect_agent_2_to_be_missing() {
+    EXPECT_EQ(wait_for(coordinator_->child), 4) << coordinator_->said();
+    EXPECT_TRUE(coordinator_->says("only 3 of the quorum of 4 agents were admitted; missing: 2"))
+        << coordinator_->said();
+  }
+};
+
+TEST_F(WrongNetwork, AnAgentWhoseMulticastRouteLeadsElsewhereIsMissed) {
+  lan_->add_interface(2);
+  lan_->route_multicast(2, "eth1");
+  start_team("admission_timeout_s: 3", url_);
+  expect_agent_2_to_be_missing();
+}
+
+TEST_F(WrongNetwork, AnAgentJoinsOnceTheRouteIsMended) {
+  lan_->add_interface(2);
+  lan_->route_multicast(2, "eth1");
+  start_team("admission_timeout_s: 600", url_);
+  ASSERT_TRUE(coordinator_->says("agent 3")) << coordinator_->said();
+  lan_->route_multicast(2, "eth0");
+  // LCM joined the group on the interface that the route led to at its start.
+  agents_.back()->child.send(SIGTERM);
+  EXPECT_EQ(wait_for(agents_.back()->child), 0) << agents_.back()->said();
+  agents_.back() = &agent_on(2, 2);
+  expect_all_to_end();
+  expect_complete_record();
+}
+
+TEST_F(WrongNetwork, AnAgentWithATtlOfZeroIsMissed) {
+  start_team("admission_timeout_s: 3", kUrl);
+  expect_agent_2_to_be_missing();
+}
+
+TEST_F(WrongNetwork, AnAgentWithoutAMulticastRouteSaysWhatIsWrong) {
+  lan_->route_multicast(2, "");
+  Program& agent = agent_on(2, 0);
+  EXPECT_EQ(wait_for(agent.child), 3) << agent.said();
+  EXPECT_TRUE(agent.says("ip route add 224.0.0.0/4")) << agent.said();
+}
+
+}  // namespace
+}  // namespace ergocast::test
