@@ -7,6 +7,7 @@
 #include "runtime/event_loop.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
+#include "scenario/override_options.h"
 #include "scenario/scenario.h"
 
 namespace ergocast {
@@ -98,6 +99,8 @@ int main(int argc, char** argv) {
   bool resume = false;
   add_node_options(app, node);
   auto* scenario = app.add_option("SCENARIO", file, "Scenario file; not needed with --resume");
+  Overrides overrides;
+  add_override_options(app, overrides);
   app.add_flag("--resume", resume, "Take over the mission that the agents are flying, or fail");
   app.footer("Without --run-id and --resume: takes over this scenario's mission if it is under way "
              "on the URL, else starts a new one.");
@@ -108,7 +111,7 @@ int main(int argc, char** argv) {
     spdlog::error("no SCENARIO: name a scenario file, or take a mission over with --resume");
     return kExitBadInput;
   }
-  const auto loaded = Scenario::load(file);
+  const auto loaded = Scenario::load(file, overrides);
   if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
     for (const Problem& problem : *problems) spdlog::error("{}", to_string(problem));
     return kExitBadInput;

@@ -12,6 +12,7 @@ using namespace std::chrono_literals;
 bool TrafficWatch::look(Instant now) {
   if (now < next_look_) return false;
   next_look_ = now + 1s;
+  if (transport_.renew_membership()) spdlog::warn("listening on another network interface from now on");
   kernel_drops_ = transport_.kernel_drops();
   const RefusalCounts& refused = transport_.refused();
   if (now < next_log_ || (refused == logged_ && kernel_drops_ == logged_drops_)) return true;
