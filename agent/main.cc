@@ -51,11 +51,14 @@ int main(int argc, char** argv) {
   CLI::App app("One agent: joins the team on the URL, is given the mission over the wire, and steers.",
                "ergocast-agent");
   NodeOptions node;
-  AgentId requested_id = kUnassigned;
+  std::string id = "auto";
   add_node_options(app, node);
-  app.add_option("--id", requested_id, "Be this agent; without it, whichever is free")
-      ->check(CLI::Range(0, kMaxAgents - 1));
+  app.add_option("--id", id, "Be this agent, 0 to 127; auto: whichever is free")
+      ->capture_default_str()
+      ->check(CLI::Range(0, kMaxAgents - 1) | CLI::IsMember({"auto"}))
+      ->type_name("N");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
+  const AgentId requested_id = id == "auto" ? kUnassigned : std::stoi(id, nullptr, 0);
   set_up_logging(requested_id == kUnassigned ? "agent" : "agent-" + std::to_string(requested_id));
   return run(node, requested_id);
 }

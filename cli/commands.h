@@ -76,4 +76,7 @@ int report(const std::filesystem::path& run_dir);
 /// Simulates a recorded run again and compares the trajectories.
 int verify(const std::filesystem::path& run_dir);
 
+/// `deploy`: the texts that start a mission on several hosts.
+void add_deploy(CLI::App& app, Action& action);
+
 }  // namespace ergocast::cli

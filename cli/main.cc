@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "runtime/node.h"
+#include "runtime/shipped_scenarios.h"
 #include "scenario/override_options.h"
 
 namespace ergocast::cli {
@@ -20,8 +21,9 @@ constexpr const char* kExitCodes =
     "some of many missions failed.";
 
 void add_mission_options(CLI::App& command, MissionOptions& options) {
-  command.add_option("SCENARIO", options.scenario, "Scenario file (scenarios/*.textproto)")
+  command.add_option("SCENARIO", options.scenario, "Scenario file, or the name of a shipped one")
       ->required()
+      ->transform(shipped_scenario())
       ->type_name("FILE");
   command
       .add_option("--out", options.out,
@@ -102,8 +104,9 @@ Variation parse_variation(const std::string& text) {
 }
 
 void add_study_options(CLI::App& command, StudyOptions& options) {
-  command.add_option("SCENARIO", options.scenarios, "Scenario files (scenarios/*.textproto)")
+  command.add_option("SCENARIO", options.scenarios, "Scenario files, or names of shipped ones")
       ->required()
+      ->transform(shipped_scenario())
       ->type_name("FILE");
   command
       .add_option_function<std::vector<std::string>>(
@@ -167,7 +170,10 @@ int parse_and_do(int argc, char** argv) {
   study_command->callback([&] { action = [&] { return study(study_options); }; });
 
   auto* check_command = app.add_subcommand("check", "Name every problem of a scenario");
-  check_command->add_option("SCENARIO", path, "Scenario file")->required()->type_name("FILE");
+  check_command->add_option("SCENARIO", path, "Scenario file, or the name of a shipped one")
+      ->required()
+      ->transform(shipped_scenario())
+      ->type_name("FILE");
   check_command->add_flag("--print", print, "Show the scenario with all defaults filled in");
   check_command->callback([&] { action = [&] { return check(path, print); }; });
 
@@ -179,6 +185,8 @@ int parse_and_do(int argc, char** argv) {
       app.add_subcommand("verify", "Simulate a recorded run again and compare the trajectories");
   verify_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
   verify_command->callback([&] { action = [&] { return verify(path); }; });
+
+  add_deploy(app, action);
 
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version_text());

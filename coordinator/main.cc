@@ -6,6 +6,7 @@
 #include "coordinator/coordinator.h"
 #include "runtime/event_loop.h"
 #include "runtime/node.h"
+#include "runtime/shipped_scenarios.h"
 #include "runtime/traffic_watch.h"
 #include "scenario/override_options.h"
 #include "scenario/scenario.h"
@@ -98,7 +99,10 @@ int main(int argc, char** argv) {
   std::string file;
   bool resume = false;
   add_node_options(app, node);
-  auto* scenario = app.add_option("SCENARIO", file, "Scenario file; not needed with --resume");
+  auto* scenario =
+      app.add_option("SCENARIO", file, "Scenario file, or the name of a shipped one; not needed with --resume")
+          ->transform(shipped_scenario())
+          ->type_name("FILE");
   Overrides overrides;
   add_override_options(app, overrides);
   app.add_flag("--resume", resume, "Take over the mission that the agents are flying, or fail");

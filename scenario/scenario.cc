@@ -141,6 +141,11 @@ Scenario& Scenario::operator=(Scenario other) noexcept {
 std::string Scenario::print() const { return print_text(state_->text); }
 const std::string& Scenario::name() const { return state_->text.name(); }
 const std::string& Scenario::description() const { return state_->text.description(); }
+std::vector<std::filesystem::path> Scenario::map_files() const {
+  std::vector<std::filesystem::path> files;
+  for (const proto::Map& map : state_->text.target().maps()) files.emplace_back(map.file());
+  return files;
+}
 const DensityGrid& Scenario::target_density() const { return state_->target_density; }
 const Mission& Scenario::mission() const { return state_->mission; }
 const std::vector<std::byte>& Scenario::plan() const { return state_->plan; }

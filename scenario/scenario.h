@@ -80,6 +80,9 @@ class Scenario {
   const std::string& name() const;
   const std::string& description() const;
 
+  /// Whole paths of the files its target needs besides its own. Empty for a plan.
+  std::vector<std::filesystem::path> map_files() const;
+
   /// What is to be covered, in multiples of the uniform density, for people to look at: at most 256
   /// cells along the longer side of the domain. Empty for a plan.
   const DensityGrid& target_density() const;

@@ -1,0 +1,165 @@
+#include "cli/deploy.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/run_directory.h"
+#include "logger/run_record.h"
+#include "runtime/node.h"
+#include "runtime/shipped_scenarios.h"
+
+namespace ergocast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DeployOptions {
+  fs::path scenario, hosts, out;
+  std::string to;
+  std::optional<LcmUrl> url;
+};
+
+int complain(const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) std::fprintf(stderr, "%s\n", to_string(problem).c_str());
+  return kExitBadInput;
+}
+
+/// Whether a relative path is plain enough for shells, settings files and remote folders.
+bool is_plain(const std::string& path) {
+  constexpr std::string_view kOthers = "/._-+";
+  return !path.starts_with('-') && !path.starts_with("../") &&
+         std::all_of(path.begin(), path.end(), [&](unsigned char c) {
+           return (c < 128 && std::isalnum(c) != 0) ||
+                  kOthers.find(static_cast<char>(c)) != kOthers.npos;
+         });
+}
+
+DeployMission mission_of(const Scenario& scenario, const fs::path& file,
+                         std::vector<Problem>& problems) {
+  DeployMission mission;
+  mission.name = scenario.name();
+  mission.quorum = scenario.mission().quorum;
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  mission.folder = whole.parent_path();
+  mission.files.push_back(whole.filename());
+  for (const fs::path& map : scenario.map_files()) {
+    mission.files.push_back(map.lexically_relative(mission.folder).string());
+  }
+  for (const std::string& name : mission.files) {
+    if (is_plain(name)) continue;
+    problems.push_back({file.string(), "\"" + name + "\" cannot be copied to another host",
+                        "keep it in the scenario's folder or below, and give it a name of letters, "
+                        "digits, dots, hyphens and underscores"});
+  }
+  return mission;
+}
+
+std::variant<std::vector<DeployHost>, std::vector<Problem>> read_hosts(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (!in)
+    return std::vector<Problem>{{file.string(), "cannot be read", "check the name and the folder"}};
+  return parse_hosts(text, file.string());
+}
+
+int print(const std::vector<TextFile>& files) {
+  for (const TextFile& file : files) {
+    if (files.size() > 1) std::printf("# ---- %s\n", file.name.c_str());
+    std::fputs(file.text.c_str(), stdout);
+  }
+  return kExitDone;
+}
+
+/// Writes all files, or none if one of them is there already.
+int write(const std::vector<TextFile>& files, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  for (const TextFile& file : files) {
+    if (!fs::exists(fs::symlink_status(folder / file.name, error))) continue;
+    return complain({{"--out " + folder.string(), file.name + " is there already",
+                      "give a new folder, or remove the file"}});
+  }
+  for (const TextFile& file : files) {
+    const fs::path path = folder / file.name;
+    if (const auto problem = write_file(path, file.text)) {
+      std::fprintf(stderr, "%s\n", problem->c_str());
+      return kExitBadInput;
+    }
+    const auto mode = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+    if (file.executable) fs::permissions(path, mode, fs::perm_options::add, error);
+    std::printf("%s\n", path.c_str());
+  }
+  return kExitDone;
+}
+
+int deploy(const DeployOptions& options) {
+  const auto scenario = load_or_complain(options.scenario, {});
+  if (!scenario) return kExitBadInput;
+  const auto read = read_hosts(options.hosts);
+  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return complain(*problems);
+  const auto& hosts = std::get<std::vector<DeployHost>>(read);
+
+  std::vector<Problem> problems;
+  DeployMission mission = mission_of(*scenario, options.scenario, problems);
+  const bool apart = hosts.size() > 1 || options.to == "compose";
+  if (apart) mission.url.ttl = 1;
+  mission.url = options.url.value_or(mission.url);
+  for (Problem& problem : problems_of(hosts, mission, options.hosts.string(), apart)) {
+    problems.push_back(std::move(problem));
+  }
+  if (!problems.empty()) return complain(problems);
+  const auto render = options.to == "ssh"       ? ssh_files
+                      : options.to == "systemd" ? systemd_files
+                                                : compose_files;
+  const std::vector<TextFile> files = render(hosts, mission);
+  return options.out.empty() ? print(files) : write(files, options.out);
+}
+
+}  // namespace
+
+void add_deploy(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand(
+      "deploy", "Write what starts a mission on several hosts; nothing is started");
+  const auto options = std::make_shared<DeployOptions>();
+  command->add_option("SCENARIO", options->scenario, "Scenario file, or the name of a shipped one")
+      ->required()
+      ->transform(shipped_scenario())
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--hosts", options->hosts,
+          "One host a line: name [user@computer] roles, which are coordinator, logger, sim, "
+          "driver (of vehicles, not ours), agent N… and agents=COUNT")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--to", options->to,
+                   "A script over ssh, one that uses the installed services, or Compose files")
+      ->required()
+      ->check(CLI::IsMember({"ssh", "systemd", "compose"}))
+      ->type_name("ssh|systemd|compose");
+  command
+      ->add_option_function<std::string>(
+          "--lcm-url",
+          [options](const std::string& text) {
+            auto parsed = LcmUrl::parse(text);
+            if (const auto* problem = std::get_if<std::string>(&parsed)) {
+              throw CLI::ValidationError("--lcm-url", *problem);
+            }
+            options->url = std::get<LcmUrl>(parsed);
+          },
+          "Base URL of the three buses (default: LCM's own group, with ttl=1 if it takes one)")
+      ->type_name("URL");
+  command
+      ->add_option("--out", options->out,
+                   "Write into this folder (default: to the standard output)")
+      ->type_name("DIR");
+  command->callback([options, &action] { action = [options] { return deploy(*options); }; });
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,17 @@
+// What the shell scripts of `ergocast deploy` have in common.
+#pragma once
+
+#include "cli/deploy.h"
+
+namespace ergocast::cli {
+
+/// `text` as one word of a shell, whatever it holds.
+std::string shell_word(std::string_view text);
+
+/// `head` with the script's name for %SCRIPT% and the multicast group for %GROUP%.
+std::string script_head(std::string head, const std::string& name, const DeployMission& mission);
+
+/// The variables mission, url, scenario_folder, scenario_files, coordinator and hosts.
+std::string script_settings(const std::vector<DeployHost>& hosts, const DeployMission& mission);
+
+}  // namespace ergocast::cli

@@ -1,0 +1,145 @@
+#include "cli/deploy.h"
+#include "cli/deploy_script.h"
+
+namespace ergocast::cli {
+namespace {
+
+constexpr const char* kHead = R"sh(#!/usr/bin/env bash
+# A mission on several hosts over ssh, written by "ergocast deploy".
+#
+#   %SCRIPT% start           copy the scenario and start every process, the coordinator last
+#   %SCRIPT% status          what runs where
+#   %SCRIPT% stop            end the mission in order
+#   %SCRIPT% collect [DIR]   fetch record and logs of the latest mission
+#
+# Needs ssh without a password to every host, and on each the same version of Ergocast and a route
+# for multicast ("ip route get %GROUP%").
+set -euo pipefail
+)sh";
+
+constexpr const char* kFolder = R"sh(# On every host, below its home folder.
+folder=ergocast/$mission
+)sh";
+
+constexpr const char* kBody = R"sh(
+prepare() {
+  ssh -n "$1" "mkdir -p $folder/$now/log $folder/$now/record && ln -sfn $now $folder/latest"
+}
+
+launch() {
+  local host=$1 process=$2
+  shift 2
+  echo "$host: starting $process"
+  ssh -n "$host" "cd $folder/latest && { nohup $(printf '%q ' "$@" --lcm-url "$url") \
+    >log/$process.log 2>&1 </dev/null & echo \$! >$process.pid; }"
+}
+
+runs() {
+  ssh -n "$1" "pid=\$(cat $folder/latest/$2.pid 2>/dev/null) && grep -qs ergocast- /proc/\$pid/cmdline"
+}
+
+show() {
+  local state=ended
+  if runs "$1" "$2"; then state=running; fi
+  printf '%-24s %-12s %-8s %s\n' "$1" "$2" "$state" \
+    "$(ssh -n "$1" "tail -qn 1 $folder/latest/log/$2.log 2>/dev/null" || true)"
+}
+
+refuse_if_running() {
+  if runs "$1" "$2"; then
+    echo "$1: $2 is still running; end the mission first: $0 stop" >&2
+    exit 1
+  fi
+}
+
+end() {
+  if runs "$1" "$2"; then ssh -n "$1" "kill \$(cat $folder/latest/$2.pid)"; fi
+}
+
+note_if_running() {
+  if runs "$1" "$2"; then left="$left $2"; fi
+}
+
+# Waits up to $1 seconds until nothing runs.
+wait_for_all() {
+  local deadline=$((SECONDS + $1))
+  while left='' && each_process note_if_running && [ -n "$left" ]; do
+    if [ "$SECONDS" -ge "$deadline" ]; then return 1; fi
+    sleep 1
+  done
+}
+
+case ${1:-} in
+  start)
+    each_process refuse_if_running
+    now=$(date -u +%Y%m%d-%H%M%S)
+    for host in "${hosts[@]}"; do prepare "$host"; done
+    tar -C "$scenario_folder" -cf - -- "${scenario_files[@]}" |
+      ssh "$coordinator" "tar -C $folder/latest -xf -"
+    each_process launch
+    ;;
+  status)
+    each_process show
+    ;;
+  stop)
+    # The coordinator ends the mission for all; whoever does not hear of it is told next.
+    end "$coordinator" coordinator
+    if ! wait_for_all 10; then
+      each_process end
+      wait_for_all 20 || { echo "still running:$left" >&2; exit 1; }
+    fi
+    ;;
+  collect)
+    to=${2:-$mission}
+    for i in "${!hosts[@]}"; do
+      mkdir -p "$to/${names[i]}"
+      ssh -n "${hosts[i]}" "tar -C $folder/latest -cf - ." | tar -C "$to/${names[i]}" -xf -
+      echo "$to/${names[i]}"
+    done
+    ;;
+  *)
+    echo "Usage: $0 start|status|stop|collect [DIR]" >&2
+    exit 2
+    ;;
+esac
+)sh";
+
+std::string process_line(const DeployHost& host, const DeployProcess& process) {
+  std::string line = "  \"$1\" " + shell_word(host.address) + ' ' + process.name;
+  for (const std::string& word : process.command) line += ' ' + shell_word(word);
+  return line + '\n';
+}
+
+std::string names(const std::vector<DeployHost>& hosts) {
+  std::string text = "names=(";
+  for (const DeployHost& host : hosts) text += shell_word(host.name) + ' ';
+  text.back() = ')';
+  return text + '\n';
+}
+
+std::string process_table(const std::vector<DeployHost>& hosts, const DeployMission& mission) {
+  std::string text =
+      "\n# Calls \"$1 HOST PROCESS COMMAND…\" for every process.\neach_process() {\n";
+  std::string last;
+  for (const DeployHost& host : hosts) {
+    text += "  # " + host.name + ": " + roles_of(host) + '\n';
+    for (const DeployProcess& process : processes_of(host)) text += process_line(host, process);
+    if (!host.coordinator) continue;
+    last =
+        process_line(host, {"coordinator", {"ergocast-coordinator", "./" + mission.files.front()}});
+  }
+  return text + "  # The coordinator starts the mission.\n" + last + "}\n";
+}
+
+}  // namespace
+
+std::vector<TextFile> ssh_files(const std::vector<DeployHost>& hosts,
+                                const DeployMission& mission) {
+  const std::string name = mission.name + "-ssh.sh";
+  return {{name,
+           script_head(kHead, name, mission) + script_settings(hosts, mission) + names(hosts) +
+               kFolder + process_table(hosts, mission) + kBody,
+           true}};
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# What "ergocast deploy --to ssh" prints flies a mission: three hosts on a bridge, and an ssh that goes
+# into the network namespace of the host it is given.
+#   deploy_ssh_test.sh BIN_DIR SCENARIO
+set -euo pipefail
+
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
+  [ "$(id -u)" = 0 ] || { echo 'skipped: networks of several hosts need root'; exit 77; }
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  ERGOCAST_IN_NAMESPACE=yes work=$work unshare --net --mount --pid --fork --kill-child \
+    --mount-proc --propagation private "$0" "$@"
+  exit
+fi
+
+# This namespace is the switch; those of the hosts are named where nobody else sees it.
+mkdir -p /run/netns
+mount -t tmpfs tmpfs /run/netns
+ip link add switch type bridge
+ip link set switch up
+add_host() {
+  ip netns add "$1"
+  ip link add "to-$1" type veth peer name eth0 netns "$1"
+  ip link set "to-$1" master switch up
+  ip -n "$1" link set lo up
+  ip -n "$1" link set eth0 up
+  ip -n "$1" address add "$1/24" dev eth0
+  ip -n "$1" route add 224.0.0.0/4 dev eth0
+  mkdir -p "$work/home/$1"
+}
+for address in 10.0.0.1 10.0.0.11 10.0.0.12; do add_host $address; done
+
+bin=$(cd "$1" && pwd)
+mkdir "$work/bin" "$work/home with space's"
+cat >"$work/bin/ssh" <<END
+#!/bin/sh
+# ssh [-n] USER@ADDRESS COMMAND
+if [ "\$1" = -n ]; then shift; exec </dev/null; fi
+host=\${1#*@}
+cd "$work/home/\$host"
+export HOME=\$PWD PATH="$bin:\$PATH"
+exec ip netns exec "\$host" sh -c "\$2"
+END
+chmod +x "$work/bin/ssh"
+export PATH="$work/bin:$PATH"
+
+patience_s=120
+eventually() {
+  local deadline=$((SECONDS + patience_s))
+  until "$@"; do
+    [ "$SECONDS" -lt "$deadline" ] || { "$script" status; fail "never: $*"; }
+    sleep 0.2
+  done
+}
+# No host but its own knows where the scenario lies.
+scenario="$work/home with space's/mission.textproto"
+use_scenario() {
+  sed "s/duration_s: 600/duration_s: $1/" "$2" >"$scenario"
+  cat >"$work/hosts.txt" <<'END'
+ground  ops@10.0.0.1   coordinator logger sim
+rover1  pi@10.0.0.11   agent 0 2
+rover2  pi@10.0.0.12   agents=2   # 1 and 3
+END
+  "$bin/ergocast" deploy "$scenario" --hosts "$work/hosts.txt" --to ssh --out "$work/$1" >/dev/null
+  script=$work/$1/quadrimodal_corners-ssh.sh
+}
+all_ended() { ! "$script" status | grep -q ' running '; }
+all_running() { [ "$("$script" status | grep -c ' running ')" = 7 ]; }
+recorded() { [ "$(cat "$work"/home/10.0.0.1/ergocast/quadrimodal_corners/latest/record/trajectory*.csv | wc -l)" -ge "$1" ]; }
+
+use_scenario 30 "$2"
+"$script" start
+eventually all_ended
+"$script" collect "$work/collected"
+record=$work/collected/ground/record
+grep -q '"result": "done"' "$record/summary.json" || fail "not complete: $(cat "$record/summary.json")"
+[ "$(wc -l <"$record/trajectory.csv")" = 1201 ] || fail 'rows are missing'
+for log in ground/log/coordinator ground/log/logger ground/log/sim rover1/log/agent-0 rover1/log/agent-2 \
+  rover2/log/agent-1 rover2/log/agent-3; do
+  [ -s "$work/collected/$log.log" ] || fail "$log has not run"
+done
+"$bin/ergocast" verify "$record" || fail 'the record is not what the simulation gives'
+
+use_scenario 100000 "$2"
+"$script" start
+eventually recorded 1000
+eventually all_running
+if "$script" start 2>"$work/said"; then fail 'a second mission begins over the first'; fi
+grep -q 'still running' "$work/said" || fail "said: $(cat "$work/said")"
+"$script" stop
+all_ended || fail 'stop leaves processes'
+grep -q '"result": "stopped"' "$work/home/10.0.0.1/ergocast/quadrimodal_corners/latest/record/summary.json" ||
+  fail "not stopped in order: $(head -c 600 "$work/home/10.0.0.1/ergocast/quadrimodal_corners/latest/record/summary.json")"
+[ "$(find "$work/home/10.0.0.1/ergocast/quadrimodal_corners" -mindepth 1 -maxdepth 1 -type d | wc -l)" = 2 ] ||
+  fail 'the missions share a folder'
+echo 'the printed script flies, shows, stops and collects'

@@ -1,0 +1,73 @@
+# Sourced by the tests of the Debian package (bash): a bare Debian 12 of the test's own.
+#   SCRIPT BUILD_DIR
+# It lies in memory, in a mount namespace that ends with the test, and its processes in a process
+# namespace that does, too: whatever happens, nothing is left.
+#   ERGOCAST_DEBIAN_CACHE   where bare systems and fetched packages are kept (default: BUILD_DIR/debian)
+# shellcheck shell=bash
+set -euo pipefail
+
+build=$(cd "$1" && pwd)
+cache=${ERGOCAST_DEBIAN_CACHE:-$build/debian}
+root=$cache/root
+
+skip() { echo "skipped: $*"; exit 77; }
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
+  [ "$(id -u)" = 0 ] || skip 'making a Debian system needs root'
+  for tool in debootstrap dpkg-shlibdeps file ${more_tools:-}; do
+    command -v "$tool" >/dev/null || skip "$tool is missing: packaging/packages-test.txt"
+  done
+  unshare --mount true 2>/dev/null || skip 'this system allows no mount namespaces'
+  mkdir -p "$root" "$cache/archives"
+  # Tests take turns with the cache.
+  exec 9>"$cache/lock"
+  flock 9
+  status=0
+  ! declare -F before_all >/dev/null || before_all
+  ERGOCAST_IN_NAMESPACE=yes unshare --mount --pid --fork --kill-child --propagation private \
+    "$0" "$build" || status=$?
+  ! declare -F after_all >/dev/null || after_all
+  exit "$status"
+fi
+
+in_root() { chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
+
+# Fetched packages are kept for the next time.
+apt_install() {
+  local status=0
+  in_root apt-get -qq install -y --no-install-recommends "$@" >"$work/apt.log" 2>&1 || status=$?
+  cp -n "$root"/var/cache/apt/archives/*.deb "$cache/archives/" 2>/dev/null || true
+  [ "$status" = 0 ] || { cat "$work/apt.log" >&2; fail "apt install $*"; }
+}
+
+# Sets $deb: the package of this build.
+pack() {
+  (cd "$work" && cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work" >"$work/cpack.log" 2>&1) ||
+    { cat "$work/cpack.log" >&2; fail cpack; }
+  deb=$(ls "$work"/ergocast_*.deb)
+}
+
+make_bare_system() {
+  local bare=$cache/bookworm.tar
+  # Its list of packages grows old.
+  if [ ! -f "$bare" ] || [ -n "$(find "$bare" -mtime +3)" ]; then
+    debootstrap --variant=minbase bookworm "$root" >"$work/debootstrap.log" 2>&1 ||
+      { tail -n 5 "$work/debootstrap.log" >&2; fail 'debootstrap (is there a network?)'; }
+    in_root apt-get -qq update
+    rm -f "$root"/var/cache/apt/archives/*.deb
+    tar -C "$root" --one-file-system --exclude=./tmp/test -cf "$bare.part" . && mv "$bare.part" "$bare"
+  else
+    tar -C "$root" -xf "$bare"
+  fi
+  cp "$cache"/archives/*.deb "$root/var/cache/apt/archives/" 2>/dev/null || true
+  cp /etc/resolv.conf "$root/etc/resolv.conf"
+  # dpkg starts no service here: there is none that could.
+  mount -t proc proc "$root/proc"
+}
+
+mount -t proc proc /proc
+mount -t tmpfs -o mode=755,size=2g tmpfs "$root"
+work=$root/tmp/test
+mkdir -p -m 1777 "$root/tmp"
+mkdir "$work"

@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# The package installs on a bare Debian 12, flies there, and leaves nothing when it is purged.
+# shellcheck source=tests/package/debian.sh
+. "$(dirname "$0")/debian.sh"
+
+expect_file() { [ -s "$root/$1" ] || fail "$1 is not installed"; }
+
+# Everything that belongs to nobody but us, temporary files left out.
+files_of_system() {
+  (cd "$root" && find . -xdev \( -path ./tmp -o -path ./proc -o -path ./var/cache -o -path ./var/log \
+    -o -path ./var/lib/apt -o -path ./var/lib/dpkg \) -prune -o -print | sort)
+}
+
+check_contents() {
+  local path strange
+  strange=$(dpkg-deb --fsys-tarfile "$deb" | tar -t | grep -vE '^\./((usr|etc/ergocast)(/.*)?|etc/)?$' || true)
+  [ -z "$strange" ] || fail "the package has files outside /usr and /etc/ergocast: $strange"
+  strange=$(dpkg-deb --fsys-tarfile "$deb" | tar -tv | awk '$1 !~ /^l/ && ($1 ~ /^.....w|^........w/ || $2 != "root/root")')
+  [ -z "$strange" ] || fail "others may write: $strange"
+  [ "$(dpkg-deb --ctrl-tarfile "$deb" | tar -xO ./conffiles)" = /etc/ergocast/ergocast.env ] ||
+    fail 'the settings are no conffile'
+  for field in Package Version Architecture Maintainer Description Section Depends; do
+    [ -n "$(dpkg-deb -f "$deb" $field)" ] || fail "the package says no $field"
+  done
+  case $(basename "$deb") in
+    "ergocast_$(dpkg-deb -f "$deb" Version)_$(dpkg --print-architecture).deb") ;;
+    *) fail "the package is called $(basename "$deb")" ;;
+  esac
+}
+
+check_files() {
+  local program name
+  for program in ergocast ergocast-agent ergocast-coordinator ergocast-logger ergocast-sim; do
+    expect_file "usr/bin/$program"
+    expect_file "usr/share/man/man1/$program.1.gz"
+  done
+  # Every command has its place in the manual.
+  for name in $(in_root ergocast --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+    gzip -dc "$root/usr/share/man/man1/ergocast.1.gz" | grep -q "^.SS $name$" ||
+      fail "ergocast(1) does not speak of $name"
+  done
+  expect_file usr/share/doc/ergocast/README.md
+  expect_file etc/ergocast/ergocast.env
+  for name in agent@ coordinator logger sim; do
+    expect_file "usr/lib/systemd/system/ergocast-$name.service"
+  done
+}
+
+# On a network of its own.
+offline() {
+  unshare --net sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec "$@"' _ \
+    chroot "$root" env LC_ALL=C.UTF-8 "$@"
+}
+
+check_missions() {
+  offline ergocast simulate quadrimodal_corners --duration 20 --out /tmp/test/simulated ||
+    fail 'ergocast simulate'
+  offline ergocast run --duration 20 --out /tmp/test/run quadrimodal_corners || fail 'ergocast run'
+  cmp "$work/simulated/trajectory.csv" "$work/run/trajectory.csv" || fail 'run and simulate differ'
+  # With the map that lies beside it.
+  offline ergocast check lake_search || fail 'ergocast check lake_search'
+  ! offline ergocast check no_such_scenario 2>"$work/said" || fail 'a scenario that is not there'
+  grep -q harbour_patrol "$work/said" || fail 'the shipped scenarios are not named'
+}
+
+make_bare_system
+pack
+check_contents
+cp "$deb" "$root/tmp/"
+# The libraries the package depends on stay, so that what is left is the package's.
+apt_install "/tmp/$(basename "$deb")"
+check_files
+check_missions
+in_root ergocast --version
+
+in_root dpkg --remove ergocast >/dev/null
+expect_file etc/ergocast/ergocast.env
+in_root dpkg --purge ergocast >/dev/null
+left=$(files_of_system | grep -i ergocast || true)
+[ -z "$left" ] || fail "purged, and there still is: $left"
+echo 'the package installs, flies and goes'

@@ -1,0 +1,176 @@
+#!/usr/bin/env bash
+# The installed services under a systemd of the test's own (systemd-nspawn): they fly a mission, come
+# back after crashes, end in order, and are shut in.
+# shellcheck disable=SC2034
+more_tools='systemd-nspawn nsenter pgrep'
+
+# nspawn makes control groups below its own; none may be left.
+hierarchies='/sys/fs/cgroup /sys/fs/cgroup/systemd /sys/fs/cgroup/unified'
+before_all() {
+  local hierarchy
+  for hierarchy in $hierarchies; do
+    [ -f "$hierarchy/cgroup.procs" ] || continue
+    mkdir "$hierarchy/ergocast-test-$$"
+    echo $$ >"$hierarchy/ergocast-test-$$/cgroup.procs"
+  done
+}
+after_all() {
+  local hierarchy
+  for hierarchy in $hierarchies; do
+    [ -d "$hierarchy/ergocast-test-$$" ] || continue
+    echo $$ >"$hierarchy/cgroup.procs"
+    find "$hierarchy/ergocast-test-$$" -depth -type d -exec rmdir {} + || true
+  done
+}
+
+# shellcheck source=tests/package/debian.sh
+. "$(dirname "$0")/debian.sh"
+
+patience_s=120
+eventually() {
+  local deadline=$((SECONDS + patience_s))
+  until "$@"; do
+    [ "$SECONDS" -lt "$deadline" ] || { journal >&2; fail "never: $*"; }
+    sleep 0.05
+  done
+}
+
+boot() {
+  systemd-nspawn --quiet --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
+    --link-journal=no --console=pipe --directory="$root" --boot </dev/null >"$work/boot.log" 2>&1 &
+  local nspawn=$!
+  up() { kill -0 $nspawn 2>/dev/null || { cat "$work/boot.log"; fail 'systemd-nspawn'; }
+         init=$(pgrep -x -o systemd) && there systemctl is-system-running 2>/dev/null | grep -qE 'running|degraded'; }
+  eventually up
+  there_ip link set lo up
+  there_ip route add 224.0.0.0/4 dev lo
+}
+
+there() { nsenter -t "$init" --mount --uts --ipc --net --pid --root --wd -- "$@" </dev/null; }
+there_ip() { nsenter -t "$init" --net -- ip "$@"; }
+journal() { there journalctl --no-pager -o cat -u 'ergocast-*' | tail -n 60; }
+
+agents='ergocast-agent@0 ergocast-agent@1 ergocast-agent@2 ergocast-agent@3'
+all="$agents ergocast-sim ergocast-logger ergocast-coordinator"
+records=/var/lib/ergocast
+
+property() { there systemctl show --value --property="$2" "$1"; }
+is() { [ "$(property "$1" ActiveState)" = "$2" ]; }
+all_are() { local unit; for unit in $2; do is "$unit" "$1" || return 1; done; }
+restarted() { [ "$(property "$1" NRestarts)" -ge "$2" ] && is "$1" active; }
+count_records() { there sh -c "ls $records | grep -c '^2'"; }
+# Rows of the record that is being written, all its segments.
+recorded() { [ "$(there sh -c "cat $records/current/trajectory*.csv 2>/dev/null | wc -l")" -ge "$1" ]; }
+kill_one() { there systemctl kill --kill-whom=main --signal=KILL "$1"; }
+
+# What services log of a mission that nobody may leave: ticks wait for whoever is being restarted.
+use_scenario() {
+  sed "s/duration_s: 600/duration_s: $1  lockstep_timeout_s: 600/" \
+    "$root/usr/share/ergocast/scenarios/quadrimodal_corners.textproto" >"$root/etc/ergocast/test.textproto"
+  grep -q lockstep_timeout_s "$root/etc/ergocast/test.textproto" || fail 'the scenario is another'
+  sed -i 's,^ERGOCAST_SCENARIO=.*,ERGOCAST_SCENARIO=/etc/ergocast/test.textproto,' "$root/etc/ergocast/ergocast.env"
+}
+
+check_units() {
+  local unit
+  for unit in ergocast-agent@0 ergocast-sim ergocast-logger ergocast-coordinator; do
+    there systemd-analyze verify --man=no "$unit.service" >"$work/said" 2>&1 && [ ! -s "$work/said" ] ||
+      { cat "$work/said"; fail "systemd-analyze verify $unit"; }
+    there systemd-analyze security --no-pager --threshold=15 "$unit.service" >"$work/said" 2>&1 ||
+      { cat "$work/said"; fail "$unit is not shut in"; }
+    tail -n 1 "$work/said"
+  done
+  [ "$(there sh -c 'ls /etc/systemd/system/multi-user.target.wants/ | grep -c ergocast || true')" = 0 ] ||
+    fail 'the package enabled a service'
+}
+
+check_mission_with_crashes() {
+  use_scenario 1200
+  there systemctl start $all
+  eventually recorded 2000
+  # Nothing moves now, so that all that follows happens in mid-flight.
+  there systemctl kill --signal=STOP ergocast-sim
+  for unit in ergocast-agent@2 ergocast-logger ergocast-coordinator; do
+    kill_one $unit
+    eventually restarted $unit 1
+  done
+  there systemctl kill --signal=CONT ergocast-sim
+  eventually all_are inactive "$all"
+  [ "$(count_records)" = 1 ] || fail 'the logger did not go on in its record'
+  there grep -q '"result": "done"' $records/latest/summary.json ||
+    { there cat $records/latest/summary.json; fail 'the mission is not complete'; }
+  there test -s $records/latest/report.html || fail 'no report'
+  there sh -c "[ ! -e $records/current ]" || fail 'the record is still open'
+  sleep 3
+  all_are inactive "$all" || fail 'a complete mission was begun again'
+}
+
+check_stop() {
+  use_scenario 100000
+  there systemctl start $all
+  eventually recorded 2000
+  there systemctl stop ergocast-coordinator
+  eventually all_are inactive "$all"
+  [ "$(count_records)" = 2 ] || fail 'the second mission has no record of its own'
+  there test -s $records/latest/report.html || fail 'no report of the stopped mission'
+}
+
+check_bad_input() {
+  sed -i 's,^ERGOCAST_SCENARIO=.*,ERGOCAST_SCENARIO=nonsense,' "$root/etc/ergocast/ergocast.env"
+  there systemctl start ergocast-coordinator
+  eventually is ergocast-coordinator failed
+  [ "$(property ergocast-coordinator NRestarts)" = 0 ] || fail 'bad input was tried again'
+  [ "$(property ergocast-coordinator ExecMainStatus)" = 2 ] || fail 'another exit code'
+  there systemctl reset-failed
+}
+
+check_late_network() {
+  there_ip route del 224.0.0.0/4 dev lo
+  there systemctl start ergocast-agent@auto
+  tried_again() { [ "$(property ergocast-agent@auto NRestarts)" -ge 1 ]; }
+  eventually tried_again
+  there_ip route add 224.0.0.0/4 dev lo
+  eventually is ergocast-agent@auto active
+  there systemctl stop ergocast-agent@auto
+  is ergocast-agent@auto inactive || fail 'systemctl stop'
+}
+
+check_next_mission() {
+  local unit i
+  for unit in ergocast-agent@ ergocast-sim ergocast-logger; do
+    there mkdir -p /etc/systemd/system/$unit.service.d
+    there ln -s /usr/share/ergocast/systemd/next-mission.conf /etc/systemd/system/$unit.service.d/
+  done
+  there systemctl daemon-reload
+  use_scenario 30
+  there systemctl start $agents ergocast-sim ergocast-logger
+  for i in 3 4; do
+    there systemctl start ergocast-coordinator
+    eventually is ergocast-coordinator inactive
+    again() { all_are active "$agents ergocast-sim ergocast-logger" && [ "$(count_records)" -gt $i ]; }
+    eventually again
+    there grep -q '"result": "done"' $records/latest/summary.json || fail "mission $i is not complete"
+  done
+}
+
+check_removal() {
+  there systemctl enable ergocast-sim 2>/dev/null
+  there dpkg --purge ergocast >/dev/null
+  [ -z "$(there pgrep -f ergocast || true)" ] || fail 'services run on'
+  [ -z "$(there find /etc /var/lib /usr -iname '*ergocast*' ! -path '*/dpkg/*' ! -path '*.service.d' | head)" ] ||
+    fail "purged, and there still is: $(there find /etc /var/lib /usr -iname '*ergocast*' | head)"
+}
+
+make_bare_system
+pack
+cp "$deb" "$root/tmp/"
+apt_install "/tmp/$(basename "$deb")" systemd procps
+boot
+check_units
+check_mission_with_crashes
+check_stop
+check_bad_input
+check_late_network
+check_next_mission
+check_removal
+echo 'the services fly, come back and end'

@@ -1,0 +1,127 @@
+// `ergocast deploy`, and the shipped scenarios that it and others know by name.
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+class Deploy : public OwnHost {
+ protected:
+  std::filesystem::path hosts(const std::string& text) {
+    std::ofstream(folder_ / "hosts.txt") << text;
+    return folder_ / "hosts.txt";
+  }
+  int deploy(const std::string& to, const std::string& text, std::vector<std::string> more = {}) {
+    more.insert(more.begin(),
+                {"deploy", scenario_file("lake_search"), "--to", to, "--hosts", hosts(text)});
+    return ergocast(more);
+  }
+  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+};
+
+constexpr const char* kTwoHosts = "ground coordinator logger sim\nrover agents=5\n";
+
+TEST_F(Deploy, PrintsAScriptWithTheScenarioAndItsMap) {
+  for (const char* to : {"ssh", "systemd"}) {
+    ASSERT_EQ(deploy(to, kTwoHosts), 0) << output();
+    EXPECT_TRUE(output().starts_with("#!/usr/bin/env bash\n"));
+    EXPECT_TRUE(said("scenario_files=('lake_search.textproto' 'maps/lake.png')")) << output();
+    EXPECT_TRUE(said("url='udpm://239.255.76.67:7667?ttl=1'")) << output();
+  }
+}
+
+TEST_F(Deploy, WritesIntoAFolderAndNeverOverAFile) {
+  ASSERT_EQ(deploy("compose", kTwoHosts, {"--out", out()}), 0) << output();
+  EXPECT_EQ(output(), (out() / "ground.compose.yaml").string() + '\n' +
+                          (out() / "rover.compose.yaml").string() + '\n');
+  ASSERT_EQ(deploy("ssh", kTwoHosts, {"--out", out()}), 0) << output();
+  EXPECT_EQ(std::system(("bash -n " + (out() / "lake_search-ssh.sh").string()).c_str()), 0);
+  EXPECT_NE(std::filesystem::status(out() / "lake_search-ssh.sh").permissions() &
+                std::filesystem::perms::owner_exec,
+            std::filesystem::perms::none);
+  std::filesystem::remove(out() / "ground.compose.yaml");
+  const std::string before = text_of(out() / "rover.compose.yaml");
+  EXPECT_EQ(deploy("compose", "ground coordinator logger sim\nrover agent 7 8 9 10 11\n",
+                   {"--out", out()}),
+            2);
+  EXPECT_TRUE(said("rover.compose.yaml is there already")) << output();
+  EXPECT_EQ(text_of(out() / "rover.compose.yaml"), before);
+  EXPECT_FALSE(std::filesystem::exists(out() / "ground.compose.yaml"));
+}
+
+TEST_F(Deploy, NamesEveryProblemAtOnce) {
+  EXPECT_EQ(
+      deploy("ssh", "ground sim\nrover agents=4\n", {"--lcm-url", "udpm://239.1.2.3:7000?ttl=0"}),
+      2);
+  for (const char* part : {"no host is the coordinator", "fewer than the quorum", "ttl=1"})
+    EXPECT_TRUE(said(part)) << output();
+  EXPECT_EQ(deploy("ssh", "ground captain\nrover agents=x\n"), 2);
+  EXPECT_TRUE(said("hosts.txt:1:8: \"captain\" is no role") && said("hosts.txt:2:7: ")) << output();
+  EXPECT_EQ(deploy("compose", "box coordinator sim agents=5\n",
+                   {"--lcm-url", "udpm://239.1.2.3:7000?ttl=0"}),
+            2);
+  EXPECT_TRUE(said("container")) << output();
+  EXPECT_EQ(deploy("rsh", kTwoHosts), 2);
+  EXPECT_EQ(ergocast({"deploy", scenario_file("lake_search"), "--to", "ssh", "--hosts",
+                      folder_ / "none"}),
+            2);
+  EXPECT_TRUE(said("cannot be read")) << output();
+}
+
+TEST_F(Deploy, RefusesAMapThatLiesElsewhere) {
+  const auto shipped = scenario_file("lake_search").parent_path();
+  std::string text = text_of(scenario_file("lake_search"));
+  text.replace(text.find("maps/lake.png"), 13, (shipped / "maps/lake.png").string());
+  std::ofstream(folder_ / "far.textproto") << text;
+  EXPECT_EQ(
+      ergocast({"deploy", folder_ / "far.textproto", "--to", "ssh", "--hosts", hosts(kTwoHosts)}),
+      2);
+  EXPECT_TRUE(said("cannot be copied to another host")) << output();
+}
+
+/// Programs and scenarios as an installation has them.
+class Installed : public Deploy {
+ protected:
+  Installed() {
+    namespace fs = std::filesystem;
+    fs::create_directories(folder_ / "bin");
+    fs::create_directories(folder_ / "share/ergocast");
+    fs::copy(std::filesystem::path(ERGOCAST_BIN_DIR) / "ergocast", folder_ / "bin");
+    fs::copy(ERGOCAST_SCENARIO_DIR, folder_ / "share/ergocast/scenarios",
+             fs::copy_options::recursive);
+  }
+  int installed(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), folder_ / "bin/ergocast");
+    log_ = folder_ / "said";
+    std::filesystem::remove(log_);
+    Child child = std::get<Child>(Child::start({arguments, log_, SIGKILL}));
+    return wait_for(child);
+  }
+};
+
+TEST_F(Installed, ShippedScenariosAreKnownByName) {
+  EXPECT_EQ(installed({"check", "lake_search"}), 0) << output();
+  EXPECT_TRUE(
+      said((folder_ / "share/ergocast/scenarios/lake_search.textproto: no problems").string()))
+      << output();
+  EXPECT_EQ(installed({"simulate", "uniform_square", "--duration", "1", "--out", out()}), 0)
+      << output();
+}
+
+TEST_F(Installed, ANameThatNothingHasIsRefusedWithThoseThatAre) {
+  EXPECT_EQ(installed({"check", "lake_serch"}), 2);
+  EXPECT_TRUE(said("lake_serch") && said("harbour_patrol, lake_search, paper_fig1a")) << output();
+  EXPECT_EQ(installed({"check", "lake_serch.textproto"}), 2);
+  EXPECT_TRUE(said("lake_serch.textproto: there is no such file")) << output();
+}
+
+TEST_F(Installed, AFileGoesBeforeAShippedScenarioOfItsName) {
+  std::filesystem::copy(scenario_file("uniform_square"), folder_ / "lake_search");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_);
+  EXPECT_EQ(installed({"check", "lake_search"}), 0);
+  std::filesystem::current_path(before);
+  EXPECT_TRUE(said("lake_search: no problems. ") && !said("share")) << output();
+}
+
+}  // namespace
+}  // namespace ergocast::test
