@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
+#include "scenario/override_options.h"
 
 namespace ergocast::cli {
 namespace {
@@ -28,28 +29,7 @@ void add_mission_options(CLI::App& command, MissionOptions& options) {
       .add_option("--out", options.out,
                   "Run directory: new or empty (default: runs/<scenario>-<time>)")
       ->type_name("DIR");
-  command.add_option("--seed", options.overrides.seed, "Other random numbers")
-      ->check([](const std::string& text) {
-        return text.starts_with('-') ? "--seed must not be negative" : std::string();
-      });
-  command.add_option("--duration", options.overrides.duration_s, "Mission time [s]");
-  command.add_option("--agents", options.overrides.agents,
-                     "Team size: listed starts are cut, or random ones added");
-  auto* lockstep = command.add_flag_callback(
-      "--lockstep", [&options] { options.overrides.pace = Pace::kLockstep; },
-      "As fast as the machine goes, bit for bit repeatable");
-  command
-      .add_option_function<double>(
-          "--realtime",
-          [&options](double factor) {
-            options.overrides.pace = Pace::kRealtime;
-            options.overrides.realtime_factor = factor;
-          },
-          "By the wall clock, FACTOR times as fast (default 1)")
-      ->expected(0, 1)
-      ->default_str("1")
-      ->type_name("FACTOR")
-      ->excludes(lockstep);
+  add_override_options(command, options.overrides);
 }
 
 void add_url_option(CLI::App& command, MissionOptions& options) {

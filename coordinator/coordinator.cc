@@ -99,7 +99,18 @@ RosterEntry* Coordinator::active_entry(AgentId id) {
   return at == roster_.end() ? nullptr : &*at;
 }
 
-std::optional<AgentId> Coordinator::free_id(Instant now) {
+/// Whether a member has said nothing since, and may be dead: soon its number may be free.
+bool Coordinator::doubtful(Instant since, Instant now) const {
+  return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+    return alive(entry, now) && members_.at(entry.author).heard < since;
+  });
+}
+
+std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
+  // A process that was started again at once is the successor of one that still seems to live.
+  if (asked_.size() >= kMaxRosterEntries) asked_.clear();
+  const Instant since = asked_.try_emplace(newcomer, now).first->second;
+  if (doubtful(since, now)) return std::nullopt;
   for (AgentId id = 0; id < kMaxAgents; ++id) {
     const RosterEntry* holder = active_entry(id);
     if (holder == nullptr || !alive(*holder, now)) return id;
@@ -125,8 +136,8 @@ void Coordinator::on(const Hello& hello, Instant now) {
     return;
   }
   std::optional<AgentId> id = hello.requested_id;
-  if (*id == kUnassigned) id = free_id(now);
-  if (!id) return;  // the team is full
+  if (*id == kUnassigned) id = free_id(nonce, now);
+  if (!id) return;  // not yet, or the team is full
   const RosterEntry* holder = active_entry(*id);
   if (holder != nullptr && alive(*holder, now)) return;  // the younger has to give way
   admit({*id, nonce}, now);
@@ -143,6 +154,7 @@ void Coordinator::admit(const Author& author, Instant now) {
   std::sort(roster_.begin(), roster_.end(),
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   members_[author].heard = now;
+  asked_.erase(author.incarnation);
   change();
 }
 

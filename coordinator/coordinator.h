@@ -77,7 +77,8 @@ class Coordinator {
   void on(const MissionPart& part, Instant now);
   void on(const WorldState& world, Instant now);
   void admit(const Author& author, Instant now);
-  std::optional<AgentId> free_id(Instant now);
+  bool doubtful(Instant since, Instant now) const;
+  std::optional<AgentId> free_id(Incarnation newcomer, Instant now);
   RosterEntry* active_entry(AgentId id);
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;
@@ -118,6 +119,7 @@ class Coordinator {
   std::int64_t revision_ = 0;
   std::vector<RosterEntry> roster_;
   std::map<Author, Member> members_;
+  std::map<Incarnation, Instant> asked_;  // newcomers without a number: since when
   std::map<AgentId, std::int64_t> answered_;  // by the world's word
 
   bool world_heard_ = false;

@@ -11,6 +11,7 @@
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 #include "runtime/traffic_watch.h"
+#include "scenario/override_options.h"
 #include "scenario/scenario.h"
 
 namespace ergocast {
@@ -125,6 +126,8 @@ int main(int argc, char** argv) {
       app.add_option("SCENARIO", file, "Scenario file, or the name of a shipped one; not needed with --resume")
           ->transform(shipped_scenario())
           ->type_name("FILE");
+  Overrides overrides;
+  add_override_options(app, overrides);
   app.add_flag("--resume", resume, "Take over the mission that the agents are flying, or fail");
   app.footer("Without --run-id and --resume: takes over this scenario's mission if it is under way "
              "on the URL, else starts a new one.");
@@ -135,7 +138,7 @@ int main(int argc, char** argv) {
     spdlog::error("no SCENARIO: name a scenario file, or take a mission over with --resume");
     return kExitBadInput;
   }
-  const auto loaded = Scenario::load(file);
+  const auto loaded = Scenario::load(file, overrides);
   if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
     for (const Problem& problem : *problems) spdlog::error("{}", to_string(problem));
     return kExitBadInput;

@@ -1,4 +1,5 @@
-// Says what was refused or lost on the way in, without letting a flood fill the log.
+// Says what was refused or lost on the way in, without letting a flood fill the log, and keeps the
+// process listening when its network interface is exchanged.
 #pragma once
 
 #include "core/ids.h"
@@ -9,7 +10,7 @@ namespace ergocast {
 
 class TrafficWatch {
  public:
-  explicit TrafficWatch(const Transport& transport) : transport_(transport) {}
+  explicit TrafficWatch(Transport& transport) : transport_(transport) {}
 
   /// To be called every turn. Once a second it looks; what is new is logged at most every 10 s.
   /// @return whether this was the turn that looked: the time for what is done once a second
@@ -19,7 +20,7 @@ class TrafficWatch {
  private:
   void warn_of_unknown_format(Instant now);
 
-  const Transport& transport_;
+  Transport& transport_;
   Instant next_look_{}, next_log_{}, next_warning_{};
   std::int64_t warned_unknown_ = 0;
   std::int64_t kernel_drops_ = 0, logged_drops_ = 0;

@@ -13,6 +13,7 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
 #include "runtime/clock.h"
+#include "runtime/group_membership.h"
 
 namespace ergocast {
 namespace {
@@ -61,6 +62,7 @@ class LcmTransport final : public Transport {
   void publish(const Outgoing& outgoing) override;
   Instant deliver_until(Instant deadline, int wake_fd) override;
   std::int64_t kernel_drops() const override { return drops_of(sockets_); }
+  bool renew_membership() override { return membership_->renew(); }
 
  private:
   struct Line {
@@ -92,6 +94,7 @@ class LcmTransport final : public Transport {
   std::vector<pollfd> ready_;             // of the buses we listen to, then the caller's
   std::vector<lcm::LCM*> listened_;
   std::vector<unsigned long> sockets_;
+  std::optional<GroupMembership> membership_;
   std::vector<std::byte> bytes_;
 };
 
@@ -116,6 +119,7 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
   }
   ready_.push_back({-1, POLLIN, 0});
   sockets_ = own_sockets();
+  membership_.emplace(url);
   return std::nullopt;
 }
 

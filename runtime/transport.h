@@ -61,6 +61,9 @@ class Transport {
   /// Datagrams that the kernel dropped at our sockets for want of buffer space.
   virtual std::int64_t kernel_drops() const = 0;
 
+  /// Listens on the network interface that now leads to the group; true if it is a new one.
+  virtual bool renew_membership() = 0;
+
  protected:
   RefusalCounts refused_{};
   UnknownFormat unknown_format_;

@@ -41,7 +41,7 @@ struct Rule {
 const std::vector<Rule> kRules = {
     {"core", {"core"}, {kGenerator}},
     {"maps", {"core", "maps"}, {kPng, kFiles}},
-    {"scenario", {"core", "maps", "scenario"}, {kProtobuf, kHash, kFiles}},
+    {"scenario", {"core", "maps", "scenario"}, {kProtobuf, kHash, kCommandLine, kFiles}},
     {"lcmtypes", {"core", "lcmtypes"}, {kLcmTypes, kHash}},
     // The four kinds of process: they know the core, and not each other.
     {"agent", {"core", "agent"}, {}},
@@ -86,7 +86,7 @@ const std::vector<Kind> kKinds = {
     {kSystem,
      {"thread", "mutex", "shared_mutex", "condition_variable", "future", "semaphore", "latch",
       "barrier", "stop_token", "random", "ctime", "csignal", "sys/*", "netinet/*", "arpa/*", "net/*",
-      "linux/*", "fcntl.h", "poll.h", "pthread.h", "signal.h", "spawn.h", "time.h", "unistd.h"}},
+      "linux/*", "fcntl.h", "ifaddrs.h", "poll.h", "pthread.h", "signal.h", "spawn.h", "time.h", "unistd.h"}},
 };
 
 // Reading the time or rolling dice needs no #include of its own: <chrono> is open to all.

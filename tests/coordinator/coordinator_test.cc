@@ -100,6 +100,31 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
   EXPECT_EQ(entry(99).active_until, -1);
 }
 
+// A container engine starts a dead agent again within a second, and nobody tells it its number.
+TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  const auto ask_at = [&](Instant now) {
+    coordinator.receive(hello_of(kUnassigned, 99), now);
+    return coordinator.roster().size();
+  };
+  EXPECT_EQ(ask_at(at(500ms)), 2u);
+  coordinator.receive(status_of(1, 1), at(600ms));
+  EXPECT_EQ(ask_at(at(2999ms)), 2u) << "agent 0 may be dead";
+  ASSERT_EQ(ask_at(at(3s)), 3u);
+  EXPECT_TRUE(std::any_of(coordinator.roster().begin(), coordinator.roster().end(),
+                          [](const auto& entry) { return entry.author == Author{0, 99}; }));
+}
+
+TEST(CoordinatorAdmits, WhoeverDoesNotCareOnceAllMembersHaveSpoken) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.receive(hello_of(kUnassigned, 99), at(500ms));
+  coordinator.receive(status_of(0, 1), at(600ms));
+  coordinator.receive(status_of(1, 1), at(600ms));
+  coordinator.receive(hello_of(kUnassigned, 99), at(700ms));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 99}));
+}
+
 TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
   Coordinator coordinator = coordinator_of(small_mission(1));
   coordinator.receive(hello_of(0), at(0s));

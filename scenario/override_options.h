@@ -1,0 +1,13 @@
+// The command-line options that say something over a scenario file.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "scenario/scenario.h"
+
+namespace ergocast {
+
+/// --seed, --duration, --agents, --lockstep and --realtime.
+void add_override_options(CLI::App& command, Overrides& overrides);
+
+}  // namespace ergocast

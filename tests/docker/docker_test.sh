@@ -1,0 +1,160 @@
+#!/usr/bin/env bash
+# The image and the compose files: a team of containers flies, survives what befalls containers, and
+# leaves a record that belongs to the person.
+#   docker_test.sh BUILD_DIR
+# shellcheck disable=SC2034,SC2154
+more_tools='dockerd docker docker-compose iptables ip nsenter'
+
+export ERGOCAST_CGROUP=${ERGOCAST_CGROUP:-/ergocast-test-$$}
+after_all() {
+  find /sys/fs/cgroup -depth -type d -path "*$ERGOCAST_CGROUP*" -exec rmdir {} + 2>/dev/null || true
+}
+
+# shellcheck source=tests/package/debian.sh
+. "$(dirname "$0")/../package/debian.sh"
+source=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/docker/engine.sh
+. "$(dirname "$0")/engine.sh"
+# shellcheck source=tests/docker/team.sh
+. "$(dirname "$0")/team.sh"
+
+the_image_runs_every_program_and_nothing_as_root() {
+  local program size
+  for program in ergocast ergocast-agent ergocast-coordinator ergocast-logger ergocast-sim; do
+    expect docker run --rm ergocast $program --version
+  done
+  [ "$(docker run --rm --entrypoint id ergocast -u)" = 1000 ] || fail 'the image is root'
+  mkdir -m 777 "$work/simulated"
+  expect docker run --rm --network none --volume "$work/simulated:/runs" ergocast \
+    simulate quadrimodal_corners --duration 20
+  expect test -s "$work"/simulated/*/report.html
+  size=$(state ergocast .Size)
+  echo "  the image takes $((size / 1000000)) MB, $(($(state debian-12 .Size) / 1000000)) MB of them Debian"
+}
+
+a_scaled_team_flies_to_the_end_and_the_record_is_the_persons() {
+  fly scaled 8 --duration 60
+  expect_complete
+  land
+  [ -z "$(find "$ERGOCAST_RUNS" ! -user "$person")" ] || fail 'parts of the record are not the person'\''s'
+  expect test -s "$ERGOCAST_RUNS"/*/report.html
+}
+
+a_team_of_more_than_planned_flies_too() {
+  plan more 4 --duration 60
+  expect compose up --detach --scale agent=6
+  expect_complete
+  land
+}
+
+too_few_agents_end_with_a_sentence() {
+  ERGOCAST_SCENARIO=impatient
+  plan too_few 3
+  expect compose up --detach --scale agent=2
+  becomes all_ended
+  is "$(compose ps -aq coordinator)" .State.ExitCode 4 || complain 'a mission without its quorum is no failure'
+  expect says coordinator 'only 2 of the quorum of 3 agents were admitted'
+  land
+  ERGOCAST_SCENARIO=patient
+}
+
+# In lockstep nothing goes on without a member, so that what befalls it befalls it in mid-mission.
+a_killed_agent_comes_back_under_its_number() {
+  fly killed 4 --duration 1000
+  becomes recorded 10000
+  local agent
+  agent=$(one agent 2)
+  kill -KILL "$(state "$agent" .State.Pid)"
+  becomes is "$agent" .RestartCount 1
+  becomes says coordinator 'agent [0-3] .* is gone at tick'
+  expect_complete
+  ! says coordinator 'agent 4 ' || complain 'it came back under another number'
+  land
+}
+
+an_agent_container_that_is_removed_is_replaced() {
+  fly removed 4 --duration 1000
+  becomes recorded 10000
+  docker rm --force "$(one agent 3)" >/dev/null
+  compose up --detach --scale agent=4 agent
+  becomes says coordinator 'agent [0-3] .* is gone at tick'
+  expect_complete
+  land
+}
+
+an_agent_cut_off_from_the_network_is_unhealthy_and_agrees_again() {
+  fly cut_off 4 --duration 1000
+  becomes recorded 10000
+  local agent
+  agent=$(one agent)
+  docker network disconnect team_default "$agent"
+  becomes says coordinator 'agent [0-3] .* is silent'
+  becomes is "$agent" .State.Health.Status unhealthy
+  docker network connect team_default "$agent"
+  becomes says agent 'listening on another network interface'
+  becomes says coordinator 'agent [0-3] .* is alive at tick [1-9]'
+  expect_complete
+  land
+}
+
+a_logger_that_dies_goes_on_with_its_record() {
+  fly logger 4 --duration 1000
+  becomes recorded 10000
+  kill -KILL "$(pgrep -x ergocast-logger)"
+  becomes is "$(one logger)" .RestartCount 1
+  expect_complete
+  expect test -d "$ERGOCAST_RUNS"/*  # one folder
+  land
+}
+
+in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order() {
+  fly real_time 4 --realtime --duration 100000
+  becomes recorded 1000
+  becomes all_healthy
+  local process
+  for process in $(pids_of_programs); do
+    [ "$(stat -c %u "/proc/$process")" != 0 ] || fail "$(cat "/proc/$process/comm") runs as root"
+  done
+  docker network disconnect team_default "$(one agent)"
+  becomes says coordinator 'agent [0-3] .* is silent'
+  docker network connect team_default "$(one agent)"
+  becomes says coordinator 'agent [0-3] .* is alive at tick [1-9]'
+  compose stop
+  says coordinator 'mission ended .*: the coordinator was told to stop' || complain 'not ended in order'
+  expect test -s "$ERGOCAST_RUNS"/*/report.html
+  land
+}
+
+hosts_without_bridges_fly_too() {
+  over='-f compose.hosts.yaml'
+  fly hosts 4 --duration 60
+  expect_complete
+  land
+  over=
+}
+
+claim() {
+  local begun=$SECONDS
+  echo "- ${1//_/ }"
+  "$1"
+  echo "  ($((SECONDS - begun)) s)"
+}
+
+make_bare_system
+pack
+claim the_image_is_built_from_the_package
+start_isolated_engine
+make_person
+for name in the_image_runs_every_program_and_nothing_as_root \
+  a_scaled_team_flies_to_the_end_and_the_record_is_the_persons \
+  a_team_of_more_than_planned_flies_too \
+  too_few_agents_end_with_a_sentence \
+  a_killed_agent_comes_back_under_its_number \
+  an_agent_container_that_is_removed_is_replaced \
+  an_agent_cut_off_from_the_network_is_unhealthy_and_agrees_again \
+  a_logger_that_dies_goes_on_with_its_record \
+  in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order \
+  hosts_without_bridges_fly_too; do
+  claim $name
+done
+stop_engine

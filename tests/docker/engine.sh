@@ -1,0 +1,59 @@
+# Sourced by docker_test.sh after debian.sh (bash): a container engine of the test's own. Neither
+# this machine's network nor an engine that runs here is touched. Engine and containers are in the
+# test's process and mount namespaces, so they end with it.
+# shellcheck shell=bash disable=SC2154  # work and root are debian.sh's
+
+export DOCKER_HOST=unix://$work/engine.sock
+
+# Waits until a command succeeds. How long that may take decides no success.
+eventually() {
+  local deadline=$((SECONDS + 120))
+  until "$@" >/dev/null 2>&1; do
+    [ "$SECONDS" -lt "$deadline" ] || return 1
+    sleep 0.2
+  done
+}
+
+# start_engine NETWORK_NAMESPACE [OPTION…]
+start_engine() {
+  local network=$1
+  shift
+  nsenter --net="$network" dockerd --host "$DOCKER_HOST" --data-root "$work/data" \
+    --exec-root "$work/exec" --pidfile "$work/engine.pid" --cgroup-parent "$ERGOCAST_CGROUP" "$@" \
+    >>"$work/engine.log" 2>&1 &
+  engine=$!
+  eventually docker info || { tail -n 5 "$work/engine.log" >&2; fail 'dockerd'; }
+}
+
+stop_engine() {
+  kill "$engine"
+  wait "$engine" || true
+}
+
+# There is no registry: the bare system is the image to build on.
+import_base() {
+  tar -C "$root" --one-file-system --exclude=./tmp/test --exclude='./var/cache/apt/archives/*.deb' \
+    -c . | docker import - debian-12 >/dev/null
+}
+
+# Builds where packages can be fetched: in this machine's network, with a bridge to nobody.
+the_image_is_built_from_the_package() {
+  start_engine /proc/self/ns/net --bridge=none --iptables=false --ip-forward=false
+  import_base
+  mkdir "$work/context"
+  cp -r "$source/docker" "$deb" "$work/context"
+  docker build --network=host --tag ergocast --file "$source/docker/Dockerfile" \
+    --build-arg BASE=debian-12 --build-arg DEB="$(basename "$deb")" "$work/context" \
+    >"$work/build.log" 2>&1 || { tail -n 20 "$work/build.log" >&2; fail 'docker build'; }
+  stop_engine
+}
+
+# A machine with nothing but the engine on it.
+start_isolated_engine() {
+  unshare --net sleep infinity &
+  local network=/proc/$!/ns/net
+  eventually test ! "$network" -ef /proc/self/ns/net || fail 'no network namespace'
+  nsenter --net="$network" ip link set lo up
+  nsenter --net="$network" ip route add 224.0.0.0/4 dev lo
+  start_engine "$network"
+}

@@ -1,0 +1,64 @@
+# Sourced by docker_test.sh (bash): a person who uses the compose files, and what is expected of it.
+# shellcheck shell=bash disable=SC2154  # work and source are set before
+
+person=4321
+over=
+export COMPOSE_PROJECT_NAME=team ERGOCAST_SCENARIOS=$work/scenarios ERGOCAST_SCENARIO=patient
+export ERGOCAST_AGENTS ERGOCAST_OPTIONS ERGOCAST_RUNS
+
+# Whose the scenarios are, so that the records are to be, too.
+make_person() {
+  mkdir "$ERGOCAST_SCENARIOS"
+  local file=$source/scenarios/quadrimodal_corners.textproto
+  sed 's/pace: .*/& lockstep_timeout_s: 600/' "$file" >"$ERGOCAST_SCENARIOS/patient.textproto"
+  sed 's/pace: .*/& admission_timeout_s: 5/' "$file" >"$ERGOCAST_SCENARIOS/impatient.textproto"
+  chown -R $person "$ERGOCAST_SCENARIOS"
+}
+
+complain() {
+  docker ps --all >&2
+  logs 2>/dev/null | tail -n 60 >&2
+  tail -n 5 "$work/compose.log" >&2
+  fail "$*"
+}
+expect() { "$@" >"$work/output" 2>&1 || { cat "$work/output" >&2; complain "not so: $*"; }; }
+becomes() { eventually "$@" || complain "never: $*"; }
+
+compose() {
+  # shellcheck disable=SC2086  # two words, or none
+  (cd "$source/docker" && docker-compose -f compose.yaml $over "$@" 2>>"$work/compose.log")
+}
+logs() { compose logs --no-color "$@"; }
+says() { logs "$1" | grep -E "$2" >/dev/null; }
+
+# plan RECORD AGENTS [OPTION…]  a mission whose record will be below runs/RECORD
+plan() { ERGOCAST_RUNS=$work/runs/$1 ERGOCAST_AGENTS=$2 ERGOCAST_OPTIONS=${*:3}; }
+fly() {
+  plan "$@"
+  expect compose up --detach
+}
+land() {
+  expect compose down
+  [ -z "$(docker ps -aq)" ] || fail "docker-compose down leaves $(docker ps -a)"
+}
+
+# one SERVICE [N]  its Nth container
+one() { compose ps -q "$1" | sed -n "${2:-1}p"; }
+state() { docker inspect --format "{{$2}}" "$1"; }
+is() { [ "$(state "$1" "$2")" = "$3" ]; }
+all_ended() { [ -z "$(docker ps -q)" ]; }
+all_healthy() {
+  local container
+  for container in $(compose ps -q); do is "$container" .State.Health.Status healthy || return 1; done
+}
+
+# The test's process namespace is around those of the containers.
+pids_of_programs() { grep -ls '^ergocast-' /proc/[0-9]*/comm | cut -d/ -f3; }
+
+recorded() { [ "$(cat "$ERGOCAST_RUNS"/*/trajectory*.csv | wc -c)" -gt "$1" ]; }
+expect_complete() {
+  becomes all_ended
+  local container
+  for container in $(compose ps -aq); do expect is "$container" .State.ExitCode 0; done
+  expect grep -q '"result": "done"' "$ERGOCAST_RUNS"/*/summary.json
+}
