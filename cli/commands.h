@@ -76,4 +76,7 @@ int report(const std::filesystem::path& run_dir);
 /// Simulates a recorded run again and compares the trajectories.
 int verify(const std::filesystem::path& run_dir);
 
+/// What keeps hosts from hearing each other, and the commands that mend it.
+void add_doctor(CLI::App& app, Action& action);
+
 }  // namespace ergocast::cli
