@@ -80,5 +80,7 @@ int verify(const std::filesystem::path& run_dir);
 void add_deploy(CLI::App& app, Action& action);
 /// `spy`: LCM's viewer on one bus of a mission.
 void add_spy(CLI::App& app, Action& action);
+/// What keeps hosts from hearing each other, and the commands that mend it.
+void add_doctor(CLI::App& app, Action& action);
 
 }  // namespace ergocast::cli

@@ -188,6 +188,7 @@ int parse_and_do(int argc, char** argv) {
 
   add_deploy(app, action);
   add_spy(app, action);
+  add_doctor(app, action);
 
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version_text());

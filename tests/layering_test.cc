@@ -51,12 +51,13 @@ const std::vector<Rule> kRules = {
     // The same cores in one process: no network, no clock, no threads.
     {"lab", {"core", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab"}, {}},
     {"runtime", {"core", "lcmtypes", "runtime"}, {kLcm, kLog, kCommandLine, kFiles, kSystem}},
+    {"doctor", {"core", "lcmtypes", "runtime", "doctor"}, {kJson, kFiles, kSystem}},
     {"agent/main.cc", {"agent", "scenario", "runtime"}, {kLog}},
     {"coordinator/main.cc", {"coordinator", "scenario", "runtime"}, {kLog}},
     {"sim/main.cc", {"sim", "scenario", "runtime"}, {kLog}},
     {"logger/main.cc", {"logger", "scenario", "runtime", "lcmtypes"}, {kLcm, kLog, kFiles, kSystem}},
     {"cli",
-     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "cli"},
+     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "doctor", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     // What a user copies: a process like the four, with its main beside it.
     {"examples/driver", {"core", "examples"}, {}},

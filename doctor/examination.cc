@@ -1,0 +1,79 @@
+#include "doctor/examination.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+
+#include "doctor/bus_listener.h"
+#include "doctor/interfaces.h"
+#include "doctor/kernel_limits.h"
+#include "doctor/ports.h"
+#include "doctor/programs.h"
+#include "doctor/routing.h"
+#include "runtime/node.h"
+
+namespace ergocast::doctor {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kListening = 1s;  // agents say how they are every 0.5 s
+
+std::optional<int> some_free_base_port() {
+  const auto free = PortReservation::take(random_identity());
+  return free ? std::optional(free->base_port()) : std::nullopt;
+}
+
+/// Ports and swarm bus.
+void examine_bus(const LcmUrl& url, Examination& all) {
+  const auto everybody = holders("/proc", url);
+  std::string refusal;
+  Overheard overheard;
+  if (all.lcm_usable) overheard = listen_to_swarm(url, kListening, refusal);
+  const auto free = everybody.empty() && refusal.empty() && !overheard.anything()
+                        ? std::nullopt
+                        : some_free_base_port();
+  all.findings.push_back(ports_finding(url, everybody, refusal, free));
+  if (!all.lcm_usable || !refusal.empty()) return;
+  all.findings.push_back(overheard.finding(url, free));
+  // Another `ergocast` on the port is a test like this one.
+  const bool held = std::any_of(everybody.begin(), everybody.end(), [&url](const Holder& one) {
+    return one.port == url.base_port && one.program != "ergocast";
+  });
+  if (held || overheard.anything()) {
+    LcmUrl other = url;
+    if (free) other.base_port = *free;
+    all.port_taken = other.base();
+  }
+}
+
+}  // namespace
+
+Examination examine(const LcmUrl& url, bool several_hosts) {
+  Examination all;
+  Findings& findings = all.findings;
+  const auto every = interfaces();
+  const auto routed = routed_interface(url.group);
+  const auto failure = why_unreachable(url);
+  all.lcm_usable = !failure.has_value();
+  std::vector<std::string> names;
+  for (const Interface& one : every) names.push_back(one.name);
+
+  findings = routing_findings(url, routed, every);
+  findings.push_back(ttl_finding(url, several_hosts));
+  findings.push_back(loopback_finding(url, failure));
+  examine_bus(url, all);
+  findings.push_back(receive_buffer_finding(url, measure_receive_buffer(url)));
+  findings.push_back(fragments_finding("/proc"));
+  if (routed) findings.push_back(reverse_path_finding("/proc", *routed));
+  findings.push_back(bridges_finding("/sys", names));
+  if (const auto firewall = firewall_finding(firewall_rules(), url.group)) {
+    findings.push_back(*firewall);
+  }
+  findings.push_back(clock_finding(clock_is_synchronised()));
+  const char* path = std::getenv("PATH");
+  findings.push_back(spy_finding("/", path == nullptr ? "" : path));
+  return all;
+}
+
+}  // namespace ergocast::doctor

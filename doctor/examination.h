@@ -1,0 +1,19 @@
+// All checks of this host, in order. Changes nothing on it.
+#pragma once
+
+#include "doctor/finding.h"
+#include "runtime/lcm_url.h"
+
+namespace ergocast::doctor {
+
+struct Examination {
+  Findings findings;
+  bool lcm_usable = false;
+  /// Why no probes may be sent to the swarm's port: somebody else is there; empty: nobody.
+  std::string port_taken;
+};
+
+/// @param several_hosts  whether the team is meant to be on more than this one
+Examination examine(const LcmUrl& url, bool several_hosts);
+
+}  // namespace ergocast::doctor

@@ -1,0 +1,28 @@
+// Sends probes, listens for others', and says who hears whom.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "doctor/finding.h"
+#include "doctor/peer_ledger.h"
+#include "runtime/lcm_url.h"
+
+namespace ergocast::doctor {
+
+struct PeerTest {
+  std::vector<Peer> peers;
+  int only_heard_by_others = 0;
+  std::uint32_t sent = 0;
+  std::string error;  ///< why it could not be done; empty: it was
+};
+
+/// For so long, with kProbesPerSecond. @pre at most kMaxPeerSeconds
+PeerTest try_peers(const LcmUrl& url, std::chrono::seconds duration);
+
+/// One finding for each peer, or one that nobody was heard.
+/// @param version  ours
+Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::string& version);
+
+}  // namespace ergocast::doctor

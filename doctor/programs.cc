@@ -1,0 +1,87 @@
+#include "doctor/programs.h"
+
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+#include <sstream>
+
+namespace ergocast::doctor {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_there(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(file, error);
+}
+
+bool on_path(const fs::path& root, std::string_view path, const char* program) {
+  std::istringstream folders{std::string(path)};
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (is_there(root / fs::path(folder).relative_path() / program)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Finding spy_finding(const fs::path& root, std::string_view path) {
+  std::vector<std::string> missing, packages;
+  const auto need = [&](bool there, const char* what, const char* package) {
+    if (there) return;
+    missing.emplace_back(what);
+    packages.emplace_back(package);
+  };
+  need(on_path(root, path, "java"), "java", "default-jre");
+  need(is_there(root / "usr/share/java/lcm.jar"), "lcm.jar", "liblcm-java");
+  need(is_there(root / "usr/share/java/jchart2d.jar"), "jchart2d.jar", "libjchart2d-java");
+  if (missing.empty()) return {"lcm-spy", Level::kOk, "Java and its jars are there", "", ""};
+  return {"lcm-spy", Level::kNote, "missing: " + joined(missing),
+          "Only for watching messages with lcm-spy; teams need no Java.",
+          "apt-get install " + joined(packages, " ")};
+}
+
+std::optional<bool> clock_is_synchronised() {
+  timex time{};
+  const int state = adjtimex(&time);
+  if (state < 0) return std::nullopt;
+  return state != TIME_ERROR && (time.status & STA_UNSYNC) == 0;
+}
+
+Finding clock_finding(std::optional<bool> synchronised) {
+  if (!synchronised) return {"clock", Level::kOk, "the kernel does not tell", "", ""};
+  if (*synchronised) return {"clock", Level::kOk, "synchronised", "", ""};
+  return {"clock", Level::kNote, "not synchronised",
+          "Ergocast itself needs no common clock; only the times in logs of several hosts then do "
+          "not match.",
+          "apt-get install systemd-timesyncd && timedatectl set-ntp true"};
+}
+
+std::string firewall_rules() {
+  if (geteuid() != 0) return "";
+  const char* command = "PATH=$PATH:/usr/sbin:/sbin; { nft list chains || iptables -S INPUT; } 2>/dev/null";
+  const std::unique_ptr<FILE, int (*)(FILE*)> output(popen(command, "r"), pclose);
+  std::string text;
+  char line[512];
+  while (output && std::fgets(line, sizeof line, output.get()) != nullptr) text += line;
+  return text;
+}
+
+std::optional<Finding> firewall_finding(std::string_view rules, const std::string& group) {
+  if (rules.empty()) return std::nullopt;
+  std::istringstream lines{std::string(rules)};
+  for (std::string line; std::getline(lines, line);) {
+    const bool nft = line.find("hook input") != line.npos && line.find("policy drop") != line.npos;
+    if (!nft && !line.starts_with("-P INPUT DROP")) continue;
+    return Finding{"firewall", Level::kNote, "drops incoming traffic that no rule accepts",
+                   "If other hosts are not heard, let the group and IGMP in (for the present; make "
+                   "it last with the tool that wrote the rules).",
+                   "iptables -I INPUT -d " + group + " -p udp -j ACCEPT\n"
+                   "iptables -I INPUT -p igmp -j ACCEPT"};
+  }
+  return Finding{"firewall", Level::kOk, "does not drop by default", "", ""};
+}
+
+}  // namespace ergocast::doctor

@@ -1,0 +1,42 @@
+#include "doctor/programs.h"
+
+#include "tests/doctor/fixture.h"
+
+namespace ergocast::doctor {
+namespace {
+
+class Programs : public Folder {};
+
+TEST_F(Programs, WhatLcmSpyLacksIsNamedWithItsPackages) {
+  write("opt/bin/java", "");
+  write("usr/share/java/lcm.jar", "");
+  const Finding jar = spy_finding(root_, "/bin:/opt/bin");
+  EXPECT_EQ(jar.level, Level::kNote);
+  EXPECT_EQ(jar.found, "missing: jchart2d.jar");
+  EXPECT_EQ(jar.remedy, "apt-get install libjchart2d-java");
+  EXPECT_EQ(spy_finding(root_, "/bin").remedy, "apt-get install default-jre libjchart2d-java");
+  write("usr/share/java/jchart2d.jar", "");
+  EXPECT_EQ(spy_finding(root_, "/bin:/opt/bin").level, Level::kOk);
+}
+
+TEST(Clock, IsANoteAtMost) {
+  EXPECT_EQ(clock_finding(true).level, Level::kOk);
+  EXPECT_EQ(clock_finding(false).level, Level::kNote);
+  EXPECT_EQ(clock_finding(std::nullopt).level, Level::kOk);
+}
+
+TEST(Firewall, OnlyInputThatDropsByPolicyIsNoted) {
+  const auto level = [](const char* rules) { return firewall_finding(rules, "239.0.0.1")->level; };
+  EXPECT_FALSE(firewall_finding("", "239.0.0.1").has_value());
+  EXPECT_EQ(level("table inet filter {\n\tchain input {\n"
+                  "\t\ttype filter hook input priority filter; policy drop;\n\t}\n}\n"),
+            Level::kNote);
+  EXPECT_EQ(level("\t\ttype filter hook input priority filter; policy accept;\n"
+                  "\t\ttype filter hook forward priority filter; policy drop;\n"),
+            Level::kOk);
+  EXPECT_EQ(level("-P INPUT DROP\n"), Level::kNote);
+  EXPECT_EQ(level("-P INPUT ACCEPT\n"), Level::kOk);
+}
+
+}  // namespace
+}  // namespace ergocast::doctor
