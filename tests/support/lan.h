@@ -85,6 +85,7 @@ class Lan {
  private:
   void run_on(const Namespaces& where, const std::string& command) const;
   std::string port(int host) const { return "p" + std::to_string(host); }
+  void wait_for_links() const;
   void apply_rules() const;
   std::int64_t count_of(const std::string& counter) const;
 
