@@ -107,6 +107,21 @@ TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThi
   expect_same_members_to_end_in_order();
 }
 
+TEST_F(Partition, InLockstepEverybodyWaitsForACutOffHostAndNotABitChanges) {
+  const auto file = mission("300");
+  start(file);
+  Witness witness = witness_on(1);
+  ASSERT_TRUE(recorded(30000)) << coordinator_->said();
+  lan_->unplug(2);
+  ASSERT_TRUE(witness.hears([&] {
+    return witness.stands_still(witness.member(0)) && witness.stands_still(witness.member(1));
+  }));
+  lan_->heal();
+  expect_all_to_end();
+  expect_complete_record();
+  expect_simulated(file);
+}
+
 TEST_F(Partition, AnAgentThatIsCutOffWhenTheMissionEndsDoesNotWaitForEver) {
   start(mission("100", "pace: REALTIME realtime_factor: 20"));
   for (Program* agent : agents_) ASSERT_TRUE(agent->says(": running")) << agent->said();

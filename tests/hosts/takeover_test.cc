@@ -22,6 +22,18 @@ TEST_F(Takeover, ACoordinatorOnAnotherHostTakesTheMissionOver) {
   expect_simulated(file);
 }
 
+TEST_F(Takeover, AWorldOnAnotherHostGoesOnWhereTheAgentsWere) {
+  start(mission("300"));
+  ASSERT_TRUE(recorded(30000)) << coordinator_->said();
+  world_->child.send(SIGKILL);
+  wait_for(world_->child);
+  world_ = &on(0, "ergocast-sim");
+  expect_all_to_end();
+  EXPECT_EQ(summary()["result"], "done") << summary()["reason"];
+  // What only the killed world knew may be missing in the record.
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
 TEST_F(Takeover, TheSuccessorsOfADeadHostsAgentsGetBackWhatThoseHadCovered) {
   start(mission("100000", kRealtime));
   Witness witness = witness_on(1);

@@ -142,9 +142,9 @@ TEST(Gap, InLockstepTheRecordWaitsForTheMissingStateBecauseItIsRepeated) {
   for (Tick tick = 0; tick <= 60; ++tick) {
     if (tick != 3) record.tell(state_of(tick));
   }
-  advance(record.recorder, at(1h));
+  advance(record.recorder, at(30s));
   EXPECT_EQ(record.recorder.next_row(), 2);
-  record.tell(state_of(3), at(1h));
+  record.tell(state_of(3), at(30s));
   EXPECT_EQ(record.recorder.next_row(), 60);
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }

@@ -190,9 +190,9 @@ TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
   advance(resumed.recorder, at(10500ms));
   EXPECT_EQ(resumed.recorder.next_row(), 31);
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
-  advance(resumed.recorder, at(1h));
+  advance(resumed.recorder, at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 31) << "32 came after the first that was heard";
-  resumed.tell(state_of(32), at(1h));
+  resumed.tell(state_of(32), at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 34);
   EXPECT_EQ(resumed.recorder.facts().gaps, 20);
 }
@@ -200,9 +200,9 @@ TEST_F(Resume, WhatIsNotRepeatedWithinHalfASecondIsAGap) {
 TEST_F(Resume, AGapEndsAtTheFirstStateHeardEvenIfTheNextIsMissing) {
   Record resumed(small_mission(1), ten_rows());
   for (const Tick tick : {30, 32}) resumed.tell(state_of(tick), at(10s));
-  advance(resumed.recorder, at(1h));
+  advance(resumed.recorder, at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 30);
-  resumed.tell(state_of(31), at(1h));
+  resumed.tell(state_of(31), at(30s));
   EXPECT_EQ(resumed.recorder.next_row(), 32);
 }
 

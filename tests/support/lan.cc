@@ -39,6 +39,12 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
+int count(const std::string& text, const std::string& part) {
+  int found = 0;
+  for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
 constexpr const char* kCounters = R"(
 table bridge counted {
   counter ip_packets { }
@@ -106,6 +112,24 @@ Lan::Lan(int count) : home_(Namespaces::of_this_thread()), switch_(Namespaces::m
     feed("ip -batch -", "link set lo up\naddr add 10.0.0." + std::to_string(host + 1) +
                             "/24 dev eth0\nlink set eth0 up\nroute add 224.0.0.0/4 dev eth0\n");
   }
+  wait_for_links();
+}
+
+/// The kernel takes its time to use a link that has come up.
+void Lan::wait_for_links() const {
+  constexpr int kTurns = 1000;
+  const auto ready = [this] {
+    for (const Namespaces& host : hosts_) {
+      const Visit there(host, home_);
+      if (count(output_of("ip -brief link show dev eth0"), " UP ") == 0) return false;
+    }
+    const Visit there(switch_, home_);
+    return count(output_of("bridge link"), "state forwarding") == hosts();
+  };
+  for (int turn = 0; !ready(); ++turn) {
+    if (turn == kTurns) throw std::runtime_error("the links do not come up");
+    usleep(10000);
+  }
 }
 
 Lan::Visit Lan::visit(int host) const { return {hosts_.at(static_cast<std::size_t>(host)), home_}; }
@@ -148,6 +172,7 @@ void Lan::heal() {
     if (delayed_) run_on(switch_, "tc qdisc del dev " + port(host) + " root");
   }
   delayed_ = false;
+  wait_for_links();
 }
 
 void Lan::apply_rules() const {

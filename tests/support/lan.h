@@ -2,8 +2,8 @@
 // stands in one more as the switch. None of them has a name outside this process, so all are gone
 // once it and the programs it started are, however they ended.
 //
-// Needs root, iproute2 and nftables; every function throws std::runtime_error with the command that
-// failed.
+// Needs iproute2, nftables and root, or a process in a user namespace of its own (own_host.h) where
+// the kernel allows that. Every function throws std::runtime_error with the command that failed.
 #pragma once
 
 #include <chrono>
@@ -85,6 +85,7 @@ class Lan {
  private:
   void run_on(const Namespaces& where, const std::string& command) const;
   std::string port(int host) const { return "p" + std::to_string(host); }
+  void wait_for_links() const;
   void apply_rules() const;
   std::int64_t count_of(const std::string& counter) const;
 
