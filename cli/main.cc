@@ -200,6 +200,8 @@ int parse_and_do(int argc, char** argv) {
   verify_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
   verify_command->callback([&] { action = [&] { return verify(path); }; });
 
+  add_status(app, action);
+
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version_text());
   }
