@@ -67,6 +67,9 @@ struct StudyOptions {
 /// Scenarios × variations × seeds, each flown once.
 int study(const StudyOptions& options);
 
+/// What a team that is flying looks like, from any host on its buses.
+void add_status(CLI::App& app, Action& action);
+
 /// Every problem of a scenario; with `print`, the scenario as it would be run.
 int check(const std::filesystem::path& scenario, bool print);
 

@@ -187,6 +187,7 @@ int parse_and_do(int argc, char** argv) {
   verify_command->callback([&] { action = [&] { return verify(path); }; });
 
   add_deploy(app, action);
+  add_status(app, action);
   add_spy(app, action);
   add_doctor(app, action);
 

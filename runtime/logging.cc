@@ -22,10 +22,14 @@ constexpr auto kRepeatedWithin = std::chrono::seconds(5);
 int syslog_priority(spdlog::level::level_enum level) {
   switch (level) {
     case spdlog::level::trace:
-    case spdlog::level::debug: return 7;
-    case spdlog::level::info: return 6;
-    case spdlog::level::warn: return 4;
-    default: return 3;
+    case spdlog::level::debug:
+      return 7;
+    case spdlog::level::info:
+      return 6;
+    case spdlog::level::warn:
+      return 4;
+    default:
+      return 3;
   }
 }
 
@@ -33,7 +37,8 @@ class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
  private:
   void sink_it_(const spdlog::details::log_msg& event) override {
     const std::string lines =
-        journal_lines(syslog_priority(event.level), std::string(event.logger_name.data(), event.logger_name.size()),
+        journal_lines(syslog_priority(event.level),
+                      std::string(event.logger_name.data(), event.logger_name.size()),
                       std::string(event.payload.data(), event.payload.size()));
     std::fwrite(lines.data(), 1, lines.size(), stderr);
   }
@@ -41,7 +46,8 @@ class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
 };
 
 std::shared_ptr<spdlog::sinks::sink> stderr_sink() {
-  if (is_journal(std::getenv("JOURNAL_STREAM"), STDERR_FILENO)) return std::make_shared<JournalSink>();
+  if (is_journal(std::getenv("JOURNAL_STREAM"), STDERR_FILENO))
+    return std::make_shared<JournalSink>();
   return std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
 }
 

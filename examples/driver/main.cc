@@ -3,6 +3,7 @@
 
 #include "examples/driver/driver.h"
 #include "runtime/event_loop.h"
+#include "runtime/logging.h"
 #include "runtime/node.h"
 #include "scenario/scenario.h"
 
@@ -44,6 +45,6 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
-  set_up_logging("driver");
+  set_up_logging("driver", node.log_level);
   return example::run(node, speed_limit_mps);
 }

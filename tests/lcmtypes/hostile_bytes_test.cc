@@ -141,7 +141,7 @@ TEST(Codec, HostileStringLengthsAreRefused) {
 TEST(Codec, TextsThatMeanSomethingToATerminalAreRefused) {
   for (const Message& message : {Message(hello()), Message(stop()), Message(agent_status()),
                                  Message(team_status()), Message(mission_part())}) {
-    for (const int control : {1, 7, '\n', '\r', 0x1b, 0x7f}) {
+    for (const char control : {'\1', '\a', '\n', '\r', '\x1b', '\x7f'}) {
       Bytes bytes = encoded(message);
       bytes[bytes.size() - 2] = static_cast<std::byte>(control);  // the last string's last character
       EXPECT_EQ(verdict(retagged(bytes)), "range") << "message kind " << message.index();

@@ -49,7 +49,8 @@ TEST_F(Log, InTheJournalHasAPriorityOnEveryLineAndNoTimeOfItsOwn) {
   std::ofstream(journal).close();
   struct stat info {};
   ASSERT_EQ(stat(journal.c_str(), &info), 0);
-  setenv("JOURNAL_STREAM", (std::to_string(info.st_dev) + ':' + std::to_string(info.st_ino)).c_str(), 1);
+  setenv("JOURNAL_STREAM",
+         (std::to_string(info.st_dev) + ':' + std::to_string(info.st_ino)).c_str(), 1);
   ASSERT_EQ(std::system("ip route del 224.0.0.0/4 dev lo"), 0);
   EXPECT_EQ(run("ergocast-sim", {}), 3);
   const std::string said = output();

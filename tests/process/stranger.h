@@ -17,7 +17,8 @@ class Stranger {
  public:
   explicit Stranger(const std::string& url)
       : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
-        transport_(std::get<0>(Transport::open(url_, 0, {}, {.on_message = [](const Message&, AgentId) {}}))) {}
+        transport_(std::get<0>(
+            Transport::open(url_, 0, {}, {.on_message = [](const Message&, AgentId) {}}))) {}
 
   void say(Bus bus, Message message) {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);

@@ -15,7 +15,8 @@ MissionPart their_mission() {
   MissionPart part;
   part.header = {kTheirRun, kCoordinator, 71, 0, 0};
   part.state = MissionState::kRunning;
-  for (const int byte : {0x0A, 5, int{'9'}, int{'.'}, int{'9'}, int{'.'}, int{'9'}, 0xFF, 0xFF, 1, 2, 3}) {
+  for (const int byte :
+       {0x0A, 5, int{'9'}, int{'.'}, int{'9'}, int{'.'}, int{'9'}, 0xFF, 0xFF, 1, 2, 3}) {
     part.plan.push_back(std::byte{static_cast<unsigned char>(byte)});
   }
   return part;
@@ -36,16 +37,18 @@ class OtherVersion : public ByHand {
 TEST_F(OtherVersion, OfACoordinatorEndsEverybodyWithBothVersionsNamed) {
   std::filesystem::create_directory(out());
   std::vector<Program*> programs{&hand("ergocast-logger", {"--out", out()}), &hand("ergocast-sim"),
-                                 &hand("ergocast-agent"), &hand("ergocast-coordinator", {"--resume"})};
+                                 &hand("ergocast-agent"),
+                                 &hand("ergocast-coordinator", {"--resume"})};
   ASSERT_TRUE(eventually([&] {
     stranger_.say(Bus::kSwarm, their_status());
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) stranger_.say(bus, their_mission());
-    return std::none_of(programs.begin(), programs.end(), [](Program* p) { return p->child.running(); });
+    return std::none_of(programs.begin(), programs.end(),
+                        [](Program* p) { return p->child.running(); });
   }));
   for (Program* program : programs) {
     EXPECT_EQ(wait_for(program->child), 4) << program->said();
-    EXPECT_NE(program->said().find("the mission's plan is of version 9.9.9, this program is " + version() +
-                                   ": install the same version on every host"),
+    EXPECT_NE(program->said().find("the mission's plan is of version 9.9.9, this program is " +
+                                   version() + ": install the same version on every host"),
               std::string::npos)
         << program->said();
   }
@@ -53,8 +56,7 @@ TEST_F(OtherVersion, OfACoordinatorEndsEverybodyWithBothVersionsNamed) {
 }
 
 TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
-  Program& coordinator =
-      hand("ergocast-coordinator", {scenario(), "--run-id", to_hex(kTheirRun)});
+  Program& coordinator = hand("ergocast-coordinator", {scenario(), "--run-id", to_hex(kTheirRun)});
   Witness witness(kUrl);
   const Hello theirs{{kTheirRun, kUnassigned, 73, 0, 0}, 2, "old-robot", "9.9.9"};
   const std::string warning = "agent on old-robot runs version 9.9.9, this mission is flown by " +

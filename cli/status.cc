@@ -1,0 +1,174 @@
+// `ergocast status`: what a team looks like from any host on its buses. It only listens.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/team_screen.h"
+#include "cli/team_view.h"
+#include "runtime/clock.h"
+#include "runtime/node.h"
+#include "runtime/signals.h"
+#include "runtime/transport.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// MISSION comes once a second, and twice means that a lost one was made up for.
+constexpr auto kPatience = 2500ms;
+constexpr auto kTurn = 50ms;
+constexpr std::size_t kMostRuns = 16;
+
+struct StatusOptions : BusOptions {
+  bool watch = false, json = false;
+};
+
+/// The runs that are heard on one URL.
+class Listener {
+ public:
+  explicit Listener(const StatusOptions& options) : options_(options), since_(now()) {}
+
+  /// Nothing, or why LCM cannot be used.
+  std::optional<std::string> open() {
+    auto opened = Transport::open(options_.url, options_.run,
+                                  {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
+                                   {Bus::kWorld, "WORLD_STATE"},
+                                   {Bus::kCommand, "RECORD_ACK"}},
+                                  {.on_message = [this](const Message& m, AgentId) { hear(m); }});
+    if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
+    transport_ = std::get<0>(std::move(opened));
+    since_ = now();
+    return std::nullopt;
+  }
+
+  void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
+  /// From now on nothing but the run that is heard.
+  void stay_with_it() { transport_->set_run(runs_.begin()->first); }
+
+  Instant since() const { return since_; }
+  const std::map<RunId, TeamView>& runs() const { return runs_; }
+  const Transport& transport() const { return *transport_; }
+
+ private:
+  void hear(const Message& message) {
+    const RunId run = header_of(message).run;
+    if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
+    runs_.try_emplace(run, run, decode_plan, since_).first->second.receive(message, now());
+  }
+
+  const StatusOptions& options_;
+  Instant since_;
+  std::unique_ptr<Transport> transport_;
+  std::map<RunId, TeamView> runs_;
+};
+
+int complain(ExitCode code, const std::string& problem) {
+  std::fprintf(stderr, "%s\n", problem.c_str());
+  return code;
+}
+
+int nobody(const StatusOptions& options, const Transport& transport) {
+  const std::string url = options.url.base();
+  std::string text = "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
+                     " was heard on " + url +
+                     ": is the mission flying, and on this URL? `ergocast "
+                     "doctor --lcm-url \"" +
+                     url + "\"` checks the network between the hosts";
+  if (transport.unknown_format().count > 0) {
+    text = transport.unknown_format().channel + " arrives on " + url +
+           " in a format that version " + version() +
+           " does not know: another version of Ergocast is on this URL";
+  }
+  return complain(kExitFailed, text);
+}
+
+int choose(const Listener& listener) {
+  std::string text = "several runs are heard on this URL; choose one with --run-id:";
+  for (const auto& [run, view] : listener.runs()) {
+    const TeamPicture picture = view.picture(now());
+    text += "\n  --run-id " + to_hex(run) + "  " +
+            (picture.scenario.empty() ? "unknown mission" : picture.scenario) + ", " +
+            std::to_string(picture.agents_alive) + " agents, tick " + std::to_string(picture.tick);
+  }
+  return complain(kExitBadInput, text);
+}
+
+/// Until everything is known that can be expected, or long enough. False if a signal came.
+bool listen_around(Listener& listener, StopSignals& signals) {
+  const auto complete = [&] {
+    return listener.runs().size() == 1 && listener.runs().begin()->second.complete();
+  };
+  while (now() < listener.since() + kPatience && !complete()) {
+    listener.listen(now() + kTurn, signals.fd());
+    if (signals.take() > 0) return false;
+  }
+  return true;
+}
+
+int once(const StatusOptions& options, Listener& listener, StopSignals& signals) {
+  if (!listen_around(listener, signals)) return kExitDone;
+  if (listener.runs().empty()) return nobody(options, listener.transport());
+  if (listener.runs().size() > 1) return choose(listener);
+  const TeamPicture picture = listener.runs().begin()->second.picture(now());
+  TeamScreen(options.json).print(picture);
+  return picture.trouble ? kExitDiffers : kExitDone;
+}
+
+int conclude_watch(const StatusOptions& options, const TeamPicture& picture, TeamScreen& screen) {
+  screen.print(picture);
+  const bool failed = picture.state == MissionState::kFailed;
+  const std::string how = picture.reason.empty() ? "all agents have finished" : picture.reason;
+  if (!options.json)
+    std::printf("\nthe mission has %s: %s\n", failed ? "failed" : "ended", how.c_str());
+  return failed ? kExitFailed : kExitDone;
+}
+
+int watch(const StatusOptions& options, Listener& listener, StopSignals& signals) {
+  TeamScreen screen(options.json);
+  Instant next_show = now();
+  while (true) {
+    listener.listen(std::min(next_show, now() + kTurn), signals.fd());
+    if (signals.take() > 0) return kExitDone;
+    if (listener.runs().size() > 1) return choose(listener);
+    const TeamView* view = listener.runs().empty() ? nullptr : &listener.runs().begin()->second;
+    if (view != nullptr && now() >= listener.since() + kPatience) listener.stay_with_it();
+    if (view != nullptr && view->over())
+      return conclude_watch(options, view->picture(now()), screen);
+    if (now() < next_show) continue;
+    next_show = now() + screen.period();
+    if (view != nullptr) screen.show(view->picture(now()));
+    if (view == nullptr && !options.json) {
+      screen.show("nobody is heard on " + options.url.base() + " yet\n");
+    }
+  }
+}
+
+int status(const StatusOptions& options) {
+  StopSignals signals;
+  Listener listener(options);
+  if (const auto problem = listener.open()) return complain(kExitUnavailable, *problem);
+  return options.watch ? watch(options, listener, signals) : once(options, listener, signals);
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("status", "Show how a team is that is flying; only listens");
+  auto options = std::make_shared<StatusOptions>();
+  add_bus_options(*command, *options);
+  command->add_flag("--watch", options->watch,
+                    "Again and again, until the mission's end or Ctrl-C");
+  command->add_flag("--json", options->json, "One JSON object; with --watch one each second");
+  command->footer(
+      "Exit codes: 0 all is well; 1 something is in trouble; 2 several runs are heard;\n"
+      "3 LCM cannot be used; 4 nobody is heard, or the mission watched has failed.");
+  command->callback([&action, options] { action = [options] { return status(*options); }; });
+}
+
+}  // namespace ergocast::cli
