@@ -10,16 +10,16 @@ before_all() {
   local hierarchy
   for hierarchy in $hierarchies; do
     [ -f "$hierarchy/cgroup.procs" ] || continue
-    mkdir "$hierarchy/ergocast-test-$$"
-    echo $$ >"$hierarchy/ergocast-test-$$/cgroup.procs"
+    mkdir "$hierarchy/ergocast-services-$$"
+    echo $$ >"$hierarchy/ergocast-services-$$/cgroup.procs"
   done
 }
 after_all() {
   local hierarchy
   for hierarchy in $hierarchies; do
-    [ -d "$hierarchy/ergocast-test-$$" ] || continue
+    [ -d "$hierarchy/ergocast-services-$$" ] || continue
     echo $$ >"$hierarchy/cgroup.procs"
-    find "$hierarchy/ergocast-test-$$" -depth -type d -exec rmdir {} + || true
+    find "$hierarchy/ergocast-services-$$" -depth -type d -exec rmdir {} + || true
   done
 }
 
@@ -36,7 +36,10 @@ eventually() {
 }
 
 boot() {
-  systemd-nspawn --quiet --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
+  # systemd does not start over it; and nspawn leaves folders in /run.
+  umount "$root/proc"
+  mount -t tmpfs tmpfs /run
+  systemd-nspawn --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
     --link-journal=no --console=pipe --directory="$root" --boot </dev/null >"$work/boot.log" 2>&1 &
   local nspawn=$!
   up() { kill -0 $nspawn 2>/dev/null || { cat "$work/boot.log"; fail 'systemd-nspawn'; }
@@ -155,6 +158,7 @@ check_next_mission() {
 
 check_removal() {
   there systemctl enable ergocast-sim 2>/dev/null
+  rm "$root/etc/ergocast/test.textproto"
   there dpkg --purge ergocast >/dev/null
   [ -z "$(there pgrep -f ergocast || true)" ] || fail 'services run on'
   [ -z "$(there find /etc /var/lib /usr -iname '*ergocast*' ! -path '*/dpkg/*' ! -path '*.service.d' | head)" ] ||
