@@ -118,6 +118,16 @@ check_stop() {
   there test -s $records/latest/report.html || fail 'no report of the stopped mission'
 }
 
+# A coordinator that comes back where nothing flies begins nothing.
+check_crash_on_the_ground() {
+  there systemctl start ergocast-coordinator
+  kill_one ergocast-coordinator
+  eventually is ergocast-coordinator failed
+  there journalctl -o cat -u ergocast-coordinator >"$work/said"
+  tail -n 5 "$work/said" | grep -q 'knows a mission' || { tail -n 20 "$work/said"; fail 'it waits for a team'; }
+  there systemctl reset-failed
+}
+
 check_bad_input() {
   sed -i 's,^ERGOCAST_SCENARIO=.*,ERGOCAST_SCENARIO=nonsense,' "$root/etc/ergocast/ergocast.env"
   there systemctl start ergocast-coordinator
@@ -173,6 +183,7 @@ boot
 check_units
 check_mission_with_crashes
 check_stop
+check_crash_on_the_ground
 check_bad_input
 check_late_network
 check_next_mission
