@@ -22,10 +22,10 @@ void Driver::on(const MissionPart& part, Instant now) {
   run_ = part.header.run;
   if (!follower_.receive(part)) return;
   if (follower_.over()) return stop(follower_.reason());
-  if (!follower_.mission()) return;
-  if (follower_.mission()->timing.pace == Pace::kLockstep) {
-    failed_ = true;
-    return stop("the mission is in lockstep, which robots cannot be: give it pace: REALTIME");
+  failed_ = follower_.plan_problem() || follower_.mission()->timing.pace == Pace::kLockstep;
+  if (failed_) {
+    return stop(follower_.plan_problem().value_or(
+        "the mission is in lockstep, which robots cannot be: give it pace: REALTIME"));
   }
   take_roster();
   if (running_ || follower_.state() != MissionState::kRunning) return;
