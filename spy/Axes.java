@@ -146,6 +146,6 @@ final class Axes {
       g.drawString(scale.label(mark), bar.x + bar.width + 7, at + font.getAscent() / 2 - 1);
     }
     g.setColor(Colors.INK);
-    g.drawString(scale.title, bar.x, bar.y + bar.height + 36);
+    g.drawString(scale.title, bar.x, bar.y + bar.height + 24);
   }
 }

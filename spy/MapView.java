@@ -16,7 +16,7 @@ import java.util.Map;
 /** The target as grey, and on it each agent with the way it came. */
 final class MapView extends Picture {
   private static final int CELLS = 200;
-  private static final int LEFT = 72, TOP = 58, RIGHT = 70, BOTTOM = 50; // around the map [pixels]
+  private static final int LEFT = 72, TOP = 58, RIGHT = 84, BOTTOM = 50; // around the map [pixels]
   private static final int MOST_POINTS = 24000; // drawn, of all tracks together
   private static final int RECENT = 200; // last points of a track, drawn strongly
   private static final float RADIUS = 6;
@@ -27,6 +27,12 @@ final class MapView extends Picture {
 
   MapView(Team team) {
     super(team);
+  }
+
+  /** The width that a map of this height can use. */
+  int widthFor(int height) {
+    double aspect = drawnPlan == null ? 1 : drawnPlan.sizeX / drawnPlan.sizeY;
+    return LEFT + RIGHT + (int) Math.min(10000, (height - TOP - BOTTOM) * aspect);
   }
 
   @Override

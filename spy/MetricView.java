@@ -43,7 +43,7 @@ final class MetricView extends Picture {
       curve.lineTo(x, y);
     }
     g.clip(axes.area);
-    g.setColor(Colors.agent(0));
+    g.setColor(Colors.INK);
     g.setStroke(new BasicStroke(2));
     g.draw(curve);
   }

@@ -66,11 +66,12 @@ final class Team {
   /** Refuses large counts: generated decoders make room for as many as a message claims to have. */
   private static DataInput bounded(DataInput in) {
     Class<?>[] type = {DataInput.class};
-    return (DataInput) Proxy.newProxyInstance(Team.class.getClassLoader(), type, (self, read, to) -> {
-      Object value = read.invoke(in, to);
-      if (read.getName().equals("readInt") && (int) value > MAX_COUNT) throw new EOFException();
-      return value;
-    });
+    return (DataInput) Proxy.newProxyInstance(
+        Team.class.getClassLoader(), type, (self, read, to) -> {
+          Object value = read.invoke(in, to);
+          if (read.getName().equals("readInt") && (int) value > MAX_COUNT) throw new EOFException();
+          return value;
+        });
   }
 
   private void on(ergocast.mission_t message) throws IOException {

@@ -1,7 +1,6 @@
 package ergocast.spy;
 
 import java.awt.Dimension;
-import java.awt.GridLayout;
 import javax.swing.Action;
 import javax.swing.JComponent;
 import javax.swing.JDesktopPane;
@@ -29,9 +28,18 @@ public final class TeamPlugin implements SpyPlugin {
   }
 
   private static JComponent picture(Team team) {
-    JPanel both = new JPanel(new GridLayout(1, 2));
-    both.add(new MapView(team));
-    both.add(new MetricView(team));
+    MapView map = new MapView(team);
+    MetricView metric = new MetricView(team);
+    JPanel both = new JPanel(null) {
+      @Override
+      public void doLayout() {
+        int left = Math.min(getWidth() / 2, map.widthFor(getHeight()));
+        map.setBounds(0, 0, left, getHeight());
+        metric.setBounds(left, 0, getWidth() - left, getHeight());
+      }
+    };
+    both.add(map);
+    both.add(metric);
     return both;
   }
 }

@@ -47,6 +47,7 @@ final class Viewer extends AbstractAction {
     fill(frame);
     Timer refresh = new Timer(REFRESH_MS, tick -> {
       frame.setTitle(title(team));
+      frame.getContentPane().revalidate(); // the mission may have come, and with it the shape
       frame.repaint();
       if (frame.isClosed() || !desktop.isShowing()) ((Timer) tick.getSource()).stop();
     });

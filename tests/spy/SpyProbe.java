@@ -57,7 +57,7 @@ public final class SpyProbe {
     LCMTypeDatabase database = new LCMTypeDatabase();
     Set<String> known = new HashSet<>();
     for (String url : urls) {
-      new LCM(url).subscribeAll((lcm, channel, in) -> {
+      new LCM(url).subscribe("ERGOCAST_.*", (lcm, channel, in) -> {
         String said = judge(database, channel, in);
         synchronized (known) {
           if (known.add(said)) System.out.println(said);
@@ -122,7 +122,7 @@ public final class SpyProbe {
 
   /** Draws the map at 400 x 400 pixels. */
   private static BufferedImage draw(Picture view) {
-    view.setSize(72 + 400 + 70, 58 + 400 + 50);
+    view.setSize(72 + 400 + 84, 58 + 400 + 50);
     BufferedImage image =
         new BufferedImage(view.getWidth(), view.getHeight(), BufferedImage.TYPE_INT_RGB);
     view.paint(image.createGraphics());

@@ -142,7 +142,7 @@ class Desk : public WithProbe {
   bool sees(const std::string& name) {
     return eventually([&] { return !window(name).empty(); });
   }
-  /// Brings it to the front; where it is.
+  /// Brings it to the front; where it is, but for the height of its title.
   Area front(const std::string& name) {
     const std::string id = window(name);
     xdotool({"windowactivate", "--sync", id});
@@ -155,14 +155,16 @@ class Desk : public WithProbe {
     }
     return {values["X"], values["Y"], values["WIDTH"], values["HEIGHT"]};
   }
-  /// Double-clicks a row of the viewer's table until the window of that channel is there.
+  /// Double-clicks rows of the viewer's table, from `row` on as there may be channels that come and
+  /// go, until the window of that channel is there.
   bool open(const std::string& channel, int row) {
+    constexpr int kHeader = 24, kRow = 16, kMoreRows = 3;  // pixels; lcm-spy has fixed ones
+    int tries = 0;
     return eventually([&] {
-      const Area table = front("LCM Spy");
-      // A header and rows of 16 pixels each.
-      const std::string y = std::to_string(table.y + 24 + 16 * row);
-      xdotool({"mousemove", std::to_string(table.x + 60), y, "click", "--repeat", "2", "--delay",
-               "60", "1"});
+      front("LCM Spy");
+      const int y = kHeader + kRow * (row + tries++ % kMoreRows);
+      xdotool({"mousemove", "--window", window("LCM Spy"), "60", std::to_string(y), "click",
+               "--repeat", "2", "--delay", "60", "1"});
       for (int i = 0; i < 20; ++i) {
         if (!window(channel).empty()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -9,6 +9,8 @@ constexpr const char* kCommandUrl = "udpm://239.255.76.67:24702?ttl=0";
 
 /// The colours of agents 0 to 3, as in Colors.java.
 constexpr int kAgentColors[] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7};
+/// Pixels of an agent's disc that have its colour alone.
+constexpr std::size_t kMarker = 40;
 /// Rows of the swarm bus: names in order, four agents.
 constexpr int kContributionRow = 4, kTeamStatusRow = 13;
 
@@ -57,7 +59,6 @@ TEST_F(Spy, DrawsTheTeamAsItMovesAndItsCoefficients) {
     }
     return found;
   };
-  constexpr std::size_t kMarker = 40;  // a disc of 10 pixels, its edge mixed with white
   const auto all_there = [&](const std::vector<std::set<Pixel>>& found) {
     return std::all_of(found.begin(), found.end(),
                        [](const auto& one) { return one.size() > kMarker; });
