@@ -4,7 +4,11 @@
 #   deploy_ssh_test.sh BIN_DIR SCENARIO
 set -euo pipefail
 
-fail() { echo "FAILED: $*" >&2; exit 1; }
+fail() {
+  tail -n 5 "$work"/home/*/ergocast/*/latest/log/*.log >&2 || true
+  echo "FAILED: $*" >&2
+  exit 1
+}
 
 if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
   [ "$(id -u)" = 0 ] || { echo 'skipped: networks of several hosts need root'; exit 77; }
@@ -66,7 +70,7 @@ END
   "$bin/ergocast" deploy "$scenario" --hosts "$work/hosts.txt" --to ssh --out "$work/$1" >/dev/null
   script=$work/$1/quadrimodal_corners-ssh.sh
 }
-all_ended() { ! "$script" status | grep -q ' running '; }
+all_ended() { [ "$("$script" status | grep -c ' running ' || true)" = 0 ]; }
 all_running() { [ "$("$script" status | grep -c ' running ')" = 7 ]; }
 recorded() { [ "$(cat "$work"/home/10.0.0.1/ergocast/quadrimodal_corners/latest/record/trajectory*.csv | wc -l)" -ge "$1" ]; }
 

@@ -10,16 +10,16 @@ before_all() {
   local hierarchy
   for hierarchy in $hierarchies; do
     [ -f "$hierarchy/cgroup.procs" ] || continue
-    mkdir "$hierarchy/ergocast-test-$$"
-    echo $$ >"$hierarchy/ergocast-test-$$/cgroup.procs"
+    mkdir "$hierarchy/ergocast-services-$$"
+    echo $$ >"$hierarchy/ergocast-services-$$/cgroup.procs"
   done
 }
 after_all() {
   local hierarchy
   for hierarchy in $hierarchies; do
-    [ -d "$hierarchy/ergocast-test-$$" ] || continue
+    [ -d "$hierarchy/ergocast-services-$$" ] || continue
     echo $$ >"$hierarchy/cgroup.procs"
-    find "$hierarchy/ergocast-test-$$" -depth -type d -exec rmdir {} + || true
+    find "$hierarchy/ergocast-services-$$" -depth -type d -exec rmdir {} + || true
   done
 }
 
@@ -36,7 +36,10 @@ eventually() {
 }
 
 boot() {
-  systemd-nspawn --quiet --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
+  # systemd does not start over it; and nspawn leaves folders in /run.
+  umount "$root/proc"
+  mount -t tmpfs tmpfs /run
+  systemd-nspawn --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
     --link-journal=no --console=pipe --directory="$root" --boot </dev/null >"$work/boot.log" 2>&1 &
   local nspawn=$!
   up() { kill -0 $nspawn 2>/dev/null || { cat "$work/boot.log"; fail 'systemd-nspawn'; }
@@ -115,6 +118,16 @@ check_stop() {
   there test -s $records/latest/report.html || fail 'no report of the stopped mission'
 }
 
+# A coordinator that comes back where nothing flies begins nothing.
+check_crash_on_the_ground() {
+  there systemctl start ergocast-coordinator
+  kill_one ergocast-coordinator
+  eventually is ergocast-coordinator failed
+  there journalctl -o cat -u ergocast-coordinator >"$work/said"
+  tail -n 5 "$work/said" | grep -q 'knows a mission' || { tail -n 20 "$work/said"; fail 'it waits for a team'; }
+  there systemctl reset-failed
+}
+
 check_bad_input() {
   sed -i 's,^ERGOCAST_SCENARIO=.*,ERGOCAST_SCENARIO=nonsense,' "$root/etc/ergocast/ergocast.env"
   there systemctl start ergocast-coordinator
@@ -155,6 +168,7 @@ check_next_mission() {
 
 check_removal() {
   there systemctl enable ergocast-sim 2>/dev/null
+  rm "$root/etc/ergocast/test.textproto"
   there dpkg --purge ergocast >/dev/null
   [ -z "$(there pgrep -f ergocast || true)" ] || fail 'services run on'
   [ -z "$(there find /etc /var/lib /usr -iname '*ergocast*' ! -path '*/dpkg/*' ! -path '*.service.d' | head)" ] ||
@@ -169,6 +183,7 @@ boot
 check_units
 check_mission_with_crashes
 check_stop
+check_crash_on_the_ground
 check_bad_input
 check_late_network
 check_next_mission
