@@ -52,7 +52,7 @@ too_few_agents_end_with_a_sentence() {
   plan too_few 3
   expect compose up --detach --scale agent=2
   becomes all_ended
-  is "$(compose ps -aq coordinator)" .State.ExitCode 4 || complain 'a mission without its quorum is no failure'
+  is "$(one coordinator)" .State.ExitCode 4 || complain 'a mission without its quorum is no failure'
   expect says coordinator 'only 2 of the quorum of 3 agents were admitted'
   land
   ERGOCAST_SCENARIO=patient
@@ -63,7 +63,7 @@ a_killed_agent_comes_back_under_its_number() {
   fly killed 4 --duration 1000
   becomes recorded 10000
   local agent
-  agent=$(one agent 2)
+  agent=$(one agent)
   kill -KILL "$(state "$agent" .State.Pid)"
   becomes is "$agent" .RestartCount 1
   becomes says coordinator 'agent [0-3] .* is gone at tick'
@@ -75,7 +75,7 @@ a_killed_agent_comes_back_under_its_number() {
 an_agent_container_that_is_removed_is_replaced() {
   fly removed 4 --duration 1000
   becomes recorded 10000
-  docker rm --force "$(one agent 3)" >/dev/null
+  docker rm --force "$(one agent)" >/dev/null
   compose up --detach --scale agent=4 agent
   becomes says coordinator 'agent [0-3] .* is gone at tick'
   expect_complete

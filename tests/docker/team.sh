@@ -17,7 +17,7 @@ make_person() {
 
 complain() {
   docker ps --all >&2
-  logs 2>/dev/null | tail -n 60 >&2
+  compose logs --no-color --tail 20 2>/dev/null | cut -c 1-300 >&2
   tail -n 5 "$work/compose.log" >&2
   fail "$*"
 }
@@ -28,8 +28,14 @@ compose() {
   # shellcheck disable=SC2086  # two words, or none
   (cd "$source/docker" && docker-compose -f compose.yaml $over "$@" 2>>"$work/compose.log")
 }
-logs() { compose logs --no-color "$@"; }
-says() { logs "$1" | grep -E "$2" >/dev/null; }
+containers() { docker ps --all --quiet --filter label=com.docker.compose.service="$1"; }
+says() {
+  local container
+  for container in $(containers "$1"); do
+    docker logs "$container" 2>&1 | grep -E "$2" >/dev/null && return
+  done
+  return 1
+}
 
 # plan RECORD AGENTS [OPTION…]  a mission whose record will be below runs/RECORD
 plan() { ERGOCAST_RUNS=$work/runs/$1 ERGOCAST_AGENTS=$2 ERGOCAST_OPTIONS=${*:3}; }
@@ -42,14 +48,13 @@ land() {
   [ -z "$(docker ps -aq)" ] || fail "docker-compose down leaves $(docker ps -a)"
 }
 
-# one SERVICE [N]  its Nth container
-one() { compose ps -q "$1" | sed -n "${2:-1}p"; }
+one() { containers "$1" | head -n 1; }
 state() { docker inspect --format "{{$2}}" "$1"; }
 is() { [ "$(state "$1" "$2")" = "$3" ]; }
 all_ended() { [ -z "$(docker ps -q)" ]; }
 all_healthy() {
   local container
-  for container in $(compose ps -q); do is "$container" .State.Health.Status healthy || return 1; done
+  for container in $(docker ps -q); do is "$container" .State.Health.Status healthy || return 1; done
 }
 
 # The test's process namespace is around those of the containers.
@@ -59,6 +64,6 @@ recorded() { [ "$(cat "$ERGOCAST_RUNS"/*/trajectory*.csv | wc -c)" -gt "$1" ]; }
 expect_complete() {
   becomes all_ended
   local container
-  for container in $(compose ps -aq); do expect is "$container" .State.ExitCode 0; done
+  for container in $(docker ps -aq); do expect is "$container" .State.ExitCode 0; done
   expect grep -q '"result": "done"' "$ERGOCAST_RUNS"/*/summary.json
 }

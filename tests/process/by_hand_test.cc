@@ -73,6 +73,24 @@ TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
   EXPECT_TRUE(moves_on());
 }
 
+// As when an adapter is unplugged, or a container taken off its network: memberships in the group end
+// with the interface.
+TEST_F(StartedByHand, AMissionGoesOnOnAnotherNetworkInterface) {
+  const auto plug_in = [] {
+    return std::system("ip link add wire type veth peer name end && ip addr add 10.1.1.1/24 dev wire && "
+                       "ip link set end up && ip link set wire up && "
+                       "ip route replace 224.0.0.0/4 dev wire");
+  };
+  ASSERT_EQ(plug_in(), 0);
+  Program& coordinator = begin_mission(endless_pair());
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(std::system("ip link delete wire"), 0);
+    ASSERT_EQ(plug_in(), 0);
+    EXPECT_TRUE(moves_on()) << coordinator.said();
+  }
+  EXPECT_TRUE(coordinator.says("listening on another network interface")) << coordinator.said();
+}
+
 TEST_F(StartedByHand, ACoordinatorThatFindsNothingToTakeOverCanBeStopped) {
   Program& coordinator = hand("ergocast-coordinator", {"--resume"});
   ASSERT_TRUE(coordinator.says("looking for a mission")) << coordinator.said();
