@@ -42,7 +42,7 @@ std::string described(RunId id, const HeardRun& run) {
   char text[32];
   std::snprintf(text, sizeof text, "run %016" PRIx64, id);
   return text + (run.state.empty() ? "" : ", " + run.state) +
-         (run.agents.empty() ? "" : ", " + std::to_string(run.agents.size()) + " agents") +
+         (run.agents.empty() ? "" : ", " + counted(static_cast<long>(run.agents.size()), "agent")) +
          (run.hosts.empty() ? "" : " on " + joined(run.hosts)) +
          (run.versions.empty() ? "" : ", version " + joined(run.versions));
 }

@@ -33,6 +33,10 @@ std::string fixed(double value, int digits) {
   return text;
 }
 
+std::string counted(long count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 std::string printable(std::string text) {
   for (char& c : text) {
     if (c < ' ' || c > '~') c = '?';

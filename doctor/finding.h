@@ -29,6 +29,8 @@ Level worst_of(const Findings& findings);
 std::string joined(const std::vector<std::string>& words, const char* separator = ", ");
 /// `value` with so many digits after the point.
 std::string fixed(double value, int digits);
+/// "1 note", "2 notes".
+std::string counted(long count, const char* what);
 /// Without what could steer a terminal, for names that others chose.
 std::string printable(std::string text);
 

@@ -118,16 +118,18 @@ Finding ttl_finding(const LcmUrl& url, bool several_hosts) {
           "--lcm-url '" + wider.base() + "'"};
 }
 
-Finding loopback_finding(const LcmUrl& url, const std::optional<std::string>& failure) {
+Finding self_test_finding(const LcmUrl& url, const std::optional<std::string>& failure,
+                          bool has_route) {
   if (!failure) {
     return {"self test", Level::kOk, "a datagram to " + url.group + " came back", "", ""};
   }
   // The first line says what happened, those below it what the other checks say better.
   std::string found = failure->substr(0, failure->find('\n'));
   if (found.starts_with(url.base() + ": ")) found.erase(0, url.base().size() + 2);
+  const std::string why = "LCM tests itself in the same way, and no program of Ergocast starts. ";
+  if (!has_route) return {"self test", Level::kProblem, found, why + "It needs the route.", ""};
   return {"self test", Level::kProblem, found,
-          "LCM tests itself in the same way and gives up: no program of Ergocast starts on this "
-          "host. If route and interface are right, a firewall drops what comes in.",
+          why + "If route and interface are right, a firewall drops what comes in.",
           "nft list ruleset   # as root: what drops udp to " + url.group + "?"};
 }
 

@@ -30,6 +30,16 @@ class DoctorOnHosts : public test::OwnHost {
       }
       return {};
     }
+    /// Of the only peer; null if there is not exactly one.
+    json peer(const char* what) const {
+      const json& peers = told["peers"];
+      return peers.size() == 1 ? peers[0][what] : json();
+    }
+    /// Of the only peer, one of its losses [%]; −1 if there is not exactly one.
+    double lost(const char* direction, const char* what = "lost_percent") const {
+      const json& loss = peer(direction);
+      return loss.is_object() ? loss[what].get<double>() : -1;
+    }
   };
 
   static std::string url(int ttl) {
@@ -80,14 +90,13 @@ TEST_F(DoctorOnHosts, TwoThatHearEachOtherAreToldSo) {
   for (const auto& [answer, other] : {std::pair(one, "host2"), std::pair(two, "host1")}) {
     EXPECT_EQ(answer.exit_code, 0) << answer.told.dump(1);
     ASSERT_EQ(answer.told["peers"].size(), 1u) << answer.told.dump(1);
-    const json& peer = answer.told["peers"][0];
-    EXPECT_EQ(peer["host"], other);
-    EXPECT_EQ(peer["hears_this_host"], true);
-    EXPECT_GT(peer["from_it"]["probes"], 100);
-    EXPECT_EQ(peer["from_it"]["lost_percent"], 0.0);
-    EXPECT_EQ(peer["to_it"]["lost_percent"], 0.0);
-    EXPECT_EQ(peer["duplicates"], 0);
-    EXPECT_GT(peer["round_trip_ms"]["p50"], 0.0);
+    EXPECT_EQ(answer.peer("host"), other);
+    EXPECT_EQ(answer.peer("hears_this_host"), true);
+    EXPECT_EQ(answer.lost("from_it"), 0);
+    EXPECT_EQ(answer.lost("to_it"), 0);
+    EXPECT_GT(answer.lost("to_it", "probes"), 100);
+    EXPECT_EQ(answer.peer("duplicates"), 0);
+    EXPECT_GT(answer.peer("round_trip_ms")["p50"], 0.0);
   }
 }
 
@@ -95,7 +104,7 @@ TEST_F(DoctorOnHosts, AOneWayPartitionIsSeenByTheSideThatHears) {
   on_the_way_to_2("drop");
   const auto [one, two] = both();
   EXPECT_EQ(one.exit_code, 1);
-  EXPECT_EQ(one.told["peers"][0]["hears_this_host"], false);
+  EXPECT_EQ(one.peer("hears_this_host"), false);
   EXPECT_NE(one.of("peer host2")["found"].dump().find("one-way"), std::string::npos);
   EXPECT_EQ(two.exit_code, 1);
   EXPECT_EQ(two.told["peers"].size(), 0u);
@@ -107,14 +116,12 @@ TEST_F(DoctorOnHosts, LossIsMeasuredInItsDirection) {
   const auto [one, two] = both();
   EXPECT_EQ(one.exit_code, 1);
   EXPECT_EQ(one.of("peer host2")["level"], "warning");
-  const json& at_1 = one.told["peers"][0];
-  EXPECT_EQ(at_1["from_it"]["lost_percent"], 0.0);
-  EXPECT_GT(at_1["to_it"]["lost_percent"], 5.0);
-  EXPECT_LT(at_1["to_it"]["lost_percent"], 15.0);
-  const json& at_2 = two.told["peers"][0];
-  EXPECT_EQ(at_2["to_it"]["lost_percent"], 0.0);
-  EXPECT_GT(at_2["from_it"]["lost_percent"], 5.0);
-  EXPECT_LT(at_2["from_it"]["lost_percent"], 15.0);
+  EXPECT_EQ(one.lost("from_it"), 0);
+  EXPECT_EQ(two.lost("to_it"), 0);
+  for (const double lost : {one.lost("to_it"), two.lost("from_it")}) {
+    EXPECT_GT(lost, 5);
+    EXPECT_LT(lost, 15);
+  }
 }
 
 TEST_F(DoctorOnHosts, ANarrowSwitchLosesOnlyWhatIsLong) {
@@ -122,9 +129,8 @@ TEST_F(DoctorOnHosts, ANarrowSwitchLosesOnlyWhatIsLong) {
   const auto [one, two] = both();
   for (const Answer& answer : {one, two}) {
     EXPECT_EQ(answer.exit_code, 1);
-    ASSERT_EQ(answer.told["peers"].size(), 1u) << answer.told.dump(1);
-    EXPECT_EQ(answer.told["peers"][0]["from_it"]["lost_small_percent"], 0.0);
-    EXPECT_EQ(answer.told["peers"][0]["from_it"]["lost_large_percent"], 100.0);
+    EXPECT_EQ(answer.lost("from_it", "lost_small_percent"), 0) << answer.told.dump(1);
+    EXPECT_EQ(answer.lost("from_it", "lost_large_percent"), 100);
   }
   EXPECT_EQ(one.of("peer host2")["found"], "only short datagrams arrive");
   EXPECT_EQ(one.of("MTU")["level"], "ok");  // of its own interface
@@ -166,7 +172,7 @@ TEST_F(DoctorOnHosts, LoopbackIsAProblemForATeamOnSeveralHosts) {
 TEST_F(DoctorOnHosts, ATtlOfZeroOnOneSideIsOneWay) {
   const auto [one, two] = both(/*ttl_of_1=*/0);
   EXPECT_EQ(one.of("TTL")["level"], "problem");
-  EXPECT_EQ(one.told["peers"][0]["hears_this_host"], false);
+  EXPECT_EQ(one.peer("hears_this_host"), false);
   EXPECT_EQ(two.told["peers"].size(), 0u);
 }
 

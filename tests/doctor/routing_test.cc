@@ -89,10 +89,12 @@ TEST(Routing, ATtlOfZeroIsANoteUntilOthersAreMeantToHear) {
 
 TEST(Routing, AFailedSelfTestIsToldWithoutTheUrlAndItsRemedy) {
   const LcmUrl url = url_of("ttl=0");
-  EXPECT_EQ(loopback_finding(url, std::nullopt).level, Level::kOk);
-  const Finding finding = loopback_finding(url, url.base() + ": cannot send\nAs root:\n  ip");
+  EXPECT_EQ(self_test_finding(url, std::nullopt, true).level, Level::kOk);
+  const Finding finding = self_test_finding(url, url.base() + ": cannot send\nAs root:\n  ip", true);
   EXPECT_EQ(finding.level, Level::kProblem);
   EXPECT_EQ(finding.found, "cannot send");
+  EXPECT_TRUE(contains(finding.remedy, "nft list ruleset"));
+  EXPECT_EQ(self_test_finding(url, "no route", false).remedy, "");
 }
 
 TEST(Interfaces, LoopbackIsAmongThisMachines) {
