@@ -86,8 +86,7 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
             ""};
   }
   if (foreign_messages_ > 0) {
-    return {"swarm bus", Level::kWarning,
-            "other LCM traffic: " + joined(foreign_channels_),
+    return {"swarm bus", Level::kWarning, "other LCM traffic: " + joined(foreign_channels_),
             "Every process of a team would parse all of it and refuse it.",
             "--lcm-url '" + other.base() + "'   # on every host"};
   }

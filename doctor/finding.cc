@@ -7,10 +7,14 @@ namespace ergocast::doctor {
 
 const char* to_string(Level level) {
   switch (level) {
-    case Level::kOk: return "ok";
-    case Level::kNote: return "note";
-    case Level::kWarning: return "warning";
-    case Level::kProblem: return "problem";
+    case Level::kOk:
+      return "ok";
+    case Level::kNote:
+      return "note";
+    case Level::kWarning:
+      return "warning";
+    case Level::kProblem:
+      return "problem";
   }
   return "";
 }

@@ -15,7 +15,7 @@ enum class Level {
 const char* to_string(Level level);
 
 struct Finding {
-  std::string check;   ///< what was looked at, in a word or two
+  std::string check;  ///< what was looked at, in a word or two
   Level level = Level::kOk;
   std::string found;   ///< one line
   std::string why;     ///< why it matters; empty if all is well

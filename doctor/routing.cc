@@ -24,26 +24,30 @@ std::vector<std::string> names_that_reach_others(const std::vector<Interface>& a
 }
 
 Finding no_route(const LcmUrl& url, const std::vector<std::string>& others) {
-  Finding finding{"route", Level::kProblem, "no route to " + url.group,
-                  "LCM sends to a multicast group. Without a route for it nothing is sent, not even "
-                  "to a process on this host.", ""};
+  Finding finding{
+      "route", Level::kProblem, "no route to " + url.group,
+      "LCM sends to a multicast group. Without a route for it nothing is sent, not even "
+      "to a process on this host.",
+      ""};
   if (url.ttl > 0 && !others.empty()) {
     finding.remedy = route_commands("add", others);
     return finding;
   }
   finding.remedy = "ip link set lo up\n" + route_commands("add", {"lo"});
   if (url.ttl > 0) {
-    finding.why += " No interface but lo is up, has an IPv4 address and can multicast: only teams "
-                   "on this host are possible until one is.";
+    finding.why +=
+        " No interface but lo is up, has an IPv4 address and can multicast: only teams "
+        "on this host are possible until one is.";
   }
   return finding;
 }
 
 Finding goes_to_loopback(const LcmUrl& url, const std::vector<std::string>& others) {
-  Finding finding{"route", Level::kProblem, url.group + " goes to lo, yet the URL says ttl=" +
-                  std::to_string(url.ttl),
+  Finding finding{"route", Level::kProblem,
+                  url.group + " goes to lo, yet the URL says ttl=" + std::to_string(url.ttl),
                   "Such a TTL is for teams on several hosts, but nothing that is sent to lo leaves "
-                  "this host.", route_commands("replace", others)};
+                  "this host.",
+                  route_commands("replace", others)};
   if (others.empty()) {
     finding.why += " No other interface is up, has an IPv4 address and can multicast.";
     finding.remedy = "ip address   # which interface leads to the other hosts? ip link set IT up";
@@ -62,8 +66,9 @@ Finding route_finding(const LcmUrl& url, const Interface& routed,
   if (url.ttl == 0 || others.empty()) return finding;
   finding.level = Level::kNote;
   finding.found += ", and not over " + joined(others);
-  finding.why = "LCM cannot choose an interface: the routing table decides, on every host of the "
-                "team by itself. If the others are on another network, change it here.";
+  finding.why =
+      "LCM cannot choose an interface: the routing table decides, on every host of the "
+      "team by itself. If the others are on another network, change it here.";
   finding.remedy = route_commands("replace", others);
   return finding;
 }

@@ -77,7 +77,8 @@ class DoctorOnHosts : public test::OwnHost {
   void on_the_way_to_2(const std::string& rule) {
     ASSERT_EQ(hosts_->on_switch("nft add table bridge t && nft add chain bridge t f "
                                 "'{ type filter hook forward priority 0; }' && "
-                                "nft add rule bridge t f iifname p1 oifname p2 ip protocol udp " + rule),
+                                "nft add rule bridge t f iifname p1 oifname p2 ip protocol udp " +
+                                rule),
               0);
   }
 
@@ -146,9 +147,12 @@ TEST_F(DoctorOnHosts, AnInterfaceWithASmallMtuIsAWarning) {
 }
 
 TEST_F(DoctorOnHosts, TheWrongOneOfTwoInterfacesIsMendedByTheCommandGiven) {
-  ASSERT_EQ(hosts_->on_host(1, "ip link add eth1 type dummy && ip addr add 10.8.0.1/24 dev eth1 && "
-                               "ip link set eth1 up multicast on && ip route replace 224.0.0.0/4 dev eth1"),
-            0);
+  ASSERT_EQ(
+      hosts_->on_host(1,
+                      "ip link add eth1 type veth peer name far && ip link set far up && ip addr "
+                      "add 10.8.0.1/24 dev eth1 && "
+                      "ip link set eth1 up multicast on && ip route replace 224.0.0.0/4 dev eth1"),
+      0);
   const auto [wrong, deaf] = both();
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_EQ(wrong.told["peers"].size(), 0u);
@@ -174,6 +178,18 @@ TEST_F(DoctorOnHosts, ATtlOfZeroOnOneSideIsOneWay) {
   EXPECT_EQ(one.of("TTL")["level"], "problem");
   EXPECT_EQ(one.peer("hears_this_host"), false);
   EXPECT_EQ(two.told["peers"].size(), 0u);
+}
+
+TEST_F(DoctorOnHosts, AFirewallIsOpenedByTheCommandsGiven) {
+  ASSERT_EQ(hosts_->on_host(1,
+                            "nft add table inet wall && nft add chain inet wall in "
+                            "\\{ type filter hook input priority 0\\; policy drop\\; \\}"),
+            0);
+  const Answer answer = alone(1, 1);
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_EQ(answer.of("self test")["level"], "problem");
+  ASSERT_EQ(hosts_->on_host(1, answer.of("firewall")["remedy"]), 0);
+  EXPECT_EQ(alone(1, 1).exit_code, 0);
 }
 
 TEST_F(DoctorOnHosts, ACableThatIsPulledIsNamed) {
