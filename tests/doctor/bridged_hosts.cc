@@ -57,7 +57,9 @@ BridgedHosts::BridgedHosts(int count) {
 }
 
 BridgedHosts::~BridgedHosts() {
-  for (Child& host : hosts_) {
+  for (std::size_t i = 0; i < hosts_.size(); ++i) {
+    Child& host = hosts_[i];
+    on_switch("ip link del p" + std::to_string(i + 1));  // its network would go some time later
     host.send(SIGKILL);
     while (host.running()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
