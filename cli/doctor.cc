@@ -51,7 +51,8 @@ Finding not_tried(const doctor::Examination& host, int seconds) {
 
 doctor::PeerTest try_peers(const LcmUrl& url, int seconds) {
   if (isatty(STDERR_FILENO) == 1) {
-    std::fprintf(stderr, "Listening for other hosts for %d s. Start the same there now:\n"
+    std::fprintf(stderr,
+                 "Listening for other hosts for %d s. Start the same there now:\n"
                  "    ergocast doctor --peer %d --lcm-url '%s'\n",
                  seconds, seconds, url.base().c_str());
   }
@@ -90,8 +91,8 @@ int diagnose(const DoctorOptions& options) {
 void add_doctor(CLI::App& app, Action& action) {
   const auto options = std::make_shared<DoctorOptions>();
   const char* from_environment = std::getenv("LCM_DEFAULT_URL");
-  options->url = from_environment != nullptr && *from_environment != '\0' ? from_environment
-                                                                          : LcmUrl{}.base();
+  options->url =
+      from_environment != nullptr && *from_environment != '\0' ? from_environment : LcmUrl{}.base();
   auto* command = app.add_subcommand(
       "doctor", "Look for what keeps hosts from hearing each other, and say what mends it");
   command->add_option("--lcm-url", options->url, "Base URL of the team, the same on every host")

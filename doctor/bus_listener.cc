@@ -42,7 +42,7 @@ std::string described(RunId id, const HeardRun& run) {
   char text[32];
   std::snprintf(text, sizeof text, "run %016" PRIx64, id);
   return text + (run.state.empty() ? "" : ", " + run.state) +
-         (run.agents.empty() ? "" : ", " + std::to_string(run.agents.size()) + " agents") +
+         (run.agents.empty() ? "" : ", " + counted(static_cast<long>(run.agents.size()), "agent")) +
          (run.hosts.empty() ? "" : " on " + joined(run.hosts)) +
          (run.versions.empty() ? "" : ", version " + joined(run.versions));
 }
@@ -86,8 +86,7 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
             ""};
   }
   if (foreign_messages_ > 0) {
-    return {"swarm bus", Level::kWarning,
-            "other LCM traffic: " + joined(foreign_channels_),
+    return {"swarm bus", Level::kWarning, "other LCM traffic: " + joined(foreign_channels_),
             "Every process of a team would parse all of it and refuse it.",
             "--lcm-url '" + other.base() + "'   # on every host"};
   }

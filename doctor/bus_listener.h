@@ -34,7 +34,7 @@ class Overheard {
  private:
   void take(const Message& message);
   std::map<RunId, HeardRun> runs_;
-  std::int64_t foreign_messages_ = 0;   // LCM's, but not ours
+  std::int64_t foreign_messages_ = 0;  // LCM's, but not ours
   std::set<std::string> foreign_channels_;
 };
 

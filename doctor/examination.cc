@@ -61,7 +61,7 @@ Examination examine(const LcmUrl& url, bool several_hosts) {
 
   findings = routing_findings(url, routed, every);
   findings.push_back(ttl_finding(url, several_hosts));
-  findings.push_back(loopback_finding(url, failure));
+  findings.push_back(self_test_finding(url, failure, routed.has_value()));
   examine_bus(url, all);
   findings.push_back(receive_buffer_finding(url, measure_receive_buffer(url)));
   findings.push_back(fragments_finding("/proc"));

@@ -7,10 +7,14 @@ namespace ergocast::doctor {
 
 const char* to_string(Level level) {
   switch (level) {
-    case Level::kOk: return "ok";
-    case Level::kNote: return "note";
-    case Level::kWarning: return "warning";
-    case Level::kProblem: return "problem";
+    case Level::kOk:
+      return "ok";
+    case Level::kNote:
+      return "note";
+    case Level::kWarning:
+      return "warning";
+    case Level::kProblem:
+      return "problem";
   }
   return "";
 }
@@ -31,6 +35,10 @@ std::string fixed(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
+}
+
+std::string counted(long count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 std::string printable(std::string text) {

@@ -15,7 +15,7 @@ enum class Level {
 const char* to_string(Level level);
 
 struct Finding {
-  std::string check;   ///< what was looked at, in a word or two
+  std::string check;  ///< what was looked at, in a word or two
   Level level = Level::kOk;
   std::string found;   ///< one line
   std::string why;     ///< why it matters; empty if all is well
@@ -29,6 +29,8 @@ Level worst_of(const Findings& findings);
 std::string joined(const std::vector<std::string>& words, const char* separator = ", ");
 /// `value` with so many digits after the point.
 std::string fixed(double value, int digits);
+/// "1 note", "2 notes".
+std::string counted(long count, const char* what);
 /// Without what could steer a terminal, for names that others chose.
 std::string printable(std::string text);
 

@@ -70,8 +70,8 @@ int interface_in(const char* answer, std::size_t size) {
 
 std::vector<Interface> interfaces() {
   const Socket socket(AF_INET, SOCK_DGRAM);
-  const std::unique_ptr<struct if_nameindex, void (*)(struct if_nameindex*)> names(if_nameindex(),
-                                                                                  if_freenameindex);
+  const std::unique_ptr<struct if_nameindex, void (*)(struct if_nameindex*)> names(
+      if_nameindex(), if_freenameindex);
   std::vector<Interface> found;
   if (!names || socket.fd() < 0) return found;
   for (const auto* one = names.get(); one->if_index != 0; ++one) {

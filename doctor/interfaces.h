@@ -14,7 +14,7 @@ struct Interface {
   bool loopback = false;
   bool multicast = false;
   int mtu_bytes = 0;
-  std::string address;   ///< its first IPv4 address; empty: none
+  std::string address;  ///< its first IPv4 address; empty: none
 
   /// Whether a team on several hosts could use it.
   bool reaches_others() const { return up && multicast && !loopback && !address.empty(); }

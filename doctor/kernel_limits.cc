@@ -41,8 +41,8 @@ ReceiveBuffer measure_receive_buffer(const LcmUrl& url) {
 }
 
 Finding receive_buffer_finding(const LcmUrl& url, const ReceiveBuffer& buffer) {
-  const std::string holds = "holds about " +
-                            std::to_string(buffer.granted_bytes / kBytesPerDatagram) + " datagrams";
+  const std::string holds =
+      "holds about " + std::to_string(buffer.granted_bytes / kBytesPerDatagram) + " datagrams";
   const long asked = url.receive_buffer_bytes;
   // The kernel grants twice what is asked for, to cover its own bookkeeping.
   if (asked > 0 && buffer.granted_bytes < 2 * asked) {
@@ -55,9 +55,11 @@ Finding receive_buffer_finding(const LcmUrl& url, const ReceiveBuffer& buffer) {
   if (buffer.granted_bytes >= 2 * kRecommendedBytes) {
     return {"receive buffer", Level::kOk, holds, "", ""};
   }
-  Finding finding{"receive buffer", Level::kNote, holds,
-                  "Enough for small teams. What arrives in a longer burst is lost in silence: of 256 "
-                  "datagrams every 0.1 s, half.", ""};
+  Finding finding{
+      "receive buffer", Level::kNote, holds,
+      "Enough for small teams. What arrives in a longer burst is lost in silence: of 256 "
+      "datagrams every 0.1 s, half.",
+      ""};
   LcmUrl larger = url;
   larger.receive_buffer_bytes = kRecommendedBytes;
   if (buffer.most_bytes < 2 * kRecommendedBytes) {
@@ -73,10 +75,11 @@ Finding fragments_finding(const std::filesystem::path& proc) {
   if (!bytes) return {"fragments", Level::kOk, "the kernel does not tell its limit", "", ""};
   const std::string found = std::to_string(*bytes) + " bytes for fragments that wait";
   if (*bytes >= kRecommendedBytes) return {"fragments", Level::kOk, found, "", ""};
-  return {"fragments", Level::kNote, found,
-          "Messages of Ergocast are never fragmented. Other LCM programs' messages above the MTU are "
-          "all lost while the fragments of broken ones fill this room.",
-          sysctl_commands("net.ipv4.ipfrag_high_thresh=" + std::to_string(kRecommendedBytes))};
+  return {
+      "fragments", Level::kNote, found,
+      "Messages of Ergocast are never fragmented. Other LCM programs' messages above the MTU are "
+      "all lost while the fragments of broken ones fill this room.",
+      sysctl_commands("net.ipv4.ipfrag_high_thresh=" + std::to_string(kRecommendedBytes))};
 }
 
 Finding reverse_path_finding(const std::filesystem::path& proc, const std::string& interface) {
@@ -108,11 +111,12 @@ Finding bridges_finding(const std::filesystem::path& sys, const std::vector<std:
   for (const std::string& name : forgetful) {
     commands.push_back("ip link set " + name + " type bridge mcast_querier 1");
   }
-  return {"bridges", Level::kNote, joined(forgetful) + ": snooping without a querier",
-          "Such a bridge passes multicast on to all while it hears no querier at all. Switches that "
-          "also snoop do not: with no querier on the network they forget who listens, and a team "
-          "falls silent some 4 minutes after its start. Only for bridges that a team uses:",
-          joined(commands, "\n")};
+  return {
+      "bridges", Level::kNote, joined(forgetful) + ": snooping without a querier",
+      "Such a bridge passes multicast on to all while it hears no querier at all. Switches that "
+      "also snoop do not: with no querier on the network they forget who listens, and a team "
+      "falls silent some 4 minutes after its start. Only for bridges that a team uses:",
+      joined(commands, "\n")};
 }
 
 }  // namespace ergocast::doctor

@@ -22,21 +22,27 @@ bool only_large_are_lost(const Loss& loss) {
 
 Finding one_way(const LcmUrl& url, const Peer& peer) {
   return {"peer " + peer.host, Level::kProblem, "one-way: heard here, but does not hear this host",
-          "What this host sends is lost on the way to " + peer.address + ": a wrong route here, a "
-          "firewall there, or a switch between that does not pass the group on.",
+          "What this host sends is lost on the way to " + peer.address +
+              ": a wrong route here, a "
+              "firewall there, or a switch between that does not pass the group on.",
           "ip route get " + url.group + "   # here: the interface that leads there?\n" +
-              here_again(url) + "   # there: what does it say of itself?\n"
-              "nft list ruleset   # there, as root: what drops udp to " + url.group + "?"};
+              here_again(url) +
+              "   # there: what does it say of itself?\n"
+              "nft list ruleset   # there, as root: what drops udp to " +
+              url.group + "?"};
 }
 
 Finding mtu_too_small(const Peer& peer) {
   return {"peer " + peer.host, Level::kProblem, "only short datagrams arrive",
           "Datagrams as long as our longest messages (packets of " +
-              std::to_string(kLongestPacketBytes) + " bytes) are lost and short ones are not: the "
+              std::to_string(kLongestPacketBytes) +
+              " bytes) are lost and short ones are not: the "
               "MTU somewhere on the way is smaller.",
           "ip link   # on both hosts and whatever is between: every mtu at least " +
-              std::to_string(kLongestPacketBytes) + "\n"
-              "ping -M do -s " + std::to_string(kLongestPacketBytes - 28) + " " + peer.address};
+              std::to_string(kLongestPacketBytes) +
+              "\n"
+              "ping -M do -s " +
+              std::to_string(kLongestPacketBytes - 28) + " " + peer.address};
 }
 
 std::string losses(const Peer& peer) {
@@ -67,8 +73,9 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
   } else if (worst > kMuchLost_percent) {
     finding.level = Level::kWarning;
     finding.found += ", lost: " + losses(peer);
-    finding.why = "Teams bear loss, but lockstep gets slow and coverage stale. Cable networks lose "
-                  "nothing; on Wi-Fi, multicast is sent at the lowest rate and never repeated.";
+    finding.why =
+        "Teams bear loss, but lockstep gets slow and coverage stale. Cable networks lose "
+        "nothing; on Wi-Fi, multicast is sent at the lowest rate and never repeated.";
     finding.remedy = "ip -s link   # on both hosts: errors, dropped?";
   } else if (peer.duplicates > 0) {
     finding.level = Level::kNote;
@@ -83,8 +90,10 @@ Finding nobody(const LcmUrl& url, const PeerTest& test) {
           "nobody was heard (" + std::to_string(test.sent) + " probes sent)",
           "Either no other host ran this test at the same time with the same group and port, or "
           "what it sent did not arrive. Whether this host was heard, only the other one can say.",
-          here_again(url) + "   # on every host, at about the same time\n"
-          "tcpdump -ni any udp port " + std::to_string(url.base_port) + "   # here: what arrives?"};
+          here_again(url) +
+              "   # on every host, at about the same time\n"
+              "tcpdump -ni any udp port " +
+              std::to_string(url.base_port) + "   # here: what arrives?"};
 }
 
 }  // namespace
@@ -98,12 +107,11 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
   Findings findings;
   for (const Peer& peer : test.peers) findings.push_back(peer_finding(url, peer, version));
   if (test.only_heard_by_others > 0) {
-    findings.push_back({"peers", Level::kProblem,
-                        std::to_string(test.only_heard_by_others) +
-                            " more heard by others, but not here",
-                        "One-way towards this host: other hosts hear somebody whom it does not.",
-                        "tcpdump -ni any udp port " + std::to_string(url.base_port) +
-                            "   # here: what arrives?"});
+    findings.push_back(
+        {"peers", Level::kProblem,
+         std::to_string(test.only_heard_by_others) + " more heard by others, but not here",
+         "One-way towards this host: other hosts hear somebody whom it does not.",
+         "tcpdump -ni any udp port " + std::to_string(url.base_port) + "   # here: what arrives?"});
   }
   return findings;
 }

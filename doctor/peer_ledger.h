@@ -25,8 +25,8 @@ struct Loss {
 struct Peer {
   std::string host, version, address;
   Loss from_it;
-  std::optional<Loss> to_it;            ///< as it says; nothing if it never says that it hears us
-  std::vector<double> round_trips_s;    ///< ascending
+  std::optional<Loss> to_it;          ///< as it says; nothing if it never says that it hears us
+  std::vector<double> round_trips_s;  ///< ascending
   std::int64_t duplicates = 0;
 
   /// Whether it was heard for long enough (half a second) to say whom it hears.

@@ -17,6 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr std::chrono::nanoseconds kPeriod = std::chrono::nanoseconds(1s) / kProbesPerSecond;
+
 /// Takes in what has arrived, at most so much that a flood does not keep us from sending.
 void hear(const Socket& listener, PeerLedger& ledger) {
   std::array<std::byte, 2048> buffer;
@@ -63,7 +65,7 @@ PeerTest try_peers(const LcmUrl& url, std::chrono::seconds duration) {
                reinterpret_cast<const sockaddr*>(&group), sizeof group) < 0) {
       test.error = std::string("cannot send: ") + std::strerror(errno);
     }
-    hear_until(start + i * (1s / kProbesPerSecond), listener, ledger);
+    hear_until(start + i * kPeriod, listener, ledger);
   }
   test.peers = ledger.peers();
   test.only_heard_by_others = ledger.only_heard_by_others();

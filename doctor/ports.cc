@@ -91,7 +91,8 @@ std::vector<OpenPort> parse_socket_table(std::string_view table) {
     if (colon == local.npos) continue;
     const char* digits = local.data() + colon + 1;
     if (std::from_chars(digits, local.data() + local.size(), socket.port, 16).ec != std::errc() ||
-        std::from_chars(inode.data(), inode.data() + inode.size(), socket.inode).ec != std::errc()) {
+        std::from_chars(inode.data(), inode.data() + inode.size(), socket.inode).ec !=
+            std::errc()) {
       continue;
     }
     sockets.push_back(socket);
@@ -139,8 +140,7 @@ Finding ports_finding(const LcmUrl& url, const std::vector<Holder>& holders,
   const std::string elsewhere =
       free_port ? "--lcm-url '" + other.base() + "'   # on every host" : "ss -ulpn   # who is it?";
   if (!refusal.empty()) {
-    return {"ports", Level::kProblem,
-            refusal + (holders.empty() ? "" : "; " + described(holders)),
+    return {"ports", Level::kProblem, refusal + (holders.empty() ? "" : "; " + described(holders)),
             "Whoever has it does not share it, so no program of Ergocast can listen there.",
             elsewhere};
   }

@@ -45,10 +45,6 @@ std::string commands(const std::string& remedy, std::size_t indent) {
   return text;
 }
 
-std::string counted(long count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 std::string verdict(const Findings& findings) {
   const auto count = [&findings](Level level) {
     return static_cast<long>(std::count_if(findings.begin(), findings.end(),

@@ -61,7 +61,8 @@ Finding clock_finding(std::optional<bool> synchronised) {
 
 std::string firewall_rules() {
   if (geteuid() != 0) return "";
-  const char* command = "PATH=$PATH:/usr/sbin:/sbin; { nft list chains || iptables -S INPUT; } 2>/dev/null";
+  const char* command =
+      "PATH=$PATH:/usr/sbin:/sbin; { nft list chains || iptables -S INPUT; } 2>/dev/null";
   const std::unique_ptr<FILE, int (*)(FILE*)> output(popen(command, "r"), pclose);
   std::string text;
   char line[512];
@@ -71,15 +72,27 @@ std::string firewall_rules() {
 
 std::optional<Finding> firewall_finding(std::string_view rules, const std::string& group) {
   if (rules.empty()) return std::nullopt;
-  std::istringstream lines{std::string(rules)};
-  for (std::string line; std::getline(lines, line);) {
-    const bool nft = line.find("hook input") != line.npos && line.find("policy drop") != line.npos;
-    if (!nft && !line.starts_with("-P INPUT DROP")) continue;
+  const auto drops = [&group](const std::string& accept_group, const std::string& accept_igmp) {
     return Finding{"firewall", Level::kNote, "drops incoming traffic that no rule accepts",
-                   "If other hosts are not heard, let the group and IGMP in (for the present; make "
-                   "it last with the tool that wrote the rules).",
-                   "iptables -I INPUT -d " + group + " -p udp -j ACCEPT\n"
-                   "iptables -I INPUT -p igmp -j ACCEPT"};
+                   "If other hosts are not heard, or the self test fails, let group and IGMP in "
+                   "(until the next start; the tool that wrote the rules makes it last).",
+                   accept_group + "\n" + accept_igmp};
+  };
+  std::istringstream lines{std::string(rules)};
+  std::string table, chain;
+  for (std::string line; std::getline(lines, line);) {
+    line.erase(0, line.find_first_not_of(" \t"));
+    const std::string name = line.substr(line.find(' ') + 1);
+    if (line.starts_with("table ")) table = name.substr(0, name.rfind(" {"));
+    if (line.starts_with("chain ")) chain = name.substr(0, name.rfind(" {"));
+    if (line.starts_with("-P INPUT DROP")) {
+      return drops("iptables -I INPUT -d " + group + " -p udp -j ACCEPT",
+                   "iptables -I INPUT -p igmp -j ACCEPT");
+    }
+    if (line.find("hook input") != line.npos && line.find("policy drop") != line.npos) {
+      const std::string insert = "nft insert rule " + table + " " + chain;
+      return drops(insert + " ip daddr " + group + " accept", insert + " ip protocol igmp accept");
+    }
   }
   return Finding{"firewall", Level::kOk, "does not drop by default", "", ""};
 }

@@ -24,26 +24,30 @@ std::vector<std::string> names_that_reach_others(const std::vector<Interface>& a
 }
 
 Finding no_route(const LcmUrl& url, const std::vector<std::string>& others) {
-  Finding finding{"route", Level::kProblem, "no route to " + url.group,
-                  "LCM sends to a multicast group. Without a route for it nothing is sent, not even "
-                  "to a process on this host.", ""};
+  Finding finding{
+      "route", Level::kProblem, "no route to " + url.group,
+      "LCM sends to a multicast group. Without a route for it nothing is sent, not even "
+      "to a process on this host.",
+      ""};
   if (url.ttl > 0 && !others.empty()) {
     finding.remedy = route_commands("add", others);
     return finding;
   }
   finding.remedy = "ip link set lo up\n" + route_commands("add", {"lo"});
   if (url.ttl > 0) {
-    finding.why += " No interface but lo is up, has an IPv4 address and can multicast: only teams "
-                   "on this host are possible until one is.";
+    finding.why +=
+        " No interface but lo is up, has an IPv4 address and can multicast: only teams "
+        "on this host are possible until one is.";
   }
   return finding;
 }
 
 Finding goes_to_loopback(const LcmUrl& url, const std::vector<std::string>& others) {
-  Finding finding{"route", Level::kProblem, url.group + " goes to lo, yet the URL says ttl=" +
-                  std::to_string(url.ttl),
+  Finding finding{"route", Level::kProblem,
+                  url.group + " goes to lo, yet the URL says ttl=" + std::to_string(url.ttl),
                   "Such a TTL is for teams on several hosts, but nothing that is sent to lo leaves "
-                  "this host.", route_commands("replace", others)};
+                  "this host.",
+                  route_commands("replace", others)};
   if (others.empty()) {
     finding.why += " No other interface is up, has an IPv4 address and can multicast.";
     finding.remedy = "ip address   # which interface leads to the other hosts? ip link set IT up";
@@ -62,8 +66,9 @@ Finding route_finding(const LcmUrl& url, const Interface& routed,
   if (url.ttl == 0 || others.empty()) return finding;
   finding.level = Level::kNote;
   finding.found += ", and not over " + joined(others);
-  finding.why = "LCM cannot choose an interface: the routing table decides, on every host of the "
-                "team by itself. If the others are on another network, change it here.";
+  finding.why =
+      "LCM cannot choose an interface: the routing table decides, on every host of the "
+      "team by itself. If the others are on another network, change it here.";
   finding.remedy = route_commands("replace", others);
   return finding;
 }
@@ -118,16 +123,18 @@ Finding ttl_finding(const LcmUrl& url, bool several_hosts) {
           "--lcm-url '" + wider.base() + "'"};
 }
 
-Finding loopback_finding(const LcmUrl& url, const std::optional<std::string>& failure) {
+Finding self_test_finding(const LcmUrl& url, const std::optional<std::string>& failure,
+                          bool has_route) {
   if (!failure) {
     return {"self test", Level::kOk, "a datagram to " + url.group + " came back", "", ""};
   }
   // The first line says what happened, those below it what the other checks say better.
   std::string found = failure->substr(0, failure->find('\n'));
   if (found.starts_with(url.base() + ": ")) found.erase(0, url.base().size() + 2);
+  const std::string why = "LCM tests itself in the same way, and no program of Ergocast starts. ";
+  if (!has_route) return {"self test", Level::kProblem, found, why + "It needs the route.", ""};
   return {"self test", Level::kProblem, found,
-          "LCM tests itself in the same way and gives up: no program of Ergocast starts on this "
-          "host. If route and interface are right, a firewall drops what comes in.",
+          why + "If route and interface are right, a firewall drops what comes in.",
           "nft list ruleset   # as root: what drops udp to " + url.group + "?"};
 }
 

@@ -22,7 +22,9 @@ Findings routing_findings(const LcmUrl& url, const std::optional<std::string>& r
 /// @param several_hosts  whether somebody else is meant to hear us
 Finding ttl_finding(const LcmUrl& url, bool several_hosts);
 
-/// @param failure  why a datagram to the group did not come back, if it did not
-Finding loopback_finding(const LcmUrl& url, const std::optional<std::string>& failure);
+/// @param failure    why a datagram to the group did not come back, if it did not
+/// @param has_route  whether there is a route to the group; if not, that says it all
+Finding self_test_finding(const LcmUrl& url, const std::optional<std::string>& failure,
+                          bool has_route);
 
 }  // namespace ergocast::doctor

@@ -29,7 +29,10 @@ Child new_host(int number) {
   if (const auto* problem = std::get_if<std::string>(&started)) throw std::runtime_error(*problem);
   Child host = std::get<Child>(std::move(started));
   const std::string pid = std::to_string(host.pid());
-  const auto sleeping = [&pid] { return fs::path("sleep") == fs::read_symlink("/proc/" + pid + "/exe").filename(); };
+  const auto sleeping = [&pid] {
+    std::error_code gone;
+    return fs::read_symlink("/proc/" + pid + "/exe", gone).filename() == "sleep";
+  };
   while (host.running() && !sleeping()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   if (!host.running() || network_of(pid) == network_of("self")) {
     throw std::runtime_error("unshare made no host");
@@ -46,19 +49,21 @@ BridgedHosts::BridgedHosts(int count) {
     const std::string n = std::to_string(i), pid = std::to_string(hosts_.back().pid());
     const std::string port = "ip link add p" + n + " type veth peer name eth0 netns " + pid +
                              " && ip link set p" + n + " master br0 up";
-    const std::string network = "ip link set lo up && ip link set eth0 up && ip addr add 10.9.0." + n +
-                                "/24 dev eth0 && ip route add 224.0.0.0/4 dev eth0";
+    const std::string network = "ip link set lo up && ip link set eth0 up && ip addr add 10.9.0." +
+                                n + "/24 dev eth0 && ip route add 224.0.0.0/4 dev eth0";
     must(on_switch(port), port);
     must(on_host(i, network), network);
   }
 }
 
 BridgedHosts::~BridgedHosts() {
-  for (Child& host : hosts_) {
+  for (std::size_t i = 0; i < hosts_.size(); ++i) {
+    Child& host = hosts_[i];
+    on_switch("ip link del p" + std::to_string(i + 1));  // its network would go some time later
     host.send(SIGKILL);
     while (host.running()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  on_switch("ip link del br0");
+  on_switch("ip link del br0; nft flush ruleset 2>/dev/null");
 }
 
 std::vector<std::string> BridgedHosts::inside(int host) const {

@@ -11,8 +11,9 @@
 namespace ergocast::doctor {
 
 /// The calling process's own network (enter_own_host()) is the switch. Host i, from 1, is at
-/// 10.9.0.i on its eth0, has the multicast route there and hangs on the switch's port pI. Bridge
-/// and ports go with the process. Needs root, `ip` and `nsenter`.
+/// 10.9.0.i on its eth0, has the multicast route there and hangs on the switch's port pI. Bridge,
+/// ports and what nft was told there go with this object, or at the latest with the process. Needs
+/// root, `ip` and `nsenter`.
 class BridgedHosts {
  public:
   /// @throws std::runtime_error with the command that failed

@@ -32,7 +32,7 @@ TEST(BusListener, ARunIsNamedWithItsHosts) {
   overheard.take(datagram("ERGOCAST_AGENT_STATUS_3", status_of_an_agent()));
   const Finding finding = overheard.finding(url_of("ttl=1"), {});
   EXPECT_EQ(finding.level, Level::kNote);
-  EXPECT_EQ(finding.found, "run 0000000000000abc, 1 agents on robot-3");
+  EXPECT_EQ(finding.found, "run 0000000000000abc, 1 agent on robot-3");
 }
 
 TEST(BusListener, TheVersionIsToldWhereSomebodySaysIt) {

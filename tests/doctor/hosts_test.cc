@@ -30,6 +30,16 @@ class DoctorOnHosts : public test::OwnHost {
       }
       return {};
     }
+    /// Of the only peer; null if there is not exactly one.
+    json peer(const char* what) const {
+      const json& peers = told["peers"];
+      return peers.size() == 1 ? peers[0][what] : json();
+    }
+    /// Of the only peer, one of its losses [%]; −1 if there is not exactly one.
+    double lost(const char* direction, const char* what = "lost_percent") const {
+      const json& loss = peer(direction);
+      return loss.is_object() ? loss[what].get<double>() : -1;
+    }
   };
 
   static std::string url(int ttl) {
@@ -67,7 +77,8 @@ class DoctorOnHosts : public test::OwnHost {
   void on_the_way_to_2(const std::string& rule) {
     ASSERT_EQ(hosts_->on_switch("nft add table bridge t && nft add chain bridge t f "
                                 "'{ type filter hook forward priority 0; }' && "
-                                "nft add rule bridge t f iifname p1 oifname p2 ip protocol udp " + rule),
+                                "nft add rule bridge t f iifname p1 oifname p2 ip protocol udp " +
+                                rule),
               0);
   }
 
@@ -80,14 +91,13 @@ TEST_F(DoctorOnHosts, TwoThatHearEachOtherAreToldSo) {
   for (const auto& [answer, other] : {std::pair(one, "host2"), std::pair(two, "host1")}) {
     EXPECT_EQ(answer.exit_code, 0) << answer.told.dump(1);
     ASSERT_EQ(answer.told["peers"].size(), 1u) << answer.told.dump(1);
-    const json& peer = answer.told["peers"][0];
-    EXPECT_EQ(peer["host"], other);
-    EXPECT_EQ(peer["hears_this_host"], true);
-    EXPECT_GT(peer["from_it"]["probes"], 100);
-    EXPECT_EQ(peer["from_it"]["lost_percent"], 0.0);
-    EXPECT_EQ(peer["to_it"]["lost_percent"], 0.0);
-    EXPECT_EQ(peer["duplicates"], 0);
-    EXPECT_GT(peer["round_trip_ms"]["p50"], 0.0);
+    EXPECT_EQ(answer.peer("host"), other);
+    EXPECT_EQ(answer.peer("hears_this_host"), true);
+    EXPECT_EQ(answer.lost("from_it"), 0);
+    EXPECT_EQ(answer.lost("to_it"), 0);
+    EXPECT_GT(answer.lost("to_it", "probes"), 100);
+    EXPECT_EQ(answer.peer("duplicates"), 0);
+    EXPECT_GT(answer.peer("round_trip_ms")["p50"], 0.0);
   }
 }
 
@@ -95,7 +105,7 @@ TEST_F(DoctorOnHosts, AOneWayPartitionIsSeenByTheSideThatHears) {
   on_the_way_to_2("drop");
   const auto [one, two] = both();
   EXPECT_EQ(one.exit_code, 1);
-  EXPECT_EQ(one.told["peers"][0]["hears_this_host"], false);
+  EXPECT_EQ(one.peer("hears_this_host"), false);
   EXPECT_NE(one.of("peer host2")["found"].dump().find("one-way"), std::string::npos);
   EXPECT_EQ(two.exit_code, 1);
   EXPECT_EQ(two.told["peers"].size(), 0u);
@@ -107,14 +117,12 @@ TEST_F(DoctorOnHosts, LossIsMeasuredInItsDirection) {
   const auto [one, two] = both();
   EXPECT_EQ(one.exit_code, 1);
   EXPECT_EQ(one.of("peer host2")["level"], "warning");
-  const json& at_1 = one.told["peers"][0];
-  EXPECT_EQ(at_1["from_it"]["lost_percent"], 0.0);
-  EXPECT_GT(at_1["to_it"]["lost_percent"], 5.0);
-  EXPECT_LT(at_1["to_it"]["lost_percent"], 15.0);
-  const json& at_2 = two.told["peers"][0];
-  EXPECT_EQ(at_2["to_it"]["lost_percent"], 0.0);
-  EXPECT_GT(at_2["from_it"]["lost_percent"], 5.0);
-  EXPECT_LT(at_2["from_it"]["lost_percent"], 15.0);
+  EXPECT_EQ(one.lost("from_it"), 0);
+  EXPECT_EQ(two.lost("to_it"), 0);
+  for (const double lost : {one.lost("to_it"), two.lost("from_it")}) {
+    EXPECT_GT(lost, 5);
+    EXPECT_LT(lost, 15);
+  }
 }
 
 TEST_F(DoctorOnHosts, ANarrowSwitchLosesOnlyWhatIsLong) {
@@ -122,9 +130,8 @@ TEST_F(DoctorOnHosts, ANarrowSwitchLosesOnlyWhatIsLong) {
   const auto [one, two] = both();
   for (const Answer& answer : {one, two}) {
     EXPECT_EQ(answer.exit_code, 1);
-    ASSERT_EQ(answer.told["peers"].size(), 1u) << answer.told.dump(1);
-    EXPECT_EQ(answer.told["peers"][0]["from_it"]["lost_small_percent"], 0.0);
-    EXPECT_EQ(answer.told["peers"][0]["from_it"]["lost_large_percent"], 100.0);
+    EXPECT_EQ(answer.lost("from_it", "lost_small_percent"), 0) << answer.told.dump(1);
+    EXPECT_EQ(answer.lost("from_it", "lost_large_percent"), 100);
   }
   EXPECT_EQ(one.of("peer host2")["found"], "only short datagrams arrive");
   EXPECT_EQ(one.of("MTU")["level"], "ok");  // of its own interface
@@ -140,9 +147,12 @@ TEST_F(DoctorOnHosts, AnInterfaceWithASmallMtuIsAWarning) {
 }
 
 TEST_F(DoctorOnHosts, TheWrongOneOfTwoInterfacesIsMendedByTheCommandGiven) {
-  ASSERT_EQ(hosts_->on_host(1, "ip link add eth1 type dummy && ip addr add 10.8.0.1/24 dev eth1 && "
-                               "ip link set eth1 up multicast on && ip route replace 224.0.0.0/4 dev eth1"),
-            0);
+  ASSERT_EQ(
+      hosts_->on_host(1,
+                      "ip link add eth1 type veth peer name far && ip link set far up && ip addr "
+                      "add 10.8.0.1/24 dev eth1 && "
+                      "ip link set eth1 up multicast on && ip route replace 224.0.0.0/4 dev eth1"),
+      0);
   const auto [wrong, deaf] = both();
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_EQ(wrong.told["peers"].size(), 0u);
@@ -166,8 +176,20 @@ TEST_F(DoctorOnHosts, LoopbackIsAProblemForATeamOnSeveralHosts) {
 TEST_F(DoctorOnHosts, ATtlOfZeroOnOneSideIsOneWay) {
   const auto [one, two] = both(/*ttl_of_1=*/0);
   EXPECT_EQ(one.of("TTL")["level"], "problem");
-  EXPECT_EQ(one.told["peers"][0]["hears_this_host"], false);
+  EXPECT_EQ(one.peer("hears_this_host"), false);
   EXPECT_EQ(two.told["peers"].size(), 0u);
+}
+
+TEST_F(DoctorOnHosts, AFirewallIsOpenedByTheCommandsGiven) {
+  ASSERT_EQ(hosts_->on_host(1,
+                            "nft add table inet wall && nft add chain inet wall in "
+                            "\\{ type filter hook input priority 0\\; policy drop\\; \\}"),
+            0);
+  const Answer answer = alone(1, 1);
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_EQ(answer.of("self test")["level"], "problem");
+  ASSERT_EQ(hosts_->on_host(1, answer.of("firewall")["remedy"]), 0);
+  EXPECT_EQ(alone(1, 1).exit_code, 0);
 }
 
 TEST_F(DoctorOnHosts, ACableThatIsPulledIsNamed) {

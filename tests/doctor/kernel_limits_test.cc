@@ -34,9 +34,8 @@ TEST(ReceiveBufferFinding, AUrlThatAsksForMoreThanItGetsIsWarned) {
 
 TEST(ReceiveBufferFinding, WhatIsRecommendedAndGrantedIsFine) {
   const LcmUrl url = url_of("ttl=0&recv_buf_size=4194304");
-  EXPECT_EQ(
-      receive_buffer_finding(url, {2 * kRecommended_bytes, 2 * kRecommended_bytes}).level,
-      Level::kOk);
+  EXPECT_EQ(receive_buffer_finding(url, {2 * kRecommended_bytes, 2 * kRecommended_bytes}).level,
+            Level::kOk);
 }
 
 TEST(ReceiveBufferFinding, ThisKernelGrantsTwiceWhatItAllows) {

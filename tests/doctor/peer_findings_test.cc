@@ -46,7 +46,8 @@ TEST(PeerFindings, LossIsAWarningInEitherDirection) {
   Peer lossy = peer({150, 50});
   lossy.to_it->heard = {135, 45};
   EXPECT_EQ(said_of(lossy).level, Level::kWarning);
-  EXPECT_TRUE(contains(said_of(lossy).found, "0.0 % from it, 10.0 % to it")) << said_of(lossy).found;
+  EXPECT_TRUE(contains(said_of(lossy).found, "0.0 % from it, 10.0 % to it"))
+      << said_of(lossy).found;
   std::swap(lossy.from_it, *lossy.to_it);
   EXPECT_EQ(said_of(lossy).level, Level::kWarning);
 }

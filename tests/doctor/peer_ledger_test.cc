@@ -66,8 +66,9 @@ TEST(PeerLedger, OneWayShowsOnTheSideThatHears) {
 
 TEST(PeerLedger, LossIsToldForEachDirectionAndLength) {
   Pair pair;
-  pair.probe(200, [](std::uint32_t n) { return n % 10 != 5; },   // 5 mod 10: both lengths
-             [](std::uint32_t n) { return !is_large(n); });
+  pair.probe(
+      200, [](std::uint32_t n) { return n % 10 != 5; },  // 5 mod 10: both lengths
+      [](std::uint32_t n) { return !is_large(n); });
   const Peer peer = pair.a.peers()[0];
   EXPECT_NEAR(peer.to_it->percent(), 10, 1);
   EXPECT_EQ(peer.from_it.small_percent(), 0);
@@ -121,7 +122,8 @@ TEST(PeerLedger, EchoesOfProbesThatWereNeverSentProveNothing) {
   Probe forged{2, 0, "beta", "", {{1, 5, 9, {3, 1}, 0}}};
   a.take(forged, "", Instant(2s));
   EXPECT_FALSE(a.peers()[0].to_it.has_value());
-  forged = {2, 1, "beta", "", {{1, 0, 0, {1, 0}, 50'000'000'000}}};  // held since before it was sent
+  forged = {
+      2, 1, "beta", "", {{1, 0, 0, {1, 0}, 50'000'000'000}}};  // held since before it was sent
   a.take(forged, "", Instant(2s));
   EXPECT_TRUE(a.peers()[0].to_it.has_value());
   EXPECT_TRUE(a.peers()[0].round_trips_s.empty());

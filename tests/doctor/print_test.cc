@@ -7,9 +7,10 @@
 namespace ergocast::doctor {
 namespace {
 
-const Findings kFindings = {{"clock", Level::kOk, "synchronised", "", ""},
-                            {"TTL", Level::kNote, "ttl=0", "Right for one host.", "--lcm-url X"},
-                            {"route", Level::kProblem, "none", "Nothing is sent.", "ip route add\nip r"}};
+const Findings kFindings = {
+    {"clock", Level::kOk, "synchronised", "", ""},
+    {"TTL", Level::kNote, "ttl=0", "Right for one host.", "--lcm-url X"},
+    {"route", Level::kProblem, "none", "Nothing is sent.", "ip route add\nip r"}};
 
 TEST(Print, TheWorstComesFirstWithItsCommandsBelow) {
   const std::string text = text_of(url_of("ttl=0"), kFindings, {});
@@ -26,7 +27,8 @@ TEST(Print, TheWorstComesFirstWithItsCommandsBelow) {
 }
 
 TEST(Print, ColoursOnlyWhereTheyAreWanted) {
-  EXPECT_TRUE(contains(text_of(url_of("ttl=0"), kFindings, {true, 80}), "\033[1;31mproblem\033[0m"));
+  EXPECT_TRUE(
+      contains(text_of(url_of("ttl=0"), kFindings, {true, 80}), "\033[1;31mproblem\033[0m"));
 }
 
 TEST(Print, ExplanationsFitTheirColumnsAndCommandsStayWhole) {
@@ -40,14 +42,20 @@ TEST(Print, ExplanationsFitTheirColumnsAndCommandsStayWhole) {
 }
 
 TEST(Print, PeersAreATable) {
-  const Peer good{"robot-1", "0.1.0", "10.0.0.2", {{150, 50}, {150, 25}},
-                  Loss{{150, 50}, {150, 50}}, {0.001, 0.002, 0.003}, 0};
+  const Peer good{"robot-1",
+                  "0.1.0",
+                  "10.0.0.2",
+                  {{150, 50}, {150, 25}},
+                  Loss{{150, 50}, {150, 50}},
+                  {0.001, 0.002, 0.003},
+                  0};
   Peer deaf = good;
   deaf.to_it.reset();
   deaf.round_trips_s.clear();
   const std::string text = text_of(std::vector<Peer>{good, deaf});
-  EXPECT_TRUE(contains(text, "robot-1  10.0.0.2  yes       0.0 / 50.0       0.0 / 0.0      "
-                             "2.00 / 3.00 / 3.00  0\n"))
+  EXPECT_TRUE(contains(text,
+                       "robot-1  10.0.0.2  yes       0.0 / 50.0      0.0 / 0.0     "
+                       "2.00 / 3.00 / 3.00  0\n"))
       << text;
   EXPECT_TRUE(contains(text, "robot-1  10.0.0.2  NO")) << text;
   EXPECT_EQ(text_of(std::vector<Peer>{}), "");

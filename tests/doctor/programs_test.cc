@@ -34,6 +34,12 @@ TEST(Firewall, OnlyInputThatDropsByPolicyIsNoted) {
   EXPECT_EQ(level("\t\ttype filter hook input priority filter; policy accept;\n"
                   "\t\ttype filter hook forward priority filter; policy drop;\n"),
             Level::kOk);
+  EXPECT_EQ(firewall_finding("table inet filter {\n\tchain input {\n"
+                             "\t\ttype filter hook input priority filter; policy drop;\n\t}\n}\n",
+                             "239.0.0.1")
+                ->remedy,
+            "nft insert rule inet filter input ip daddr 239.0.0.1 accept\n"
+            "nft insert rule inet filter input ip protocol igmp accept");
   EXPECT_EQ(level("-P INPUT DROP\n"), Level::kNote);
   EXPECT_EQ(level("-P INPUT ACCEPT\n"), Level::kOk);
 }

@@ -41,8 +41,7 @@ TEST(Routing, OfSeveralInterfacesTheOnesNotUsedAreNamed) {
                                       cable("wlan0", "10.1.0.1")};
   const Finding finding = routing_findings(url_of("ttl=1"), "eth0", all)[0];
   EXPECT_EQ(finding.level, Level::kNote);
-  EXPECT_TRUE(contains(finding.found, "over eth0 (10.0.0.1), and not over wlan0"))
-      << finding.found;
+  EXPECT_TRUE(contains(finding.found, "over eth0 (10.0.0.1), and not over wlan0")) << finding.found;
   EXPECT_EQ(finding.remedy, "ip route replace 224.0.0.0/4 dev wlan0");
 }
 
@@ -89,10 +88,13 @@ TEST(Routing, ATtlOfZeroIsANoteUntilOthersAreMeantToHear) {
 
 TEST(Routing, AFailedSelfTestIsToldWithoutTheUrlAndItsRemedy) {
   const LcmUrl url = url_of("ttl=0");
-  EXPECT_EQ(loopback_finding(url, std::nullopt).level, Level::kOk);
-  const Finding finding = loopback_finding(url, url.base() + ": cannot send\nAs root:\n  ip");
+  EXPECT_EQ(self_test_finding(url, std::nullopt, true).level, Level::kOk);
+  const Finding finding =
+      self_test_finding(url, url.base() + ": cannot send\nAs root:\n  ip", true);
   EXPECT_EQ(finding.level, Level::kProblem);
   EXPECT_EQ(finding.found, "cannot send");
+  EXPECT_TRUE(contains(finding.remedy, "nft list ruleset"));
+  EXPECT_EQ(self_test_finding(url, "no route", false).remedy, "");
 }
 
 TEST(Interfaces, LoopbackIsAmongThisMachines) {

@@ -116,8 +116,8 @@ TEST_F(Doctor, NothingIsSentToARunsPorts) {
 }
 
 TEST_F(Doctor, ARunIsOverheardAndLeftInPeace) {
-  Child run = start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--realtime",
-                                 "--out", out(), "--lcm-url", kUrl});
+  Child run = start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--realtime", "--out",
+                                 out(), "--lcm-url", kUrl});
   ASSERT_TRUE(recorded(1000));
   EXPECT_EQ(doctor({"--peer", "1"}), 1);  // because --peer is not tried
   EXPECT_TRUE(says("swarm bus", "run ")) << output();
