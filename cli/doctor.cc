@@ -109,8 +109,8 @@ void add_doctor(CLI::App& app, Action& action) {
       ->type_name("SECONDS");
   command->add_flag("--json", options->json, "For programs");
   command->footer(
-      "Changes nothing on this host. Only --peer sends anything, and only to a port that nobody\n"
-      "uses: 20 small datagrams a second to the first port of the URL.\n"
+      "Changes nothing on this host. Only with --peer does anything leave it: 20 datagrams a second\n"
+      "to the URL's first port, unless somebody is there.\n"
       "Exit codes: 0 nothing worse than notes; 1 warnings or problems; 2 bad arguments;\n"
       "3 LCM cannot be used on this host.");
   command->callback([options, &action] { action = [options] { return diagnose(*options); }; });
