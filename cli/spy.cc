@@ -74,14 +74,9 @@ Viewer viewer_for(const SpyOptions& options) {
       {programs / "../spy/ergocast-spy.jar", programs / "../share/ergocast/java/ergocast-spy.jar"});
   viewer.jar_missing = !ours;
   const std::string program = need(java, "default-jre");
-  const std::string jars =
-      need(first_of({"/usr/share/java/lcm.jar", "/usr/local/share/java/lcm.jar"}), "liblcm-java") +
-      ":" +
-      need(first_of({"/usr/share/java/jchart2d.jar",
-                     "/usr/local/share/java/jchart2d-code/ext/jchart2d.jar",
-                     "/usr/local/share/java/jchart2d-3.2.2.jar"}),
-           "libjchart2d-java") +
-      ":" + ours.value_or("").string();
+  const std::string jars = need(first_of({"/usr/share/java/lcm.jar"}), "liblcm-java") + ":" +
+                           need(first_of({"/usr/share/java/jchart2d.jar"}), "libjchart2d-java") +
+                           ":" + ours.value_or("").string();
   viewer.command = {program,
                     "-Djava.net.preferIPv4Stack=true",
                     "-Xmx256m",
