@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::uint64_t kMostSeeds = 1000000000;
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done; 1 verify: the run differs; 2 bad scenario, arguments or run directory;\n"
-    "3 LCM cannot be used on this machine; 4 the mission failed or its record broke off, or\n"
-    "some of many missions failed.";
+    "Exit codes: 0 done; 1 verify, status or doctor found something; 2 bad scenario, arguments or\n"
+    "run directory; 3 LCM cannot be used on this machine; 4 the mission failed or its record broke\n"
+    "off, or some of many missions failed.";
 
 void add_mission_options(CLI::App& command, MissionOptions& options) {
   command.add_option("SCENARIO", options.scenario, "Scenario file, or the name of a shipped one")

@@ -13,7 +13,7 @@ namespace ergocast {
 /// Exit codes of every program of Ergocast.
 enum ExitCode {
   kExitDone = 0,
-  kExitDiffers = 1,      ///< `verify`: the record is not what the simulation gives
+  kExitDiffers = 1,      ///< `verify`, `status`, `doctor`: not all is as it should be
   kExitBadInput = 2,     ///< arguments, scenario or run directory
   kExitUnavailable = 3,  ///< LCM cannot be used on this machine
   kExitFailed = 4,       ///< the mission failed
