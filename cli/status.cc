@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cli/commands.h"
@@ -23,6 +24,7 @@ using namespace std::chrono_literals;
 /// MISSION comes once a second, and twice means that a lost one was made up for.
 constexpr auto kPatience = 2500ms;
 constexpr auto kTurn = 50ms;
+constexpr auto kLastWord = 1s;
 constexpr std::size_t kMostRuns = 16;
 
 struct StatusOptions : BusOptions {
@@ -129,17 +131,34 @@ int conclude_watch(const StatusOptions& options, const TeamPicture& picture, Tea
   return failed ? kExitFailed : kExitDone;
 }
 
+/// Agents may know of the end before the coordinator says why it came.
+class End {
+ public:
+  bool come(const TeamView& view, Instant now) {
+    if (!view.over()) return false;
+    if (!since_) since_ = now;
+    const auto state = view.picture(now).state;
+    const bool told = state == MissionState::kEnded || state == MissionState::kFailed;
+    return told || now - *since_ >= kLastWord;
+  }
+
+ private:
+  std::optional<Instant> since_;
+};
+
 int watch(const StatusOptions& options, Listener& listener, StopSignals& signals) {
   TeamScreen screen(options.json);
   Instant next_show = now();
+  End end;
   while (true) {
     listener.listen(std::min(next_show, now() + kTurn), signals.fd());
     if (signals.take() > 0) return kExitDone;
     if (listener.runs().size() > 1) return choose(listener);
     const TeamView* view = listener.runs().empty() ? nullptr : &listener.runs().begin()->second;
     if (view != nullptr && now() >= listener.since() + kPatience) listener.stay_with_it();
-    if (view != nullptr && view->over())
+    if (view != nullptr && end.come(*view, now())) {
       return conclude_watch(options, view->picture(now()), screen);
+    }
     if (now() < next_show) continue;
     next_show = now() + screen.period();
     if (view != nullptr) screen.show(view->picture(now()));

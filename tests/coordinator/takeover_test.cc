@@ -322,7 +322,8 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
   const auto both = [] {
     std::vector<Coordinator> two;
     for (const Incarnation life : {kSuccessorLife, kSuccessorLife + 1}) {
-      two.emplace_back(CoordinatorIdentity{0, life, "here", kVersion}, decoder_of(small_mission(2)), kPlan, Takeover::kIfFlying);
+      two.emplace_back(CoordinatorIdentity{0, life, "here", kVersion}, decoder_of(small_mission(2)),
+                       kPlan, Takeover::kIfFlying);
       advance(two.back(), at(0s));
       two.back().receive(status_of(0, 1), at(0s));
       two.back().receive(memory_of(5), at(0s));
