@@ -44,7 +44,7 @@ std::string head(const DeployHost& host, const DeployMission& mission, const std
                      ". Written by \"ergocast deploy\".\n#   docker-compose -f " + name +
                      " up\n# Ctrl-C ends it in order.\n";
   if (host.coordinator) {
-    text += "# The scenario is read from " + mission.folder.string() +
+    text += "# The scenario is read from " + yaml(mission.folder.string()) +
             " of that host. Start it last: it waits\n# for the team for as long as the scenario "
             "says.\n";
   }

@@ -1,5 +1,9 @@
 #include "cli/deploy_script.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
 namespace ergocast::cli {
 namespace {
 
@@ -19,6 +23,10 @@ std::string array(const std::vector<std::string>& words) {
 }  // namespace
 
 std::string shell_word(std::string_view text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) != 0 || std::strchr("./_-@:+", c) != nullptr);
+  });
+  if (plain) return std::string(text);
   std::string word = "'";
   for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
   return word + '\'';

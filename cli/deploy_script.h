@@ -5,7 +5,7 @@
 
 namespace ergocast::cli {
 
-/// `text` as one word of a shell, whatever it holds.
+/// `text` as one word of a shell, whatever it holds; quoted only where it has to be.
 std::string shell_word(std::string_view text);
 
 /// `head` with the script's name for %SCRIPT% and the multicast group for %GROUP%.

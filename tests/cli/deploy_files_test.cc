@@ -20,7 +20,7 @@ class DeployFiles : public ::testing::Test {
     std::string name = fs::temp_directory_path() / "ergocast-test-XXXXXX";
     folder_ = mkdtemp(name.data());
     mission_.name = "survey";
-    mission_.folder = "/home/it's \"$HOME\"/`x`";
+    mission_.folder = "/home/it's \"$HOME\"/`x`\ny";
     mission_.files = {"survey.textproto", "maps/lake.png"};
     mission_.url =
         std::get<LcmUrl>(LcmUrl::parse("udpm://239.1.2.3:7000?ttl=1&recv_buf_size=4096"));
@@ -50,7 +50,8 @@ bool has(const std::string& text, const std::string& part) {
 }
 
 TEST_F(DeployFiles, AShellWordIsReadBackWhateverItHolds) {
-  for (const std::string word : {"", "a b", "it's", "$(id)`id`", "\\\"", "-n", "a\nb", "*?&;|<>"}) {
+  for (const std::string word :
+       {"", "plain", "A=b", "~", "a b", "it's", "$(id)`id`", "\\\"", "-n", "a\nb", "*?&;|<>"}) {
     EXPECT_EQ(output("printf '%s|' " + shell_word(word)), word + '|');
   }
 }
@@ -123,7 +124,8 @@ TEST_F(DeployFiles, ComposeHasAFileForEveryHostOnItsOwnNetwork) {
   }
   EXPECT_TRUE(
       has(files[0].text, "entrypoint: [\"ergocast-coordinator\", \"/mission/survey.textproto\"]"));
-  EXPECT_TRUE(has(files[0].text, "source: \"/home/it's \\\"$$HOME\\\"/`x`\"\n")) << files[0].text;
+  EXPECT_TRUE(has(files[0].text, "source: \"/home/it's \\\"$$HOME\\\"/`x`\\x0ay\"\n"))
+      << files[0].text;
   EXPECT_TRUE(has(files[1].text, "  agent-3:\n"));
   EXPECT_FALSE(has(files[1].text, "coordinator:"));
 }

@@ -24,7 +24,7 @@ TEST_F(Deploy, PrintsAScriptWithTheScenarioAndItsMap) {
   for (const char* to : {"ssh", "systemd"}) {
     ASSERT_EQ(deploy(to, kTwoHosts), 0) << output();
     EXPECT_TRUE(output().starts_with("#!/usr/bin/env bash\n"));
-    EXPECT_TRUE(said("scenario_files=('lake_search.textproto' 'maps/lake.png')")) << output();
+    EXPECT_TRUE(said("scenario_files=(lake_search.textproto maps/lake.png)")) << output();
     EXPECT_TRUE(said("url='udpm://239.255.76.67:7667?ttl=1'")) << output();
   }
 }
