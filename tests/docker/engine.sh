@@ -32,8 +32,8 @@ stop_engine() {
 
 # There is no registry: the bare system is the image to build on.
 import_base() {
-  tar -C "$root" --one-file-system --exclude=./tmp/test --exclude='./var/cache/apt/archives/*.deb' \
-    -c . | docker import - debian-12 >/dev/null
+  tar -C "$root" --one-file-system --exclude=./tmp/test --exclude='./var/cache/apt/*' \
+    --exclude='./var/lib/apt/lists/*' -c . | docker import - debian-12 >/dev/null
 }
 
 # Builds where packages can be fetched: in this machine's network, with a bridge to nobody.
