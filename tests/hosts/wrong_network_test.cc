@@ -35,10 +35,7 @@ TEST_F(WrongNetwork, AnAgentJoinsOnceTheRouteIsMended) {
   start_team("admission_timeout_s: 600", url_);
   ASSERT_TRUE(coordinator_->says("agent 3")) << coordinator_->said();
   lan_->route_multicast(2, "eth0");
-  // LCM joined the group on the interface that the route led to at its start.
-  agents_.back()->child.send(SIGTERM);
-  EXPECT_EQ(wait_for(agents_.back()->child), 0) << agents_.back()->said();
-  agents_.back() = &agent_on(2, 2);
+  EXPECT_TRUE(agents_.back()->says("listening on another network interface")) << agents_.back()->said();
   expect_all_to_end();
   expect_complete_record();
 }

@@ -139,6 +139,10 @@ void Lan::run_on(const Namespaces& where, const std::string& command) const {
   if (std::system(command.c_str()) != 0) throw std::runtime_error(command);
 }
 
+void Lan::on_host(int host, const std::string& command) const {
+  run_on(hosts_.at(static_cast<std::size_t>(host)), command);
+}
+
 void Lan::unplug(int host) { run_on(switch_, "ip link set " + port(host) + " down"); }
 
 void Lan::block(int from, int to) {
@@ -196,7 +200,7 @@ void Lan::set_mtu(int bytes) {
   const std::string mtu = " mtu " + std::to_string(bytes);
   for (int host = 0; host < hosts(); ++host) {
     run_on(switch_, "ip link set " + port(host) + mtu);
-    run_on(hosts_[static_cast<std::size_t>(host)], "ip link set eth0" + mtu);
+    on_host(host, "ip link set eth0" + mtu);
   }
 }
 
@@ -212,7 +216,7 @@ void Lan::add_interface(int host) {
 void Lan::route_multicast(int host, const std::string& interface) {
   const std::string command = interface.empty() ? "ip route del 224.0.0.0/4"
                                                 : "ip route replace 224.0.0.0/4 dev " + interface;
-  run_on(hosts_.at(static_cast<std::size_t>(host)), command);
+  on_host(host, command);
 }
 
 std::int64_t Lan::count_of(const std::string& counter) const {

@@ -75,6 +75,10 @@ class Lan {
   /// Sends that host's multicast to one of its interfaces; "": to none.
   void route_multicast(int host, const std::string& interface);
 
+  /// A shell's command on the switch, whose port to host i is pI; or on a host.
+  void on_switch(const std::string& command) const { run_on(switch_, command); }
+  void on_host(int host, const std::string& command) const;
+
   /// IP packets that the switch was to carry since the start, and fragments of packets among them.
   std::int64_t packets() const { return count_of("ip_packets"); }
   std::int64_t fragments() const { return count_of("ip_fragments"); }
