@@ -1,4 +1,4 @@
-#include "cli/deploy.h"
+#include "deploy/deploy.h"
 
 #include <algorithm>
 #include <cctype>

@@ -9,12 +9,12 @@
 
 #include "cli/commands.h"
 #include "cli/team_screen.h"
-#include "cli/team_view.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
 #include "scenario/scenario.h"
+#include "status/team_view.h"
 
 namespace ergocast::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "cli/team_text.h"
+#include "status/team_text.h"
 
 namespace ergocast::cli {
 namespace {

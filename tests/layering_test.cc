@@ -56,8 +56,11 @@ const std::vector<Rule> kRules = {
     {"coordinator/main.cc", {"coordinator", "scenario", "runtime"}, {kLog}},
     {"sim/main.cc", {"sim", "scenario", "runtime"}, {kLog}},
     {"logger/main.cc", {"logger", "scenario", "runtime", "lcmtypes"}, {kLcm, kLog, kFiles, kSystem}},
+    {"deploy", {"core", "scenario", "runtime", "deploy"}, {kFiles}},
+    {"status", {"core", "status"}, {kJson}},
     {"cli",
-     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "doctor", "cli"},
+     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "deploy", "doctor",
+      "status", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     // What a user copies: a process like the four, with its main beside it.
     {"examples/driver", {"core", "examples"}, {}},

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/team_view.h"
+#include "status/team_view.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 
 /// A headline, a row for each agent, and one for coordinator, world and logger; at most 100 columns
 /// wide for usual values. Every line ends with a line break.
@@ -25,4 +25,4 @@ std::string condition_text(const AgentRow& row);
 /// The first `rows` lines of `text`, and instead of the last one how many are missing, if any are.
 std::string cut_to_height(const std::string& text, std::size_t rows);
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -1,5 +1,5 @@
 // The table that people read: aligned, narrow, and with the worst on top.
-#include "cli/team_text.h"
+#include "status/team_text.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 AgentRow row_of(AgentId id, Condition condition) {
@@ -131,4 +131,4 @@ TEST(TeamJson, IsOneLineWithNullForWhatIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace ergocast::cli
+}  // namespace ergocast

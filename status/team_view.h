@@ -10,7 +10,7 @@
 #include "core/messages.h"
 #include "core/mission_follower.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 
 /// How an agent is doing, worst first.
 enum class Condition {
@@ -104,4 +104,4 @@ class TeamView {
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, tick_count_ = 0;
 };
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

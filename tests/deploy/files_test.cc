@@ -6,10 +6,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "cli/deploy.h"
-#include "cli/deploy_script.h"
+#include "deploy/deploy.h"
+#include "deploy/script.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ TEST_F(DeployFiles, ComposeReadsWhatItIsGiven) {
 }
 
 }  // namespace
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "cli/deploy.h"
+#include "deploy/deploy.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 std::vector<DeployHost> hosts_in(const std::string& text) {
@@ -130,4 +130,4 @@ TEST(Deployment, OfSeveralHostsNeedsMessagesThatReachThem) {
 }
 
 }  // namespace
-}  // namespace ergocast::cli
+}  // namespace ergocast

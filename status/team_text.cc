@@ -1,4 +1,4 @@
-#include "cli/team_text.h"
+#include "status/team_text.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include "core/mission.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 enum class Tint { kPlain, kFaint, kGood, kLook, kBad };
@@ -211,4 +211,4 @@ std::string cut_to_height(const std::string& text, std::size_t rows) {
   return text.substr(0, end) + "… and " + std::to_string(lines - rows + 1) + " more\n";
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -1,8 +1,8 @@
 #include <cstdio>
 
-#include "cli/deploy.h"
+#include "deploy/deploy.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 /// A string as YAML and Compose read it back, whatever it holds; $ begins a variable there.
@@ -87,4 +87,4 @@ std::vector<TextFile> compose_files(const std::vector<DeployHost>& hosts,
   return files;
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -1,10 +1,10 @@
-#include "cli/team_view.h"
+#include "status/team_view.h"
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 using namespace std::chrono_literals;
@@ -228,4 +228,4 @@ bool TeamView::over() const {
   });
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

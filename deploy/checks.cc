@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "cli/deploy.h"
+#include "deploy/deploy.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 using Hosts = std::vector<DeployHost>;
@@ -95,4 +95,4 @@ std::vector<DeployProcess> processes_of(const DeployHost& host) {
   return processes;
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 
-#include "cli/team_text.h"
+#include "status/team_text.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 template <class T>
@@ -66,4 +66,4 @@ std::string team_json(const TeamPicture& at) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

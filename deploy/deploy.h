@@ -11,7 +11,7 @@
 #include "runtime/lcm_url.h"
 #include "scenario/scenario.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 
 struct DeployHost {
   std::string name;     ///< as the hosts file calls it; a safe file name
@@ -68,4 +68,4 @@ std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
 std::vector<TextFile> compose_files(const std::vector<DeployHost>& hosts,
                                     const DeployMission& mission);
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

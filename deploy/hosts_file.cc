@@ -4,10 +4,10 @@
 #include <optional>
 #include <set>
 
-#include "cli/deploy.h"
 #include "core/ids.h"
+#include "deploy/deploy.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 constexpr std::size_t kLongestName = 63;
@@ -190,4 +190,4 @@ std::variant<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::str
   return HostsReader(file).read(text);
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -1,10 +1,10 @@
-#include "cli/deploy_script.h"
+#include "deploy/script.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cstring>
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 std::string with(std::string text, const std::string& mark, const std::string& value) {
@@ -49,4 +49,4 @@ std::string script_settings(const std::vector<DeployHost>& hosts, const DeployMi
          "\nhosts=" + array(addresses) + '\n';
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -1,11 +1,11 @@
 // What somebody who only listens knows of a team: who is well, who is not, and since when.
-#include "cli/team_view.h"
+#include "status/team_view.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/team.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 using namespace test;
@@ -292,4 +292,4 @@ TEST_F(TeamViewTest, InventedAgentsCostNoMemory) {
 }
 
 }  // namespace
-}  // namespace ergocast::cli
+}  // namespace ergocast

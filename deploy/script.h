@@ -1,9 +1,9 @@
 // What the shell scripts of `ergocast deploy` have in common.
 #pragma once
 
-#include "cli/deploy.h"
+#include "deploy/deploy.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 
 /// `text` as one word of a shell, whatever it holds; quoted only where it has to be.
 std::string shell_word(std::string_view text);
@@ -14,4 +14,4 @@ std::string script_head(std::string head, const std::string& name, const DeployM
 /// The variables mission, url, scenario_folder, scenario_files, coordinator and hosts.
 std::string script_settings(const std::vector<DeployHost>& hosts, const DeployMission& mission);
 
-}  // namespace ergocast::cli
+}  // namespace ergocast

@@ -1,7 +1,7 @@
-#include "cli/deploy.h"
-#include "cli/deploy_script.h"
+#include "deploy/deploy.h"
+#include "deploy/script.h"
 
-namespace ergocast::cli {
+namespace ergocast {
 namespace {
 
 constexpr const char* kHead = R"sh(#!/usr/bin/env bash
@@ -142,4 +142,4 @@ std::vector<TextFile> ssh_files(const std::vector<DeployHost>& hosts,
            true}};
 }
 
-}  // namespace ergocast::cli
+}  // namespace ergocast
