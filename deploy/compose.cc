@@ -33,10 +33,16 @@ std::string scenario_mount(const DeployMission& mission) {
          "\n        target: /mission\n        read_only: true\n";
 }
 
-std::string service(const DeployProcess& process, const char* restart, const std::string& volumes) {
-  return "  " + process.name + ":\n    <<: *ergocast\n    restart: " + restart +
-         "\n    entrypoint: " + list(process.command) + "\n    command: []\n" +
-         (volumes.empty() ? "" : "    volumes:\n" + volumes);
+std::string service(const std::string& name, const char* restart,
+                    const std::vector<std::string>& command, const std::string& more = "") {
+  return "  " + name + ":\n    <<: *ergocast\n    restart: " + restart +
+         "\n    entrypoint: " + list(command) + "\n    command: []\n" + more;
+}
+
+/// Codes 2 (bad input) and 4 (the mission failed) become 0: a restart mends neither.
+std::vector<std::string> unless_in_vain(std::vector<std::string> command) {
+  command.insert(command.begin(), {"tini", "-e", "2", "-e", "4", "--"});
+  return command;
 }
 
 std::string head(const DeployHost& host, const DeployMission& mission, const std::string& name) {
@@ -48,7 +54,8 @@ std::string head(const DeployHost& host, const DeployMission& mission, const std
             " of that host. Start it last: it waits\n# for the team for as long as the scenario "
             "says.\n";
   }
-  if (host.logger) text += "# The record goes into ./record, for every mission an empty folder.\n";
+  if (host.logger)
+    text += "# The record goes into a folder below ./runs, a new one for every mission.\n";
   return text;
 }
 
@@ -60,15 +67,18 @@ std::string compose_text(const DeployHost& host, const DeployMission& mission, b
       yaml(mission.url.base()) + "\n  stop_grace_period: 20s\n";
   if (!alone) text += "  network_mode: host\n";
   text += "\nservices:\n";
-  for (DeployProcess process : processes_of(host)) {
-    const bool logger = process.name == "logger";
-    if (logger) process.command = {"ergocast-logger", "--resume", "--out", "/record"};
-    text += service(process, "\"on-failure:5\"", logger ? "      - ./record:/record\n" : "");
+  for (const DeployProcess& process : processes_of(host)) {
+    // The image's script: every mission into a folder of its own, owned by whoever owns ./runs.
+    text += process.name == "logger"
+                ? service("logger", "on-failure", {"record"},
+                          "    user: root\n    volumes:\n      - ./runs:/runs\n")
+                : service(process.name, "on-failure", unless_in_vain(process.command));
   }
   if (host.coordinator) {
     // One that is started again would begin a second mission.
-    text += service({"coordinator", {"ergocast-coordinator", "/mission/" + mission.files.front()}},
-                    "\"no\"", scenario_mount(mission));
+    text += service("coordinator", "\"no\"",
+                    {"ergocast-coordinator", "/mission/" + mission.files.front()},
+                    "    volumes:\n" + scenario_mount(mission));
   }
   return text;
 }

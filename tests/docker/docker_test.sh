@@ -133,6 +133,17 @@ hosts_without_bridges_fly_too() {
   over=
 }
 
+what_deploy_writes_flies() {
+  printf 'box coordinator logger sim agent 0 1 agents=2\n' >"$work/hosts"
+  ERGOCAST_RUNS=$work/deployed/runs
+  mkdir "$work/deployed"
+  expect "$build/bin/ergocast" deploy "$ERGOCAST_SCENARIOS/patient.textproto" --hosts "$work/hosts" \
+    --to compose --out "$work/deployed"
+  expect docker-compose -f "$work/deployed/compose.yaml" up --detach
+  expect_complete
+  expect docker-compose -f "$work/deployed/compose.yaml" down
+}
+
 claim() {
   local begun=$SECONDS
   echo "- ${1//_/ }"
@@ -154,7 +165,8 @@ for name in the_image_runs_every_program_and_nothing_as_root \
   an_agent_cut_off_from_the_network_is_unhealthy_and_agrees_again \
   a_logger_that_dies_goes_on_with_its_record \
   in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order \
-  hosts_without_bridges_fly_too; do
+  hosts_without_bridges_fly_too \
+  what_deploy_writes_flies; do
   claim $name
 done
 stop_engine
