@@ -7,7 +7,7 @@
 #include <cinttypes>
 #include <cstdio>
 
-#include "doctor/socket.h"
+#include "doctor/group_listener.h"
 #include "lcmtypes/codec.h"
 #include "runtime/clock.h"
 

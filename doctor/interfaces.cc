@@ -1,16 +1,14 @@
 #include "doctor/interfaces.h"
 
 #include <arpa/inet.h>
-#include <linux/rtnetlink.h>
 #include <net/if.h>
-#include <netinet/in.h>
 #include <sys/ioctl.h>
-#include <sys/socket.h>
 
 #include <cstring>
 #include <memory>
 
-#include "doctor/socket.h"
+#include "runtime/multicast_route.h"
+#include "runtime/socket.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -38,34 +36,6 @@ Interface look_at(int socket, const char* name) {
   return found;
 }
 
-/// RTM_GETROUTE for one IPv4 address.
-struct RouteQuestion {
-  nlmsghdr header{};
-  rtmsg route{};
-  rtattr attribute{};
-  in_addr destination{};
-};
-
-/// The RTA_OIF of the kernel's answer; 0: none.
-int interface_in(const char* answer, std::size_t size) {
-  nlmsghdr header{};
-  if (size < NLMSG_LENGTH(sizeof(rtmsg))) return 0;
-  std::memcpy(&header, answer, sizeof header);
-  if (header.nlmsg_type != RTM_NEWROUTE || header.nlmsg_len > size) return 0;
-  for (std::size_t at = NLMSG_LENGTH(sizeof(rtmsg)); at + sizeof(rtattr) <= header.nlmsg_len;) {
-    rtattr attribute{};
-    std::memcpy(&attribute, answer + at, sizeof attribute);
-    if (attribute.rta_len < sizeof attribute || at + attribute.rta_len > header.nlmsg_len) return 0;
-    if (attribute.rta_type == RTA_OIF && attribute.rta_len == RTA_LENGTH(sizeof(int))) {
-      int index = 0;
-      std::memcpy(&index, answer + at + RTA_LENGTH(0), sizeof index);
-      return index;
-    }
-    at += RTA_ALIGN(attribute.rta_len);
-  }
-  return 0;
-}
-
 }  // namespace
 
 std::vector<Interface> interfaces() {
@@ -80,27 +50,10 @@ std::vector<Interface> interfaces() {
   return found;
 }
 
-// The source address that a connected socket gets would not do: for a route to lo, the kernel takes
-// another interface's.
 std::optional<std::string> routed_interface(const std::string& group) {
-  const Socket socket(AF_NETLINK, SOCK_RAW, NETLINK_ROUTE);
-  RouteQuestion question;
-  question.header.nlmsg_len = sizeof question;
-  question.header.nlmsg_type = RTM_GETROUTE;
-  question.header.nlmsg_flags = NLM_F_REQUEST;
-  question.route.rtm_family = AF_INET;
-  question.route.rtm_dst_len = 32;
-  question.attribute.rta_len = RTA_LENGTH(sizeof question.destination);
-  question.attribute.rta_type = RTA_DST;
-  if (inet_pton(AF_INET, group.c_str(), &question.destination) != 1) return std::nullopt;
-  if (send(socket.fd(), &question, sizeof question, 0) < 0) return std::nullopt;
-  char answer[4096];
-  const ssize_t size = recv(socket.fd(), answer, sizeof answer, 0);
-  const int index = size < 0 ? 0 : interface_in(answer, static_cast<std::size_t>(size));
+  const unsigned index = interface_towards(address_of(group, 0).sin_addr);
   char name[IF_NAMESIZE] = "";
-  if (index == 0 || if_indextoname(static_cast<unsigned>(index), name) == nullptr) {
-    return std::nullopt;
-  }
+  if (index == 0 || if_indextoname(index, name) == nullptr) return std::nullopt;
   return name;
 }
 

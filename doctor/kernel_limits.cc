@@ -4,7 +4,7 @@
 #include <fstream>
 #include <optional>
 
-#include "doctor/socket.h"
+#include "runtime/socket.h"
 
 namespace ergocast::doctor {
 namespace {

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "doctor/socket.h"
+#include "doctor/group_listener.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
 

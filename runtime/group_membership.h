@@ -21,7 +21,7 @@ class GroupMembership {
   bool renew();
 
  private:
-  in_addr group_{};
+  in_addr group_;
   std::vector<int> sockets_;
   unsigned interface_;  // joined on; 0: unknown
 };

@@ -1,15 +1,15 @@
 #include "runtime/lcm_url.h"
 
 #include <arpa/inet.h>
-#include <netinet/in.h>
 #include <poll.h>
-#include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <charconv>
 #include <cstring>
 #include <utility>
+
+#include "runtime/socket.h"
 
 namespace ergocast {
 namespace {
@@ -43,25 +43,6 @@ std::optional<std::string> read_option(std::string_view option, LcmUrl& url) {
   return "unknown option '" + std::string(name) + "': ttl and recv_buf_size are known";
 }
 
-sockaddr_in address_of(const std::string& group, int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  inet_pton(AF_INET, group.c_str(), &address.sin_addr);
-  return address;
-}
-
-/// A file descriptor that closes itself.
-struct Socket {
-  explicit Socket(int type) : fd(socket(AF_INET, type | SOCK_CLOEXEC, 0)) {}
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-  ~Socket() {
-    if (fd >= 0) close(fd);
-  }
-  int fd;
-};
-
 template <class Address>
 const sockaddr* as_sockaddr(const Address& address) {
   return reinterpret_cast<const sockaddr*>(&address);
@@ -69,9 +50,9 @@ const sockaddr* as_sockaddr(const Address& address) {
 
 bool port_is_free(int port) {
   // Without SO_REUSEADDR this fails when anybody holds the port, LCM's shared sockets included.
-  Socket probe(SOCK_DGRAM);
+  const Socket probe(AF_INET, SOCK_DGRAM);
   const sockaddr_in any = address_of("0.0.0.0", port);
-  return probe.fd >= 0 && bind(probe.fd, as_sockaddr(any), sizeof any) == 0;
+  return probe.fd() >= 0 && bind(probe.fd(), as_sockaddr(any), sizeof any) == 0;
 }
 
 /// A name that exists once per network namespace and vanishes with its process.
@@ -140,28 +121,28 @@ std::optional<std::string> why_unreachable(const LcmUrl& url) {
   const auto failed = [&](const char* what) {
     return url.base() + ": " + what + ": " + std::strerror(errno) + "\n" + remedy;
   };
-  Socket socket(SOCK_DGRAM);
+  const Socket socket(AF_INET, SOCK_DGRAM);
   const sockaddr_in group = address_of(url.group, 0);
   const sockaddr_in any = address_of("0.0.0.0", 0);
   ip_mreq membership{group.sin_addr, any.sin_addr};
-  if (socket.fd < 0 || bind(socket.fd, as_sockaddr(any), sizeof any) != 0) {
+  if (socket.fd() < 0 || bind(socket.fd(), as_sockaddr(any), sizeof any) != 0) {
     return failed("no UDP socket");
   }
   sockaddr_in own{};
   socklen_t length = sizeof own;
-  getsockname(socket.fd, reinterpret_cast<sockaddr*>(&own), &length);
-  if (setsockopt(socket.fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) {
+  getsockname(socket.fd(), reinterpret_cast<sockaddr*>(&own), &length);
+  if (setsockopt(socket.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) {
     return failed("cannot join the group");
   }
   // To our own port, with a TTL of 0: seen by nobody else.
   const unsigned char ttl = 0;
-  setsockopt(socket.fd, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
+  setsockopt(socket.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   sockaddr_in target = group;
   target.sin_port = own.sin_port;
-  if (sendto(socket.fd, "?", 1, 0, as_sockaddr(target), sizeof target) != 1) {
+  if (sendto(socket.fd(), "?", 1, 0, as_sockaddr(target), sizeof target) != 1) {
     return failed("cannot send to the group");
   }
-  pollfd ready{socket.fd, POLLIN, 0};
+  pollfd ready{socket.fd(), POLLIN, 0};
   if (poll(&ready, 1, 1000) == 1) return std::nullopt;
   return url.base() + ": a datagram to the group did not come back within 1 s\n" + remedy;
 }

@@ -1,19 +1,9 @@
-#include "doctor/socket.h"
-
-#include <arpa/inet.h>
+#include "doctor/group_listener.h"
 
 #include <cerrno>
 #include <cstring>
 
 namespace ergocast::doctor {
-
-sockaddr_in address_of(const std::string& group, int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  inet_pton(AF_INET, group.c_str(), &address.sin_addr);
-  return address;
-}
 
 Socket group_listener(const std::string& group, int port, std::string& error) {
   Socket socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK);

@@ -1,0 +1,31 @@
+// A socket that closes itself, and where it may send to.
+#pragma once
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <string>
+#include <utility>
+
+namespace ergocast {
+
+class Socket {
+ public:
+  Socket(int family, int type, int protocol = 0)
+      : fd_(socket(family, type | SOCK_CLOEXEC, protocol)) {}
+  Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Socket& operator=(Socket&&) = delete;
+  ~Socket() {
+    if (fd_ >= 0) close(fd_);
+  }
+  int fd() const { return fd_; }  ///< negative: the kernel refused
+
+ private:
+  int fd_;
+};
+
+/// @pre `ip` is an IPv4 address, as LcmUrl has checked its group
+sockaddr_in address_of(const std::string& ip, int port);
+
+}  // namespace ergocast
