@@ -221,11 +221,17 @@ bool TeamView::complete() const {
 
 bool TeamView::over() const {
   if (follower_.over()) return true;
-  const auto lives = newest_lives();
-  return !lives.empty() && std::all_of(lives.begin(), lives.end(), [this](const auto& one) {
-    const auto seen = agents_.find(one.second.first);
-    return seen != agents_.end() && seen->second.status.phase == AgentPhase::kFinished;
-  });
+  bool anybody_finished = false;
+  for (const auto& [id, life] : newest_lives()) {
+    const auto& [author, member] = life;
+    const auto seen = agents_.find(author);
+    const bool finished =
+        seen != agents_.end() && seen->second.status.phase == AgentPhase::kFinished;
+    // Who was struck from the roster, say because it died, will not say that it has finished.
+    if (member && !finished) return false;
+    anybody_finished |= finished;
+  }
+  return anybody_finished;
 }
 
 }  // namespace ergocast

@@ -70,7 +70,7 @@ class TeamView {
 
   /// Whether the mission, its processes and every member of its roster have been heard.
   bool complete() const;
-  /// Whether the mission has ended: the coordinator says so, or all agents do.
+  /// Whether the mission has ended: the coordinator says so, or all its members do.
   bool over() const;
 
  private:

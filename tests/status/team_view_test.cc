@@ -274,6 +274,19 @@ TEST_F(TeamViewTest, IsOverWhenTheCoordinatorOrEverybodySaysSo) {
   EXPECT_TRUE(other.picture(at(0s)).trouble);
 }
 
+TEST_F(TeamViewTest, IsOverWhenAllAreDoneButOneThatWasStruckFromTheRoster) {
+  auto roster = roster_of(4);
+  roster[1].active_until = 20;
+  view_.receive(test::mission_part(0, MissionState::kRunning, roster), at(0s));
+  for (const AgentId id : {0, 2, 3}) {
+    EXPECT_FALSE(view_.over());
+    AgentStatus last = status(id, 1, 100);
+    last.phase = AgentPhase::kFinished;
+    view_.receive(last, at(0s));
+  }
+  EXPECT_TRUE(view_.over());
+}
+
 TEST_F(TeamViewTest, APlanOfAnotherVersionIsTroubleWithItsReason) {
   TeamView view(
       kRun, [](auto) { return "too new"; }, at(0s));
