@@ -21,7 +21,7 @@ std::optional<long> number_in(const std::filesystem::path& file) {
 }
 
 std::string sysctl_commands(const std::string& setting) {
-  return "sysctl -w " + setting + "\necho " + setting + " > /etc/sysctl.d/60-ergocast.conf";
+  return "sysctl -w " + setting + "\necho " + setting + " >> /etc/sysctl.d/60-ergocast.conf";
 }
 
 }  // namespace
