@@ -39,9 +39,10 @@ on_services() {
 case ${1:-} in
   setup)
     for host in "${hosts[@]}"; do write_settings "$host"; done
-    tar -C "$scenario_folder" -cf - -- "${scenario_files[@]}" |
+    # The services run as nobody in particular: everybody has to be able to read the scenario.
+    tar -C "$scenario_folder" --mode=a+rX -cf - -- "${scenario_files[@]}" |
       ssh "$coordinator" 'sudo mkdir -p /etc/ergocast/mission &&
-        sudo tar -C /etc/ergocast/mission --no-same-owner --mode=a+rX -xf -'
+        sudo tar -C /etc/ergocast/mission --no-same-owner -xf -'
     ;;
   start | enable | disable)
     verb=$1

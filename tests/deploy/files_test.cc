@@ -100,16 +100,18 @@ TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
   EXPECT_FALSE(has(enable, "coordinator")) << enable;
   fs::create_directories(folder_ / "maps");
   std::ofstream(folder_ / "survey.textproto") << "x";
+  fs::permissions(folder_ / "survey.textproto", fs::perms::owner_read);
   std::ofstream(folder_ / "maps/lake.png") << "x";
   mission_.folder = folder_;
   script = systemd_files(hosts_, mission_)[0].text;
-  const std::string setup =
-      output("set -- setup; . \"$file\"",
-             "ssh() { echo \"$1\"; case $2 in *tee*) cat;; *) tar -t;; esac; }\n" + script);
+  const std::string setup = output("set -- setup; . \"$file\"",
+                                   "ssh() { echo \"$1\"; case $2 in *tee*) cat;; *) tar -tv | tr "
+                                   "-s ' ' | cut -d ' ' -f 1,6;; esac; }\n" +
+                                       script);
   const std::string settings = "LCM_DEFAULT_URL=" + mission_.url.base() +
                                "\nERGOCAST_SCENARIO=/etc/ergocast/mission/survey.textproto\n";
   EXPECT_EQ(setup, "ops@10.0.0.1\n" + settings + "pi@10.0.0.2\n" + settings +
-                       "ops@10.0.0.1\nsurvey.textproto\nmaps/lake.png\n");
+                       "ops@10.0.0.1\n-r--r--r-- survey.textproto\n-rw-r--r-- maps/lake.png\n");
 }
 
 TEST_F(DeployFiles, ComposeHasAFileForEveryHostOnItsOwnNetwork) {
