@@ -34,14 +34,19 @@ launch() {
     >log/$process.log 2>&1 </dev/null & echo \$! >$process.pid; }"
 }
 
+# Fails with 255 if the host does not answer.
 runs() {
   ssh -n "$1" "pid=\$(cat $folder/latest/$2.pid 2>/dev/null) && grep -qs ergocast- /proc/\$pid/cmdline"
 }
 
 show() {
-  local state=ended
-  if runs "$1" "$2"; then state=running; fi
-  printf '%-24s %-12s %-8s %s\n' "$1" "$2" "$state" \
+  local state=ended code=0
+  runs "$1" "$2" || code=$?
+  case $code in
+    0) state=running ;;
+    255) state='no answer' ;;
+  esac
+  printf '%-24s %-12s %-9s %s\n' "$1" "$2" "$state" \
     "$(ssh -n "$1" "tail -qn 1 $folder/latest/log/$2.log 2>/dev/null" || true)"
 }
 
@@ -52,12 +57,16 @@ refuse_if_running() {
   fi
 }
 
+# It may end by itself meanwhile.
 end() {
-  if runs "$1" "$2"; then ssh -n "$1" "kill \$(cat $folder/latest/$2.pid)"; fi
+  if runs "$1" "$2"; then ssh -n "$1" "kill \$(cat $folder/latest/$2.pid)" || true; fi
 }
 
+# Who does not answer may be running.
 note_if_running() {
-  if runs "$1" "$2"; then left="$left $2"; fi
+  local code=0
+  runs "$1" "$2" || code=$?
+  if [ "$code" = 0 ] || [ "$code" = 255 ]; then left="$left $2"; fi
 }
 
 # Waits up to $1 seconds until nothing runs.
@@ -86,7 +95,7 @@ case ${1:-} in
     end "$coordinator" coordinator
     if ! wait_for_all 10; then
       each_process end
-      wait_for_all 20 || { echo "still running:$left" >&2; exit 1; }
+      wait_for_all 20 || { echo "still running, or on a host that does not answer:$left" >&2; exit 1; }
     fi
     ;;
   collect)
