@@ -100,8 +100,9 @@ TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
   EXPECT_FALSE(has(enable, "coordinator")) << enable;
   fs::create_directories(folder_ / "maps");
   std::ofstream(folder_ / "survey.textproto") << "x";
-  fs::permissions(folder_ / "survey.textproto", fs::perms::owner_read);
   std::ofstream(folder_ / "maps/lake.png") << "x";
+  for (const char* file : {"survey.textproto", "maps/lake.png"})
+    fs::permissions(folder_ / file, fs::perms::owner_read);
   mission_.folder = folder_;
   script = systemd_files(hosts_, mission_)[0].text;
   const std::string setup = output("set -- setup; . \"$file\"",
@@ -111,7 +112,7 @@ TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
   const std::string settings = "LCM_DEFAULT_URL=" + mission_.url.base() +
                                "\nERGOCAST_SCENARIO=/etc/ergocast/mission/survey.textproto\n";
   EXPECT_EQ(setup, "ops@10.0.0.1\n" + settings + "pi@10.0.0.2\n" + settings +
-                       "ops@10.0.0.1\n-r--r--r-- survey.textproto\n-rw-r--r-- maps/lake.png\n");
+                       "ops@10.0.0.1\n-r--r--r-- survey.textproto\n-r--r--r-- maps/lake.png\n");
 }
 
 TEST_F(DeployFiles, ComposeHasAFileForEveryHostOnItsOwnNetwork) {
