@@ -89,7 +89,9 @@ std::optional<Finding> firewall_finding(std::string_view rules, const std::strin
       return drops("iptables -I INPUT -d " + group + " -p udp -j ACCEPT",
                    "iptables -I INPUT -p igmp -j ACCEPT");
     }
-    if (line.find("hook input") != line.npos && line.find("policy drop") != line.npos) {
+    const bool drops_input =
+        line.find("hook input") != line.npos && line.find("policy drop") != line.npos;
+    if (drops_input && !table.starts_with("ip6 ")) {  // LCM speaks IPv4
       const std::string insert = "nft insert rule " + table + " " + chain;
       return drops(insert + " ip daddr " + group + " accept", insert + " ip protocol igmp accept");
     }

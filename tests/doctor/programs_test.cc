@@ -40,6 +40,9 @@ TEST(Firewall, OnlyInputThatDropsByPolicyIsNoted) {
                 ->remedy,
             "nft insert rule inet filter input ip daddr 239.0.0.1 accept\n"
             "nft insert rule inet filter input ip protocol igmp accept");
+  EXPECT_EQ(level("table ip6 filter {\n\tchain INPUT {\n"
+                  "\t\ttype filter hook input priority filter; policy drop;\n\t}\n}\n"),
+            Level::kOk);
   EXPECT_EQ(level("-P INPUT DROP\n"), Level::kNote);
   EXPECT_EQ(level("-P INPUT ACCEPT\n"), Level::kOk);
 }
