@@ -11,6 +11,10 @@ constexpr double kTurnLimit_radps = 2;
 }  // namespace
 
 void Robot::move(double dt_s) {
+  if (wanted_mps_.isZero()) {
+    velocity_mps_ = {0, 0};
+    return;
+  }
   const double wanted_heading_rad = std::atan2(wanted_mps_.y(), wanted_mps_.x());
   const double error_rad = std::remainder(wanted_heading_rad - heading_rad_, 2 * M_PI);
   const double turn_limit_rad = kTurnLimit_radps * dt_s;

@@ -122,6 +122,12 @@ TEST(ExampleRobot, TurnsBeforeItDrivesAndNeverExceedsItsSpeed) {
     EXPECT_LE(robot.velocity_mps().norm(), kSpeedLimit_mps * (1 + 1e-12));
   }
   EXPECT_NEAR(robot.velocity_mps().x(), -kSpeedLimit_mps, 1e-9);
+  robot.drive({0, 0});
+  for (int i = 0; i < 40; ++i) robot.move(0.1);
+  EXPECT_EQ(robot.velocity_mps().norm(), 0);
+  robot.drive({-1, 0});
+  robot.move(0.1);
+  EXPECT_NEAR(robot.velocity_mps().x(), -1, 1e-9) << "it looks where it looked when it stopped";
 }
 
 }  // namespace
