@@ -22,7 +22,7 @@ using doctor::Findings;
 using doctor::Level;
 
 struct DoctorOptions {
-  std::string url;
+  LcmUrl url;
   std::optional<int> peer_seconds;
   bool json = false;
 };
@@ -60,12 +60,7 @@ doctor::PeerTest try_peers(const LcmUrl& url, int seconds) {
 }
 
 int diagnose(const DoctorOptions& options) {
-  const auto parsed = LcmUrl::parse(options.url);
-  if (const auto* wrong = std::get_if<std::string>(&parsed)) {
-    std::fprintf(stderr, "%s\n", wrong->c_str());
-    return kExitBadInput;
-  }
-  const LcmUrl& url = std::get<LcmUrl>(parsed);
+  const LcmUrl& url = options.url;
   doctor::Examination host = doctor::examine(url, options.peer_seconds.has_value());
   doctor::PeerTest test;
   if (options.peer_seconds && host.lcm_usable && host.port_taken.empty()) {
@@ -90,14 +85,9 @@ int diagnose(const DoctorOptions& options) {
 
 void add_doctor(CLI::App& app, Action& action) {
   const auto options = std::make_shared<DoctorOptions>();
-  const char* from_environment = std::getenv("LCM_DEFAULT_URL");
-  options->url =
-      from_environment != nullptr && *from_environment != '\0' ? from_environment : LcmUrl{}.base();
   auto* command = app.add_subcommand(
       "doctor", "Look for what keeps hosts from hearing each other, and say what mends it");
-  command->add_option("--lcm-url", options->url, "Base URL of the team, the same on every host")
-      ->capture_default_str()
-      ->type_name("URL");
+  add_url_option(*command, options->url);
   command
       ->add_option_function<int>(
           "--peer", [options](int seconds) { options->peer_seconds = seconds; },
