@@ -99,6 +99,8 @@ void Agent::join() {
   team_coverage_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
   table_->add_row(self_);  // before any other incarnation could take its place
   published_.resize(static_cast<std::size_t>(table_->block_count()));
+  active_from_ = follower_.entry_of(identity_.incarnation)->active_from;
+  joined_revision_ = follower_.revision();
   phase_ = AgentPhase::kWaiting;
 }
 
@@ -177,6 +179,8 @@ void Agent::on(const AgentStatus& status) {
 
 void Agent::on(const WorldState& world, Instant now) {
   if (!follower_.mission() || phase_ == AgentPhase::kJoining) return;
+  // From before we were admitted, repeated for the logger: our predecessor has covered it.
+  if (world.header.tick < active_from_ && world.roster_revision < joined_revision_) return;
   world_heard_ = now;
   radio_.on(world);
   for (int i = 0; i < world.vehicle_count; ++i) {

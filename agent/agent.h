@@ -132,6 +132,8 @@ class Agent {
   std::optional<WorldView> pending_;
   bool repeat_wanted_ = false;
   std::int64_t roster_revision_ = 0;  // of the world, at tick_
+  Tick active_from_ = 0;  // as the roster says
+  std::int64_t joined_revision_ = 0;
   Tick tick_ = -1, answered_tick_ = -1, next_broadcast_tick_ = 0;
   Instant tick_begun_{}, stalled_said_{};
   Eigen::Vector2d x_m_{0, 0};

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "deploy/script.h"
 #include "runtime/lcm_url.h"
 #include "runtime/node.h"
 
@@ -94,14 +95,9 @@ int complain(const std::string& problem) {
   return kExitUnavailable;
 }
 
-/// A word for a shell.
-std::string quoted(const std::string& word) {
-  return word.find_first_of("?&; '") == word.npos ? word : "'" + word + "'";
-}
-
 int print_command(const Viewer& viewer) {
   std::string line;
-  for (const std::string& word : viewer.command) line += (line.empty() ? "" : " ") + quoted(word);
+  for (const std::string& word : viewer.command) line += (line.empty() ? "" : " ") + shell_word(word);
   std::printf("%s\n", line.c_str());
   return kExitDone;
 }

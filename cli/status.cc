@@ -50,6 +50,8 @@ class Listener {
   }
 
   void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
+  /// To be called now and then: goes on listening where the network interface was exchanged.
+  void follow_network() { transport_->renew_membership(); }
   /// From now on nothing but the run that is heard.
   void stay_with_it() { transport_->set_run(runs_.begin()->first); }
 
@@ -161,6 +163,7 @@ int watch(const StatusOptions& options, Listener& listener, StopSignals& signals
     }
     if (now() < next_show) continue;
     next_show = now() + screen.period();
+    listener.follow_network();
     if (view != nullptr) screen.show(view->picture(now()));
     if (view == nullptr && !options.json) {
       screen.show("nobody is heard on " + options.url.base() + " yet\n");

@@ -108,7 +108,11 @@ bool Coordinator::doubtful(Instant since, Instant now) const {
 
 std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
   // A process that was started again at once is the successor of one that still seems to live.
-  if (asked_.size() >= kMaxRosterEntries) asked_.clear();
+  if (asked_.size() >= kMaxRosterEntries) {
+    asked_.erase(std::min_element(asked_.begin(), asked_.end(), [](const auto& a, const auto& b) {
+      return a.second < b.second;
+    }));
+  }
   const Instant since = asked_.try_emplace(newcomer, now).first->second;
   if (doubtful(since, now)) return std::nullopt;
   for (AgentId id = 0; id < kMaxAgents; ++id) {

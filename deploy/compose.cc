@@ -64,15 +64,15 @@ std::string compose_text(const DeployHost& host, const DeployMission& mission, b
   std::string text =
       "version: \"3.8\"\n\nx-ergocast: &ergocast\n  image: ergocast\n  environment:\n    "
       "LCM_DEFAULT_URL: " +
-      yaml(mission.url.base()) + "\n  stop_grace_period: 20s\n";
+      yaml(mission.url.base()) + "\n  stop_grace_period: 30s\n";
   if (!alone) text += "  network_mode: host\n";
   text += "\nservices:\n";
   for (const DeployProcess& process : processes_of(host)) {
     // The image's script: every mission into a folder of its own, owned by whoever owns ./runs.
     text += process.name == "logger"
-                ? service("logger", "on-failure", {"record"},
+                ? service("logger", "\"on-failure:5\"", {"record"},
                           "    user: root\n    volumes:\n      - ./runs:/runs\n")
-                : service(process.name, "on-failure", unless_in_vain(process.command));
+                : service(process.name, "\"on-failure:5\"", unless_in_vain(process.command));
   }
   if (host.coordinator) {
     // One that is started again would begin a second mission.

@@ -219,6 +219,19 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   EXPECT_EQ(agent.coverage()->steps_held(former), 2);
 }
 
+TEST(AgentRestarted, DoesNotCoverAgainWhatTheWorldOnlyRepeatsForTheLogger) {
+  const Mission mission = small_mission(1);
+  Agent agent(identity_of(0), decoder_of(mission));
+  std::vector<RosterEntry> roster{{{0, 55}, 0, 7}, {author_of(0), 7, -1}};
+  agent.receive(mission_part(9, MissionState::kRunning, roster), at(0s));
+  WorldState repeated = world_state(6, {{100, 500}});
+  repeated.roster_revision = 8;
+  EXPECT_TRUE(only<Contribution>(tell(agent, repeated)).empty());
+  // A restarted world may stand there, too; it knows of us and waits for our answer.
+  repeated.roster_revision = 9;
+  EXPECT_EQ(only<Contribution>(tell(agent, repeated)).size(), 1u);
+}
+
 TEST(AgentEnd, AStopEndsItAndTheLastStatusSaysSoOnce) {
   for (const bool failed : {false, true}) {
     Agent agent = running_agent(small_mission(1));
