@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
   add_node_options(app, node);
   app.add_option("--id", id, "Be this agent, 0 to 127; auto: whichever is free")
       ->capture_default_str()
-      ->check(CLI::Range(0, kMaxAgents - 1) | CLI::IsMember({"auto"}))
+      ->check((CLI::Range(0, kMaxAgents - 1) | CLI::IsMember({"auto"})).description(""))
       ->type_name("N");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   const AgentId requested_id = id == "auto" ? kUnassigned : std::stoi(id, nullptr, 0);

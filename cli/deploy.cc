@@ -141,7 +141,7 @@ void add_deploy(CLI::App& app, Action& action) {
       ->add_option("--to", options->to,
                    "A script over ssh, one that uses the installed services, or Compose files")
       ->required()
-      ->check(CLI::IsMember({"ssh", "systemd", "compose"}))
+      ->check(CLI::IsMember({"ssh", "systemd", "compose"}).description(""))
       ->type_name("ssh|systemd|compose");
   command
       ->add_option_function<std::string>(

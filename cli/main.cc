@@ -136,7 +136,6 @@ int parse_and_do(int argc, char** argv) {
                "ergocast");
   app.require_subcommand(1);
   app.set_version_flag("--version", version_text());
-  app.footer(kExitCodes);
   MissionOptions mission;
   std::filesystem::path path;
   bool print = false;
@@ -191,6 +190,7 @@ int parse_and_do(int argc, char** argv) {
   add_spy(app, action);
   add_doctor(app, action);
 
+  app.footer(kExitCodes);  // only now, or every command without its own would show it, too
   for (CLI::App* command : app.get_subcommands({})) {
     command->set_version_flag("--version", version_text());
   }

@@ -141,7 +141,7 @@ void add_spy(CLI::App& app, Action& action) {
   const std::map<std::string, Bus> buses{
       {"swarm", Bus::kSwarm}, {"world", Bus::kWorld}, {"command", Bus::kCommand}};
   command->add_option("--bus", options->bus, "The bus whose channels are listed")
-      ->transform(CLI::CheckedTransformer(buses))
+      ->transform(CLI::CheckedTransformer(buses).description(""))
       ->default_str("swarm")
       ->type_name("swarm|world|command");
   command->add_flag("--print", options->print, "Print the command that starts the viewer, and end");

@@ -97,7 +97,7 @@ int choose(const Listener& listener) {
   for (const auto& [run, view] : listener.runs()) {
     const TeamPicture picture = view.picture(now());
     text += "\n  --run-id " + to_hex(run) + "  " +
-            (picture.scenario.empty() ? "unknown mission" : picture.scenario) + ", " +
+            (picture.scenario.empty() ? "a mission not heard yet" : picture.scenario) + ", " +
             std::to_string(picture.agents_alive) + " agents, tick " + std::to_string(picture.tick);
   }
   return complain(kExitBadInput, text);

@@ -144,7 +144,10 @@ std::optional<std::string> why_unreachable(const LcmUrl& url) {
   }
   pollfd ready{socket.fd(), POLLIN, 0};
   if (poll(&ready, 1, 1000) == 1) return std::nullopt;
-  return url.base() + ": a datagram to the group did not come back within 1 s\n" + remedy;
+  return url.base() + ": a datagram to the group did not come back within 1 s\n"
+         "A firewall drops what comes in. As root:\n"
+         "  nft list ruleset\n"
+         "Check: ergocast doctor --lcm-url '" + url.base() + "'";
 }
 
 std::optional<PortReservation> PortReservation::take(RunId run) {

@@ -22,6 +22,8 @@ constexpr int kMaxDatagramsPerTurn = 256;
 /// Messages that may wait for us on a bus, 5 MB of them: a flood costs messages, not memory.
 constexpr int kQueueCapacity = 4096;
 constexpr std::string_view kPrefix = "ERGOCAST_";
+constexpr const char* kFirewall =
+    "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
 
 /// The drops column of /proc/net/udp. Several processes share a port, so the lines are found by the
 /// sockets' inodes.
@@ -109,7 +111,7 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
     const auto at = static_cast<std::size_t>(one.bus);
     // LCM tests itself here; a subscription after a failed test would abort the process later.
     const int fd = buses_[at]->getFileno();
-    if (fd < 0) return url.of(one.bus) + ": LCM's self test failed";
+    if (fd < 0) return url.of(one.bus) + ": LCM's self test failed\n" + kFirewall;
     lines_[at] = {this, one.bus};
     buses_[at]
         ->subscribe(std::string(kPrefix) + "(" + one.channels + ")", &Line::on_datagram, &lines_[at])

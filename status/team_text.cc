@@ -126,7 +126,7 @@ std::vector<Cell> cells_of(const AgentRow& row) {
 }
 
 std::string headline(const TeamPicture& at) {
-  std::string text = at.scenario.empty() ? "unknown mission" : at.scenario;
+  std::string text = at.scenario.empty() ? "a mission not heard yet" : at.scenario;
   text += ", run " + to_hex(at.run) + ", ";
   text += at.state ? to_string(*at.state) : "no coordinator heard";
   text += ", tick " + std::to_string(at.tick);

@@ -44,13 +44,18 @@ section != "" && /^  [^ ]/ {
   hidden = command != "" && /^  (-h|--version)/
   if (hidden) next
   at = match($0, /[^ ]  +[^ ]/)
-  if (at == 0) { printf ".TP\n%s\n", term(substr($0, 3)); next }
-  printf ".TP\n%s\n%s\n", term(substr($0, 3, at - 2)), escape(substr($0, at + RLENGTH - 1))
+  if (at == 0) {
+    printf ".TP\n%s\n%s", term(substr($0, 3)), / REQUIRED/ ? "Required.\n" : ""
+    next
+  }
+  required = /^  -.* REQUIRED /
+  printf ".TP\n%s\n%s%s\n", term(substr($0, 3, at - 2)), required ? "Required. " : "",
+    escape(substr($0, at + RLENGTH - 1))
   next
 }
 section != "" { sub(/^ +/, ""); if (!hidden) print escape($0); next }
-# The footer belongs to the program, not to each of its commands.
-command == "" {
-  if (!noted++) print ".SH NOTES"
+# What stands below all options.
+{
+  if (!noted++) print command == "" ? ".SH NOTES" : ".PP"
   print escape($0)
 }
