@@ -1,0 +1,213 @@
+// Whom the coordinator admits, under which number, and when the mission starts.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "tests/coordinator/driven_coordinator.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+TEST(CoordinatorAdmits, EachAgentUnderTheNumberItAsksFor) {
+  Coordinator coordinator = coordinator_of(small_mission(3));
+  coordinator.receive(hello_of(2), at(0s));
+  coordinator.receive(hello_of(0), at(0s));
+  ASSERT_EQ(coordinator.roster().size(), 2u);
+  EXPECT_EQ(coordinator.roster()[0].author, author_of(0)) << "in the order of numbers";
+  EXPECT_EQ(coordinator.roster()[1].author, author_of(2));
+  EXPECT_TRUE(coordinator.roster()[0].active_at(0));
+}
+
+TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
+  Coordinator coordinator = coordinator_of(small_mission(3));
+  coordinator.receive(hello_of(1), at(0s));
+  coordinator.receive(hello_of(kUnassigned, 71), at(0s));
+  coordinator.receive(hello_of(kUnassigned, 72), at(0s));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  EXPECT_EQ(coordinator.roster()[0].author, (Author{0, 71}));
+  EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 72}));
+}
+
+TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  coordinator.receive(hello_of(5), at(0s));
+  for (Incarnation life = 1; life <= 200; ++life) {
+    coordinator.receive(hello_of(kUnassigned, life), at(0s));
+  }
+  ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));
+  EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 3})) << "the first beyond the plan";
+  EXPECT_EQ(coordinator.roster()[5].author, author_of(5)) << "whoever asks for a number gets it";
+  for (AgentId id = 0; id < kMaxAgents; ++id) {
+    EXPECT_EQ(coordinator.roster()[static_cast<std::size_t>(id)].author.agent, id);
+  }
+}
+
+TEST(CoordinatorAdmits, NobodyUnderANumberThatDoesNotExist) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  for (const AgentId id : {kMaxAgents, kMaxAgents + 70, -2, -70}) {
+    coordinator.receive(hello_of(id, 71), at(0s));
+  }
+  EXPECT_TRUE(coordinator.roster().empty());
+}
+
+TEST(CoordinatorAdmits, NobodyWhoIsNotOfThisMission) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  Hello foreign = hello_of(0);
+  foreign.header.run = kRun + 1;
+  coordinator.receive(foreign, at(0s));
+  coordinator.receive(hello_of(0, 0), at(0s));
+  Hello no_agent = hello_of(0);
+  no_agent.header.sender = kWorld;
+  coordinator.receive(no_agent, at(0s));
+  EXPECT_TRUE(coordinator.roster().empty());
+}
+
+TEST(CoordinatorAdmits, OneProcessOnce) {
+  Coordinator coordinator = coordinator_of(small_mission(3));
+  for (int i = 0; i < 5; ++i) coordinator.receive(hello_of(kUnassigned, 71), at(i * 1s));
+  EXPECT_EQ(coordinator.roster().size(), 1u);
+}
+
+TEST(CoordinatorAdmits, NotTheYoungerOfTwoWithOneNumberWhileTheElderLives) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(hello_of(0, 99), at(1s));
+  coordinator.receive(status_of(0, 1), at(2s));
+  coordinator.receive(hello_of(0, 99), at(4900ms));
+  ASSERT_EQ(coordinator.roster().size(), 1u);
+  EXPECT_EQ(coordinator.roster()[0].author, author_of(0));
+}
+
+TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.receive(world_where(7, {6, 6}), at(1s));
+  coordinator.receive(hello_of(0, 99), at(2999ms));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+  coordinator.receive(hello_of(0, 99), at(3s));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  const auto entry = [&](Incarnation incarnation) {
+    return *std::find_if(coordinator.roster().begin(), coordinator.roster().end(),
+                         [&](const auto& e) { return e.author.incarnation == incarnation; });
+  };
+  EXPECT_EQ(entry(life_of(0)).active_until, 7) << "out at the tick at which";
+  EXPECT_EQ(entry(99).active_from, 7) << "the other comes in";
+  EXPECT_EQ(entry(99).active_until, -1);
+}
+
+// A container engine starts a dead agent again within a second, and nobody tells it its number.
+TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  const auto ask_at = [&](Instant now) {
+    coordinator.receive(hello_of(kUnassigned, 99), now);
+    return coordinator.roster().size();
+  };
+  EXPECT_EQ(ask_at(at(500ms)), 2u);
+  coordinator.receive(status_of(1, 1), at(600ms));
+  EXPECT_EQ(ask_at(at(2999ms)), 2u) << "agent 0 may be dead";
+  ASSERT_EQ(ask_at(at(3s)), 3u);
+  EXPECT_TRUE(std::any_of(coordinator.roster().begin(), coordinator.roster().end(),
+                          [](const auto& entry) { return entry.author == Author{0, 99}; }));
+}
+
+TEST(CoordinatorAdmits, WhoeverDoesNotCareOnceAllMembersHaveSpoken) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.receive(hello_of(kUnassigned, 99), at(500ms));
+  coordinator.receive(status_of(0, 1), at(600ms));
+  coordinator.receive(status_of(1, 1), at(600ms));
+  coordinator.receive(hello_of(kUnassigned, 99), at(700ms));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 99}));
+}
+
+TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
+  Coordinator coordinator = coordinator_of(small_mission(1));
+  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(status_of(0, 5), at(1s));
+  coordinator.receive(status_of(0, 5), at(3s));
+  coordinator.receive(status_of(0, 4), at(3s));
+  coordinator.receive(hello_of(0, 99), at(4s));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+}
+
+TEST(CoordinatorAdmits, NobodyOnceTheMissionIsOver) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.end(false, "enough", at(1s));
+  coordinator.receive(hello_of(0, 99), at(10s));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+}
+
+TEST(CoordinatorAdmits, ABoundedNumberOfLives) {
+  Coordinator coordinator = coordinator_of(small_mission(1));
+  for (Incarnation life = 1; life <= 2000; ++life) {
+    coordinator.receive(hello_of(0, life), at(std::chrono::seconds(10 * life)));
+  }
+  EXPECT_LE(coordinator.roster().size(), 4u * kMaxAgents);
+}
+
+TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  Hello hello = hello_of(0);
+  hello.version = "9.9.9";
+  coordinator.receive(hello, at(0s));
+  coordinator.receive(hello, at(0s));
+  EXPECT_TRUE(coordinator.roster().empty());
+  EXPECT_EQ(coordinator.strangers(), (std::set<std::pair<std::string, std::string>>{{"somewhere", "9.9.9"}}));
+  for (int i = 0; i < 1000; ++i) {
+    hello.host = std::to_string(i);
+    coordinator.receive(hello, at(0s));
+  }
+  EXPECT_LE(coordinator.strangers().size(), 64u) << "whoever invents hosts costs no memory";
+  coordinator.receive(hello_of(0), at(0s));
+  EXPECT_EQ(coordinator.roster().size(), 1u);
+}
+
+TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
+  Mission mission = small_mission(4);
+  mission.quorum = 3;
+  Coordinator coordinator = coordinator_of(mission);
+  admit_all(coordinator, 2, at(0s));
+  advance(coordinator, at(1s));
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  coordinator.receive(hello_of(3), at(1s));
+  const auto said = only<MissionPart>(advance(coordinator, at(1s)));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+  ASSERT_FALSE(said.empty()) << "and says so at once";
+  EXPECT_EQ(said[0].state, MissionState::kRunning);
+}
+
+TEST(CoordinatorStarts, DoesNotCountThoseWhoHaveDiedMeanwhile) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  coordinator.receive(hello_of(0), at(0s));
+  coordinator.receive(hello_of(1), at(4s));
+  advance(coordinator, at(4s));
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  coordinator.receive(status_of(0, 1), at(4s));
+  advance(coordinator, at(4s));
+  EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+}
+
+TEST(CoordinatorStarts, OrFailsByATimeOutThatNamesWhoIsMissing) {
+  Mission mission = small_mission(4);
+  mission.quorum = 3;
+  mission.timing.admission_timeout_s = 20;
+  Coordinator coordinator = coordinator_of(mission);
+  advance(coordinator, at(100s));
+  coordinator.receive(hello_of(1), at(100s));
+  coordinator.receive(hello_of(2), at(100s));
+  advance(coordinator, at(119999ms));
+  EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
+  coordinator.receive(status_of(1, 1), at(119s));
+  advance(coordinator, at(120s));
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+  EXPECT_EQ(coordinator.reason(),
+            "only 1 of the quorum of 3 agents were admitted; missing: 0, 2, 3")
+      << "2 came and fell silent";
+}
+
+}  // namespace
+}  // namespace ergocast
