@@ -6,7 +6,9 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <sstream>
+#include <tuple>
+
+#include "runtime/socket_table.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -75,35 +77,10 @@ std::string described(const std::vector<Holder>& holders) {
 
 }  // namespace
 
-std::vector<OpenPort> parse_socket_table(std::string_view table) {
-  std::vector<OpenPort> sockets;
-  std::istringstream lines{std::string(table)};
-  std::string line;
-  std::getline(lines, line);  // the headings
-  while (std::getline(lines, line)) {
-    std::istringstream fields(line);
-    std::vector<std::string> words(std::istream_iterator<std::string>(fields), {});
-    if (words.size() < 10) continue;
-    const std::string& local = words[1];
-    const std::string& inode = words[9];
-    OpenPort socket;
-    const std::size_t colon = local.rfind(':');
-    if (colon == local.npos) continue;
-    const char* digits = local.data() + colon + 1;
-    if (std::from_chars(digits, local.data() + local.size(), socket.port, 16).ec != std::errc() ||
-        std::from_chars(inode.data(), inode.data() + inode.size(), socket.inode).ec !=
-            std::errc()) {
-      continue;
-    }
-    sockets.push_back(socket);
-  }
-  return sockets;
-}
-
 std::vector<Holder> holders(const fs::path& proc, const LcmUrl& url) {
   std::map<unsigned long, int> wanted;
   for (const char* table : {"net/udp", "net/udp6"}) {
-    for (const OpenPort& socket : parse_socket_table(text_of(proc / table))) {
+    for (const UdpSocket& socket : parse_socket_table(text_of(proc / table))) {
       if (socket.port < url.base_port || socket.port >= url.base_port + kBusCount) continue;
       wanted[socket.inode] = socket.port;
     }

@@ -12,15 +12,6 @@
 
 namespace ergocast::doctor {
 
-struct OpenPort {
-  int port = 0;
-  unsigned long inode = 0;
-  bool operator==(const OpenPort&) const = default;
-};
-
-/// The sockets in a table such as /proc/net/udp, as far as it is well formed.
-std::vector<OpenPort> parse_socket_table(std::string_view table);
-
 struct Holder {
   int port = 0;
   std::string program;  ///< empty: somebody else's process, whose name this user may not see

@@ -14,9 +14,6 @@
 
 namespace ergocast {
 
-/// A process looks around at least this often, whatever its core wants.
-inline constexpr std::chrono::nanoseconds kLongestWait = std::chrono::seconds(1);
-
 /// Runs `core` until it has finished. A core has receive() (called by the transport's handler),
 /// advance(now, out), next_wakeup() and finished().
 /// @param on_signal  called for SIGINT or SIGTERM; it tells the core to finish

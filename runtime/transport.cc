@@ -7,13 +7,14 @@
 #include <array>
 #include <chrono>
 #include <fstream>
+#include <iterator>
 #include <lcm/lcm-cpp.hpp>
-#include <sstream>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
 #include "runtime/clock.h"
 #include "runtime/group_membership.h"
+#include "runtime/socket_table.h"
 
 namespace ergocast {
 namespace {
@@ -25,21 +26,14 @@ constexpr std::string_view kPrefix = "ERGOCAST_";
 constexpr const char* kFirewall =
     "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
 
-/// The drops column of /proc/net/udp. Several processes share a port, so the lines are found by the
-/// sockets' inodes.
+/// What the kernel dropped at these sockets. Several processes share a port, so they are found by
+/// their inodes.
 std::int64_t drops_of(const std::vector<unsigned long>& inodes) {
-  std::ifstream table("/proc/net/udp");
-  std::string line;
-  std::getline(table, line);
+  std::ifstream file("/proc/net/udp");
+  const std::string table(std::istreambuf_iterator<char>(file), {});
   std::int64_t drops = 0;
-  while (std::getline(table, line)) {
-    std::istringstream fields(line);
-    std::string skipped;
-    for (int i = 0; i < 9; ++i) fields >> skipped;
-    unsigned long inode = 0;
-    std::int64_t dropped = 0;
-    fields >> inode >> skipped >> skipped >> dropped;
-    if (std::find(inodes.begin(), inodes.end(), inode) != inodes.end()) drops += dropped;
+  for (const UdpSocket& socket : parse_socket_table(table)) {
+    if (std::find(inodes.begin(), inodes.end(), socket.inode) != inodes.end()) drops += socket.drops;
   }
   return drops;
 }
@@ -153,10 +147,9 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
 
 Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
   using std::chrono::nanoseconds;
-  constexpr nanoseconds kLongest = std::chrono::seconds(1);
   const Instant start = now();
   const nanoseconds wait = deadline <= start ? nanoseconds(0)
-                                             : std::min<nanoseconds>(deadline - start, kLongest);
+                                             : std::min<nanoseconds>(deadline - start, kLongestWait);
   ready_.back().fd = wake_fd;
   const timespec timeout{static_cast<time_t>(wait.count() / 1000000000),
                          static_cast<long>(wait.count() % 1000000000)};

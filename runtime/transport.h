@@ -1,6 +1,7 @@
 // The three LCM buses as one process uses them: checked messages in, messages out.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -23,6 +24,9 @@ struct Listening {
   std::string channels;
 };
 
+/// A process looks around at least this often, whatever it waits for.
+inline constexpr std::chrono::nanoseconds kLongestWait = std::chrono::seconds(1);
+
 class Transport {
  public:
   /// What becomes of a datagram; all but the first may be left out. `on_accepted` sees the bytes.
@@ -42,8 +46,8 @@ class Transport {
   virtual void set_run(RunId run) = 0;
   virtual void publish(const Outgoing& outgoing) = 0;
 
-  /// Waits until something arrives, `deadline` has come or `wake_fd` (−1: none) is readable, and
-  /// hands over what has arrived; at most a bounded number of datagrams, so that a flood cannot
+  /// Waits until something arrives, `deadline` has come or `wake_fd` (−1: none) is readable, for
+  /// kLongestWait at most, and hands over what has arrived; at most a bounded number of datagrams, so that a flood cannot
   /// keep the caller from its work. Nothing that arrives makes it throw.
   /// @return when it stopped waiting
   virtual Instant deliver_until(Instant deadline, int wake_fd) = 0;

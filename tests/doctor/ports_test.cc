@@ -28,12 +28,6 @@ class Ports : public Folder {
   }
 };
 
-TEST(SocketTable, WhatIsWellFormedIsRead) {
-  const std::vector<OpenPort> expected = {{24000, 111}, {24002, 222}, {24003, 333}};
-  EXPECT_EQ(parse_socket_table(kTable), expected);
-  EXPECT_TRUE(parse_socket_table("").empty());
-}
-
 TEST_F(Ports, HoldersOfTheThreePortsAreFound) {
   write("net/udp", kTable);
   process(12, "/usr/bin/ergocast-agent", "111");

@@ -1,0 +1,20 @@
+// The kernel's table of UDP sockets, /proc/net/udp: the only place that says what it dropped.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace ergocast {
+
+struct UdpSocket {
+  int port = 0;
+  unsigned long inode = 0;  ///< by which a process is found to hold it
+  std::int64_t drops = 0;   ///< datagrams thrown away for want of buffer space
+  bool operator==(const UdpSocket&) const = default;
+};
+
+/// The sockets in such a table, as far as it is well formed.
+std::vector<UdpSocket> parse_socket_table(std::string_view table);
+
+}  // namespace ergocast
