@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
 #include "scenario/scenario.h"
 
@@ -24,6 +25,8 @@ struct MissionOptions {
   std::filesystem::path out;     ///< empty: runs/<scenario>-<time>
   Overrides overrides;
   std::optional<LcmUrl> url;     ///< nothing: this host only, on ports of the run's own
+  Seal seal;
+  std::string key_file;          ///< whence its key is; empty: none
 };
 
 /// The mission as processes over LCM on this host.
@@ -83,6 +86,8 @@ int verify(const std::filesystem::path& run_dir);
 void add_deploy(CLI::App& app, Action& action);
 /// `spy`: LCM's viewer on one bus of a mission.
 void add_spy(CLI::App& app, Action& action);
+/// `keygen`: a mission key.
+void add_keygen(CLI::App& app, Action& action);
 /// What keeps hosts from hearing each other, and the commands that mend it.
 void add_doctor(CLI::App& app, Action& action);
 

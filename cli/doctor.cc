@@ -23,6 +23,7 @@ using doctor::Level;
 
 struct DoctorOptions {
   LcmUrl url;
+  Seal seal;
   std::optional<int> peer_seconds;
   bool json = false;
 };
@@ -61,7 +62,7 @@ doctor::PeerTest try_peers(const LcmUrl& url, int seconds) {
 
 int diagnose(const DoctorOptions& options) {
   const LcmUrl& url = options.url;
-  doctor::Examination host = doctor::examine(url, options.peer_seconds.has_value());
+  doctor::Examination host = doctor::examine(url, options.seal, options.peer_seconds.has_value());
   doctor::PeerTest test;
   if (options.peer_seconds && host.lcm_usable && host.port_taken.empty()) {
     test = try_peers(url, *options.peer_seconds);
@@ -88,6 +89,7 @@ void add_doctor(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "doctor", "Look for what keeps hosts from hearing each other, and say what mends it");
   add_url_option(*command, options->url);
+  add_key_option(*command, options->seal);
   command
       ->add_option_function<int>(
           "--peer", [options](int seconds) { options->peer_seconds = seconds; },

@@ -35,6 +35,9 @@ void Launcher::plan(Role role, std::string name, const std::string& program,
   process.program.command = {(setup_.programs / program).string(), "--lcm-url", setup_.url.base(),
                              "--run-id", to_hex(setup_.run)};
   auto& command = process.program.command;
+  if (!setup_.key_file.empty()) {
+    command.insert(command.end(), {"--key-file", setup_.key_file.string()});
+  }
   command.insert(command.end(), arguments.begin(), arguments.end());
   process.program.log = setup_.run_dir / "log" / (name + ".log");
   // The logger still closes its files when we are gone; the others have nothing to lose.

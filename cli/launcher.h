@@ -29,6 +29,7 @@ class Launcher {
     std::filesystem::path run_dir;
     LcmUrl url;
     RunId run = 0;
+    std::filesystem::path key_file;  ///< that can sign; empty: no key
     int agents = 0;
   };
 

@@ -144,6 +144,7 @@ int parse_and_do(int argc, char** argv) {
   auto* run_command = app.add_subcommand("run", "Run a mission as processes over LCM on this host");
   add_mission_options(*run_command, mission);
   add_url_option(*run_command, mission);
+  add_key_option(*run_command, mission.seal, &mission.key_file);
   run_command->callback([&] { action = [&] { return run(mission); }; });
 
   auto* simulate_command =
@@ -185,6 +186,7 @@ int parse_and_do(int argc, char** argv) {
   verify_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
   verify_command->callback([&] { action = [&] { return verify(path); }; });
 
+  add_keygen(app, action);
   add_deploy(app, action);
   add_status(app, action);
   add_spy(app, action);

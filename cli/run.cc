@@ -106,11 +106,12 @@ int complain(ExitCode code, const std::string& problem) {
 }
 
 /// Flies the mission on a network that works, into a run directory that is ready.
-int fly(const Scenario& scenario, const Launcher::Setup& setup, StopSignals& signals) {
+int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal,
+        StopSignals& signals) {
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display);
   auto opened = Transport::open(
-      setup.url, setup.run, {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"}},
+      setup.url, setup.run, seal, {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"}},
       {.on_message = [&mission](const Message& message, AgentId) { mission.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     return complain(kExitUnavailable, *problem);
@@ -136,11 +137,13 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, StopSignals& sig
 int run(const MissionOptions& options) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
+  if (!options.seal.can_sign()) return complain(kExitBadInput, cannot_sign(options.key_file));
   StopSignals signals;
   Launcher::Setup setup;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
   setup.agents = static_cast<int>(scenario->mission().starts_m.size());
   setup.run = random_identity();
+  if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
   setup.url = options.url.value_or(LcmUrl{});
   if (const auto problem = why_unreachable(setup.url)) return complain(kExitUnavailable, *problem);
   const auto ports = options.url ? std::nullopt : PortReservation::take(setup.run);
@@ -153,7 +156,7 @@ int run(const MissionOptions& options) {
     return complain(kExitBadInput, *problem);
   }
   setup.run_dir = std::get<fs::path>(prepared);
-  return fly(*scenario, setup, signals);
+  return fly(*scenario, setup, options.seal, signals);
 }
 
 }  // namespace ergocast::cli

@@ -38,7 +38,7 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = Transport::open(options_.url, options_.run,
+    auto opened = Transport::open(options_.url, options_.run, options_.seal,
                                   {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
                                    {Bus::kWorld, "WORLD_STATE"},
                                    {Bus::kCommand, "RECORD_ACK"}},
@@ -63,7 +63,7 @@ class Listener {
   void hear(const Message& message) {
     const RunId run = header_of(message).run;
     if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
-    runs_.try_emplace(run, run, decode_plan, since_).first->second.receive(message, now());
+    runs_.try_emplace(run, run, decode_plan, since_, options_.seal.keyed()).first->second.receive(message, now());
   }
 
   const StatusOptions& options_;
@@ -75,6 +75,16 @@ class Listener {
 int complain(ExitCode code, const std::string& problem) {
   std::fprintf(stderr, "%s\n", problem.c_str());
   return code;
+}
+
+/// Why nobody is believed, if that has to do with keys.
+std::string key_problem(const StatusOptions& options, const RefusalCounts& refused) {
+  const auto some = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)] > 0; };
+  const std::string url = options.url.base();
+  if (some(Refusal::kUnkeyed)) return "the team on " + url + " has no mission key: ask without --key-file";
+  if (!some(Refusal::kTag)) return "";
+  return options.seal.keyed() ? "the team on " + url + " has another mission key than " + options.key_file
+                              : "the team on " + url + " has a mission key: give it with --key-file";
 }
 
 int nobody(const StatusOptions& options, const Transport& transport) {
@@ -89,7 +99,8 @@ int nobody(const StatusOptions& options, const Transport& transport) {
            " in a format that version " + version() +
            " does not know: another version of Ergocast is on this URL";
   }
-  return complain(kExitFailed, text);
+  const std::string keys = key_problem(options, transport.refused());
+  return complain(kExitFailed, keys.empty() ? text : keys);
 }
 
 int choose(const Listener& listener) {

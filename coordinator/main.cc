@@ -80,7 +80,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   Coordinator coordinator({node.run, random_identity(), host_name(), version()}, decode_plan,
                           std::move(plan), takeover);
   auto opened = Transport::open(
-      node.url, node.run,
+      node.url, node.run, node.seal,
       {{Bus::kSwarm, "HELLO|AGENT_STATUS_.*|STOP|MISSION|TEAM_STATUS"}, {Bus::kWorld, "WORLD_STATE"}},
       {.on_message = [&](const Message& message, AgentId) { coordinator.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
@@ -133,6 +133,10 @@ int main(int argc, char** argv) {
              "on the URL, else starts a new one.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("coordinator", node.log_level);
+  if (!node.seal.can_sign()) {
+    spdlog::error("{}", cannot_sign(node.key_file));
+    return kExitBadInput;
+  }
   if (scenario->count() == 0) {
     if (resume) return run(node, {}, Takeover::kMust);
     spdlog::error("no SCENARIO: name a scenario file, or take a mission over with --resume");

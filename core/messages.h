@@ -30,14 +30,20 @@ inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::mill
 enum class Refusal {
   kSize,   ///< shorter or longer than its type and counts say
   kType,   ///< not one of our types, or not the one its channel carries
-  kTag,    ///< damaged: the hash over the message does not match
+  kTag,    ///< damaged, or of a sender with another mission key
+  kUnkeyed,   ///< sound, but of a sender without a mission key
+  kUnsigned,  ///< without the signature of whoever may begin and end missions
   kRun,    ///< of another run
   kRange,  ///< a number that cannot be true: NaN, |S| > elapsed, a coverage from the future
   kLimit,  ///< a table is full
+  kRate,   ///< its sender says far more than a mission needs
 };
-inline constexpr int kRefusalKinds = 6;
+inline constexpr int kRefusalKinds = 9;
 const char* to_string(Refusal refusal);
 using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
+
+/// Ed25519, of the holder of a team's signing key; zero if nobody has signed.
+using Signature = std::array<std::byte, 64>;
 
 /// Who says something, and as which of its messages.
 struct Header {
@@ -81,6 +87,7 @@ struct MissionPart {
   std::vector<RosterEntry> roster;   ///< this part's share
   std::vector<std::byte> plan;       ///< this part's share of the compiled plan
   std::string reason;                ///< why it ended or failed
+  Signature signature{};             ///< the coordinator's, which teammates repeat
 };
 
 /// One block of an agent's running sums: the numerator of (4), cumulative since its start.
@@ -146,6 +153,8 @@ struct Stop {
   Header header;
   bool failed = false;  ///< whether the mission failed or somebody simply wanted it to end
   std::string reason;
+  bool now = false;     ///< emergency: everybody stands still at once, whoever leads
+  Signature signature{};
 };
 
 struct Vehicle {

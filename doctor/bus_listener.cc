@@ -52,8 +52,17 @@ std::string described(RunId id, const HeardRun& run) {
 void Overheard::take(std::span<const std::byte> datagram) {
   const auto [channel, payload] = opened(datagram);
   if (channel.empty()) return;
-  const auto decoded = decode(payload, 0);
+  const auto decoded = decode(payload, 0, seal_, channel);
   if (const auto* message = std::get_if<Message>(&decoded)) return take(*message);
+  const Refusal refusal = std::get<Refusal>(decoded);
+  if (refusal == Refusal::kUnkeyed) {
+    ++unkeyed_;
+    return;
+  }
+  if (refusal == Refusal::kTag) {
+    ++other_key_;
+    return;
+  }
   ++foreign_messages_;
   note(foreign_channels_, channel);
 }
@@ -74,6 +83,32 @@ void Overheard::take(const Message& message) {
   }
 }
 
+std::optional<Finding> Overheard::key_finding() const {
+  if (unkeyed_ > 0) {
+    return Finding{"swarm bus", Level::kWarning, "a team without a mission key",
+                   "Whoever has a key refuses all that it says.",
+                   "--key-file FILE   # for every process, or for none"};
+  }
+  if (other_key_ > 0 && seal_.keyed()) {
+    return Finding{"swarm bus", Level::kWarning, "messages that this key does not open",
+                   "They are damaged, or their senders have another key and refuse all that this "
+                   "host says.",
+                   "sha256sum FILE   # of --key-file, on every host"};
+  }
+  if (other_key_ > 0) {
+    return Finding{"swarm bus", Level::kNote, "a team with a mission key",
+                   "This host can join it with that key.", "ergocast doctor --key-file FILE"};
+  }
+  return std::nullopt;
+}
+
+Finding authentication_finding(bool keyed) {
+  if (keyed) return {"mission key", Level::kOk, "messages are checked with it", "", ""};
+  return {"mission key", Level::kNote, "none: unauthenticated",
+          "Whoever reaches these ports can speak for the team. Read docs/security.md.",
+          "ergocast keygen"};
+}
+
 Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) const {
   LcmUrl other = url;
   other.base_port = free_port.value_or(kFirstBasePort);
@@ -85,6 +120,7 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
             "A team is at work here and this host hears it. A second run needs ports of its own.",
             ""};
   }
+  if (const auto keys = key_finding()) return *keys;
   if (foreign_messages_ > 0) {
     return {"swarm bus", Level::kWarning, "other LCM traffic: " + joined(foreign_channels_),
             "Every process of a team would parse all of it and refuse it.",
@@ -93,9 +129,9 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
   return {"swarm bus", Level::kOk, "nobody speaks on " + where, "", ""};
 }
 
-Overheard listen_to_swarm(const LcmUrl& url, std::chrono::milliseconds duration,
+Overheard listen_to_swarm(const LcmUrl& url, const Seal& seal, std::chrono::milliseconds duration,
                           std::string& error) {
-  Overheard overheard;
+  Overheard overheard(seal);
   const Socket socket = group_listener(url.group, url.base_port, error);
   if (!error.empty()) return overheard;
   std::array<std::byte, 65536> buffer;

@@ -25,11 +25,11 @@ std::optional<int> some_free_base_port() {
 }
 
 /// Ports and swarm bus.
-void examine_bus(const LcmUrl& url, Examination& all) {
+void examine_bus(const LcmUrl& url, const Seal& seal, Examination& all) {
   const auto everybody = holders("/proc", url);
   std::string refusal;
-  Overheard overheard;
-  if (all.lcm_usable) overheard = listen_to_swarm(url, kListening, refusal);
+  Overheard overheard(seal);
+  if (all.lcm_usable) overheard = listen_to_swarm(url, seal, kListening, refusal);
   const auto free = everybody.empty() && refusal.empty() && !overheard.anything()
                         ? std::nullopt
                         : some_free_base_port();
@@ -49,7 +49,7 @@ void examine_bus(const LcmUrl& url, Examination& all) {
 
 }  // namespace
 
-Examination examine(const LcmUrl& url, bool several_hosts) {
+Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts) {
   Examination all;
   Findings& findings = all.findings;
   const auto every = interfaces();
@@ -62,7 +62,8 @@ Examination examine(const LcmUrl& url, bool several_hosts) {
   findings = routing_findings(url, routed, every);
   findings.push_back(ttl_finding(url, several_hosts));
   findings.push_back(self_test_finding(url, failure, routed.has_value()));
-  examine_bus(url, all);
+  examine_bus(url, seal, all);
+  findings.push_back(authentication_finding(seal.keyed()));
   findings.push_back(receive_buffer_finding(url, measure_receive_buffer(url)));
   findings.push_back(fragments_finding("/proc"));
   if (routed) findings.push_back(reverse_path_finding("/proc", *routed));

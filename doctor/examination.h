@@ -2,6 +2,7 @@
 #pragma once
 
 #include "doctor/finding.h"
+#include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {
@@ -13,7 +14,8 @@ struct Examination {
   std::string port_taken;
 };
 
+/// @param seal  the team's, if it has a key
 /// @param several_hosts  whether the team is meant to be on more than this one
-Examination examine(const LcmUrl& url, bool several_hosts);
+Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts);
 
 }  // namespace ergocast::doctor

@@ -1,7 +1,5 @@
 #include "lcmtypes/codec.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <cstring>
 
@@ -11,9 +9,7 @@
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kTagOffset = 44;
-constexpr std::size_t kTagBytes = 16;
-constexpr std::size_t kHeaderEnd = kTagOffset + kTagBytes;
+constexpr std::size_t kSignatureEnd = kHeaderEnd + sizeof(Signature);
 constexpr std::size_t kRosterEntryBytes = 36;
 constexpr std::size_t kVehicleBytes = 60;
 constexpr std::size_t kDigestEntryBytes = 28;
@@ -29,27 +25,6 @@ std::int32_t read32(const std::byte* at) {
   std::uint32_t raw;
   std::memcpy(&raw, at, sizeof raw);
   return static_cast<std::int32_t>(__builtin_bswap32(raw));
-}
-
-// ---- the tag ---------------------------------------------------------------------------------
-
-using Tag = std::array<std::byte, kTagBytes>;
-
-/// XXH3-128 over bytes whose tag is zero.
-Tag hash_of(std::span<const std::byte> bytes) {
-  XXH128_canonical_t canonical;
-  XXH128_canonicalFromHash(&canonical, XXH3_128bits(bytes.data(), bytes.size()));
-  Tag tag;
-  std::memcpy(tag.data(), canonical.digest, kTagBytes);
-  return tag;
-}
-
-/// The tag that `bytes` should have, whatever theirs is.
-Tag tag_of(std::span<const std::byte> bytes) {
-  std::array<std::byte, kMaxDatagramBytes> copy;
-  std::memcpy(copy.data(), bytes.data(), bytes.size());
-  std::memset(copy.data() + kTagOffset, 0, kTagBytes);
-  return hash_of({copy.data(), bytes.size()});
 }
 
 // ---- sizes: what the counts inside declare must be what arrived ---------------------------------
@@ -93,7 +68,7 @@ bool sizes_match(const hello_t*, std::span<const std::byte> bytes) {
 }
 
 bool sizes_match(const mission_t*, std::span<const std::byte> bytes) {
-  constexpr std::size_t kRosterCountOffset = kHeaderEnd + 8 + 1 + 4 + 4;
+  constexpr std::size_t kRosterCountOffset = kSignatureEnd + 8 + 1 + 4 + 4;
   std::size_t roster = 0, plan = 0;
   if (!count_at(bytes, kRosterCountOffset, kMaxRosterEntriesPerMessage, roster) ||
       !count_at(bytes, kRosterCountOffset + 4, kMaxPlanBytesPerMessage, plan)) {
@@ -117,7 +92,7 @@ bool sizes_match(const team_status_t*, std::span<const std::byte> bytes) {
 
 bool sizes_match(const stop_t*, std::span<const std::byte> bytes) {
   Tail tail(bytes, kHeaderEnd);
-  return tail.skip(1) && tail.string(kMaxReasonLength) && tail.ended();
+  return tail.skip(sizeof(Signature) + 2) && tail.string(kMaxReasonLength) && tail.ended();
 }
 
 bool sizes_match(const world_state_t*, std::span<const std::byte> bytes) {
@@ -166,51 +141,60 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   return result;
 }
 
-using DecodeFunction = std::variant<Message, Refusal> (*)(std::span<const std::byte>);
+/// What begins, rules and ends missions: whoever has only the team's shared key cannot say it.
+template <class Plain>
+constexpr bool kSigned = std::is_same_v<Plain, MissionPart> || std::is_same_v<Plain, Stop>;
+
+struct Decoder {
+  std::uint64_t fingerprint;
+  bool is_signed;
+  std::variant<Message, Refusal> (*decode)(std::span<const std::byte>);
+};
 
 template <class Wire, class Plain>
-std::pair<std::uint64_t, DecodeFunction> entry() {
-  return {static_cast<std::uint64_t>(Wire::getHash()), &decode_as<Wire, Plain>};
+Decoder entry() {
+  return {static_cast<std::uint64_t>(Wire::getHash()), kSigned<Plain>, &decode_as<Wire, Plain>};
 }
 
-DecodeFunction decoder_for(std::uint64_t fingerprint) {
+const Decoder* decoder_for(std::uint64_t fingerprint) {
   static const std::array kDecoders = {
       entry<contribution_t, Contribution>(), entry<world_state_t, WorldState>(),
       entry<command_t, Command>(),           entry<agent_status_t, AgentStatus>(),
       entry<record_ack_t, RecordAck>(),      entry<mission_t, MissionPart>(),
       entry<team_status_t, TeamStatus>(),    entry<hello_t, Hello>(),
       entry<stop_t, Stop>(),                 entry<digest_t, Digest>()};
-  for (const auto& [known, function] : kDecoders) {
-    if (known == fingerprint) return function;
-  }
-  return nullptr;
+  const auto at = std::find_if(kDecoders.begin(), kDecoders.end(), [&](const Decoder& decoder) {
+    return decoder.fingerprint == fingerprint;
+  });
+  return at == kDecoders.end() ? nullptr : &*at;
 }
 
 }  // namespace
 
-void encode(const Message& message, std::vector<std::byte>& out) {
+void encode(const Message& message, std::vector<std::byte>& out, const Seal& seal,
+            std::string_view channel) {
   std::visit(
-      [&out](const auto& plain) {
+      [&](const auto& plain) {
         const auto wire = to_wire(plain);
         const int size = wire.getEncodedSize();
         out.resize(static_cast<std::size_t>(size));
         ERGOCAST_REQUIRE(out.size() <= kMaxDatagramBytes);
         ERGOCAST_REQUIRE(wire.encode(out.data(), 0, size) == size);
+        seal.close(out, kSigned<std::decay_t<decltype(plain)>>, channel);
       },
       message);
-  const Tag tag = hash_of(out);  // to_wire() leaves it zero
-  std::copy(tag.begin(), tag.end(), out.begin() + kTagOffset);
 }
 
-std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run) noexcept {
+std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run, const Seal& seal,
+                                      std::string_view channel) noexcept {
   if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return Refusal::kSize;
-  const DecodeFunction function = decoder_for(read64(bytes.data()));
-  if (function == nullptr) return Refusal::kType;
-  const Tag tag = tag_of(bytes);
-  if (!std::equal(tag.begin(), tag.end(), bytes.begin() + kTagOffset)) return Refusal::kTag;
+  const Decoder* decoder = decoder_for(read64(bytes.data()));
+  if (decoder == nullptr) return Refusal::kType;
+  if (const auto refusal = seal.check_tag(bytes, channel)) return *refusal;
   if (run != 0 && read64(bytes.data() + 8) != run) return Refusal::kRun;
   try {
-    return function(bytes);
+    if (decoder->is_signed && !seal.signature_holds(bytes)) return Refusal::kUnsigned;
+    return decoder->decode(bytes);
   } catch (...) {  // only memory can run out here
     return Refusal::kLimit;
   }

@@ -76,6 +76,7 @@ mission_t to_wire(const MissionPart& m) {
                    m.plan.size() <= kMaxPlanBytesPerMessage);
   mission_t w;
   w.header = to_wire(m.header);
+  std::memcpy(w.mission_signature, m.signature.data(), m.signature.size());
   w.revision = m.revision;
   w.state = static_cast<std::int8_t>(m.state);
   w.part = m.part;
@@ -118,6 +119,7 @@ bool from_wire(const mission_t& w, MissionPart& m) {
   m.plan.resize(w.plan.size());
   if (!w.plan.empty()) std::memcpy(m.plan.data(), w.plan.data(), w.plan.size());
   m.reason = w.reason;
+  std::memcpy(m.signature.data(), w.mission_signature, m.signature.size());
   return true;
 }
 
@@ -230,13 +232,16 @@ bool from_wire(const team_status_t& w, TeamStatus& m) {
 stop_t to_wire(const Stop& m) {
   stop_t w;
   w.header = to_wire(m.header);
+  std::memcpy(w.stop_signature, m.signature.data(), m.signature.size());
   w.stop_failed = m.failed ? 1 : 0;
+  w.stop_now = m.now ? 1 : 0;
   w.stop_reason = bounded(m.reason, kMaxReasonLength);
   return w;
 }
 bool from_wire(const stop_t& w, Stop& m) {
   if (!plausible_text(w.stop_reason)) return false;
-  m = {from_wire(w.header), w.stop_failed != 0, w.stop_reason};
+  m = {from_wire(w.header), w.stop_failed != 0, w.stop_reason, w.stop_now != 0, {}};
+  std::memcpy(m.signature.data(), w.stop_signature, m.signature.size());
   return true;
 }
 

@@ -17,7 +17,7 @@
 
 namespace ergocast {
 
-/// The message with its tag still zero. Strings are cut at their limits.
+/// The message with its tag still zero, and its signature as it is. Strings are cut at their limits.
 contribution_t to_wire(const Contribution& m);
 agent_status_t to_wire(const AgentStatus& m);
 team_status_t to_wire(const TeamStatus& m);

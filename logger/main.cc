@@ -166,7 +166,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume) {
   RunLogger logger(node.run, *std::get<0>(created), std::move(past));
   Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
-      node.url, node.run, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
+      node.url, node.run, node.seal, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
       {.on_message = [&](const Message& message, AgentId) { recorder.receive(message, now()); },
        .on_accepted = [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
          logger.keep_event(bus, channel, bytes);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "runtime/key_file.h"
 #include "runtime/logging.h"
 
 namespace ergocast {
@@ -38,8 +39,32 @@ void add_url_option(CLI::App& app, LcmUrl& url) {
       ->type_name("URL");
 }
 
+void add_key_option(CLI::App& app, Seal& seal, std::string* file) {
+  app.add_option_function<std::string>(
+         "--key-file",
+         [&seal, file](const std::string& name) {
+           if (name.empty()) return;
+           const auto key = read_key_file(name);
+           if (const auto* problem = std::get_if<std::string>(&key)) {
+             throw CLI::ValidationError("--key-file", *problem);
+           }
+           seal = Seal(std::get<MissionKey>(key));
+           if (file != nullptr) *file = name;
+         },
+         "Mission key of the team, as `ergocast keygen` writes it; without one, anybody on the "
+         "network can speak for the team")
+      ->envname("ERGOCAST_KEY_FILE")
+      ->type_name("FILE");
+}
+
+std::string cannot_sign(const std::string& key_file) {
+  return key_file + ": cannot begin or end missions; take the file NAME.coordinator.key that "
+                    "`ergocast keygen` wrote together with it";
+}
+
 void add_bus_options(CLI::App& app, BusOptions& options) {
   add_url_option(app, options.url);
+  add_key_option(app, options.seal, &options.key_file);
   app.add_option_function<std::string>(
          "--run-id", [&options](const std::string& text) { read_run_id(text, options.run); },
          "This run only")

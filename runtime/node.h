@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/ids.h"
+#include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast {
@@ -22,12 +23,20 @@ enum ExitCode {
 struct BusOptions {
   LcmUrl url;
   RunId run = 0;  ///< 0: not given
+  Seal seal;      ///< without a key unless one was given
+  std::string key_file;
 };
 
 /// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group).
 void add_url_option(CLI::App& app, LcmUrl& url);
 
-/// Besides, --run-id.
+/// --key-file (default: $ERGOCAST_KEY_FILE, or no key). `file` gets its name.
+void add_key_option(CLI::App& app, Seal& seal, std::string* file = nullptr);
+
+/// What to say of a key that only the coordinator's file would do for.
+std::string cannot_sign(const std::string& key_file);
+
+/// --lcm-url, --key-file and --run-id.
 void add_bus_options(CLI::App& app, BusOptions& options);
 
 /// Of the programs that take part in a mission.

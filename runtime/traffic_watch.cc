@@ -11,6 +11,20 @@ namespace ergocast {
 
 using namespace std::chrono_literals;
 
+namespace {
+
+/// What refusals that have to do with keys say about the hosts of a team.
+std::string key_advice(const RefusalCounts& refused, bool keyed) {
+  const auto some = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)] > 0; };
+  if (some(Refusal::kUnkeyed)) return "; unkeyed: somebody speaks without our --key-file";
+  if (some(Refusal::kUnsigned)) return "; unsigned: a mission needs the coordinator's --key-file";
+  if (!some(Refusal::kTag)) return "";
+  return keyed ? "; tag: damaged, or somebody has another --key-file"
+               : "; tag: damaged, or a team with a --key-file is on this URL";
+}
+
+}  // namespace
+
 bool TrafficWatch::look(Instant now) {
   if (now < next_look_) return false;
   next_look_ = now + 1s;
@@ -26,7 +40,10 @@ bool TrafficWatch::look(Instant now) {
     reasons += std::string(" ") + to_string(static_cast<Refusal>(i)) + '=' +
                std::to_string(refused[i]);
   }
-  if (refused != logged_) spdlog::warn("messages refused since the start:{}", reasons);
+  if (refused != logged_) {
+    spdlog::warn("messages refused since the start:{}{}", reasons,
+                 key_advice(refused, transport_.keyed()));
+  }
   if (kernel_drops_ != logged_drops_) {
     spdlog::warn("the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "
                  "recv_buf_size in the URL", kernel_drops_);

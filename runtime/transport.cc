@@ -50,13 +50,15 @@ std::vector<unsigned long> own_sockets() {
 
 class LcmTransport final : public Transport {
  public:
-  LcmTransport(RunId run, Handlers handlers) : run_(run), handlers_(std::move(handlers)) {}
+  LcmTransport(RunId run, const Seal& seal, Handlers handlers)
+      : run_(run), seal_(seal), handlers_(std::move(handlers)) {}
 
   std::optional<std::string> connect(const LcmUrl& url, const std::vector<Listening>& listening);
 
   void set_run(RunId run) override { run_ = run; }
   void publish(const Outgoing& outgoing) override;
   Instant deliver_until(Instant deadline, int wake_fd) override;
+  bool keyed() const override { return seal_.keyed(); }
   std::int64_t kernel_drops() const override { return drops_of(sockets_); }
   bool renew_membership() override { return membership_->renew(); }
 
@@ -84,6 +86,7 @@ class LcmTransport final : public Transport {
   void take(Bus bus, const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
 
   RunId run_;
+  Seal seal_;
   Handlers handlers_;
   std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
   std::array<Line, kBusCount> lines_{};
@@ -120,9 +123,10 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
 }
 
 void LcmTransport::publish(const Outgoing& outgoing) {
-  encode(outgoing.message, bytes_);
-  buses_[static_cast<std::size_t>(outgoing.bus)]->publish(
-      channel_of(outgoing.message, outgoing.relayer), bytes_.data(), static_cast<unsigned>(bytes_.size()));
+  const std::string& channel = channel_of(outgoing.message, outgoing.relayer);
+  encode(outgoing.message, bytes_, seal_, channel);
+  buses_[static_cast<std::size_t>(outgoing.bus)]->publish(channel, bytes_.data(),
+                                                          static_cast<unsigned>(bytes_.size()));
 }
 
 void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
@@ -130,7 +134,7 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
   const std::span<const std::byte> bytes(static_cast<const std::byte*>(buffer->data),
                                          buffer->data_size);
   try {
-    const auto decoded = decode(bytes, run_);
+    const auto decoded = decode(bytes, run_, seal_, channel);
     if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
       if (*refusal == Refusal::kType) note_unknown_format(channel);
       return refuse(*refusal);
@@ -167,9 +171,10 @@ Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
-    const LcmUrl& url, RunId run, const std::vector<Listening>& listening, Handlers handlers) {
+    const LcmUrl& url, RunId run, const Seal& seal, const std::vector<Listening>& listening,
+    Handlers handlers) {
   if (const auto problem = why_unreachable(url)) return *problem;
-  auto transport = std::make_unique<LcmTransport>(run, std::move(handlers));
+  auto transport = std::make_unique<LcmTransport>(run, seal, std::move(handlers));
   if (const auto problem = transport->connect(url, listening)) return *problem;
   return std::unique_ptr<Transport>(std::move(transport));
 }

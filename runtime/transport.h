@@ -14,6 +14,7 @@
 
 #include "core/ids.h"
 #include "core/messages.h"
+#include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast {
@@ -39,8 +40,10 @@ class Transport {
 
   /// Opens every bus, to publish on; listens to some. An error says what would mend it.
   /// @param run  the only run accepted; 0 accepts any until set_run()
+  /// @param seal  closes what is published, and what it does not open is refused
   static std::variant<std::unique_ptr<Transport>, std::string> open(
-      const LcmUrl& url, RunId run, const std::vector<Listening>& listening, Handlers handlers);
+      const LcmUrl& url, RunId run, const Seal& seal, const std::vector<Listening>& listening,
+      Handlers handlers);
   virtual ~Transport() = default;
 
   virtual void set_run(RunId run) = 0;
@@ -61,6 +64,9 @@ class Transport {
     std::string channel;
   };
   const UnknownFormat& unknown_format() const { return unknown_format_; }
+
+  /// Whether only who has the team's key is believed.
+  virtual bool keyed() const = 0;
 
   /// Datagrams that the kernel dropped at our sockets for want of buffer space.
   virtual std::int64_t kernel_drops() const = 0;

@@ -37,8 +37,11 @@ std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
 
 }  // namespace
 
-TeamView::TeamView(RunId run, PlanDecoder decode_plan, Instant since)
-    : run_(run), follower_(std::move(decode_plan)), since_(since) {}
+TeamView::TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated)
+    : run_(run),
+      authenticated_(authenticated),
+      follower_(std::move(decode_plan)),
+      since_(since) {}
 
 void TeamView::receive(const Message& message, Instant now) {
   const Header& from = header_of(message);
@@ -188,6 +191,7 @@ void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) co
 TeamPicture TeamView::picture(Instant now) const {
   TeamPicture picture;
   picture.run = run_;
+  picture.authenticated = authenticated_;
   picture.tick_count = tick_count_;
   if (const auto& mission = follower_.mission()) {
     picture.scenario = mission->name;

@@ -45,6 +45,7 @@ struct ProcessRow {
 
 struct TeamPicture {
   RunId run = 0;
+  bool authenticated = false;  ///< else anybody on the network may have said it
   std::string scenario;               ///< empty: the mission was not heard
   std::optional<MissionState> state;  ///< nothing: not heard
   std::string reason;                 ///< why it ended, or why its plan cannot be read
@@ -61,7 +62,8 @@ struct TeamPicture {
 class TeamView {
  public:
   /// @param since  when the listening began
-  TeamView(RunId run, PlanDecoder decode_plan, Instant since);
+  /// @param authenticated  whether what it receives was checked with the team's key
+  TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated = false);
 
   /// @pre the message is of this view's run
   void receive(const Message& message, Instant now);
@@ -94,6 +96,7 @@ class TeamView {
   PacingClock::duration patience_with(AgentId sender) const;
 
   RunId run_;
+  bool authenticated_;
   MissionFollower follower_;
   Instant since_;
   Tick tick_ = 0, world_tick_ = 0;

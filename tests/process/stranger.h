@@ -15,10 +15,10 @@ namespace ergocast::test {
 
 class Stranger {
  public:
-  explicit Stranger(const std::string& url)
+  explicit Stranger(const std::string& url, const Seal& seal = {})
       : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
         transport_(std::get<0>(
-            Transport::open(url_, 0, {}, {.on_message = [](const Message&, AgentId) {}}))) {}
+            Transport::open(url_, 0, seal, {}, {.on_message = [](const Message&, AgentId) {}}))) {}
 
   void say(Bus bus, Message message) {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);

@@ -18,9 +18,9 @@ namespace ergocast::test {
 
 class Witness {
  public:
-  explicit Witness(const std::string& url) {
+  explicit Witness(const std::string& url, const Seal& seal = {}) {
     transport_ = std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(url)), 0,
+        std::get<LcmUrl>(LcmUrl::parse(url)), 0, seal,
         {{Bus::kSwarm, "MISSION|CONTRIBUTION_.*|DIGEST_.*|AGENT_STATUS_.*"}, {Bus::kCommand, "COMMAND_.*"}},
         {.on_message = [this](const Message& message, AgentId) { hear(message); }}));
   }

@@ -1,0 +1,49 @@
+// `ergocast keygen`: a team's mission key.
+#include <cstdio>
+#include <memory>
+
+#include "cli/commands.h"
+#include "runtime/key_file.h"
+#include "runtime/node.h"
+
+namespace ergocast::cli {
+namespace {
+
+int complain(const std::string& problem) {
+  std::fprintf(stderr, "%s\n", problem.c_str());
+  return kExitBadInput;
+}
+
+int make_keys(const std::string& name) {
+  const std::string team = name + ".key", coordinator = name + ".coordinator.key";
+  const MissionKey key = make_mission_key();
+  // The coordinator's first: without it nobody could use the team's.
+  if (const auto problem = write_key_file(coordinator, key_text(key, true))) return complain(*problem);
+  if (const auto problem = write_key_file(team, key_text(key, false))) {
+    std::remove(coordinator.c_str());
+    return complain(*problem);
+  }
+  std::printf(
+      "%s: for every agent, world, driver, logger and whoever watches\n"
+      "%s: for who starts and ends missions: coordinator, ergocast run, ergocast stop\n"
+      "Copy them over a channel you trust; each program takes its own as --key-file or in "
+      "ERGOCAST_KEY_FILE.\n",
+      team.c_str(), coordinator.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_keygen(CLI::App& app, Action& action) {
+  const auto name = std::make_shared<std::string>("mission");
+  auto* command = app.add_subcommand(
+      "keygen", "Make a mission key, without which nobody is believed on the team's network");
+  command->add_option("NAME", *name, "Writes NAME.key and NAME.coordinator.key, never over others")
+      ->capture_default_str();
+  command->footer(
+      "Whoever has NAME.key can speak for any agent and read along; only NAME.coordinator.key begins\n"
+      "and ends missions. Exit codes: 0 done; 2 a file is there already or cannot be written.");
+  command->callback([name, &action] { action = [name] { return make_keys(*name); }; });
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,106 @@
+#include "lcmtypes/seal.h"
+
+#include <sodium.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/require.h"
+
+namespace ergocast {
+namespace {
+
+using Tag = std::array<std::byte, kTagBytes>;
+
+static_assert(sizeof(MissionKey::Secret) == crypto_generichash_KEYBYTES);
+static_assert(sizeof(MissionKey::Secret) == crypto_sign_PUBLICKEYBYTES);
+static_assert(sizeof(MissionKey::SigningKey) == crypto_sign_SECRETKEYBYTES);
+static_assert(sizeof(Signature) == crypto_sign_BYTES);
+
+template <class Bytes>
+auto raw(Bytes& bytes) {
+  using Byte = std::conditional_t<std::is_const_v<std::remove_pointer_t<decltype(bytes.data())>>,
+                                  const unsigned char, unsigned char>;
+  return reinterpret_cast<Byte*>(bytes.data());
+}
+
+/// A message with `count` bytes, from the tag on, taken as zero.
+class Blanked {
+ public:
+  Blanked(std::span<const std::byte> bytes, std::size_t count) : size_(bytes.size()) {
+    ERGOCAST_REQUIRE(bytes.size() >= kTagOffset + count && bytes.size() <= bytes_.size());
+    std::copy(bytes.begin(), bytes.end(), bytes_.begin());
+    std::fill_n(bytes_.begin() + kTagOffset, count, std::byte{0});
+  }
+  const unsigned char* data() const { return raw(bytes_); }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::array<std::byte, kMaxDatagramBytes> bytes_;
+  std::size_t size_;
+};
+
+constexpr std::size_t kUnsignedBytes = kTagBytes + sizeof(Signature);
+
+Tag hash_of(const Blanked& message) {
+  XXH128_canonical_t canonical;
+  XXH128_canonicalFromHash(&canonical, XXH3_128bits(message.data(), message.size()));
+  Tag tag;
+  std::memcpy(tag.data(), canonical.digest, kTagBytes);
+  return tag;
+}
+
+Tag keyed_hash_of(const Blanked& message, std::string_view channel, const MissionKey& key) {
+  crypto_generichash_state state;
+  crypto_generichash_init(&state, raw(key.shared), key.shared.size(), kTagBytes);
+  crypto_generichash_update(&state, message.data(), message.size());
+  crypto_generichash_update(&state, raw(channel), channel.size());
+  Tag tag;
+  crypto_generichash_final(&state, raw(tag), tag.size());
+  return tag;
+}
+
+}  // namespace
+
+Seal::Seal(const MissionKey& key) : key_(std::make_shared<const MissionKey>(key)) {
+  ERGOCAST_REQUIRE(sodium_init() >= 0);
+}
+
+void Seal::close(std::span<std::byte> bytes, bool has_signature, std::string_view channel) const {
+  if (has_signature && keyed() && key_->signing) sign(bytes);
+  const Blanked message(bytes, kTagBytes);
+  const Tag tag = keyed() ? keyed_hash_of(message, channel, *key_) : hash_of(message);
+  std::copy(tag.begin(), tag.end(), bytes.begin() + kTagOffset);
+}
+
+void Seal::sign(std::span<std::byte> bytes) const {
+  const std::span<std::byte> signature = bytes.subspan(kHeaderEnd, sizeof(Signature));
+  const bool is_empty = std::all_of(signature.begin(), signature.end(),
+                                    [](std::byte b) { return b == std::byte{0}; });
+  if (!is_empty) return;  // repeated for somebody else
+  const Blanked message(bytes, kUnsignedBytes);
+  crypto_sign_detached(raw(signature), nullptr, message.data(), message.size(),
+                       raw(*key_->signing));
+}
+
+std::optional<Refusal> Seal::check_tag(std::span<const std::byte> bytes,
+                                       std::string_view channel) const {
+  const Blanked message(bytes, kTagBytes);
+  const auto fits = [&bytes](const Tag& tag) {
+    return sodium_memcmp(tag.data(), bytes.data() + kTagOffset, kTagBytes) == 0;
+  };
+  if (fits(keyed() ? keyed_hash_of(message, channel, *key_) : hash_of(message)))
+    return std::nullopt;
+  return keyed() && fits(hash_of(message)) ? Refusal::kUnkeyed : Refusal::kTag;
+}
+
+bool Seal::signature_holds(std::span<const std::byte> bytes) const {
+  if (!keyed()) return true;
+  if (bytes.size() < kHeaderEnd + sizeof(Signature)) return false;
+  const Blanked message(bytes, kUnsignedBytes);
+  return crypto_sign_verify_detached(raw(bytes) + kHeaderEnd, message.data(), message.size(),
+                                     raw(key_->coordinator)) == 0;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,31 @@
+// Mission keys as files that only their owner may read.
+//
+//   ergocast key 1
+//   shared <64 hex digits>
+//   coordinator <64 hex digits>
+//   signing <128 hex digits>      only in the coordinator's file
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "lcmtypes/seal.h"
+
+namespace ergocast {
+
+/// A new key, of the operating system's random bits; it can sign.
+MissionKey make_mission_key();
+
+/// The text of a key file. Without the signing key if `for_coordinator` is false.
+std::string key_text(const MissionKey& key, bool for_coordinator);
+
+/// The key in `file`, or one sentence that says what is wrong with it and what to do. Refused are
+/// files that others than their owner may read or write, and those of other users.
+std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path& file);
+
+/// Writes a file that only its owner may read; never over another. An error names the remedy.
+std::optional<std::string> write_key_file(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace ergocast
