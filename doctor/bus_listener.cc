@@ -96,7 +96,7 @@ std::optional<Finding> Overheard::key_finding() const {
                    "sha256sum FILE   # of --key-file, on every host"};
   }
   if (other_key_ > 0) {
-    return Finding{"swarm bus", Level::kNote, "a team with a mission key",
+    return Finding{"swarm bus", Level::kNote, "a team with a mission key, or damage",
                    "This host can join it with that key.", "ergocast doctor --key-file FILE"};
   }
   return std::nullopt;

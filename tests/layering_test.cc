@@ -24,6 +24,7 @@ enum class Outside {
   kCommandLine,  // CLI11
   kJson,         // nlohmann
   kHash,         // xxHash
+  kCrypto,       // libsodium
   kGenerator,    // Random123
   kPng,          // libpng
   kFiles,        // files and standard streams
@@ -42,7 +43,7 @@ const std::vector<Rule> kRules = {
     {"core", {"core"}, {kGenerator}},
     {"maps", {"core", "maps"}, {kPng, kFiles}},
     {"scenario", {"core", "maps", "scenario"}, {kProtobuf, kHash, kCommandLine, kFiles}},
-    {"lcmtypes", {"core", "lcmtypes"}, {kLcmTypes, kHash}},
+    {"lcmtypes", {"core", "lcmtypes"}, {kLcmTypes, kHash, kCrypto}},
     // The four kinds of process: they know the core, and not each other.
     {"agent", {"core", "agent"}, {}},
     {"coordinator", {"core", "coordinator"}, {}},
@@ -50,7 +51,7 @@ const std::vector<Rule> kRules = {
     {"logger", {"core", "maps", "logger"}, {kFiles, kJson}},
     // The same cores in one process: no network, no clock, no threads.
     {"lab", {"core", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab"}, {}},
-    {"runtime", {"core", "lcmtypes", "runtime"}, {kLcm, kLog, kCommandLine, kFiles, kSystem}},
+    {"runtime", {"core", "lcmtypes", "runtime"}, {kLcm, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
     {"doctor", {"core", "lcmtypes", "runtime", "doctor"}, {kJson, kFiles, kSystem}},
     {"agent/main.cc", {"agent", "scenario", "runtime"}, {kLog}},
     {"coordinator/main.cc", {"coordinator", "scenario", "runtime"}, {kLog}},
@@ -84,6 +85,7 @@ const std::vector<Kind> kKinds = {
     {kCommandLine, {"CLI/*"}},
     {kJson, {"nlohmann/*"}},
     {kHash, {"xxhash.h"}},
+    {kCrypto, {"sodium.h"}},
     {kGenerator, {"Random123/*"}},
     {kPng, {"png.h"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},

@@ -57,6 +57,30 @@ TEST(BusListener, OtherLcmTrafficIsAWarningWithItsChannels) {
   EXPECT_TRUE(contains(finding.remedy, ":24006")) << finding.remedy;
 }
 
+TEST(BusListener, ATeamWithAKeyIsToldFromAStranger) {
+  MissionKey key;
+  const Seal ours(key);
+  key.shared[0] = std::byte{1};
+  const Seal theirs(key);
+  AgentStatus status;
+  status.header = {0xabc, 3, 77, 1, 0};
+  const auto overheard = [&](const Seal& said_with, const Seal& heard_with) {
+    std::vector<std::byte> bytes;
+    encode(status, bytes, said_with, "ERGOCAST_AGENT_STATUS_3");
+    Overheard ear(heard_with);
+    ear.take(datagram("ERGOCAST_AGENT_STATUS_3", bytes));
+    EXPECT_TRUE(ear.anything());
+    return ear.finding(url_of("ttl=1"), {});
+  };
+  EXPECT_TRUE(contains(overheard(ours, ours).found, "run 0000000000000abc"));
+  EXPECT_TRUE(contains(overheard(ours, Seal()).found, "a team with a mission key"));
+  EXPECT_EQ(overheard(ours, Seal()).level, Level::kNote);
+  EXPECT_EQ(overheard(Seal(), ours).level, Level::kWarning);
+  EXPECT_TRUE(contains(overheard(Seal(), ours).found, "without a mission key"));
+  EXPECT_EQ(overheard(theirs, ours).level, Level::kWarning);
+  EXPECT_TRUE(contains(overheard(theirs, ours).found, "does not open"));
+}
+
 TEST(BusListener, NoBytesHurtAndNoneBecomeARun) {
   std::mt19937 random(1);
   const auto honest = datagram("ERGOCAST_AGENT_STATUS_3", status_of_an_agent());
@@ -69,7 +93,7 @@ TEST(BusListener, NoBytesHurtAndNoneBecomeARun) {
     if (i % 2 == 0 && !bytes.empty()) bytes[random() % bytes.size()] ^= std::byte{0x40};
     overheard.take(bytes);
   }
-  EXPECT_NE(overheard.finding(url_of("ttl=1"), {}).level, Level::kNote);
+  EXPECT_FALSE(contains(overheard.finding(url_of("ttl=1"), {}).found, "run "));
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(status_wire.messages_received, 9);
   EXPECT_EQ(status_wire.contributions_relayed, 18);
   EXPECT_EQ(status_wire.missed_ticks, 10);
-  for (int i = 0; i < kRefusalKinds; ++i) EXPECT_EQ(status_wire.refused[i], 11 + i);
+  EXPECT_TRUE(std::equal(std::begin(status_wire.refused), std::end(status_wire.refused),
+                         agent_status().refused.begin()));
   EXPECT_EQ(status_wire.kernel_drops, 17);
   EXPECT_EQ(status_wire.loop_lag_s, 0.25);
   EXPECT_EQ(status_wire.status_host, "host.example");
@@ -116,6 +117,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(part_wire.roster[1].forgotten_from, 300);
   ASSERT_EQ(part_wire.plan_size, 300);
   EXPECT_EQ(std::memcmp(part_wire.plan.data(), part.plan.data(), 300), 0);
+  EXPECT_EQ(std::memcmp(part_wire.mission_signature, a_signature().data(), 64), 0);
   EXPECT_EQ(part_wire.reason, "because");
 
   const auto team_wire = read_by_lcm<team_status_t>(encoded(team_status()));
@@ -131,7 +133,9 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
 
   const auto stop_wire = read_by_lcm<stop_t>(encoded(stop()));
   expect_header(stop_wire.header, kOperator);
+  EXPECT_EQ(std::memcmp(stop_wire.stop_signature, a_signature().data(), 64), 0);
   EXPECT_EQ(stop_wire.stop_failed, 1);
+  EXPECT_EQ(stop_wire.stop_now, 1);
   EXPECT_EQ(stop_wire.stop_reason, "enough");
 }
 
@@ -174,6 +178,9 @@ TEST(Codec, StopKeepsWhetherTheMissionFailed) {
   wanted.failed = false;
   EXPECT_FALSE(decoded_as<Stop>(encoded(wanted)).failed);
   EXPECT_TRUE(decoded_as<Stop>(encoded(stop())).failed);
+  wanted.now = false;
+  EXPECT_FALSE(decoded_as<Stop>(encoded(wanted)).now);
+  EXPECT_TRUE(decoded_as<Stop>(encoded(stop())).now);
 }
 
 TEST(Codec, TheTagStandsAtBytes44To59AndCoversAllOthers) {

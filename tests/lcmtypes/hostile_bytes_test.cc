@@ -82,7 +82,7 @@ constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
 
 TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
-  constexpr std::size_t kRosterCount = kHeaderBytes + 17, kPlanSize = kHeaderBytes + 21,
+  constexpr std::size_t kRosterCount = kSignatureEnd + 17, kPlanSize = kSignatureEnd + 21,
                         kVehicleCount = kHeaderBytes + 32;
   // The offsets are right: writing the true counts there changes nothing.
   ASSERT_EQ(with_count(mission_part(), kRosterCount, 2), encoded(mission_part()));
@@ -102,14 +102,14 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
 TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
   // 36 bytes less of roster and 36 more of plan: the whole adds up, so only its meaning changes.
   Bytes shifted = encoded(mission_part());
-  put32(shifted, kHeaderBytes + 17, 1);
-  put32(shifted, kHeaderBytes + 21, 336);
+  put32(shifted, kSignatureEnd + 17, 1);
+  put32(shifted, kSignatureEnd + 21, 336);
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
   EXPECT_EQ(part.plan.size(), 336u);
   // Beyond a limit, it does not help that the sum is right.
-  put32(shifted, kHeaderBytes + 17, 11);
-  put32(shifted, kHeaderBytes + 21, 300 - 9 * 36);
+  put32(shifted, kSignatureEnd + 17, 11);
+  put32(shifted, kSignatureEnd + 21, 300 - 9 * 36);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
 }
 
@@ -120,7 +120,7 @@ TEST(Codec, HostileStringLengthsAreRefused) {
     std::int32_t length;  // with the final NUL
   } strings[] = {{hello(), kHeaderBytes + 4, 13},
                  {hello(), kHeaderBytes + 4 + 4 + 13, 6},
-                 {stop(), kHeaderBytes + 1, 7},
+                 {stop(), kSignatureEnd + 2, 7},
                  {agent_status(), encoded(agent_status()).size() - 17, 13},
                  {team_status(), encoded(team_status()).size() - 17, 13},
                  {mission_part(), encoded(mission_part()).size() - 12, 8}};
@@ -155,7 +155,7 @@ TEST(Codec, TextsThatMeanSomethingToATerminalAreRefused) {
 TEST(Codec, StringsLongerThanTheirLimitAreRefusedEvenIfTheBytesAreThere) {
   Bytes bytes = encoded(Stop{header_of_sender(kOperator), true, std::string(kMaxReasonLength, 'r')});
   bytes.insert(bytes.end() - 1, std::byte{'r'});
-  put32(bytes, kHeaderBytes + 1, kMaxReasonLength + 2);
+  put32(bytes, kSignatureEnd + 2, kMaxReasonLength + 2);
   EXPECT_EQ(verdict(retagged(bytes)), "size");
 }
 

@@ -19,6 +19,7 @@ using Decoded = std::variant<Message, Refusal>;
 
 inline constexpr RunId kRun = 0xfeedfacecafebeef;
 inline constexpr std::size_t kHeaderBytes = 60;
+inline constexpr std::size_t kSignatureEnd = 124;
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -30,6 +31,12 @@ inline Header header_of_sender(AgentId sender) {
 
 inline Hello hello() { return {header_of_sender(kUnassigned), 7, "host.example", "0.1.0"}; }
 
+inline Signature a_signature() {
+  Signature signature;
+  for (std::size_t i = 0; i < signature.size(); ++i) signature[i] = static_cast<std::byte>(i + 1);
+  return signature;
+}
+
 inline MissionPart mission_part() {
   MissionPart m;
   m.header = header_of_sender(kCoordinator);
@@ -40,6 +47,7 @@ inline MissionPart mission_part() {
   m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, 300}};
   for (int i = 0; i < 300; ++i) m.plan.push_back(static_cast<std::byte>(i * 7));
   m.reason = "because";
+  m.signature = a_signature();
   return m;
 }
 
@@ -71,7 +79,7 @@ inline AgentStatus agent_status() {
   m.messages_received = 9;
   m.missed_ticks = 10;
   m.contributions_relayed = 18;
-  m.refused = {11, 12, 13, 14, 15, 16};
+  m.refused = {11, 12, 13, 14, 15, 16, 19, 20, 21};
   m.kernel_drops = 17;
   m.loop_lag_s = 0.25;
   m.host = "host.example";
@@ -83,7 +91,7 @@ inline TeamStatus team_status() {
           "base.example"};
 }
 
-inline Stop stop() { return {header_of_sender(kOperator), true, "enough"}; }
+inline Stop stop() { return {header_of_sender(kOperator), true, "enough", true, a_signature()}; }
 
 inline WorldState world_state() {
   WorldState m;

@@ -40,7 +40,7 @@ TeamPicture flying_team() {
   picture.agents = {row_of(2, Condition::kSilent), row_of(0, Condition::kOk),
                     row_of(127, Condition::kOk)};
   picture.agents[0].silent_s = 4.2;
-  picture.agents[0].status->refused = {0, 0, 3, 0, 1, 0};
+  picture.agents[0].status->refused = {0, 0, 3, 0, 0, 0, 1};
   picture.agents[1].restarts = 1;
   picture.processes = {{"coordinator", true, false, 0.1, 0xc0ffee, "base", 599999},
                        {"world", true, true, 3.4, 0xabc, "", 599990},
@@ -61,7 +61,7 @@ TEST(TeamTable, SaysEverythingInLinesThatFit) {
       team_table(flying_team(), false),
       "quadrimodal_corners, run 0000000000001234, running, tick 599999 of 1000000 (60 %), t = "
       "59999.9 s\n"
-      "2 of 3 agents alive, phi^2 0.00123 (median)\n"
+      "2 of 3 agents alive, phi^2 0.00123 (median), unauthenticated\n"
       "\n"
       "coordinator  alive  life 000000  tick 599999  on base\n"
       "world        silent 3 s  life 000000  tick 599990\n"

@@ -1,0 +1,147 @@
+// What a mission key promises: an outsider can at most repeat, word for word and on its own channel,
+// what a member has said; and a member cannot speak for the coordinator.
+#include "lcmtypes/seal.h"
+
+#include <sodium.h>
+
+#include "lcmtypes/channels.h"
+#include "tests/lcmtypes/sample_messages.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+MissionKey key_of(unsigned char seed) {
+  MissionKey key;
+  key.shared.fill(static_cast<std::byte>(seed));
+  const std::array<unsigned char, crypto_sign_SEEDBYTES> from{seed};
+  crypto_sign_seed_keypair(reinterpret_cast<unsigned char*>(key.coordinator.data()),
+                           reinterpret_cast<unsigned char*>(key.signing.emplace().data()),
+                           from.data());
+  return key;
+}
+MissionKey member_of(MissionKey key) {
+  key.signing.reset();
+  return key;
+}
+
+const Seal kCoordinatorSeal{key_of(1)};
+const Seal kMemberSeal{member_of(key_of(1))};
+const Seal kOtherTeam{key_of(2)};
+
+Message unsigned_copy(Message message) {
+  if (auto* part = std::get_if<MissionPart>(&message)) part->signature = {};
+  if (auto* stop = std::get_if<Stop>(&message)) stop->signature = {};
+  return message;
+}
+bool is_signed(const Message& message) {
+  return std::holds_alternative<MissionPart>(message) || std::holds_alternative<Stop>(message);
+}
+
+Bytes sealed(const Message& message, const Seal& seal, AgentId relayer = kUnassigned) {
+  Bytes bytes;
+  encode(message, bytes, seal, channel_of(message, relayer));
+  return bytes;
+}
+std::string opened(const Bytes& bytes, const Seal& seal, std::string_view channel) {
+  return verdict(decode(bytes, kRun, seal, channel));
+}
+
+TEST(Seal, EveryMessageOfTheTeamIsOpenedByEveryMember) {
+  for (const Message& message : every_message()) {
+    const Bytes bytes = sealed(unsigned_copy(message), kCoordinatorSeal);
+    EXPECT_EQ(opened(bytes, kMemberSeal, channel_of(message)), "accepted") << message.index();
+    EXPECT_EQ(opened(bytes, kCoordinatorSeal, channel_of(message)), "accepted") << message.index();
+  }
+}
+
+TEST(Seal, WhatHasNoKeyOrAnotherIsRefusedByName) {
+  for (const Message& message : every_message()) {
+    const std::string& channel = channel_of(message);
+    EXPECT_EQ(opened(sealed(message, Seal()), kMemberSeal, channel), "unkeyed");
+    EXPECT_EQ(opened(sealed(unsigned_copy(message), kOtherTeam), kMemberSeal, channel), "tag");
+    EXPECT_EQ(opened(sealed(unsigned_copy(message), kCoordinatorSeal), Seal(), channel), "tag");
+  }
+}
+
+TEST(Seal, NoChangedBitIsAccepted) {
+  for (const Message& message : every_message()) {
+    const Bytes good = sealed(unsigned_copy(message), kCoordinatorSeal);
+    for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+      Bytes bad = good;
+      bad[bit / 8] ^= static_cast<std::byte>(1 << (bit % 8));
+      EXPECT_NE(opened(bad, kMemberSeal, channel_of(message)), "accepted") << bit;
+      // Who knows the format, but not the key, gets no further.
+      ASSERT_NE(opened(retagged(bad), kMemberSeal, channel_of(message)), "accepted") << bit;
+    }
+  }
+}
+
+TEST(Seal, ARepeatUnderAnotherNameIsRefused) {
+  const Bytes bytes = sealed(contribution(), kMemberSeal);
+  EXPECT_EQ(opened(bytes, kMemberSeal, "ERGOCAST_CONTRIBUTION_3"), "accepted");
+  for (const char* channel : {"ERGOCAST_CONTRIBUTION_4", "ERGOCAST_CONTRIBUTION", ""}) {
+    EXPECT_EQ(opened(bytes, kMemberSeal, channel), "tag") << channel;
+  }
+  // A teammate says it again under its own name, which takes the key.
+  EXPECT_EQ(opened(sealed(contribution(), kMemberSeal, 4), kMemberSeal, "ERGOCAST_CONTRIBUTION_4"),
+            "accepted");
+}
+
+TEST(Seal, AMemberCannotSpeakForTheCoordinator) {
+  for (const Message& message : every_message()) {
+    if (!is_signed(message)) continue;
+    const std::string& channel = channel_of(message);
+    EXPECT_EQ(opened(sealed(unsigned_copy(message), kMemberSeal), kMemberSeal, channel), "unsigned");
+    EXPECT_EQ(opened(sealed(message, kMemberSeal), kMemberSeal, channel), "unsigned");
+  }
+}
+
+TEST(Seal, AMemberRepeatsWhatTheCoordinatorSignedButCannotChangeIt) {
+  const Message said = unsigned_copy(mission_part());
+  const Bytes bytes = sealed(said, kCoordinatorSeal);
+  const auto decoded = decode(bytes, kRun, kMemberSeal, channel_of(said));
+  auto part = std::get<MissionPart>(std::get<Message>(decoded));
+  EXPECT_EQ(sealed(part, kMemberSeal), bytes);
+  part.revision += 1;
+  EXPECT_EQ(opened(sealed(part, kMemberSeal), kMemberSeal, channel_of(said)), "unsigned");
+}
+
+TEST(Seal, ASignatureIsOfOneMessageOfOneRun) {
+  Stop stop;
+  stop.header = header_of_sender(kOperator);
+  const auto decoded = decode(sealed(stop, kCoordinatorSeal), kRun, kMemberSeal, channel_of(stop));
+  Stop again = std::get<Stop>(std::get<Message>(decoded));
+  again.header.run = kRun + 1;
+  EXPECT_EQ(verdict(decode(sealed(again, kMemberSeal), 0, kMemberSeal, channel_of(stop))),
+            "unsigned");
+}
+
+TEST(Seal, ShortMessagesWithoutRoomForASignatureAreRefused) {
+  Bytes bytes = sealed(stop(), kCoordinatorSeal);
+  bytes.resize(kHeaderBytes + 63);
+  kMemberSeal.close(bytes, false, channel_of(stop()));
+  EXPECT_EQ(opened(bytes, kMemberSeal, channel_of(stop())), "unsigned");
+}
+
+TEST(Seal, WithoutAKeyTheTagIsThatOfTheFormat) {
+  for (const Message& message : every_message()) {
+    EXPECT_EQ(sealed(message, Seal()), retagged(encoded(message)));
+  }
+}
+
+TEST(Seal, TheKeyedTagIsBlake2bOverMessageAndChannel) {
+  const Bytes bytes = sealed(command(), kMemberSeal);
+  Bytes hashed = bytes;
+  std::fill_n(hashed.begin() + 44, 16, std::byte{0});
+  for (const char c : std::string_view("ERGOCAST_COMMAND_2")) hashed.push_back(std::byte(c));
+  std::array<unsigned char, 16> tag;
+  const MissionKey key = key_of(1);
+  crypto_generichash(tag.data(), tag.size(), reinterpret_cast<const unsigned char*>(hashed.data()),
+                     hashed.size(), reinterpret_cast<const unsigned char*>(key.shared.data()), 32);
+  EXPECT_EQ(std::memcmp(tag.data(), bytes.data() + 44, tag.size()), 0);
+}
+
+}  // namespace
+}  // namespace ergocast

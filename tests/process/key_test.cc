@@ -1,0 +1,218 @@
+// A team with a mission key beside somebody who hears everything, repeats it and forges more.
+#include <sys/stat.h>
+
+#include <array>
+#include <lcm/lcm-cpp.hpp>
+
+#include "core/noise.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/codec.h"
+#include "runtime/key_file.h"
+#include "tests/process/mission.h"
+#include "tests/process/stranger.h"
+
+namespace ergocast::test {
+namespace {
+
+/// Somebody on the network without the key: keeps what is said, says it again, and says in the name
+/// of those it has heard what they have not said.
+class Outsider {
+ public:
+  explicit Outsider(const LcmUrl& url)
+      : buses_{lcm::LCM(url.of(Bus::kSwarm)), lcm::LCM(url.of(Bus::kWorld)),
+               lcm::LCM(url.of(Bus::kCommand))},
+        ears_{Ear{this, 0}, Ear{this, 1}, Ear{this, 2}} {
+    for (std::size_t bus = 0; bus < buses_.size(); ++bus) {
+      buses_[bus].subscribe(".*", &Ear::hear, &ears_[bus])->setQueueCapacity(0);
+    }
+  }
+
+  /// Hears for a moment, repeats some of all that was ever heard, and forges some of it.
+  void turn() {
+    for (lcm::LCM& bus : buses_) {
+      for (int n = 0; n < 64 && bus.handleTimeout(0) > 0; ++n) {
+      }
+    }
+    for (int n = 0; n < 16 && !heard_.empty(); ++n) {
+      const Heard& one = heard_[random(1) % heard_.size()];
+      send(one);
+      forge(one);
+    }
+  }
+  std::size_t heard() const { return heard_.size(); }
+  std::int64_t forged() const { return forged_; }
+
+ private:
+  struct Heard {
+    std::size_t bus;
+    std::string channel;
+    std::vector<std::byte> bytes;
+  };
+  struct Ear {
+    Outsider* owner;
+    std::size_t bus;
+    void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      const auto* data = static_cast<const std::byte*>(buffer->data);
+      owner->keep({bus, channel, {data, data + buffer->data_size}});
+    }
+  };
+
+  /// Also what it has sent itself: forgeries breed. LCM's own self test has no header.
+  void keep(Heard one) {
+    constexpr std::size_t kMost = 20000;
+    if (heard_.size() < kMost && one.bytes.size() >= kHeaderEnd) heard_.push_back(std::move(one));
+  }
+  void send(const Heard& one) {
+    buses_[one.bus].publish(one.channel, one.bytes.data(), static_cast<unsigned>(one.bytes.size()));
+  }
+  /// The message with some bytes after the tag changed, under a tag that fits without a key; and the
+  /// same message under a neighbour's channel.
+  void forge(Heard one) {
+    const std::size_t at = random(2) % one.bytes.size();
+    one.bytes[at < kTagOffset || at >= kHeaderEnd ? at : 8] ^= std::byte{1};
+    send(one);
+    Seal().close(one.bytes, false, "");
+    send(one);
+    one.channel.back() = static_cast<char>('0' + random(3) % 4);
+    send(one);
+    forged_ += 3;
+  }
+  std::uint32_t random(std::uint32_t who) {
+    return static_cast<std::uint32_t>(random_words(7, Purpose::kFault, who, ++draws_).first);
+  }
+
+  std::array<lcm::LCM, 3> buses_;
+  std::array<Ear, 3> ears_;
+  std::vector<Heard> heard_;
+  std::uint64_t draws_ = 0;
+  std::int64_t forged_ = 0;
+};
+
+class Keyed : public ByHand {
+ protected:
+  Keyed() {
+    const MissionKey key = make_mission_key();
+    EXPECT_EQ(write_key_file(coordinator_, key_text(key, true)), std::nullopt);
+    EXPECT_EQ(write_key_file(team_, key_text(key, false)), std::nullopt);
+  }
+  Seal seal(const std::filesystem::path& file) const {
+    return Seal(std::get<MissionKey>(read_key_file(file)));
+  }
+  /// The id of the mission that is flying.
+  static RunId run_id() {
+    const std::string world = std::to_string(pids({"ergocast-sim"}).at(0));
+    const std::string command = text_of("/proc/" + world + "/cmdline");
+    return std::strtoull(command.c_str() + command.find("--run-id") + 9, nullptr, 16);
+  }
+
+  const std::filesystem::path coordinator_ = folder_ / "c.key", team_ = folder_ / "t.key";
+};
+
+TEST_F(Keyed, OutsidersChangeNotOneBitOfTheMission) {
+  Child mission = start("ergocast", {"run", scenario(), "--out", out(), "--duration", "200", "--key-file",
+                                     coordinator_, "--lcm-url", kUrl});
+  mission_log_ = log_;
+  Outsider outsider(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
+  ASSERT_TRUE(eventually([&] {
+    outsider.turn();
+    return !mission.running();
+  }));
+  EXPECT_EQ(mission.exit_code(), 0) << said();
+  EXPECT_GT(outsider.heard(), 1000U);
+  EXPECT_GT(outsider.forged(), 10000);
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["restarts"], 0);
+  EXPECT_EQ(summary()["record_complete"], true);
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  const auto refused = summary()["messages"]["refused"];
+  EXPECT_GT(refused["tag"], 0);
+  EXPECT_GT(refused["unkeyed"], 0);
+  EXPECT_EQ(refused["range"], 0) << "something that was forged has been believed";
+}
+
+TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
+  Child mission = launch_endless(scenario(), {"--key-file", coordinator_, "--lcm-url", kUrl});
+  const RunId run = run_id();
+  const auto stop = [run](const std::string& why) {
+    return Stop{{run, kOperator, 1, 0, 0}, false, why};
+  };
+  Stranger outsider(kUrl), member(kUrl, seal(team_)), coordinator(kUrl, seal(coordinator_));
+  for (int i = 0; i < 20; ++i) {
+    outsider.say(Bus::kSwarm, stop("no key"));
+    member.say(Bus::kSwarm, stop("an agent's key"));
+  }
+  EXPECT_TRUE(logs("coordinator", "somebody speaks without our --key-file"));
+  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_TRUE(eventually([&] {
+    coordinator.say(Bus::kSwarm, stop("the operator"));
+    coordinator.say(Bus::kCommand, stop("the operator"));
+    return !mission.running();
+  }));
+  EXPECT_EQ(summary()["reason"], "the operator") << said();
+  const auto refused = summary()["messages"]["refused"];
+  EXPECT_GE(refused["unkeyed"], 20);
+  EXPECT_GE(refused["unsigned"], 20);
+}
+
+TEST_F(Keyed, ProcessesByHandFlyWithTheirOwnFiles) {
+  std::filesystem::create_directory(out());
+  hand("ergocast-logger", {"--out", out(), "--key-file", team_});
+  hand("ergocast-sim", {"--key-file", team_});
+  Program& coordinator =
+      hand("ergocast-coordinator", {scenario(), "--duration", "20", "--key-file", coordinator_});
+  for (int id = 0; id < 4; ++id) hand("ergocast-agent", {"--key-file", team_});
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(out() / "summary.json"); }));
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+TEST_F(Keyed, WhoeverLacksTheKeyIsToldSo) {
+  Child mission = launch_endless(scenario(), {"--key-file", coordinator_, "--lcm-url", kUrl});
+  EXPECT_EQ(ergocast({"status", "--lcm-url", kUrl}), 4);
+  EXPECT_NE(output().find("has a mission key: give it with --key-file"), output().npos) << output();
+  const std::filesystem::path other = folder_ / "o.key";
+  ASSERT_EQ(write_key_file(other, key_text(make_mission_key(), false)), std::nullopt);
+  EXPECT_EQ(ergocast({"status", "--lcm-url", kUrl, "--key-file", other}), 4);
+  EXPECT_NE(output().find("another mission key than " + other.string()), output().npos) << output();
+  EXPECT_EQ(ergocast({"status", "--lcm-url", kUrl, "--key-file", team_}), 0) << output();
+  EXPECT_NE(output().find(", authenticated"), output().npos) << output();
+
+  Program& agent = hand("ergocast-agent");
+  EXPECT_TRUE(agent.says("a team with a --key-file is on this URL"));
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+}
+
+TEST_F(Keyed, KeysThatWouldNotDoAreRefusedAtOnce) {
+  EXPECT_EQ(ergocast({"run", scenario(), "--out", out(), "--key-file", team_}), 2);
+  EXPECT_NE(output().find("coordinator.key"), output().npos) << output();
+  EXPECT_EQ(run("ergocast-coordinator", {scenario(), "--key-file", team_}), 2);
+  EXPECT_NE(output().find("coordinator.key"), output().npos) << output();
+  chmod(team_.c_str(), 0640);
+  EXPECT_EQ(run("ergocast-agent", {"--key-file", team_}), 2);
+  EXPECT_NE(output().find("chmod 600 " + team_.string()), output().npos) << output();
+  setenv("ERGOCAST_KEY_FILE", team_.c_str(), 1);
+  EXPECT_EQ(run("ergocast-agent", {}), 2);
+  unsetenv("ERGOCAST_KEY_FILE");
+  EXPECT_NE(output().find("chmod 600 " + team_.string()), output().npos) << output();
+  EXPECT_FALSE(std::filesystem::exists(out()));
+}
+
+TEST_F(Keyed, KeygenWritesBothFilesOnceAndForItsOwnerOnly) {
+  const std::string name = folder_ / "new";
+  EXPECT_EQ(ergocast({"keygen", name}), 0) << output();
+  const auto coordinator = std::get<MissionKey>(read_key_file(name + ".coordinator.key"));
+  const auto team = std::get<MissionKey>(read_key_file(name + ".key"));
+  EXPECT_TRUE(coordinator.signing.has_value());
+  EXPECT_FALSE(team.signing.has_value());
+  EXPECT_EQ(team.shared, coordinator.shared);
+  EXPECT_EQ(ergocast({"keygen", name}), 2);
+  EXPECT_EQ(std::get<MissionKey>(read_key_file(name + ".key")).shared, team.shared);
+  // Half a pair would be of no use.
+  std::filesystem::remove(name + ".coordinator.key");
+  EXPECT_EQ(ergocast({"keygen", name}), 2);
+  EXPECT_FALSE(std::filesystem::exists(name + ".coordinator.key"));
+}
+
+}  // namespace
+}  // namespace ergocast::test
