@@ -28,8 +28,9 @@ constexpr auto kWorldSilence = 1s;
 /// How far ahead of us a teammate's coverage may be before it counts as forged.
 constexpr double kLead_s = 60;
 constexpr Tick kLeadTicks = 64;
-/// Statuses of another process under our id before we believe that it lives.
-constexpr int kRivalStatuses = 3;
+/// How long another process speaks under our id before we believe that it lives: the coordinator,
+/// who is not deceived by repeats of what a dead one said, would have admitted us by then.
+constexpr auto kRivalPatience = 5s;
 
 }  // namespace
 
@@ -51,13 +52,13 @@ void Agent::receive(const Message& message, Instant now, AgentId transmitter) {
   if (const auto* m = std::get_if<Digest>(&message)) return on(*m, now);
   if (const auto* m = std::get_if<Hello>(&message)) return on(*m, now);
   if (const auto* m = std::get_if<MissionPart>(&message)) return on(*m, now);
-  if (const auto* m = std::get_if<AgentStatus>(&message)) return on(*m);
+  if (const auto* m = std::get_if<AgentStatus>(&message)) return on(*m, now);
   if (const auto* m = std::get_if<Stop>(&message)) return on(*m);
 }
 
 void Agent::on(const MissionPart& part, Instant now) {
   if (identity_.run == 0) identity_.run = part.header.run;
-  coordinator_heard_ = now;
+  if (freshness_.is_news(part.header)) coordinator_heard_ = now;
   // Said by somebody else; or by one who has not heard of what came later, or will not be heard.
   if (part.revision >= follower_.revision()) mission_repeat_.reset();
   if (part.revision < follower_.revision()) plan_mission_repeat(now);
@@ -145,6 +146,7 @@ void Agent::on(const Contribution& theirs, AgentId transmitter, Instant now) {
 void Agent::on(const Digest& theirs, Instant now) {
   if (!table_ || member(theirs.header) == nullptr) return;
   hearing_.count(theirs.header);
+  if (!freshness_.is_news(theirs.header)) return;
   anti_entropy_->on(theirs, *table_, follower_.roster(), now, tick_);
 }
 
@@ -163,15 +165,14 @@ void Agent::plan_mission_repeat(Instant now) {
   mission_repeat_ = now + std::chrono::duration_cast<PacingClock::duration>(share * kLongestRepeatDelay);
 }
 
-void Agent::on(const AgentStatus& status) {
+void Agent::on(const AgentStatus& status, Instant now) {
   if (table_ && member(status.header) != nullptr) hearing_.count(status.header);
   if (phase_ != AgentPhase::kJoining || identity_.requested_id == kUnassigned ||
-      status.header.sender != identity_.requested_id ||
-      status.header.sequence <= rival_sequence_) {
+      status.header.sender != identity_.requested_id || !freshness_.is_news(status.header)) {
     return;
   }
-  rival_sequence_ = status.header.sequence;
-  if (++rival_statuses_ >= kRivalStatuses) {
+  if (!rival_since_) rival_since_ = now;
+  if (now - *rival_since_ >= kRivalPatience) {
     finish(true, "agent " + std::to_string(identity_.requested_id) + " is already running on " +
                      status.host + ": choose another id, or none");
   }
@@ -181,7 +182,8 @@ void Agent::on(const WorldState& world, Instant now) {
   if (!follower_.mission() || phase_ == AgentPhase::kJoining) return;
   // From before we were admitted, repeated for the logger: our predecessor has covered it.
   if (world.header.tick < active_from_ && world.roster_revision < joined_revision_) return;
-  world_heard_ = now;
+  const bool is_news = freshness_.is_news(world.header);
+  if (is_news) world_heard_ = now;
   radio_.on(world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
@@ -192,7 +194,7 @@ void Agent::on(const WorldState& world, Instant now) {
     const Tick newest = pending_ ? pending_->tick : tick_;
     if (world.header.tick < newest) return;
     if (world.header.tick == tick_) {
-      repeat_wanted_ = true;
+      repeat_wanted_ = repeat_wanted_ || is_news;
       return;
     }
     pending_ = WorldView{world.header.tick, world.roster_revision, vehicle.position_m};

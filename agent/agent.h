@@ -16,6 +16,7 @@
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/deadline.h"
+#include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission_follower.h"
@@ -85,7 +86,7 @@ class Agent {
   void on(const MissionPart& part, Instant now);
   void on(const Contribution& theirs, AgentId transmitter, Instant now);
   void on(const Digest& theirs, Instant now);
-  void on(const AgentStatus& status);
+  void on(const AgentStatus& status, Instant now);
   void on(const WorldState& world, Instant now);
   void on(const Hello& hello, Instant now);
   void on(const Stop& stop);
@@ -152,9 +153,8 @@ class Agent {
   double loop_lag_s_ = 0;
   RefusalCounts refused_{};
 
-  // A teammate that already speaks under the id we ask for.
-  std::int64_t rival_sequence_ = 0;
-  int rival_statuses_ = 0;
+  Freshness freshness_;
+  std::optional<Instant> rival_since_;  // a teammate already speaks under the id we ask for
 };
 
 }  // namespace ergocast

@@ -23,6 +23,7 @@ void MissionWatch::receive(const Message& message, Instant now) {
 }
 
 void MissionWatch::on(const TeamStatus& team, Instant now) {
+  if (!freshness_.is_news(team.header)) return;
   coordinator_heard_ = now;
   reach(team.header.tick, now);
   // One that was restarted has yet to learn the metric.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli/progress.h"
+#include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission.h"
@@ -59,6 +60,7 @@ class MissionWatch {
   bool failed_ = false;
   std::string reason_;
   std::optional<Instant> coordinator_heard_;
+  Freshness freshness_;
   Instant tick_since_{};  // when the last tick or stage was reached
 
   Incarnation incarnation_ = random_identity();

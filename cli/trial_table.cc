@@ -25,6 +25,7 @@ constexpr Count kCounts[] = {
     {"lost", "messages lost", [](TrialFigures& f) -> std::int64_t& { return f.faults.lost; }},
     {"cut", "lost at a partition", [](TrialFigures& f) -> std::int64_t& { return f.faults.cut; }},
     {"duplicated", "duplicated", [](TrialFigures& f) -> std::int64_t& { return f.faults.duplicated; }},
+    {"replayed", "replayed", [](TrialFigures& f) -> std::int64_t& { return f.faults.replayed; }},
     {"corrupted", "corrupted", [](TrialFigures& f) -> std::int64_t& { return f.faults.corrupted; }},
     {"delayed", "delayed", [](TrialFigures& f) -> std::int64_t& { return f.faults.delayed; }},
     {"reordered", "reordered", [](TrialFigures& f) -> std::int64_t& { return f.faults.reordered; }},

@@ -170,7 +170,8 @@ void Coordinator::on(const WorldState& world, Instant now) {
   missed_deadlines_ = std::max(missed_deadlines_, world.missed_deadlines);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    answered_[vehicle.id] = vehicle.answered_tick;
+    Tick& answered = answered_.try_emplace(vehicle.id, -1).first->second;
+    answered = std::max(answered, vehicle.answered_tick);
   }
   if (tick_ >= mission_->timing.tick_count) end(false, "mission complete", now);
 }

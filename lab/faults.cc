@@ -19,6 +19,8 @@ constexpr FaultField kFields[] = {
     {"reordering_max_s", &Faults::reordering_max_s, 60},
     {"clogging", &Faults::clogging, 1},
     {"clog_max_s", &Faults::clog_max_s, 60},
+    {"replay", &Faults::replay, 1},
+    {"replay_max_s", &Faults::replay_max_s, 600},
     {"partitions_per_s", &Faults::partitions_per_s, 10},
     {"partition_max_s", &Faults::partition_max_s, 60},
     {"one_way_share", &Faults::one_way_share, 1},
@@ -71,6 +73,10 @@ Faults drawn(std::uint64_t seed) {
     faults.clock_offset_max_s = dice.log_uniform(1e-3, 1e6);
   }
   if (dice.coin()) faults.swarm_bus_only = 1;
+  if (dice.coin()) {
+    faults.replay = 0.3 * std::pow(dice.uniform(), 2);
+    faults.replay_max_s = dice.log_uniform(0.1, 60);
+  }
   return faults;
 }
 

@@ -21,6 +21,8 @@ struct Faults {
   double reordering_max_s = 0;  ///< for up to so long, uniform
   double clogging = 0;          ///< begins to hold its whole link back; then all arrive at once
   double clog_max_s = 0;        ///< for up to so long, uniform
+  double replay = 0;            ///< recorded by somebody who sends it once more
+  double replay_max_s = 0;      ///< up to so much later, uniform
   double partitions_per_s = 0;  ///< the processes fall into two parts that do not hear each other
   double partition_max_s = 0;   ///< for up to so long, uniform
   double one_way_share = 0;     ///< of the partitions: only one part is deaf to the other

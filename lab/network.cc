@@ -9,13 +9,14 @@ namespace ergocast::lab {
 namespace {
 
 /// Streams of dice beside lab/faults.cc's: one for each link and question.
-constexpr std::uint32_t kWhether = 1U << 20, kHowLong = 2U << 20, kDamage = 3U << 20;
+constexpr std::uint32_t kWhether = 1U << 20, kHowLong = 2U << 20, kDamage = 3U << 20,
+                        kReplay = 4U << 20;
 
 double unit(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
 
 bool quiet(const Faults& f) {
   return f.loss <= 0 && f.duplication <= 0 && f.corruption <= 0 && f.delay_mean_s <= 0 &&
-         f.reordering <= 0 && f.clogging <= 0;
+         f.reordering <= 0 && f.clogging <= 0 && f.replay <= 0;
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ int Network::send(Instant now, Seat from, const Seats& to, Bus bus, AgentId tran
     }
     const Fate fate = fate_of(now, pair_index(from, seat), bus);
     corrupted += fate.corrupted ? 1 : 0;
-    for (const auto& arrival : {fate.arrives, fate.arrives_again}) {
+    for (const auto& arrival : {fate.arrives, fate.arrives_again, fate.is_replayed}) {
       if (!arrival) continue;
       if (*arrival == now + kLatency && !at_once.test(bit)) {
         at_once.set(bit);
@@ -60,23 +61,29 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
     return {};
   }
   const bool wired = faults_.swarm_bus_only > 0 && bus != Bus::kSwarm;
-  if (quiet_ || wired) return {now + kLatency, {}, false};
+  if (quiet_ || wired) return {now + kLatency, {}, {}, false};
   const auto index = static_cast<std::uint32_t>(pair) * kBusCount + static_cast<std::uint32_t>(bus);
   Link& link = links_[index];
   const Words dice = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);
   const auto upper = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word >> 32)); };
   const auto lower = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word)); };
+  Fate fate;
+  const auto replay = uniform_pair(seed_, Purpose::kFault, kReplay | index, link.sent);
+  if (replay.x() < faults_.replay) {
+    ++counted_.replayed;
+    fate.is_replayed = now + kLatency + seconds(faults_.replay_max_s * replay.y());
+  }
   // One die for what excludes each other.
   const double what = upper(dice.first);
   if (what < faults_.loss) {
     ++counted_.lost;
-    return {};
+    return fate;
   }
   if (what < faults_.loss + faults_.corruption) {
     ++counted_.corrupted;
-    return {{}, {}, true};
+    fate.corrupted = true;
+    return fate;
   }
-  Fate fate;
   fate.arrives = arrival(now, link, index, upper(dice.second), lower(dice.second));
   if (lower(dice.first) < faults_.duplication) {
     ++counted_.duplicated;

@@ -29,7 +29,7 @@ inline constexpr PacingClock::duration kLatency = std::chrono::microseconds(200)
 
 /// What was done to messages, counted per link.
 struct MessageFaults {
-  std::int64_t lost = 0, cut = 0, duplicated = 0, corrupted = 0, delayed = 0, reordered = 0,
+  std::int64_t lost = 0, cut = 0, duplicated = 0, replayed = 0, corrupted = 0, delayed = 0, reordered = 0,
                clogs = 0, clogged = 0;
 };
 
@@ -69,7 +69,7 @@ class Network {
     Instant last_arrival{}, clogged_until{};
   };
   struct Fate {
-    std::optional<Instant> arrives, arrives_again;
+    std::optional<Instant> arrives, arrives_again, is_replayed;
     bool corrupted = false;
   };
   struct Later {

@@ -72,7 +72,7 @@ void Recorder::receive(const Message& message, Instant now) {
   }
   if (const auto* part = std::get_if<MissionPart>(&message)) {
     if (run_ == 0) run_ = from.run;
-    heard_ = now;
+    if (freshness_.is_news(from)) heard_ = now;
     const bool had_mission = follower_.mission().has_value();
     if (!follower_.receive(*part)) return;
     if (follower_.plan_problem()) return fail(*follower_.plan_problem());
@@ -137,10 +137,11 @@ bool Recorder::is_lockstep() const {
 
 void Recorder::on(const WorldState& world, Instant now) {
   const Tick tick = world.header.tick;
-  heard_ = now;
+  const bool is_news = freshness_.is_news(world.header);
+  if (is_news) heard_ = now;
   if (follower_.mission()) {
     if (tick > follower_.mission()->timing.tick_count) return;
-    meet(world.header, now);
+    if (is_news) meet(world.header, now);
   }
   const Tick horizon = std::max(next_row_, lost_before_) + kLeadTicks;
   if (tick < next_row_ || (is_lockstep() && tick > horizon)) return;

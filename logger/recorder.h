@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission_follower.h"
@@ -98,6 +99,7 @@ class Recorder {
   RunId run_;
   Incarnation incarnation_;
   MissionFollower follower_;
+  Freshness freshness_;
   std::ostream& trajectory_;
   std::ostream& metrics_;
   Sequencer sequencer_;

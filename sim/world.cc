@@ -50,6 +50,7 @@ void World::receive(const Message& message, Instant now) {
   }
   if (const auto* ack = std::get_if<RecordAck>(&message)) {
     // A restarted logger may have less than its predecessor had.
+    if (!freshness_.is_news(from)) return;
     if (!recorded_ || ack->header.tick > *recorded_ || from.incarnation != logger_) {
       logger_lost_ = logger_lost_ && from.incarnation == logger_;
       logger_ = from.incarnation;

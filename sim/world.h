@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission_follower.h"
@@ -103,6 +104,7 @@ class World {
   Incarnation logger_ = 0;
   Instant record_progress_{};
   bool logger_lost_ = false;
+  Freshness freshness_;
   std::deque<std::vector<WorldState>> history_;  // states of the last ticks, for the logger
 
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0;

@@ -60,7 +60,7 @@ void TeamView::receive(const Message& message, Instant now) {
   }
   // MISSION may be repeated by an agent long after the coordinator's death.
   const bool first_hand = !std::holds_alternative<MissionPart>(message);
-  if (first_hand && from.sender < kUnassigned) processes_[from.sender] = {now, from};
+  if (first_hand && from.sender < kUnassigned && freshness_.is_news(from)) processes_[from.sender] = {now, from};
 }
 
 void TeamView::on(const AgentStatus& status, Instant now) {

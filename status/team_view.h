@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission_follower.h"
@@ -95,6 +96,7 @@ class TeamView {
   bool should_speak(AgentId sender) const;
   PacingClock::duration patience_with(AgentId sender) const;
 
+  Freshness freshness_;
   RunId run_;
   bool authenticated_;
   MissionFollower follower_;

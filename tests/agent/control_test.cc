@@ -150,12 +150,15 @@ TEST(AgentInLockstep, StatusNamesTheTeammateItWaitsFor) {
 
 TEST(AgentInLockstep, StatusNamesTheWorldOnceItHasBeenSilentForASecond) {
   Agent agent = running_agent(small_mission(2));
-  const WorldState world = world_state(0, {{100, 500}, {200, 500}});
-  tell(agent, world, at(5s));
+  const auto world = [] { return world_state(0, {{100, 500}, {200, 500}}); };
+  const WorldState first = world();
+  tell(agent, first, at(5s));
   EXPECT_EQ(status_after(agent, at(5s)).waiting_for, 1) << "whose block the tick waits for";
   EXPECT_EQ(status_after(agent, at(5501ms)).waiting_for, kWorld) << "whatever else is missing";
-  tell(agent, world, at(8s));
-  EXPECT_EQ(status_after(agent, at(8s)).waiting_for, 1) << "a repeat is a word, too";
+  tell(agent, first, at(6s));
+  EXPECT_EQ(status_after(agent, at(6001ms)).waiting_for, kWorld) << "anybody may have recorded it";
+  tell(agent, world(), at(8s));
+  EXPECT_EQ(status_after(agent, at(8s)).waiting_for, 1) << "a repeat of its own is a word, too";
 }
 
 TEST(AgentInLockstep, DoesNotWaitForWhatIsNotDue) {
@@ -213,6 +216,16 @@ TEST(AgentInLockstep, BetweenBroadcastsARepeatSaysWhatTheLastBroadcastSaid) {
   ASSERT_EQ(repeated.size(), 1u);
   EXPECT_EQ(repeated[0].steps, 1) << "newer sums would make a tick depend on what was lost";
   EXPECT_EQ(repeated[0].sums, broadcast[0].sums);
+}
+
+TEST(AgentInLockstep, AReplayedTickIsNotAnsweredAgain) {
+  Agent agent = running_agent(small_mission(1));
+  const WorldState world = world_state(0, {{100, 500}});
+  EXPECT_FALSE(only<Command>(tell(agent, world)).empty());
+  for (int i = 0; i < 10; ++i) {
+    const Outbox again = tell(agent, world, at(20ms));
+    EXPECT_TRUE(only<Command>(again).empty() && only<Contribution>(again).empty());
+  }
 }
 
 TEST(AgentInLockstep, ARepeatedTickThatWaitsRepeatsOnlyTheBlocks) {

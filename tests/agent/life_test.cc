@@ -73,10 +73,10 @@ TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
   Agent agent(identity_of(1), decoder_of(small_mission(2)));
   AgentStatus rival = status_of(1, 1);
   rival.header.incarnation = 77;
-  for (std::int64_t sequence = 1; sequence <= 3; ++sequence) {
+  for (std::int64_t sequence = 1; sequence <= 11; ++sequence) {
     EXPECT_FALSE(agent.finished());
     rival.header.sequence = sequence;
-    agent.receive(rival, at(0s));
+    agent.receive(rival, at(500ms * (sequence - 1)));
   }
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
@@ -88,9 +88,11 @@ TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
   Agent agent(identity_of(1), decoder_of(small_mission(2)));
   AgentStatus rival = status_of(1, 5);
   rival.header.incarnation = 77;
-  for (const std::int64_t sequence : {5, 5, 4, 3, 5, 6, 6}) {
+  auto when = 0s;
+  for (const std::int64_t sequence : {5, 6, 5, 4, 3, 5, 6, 6}) {
     rival.header.sequence = sequence;
-    agent.receive(rival, at(0s));
+    agent.receive(rival, at(when));
+    when = when == 0s ? 1s : when + 10s;
   }
   for (int i = 0; i < 10; ++i) agent.receive(status_of(0, i), at(0s));
   EXPECT_FALSE(agent.finished());

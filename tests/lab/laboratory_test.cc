@@ -68,7 +68,7 @@ TEST(Laboratory, WithoutFaultsNothingIsDone) {
   const TrialResult result = fly({}, 1).result;
   EXPECT_EQ(problem(result), "");
   const TrialFigures& f = result.figures;
-  EXPECT_EQ(f.faults.lost + f.faults.cut + f.faults.duplicated + f.faults.corrupted +
+  EXPECT_EQ(f.faults.lost + f.faults.cut + f.faults.duplicated + f.faults.replayed + f.faults.corrupted +
                 f.faults.delayed + f.faults.reordered + f.faults.clogged + f.faults.clogs,
             0);
   EXPECT_EQ(f.splits + f.one_way_cuts + f.agent_crashes + f.coordinator_crashes + f.world_crashes +
@@ -97,6 +97,8 @@ TEST(Laboratory, LostAndLateMessagesChangeNoLockstepTrajectory) {
   faults.corruption = 0.1;
   faults.reordering = 0.2;
   faults.reordering_max_s = 0.05;
+  faults.replay = 0.3;
+  faults.replay_max_s = 60;
   const Flight faulty = fly(faults, 3, in_lockstep()), clean = fly({}, 3, in_lockstep());
   EXPECT_EQ(problem(faulty.result), "");
   EXPECT_GT(faulty.result.figures.faults.lost, 1000);
@@ -115,6 +117,8 @@ const Kind kKinds[] = {
      [](const TrialFigures& f) { return f.faults.duplicated; }},
     {"Corruption", [](Faults& f) { f.corruption = 0.3; },
      [](const TrialFigures& f) { return f.faults.corrupted; }},
+    {"Replay", [](Faults& f) { f.replay = 0.5, f.replay_max_s = 60; },
+     [](const TrialFigures& f) { return f.faults.replayed; }},
     {"Delay", [](Faults& f) { f.delay_mean_s = 0.05, f.delay_max_s = 0.3; },
      [](const TrialFigures& f) { return f.faults.delayed; }},
     {"Reordering", [](Faults& f) { f.reordering = 0.3, f.reordering_max_s = 0.5; },

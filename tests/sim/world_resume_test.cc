@@ -324,9 +324,31 @@ TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   run_while_it_goes(at(2s));
   EXPECT_EQ(world.tick(), 75) << "it has still 64 ticks to go";
   successors.header.tick = 20;
+  ++successors.header.sequence;
   world.receive(successors, at(3s));
   run_while_it_goes(at(3s));
   EXPECT_EQ(world.tick(), 85);
+}
+
+TEST(WorldRecord, WordsOfADeadLoggerSaidAgainDoNotKeepTheTeamWaiting) {
+  Mission mission = small_mission(1);
+  mission.wait_for_logger = true;
+  mission.timing.lockstep_timeout_s = 10;
+  World world = running_world(mission);
+  const RecordAck dead = ack_of(-1);
+  RecordAck alive = ack_of(-1);
+  alive.header.incarnation = kLoggerLife + 1;
+  world.receive(dead, at(0s));
+  world.receive(alive, at(0s));
+  for (int i = 0; i < 200 && world.tick() <= 64; ++i) {
+    states_after(world, at(0s));
+    world.receive(command_of(0, world.tick(), {1, 0}), at(0s));
+  }
+  for (auto now = 0ms; now < 6s; now += 100ms) {
+    for (const RecordAck& replayed : {dead, alive}) world.receive(replayed, at(now));
+    states_after(world, at(now));
+  }
+  EXPECT_TRUE(world.logger_lost());
 }
 
 }  // namespace

@@ -53,10 +53,16 @@ inline std::vector<RosterEntry> roster_of(int agents) {
   return roster;
 }
 
+/// Above all that a test has said before: what is said twice is no news.
+inline std::int64_t next_sequence() {
+  static std::int64_t last = 0;
+  return ++last;
+}
+
 inline MissionPart mission_part(std::int64_t revision, MissionState state,
                                 std::vector<RosterEntry> roster, std::string reason = "") {
   MissionPart part;
-  part.header = {kRun, kCoordinator, kCoordinatorLife, revision + 1, 0};
+  part.header = {kRun, kCoordinator, kCoordinatorLife, next_sequence(), 0};
   part.revision = revision;
   part.state = state;
   part.roster = std::move(roster);
@@ -69,7 +75,7 @@ inline MissionPart mission_part(std::int64_t revision, MissionState state,
 inline WorldState world_state(Tick tick, const std::vector<Eigen::Vector2d>& positions_m,
                               std::int64_t answered_tick = -1) {
   WorldState state;
-  state.header = {kRun, kWorld, kWorldLife, tick + 1, tick};
+  state.header = {kRun, kWorld, kWorldLife, next_sequence(), tick};
   state.vehicle_count = static_cast<std::int32_t>(positions_m.size());
   for (std::size_t i = 0; i < positions_m.size(); ++i) {
     state.vehicles[i].id = static_cast<AgentId>(i);
