@@ -1,0 +1,100 @@
+// What a mission key costs each message: closing and opening datagrams with and without one, beside
+// the hash alone over as many bytes.
+#include <benchmark/benchmark.h>
+#include <sodium.h>
+
+#include <array>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/codec.h"
+#include "runtime/key_file.h"
+
+namespace ergocast::bench {
+namespace {
+
+enum Kind { kCommandMessage, kContributionMessage, kMissionMessage };
+
+Message message_of(std::int64_t kind) {
+  const Header from{1, kind == kMissionMessage ? kCoordinator : 3, 5, 1, 9};
+  if (kind == kCommandMessage) return Command{from, {1, 2, 0}, {3, 4, 0}};
+  if (kind == kMissionMessage) {
+    MissionPart part;
+    part.header = from;
+    part.plan.resize(kMaxPlanBytesPerMessage);
+    part.roster.resize(kMaxRosterEntriesPerMessage);
+    for (RosterEntry& entry : part.roster) entry.author = {0, 1};
+    return part;
+  }
+  Contribution block;
+  block.header = from;
+  return block;
+}
+
+const Seal& seal_of(bool keyed) {
+  static const Seal kSeals[] = {Seal(), Seal(make_mission_key())};
+  return kSeals[keyed];
+}
+
+void Close(benchmark::State& state) {
+  const Message message = message_of(state.range(0));
+  const Seal& seal = seal_of(state.range(1) != 0);
+  const std::string& channel = channel_of(message);
+  std::vector<std::byte> bytes;
+  for (auto _ : state) {
+    encode(message, bytes, seal, channel);
+    benchmark::DoNotOptimize(bytes.data());
+  }
+  state.counters["bytes"] = static_cast<double>(bytes.size());
+}
+
+void Open(benchmark::State& state) {
+  const Message message = message_of(state.range(0));
+  const Seal& seal = seal_of(state.range(1) != 0);
+  const std::string& channel = channel_of(message);
+  std::vector<std::byte> bytes;
+  encode(message, bytes, seal, channel);
+  for (auto _ : state) {
+    const auto decoded = decode(bytes, 1, seal, channel);
+    if (!std::holds_alternative<Message>(decoded)) state.SkipWithError("refused");
+    benchmark::DoNotOptimize(decoded);
+  }
+}
+
+/// A forgery, which costs its receiver only the tag.
+void Refuse(benchmark::State& state) {
+  const Message message = message_of(state.range(0));
+  const std::string& channel = channel_of(message);
+  std::vector<std::byte> bytes;
+  encode(message, bytes);
+  for (auto _ : state) {
+    const auto decoded = decode(bytes, 1, seal_of(true), channel);
+    if (std::holds_alternative<Message>(decoded)) state.SkipWithError("accepted");
+    benchmark::DoNotOptimize(decoded);
+  }
+}
+
+/// The floor: libsodium's hash of these bytes, and nothing else.
+void KeyedHashAlone(benchmark::State& state) {
+  std::vector<std::byte> bytes;
+  encode(message_of(state.range(0)), bytes);
+  const std::array<unsigned char, 32> key{1};
+  std::array<unsigned char, 16> tag;
+  for (auto _ : state) {
+    crypto_generichash(tag.data(), tag.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
+                       bytes.size(), key.data(), key.size());
+    benchmark::DoNotOptimize(tag);
+  }
+}
+
+const std::vector<std::int64_t> kKinds = {kCommandMessage, kContributionMessage, kMissionMessage};
+
+BENCHMARK(Close)->ArgNames({"kind", "key"})->ArgsProduct({kKinds, {0, 1}});
+BENCHMARK(Open)->ArgNames({"kind", "key"})->ArgsProduct({kKinds, {0, 1}});
+BENCHMARK(Refuse)->ArgName("kind")->ArgsProduct({kKinds});
+BENCHMARK(KeyedHashAlone)->ArgName("kind")->ArgsProduct({kKinds});
+
+}  // namespace
+}  // namespace ergocast::bench
+
+BENCHMARK_MAIN();
