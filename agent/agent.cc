@@ -201,7 +201,11 @@ void Agent::on(const WorldState& world, Instant now) {
   }
 }
 
-void Agent::on(const Stop& stop) { finish(stop.failed, stop.reason); }
+void Agent::on(const Stop& stop) {
+  if (!stop.now) return;  // the coordinator ends the mission for all of us
+  halted_ = phase_ == AgentPhase::kRunning && tick_ >= 0;
+  finish(stop.failed, stop.reason);
+}
 
 void Agent::advance(Instant now, Outbox& out) {
   // A coordinator that was restarted may not know of us any more: then we ask again.
@@ -223,6 +227,7 @@ void Agent::advance(Instant now, Outbox& out) {
     finish(true, "neither the world nor the coordinator can be heard, and the mission must be over by "
                  "now: check this host's network");
   }
+  if (halted_) stand_still(out);
   if (!finished() && mission_repeat_ && now >= *mission_repeat_) repeat_mission(now, out);
   // Nobody can tell two joining processes apart by an id that neither has been given.
   if (!table_) return;
@@ -258,6 +263,14 @@ void Agent::tell_world(Outbox& out) {
   for (const Command& command : {command_before_, last_command_}) {
     publish(Bus::kCommand, command, command.header.tick, out);
   }
+}
+
+/// The last word to the vehicle, whose driver may know no STOP.
+void Agent::stand_still(Outbox& out) {
+  halted_ = false;
+  last_command_.position_m << x_m_, 0;
+  last_command_.velocity_mps.setZero();
+  publish(Bus::kCommand, last_command_, tick_, out);
 }
 
 void Agent::begin_tick(Instant now, Outbox& out) {

@@ -107,6 +107,7 @@ class Agent {
   void plan_mission_repeat(Instant now);
   void repeat_mission(Instant now, Outbox& out);
   void tell_world(Outbox& out);
+  void stand_still(Outbox& out);
   void publish_status(Instant now, Outbox& out);
   void finish(bool failed, std::string reason);
   Header header(Bus bus, Tick tick);
@@ -143,6 +144,7 @@ class Agent {
   AgentId waiting_for_ = kUnassigned;
   Instant world_heard_{}, coordinator_heard_{};  // the latter also through a teammate
   bool world_asks_ = false;  // where we were: it has just started
+  bool halted_ = false;      // its vehicle has yet to be told
 
   Instant next_hello_{};
   Deadline next_status_, next_digest_;

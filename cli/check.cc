@@ -9,6 +9,9 @@ namespace ergocast::cli {
 int check(const std::filesystem::path& file, bool print) {
   const auto scenario = load_or_complain(file, {});
   if (!scenario) return kExitBadInput;
+  for (const Problem& warning : scenario->warnings()) {
+    std::fprintf(stderr, "%s\n", ("warning: " + to_string(warning)).c_str());
+  }
   if (print) {
     std::fputs(scenario->print().c_str(), stdout);
     return kExitDone;

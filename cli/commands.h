@@ -73,6 +73,9 @@ int study(const StudyOptions& options);
 /// What a team that is flying looks like, from any host on its buses.
 void add_status(CLI::App& app, Action& action);
 
+/// Ends somebody's mission, in order or at once.
+void add_stop(CLI::App& app, Action& action);
+
 /// Every problem of a scenario; with `print`, the scenario as it would be run.
 int check(const std::filesystem::path& scenario, bool print);
 

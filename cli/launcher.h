@@ -55,6 +55,8 @@ class Launcher {
   bool record_broken() const { return record_broken_; }
   /// Whether the coordinator has died once too often, or given way to another.
   bool leaderless() const;
+  /// Whether a coordinator's process lives.
+  bool led() { return runs(Role::kCoordinator); }
   /// "; coordinator was killed by SIGSEGV after 3 restarts": whom the team went on without.
   std::string losses() const;
 

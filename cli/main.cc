@@ -17,8 +17,9 @@ namespace {
 constexpr std::uint64_t kMostSeeds = 1000000000;
 constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 verify, status or doctor found something; 2 bad scenario, arguments or\n"
-    "run directory; 3 LCM cannot be used on this machine; 4 the mission failed or its record broke\n"
-    "off, or some of many missions failed.";
+    "run directory; 3 LCM cannot be used on this machine; 4 the mission failed or its record "
+    "broke\n"
+    "off, some of many missions failed, or stop did not see the team end.";
 
 void add_mission_options(CLI::App& command, MissionOptions& options) {
   command.add_option("SCENARIO", options.scenario, "Scenario file, or the name of a shipped one")
@@ -189,6 +190,7 @@ int parse_and_do(int argc, char** argv) {
   add_keygen(app, action);
   add_deploy(app, action);
   add_status(app, action);
+  add_stop(app, action);
   add_spy(app, action);
   add_doctor(app, action);
 

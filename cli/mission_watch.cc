@@ -1,15 +1,17 @@
 #include "cli/mission_watch.h"
 
 #include <chrono>
+#include <utility>
 
 namespace ergocast::cli {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStopPeriod = 100ms;
 /// A coordinator that says nothing for so long is worth a word.
 constexpr auto kCoordinatorSilence = 2s;
+/// How long it may take to end the mission in order.
+constexpr auto kCoordinatorPatience = 2s;
 
 }  // namespace
 
@@ -17,6 +19,7 @@ void MissionWatch::receive(const Message& message, Instant now) {
   if (const auto* team = std::get_if<TeamStatus>(&message)) on(*team, now);
   if (const auto* agent = std::get_if<AgentStatus>(&message)) on(*agent, now);
   if (const auto* part = std::get_if<MissionPart>(&message)) on(*part, now);
+  if (const auto* stop = std::get_if<Stop>(&message)) on(*stop, now);
   progress_.coordinator_silent =
       coordinator_heard_ && now - *coordinator_heard_ > kCoordinatorSilence;
   if (stage_ >= Stage::kFlying) display_.show(progress_);
@@ -46,7 +49,15 @@ void MissionWatch::on(const AgentStatus& agent, Instant now) {
 void MissionWatch::on(const MissionPart& part, Instant now) {
   failed_ = failed_ || part.state == MissionState::kFailed;
   if (!part.reason.empty()) reason_ = part.reason;
+  reach(part.header.tick, now);
   if (failed_ || part.state == MissionState::kEnded) reach(Stage::kOver, now);
+}
+
+void MissionWatch::on(const Stop& stop, Instant now) {
+  if (!stop.now || stopping()) return;  // somebody else's
+  failed_ = failed_ || stop.failed;
+  reason_ = stop.reason;
+  reach(Stage::kOver, now);
 }
 
 void MissionWatch::reach(Stage stage, Instant now) {
@@ -68,17 +79,15 @@ std::optional<std::string> MissionWatch::overdue(Instant now) const {
 }
 
 void MissionWatch::stop(bool failed, std::string reason) {
-  if (stop_) return;
-  stop_ = Stop{{run_, kOperator, incarnation_, 0, 0}, failed, std::move(reason)};
+  if (!stop_) stop_.emplace(run_, failed, std::move(reason));
 }
 
-void MissionWatch::repeat(Transport& transport, Instant now) {
-  if (!stop_ || now < next_stop_) return;
-  next_stop_ = now + kStopPeriod;
-  for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
-    ++stop_->header.sequence;
-    transport.publish({bus, *stop_});
-  }
+void MissionWatch::repeat(Transport& transport, Instant now, bool led) {
+  if (!stop_) return;
+  if (!stopping_since_) stopping_since_ = now;
+  // One that is gone, or frozen, ends nothing.
+  const bool heard = stage_ == Stage::kOver || now - *stopping_since_ < kCoordinatorPatience;
+  stop_->repeat(transport, now, !led || !heard);
 }
 
 }  // namespace ergocast::cli

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "cli/progress.h"
+#include "cli/stop_word.h"
 #include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission.h"
-#include "runtime/node.h"
 #include "runtime/transport.h"
 
 namespace ergocast::cli {
@@ -35,6 +35,8 @@ class MissionWatch {
   Stage stage() const { return stage_; }
   /// Whether the coordinator has said that the mission failed; and why it ended, in any case.
   bool failed() const { return failed_; }
+  /// Whether it is over because its last tick has come.
+  bool complete() const { return stage_ == Stage::kOver && progress_.tick >= timing_.tick_count; }
   const std::string& reason() const { return reason_; }
 
   /// Lockstep: what to say of a tick that has stayed unanswered for too long.
@@ -43,12 +45,14 @@ class MissionWatch {
   /// From now on repeat() says STOP; the first call counts.
   void stop(bool failed, std::string reason);
   bool stopping() const { return stop_.has_value(); }
-  void repeat(Transport& transport, Instant now);
+  /// @param led  whether there is a coordinator to end the mission in order
+  void repeat(Transport& transport, Instant now, bool led);
 
  private:
   void on(const TeamStatus& team, Instant now);
   void on(const AgentStatus& agent, Instant now);
   void on(const MissionPart& part, Instant now);
+  void on(const Stop& stop, Instant now);
   void reach(Stage stage, Instant now);
   void reach(Tick tick, Instant now);
 
@@ -63,9 +67,8 @@ class MissionWatch {
   Freshness freshness_;
   Instant tick_since_{};  // when the last tick or stage was reached
 
-  Incarnation incarnation_ = random_identity();
-  std::optional<Stop> stop_;
-  Instant next_stop_{};
+  std::optional<StopWord> stop_;
+  std::optional<Instant> stopping_since_;
 };
 
 }  // namespace ergocast::cli

@@ -41,7 +41,7 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
       launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
     }
     if (launcher.failure()) mission.stop(true, *launcher.failure());
-    mission.repeat(transport, now());
+    mission.repeat(transport, now(), launcher.led());
   }
   launcher.attend(now(), mission.stage());
 }
@@ -73,7 +73,7 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
     summary["result"] = "failed";
     summary["reason"] = reason;
   };
-  const bool complete = mission.stage() == Stage::kOver && !mission.failed() && !mission.stopping();
+  const bool complete = mission.complete() && !mission.failed() && !mission.stopping();
   const bool cut_short = complete && summary.value("result", "") != "done";
   if (cut_short) {
     const char* why = launcher.record_broken() ? "" : ": the logger fell behind";
@@ -110,9 +110,11 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal
         StopSignals& signals) {
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display);
-  auto opened = Transport::open(
-      setup.url, setup.run, seal, {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"}},
-      {.on_message = [&mission](const Message& message, AgentId) { mission.receive(message, now()); }});
+  auto opened = Transport::open(setup.url, setup.run, seal,
+                                {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*|STOP"}},
+                                {.on_message = [&mission](const Message& message, AgentId) {
+                                  mission.receive(message, now());
+                                }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     return complain(kExitUnavailable, *problem);
   }

@@ -75,6 +75,11 @@ void print_summary(const Json& summary) {
     std::printf("  deadlines %s commands too late, %s ticks skipped\n",
                 text("/missed_deadlines").c_str(), text("/skipped_ticks").c_str());
   }
+  if (summary.contains("speed_limit")) {
+    std::printf("  speed     limited to %s m/s, %s commands cut to it\n",
+                number("/speed_limit/mps", "%g").c_str(),
+                text("/speed_limit/clamped_commands").c_str());
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/nobody.h"
 #include "cli/team_screen.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
@@ -77,32 +78,6 @@ int complain(ExitCode code, const std::string& problem) {
   return code;
 }
 
-/// Why nobody is believed, if that has to do with keys.
-std::string key_problem(const StatusOptions& options, const RefusalCounts& refused) {
-  const auto some = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)] > 0; };
-  const std::string url = options.url.base();
-  if (some(Refusal::kUnkeyed)) return "the team on " + url + " has no mission key: ask without --key-file";
-  if (!some(Refusal::kTag)) return "";
-  return options.seal.keyed() ? "the team on " + url + " has another mission key than " + options.key_file
-                              : "the team on " + url + " has a mission key: give it with --key-file";
-}
-
-int nobody(const StatusOptions& options, const Transport& transport) {
-  const std::string url = options.url.base();
-  std::string text = "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
-                     " was heard on " + url +
-                     ": is the mission flying, and on this URL? `ergocast "
-                     "doctor --lcm-url \"" +
-                     url + "\"` checks the network between the hosts";
-  if (transport.unknown_format().count > 0) {
-    text = transport.unknown_format().channel + " arrives on " + url +
-           " in a format that version " + version() +
-           " does not know: another version of Ergocast is on this URL";
-  }
-  const std::string keys = key_problem(options, transport.refused());
-  return complain(kExitFailed, keys.empty() ? text : keys);
-}
-
 int choose(const Listener& listener) {
   std::string text = "several runs are heard on this URL; choose one with --run-id:";
   for (const auto& [run, view] : listener.runs()) {
@@ -128,7 +103,8 @@ bool listen_around(Listener& listener, StopSignals& signals) {
 
 int once(const StatusOptions& options, Listener& listener, StopSignals& signals) {
   if (!listen_around(listener, signals)) return kExitDone;
-  if (listener.runs().empty()) return nobody(options, listener.transport());
+  if (listener.runs().empty())
+    return complain(kExitFailed, why_nobody(options, listener.transport()));
   if (listener.runs().size() > 1) return choose(listener);
   const TeamPicture picture = listener.runs().begin()->second.picture(now());
   TeamScreen(options.json).print(picture);

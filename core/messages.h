@@ -148,7 +148,7 @@ struct TeamStatus {
   std::string host;                   ///< the coordinator's
 };
 
-/// Ends the run for whoever hears it; final.
+/// Ends a run; final. In order, the coordinator does it for all; at once, everybody who hears it.
 struct Stop {
   Header header;
   bool failed = false;  ///< whether the mission failed or somebody simply wanted it to end
@@ -170,6 +170,7 @@ struct WorldState {
   std::int64_t roster_revision = 0;
   std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
   std::int64_t skipped_ticks = 0;     ///< real time: ticks given up because the world was held up
+  std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
   std::int32_t part = 0, parts = 1;
   std::int32_t vehicle_count = 0;
   std::array<Vehicle, kMaxVehiclesPerState> vehicles;

@@ -6,6 +6,17 @@
 
 namespace ergocast {
 
+Eigen::Vector2d within_speed_limit(const Mission& mission, const Eigen::Vector2d& v_mps) {
+  if (mission.speed_limit_mps <= 0) return v_mps;
+  // Divided first, so that no length overflows.
+  const double greatest_mps = v_mps.cwiseAbs().maxCoeff();
+  if (greatest_mps == 0) return v_mps;
+  const Eigen::Vector2d share = v_mps / greatest_mps;
+  const double length = std::hypot(share.x(), share.y());
+  if (length * greatest_mps <= mission.speed_limit_mps) return v_mps;
+  return share / length * mission.speed_limit_mps;
+}
+
 Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector2d& x_m,
                       const Eigen::Vector2d& v_mps) {
   const double dt_s = mission.timing.dt_s;

@@ -70,8 +70,14 @@ struct Mission {
   double goal_ergodic_metric = 0;         ///< what the mission is to reach; 0: nothing in particular
   double disturbance_intensity = 0;       ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;               ///< how far agents hear each other; 0: everywhere
+  double speed_limit_mps = 0;             ///< what no vehicle exceeds; 0: no limit
   bool wait_for_logger = true;            ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
+
+/// What a vehicle does of the command `v_mps`: all of it, bit for bit, or as fast as the speed
+/// limit allows in its direction.
+/// @pre v_mps is finite.
+Eigen::Vector2d within_speed_limit(const Mission& mission, const Eigen::Vector2d& v_mps);
 
 /// Where a vehicle at `x_m` with velocity `v_mps` is one step of `tick` later, edges not yet
 /// considered: x + v dt + disturbance_intensity √dt ξ.

@@ -36,6 +36,12 @@ double greatest_push_mps(const ControlLaw& law, double dt_s) {
   return std::sqrt((ceiling - floor) * (ceiling + floor) / held_s);
 }
 
+double greatest_deviation_mps(const ControlLaw& law, double dt_s) {
+  const double noise_mps = law.noise_intensity / std::sqrt(dt_s);
+  if (law.perturbation == Perturbation::kConstant) return noise_mps;
+  return std::hypot(noise_mps, greatest_push_mps(law, dt_s));
+}
+
 Eigen::Vector2d perturbation(const ControlLaw& law, double dt_s, double epsilon,
                              const FieldAt& field, const Eigen::Vector2d& xi,
                              const Eigen::Vector2d& eta) {

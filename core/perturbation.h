@@ -21,6 +21,10 @@ Tick push_ticks(const ControlLaw& law, double dt_s);
 /// The push along a direction that is wholly open, √((σ_max² − σ²) / T): one standard deviation.
 double greatest_push_mps(const ControlLaw& law, double dt_s);
 
+/// The greatest standard deviation along any direction of the velocity below [m/s]: constant σ/√dt,
+/// adaptive √(σ²/dt + greatest_push²).
+double greatest_deviation_mps(const ControlLaw& law, double dt_s);
+
 /// The velocity that stands for σ dW over one step [m/s].
 ///
 /// Constant: σ ξ / √dt, the paper's. Adaptive: besides, along each of the two principal directions v

@@ -97,8 +97,8 @@ bool sizes_match(const stop_t*, std::span<const std::byte> bytes) {
 
 bool sizes_match(const world_state_t*, std::span<const std::byte> bytes) {
   std::size_t vehicles = 0;
-  return count_at(bytes, kHeaderEnd + 32, kMaxVehiclesPerState, vehicles) &&
-         bytes.size() == kHeaderEnd + 36 + vehicles * kVehicleBytes;
+  return count_at(bytes, kHeaderEnd + 40, kMaxVehiclesPerState, vehicles) &&
+         bytes.size() == kHeaderEnd + 44 + vehicles * kVehicleBytes;
 }
 
 bool sizes_match(const digest_t*, std::span<const std::byte> bytes) {

@@ -252,6 +252,7 @@ world_state_t to_wire(const WorldState& m) {
   w.roster_revision = m.roster_revision;
   w.missed_deadlines = m.missed_deadlines;
   w.skipped_ticks = m.skipped_ticks;
+  w.clamped_commands = m.clamped_commands;
   w.state_part = m.part;
   w.state_parts = m.parts;
   w.vehicle_count = m.vehicle_count;
@@ -269,11 +270,13 @@ bool from_wire(const world_state_t& w, WorldState& m) {
   m.roster_revision = w.roster_revision;
   m.missed_deadlines = w.missed_deadlines;
   m.skipped_ticks = w.skipped_ticks;
+  m.clamped_commands = w.clamped_commands;
   m.part = w.state_part;
   m.parts = w.state_parts;
   m.vehicle_count = w.vehicle_count;
   if (m.header.tick < 0 || m.roster_revision < 0 || m.part < 0 || m.part >= m.parts ||
-      m.parts > kMaxAgents) {
+      m.parts > kMaxAgents || !plausible_count(m.missed_deadlines) ||
+      !plausible_count(m.skipped_ticks) || !plausible_count(m.clamped_commands)) {
     return false;
   }
   for (std::size_t i = 0; i < w.vehicles.size(); ++i) {

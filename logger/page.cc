@@ -176,6 +176,9 @@ std::string team_facts(const Json& summary) {
   facts.add("restarts", said(summary, "restarts"));
   facts.add("missed deadlines", said(summary, "missed_deadlines"));
   facts.add("skipped ticks", said(summary, "skipped_ticks"));
+  const Json limit = part(summary, "speed_limit");
+  if (limit.is_object())
+    facts.add("commands cut to the speed limit", said(limit, "clamped_commands"));
   facts.add("ticks missing in the record", said(summary, "gaps"));
   return facts.html();
 }
@@ -223,6 +226,10 @@ std::string conventions_section(const Mission& mission) {
                                  ? "√(Π L<sub>i</sub> · (½)<sup>[k<sub>i</sub> &gt; 0]</sup>)"
                                  : "not used: f is not normalised");
   facts.add("control", law_text(mission.law));
+  if (mission.speed_limit_mps > 0) {
+    facts.add("speed limit",
+              readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
+  }
   facts.add("time step", readable(mission.timing.dt_s) +
                              " s; a recorded row is the position at its tick, and the command "
                              "computed there");

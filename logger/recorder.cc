@@ -84,8 +84,9 @@ void Recorder::receive(const Message& message, Instant now) {
     }
     return;
   }
-  if (const auto* stop = std::get_if<Stop>(&message); stop && !over_since_) {
+  if (const auto* stop = std::get_if<Stop>(&message); stop && stop->now && !over_since_) {
     over_since_ = now;
+    facts_.halted = true;
     failed_ = stop->failed;
     reason_ = stop->reason;
   }
@@ -147,6 +148,7 @@ void Recorder::on(const WorldState& world, Instant now) {
   if (tick < next_row_ || (is_lockstep() && tick > horizon)) return;
   facts_.missed_deadlines = std::max(facts_.missed_deadlines, world.missed_deadlines);
   facts_.skipped_ticks = std::max(facts_.skipped_ticks, world.skipped_ticks);
+  facts_.clamped_commands = std::max(facts_.clamped_commands, world.clamped_commands);
   State& state = states_[tick];
   // A repeat says nothing new; a restarted world may even have forgotten the velocities.
   if (state.complete()) return;

@@ -32,7 +32,9 @@ struct RunFacts {
   double ergodic_metric_first = 0, ergodic_metric_last = 0;
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
   Tick gaps = 0;                            ///< ticks without rows before the last row
+  bool halted = false;                      ///< by a STOP at once: the last row stands still
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
+  std::int64_t clamped_commands = 0;                     ///< by the speed limit, likewise
 };
 
 class Recorder {

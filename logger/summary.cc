@@ -130,9 +130,14 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   summary["agents"] = agents(recorder);
   summary["messages"] = messages(recorder, context);
   summary["gaps"] = facts.gaps;
+  if (facts.halted) summary["emergency_stop"] = true;
   summary["segments"] = context.segments;
   summary["missed_deadlines"] = facts.missed_deadlines;
   summary["skipped_ticks"] = facts.skipped_ticks;
+  if (mission && mission->speed_limit_mps > 0) {
+    summary["speed_limit"] = {{"mps", mission->speed_limit_mps},
+                              {"clamped_commands", facts.clamped_commands}};
+  }
   return summary;
 }
 

@@ -120,6 +120,7 @@ Mission mission_of(const proto::Scenario& scenario) {
   mission.goal_ergodic_metric = scenario.goal_ergodic_metric();
   mission.radio_range_m = scenario.world().radio_range_m();
   mission.disturbance_intensity = scenario.world().disturbance_intensity();
+  mission.speed_limit_mps = scenario.world().speed_limit_mps();
   return mission;
 }
 

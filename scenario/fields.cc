@@ -77,6 +77,7 @@ constexpr FieldRule kRules[] = {
 
     {"World", "disturbance_intensity", kIntensity, kDefaulted, 0},
     {"World", "radio_range_m", between(0, 1e13), kDefaulted, 0},
+    {"World", "speed_limit_mps", above(0, 1e9), kLeft},
 
     {"Scenario", "goal_ergodic_metric", above(0, 1e9), kLeft},
 };

@@ -13,6 +13,7 @@
 #include "scenario/scenario.pb.h"
 #include "scenario/text.h"
 #include "scenario/validate.h"
+#include "scenario/warnings.h"
 
 namespace ergocast {
 namespace {
@@ -48,6 +49,7 @@ struct Scenario::State {
   Mission mission;
   std::vector<std::byte> plan;
   int listed_starts;  ///< the others were drawn
+  Problems warnings;
 
   State(proto::Scenario scenario, CompiledTarget target, int listed)
       : text(std::move(scenario)),
@@ -83,7 +85,10 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
 
   const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
-  return Scenario(std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts));
+  auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
+  warn(state->mission, findings);
+  state->warnings = findings.take();
+  return Scenario(std::move(state));
 }
 
 Scenario Scenario::with_seed(std::uint64_t seed) const {
@@ -141,6 +146,7 @@ Scenario& Scenario::operator=(Scenario other) noexcept {
 }
 
 std::string Scenario::print() const { return print_text(state_->text); }
+const std::vector<Problem>& Scenario::warnings() const { return state_->warnings; }
 const std::string& Scenario::name() const { return state_->text.name(); }
 const std::string& Scenario::description() const { return state_->text.description(); }
 std::vector<std::filesystem::path> Scenario::map_files() const {

@@ -77,6 +77,9 @@ class Scenario {
   /// whole paths. That of a plan lacks the target, without which load() refuses it.
   std::string print() const;
 
+  /// What it may do, but will hardly want. Only of what load() and parse() have read.
+  const std::vector<Problem>& warnings() const;
+
   const std::string& name() const;
   const std::string& description() const;
 

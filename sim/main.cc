@@ -39,8 +39,11 @@ int run(const NodeOptions& node) {
     spdlog::error("{}", world.reason());
     return kExitFailed;
   }
-  spdlog::info("finished at tick {}: {}; {} commands too late, {} ticks skipped", world.tick(),
-               world.reason(), world.missed_deadlines(), world.skipped_ticks());
+  spdlog::info(
+      "finished at tick {}: {}; {} commands too late, {} cut to the speed limit, {} refused; "
+      "{} ticks skipped",
+      world.tick(), world.reason(), world.missed_deadlines(), world.clamped_commands(),
+      world.refused(), world.skipped_ticks());
   return kExitDone;
 }
 

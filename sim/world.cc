@@ -40,7 +40,7 @@ void World::receive(const Message& message, Instant now) {
   if (const auto* command = std::get_if<Command>(&message)) return on(*command);
   if (const auto* part = std::get_if<MissionPart>(&message)) {
     if (run_ == 0) run_ = from.run;
-    if (!follower_.receive(*part)) return;
+    if (halted_ || !follower_.receive(*part)) return;
     if (follower_.plan_problem()) return finish(*follower_.plan_problem());
     // At its own end the world stays until the record, too, has the last states.
     if (follower_.over() && (!over_since_ || record_complete())) return finish(follower_.reason());
@@ -57,10 +57,16 @@ void World::receive(const Message& message, Instant now) {
       recorded_ = ack->header.tick;
       record_progress_ = now;
     }
-    if (over_since_ && follower_.over() && record_complete()) finish(follower_.reason());
+    if (over_since_ && (halted_ || follower_.over()) && record_complete()) finish(why_over());
     return;
   }
-  if (const auto* stop = std::get_if<Stop>(&message)) finish(stop->reason);
+  if (const auto* stop = std::get_if<Stop>(&message)) on(*stop);
+}
+
+void World::on(const Stop& stop) {
+  if (!stop.now || halted_ || over_since_) return;  // in order, the coordinator ends the mission
+  if (!begun_at_) return finish(stop.reason);
+  halted_ = stop.reason;
 }
 
 // ---- beginning -----------------------------------------------------------------------------------
@@ -127,7 +133,10 @@ void World::recall(AgentId id, Body& body) {
   body.x_m = body.command->position_m.head<2>();
   const bool in_a_row =
       body.command_before && body.command_before->header.tick + 1 == body.answered();
-  if (in_a_row) body.applied_mps = body.command_before->velocity_mps.head<2>();
+  if (in_a_row) {
+    body.applied_mps =
+        within_speed_limit(*follower_.mission(), body.command_before->velocity_mps.head<2>());
+  }
   for (Tick tick = body.answered(); tick < tick_; ++tick) move(id, body, tick, hold);
 }
 
@@ -159,19 +168,22 @@ void World::on(const Command& command) {
   Body& body = at->second;
   const Mission& mission = *follower_.mission();
   const Eigen::Vector2d step_m = command.velocity_mps.head<2>() * mission.timing.dt_s;
-  if (!step_m.allFinite()) return;  // numbers that only overflow here are no velocities
-  if (asking_since_) {
-    if (command.header.tick > mission.timing.tick_count) return;
-    // A command of no tick yet is the answer of an agent that knows no position.
-    const bool somewhere = command.header.tick >= 0;
-    if (somewhere && !mission.domain.contains(command.position_m.head<2>())) return;
-  } else if (command.header.tick > tick_) {
+  // Numbers that only overflow here are no velocities; and nobody answers a tick that was not said.
+  const Tick newest = asking_since_ ? mission.timing.tick_count : tick_;
+  // A command of no tick yet is the answer of an agent that knows no position.
+  const bool somewhere = asking_since_ && command.header.tick >= 0;
+  const bool outside = somewhere && !mission.domain.contains(command.position_m.head<2>());
+  if (!step_m.allFinite() || command.header.tick > newest || outside) {
+    ++refused_;
     return;
   }
   const auto newer_than = [&](const std::optional<Command>& known) {
     return !known || command.header.tick > known->header.tick;
   };
-  if (newer_than(body.command)) {
+  const bool stand_still = command.velocity_mps.isZero(0);
+  if (stand_still && command.header.tick == body.answered()) {
+    body.command->velocity_mps.setZero();  // the one second thought that an agent may have
+  } else if (newer_than(body.command)) {
     body.command_before = std::exchange(body.command, command);
   } else if (command.header.tick < body.answered() && newer_than(body.command_before)) {
     body.command_before = command;  // overtaken by the one after it
@@ -202,12 +214,13 @@ bool World::record_complete() const { return recorded_ && *recorded_ + 1 >= tick
 
 void World::advance(Instant now, Outbox& out) {
   if (over_since_ && now - std::max(*over_since_, record_progress_) > kFarewell) {
-    return finish("mission complete");
+    return finish(why_over());
   }
   if (finished_) return;
   if (!started_) return ask_for_mission(now, out);
   if (asking_since_) ask_team(now, out);
   if (asking_since_) return;
+  if (halted_ && !over_since_) return stand_still(now, out);
   if (follower_.mission()->timing.pace == Pace::kLockstep || over_since_) {
     advance_lockstep(now, out);
   } else {
@@ -216,7 +229,7 @@ void World::advance(Instant now, Outbox& out) {
 }
 
 void World::advance_lockstep(Instant now, Outbox& out) {
-  const bool over = tick_ >= follower_.mission()->timing.tick_count;
+  const bool over = over_since_ || tick_ >= follower_.mission()->timing.tick_count;
   if (!published_) {
     if (!record_is_close(now)) {
       if (now >= next_publish_) repeat(now, out);
@@ -260,6 +273,20 @@ void World::advance_realtime(Instant now, Outbox& out) {
   if (tick_ >= timing.tick_count) over_since_ = now;
 }
 
+/// One more tick, in which nobody moves.
+void World::stand_still(Instant now, Outbox& out) {
+  if (!published_) remember_and_publish(now, out);  // where the last step led
+  for (auto& [id, body] : bodies_) body.applied_mps.setZero();
+  ++tick_;
+  over_since_ = now;
+  remember_and_publish(now, out);
+}
+
+std::string World::why_over() const {
+  if (halted_) return *halted_;
+  return follower_.over() ? follower_.reason() : "mission complete";
+}
+
 Eigen::Vector2d World::command_of(const Body& body, Tick tick, bool hold_old_commands) const {
   if (body.answered() < 0 || body.author.incarnation == 0) return {0, 0};
   const Timing& timing = follower_.mission()->timing;
@@ -269,13 +296,16 @@ Eigen::Vector2d World::command_of(const Body& body, Tick tick, bool hold_old_com
 }
 
 void World::step(bool hold_old_commands) {
-  for (auto& [id, body] : bodies_) move(id, body, tick_, hold_old_commands);
+  for (auto& [id, body] : bodies_) {
+    move(id, body, tick_, hold_old_commands);
+    if (body.applied_mps != command_of(body, tick_, hold_old_commands)) ++clamped_commands_;
+  }
   ++tick_;
 }
 
 void World::move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const {
   const Mission& mission = *follower_.mission();
-  body.applied_mps = command_of(body, tick, hold_old_commands);
+  body.applied_mps = within_speed_limit(mission, command_of(body, tick, hold_old_commands));
   body.x_m = reflect(moved(mission, id, tick, body.x_m, body.applied_mps), mission.domain);
 }
 
@@ -297,6 +327,7 @@ std::vector<WorldState> World::snapshot() const {
     states[part].parts = static_cast<std::int32_t>(parts);
     states[part].missed_deadlines = missed_deadlines_;
     states[part].skipped_ticks = skipped_ticks_;
+    states[part].clamped_commands = clamped_commands_;
     states[part].roster_revision = follower_.revision();
     states[part].header.tick = tick_;
   }

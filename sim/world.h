@@ -1,6 +1,7 @@
 // The simulated world: integrates commands, reflects at the edge, publishes states, keeps the tick.
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
+//   v_n is the command, or what the scenario's speed limit leaves of it.
 //
 // In lockstep a tick is repeated until every member of the roster has answered it, and the world
 // runs a bounded number of ticks ahead of the record. In real time it goes by the clock.
@@ -30,7 +31,8 @@ class World {
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
-  /// Ends at once, as when its process is told to stop.
+  /// Ends at once, as when its process is told to stop. A STOP at once it does not end by, but by
+  /// saying where everybody stands still, until that is recorded or a moment has passed.
   void stop(std::string reason) { finish(std::move(reason)); }
 
   bool finished() const { return finished_; }
@@ -45,6 +47,10 @@ class World {
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
   /// Real time: ticks that were dropped because the process had been held up for too long.
   std::int64_t skipped_ticks() const { return skipped_ticks_; }
+  /// Steps of a vehicle that the speed limit made slower than its command.
+  std::int64_t clamped_commands() const { return clamped_commands_; }
+  /// Messages that came through the wire's checks and had no effect because they cannot be true.
+  std::int64_t refused() const { return refused_; }
   /// True once a silent logger has been given up.
   bool logger_lost() const { return logger_lost_; }
 
@@ -79,6 +85,9 @@ class World {
   void remember_and_publish(Instant now, Outbox& out);
   void repeat(Instant now, Outbox& out);
   void help_logger(Outbox& out);
+  void on(const Stop& stop);
+  void stand_still(Instant now, Outbox& out);
+  std::string why_over() const;
   void finish(std::string reason);
 
   RunId run_;
@@ -98,7 +107,8 @@ class World {
   std::chrono::nanoseconds repeat_period_{};
   Instant next_tick_{};
   bool published_ = false;
-  std::optional<Instant> over_since_;
+  std::optional<Instant> over_since_;  // nobody moves any more
+  std::optional<std::string> halted_;  // by a STOP at once: why
 
   std::optional<Tick> recorded_;  // what the logger has acknowledged
   Incarnation logger_ = 0;
@@ -107,7 +117,7 @@ class World {
   Freshness freshness_;
   std::deque<std::vector<WorldState>> history_;  // states of the last ticks, for the logger
 
-  std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0;
+  std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, refused_ = 0;
 };
 
 }  // namespace ergocast

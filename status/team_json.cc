@@ -52,7 +52,8 @@ std::string team_json(const TeamPicture& at) {
       {"agents_alive", at.agents_alive},
       {"agents_expected", at.agents_expected},
       {"missed_deadlines", at.missed_deadlines},
-      {"skipped_ticks", at.skipped_ticks}};
+      {"skipped_ticks", at.skipped_ticks},
+      {"clamped_commands", at.clamped_commands}};
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

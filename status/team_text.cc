@@ -146,6 +146,8 @@ std::string second_line(const TeamPicture& at) {
   if (at.missed_deadlines > 0)
     text += ", " + std::to_string(at.missed_deadlines) + " commands late";
   if (at.skipped_ticks > 0) text += ", " + std::to_string(at.skipped_ticks) + " ticks skipped";
+  if (at.clamped_commands > 0)
+    text += ", " + std::to_string(at.clamped_commands) + " commands cut to the speed limit";
   text += at.authenticated ? ", authenticated" : ", unauthenticated";
   return text;
 }

@@ -57,6 +57,7 @@ void TeamView::receive(const Message& message, Instant now) {
     world_tick_ = std::max(world_tick_, from.tick);
     missed_deadlines_ = std::max(missed_deadlines_, world->missed_deadlines);
     skipped_ticks_ = std::max(skipped_ticks_, world->skipped_ticks);
+    clamped_commands_ = std::max(clamped_commands_, world->clamped_commands);
   }
   // MISSION may be repeated by an agent long after the coordinator's death.
   const bool first_hand = !std::holds_alternative<MissionPart>(message);
@@ -203,6 +204,7 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.reason = follower_.plan_problem().value_or(follower_.reason());
   picture.missed_deadlines = missed_deadlines_;
   picture.skipped_ticks = skipped_ticks_;
+  picture.clamped_commands = clamped_commands_;
   picture.trouble = picture.state == MissionState::kFailed || follower_.plan_problem().has_value();
   add_agents(picture, now);
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) add_process(picture, sender, now);

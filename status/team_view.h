@@ -54,7 +54,7 @@ struct TeamPicture {
   double dt_s = 0;
   std::optional<double> ergodic_metric;  ///< median of what the agents see
   int agents_alive = 0, agents_expected = 0;
-  std::int64_t missed_deadlines = 0, skipped_ticks = 0;
+  std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
   std::vector<ProcessRow> processes;
   bool trouble = false;
@@ -106,7 +106,7 @@ class TeamView {
   std::map<AgentId, Heard> processes_;
   std::string coordinator_host_;
   std::optional<MissionState> team_state_;  // as TEAM_STATUS has it, which comes more often
-  std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, tick_count_ = 0;
+  std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;
 };
 
 }  // namespace ergocast

@@ -15,7 +15,10 @@ void Driver::receive(const Message& message, Instant now) {
   if (finished_ || (run_ != 0 && header_of(message).run != run_)) return;
   if (const auto* command = std::get_if<Command>(&message)) return on(*command);
   if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
-  if (const auto* over = std::get_if<Stop>(&message)) stop(over->reason);
+  if (const auto* over = std::get_if<Stop>(&message); over && over->now) {
+    stop(over->reason);
+    halted_ = running_;
+  }
 }
 
 void Driver::on(const MissionPart& part, Instant now) {
@@ -56,12 +59,23 @@ void Driver::on(const Command& command) {
   const auto at = drives_.find(command.header.sender);
   if (at == drives_.end() || at->second.author.incarnation != command.header.incarnation) return;
   Drive& drive = at->second;
+  // Standing still is the one second thought that an agent may have of a tick.
+  const bool halt = command.header.tick == drive.answered && command.velocity_mps.isZero(0);
+  if (halt) drive.robot.drive({0, 0});
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
   drive.answered = command.header.tick;
-  drive.robot.drive(command.velocity_mps.head<2>());
+  const Eigen::Vector2d wanted_mps = command.velocity_mps.head<2>();
+  const Eigen::Vector2d allowed_mps = within_speed_limit(*follower_.mission(), wanted_mps);
+  if (allowed_mps != wanted_mps) ++clamped_commands_;
+  drive.robot.drive(allowed_mps);
 }
 
 void Driver::advance(Instant now, Outbox& out) {
+  if (halted_) {  // the last state: nobody is driven any more
+    halted_ = false;
+    pass_tick();
+    return say_where(out);
+  }
   if (!running_ || finished_ || now < next_tick_) return;
   const Timing& timing = follower_.mission()->timing;
   if (said_ && tick_ < timing.tick_count) pass_tick();
@@ -79,7 +93,7 @@ void Driver::pass_tick() {
     const bool driven = drive.author.incarnation != 0;
     const double age_s = static_cast<double>(tick_ - drive.answered) * timing.dt_s;
     if (driven && drive.answered < tick_) ++missed_deadlines_;
-    if (!driven || age_s > timing.command_hold_s) drive.robot.drive({0, 0});
+    if (finished_ || !driven || age_s > timing.command_hold_s) drive.robot.drive({0, 0});
     drive.robot.move(timing.dt_s);
   }
   ++tick_;
@@ -94,6 +108,7 @@ void Driver::say_where(Outbox& out) {
     state.header = {run_, kWorld, incarnation_, sequencer_.next(Bus::kWorld), tick_};
     state.roster_revision = follower_.revision();
     state.missed_deadlines = missed_deadlines_;
+    state.clamped_commands = clamped_commands_;
     state.part = static_cast<std::int32_t>(part);
     state.parts = static_cast<std::int32_t>(parts);
     for (; drive != drives_.end() && state.vehicle_count < kMaxVehiclesPerState; ++drive) {

@@ -39,6 +39,8 @@ class Driver {
   Tick tick() const { return tick_; }
   /// Ticks at which some robot had no command of that tick in time, summed over robots.
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
+  /// Commands that were faster than the scenario's speed limit.
+  std::int64_t clamped_commands() const { return clamped_commands_; }
   const Robot& robot(AgentId id) const { return drives_.at(id).robot; }
 
  private:
@@ -61,10 +63,11 @@ class Driver {
   Sequencer sequencer_;
   std::map<AgentId, Drive> drives_;
   bool running_ = false, said_ = false, finished_ = false, failed_ = false;
+  bool halted_ = false;  // by a STOP at once: the last state is still to be said
   std::string reason_;
   Tick tick_ = 0;
   Instant next_tick_{};
-  std::int64_t missed_deadlines_ = 0;
+  std::int64_t missed_deadlines_ = 0, clamped_commands_ = 0;
 };
 
 }  // namespace ergocast::example

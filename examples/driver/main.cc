@@ -26,8 +26,8 @@ int run(const NodeOptions& node, double speed_limit_mps) {
   live(driver, transport, signals, [&] { driver.stop("the driver was told to stop"); },
        [&] { transport.set_run(driver.run()); });
   spdlog::log(driver.failed() ? spdlog::level::err : spdlog::level::info,
-              "finished at tick {}: {}; {} commands too late", driver.tick(), driver.reason(),
-              driver.missed_deadlines());
+              "finished at tick {}: {}; {} commands too late, {} cut to the speed limit",
+              driver.tick(), driver.reason(), driver.missed_deadlines(), driver.clamped_commands());
   return driver.failed() ? kExitFailed : kExitDone;
 }
 

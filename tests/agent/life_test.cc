@@ -234,12 +234,12 @@ TEST(AgentRestarted, DoesNotCoverAgainWhatTheWorldOnlyRepeatsForTheLogger) {
   EXPECT_EQ(only<Contribution>(tell(agent, repeated)).size(), 1u);
 }
 
-TEST(AgentEnd, AStopEndsItAndTheLastStatusSaysSoOnce) {
+TEST(AgentEnd, AStopAtOnceEndsItAndTheLastStatusSaysSoOnce) {
   for (const bool failed : {false, true}) {
     Agent agent = running_agent(small_mission(1));
     advance(agent, at(0s));
     const auto last = only<AgentStatus>(
-        tell(agent, Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough"}, at(1ms)));
+        tell(agent, Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough", true}, at(1ms)));
     EXPECT_TRUE(agent.finished());
     EXPECT_EQ(agent.failed(), failed);
     EXPECT_EQ(agent.reason(), "enough");
@@ -251,8 +251,37 @@ TEST(AgentEnd, AStopEndsItAndTheLastStatusSaysSoOnce) {
 
 TEST(AgentEnd, AStopOfAnotherRunDoesNot) {
   Agent agent = running_agent(small_mission(1));
-  agent.receive(Stop{{kRun + 1, kOperator, 1, 1, 0}, false, "enough"}, at(0s));
+  agent.receive(Stop{{kRun + 1, kOperator, 1, 1, 0}, false, "enough", true}, at(0s));
   EXPECT_FALSE(agent.finished());
+}
+
+TEST(AgentEnd, AStopInOrderIsTheCoordinatorsToObey) {
+  Agent agent = running_agent(small_mission(1));
+  agent.receive(Stop{{kRun, kOperator, 1, 1, 0}, false, "enough"}, at(0s));
+  EXPECT_FALSE(agent.finished());
+}
+
+TEST(AgentEnd, ItsLastCommandAfterAStopAtOnceIsToStandStill) {
+  for (const bool had_answered : {false, true}) {
+    Agent agent = running_agent(small_mission(2));
+    advance(agent, at(0s));
+    tell(agent, world_state(0, {{100, 500}, {200, 500}}));
+    if (had_answered) {
+      Agent teammate = running_agent(small_mission(2), 1);
+      advance(teammate, at(0s));
+      for (const Contribution& block :
+           only<Contribution>(tell(teammate, world_state(0, {{100, 500}, {200, 500}})))) {
+        tell(agent, block);
+      }
+    }
+    const auto last = only<Command>(
+        tell(agent, Stop{{kRun, kOperator, 1, 1, 0}, false, "enough", true}, at(1ms)));
+    ASSERT_EQ(last.size(), 1u) << had_answered;
+    EXPECT_EQ(last[0].velocity_mps, Eigen::Vector3d(0, 0, 0));
+    EXPECT_EQ(last[0].position_m, Eigen::Vector3d(100, 500, 0));
+    EXPECT_EQ(last[0].header.tick, 0);
+    EXPECT_TRUE(advance(agent, at(2ms)).empty()) << "final";
+  }
 }
 
 TEST(AgentEnd, TheMissionsEndIsItsEnd) {

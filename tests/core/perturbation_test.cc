@@ -54,6 +54,22 @@ void expect_near(const Eigen::Matrix2d& sigma, double along_x, double along_y) {
   EXPECT_LT((sigma - expected).norm(), 1e-12 * kCeiling) << sigma;
 }
 
+TEST(Perturbation, ItsGreatestDeviationIsThatOfAStepWhereTheFieldIsWhollyOpen) {
+  for (const double dt_s : {0.1, kStep_s}) {  // a push held for many steps, and for one
+    const auto along_x = [&](double xi, double eta) {
+      return perturbation(adaptive(), dt_s, kEpsilon, field({0, 0}, -1e-7, 0, -2e-7), {xi, 0},
+                          {eta, 0})
+          .x();
+    };
+    EXPECT_NEAR(greatest_deviation_mps(adaptive(), dt_s), std::hypot(along_x(1, 0), along_x(0, 1)),
+                1e-12);
+  }
+  EXPECT_NEAR(greatest_deviation_mps(adaptive(), kStep_s), kCeiling / std::sqrt(kStep_s), 1e-12);
+  ControlLaw constant = adaptive();
+  constant.perturbation = Perturbation::kConstant;
+  EXPECT_NEAR(greatest_deviation_mps(constant, 0.25), kFloor / 0.5, 1e-15);
+}
+
 TEST(Perturbation, OnARidgeIsStrongAcrossAndWeakAlong) {
   // B points along y, U bends down across: a midline between two peaks.
   expect_near(intensities(field({0, 1e-3}, -4e-7, 0, 1e-7)), kCeiling, kFloor);

@@ -106,6 +106,44 @@ TEST(ExampleDriver, EndsWithTheMissionAndStopsItsRobots) {
   EXPECT_EQ(driver.reason(), "mission complete");
 }
 
+TEST(ExampleDriver, AStopAtOnceStopsItsRobotsAndItSaysWhereTheyAre) {
+  Driver driver = running_driver(mission_of(Pace::kRealtime));
+  advance(driver, at(0s));
+  driver.receive(command_of(0, 0, {5, 0}), at(0s));
+  Stop stop{{kRun, kOperator, 1, 1, 0}, false, "enough"};
+  driver.receive(stop, at(1ms));
+  EXPECT_FALSE(driver.finished()) << "in order, the coordinator ends the mission";
+  stop.now = true;
+  driver.receive(stop, at(2ms));
+  EXPECT_TRUE(driver.finished());
+  EXPECT_EQ(driver.reason(), "enough");
+  const WorldState last = state_at(driver, at(2ms));
+  EXPECT_EQ(last.header.tick, 1);
+  EXPECT_EQ(last.vehicles[0].velocity_mps, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(last.vehicles[0].position_m, Eigen::Vector3d(100, 500, 0));
+  EXPECT_TRUE(advance(driver, at(1s)).empty());
+}
+
+TEST(ExampleDriver, AnAgentMayTakeItsAnswerBackToStandStill) {
+  Driver driver = running_driver(mission_of(Pace::kRealtime));
+  advance(driver, at(0s));
+  driver.receive(command_of(0, 0, {5, 0}), at(1ms));
+  driver.receive(command_of(0, 0, {4, 0}), at(2ms));
+  driver.receive(command_of(0, 0, {0, 0}), at(3ms));
+  EXPECT_EQ(state_at(driver, at(100ms)).vehicles[0].velocity_mps, Eigen::Vector3d(0, 0, 0));
+}
+
+TEST(ExampleDriver, ObeysTheScenariosSpeedLimitToo) {
+  Mission mission = mission_of(Pace::kRealtime);
+  mission.speed_limit_mps = 2;
+  Driver driver = running_driver(mission);
+  advance(driver, at(0s));
+  driver.receive(command_of(0, 0, {4, 0}), at(1ms));
+  const WorldState state = state_at(driver, at(100ms));
+  EXPECT_EQ(state.vehicles[0].velocity_mps, Eigen::Vector3d(2, 0, 0));
+  EXPECT_EQ(state.clamped_commands, 1);
+}
+
 TEST(ExampleDriver, RefusesAMissionInLockstep) {
   Driver driver = running_driver(mission_of(Pace::kLockstep));
   EXPECT_TRUE(driver.failed());

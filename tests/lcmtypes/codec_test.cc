@@ -145,6 +145,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(wire.roster_revision, 3);
   EXPECT_EQ(wire.missed_deadlines, 4);
   EXPECT_EQ(wire.skipped_ticks, 5);
+  EXPECT_EQ(wire.clamped_commands, 6);
   EXPECT_EQ(wire.state_part, 1);
   EXPECT_EQ(wire.state_parts, 8);
   ASSERT_EQ(wire.vehicle_count, 2);

@@ -99,6 +99,7 @@ inline WorldState world_state() {
   m.roster_revision = 3;
   m.missed_deadlines = 4;
   m.skipped_ticks = 5;
+  m.clamped_commands = 6;
   m.part = 1;
   m.parts = 8;
   m.vehicle_count = 2;

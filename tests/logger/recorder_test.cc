@@ -318,16 +318,18 @@ TEST(RecordEnd, SaysThatAMissionFailedAndWhyAndKeepsWhatIsThere) {
   EXPECT_EQ(record.trajectory_rows().size(), 8u);
 }
 
-TEST(RecordEnd, AStopEndsItWithTheStopsReason) {
+TEST(RecordEnd, AStopAtOnceEndsItWithTheStopsReason) {
   for (const bool failed : {false, true}) {
     Record record(small_mission(1));
-    record.tell(Stop{{kRun + 1, kOperator, 1, 1, 0}, true, "another run's"}, at(0s));
-    record.tell(Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough"}, at(5s));
+    record.tell(Stop{{kRun + 1, kOperator, 1, 1, 0}, true, "another run's", true}, at(0s));
+    record.tell(Stop{{kRun, kOperator, 1, 1, 0}, true, "the coordinator's to obey"}, at(0s));
+    record.tell(Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough", true}, at(5s));
     record.tell(mission_part(1, MissionState::kEnded, roster_of(1), "later"), at(5s));
     advance(record.recorder, at(6s));
     EXPECT_TRUE(record.recorder.finished());
     EXPECT_STREQ(record.recorder.result(), failed ? "failed" : "stopped");
     EXPECT_EQ(record.recorder.reason(), "enough");
+    EXPECT_TRUE(record.recorder.facts().halted);
   }
 }
 

@@ -13,7 +13,7 @@ TEST(Summary, IsWrittenWhateverBytesTheNetworkBrought) {
   std::ostringstream trajectory, metrics;
   Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
   recorder.receive(mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
-  recorder.receive(Stop{{kRun, kOperator, 1, 1, 0}, true, "caf\xe9"}, at(0s));
+  recorder.receive(Stop{{kRun, kOperator, 1, 1, 0}, true, "caf\xe9", true}, at(0s));
   const auto read = nlohmann::json::parse(to_text(summarize(recorder, {})));
   EXPECT_EQ(read["result"], "failed");
   EXPECT_EQ(read["reason"], "caf\xef\xbf\xbd") << "the replacement character";

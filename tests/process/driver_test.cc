@@ -1,5 +1,6 @@
 // The example driver in the place of ergocast-sim, with everything else as it is.
 #include "tests/process/mission.h"
+#include "tests/process/record.h"
 
 namespace ergocast::test {
 namespace {
@@ -29,6 +30,24 @@ TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
   EXPECT_TRUE(driver.says("finished at tick 300: mission complete")) << driver.said();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["ticks"], 300);
+}
+
+TEST_F(DrivenRobots, StandStillAtOnceWhenTheyAreToldToStop) {
+  std::filesystem::create_directory(out());
+  Program& logger = hand("ergocast-logger", {"--out", out()});
+  Program& driver = hand("ergocast-example-driver");
+  for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
+  std::string text = text_of(realtime_scenario());
+  text.replace(text.find("duration_s: 30"), 14, "duration_s: 100000");
+  std::ofstream(folder_ / "robots.textproto") << text;
+  hand("ergocast-coordinator", {folder_ / "robots.textproto"});
+  ASSERT_TRUE(recorded(30000)) << driver.said();
+  ASSERT_EQ(ergocast({"stop", "--now", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
+  EXPECT_TRUE(driver.says("stopped at once")) << driver.said();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  for (const auto& [id, row] : recorded_rows(out()).rbegin()->second)
+    EXPECT_TRUE(row.stands()) << id;
 }
 
 TEST_F(DrivenRobots, RefuseAMissionInLockstep) {

@@ -53,6 +53,7 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_EQ(mission.timing.broadcast_heartbeat_ticks, 100);
   EXPECT_EQ(mission.forget_silent_after_s, 0);
   EXPECT_EQ(mission.radio_range_m, 0);
+  EXPECT_EQ(mission.speed_limit_mps, 0) << "none";
   EXPECT_EQ(mission.goal_ergodic_metric, 0);
 }
 
@@ -102,7 +103,7 @@ TEST(Reading, TakesEverySpellingOfEveryField) {
       starts: [ { x_m: -10 y_m: 5 }, { x_m: 90, y_m: 55 } ] random_count: 1 quorum: 2
       forget_silent_after_s: 60
     }
-    world { disturbance_intensity: 0.25 radio_range_m: 40 }
+    world { disturbance_intensity: 0.25 radio_range_m: 40 speed_limit_mps: 60 }
     goal_ergodic_metric: 0.01
   )")
                               .mission();
@@ -121,6 +122,7 @@ TEST(Reading, TakesEverySpellingOfEveryField) {
   EXPECT_EQ(mission.timing.broadcast_heartbeat_ticks, 50);
   EXPECT_EQ(mission.forget_silent_after_s, 60);
   EXPECT_EQ(mission.radio_range_m, 40);
+  EXPECT_EQ(mission.speed_limit_mps, 60);
   EXPECT_EQ(mission.goal_ergodic_metric, 0.01);
 }
 

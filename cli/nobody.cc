@@ -1,0 +1,38 @@
+#include "cli/nobody.h"
+
+namespace ergocast::cli {
+namespace {
+
+/// Why nobody is believed, if that has to do with keys.
+std::string key_problem(const BusOptions& options, const RefusalCounts& refused) {
+  const auto some = [&refused](Refusal kind) {
+    return refused[static_cast<std::size_t>(kind)] > 0;
+  };
+  const std::string url = options.url.base();
+  if (some(Refusal::kUnkeyed))
+    return "the team on " + url + " has no mission key: ask without --key-file";
+  if (!some(Refusal::kTag)) return "";
+  return options.seal.keyed()
+             ? "the team on " + url + " has another mission key than " + options.key_file
+             : "the team on " + url + " has a mission key: give it with --key-file";
+}
+
+}  // namespace
+
+std::string why_nobody(const BusOptions& options, const Transport& transport) {
+  const std::string url = options.url.base();
+  std::string text = "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
+                     " was heard on " + url +
+                     ": is the mission flying, and on this URL? `ergocast "
+                     "doctor --lcm-url \"" +
+                     url + "\"` checks the network between the hosts";
+  if (transport.unknown_format().count > 0) {
+    text = transport.unknown_format().channel + " arrives on " + url +
+           " in a format that version " + version() +
+           " does not know: another version of Ergocast is on this URL";
+  }
+  const std::string keys = key_problem(options, transport.refused());
+  return keys.empty() ? text : keys;
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,14 @@
+// Why a command that listens to a team hears nobody.
+#pragma once
+
+#include <string>
+
+#include "runtime/node.h"
+#include "runtime/transport.h"
+
+namespace ergocast::cli {
+
+/// One sentence with the remedy: the wrong URL or network, another version, another key or none.
+std::string why_nobody(const BusOptions& options, const Transport& transport);
+
+}  // namespace ergocast::cli

@@ -1,0 +1,194 @@
+// `ergocast stop`: ends a mission from any host on its buses, and says whether the team obeyed.
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/nobody.h"
+#include "cli/stop_word.h"
+#include "cli/team_ears.h"
+#include "runtime/clock.h"
+#include "runtime/node.h"
+#include "runtime/signals.h"
+#include "runtime/transport.h"
+
+namespace ergocast::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Longer than any agent is silent: whoever else flies on this URL is heard by then.
+constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
+/// How long to listen for anybody, and for a coordinator.
+constexpr auto kPatience = 3s;
+/// How long a coordinator may take to end the mission, and then the team to go.
+constexpr auto kAnswerPatience = 5s;
+constexpr auto kLongest = 15s;
+/// For so long an emergency stop is said in any case: who is deaf for a moment hears it, too.
+constexpr auto kLeastInsistence = 1s;
+constexpr auto kTurn = 20ms;
+constexpr std::size_t kMostRuns = 16;
+
+struct StopOptions : BusOptions {
+  bool at_once = false;
+};
+
+int complain(ExitCode code, const std::string& problem) {
+  std::fprintf(stderr, "%s\n", problem.c_str());
+  return code;
+}
+
+class Stopping {
+ public:
+  Stopping(const StopOptions& options, StopSignals& signals)
+      : options_(options), signals_(signals) {}
+
+  /// Nothing, or why LCM cannot be used.
+  std::optional<std::string> open() {
+    auto opened = Transport::open(options_.url, options_.run, options_.seal,
+                                  {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
+                                   {Bus::kWorld, "WORLD_STATE"},
+                                   {Bus::kCommand, "RECORD_ACK"}},
+                                  {.on_message = [this](const Message& m, AgentId) { hear(m); }});
+    if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
+    transport_ = std::get<0>(std::move(opened));
+    since_ = now();
+    return std::nullopt;
+  }
+
+  /// Finds the run, stops it and says how that went: the exit code.
+  int stop() {
+    while (!found() && now() < since_ + kPatience) {
+      if (!listen()) return kExitFailed;
+    }
+    if (runs_.size() > 1) return choose();
+    if (runs_.empty() && options_.run == 0) return nobody();
+    const RunId run = options_.run != 0 ? options_.run : runs_.begin()->first;
+    transport_->set_run(run);
+    since_ = now();
+    return insist(run);
+  }
+
+ private:
+  void hear(const Message& message) {
+    const RunId run = header_of(message).run;
+    if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
+    runs_[run].receive(message, now());
+  }
+  /// False if a signal came.
+  bool listen() {
+    transport_->deliver_until(now() + kTurn, signals_.fd());
+    return signals_.take() == 0;
+  }
+  bool found() const {
+    if (options_.run != 0) return true;  // nothing to find: an emergency does not wait
+    return runs_.size() > 1 || (!runs_.empty() && now() >= since_ + kLookAround);
+  }
+
+  int insist(RunId run) {
+    StopWord word(run, false,
+                  (options_.at_once ? "stopped at once by `ergocast stop --now` on "
+                                    : "stopped by `ergocast stop` on ") +
+                      host_name());
+    std::printf("run %s: %s\n", to_hex(run).c_str(),
+                options_.at_once ? "telling everybody to stand still"
+                                 : "asking the coordinator to end the mission");
+    std::fflush(stdout);
+    const RunHeard& team = runs_[run];
+    while (true) {
+      if (options_.at_once || !team.over()) word.repeat(*transport_, now(), options_.at_once);
+      if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
+      if (const auto code = verdict(team)) return *code;
+    }
+  }
+
+  /// The exit code once it is known.
+  std::optional<int> verdict(const RunHeard& team) const {
+    const auto waited = now() - since_;
+    const auto left = team.still_there(now());
+    const bool obeyed = options_.at_once ? waited >= kLeastInsistence : team.over();
+    if (team.unheard()) return waited < kPatience ? std::nullopt : std::optional(nobody());
+    if (obeyed && left.empty()) return conclude(team);
+    if (waited >= kLongest) {
+      return complain(kExitFailed,
+                      "still heard: " + listed(left) +
+                          (options_.at_once ? ": end them on their hosts"
+                                            : ": ergocast stop --now stops them at once"));
+    }
+    if (obeyed || options_.at_once) return std::nullopt;
+    if (!team.coordinator_heard() && waited >= kPatience) {
+      return complain(kExitFailed,
+                      "no coordinator is heard, and nobody else ends a mission in order: "
+                      "ergocast stop --now stops the team at once");
+    }
+    if (waited >= kAnswerPatience) {
+      return complain(kExitFailed,
+                      "the coordinator does not end the mission: ergocast stop --now stops "
+                      "the team at once");
+    }
+    return std::nullopt;
+  }
+
+  int conclude(const RunHeard& team) const {
+    if (options_.at_once && !team.stands_still()) {
+      return complain(kExitFailed, "the world is silent, and in its last state, of tick " +
+                                       std::to_string(team.tick()) +
+                                       ", vehicles still move: look at them");
+    }
+    const auto lost = team.lost(now());
+    const std::string but = lost.empty() ? "" : "; " + listed(lost) + " did not say so";
+    std::printf("%s at tick %lld: %s%s\n", options_.at_once ? "stopped" : "the mission has ended",
+                static_cast<long long>(team.tick()),
+                options_.at_once ? "all stand still and have ended" : team.reason().c_str(),
+                but.c_str());
+    return kExitDone;
+  }
+
+  int nobody() const { return complain(kExitFailed, why_nobody(options_, *transport_)); }
+
+  int choose() const {
+    std::string text = "several runs are heard on this URL; choose one with --run-id:";
+    for (const auto& [run, team] : runs_) {
+      text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) +
+              " agents, tick " + std::to_string(team.tick());
+    }
+    return complain(kExitBadInput, text);
+  }
+
+  const StopOptions& options_;
+  StopSignals& signals_;
+  std::unique_ptr<Transport> transport_;
+  std::map<RunId, RunHeard> runs_;
+  Instant since_{};
+};
+
+int stop(const StopOptions& options) {
+  if (!options.seal.can_sign()) return complain(kExitBadInput, cannot_sign(options.key_file));
+  StopSignals signals;
+  Stopping stopping(options, signals);
+  if (const auto problem = stopping.open()) return complain(kExitUnavailable, *problem);
+  return stopping.stop();
+}
+
+}  // namespace
+
+void add_stop(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("stop", "End a mission that is flying, in order or at once");
+  auto options = std::make_shared<StopOptions>();
+  add_bus_options(*command, *options);
+  command->add_flag(
+      "--now", options->at_once,
+      "Emergency: agents and world stand still within a tick, also without a coordinator");
+  command->footer(
+      "Without --now the coordinator ends the mission for all. With --now and --run-id it listens "
+      "for\n"
+      "nobody first.\n"
+      "Exit codes: 0 the team was seen to end; 2 several runs are heard; 3 LCM cannot be used;\n"
+      "4 nobody is heard, or somebody goes on.");
+  command->callback([&action, options] { action = [options] { return stop(*options); }; });
+}
+
+}  // namespace ergocast::cli

@@ -1,0 +1,31 @@
+#include "cli/stop_word.h"
+
+#include <chrono>
+#include <utility>
+
+#include "runtime/node.h"
+
+namespace ergocast::cli {
+namespace {
+
+constexpr auto kPeriod = std::chrono::milliseconds(100);
+
+}  // namespace
+
+StopWord::StopWord(RunId run, bool failed, std::string reason) {
+  stop_.header = {run, kOperator, random_identity(), 0, 0};
+  stop_.failed = failed;
+  stop_.reason = std::move(reason);
+}
+
+void StopWord::repeat(Transport& transport, Instant now, bool at_once) {
+  if (now < next_ && stop_.now == at_once) return;
+  next_ = now + kPeriod;
+  stop_.now = at_once;
+  for (const Bus bus : {Bus::kCommand, Bus::kSwarm}) {  // the vehicles first
+    ++stop_.header.sequence;
+    transport.publish({bus, stop_});
+  }
+}
+
+}  // namespace ergocast::cli

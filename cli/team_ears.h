@@ -1,0 +1,50 @@
+// The runs that speak on one URL, and whether they still do: what `ergocast stop` goes by.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/ids.h"
+#include "core/messages.h"
+
+namespace ergocast::cli {
+
+/// What was heard of one run.
+class RunHeard {
+ public:
+  void receive(const Message& message, Instant now);
+
+  /// Whether the coordinator, or who repeats its words, says that the mission is over.
+  bool over() const { return over_; }
+  const std::string& reason() const { return reason_; }
+  Tick tick() const { return tick_; }
+  bool unheard() const { return agents_.empty() && processes_.empty() && !over_; }
+  bool coordinator_heard() const { return processes_.contains(kCoordinator); }
+  /// Whether no vehicle moved in the newest state of the world; true if none was heard.
+  bool stands_still() const;
+
+  /// Who has spoken lately and not said that it has finished: "agent 2", "world".
+  std::vector<std::string> still_there(Instant now) const;
+  /// Members that are silent and have not said that they have finished.
+  std::vector<std::string> lost(Instant now) const;
+  int agents() const { return static_cast<int>(agents_.size()); }
+
+ private:
+  struct Seen {
+    Instant heard{};
+    bool finished = false;
+  };
+  std::map<Author, Seen> agents_;
+  std::map<AgentId, Instant> processes_;
+  std::map<AgentId, Eigen::Vector3d> velocities_mps_;  // in the newest state
+  Tick tick_ = 0, world_tick_ = -1;
+  bool over_ = false;  // says the coordinator
+  std::string reason_;
+};
+
+/// "a, b and c".
+std::string listed(const std::vector<std::string>& names);
+
+}  // namespace ergocast::cli

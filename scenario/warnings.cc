@@ -1,0 +1,47 @@
+#include "scenario/warnings.h"
+
+#include <string>
+
+#include "core/perturbation.h"
+#include "scenario/checks.h"
+
+namespace ergocast {
+namespace {
+
+/// A normal vector in the plane is longer than this many deviations once in 65 million steps.
+constexpr double kDeviations = 6;
+
+/// What the law's noise is, in the scenario's own words.
+std::string noise_text(const ControlLaw& law, double dt_s) {
+  const std::string steps = "noise_intensity / sqrt(dt_s)";
+  if (law.perturbation == Perturbation::kConstant) return steps;
+  return steps + " and a push of " + shortest(rounded_up(greatest_push_mps(law, dt_s))) +
+         " m/s held for " + shortest(static_cast<double>(push_ticks(law, dt_s)) * dt_s) + " s";
+}
+
+/// A limit below what the law commands cuts the tails of its noise off.
+void warn_of_speed_limit(const Mission& mission, Findings& findings) {
+  const ControlLaw& law = mission.law;
+  const double dt_s = mission.timing.dt_s;
+  const double pull_mps =
+      law.contraction_gain_per_s * mission.domain.farthest_distance_m(law.contraction_center_m);
+  const double noise_mps = kDeviations * greatest_deviation_mps(law, dt_s);
+  const double needed_mps = law.u_max_mps + pull_mps + noise_mps;
+  if (mission.speed_limit_mps <= 0 || mission.speed_limit_mps >= needed_mps) return;
+  const std::string needed = shortest(rounded_up(needed_mps));
+  findings.add("world.speed_limit_mps",
+               shortest(mission.speed_limit_mps) +
+                   " cuts the method's noise short: the law commands up to " + needed +
+                   " m/s = u_max_mps " + shortest(law.u_max_mps) +
+                   " + contraction at the farthest corner " + shortest(rounded_up(pull_mps)) +
+                   " + 6 deviations of its noise " + shortest(rounded_up(noise_mps)) + " (" +
+                   noise_text(law, dt_s) + ")",
+               "write at least " + needed +
+                   ", less noise or a greater dt_s, or accept it: the cuts are counted");
+}
+
+}  // namespace
+
+void warn(const Mission& mission, Findings& findings) { warn_of_speed_limit(mission, findings); }
+
+}  // namespace ergocast

@@ -1,0 +1,43 @@
+// What the scenario's speed limit leaves of a command.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/mission.h"
+
+namespace ergocast {
+namespace {
+
+Mission limited(double speed_limit_mps) {
+  Mission mission;
+  mission.speed_limit_mps = speed_limit_mps;
+  return mission;
+}
+
+bool same_bits(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::bit_cast<std::uint64_t>(a.x()) == std::bit_cast<std::uint64_t>(b.x()) &&
+         std::bit_cast<std::uint64_t>(a.y()) == std::bit_cast<std::uint64_t>(b.y());
+}
+
+TEST(SpeedLimit, LeavesEveryBitOfWhatItAllows) {
+  for (const Eigen::Vector2d& v :
+       {Eigen::Vector2d(0, -0.0), {3, -4}, {0.1, 4.9}, {5e-324, 0}, {-5, 0}}) {
+    EXPECT_TRUE(same_bits(within_speed_limit(limited(5), v), v)) << v.transpose();
+    EXPECT_TRUE(same_bits(within_speed_limit(limited(0), v * 1e9), v * 1e9)) << "none";
+  }
+}
+
+TEST(SpeedLimit, CutsTheRestAndKeepsTheDirection) {
+  const double most = std::numeric_limits<double>::max();
+  for (const Eigen::Vector2d& v :
+       {Eigen::Vector2d(6, 8), {-0.003, 5.1}, {1e300, -1e300}, {most, most}}) {
+    const Eigen::Vector2d cut = within_speed_limit(limited(5), v);
+    EXPECT_NEAR(cut.norm(), 5, 1e-14) << v.transpose();
+    EXPECT_NEAR(std::atan2(cut.y(), cut.x()), std::atan2(v.y(), v.x()), 1e-15) << v.transpose();
+  }
+}
+
+}  // namespace
+}  // namespace ergocast

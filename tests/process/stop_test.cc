@@ -1,0 +1,162 @@
+// `ergocast stop`: a mission of real processes is ended from outside, in order and at once.
+#include <utility>
+
+#include "runtime/node.h"
+#include "tests/process/mission.h"
+#include "tests/process/record.h"
+#include "tests/process/stranger.h"
+
+namespace ergocast::test {
+namespace {
+
+class StopCommand : public ByHand {
+ protected:
+  int stop(std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"stop", "--lcm-url", kUrl});
+    return ergocast(more);
+  }
+  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
+
+  std::filesystem::path endless(bool realtime) {
+    std::string text = text_of(scenario());
+    text.replace(text.find("duration_s: 600"), 15, "duration_s: 100000 realtime_factor: 10");
+    if (realtime) text.replace(text.find("pace: LOCKSTEP"), 14, "pace: REALTIME");
+    const auto file = folder_ / "endless.textproto";
+    std::ofstream(file) << text;
+    return file;
+  }
+  /// All processes, started by hand and under way.
+  std::vector<Program*> fly(const std::filesystem::path& scenario) {
+    std::filesystem::create_directory(out());
+    std::vector<Program*> all{&hand("ergocast-logger", {"--out", out()}), &hand("ergocast-sim"),
+                              &hand("ergocast-coordinator", {scenario})};
+    for (const char* id : {"0", "1", "2", "3"})
+      all.push_back(&hand("ergocast-agent", {"--id", id}));
+    EXPECT_TRUE(recorded(30000)) << all[2]->said();
+    return all;
+  }
+  /// Nobody moves in the record's last tick, everybody did in the one before, and there is no later
+  /// one.
+  void expect_halt() {
+    const auto rows = recorded_rows(out());
+    ASSERT_GT(rows.size(), 2u);
+    const auto last = std::prev(rows.end()), before = std::prev(last);
+    ASSERT_EQ(last->second.size(), 4u);
+    for (const auto& [id, row] : last->second) EXPECT_TRUE(row.stands()) << "agent " << id;
+    for (const auto& [id, row] : before->second) EXPECT_FALSE(row.stands()) << "agent " << id;
+  }
+};
+
+struct Stopped : StopCommand, ::testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(Paces, Stopped, ::testing::Values(false, true),
+                         [](const auto& pace) { return pace.param ? "RealTime" : "Lockstep"; });
+
+TEST_P(Stopped, InOrderByTheCoordinator) {
+  const auto all = fly(endless(GetParam()));
+  ASSERT_EQ(stop(), 0) << output();
+  EXPECT_TRUE(answered("the mission has ended at tick ")) << output();
+  EXPECT_TRUE(answered("stopped by `ergocast stop` on " + host_name())) << output();
+  for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->said();
+  EXPECT_EQ(summary()["result"], "stopped");
+  EXPECT_EQ(summary()["reason"], "stopped by `ergocast stop` on " + host_name());
+  EXPECT_FALSE(summary().contains("emergency_stop"));
+  EXPECT_EQ(ergocast({"verify", out()}), GetParam() ? 2 : 0) << output();
+}
+
+TEST_P(Stopped, AtOnce) {
+  const auto all = fly(endless(GetParam()));
+  ASSERT_EQ(stop({"--now"}), 0) << output();
+  EXPECT_TRUE(answered("all stand still")) << output();
+  for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->said();
+  EXPECT_EQ(summary()["result"], "stopped");
+  EXPECT_EQ(summary()["reason"], "stopped at once by `ergocast stop --now` on " + host_name());
+  expect_halt();
+  EXPECT_EQ(ergocast({"verify", out()}), GetParam() ? 2 : 0) << output();
+}
+
+TEST_P(Stopped, AtOnceWithoutACoordinator) {
+  const auto all = fly(endless(GetParam()));
+  signal_to({"ergocast-coordinator"}, SIGKILL);
+  ASSERT_TRUE(moves_on());
+  EXPECT_EQ(stop(), 4);
+  EXPECT_TRUE(answered("no coordinator is heard")) << output();
+  EXPECT_TRUE(answered("ergocast stop --now")) << output();
+  ASSERT_TRUE(moves_on()) << "nobody obeys a stop in order but the coordinator";
+  ASSERT_EQ(stop({"--now"}), 0) << output();
+  for (Program* program : all) {
+    if (program != all[2]) EXPECT_EQ(wait_for(program->child), 0) << program->said();
+  }
+  EXPECT_EQ(summary()["result"], "stopped");
+  expect_halt();
+}
+
+// The tick at which STOP was said is known when the team waits for one of its agents.
+TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
+  const auto all = fly(endless(false));
+  signal_to(agent(2), SIGSTOP);
+  std::uintmax_t before = 0;
+  ASSERT_TRUE(eventually([&] {  // until the record stands still: the world waits for agent 2
+    const auto size = recorded_bytes();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    return std::exchange(before, size) == size;
+  }));
+  const Tick waited_for = recorded_rows(out()).rbegin()->first + 1;
+  ASSERT_EQ(stop({"--now"}), 0) << output();
+  EXPECT_TRUE(answered("agent 2 did not say so")) << output();
+  signal_to(agent(2), SIGCONT);
+  EXPECT_EQ(wait_for(all[0]->child), 0);
+  expect_halt();
+  EXPECT_EQ(recorded_rows(out()).rbegin()->first, waited_for)
+      << "the tick nobody had answered in full";
+}
+
+TEST_F(StopCommand, EndsAMissionOfALauncherWhichCallsItStopped) {
+  for (const bool at_once : {false, true}) {
+    std::filesystem::remove_all(out());
+    Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+    ASSERT_EQ(stop(at_once ? std::vector<std::string>{"--now"} : std::vector<std::string>{}), 0)
+        << output();
+    EXPECT_EQ(wait_for(mission), 0) << said();
+    EXPECT_EQ(summary()["result"], "stopped") << said();
+    EXPECT_EQ(summary()["restarts"], 0) << said();
+    EXPECT_EQ(summary()["record_complete"], true);
+    for (const auto& process : summary()["processes"])
+      EXPECT_EQ(process["end"], "exited with code 0");
+  }
+}
+
+TEST_F(StopCommand, ALauncherEndsAMissionWhoseCoordinatorIsDeaf) {
+  Child mission = launch_endless(scenario());
+  signal_to({"ergocast-coordinator"}, SIGSTOP);
+  mission.send(SIGINT);
+  EXPECT_TRUE(logs("sim", "finished at tick")) << said();
+  signal_to({"ergocast-coordinator"}, SIGCONT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "stopped");
+}
+
+TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
+  EXPECT_EQ(stop({"--now"}), 4);
+  EXPECT_TRUE(answered("nobody of any run was heard on ")) << output();
+  EXPECT_EQ(stop({"--now", "--run-id", "b2"}), 4);
+  EXPECT_TRUE(answered("nobody of run 00000000000000b2 was heard on ")) << output();
+}
+
+TEST_F(StopCommand, OfSeveralRunsOnOneUrlStopsNone) {
+  Stranger stranger(kUrl);
+  Program& undecided = hand("ergocast", {"stop", "--now"});
+  ASSERT_TRUE(eventually([&] {
+    for (const RunId run : {0xa1, 0xb2}) {
+      TeamStatus team;
+      team.header = {run, kCoordinator, run, 0, 7};
+      stranger.say(Bus::kSwarm, team);
+    }
+    return !undecided.child.running();
+  }));
+  EXPECT_EQ(wait_for(undecided.child), 2) << undecided.said();
+  EXPECT_TRUE(undecided.says("--run-id 00000000000000a1")) << undecided.said();
+  EXPECT_TRUE(undecided.says("--run-id 00000000000000b2")) << undecided.said();
+}
+
+}  // namespace
+}  // namespace ergocast::test

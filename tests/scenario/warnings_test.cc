@@ -1,0 +1,63 @@
+// What a scenario is warned of: the bound on what the law commands, in the scenario's numbers.
+#include <gtest/gtest.h>
+
+#include "tests/scenario/scenarios.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+/// kSmall, 100 m × 50 m, with that law and speed limit.
+std::string limited(const std::string& law, const std::string& speed_limit_mps) {
+  return small_with(
+      "law { u_max_mps: 5 }",
+      "law { u_max_mps: 5 " + law + " }\nworld { speed_limit_mps: " + speed_limit_mps + " }");
+}
+
+std::string warnings_of(const std::string& text) { return joined(good(text).warnings()); }
+
+TEST(Warnings, AreNoneWithoutALimit) {
+  EXPECT_EQ(warnings_of(std::string(kSmall)), "");
+  for (const char* name : kShipped)
+    EXPECT_EQ(joined(good(Scenario::load(shipped(name))).warnings()), "") << name;
+}
+
+TEST(Warnings, OfALimitBelowTheConstantLawsCommands) {
+  // k r = 0.06 · √(50² + 25²) = 3.354, 6 σ/√dt = 6 · 0.5/√0.25 = 6: in all 14.36 m/s.
+  const std::string law =
+      "perturbation: CONSTANT noise_intensity: 0.5 contraction_gain_per_s: 0.06";
+  const auto with_step = [&](const std::string& limit) {
+    std::string text = limited(law, limit);
+    return text.replace(text.find("duration_s"), 0, "dt_s: 0.25 ");
+  };
+  EXPECT_EQ(
+      warnings_of(with_step("14.3")),
+      "small.textproto:5:9: world.speed_limit_mps: 14.3 cuts the method's noise short: the law "
+      "commands up to 14.36 m/s = u_max_mps 5 + contraction at the farthest corner 3.355 + 6 "
+      "deviations of its noise 6 (noise_intensity / sqrt(dt_s)) (write at least 14.36, less noise "
+      "or "
+      "a greater dt_s, or accept it: the cuts are counted)\n");
+  EXPECT_EQ(warnings_of(with_step("14.36")), "");
+}
+
+TEST(Warnings, OfTheAdaptiveLawCountTheHeldPushAndNotTheCeilingInAStep) {
+  // The push is held for (2.5/5)² = 0.25 s, 3 steps of 0.1 s: √((6.25 − 0.25)/0.3) = 4.472 m/s;
+  // 6 √(0.25/0.1 + 4.472²) = 28.46. The ceiling in one step would be 6 · 2.5/√0.1 = 47.4.
+  const std::string law = "noise_intensity: 0.5 noise_ceiling: 2.5 contraction_gain_per_s: 0";
+  const std::string warning = warnings_of(limited(law, "33"));
+  EXPECT_TRUE(has(warning, "commands up to 33.47 m/s"));
+  EXPECT_TRUE(has(warning, "a push of 4.473 m/s held for 0.3"));
+  EXPECT_EQ(warnings_of(limited(law, "33.5")), "");
+}
+
+TEST(Warnings, AreOfNoWeightForAPlan) {
+  const Scenario scenario = good(limited("", "1"));
+  ASSERT_EQ(scenario.warnings().size(), 1u);
+  const auto plan = Scenario::from_plan(scenario.plan());
+  ASSERT_TRUE(std::holds_alternative<Scenario>(plan));
+  EXPECT_EQ(std::get<Scenario>(plan).mission().speed_limit_mps, 1);
+}
+
+}  // namespace
+}  // namespace ergocast

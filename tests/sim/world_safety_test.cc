@@ -1,0 +1,211 @@
+// The simulated world, driven by hand: what keeps vehicles slow, finite and still.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/sim/driven_world.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+constexpr double kHuge = std::numeric_limits<double>::max();
+
+Mission limited_mission(double speed_limit_mps) {
+  Mission mission = small_mission(2);
+  mission.speed_limit_mps = speed_limit_mps;
+  return mission;
+}
+
+Stop stop_now(bool failed = false) {
+  return {{kRun, kOperator, 1, 1, 0}, failed, "stopped at once by hand", true};
+}
+
+/// The state after both agents have answered `tick`.
+WorldState answered(World& world, Tick tick, const Eigen::Vector2d& first,
+                    const Eigen::Vector2d& second) {
+  world.receive(command_of(0, tick, first), at(0s));
+  world.receive(command_of(1, tick, second), at(0s));
+  return state_after(world, at(0s));
+}
+
+// ---- speed limit
+// ---------------------------------------------------------------------------------
+
+TEST(WorldSpeedLimit, CutsWhatIsFasterCountsItAndSaysWhatItApplied) {
+  World world = running_world(limited_mission(5));
+  advance(world, at(0s));
+  WorldState state = answered(world, 0, {6, 8}, {3, 4});
+  EXPECT_LT((applied(state, 0) - Eigen::Vector2d(3, 4)).norm(), 1e-14);
+  EXPECT_LT((place(state, 0) - Eigen::Vector2d(100.3, 500.4)).norm(), 1e-12);
+  EXPECT_EQ(applied(state, 1), Eigen::Vector2d(3, 4)) << "bit for bit";
+  EXPECT_EQ(state.clamped_commands, 1);
+  state = answered(world, 1, {0, -50}, {-500, 0});
+  EXPECT_EQ(state.clamped_commands, 3);
+  EXPECT_EQ(world.clamped_commands(), 3);
+}
+
+TEST(WorldSpeedLimit, IsNoneUnlessTheScenarioSaysOne) {
+  World world = running_world(limited_mission(0));
+  advance(world, at(0s));
+  const WorldState state = answered(world, 0, {6e5, 8e5}, {3, 4});
+  EXPECT_EQ(applied(state, 0), Eigen::Vector2d(6e5, 8e5));
+  EXPECT_EQ(state.clamped_commands, 0);
+}
+
+TEST(WorldSpeedLimit, HoldsForAWorldThatRemembersByTheAgentsCommands) {
+  const Mission mission = limited_mission(5);
+  World first = running_world(mission), second = world_of(mission);
+  advance(first, at(0s));
+  answered(first, 0, {6, 8}, {1, 0});
+  const WorldState before = answered(first, 1, {0, 7}, {1, 0});
+  second.receive(mission_part(0, MissionState::kRunning, roster_of(2)), at(0s));
+  for (const AgentId id : {0, 1}) {
+    for (const Tick tick : {1, 2}) {  // the last two of each, with where it was
+      Command command =
+          command_of(id, tick, tick == 1 ? Eigen::Vector2d(0, 7) : Eigen::Vector2d(1, 0));
+      command.position_m = before.vehicles[static_cast<std::size_t>(id)].position_m;
+      second.receive(command, at(0s));
+    }
+  }
+  EXPECT_EQ(applied(state_after(second, at(0s))), applied(before));
+}
+
+// ---- numbers
+// ---------------------------------------------------------------------------------------
+
+TEST(WorldNumbers, WhateverFiniteCommandComesThePlacesStayInTheDomain) {
+  for (const double limit_mps : {0.0, 5.0}) {
+    Mission mission = limited_mission(limit_mps);
+    mission.disturbance_intensity = 1e3;
+    mission.domain.origin_m = {-2e8, 1e8};  // 100 000 sizes away
+    World world = running_world(mission);
+    advance(world, at(0s));
+    Tick tick = 0;
+    for (const double v : {kHuge, -kHuge, 1e300, 1e17, 5e-324}) {
+      const WorldState state = answered(world, tick++, {v, -v}, {-v, 0});
+      for (int i = 0; i < 2; ++i) EXPECT_TRUE(mission.domain.contains(place(state, i))) << v;
+    }
+  }
+}
+
+TEST(WorldNumbers, CountsTheCommandsThatCannotBeTrue) {
+  Mission mission = small_mission(1);
+  mission.timing.dt_s = 10;
+  World world = running_world(mission);
+  advance(world, at(0s));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Eigen::Vector2d& v : {Eigen::Vector2d(kHuge, 0), {nan, 0}, {0, -2 * kHuge}}) {
+    world.receive(command_of(0, 0, v), at(0s));
+  }
+  EXPECT_EQ(world.refused(), 3);
+  world.receive(command_of(0, 1, {1, 0}), at(0s));
+  EXPECT_EQ(world.refused(), 4) << "a tick that was not said";
+  EXPECT_TRUE(advance(world, at(0s)).empty()) << "unanswered";
+  world.receive(command_of(0, 0, {1, 0}), at(0s));
+  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0));
+  EXPECT_EQ(world.refused(), 4);
+}
+
+TEST(WorldNumbers, OfAPlaceOutsideTheDomainAWorldThatBeginsTakesNothing) {
+  World world = world_of(small_mission(1));
+  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double x_m : {-1.0, 2001.0, kHuge, nan}) {
+    Command command = command_of(0, 7, {1, 0});
+    command.position_m = {x_m, 500, 0};
+    world.receive(command, at(0s));
+  }
+  EXPECT_EQ(world.refused(), 4);
+}
+
+// ---- emergency stop
+// ----------------------------------------------------------------------------------
+
+TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndSaysSo) {
+  for (const Pace pace : {Pace::kLockstep, Pace::kRealtime}) {
+    Mission mission = small_mission(2);
+    mission.timing.pace = pace;
+    mission.disturbance_intensity = 10;
+    World world = running_world(mission);
+    const WorldState before = state_after(world, at(0s));
+    world.receive(command_of(0, 0, {9, 0}), at(1ms));
+    world.receive(stop_now(), at(2ms));
+    const WorldState halt = state_after(world, at(2ms));
+    EXPECT_EQ(halt.header.tick, before.header.tick + 1);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_EQ(applied(halt, i), Eigen::Vector2d(0, 0));
+      EXPECT_EQ(place(halt, i), place(before, i)) << "not even the disturbance moves it";
+    }
+    for (AgentId id : {0, 1}) world.receive(command_of(id, 1, {9, 0}), at(3ms));
+    world.receive(mission_part(1, MissionState::kEnded, roster_of(2), "later"), at(3ms));
+    EXPECT_EQ(place(state_after(world, at(1s))), place(before)) << "said again, and nobody moves";
+    EXPECT_FALSE(world.finished());
+    advance(world, at(2100ms));
+    EXPECT_TRUE(world.finished());
+    EXPECT_EQ(world.reason(), "stopped at once by hand");
+  }
+}
+
+TEST(WorldHalt, SaysFirstWhereTheLastStepLed) {
+  Mission mission = small_mission(1);
+  mission.wait_for_logger = true;
+  World world = running_world(mission);
+  world.receive(ack_of(-1), at(0s));
+  Tick tick = 0;
+  // Until the world is as far ahead of the record as it may be: the next state is not said.
+  for (advance(world, at(0s)); tick < kRecordWindowTicks; ++tick) {
+    world.receive(command_of(0, tick, {1, 0}), at(0s));
+    if (advance(world, at(0s)).empty()) break;
+  }
+  world.receive(stop_now(), at(1ms));
+  const auto states = states_after(world, at(1ms));
+  ASSERT_EQ(states.size(), 2u);
+  EXPECT_EQ(applied(states[0]), Eigen::Vector2d(1, 0)) << "it had moved so far";
+  EXPECT_EQ(states[1].header.tick, states[0].header.tick + 1);
+  EXPECT_EQ(applied(states[1]), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(place(states[1]), place(states[0]));
+}
+
+TEST(WorldHalt, EndsAsSoonAsTheRecordIsComplete) {
+  Mission mission = small_mission(1);
+  mission.wait_for_logger = true;
+  World world = running_world(mission);
+  world.receive(ack_of(-1), at(0s));
+  advance(world, at(0s));
+  world.receive(stop_now(), at(1ms));
+  EXPECT_EQ(state_after(world, at(1ms)).header.tick, 1);
+  EXPECT_FALSE(world.finished());
+  world.receive(ack_of(0), at(50ms));
+  EXPECT_TRUE(world.finished());
+}
+
+TEST(WorldHalt, BeforeItHasBegunItJustEnds) {
+  World world = world_of(small_mission(1));
+  world.receive(stop_now(), at(0s));
+  EXPECT_TRUE(world.finished());
+  EXPECT_TRUE(advance(world, at(0s)).empty());
+}
+
+TEST(WorldHalt, AStopInOrderIsTheCoordinatorsToObey) {
+  World world = running_world(small_mission(1));
+  advance(world, at(0s));
+  Stop in_order = stop_now();
+  in_order.now = false;
+  world.receive(in_order, at(0s));
+  world.receive(command_of(0, 0, {1, 0}), at(0s));
+  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0)) << "it goes on";
+}
+
+TEST(WorldHalt, AnAgentMayStillSayThatItsVehicleIsToStand) {
+  World world = running_world(small_mission(2));
+  advance(world, at(0s));
+  world.receive(command_of(0, 0, {9, 0}), at(0s));
+  world.receive(command_of(0, 0, {0, 0}), at(0s));
+  world.receive(command_of(1, 0, {1, 0}), at(0s));
+  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(0, 0));
+}
+
+}  // namespace
+}  // namespace ergocast
