@@ -135,6 +135,32 @@ TEST_F(StopCommand, ALauncherEndsAMissionWhoseCoordinatorIsDeaf) {
   EXPECT_EQ(summary()["result"], "stopped");
 }
 
+TEST_F(StopCommand, NeedsTheCoordinatorsKeyIfTheTeamHasOne) {
+  const std::string name = folder_ / "team", team = name + ".key",
+                    coordinator = name + ".coordinator.key";
+  ASSERT_EQ(ergocast({"keygen", name}), 0) << output();
+  std::filesystem::create_directory(out());
+  hand("ergocast-logger", {"--out", out(), "--key-file", team});
+  Program& sim = hand("ergocast-sim", {"--key-file", team});
+  hand("ergocast-coordinator", {endless(false), "--run-id", "ab", "--key-file", coordinator});
+  for (const char* id : {"0", "1", "2", "3"})
+    hand("ergocast-agent", {"--id", id, "--key-file", team});
+  ASSERT_TRUE(recorded(30000)) << sim.said();
+  for (const bool at_once : {false, true}) {
+    std::vector<std::string> how{"--run-id", "ab"};
+    if (at_once) how.push_back("--now");
+    EXPECT_EQ(stop(how), 4);
+    EXPECT_TRUE(answered("has a mission key: give it with --key-file")) << output();
+    how.insert(how.end(), {"--key-file", team});
+    EXPECT_EQ(stop(how), 2);
+    EXPECT_TRUE(answered("cannot begin or end missions")) << output();
+    EXPECT_TRUE(moves_on()) << "nobody obeys who is not the coordinator's";
+  }
+  ASSERT_EQ(stop({"--now", "--key-file", coordinator}), 0) << output();
+  EXPECT_EQ(wait_for(sim.child), 0) << sim.said();
+  EXPECT_TRUE(sim.says("stopped at once")) << sim.said();
+}
+
 TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
   EXPECT_EQ(stop({"--now"}), 4);
   EXPECT_TRUE(answered("nobody of any run was heard on ")) << output();
