@@ -5,12 +5,14 @@
 #include <cstdlib>
 
 #include "doctor/bus_listener.h"
+#include "doctor/fragment_rule.h"
 #include "doctor/interfaces.h"
 #include "doctor/kernel_limits.h"
 #include "doctor/ports.h"
 #include "doctor/programs.h"
 #include "doctor/routing.h"
 #include "runtime/node.h"
+#include "runtime/shipped_folder.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -71,6 +73,8 @@ Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts) {
   if (const auto firewall = firewall_finding(firewall_rules(), url.group)) {
     findings.push_back(*firewall);
   }
+  const auto rules = shipped_folder("nftables", "packaging/nftables") / "ergocast.nft";
+  findings.push_back(fragment_rule_finding(url, nft_ruleset(), rules));
   findings.push_back(clock_finding(clock_is_synchronised()));
   const char* path = std::getenv("PATH");
   findings.push_back(spy_finding("/", path == nullptr ? "" : path));

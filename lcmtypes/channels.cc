@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <utility>
 #include <vector>
 
 namespace ergocast {
@@ -51,6 +52,20 @@ const std::string& name(std::size_t kind, AgentId id) {
 const std::string& channel_of(const Message& message, AgentId relayer) {
   if (!per_agent(message)) return table().plain[message.index()];
   return name(message.index(), relayer == kUnassigned ? header_of(message).sender : relayer);
+}
+
+std::span<const ChannelName> channel_names() {
+  static const auto stems = [] {
+    std::array<std::string, kNames.size()> all;
+    for (std::size_t kind = 0; kind < kNames.size(); ++kind) all[kind] = std::string(kNames[kind]) + "_";
+    return all;
+  }();
+  static const auto names = []<std::size_t... Kind>(std::index_sequence<Kind...>) {
+    return std::array{(kPerAgent<std::variant_alternative_t<Kind, Message>>
+                           ? ChannelName{stems[Kind], true}
+                           : ChannelName{kNames[Kind], false})...};
+  }(std::make_index_sequence<kNames.size()>());
+  return names;
 }
 
 std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel) {

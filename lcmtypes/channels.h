@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,14 @@ namespace ergocast {
 /// _RECORD_ACK, and one per agent for _CONTRIBUTION_<id>, _DIGEST_<id>, _AGENT_STATUS_<id>,
 /// _COMMAND_<id>.
 const std::string& channel_of(const Message& message, AgentId relayer = kUnassigned);
+
+/// A name, or with `per_agent` how one for each agent begins: its number follows, or "NEW".
+struct ChannelName {
+  std::string_view text;
+  bool per_agent = false;
+};
+/// One for each kind of message. Whatever arrives under another name is nobody's.
+std::span<const ChannelName> channel_names();
 
 /// Who transmitted what arrived under `channel`: the sender, or for contributions the agent whose
 /// channel it is. Nothing if `message` has no business there.

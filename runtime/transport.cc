@@ -13,7 +13,9 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
 #include "runtime/clock.h"
+#include "runtime/datagram_filter.h"
 #include "runtime/group_membership.h"
+#include "runtime/socket.h"
 #include "runtime/socket_table.h"
 
 namespace ergocast {
@@ -109,6 +111,9 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
     // LCM tests itself here; a subscription after a failed test would abort the process later.
     const int fd = buses_[at]->getFileno();
     if (fd < 0) return url.of(one.bus) + ": LCM's self test failed\n" + kFirewall;
+    for (const int socket : sockets_at(url.base_port + static_cast<int>(one.bus), 1)) {
+      admit_only_our_channels(socket);
+    }
     lines_[at] = {this, one.bus};
     buses_[at]
         ->subscribe(std::string(kPrefix) + "(" + one.channels + ")", &Line::on_datagram, &lines_[at])

@@ -1,0 +1,14 @@
+// What LCM must not see: it keeps every channel name it ever met, and a crafted header of a
+// fragmented message ("LC03", as none of ours is) makes it write outside its memory.
+#pragma once
+
+namespace ergocast {
+
+/// From now on the kernel passes on to this socket of LCM's only unfragmented LCM messages under
+/// our channels' names (with any number of up to three digits where there is one for each agent).
+/// Of any other datagram nothing is left but four bytes, which LCM throws away at once; the kernel
+/// would count one that is dropped as lost for want of buffer space. Needs no privileges. A kernel
+/// that cannot do it passes on everything.
+void admit_only_our_channels(int socket);
+
+}  // namespace ergocast

@@ -1,0 +1,17 @@
+#include "runtime/shipped_folder.h"
+
+namespace ergocast {
+
+namespace fs = std::filesystem;
+
+fs::path shipped_folder(const std::string& name, const std::string& in_tree) {
+  std::error_code error;
+  const fs::path programs = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const std::string& way : {"../share/ergocast/" + name, "../../../" + in_tree}) {
+    const fs::path folder = (programs / way).lexically_normal();
+    if (fs::is_directory(folder, error)) return folder;
+  }
+  return {};
+}
+
+}  // namespace ergocast

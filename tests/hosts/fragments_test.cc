@@ -1,0 +1,137 @@
+// Fragments of LCM's with crafted headers, which crash a program inside liblcm.
+#include "runtime/socket.h"
+#include "tests/process/mission.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+constexpr int kBasePort = 24700;
+constexpr const char* kGroup = "239.255.76.67";
+constexpr const char* kRules = ERGOCAST_SOURCE_DIR "/packaging/nftables/ergocast.nft";
+
+void append(std::string& bytes, std::uint32_t number) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(number >> shift));
+}
+
+/// The first of two fragments of a message. Its data is to go to 64 bytes before the message's
+/// beginning, or as 32 bits have it: 4 GB behind it. LCM's check of that overflows.
+std::string crafted_fragment(const std::string& channel) {
+  std::string bytes = "LC03";
+  append(bytes, 1);                          // the message's number
+  append(bytes, 1000);                       // its size
+  append(bytes, -64U);                       // the fragment's place
+  append(bytes, 2);                          // fragment 0 of 2
+  return bytes + channel + std::string(1 + 64, '\0');
+}
+
+void send_to(const std::string& address, Bus bus, const std::string& bytes) {
+  const Socket socket(AF_INET, SOCK_DGRAM);
+  const sockaddr_in to = address_of(address, kBasePort + static_cast<int>(bus));
+  ASSERT_EQ(sendto(socket.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+                   sizeof to),
+            static_cast<ssize_t>(bytes.size()));
+}
+
+class Fragments : public FlyingMission {
+ protected:
+  /// From now on programs start as on a kernel without socket filters, which keep fragments out.
+  void take_socket_filters_away() {
+    setenv("LD_PRELOAD", ERGOCAST_NO_SOCKET_FILTER, 1);
+    // With AddressSanitizer: a preloaded library is fine, and a crash is to be the kernel's.
+    setenv("ASAN_OPTIONS", "verify_asan_link_order=0:handle_segv=0", 1);
+  }
+  void TearDown() override {
+    unsetenv("LD_PRELOAD");
+    unsetenv("ASAN_OPTIONS");
+    std::system("nft delete table inet ergocast 2>/dev/null");
+    FlyingMission::TearDown();
+  }
+
+  /// Fragments for everybody who listens to anything; how many.
+  static int send_to_everybody() {
+    int sent = 0;
+    for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
+      for (const char* channel : {"ERGOCAST_HELLO", "ERGOCAST_MISSION", "ERGOCAST_STOP", "ERGOCAST_TEAM_STATUS",
+                                  "ERGOCAST_CONTRIBUTION_1", "ERGOCAST_WORLD_STATE", "ERGOCAST_COMMAND_1"}) {
+        send_to(kGroup, bus, crafted_fragment(channel));
+        ++sent;
+      }
+    }
+    return sent;
+  }
+  /// The team flies on as if nothing had been.
+  void expect_nothing_happens(Child& mission) {
+    ASSERT_TRUE(moves_on(100000)) << said();
+    mission.send(SIGTERM);
+    EXPECT_EQ(wait_for(mission), 0) << said();
+    EXPECT_EQ(summary()["restarts"], 0) << said();
+    EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  }
+  /// What the rule has dropped.
+  int dropped() {
+    const auto file = folder_ / "rules";
+    if (std::system(("nft list table inet ergocast > " + file.string()).c_str()) != 0) return -1;
+    const std::string text = text_of(file);
+    return std::stoi(text.substr(text.find("packets ") + 8));
+  }
+};
+
+TEST_F(Fragments, CrashAnAgentOnceWhoIsStartedAgainAndGetsItsSumBack) {
+  take_socket_filters_away();
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  // What is sent to this host alone goes to whoever listens to a port last.
+  kill_next(agent(2));
+  ASSERT_TRUE(logs("agent-2", ": running", 2)) << said();
+  Witness witness(kUrl);
+  const auto member = [&witness] { return witness.member(2); };
+  ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 0; }));
+  const Author former = member();
+  send_to("127.0.0.1", Bus::kWorld, crafted_fragment("ERGOCAST_HELLO"));
+  ASSERT_TRUE(witness.hears([&] { return said("agent-2") && said("was killed by SIGSEGV"); })) << said();
+  ASSERT_TRUE(witness.hears([&] { return member() != former; })) << said();
+  EXPECT_TRUE(witness.hears([&] { return witness.held(member(), former) >= witness.said(former); }));
+  EXPECT_TRUE(moves_on()) << said();
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["restarts"], 2) << "one of them the test's own";
+}
+
+TEST_F(Fragments, DoNothingWhereTheRuleDropsThem) {
+  take_socket_filters_away();
+  if (std::system((std::string("nft -f ") + kRules).c_str()) != 0) {
+    ASSERT_FALSE(is_root());
+    GTEST_SKIP() << "needs root";
+  }
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  const int sent = send_to_everybody();
+  expect_nothing_happens(mission);
+  EXPECT_EQ(dropped(), sent);
+}
+
+TEST_F(Fragments, DoNothingToWhomTheKernelFiltersForHim) {
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  send_to_everybody();
+  expect_nothing_happens(mission);
+}
+
+TEST_F(Fragments, TheDoctorSaysWhetherARuleDropsThem) {
+  if (!is_root()) GTEST_SKIP() << "needs root";
+  const auto finding = [this] {
+    ergocast({"doctor", "--json", "--lcm-url", kUrl});
+    const auto said = nlohmann::json::parse(output());
+    for (const auto& one : said["findings"]) {
+      if (one["check"] == "LCM fragments") return one;
+    }
+    return nlohmann::json();
+  };
+  const auto missing = finding();
+  EXPECT_EQ(missing["level"], "note") << missing;
+  // The file's folder is named where the programs are installed, or in the tree of their sources.
+  const std::string command = missing["remedy"];
+  ASSERT_EQ(std::system(("cd " ERGOCAST_SOURCE_DIR "/packaging/nftables && " + command).c_str()), 0) << missing;
+  EXPECT_EQ(finding()["level"], "ok") << finding();
+}
+
+}  // namespace
+}  // namespace ergocast::test
