@@ -31,7 +31,7 @@ class Flood : public FlyingMission {
 
 TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
   constexpr long kGrowth_kb = 2000;
-  Child mission = launch_endless(scenario("pace: REALTIME  #"), {"--lcm-url", kUrl});
+  Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
   const pid_t who[] = {pids(agent(0)).front(), pids({"ergocast-logger"}).front()};
   const long before[] = {resident_kb(who[0]), resident_kb(who[1])};
   send_foreign_names(Bus::kSwarm, "ERGOCAST_CONTRIBUTION_X");
