@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lcmtypes/seal.h"
+#include "runtime/event_log.h"
 #include "runtime/lcm_url.h"
 #include "scenario/scenario.h"
 
@@ -27,6 +28,7 @@ struct MissionOptions {
   std::optional<LcmUrl> url;     ///< nothing: this host only, on ports of the run's own
   Seal seal;
   std::string key_file;          ///< whence its key is; empty: none
+  std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
 };
 
 /// The mission as processes over LCM on this host.

@@ -47,7 +47,8 @@ void Launcher::plan(Role role, std::string name, const std::string& program,
 }
 
 std::optional<std::string> Launcher::start() {
-  plan(Role::kLogger, "logger", "ergocast-logger", {"--out", setup_.run_dir.string()});
+  plan(Role::kLogger, "logger", "ergocast-logger", {"--out", setup_.run_dir.string(),
+                                                 "--event-log-limit", std::to_string(setup_.event_log_mib)});
   plan(Role::kWorld, "sim", "ergocast-sim", {});
   plan(Role::kCoordinator, "coordinator", "ergocast-coordinator",
        {(setup_.run_dir / "scenario.textproto").string()});

@@ -9,6 +9,7 @@
 #include "cli/mission_watch.h"
 #include "core/ids.h"
 #include "runtime/child.h"
+#include "runtime/event_log.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::cli {
@@ -31,6 +32,7 @@ class Launcher {
     RunId run = 0;
     std::filesystem::path key_file;  ///< that can sign; empty: no key
     int agents = 0;
+    std::int64_t event_log_mib = kEventLogMib;
   };
 
   Launcher(Setup setup, ProgressDisplay& display) : setup_(std::move(setup)), display_(display) {}

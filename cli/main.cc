@@ -146,6 +146,7 @@ int parse_and_do(int argc, char** argv) {
   add_mission_options(*run_command, mission);
   add_url_option(*run_command, mission);
   add_key_option(*run_command, mission.seal, &mission.key_file);
+  add_event_log_option(*run_command, mission.event_log_mib);
   run_command->callback([&] { action = [&] { return run(mission); }; });
 
   auto* simulate_command =

@@ -146,6 +146,7 @@ int run(const MissionOptions& options) {
   setup.agents = static_cast<int>(scenario->mission().starts_m.size());
   setup.run = random_identity();
   if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
+  setup.event_log_mib = options.event_log_mib;
   setup.url = options.url.value_or(LcmUrl{});
   if (const auto problem = why_unreachable(setup.url)) return complain(kExitUnavailable, *problem);
   const auto ports = options.url ? std::nullopt : PortReservation::take(setup.run);

@@ -47,13 +47,16 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A recorder with the files it fills. The first write error ends the record.
+/// After a write error it is not worth another try before there is so much room.
+constexpr std::uintmax_t kRoomBytes = 1 << 20;
+
+/// A recorder with the files it fills. While they cannot be written the team goes on without it.
 class RunLogger {
  public:
   /// @param past  what to go on with, if anything
-  RunLogger(RunId run, RunRecord& record, std::optional<Past> past)
+  RunLogger(RunId run, RunRecord& record, std::optional<Past> past, EventLogLimits limits)
       : record_(record),
-        events_(record.folder()),
+        events_(record.folder(), limits),
         resumed_(past.has_value()),
         recorder_(run, random_identity(), decoder_of(past ? past->plan : ""), record.trajectory(),
                   record.metrics()) {
@@ -61,7 +64,8 @@ class RunLogger {
   }
 
   Recorder& recorder() { return recorder_; }
-  bool failed() const { return failed_; }
+  /// Whether something that should be in the files is not.
+  bool failed() const { return stuck_; }
   /// Whether the mission that was heard is not the one whose record is here.
   bool wrong_mission() const { return wrong_mission_; }
   /// Whether there is nothing that a former process has not written better.
@@ -79,14 +83,24 @@ class RunLogger {
       last_row_ = now;
       if (!first_row_) first_row_ = now;
     }
-    if (plan_written_ || !recorder_.follower().mission()) return;
-    plan_written_ = true;
-    check(write_plan());
+    if (!stuck_ && !record_.good()) flush(now);
+    if (!stuck_ && !plan_written_ && recorder_.follower().mission()) note(write_plan());
   }
 
-  void flush() {
-    check(record_.flush());
-    check(events_.flush());
+  /// Hands everything to the operating system, also what it has refused before.
+  /// @param last  whether there will be no other try
+  void flush(Instant now, bool last = false) {
+    if (stuck_ && !last && !has_room()) return;
+    const bool held_up = !record_.good();
+    std::optional<std::string> problem = record_.flush();
+    if (held_up && !problem) recorder_.go_on(now);
+    if (auto lost = events_.flush(); !problem) problem = lost;
+    if (!problem && !plan_written_ && recorder_.follower().mission()) problem = write_plan();
+    note(problem);
+    if (events_.removed() > 0 && !removal_said_) {
+      removal_said_ = true;
+      spdlog::warn("the event log has reached its limit: from now on its oldest segment goes for each new one");
+    }
   }
 
   /// As if this process had never been.
@@ -106,10 +120,13 @@ class RunLogger {
       context.wall_time_s = std::chrono::duration<double>(*last_row_ - *first_row_).count();
     }
     context.segments = record_.segment() + 1;
+    context.interruptions = interruptions_;
+    context.events_removed = events_.removed();
     context.refused = transport.refused();
     context.kernel_drops = transport.kernel_drops();
     context.cpu_has_fma = cpu_has_fma();
-    check(write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context))));
+    const auto problem = write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context)));
+    if (problem) note(problem);
   }
 
  private:
@@ -122,27 +139,42 @@ class RunLogger {
     };
   }
 
-  void check(const std::optional<std::string>& problem) {
-    if (!problem || failed_) return;
-    failed_ = true;
-    spdlog::error("{}; the record ends here", *problem);
-    recorder_.stop("the record cannot be written: " + *problem);
+  bool has_room() const {
+    std::error_code error;
+    const auto space = fs::space(record_.folder(), error);
+    return error || space.available >= kRoomBytes;
+  }
+
+  void note(const std::optional<std::string>& problem) {
+    if (problem.has_value() == stuck_) return;
+    stuck_ = problem.has_value();
+    if (stuck_) {
+      ++interruptions_;
+      spdlog::error("{}; the team goes on, and the record will once it can be written again", *problem);
+    } else {
+      spdlog::warn("the record can be written again and goes on at tick {}", recorder_.next_row());
+    }
   }
 
   /// The plan as it was sent, and as people read it, unless a launcher has already written that.
-  std::optional<std::string> write_plan() const {
+  std::optional<std::string> write_plan() {
     const std::vector<std::byte>& plan = recorder_.follower().plan();
     if (auto problem = write_file(record_.folder() / kPlanFile, text_of(plan))) return problem;
     std::error_code ignored;
-    if (fs::exists(record_.folder() / kScenarioFile, ignored)) return std::nullopt;
-    return write_file(record_.folder() / kScenarioFile, std::get<Scenario>(Scenario::from_plan(plan)).print());
+    if (!fs::exists(record_.folder() / kScenarioFile, ignored)) {
+      const std::string text = std::get<Scenario>(Scenario::from_plan(plan)).print();
+      if (auto problem = write_file(record_.folder() / kScenarioFile, text)) return problem;
+    }
+    plan_written_ = true;
+    return std::nullopt;
   }
 
   const std::string started_ = wall_clock_text();
   RunRecord& record_;
   EventLog events_;
   const bool resumed_;
-  bool failed_ = false, plan_written_ = false, wrong_mission_ = false;
+  bool stuck_ = false, plan_written_ = false, wrong_mission_ = false, removal_said_ = false;
+  int interruptions_ = 0;
   Recorder recorder_;
   Tick seen_rows_ = 0;
   std::optional<Instant> first_row_, last_row_;
@@ -153,7 +185,7 @@ int refuse(ExitCode code, const std::string& problem) {
   return code;
 }
 
-int run(const NodeOptions& node, const fs::path& folder, bool resume) {
+int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLimits limits) {
   StopSignals signals;
   std::optional<Past> past;
   if (resume) {
@@ -163,7 +195,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume) {
   }
   auto created = resume ? RunRecord::go_on(folder) : RunRecord::create(folder);
   if (const auto* problem = std::get_if<std::string>(&created)) return refuse(kExitBadInput, *problem);
-  RunLogger logger(node.run, *std::get<0>(created), std::move(past));
+  RunLogger logger(node.run, *std::get<0>(created), std::move(past), limits);
   Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
       node.url, node.run, node.seal, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
@@ -183,7 +215,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume) {
   live(recorder, transport, signals, stop, [&] {
     transport.set_run(recorder.run());
     logger.attend(now());
-    if (watch.look(now())) logger.flush();
+    if (watch.look(now())) logger.flush(now());
   });
   if (logger.wrong_mission()) {
     logger.discard();
@@ -194,7 +226,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume) {
     logger.discard();
     return refuse(kExitFailed, *problem);
   }
-  logger.flush();
+  logger.flush(now(), true);
   if (logger.idle()) {
     logger.discard();
     spdlog::info("no mission was heard; the record stays as it was");
@@ -220,7 +252,11 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::ExistingDirectory);
   app.add_flag("--resume", resume, "Go on with the record of this mission in the folder, if there is one");
+  std::int64_t event_log_mib = kEventLogMib;
+  add_event_log_option(app, event_log_mib);
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("logger", node.log_level);
-  return run(node, folder, resume);
+  EventLogLimits limits;
+  limits.total_bytes = event_log_mib << 20;
+  return run(node, folder, resume, limits);
 }

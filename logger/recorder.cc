@@ -19,9 +19,11 @@ constexpr Tick kAckEveryTicks = 16;
 constexpr double kMetricsPeriod_s = 1.0;
 /// Real time does not repeat a state: after so many newer ones, a missing one is given up.
 constexpr std::size_t kGiveUpAfterStates = 16;
-/// Lockstep: states beyond this many ticks ahead cannot be honest. In real time the record may be
-/// behind by any number.
+/// Lockstep: states beyond this many ticks ahead cannot be honest, or nothing can be written. In
+/// real time the record may be behind by any number.
 constexpr Tick kLeadTicks = 1024;
+/// States that wait to become rows.
+constexpr std::size_t kMaxStates = static_cast<std::size_t>(kLeadTicks);
 /// Lockstep: how long a state may take to be repeated that may be gone for good.
 constexpr auto kRepeatPatience = 500ms;
 /// How long after the end, or the last row, a missing state or an agent's last status may still come.
@@ -55,6 +57,13 @@ void Recorder::resume(RunData past) {
   resumed_ = true;
   for (const auto& [agent, track] : past.tracks) next_row_ = std::max(next_row_, track.back().tick);
   past_ = std::move(past);
+}
+
+void Recorder::go_on(Instant now) {
+  ++incarnation_;
+  lost_before_ = std::max(lost_before_, newest_);
+  progress_ = now;
+  next_ack_ = now;
 }
 
 void Recorder::receive(const Message& message, Instant now) {
@@ -142,6 +151,7 @@ void Recorder::on(const WorldState& world, Instant now) {
   if (is_news) heard_ = now;
   if (follower_.mission()) {
     if (tick > follower_.mission()->timing.tick_count) return;
+    newest_ = std::max(newest_, tick);
     if (is_news) meet(world.header, now);
   }
   const Tick horizon = std::max(next_row_, lost_before_) + kLeadTicks;
@@ -149,6 +159,7 @@ void Recorder::on(const WorldState& world, Instant now) {
   facts_.missed_deadlines = std::max(facts_.missed_deadlines, world.missed_deadlines);
   facts_.skipped_ticks = std::max(facts_.skipped_ticks, world.skipped_ticks);
   facts_.clamped_commands = std::max(facts_.clamped_commands, world.clamped_commands);
+  if (states_.size() >= kMaxStates && !states_.contains(tick)) return;
   State& state = states_[tick];
   // A repeat says nothing new; a restarted world may even have forgotten the velocities.
   if (state.complete()) return;
@@ -191,7 +202,7 @@ void Recorder::advance(Instant now, Outbox& out) {
 void Recorder::write_rows(Instant now) {
   while (true) {
     while (write_next_row()) progress_ = now;
-    if (!gap_ahead() || !gap_is_final(now)) return;
+    if (!writing() || !gap_ahead() || !gap_is_final(now)) return;
     skip_gap();
   }
 }
@@ -202,9 +213,10 @@ void Recorder::acknowledge(Instant now, Outbox& out) {
   if (!progress && now < next_ack_) return;
   trajectory_.flush();
   metrics_.flush();
-  acked_ = recorded;
   const bool hole = !states_.empty() && states_.rbegin()->first > next_row_ + 1;
   next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
+  if (!writing()) return;
+  acked_ = recorded;
   out.push_back({Bus::kCommand, RecordAck{{run_, kLogger, incarnation_,
                                           sequencer_.next(Bus::kCommand), recorded}}});
 }
@@ -234,7 +246,7 @@ void Recorder::close() {
   if (finished_) return;
   finished_ = true;
   // What stands behind a gap is written now or never.
-  while (gap_ahead()) {
+  while (writing() && gap_ahead()) {
     skip_gap();
     while (write_next_row()) {
     }
@@ -253,7 +265,7 @@ bool Recorder::holds(Tick tick) const {
 }
 
 bool Recorder::write_next_row() {
-  if (next_row_ >= follower_.mission()->timing.tick_count) return false;
+  if (!writing() || next_row_ >= follower_.mission()->timing.tick_count) return false;
   if (!holds(next_row_) || !holds(next_row_ + 1)) return false;
   write_trajectory(states_.at(next_row_), states_.at(next_row_ + 1));
   write_due_metrics();

@@ -3,10 +3,12 @@
 // Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
 // the world applied in between. Rows are written in order and acknowledged to the world, which in
 // lockstep repeats whatever state is still missing. What is acknowledged is in the file, so a
-// recorder that is killed is told again of all the rows it lost.
+// recorder that is killed is told again of all the rows it lost. While its streams are bad, as on a
+// full disk, no row is written and none acknowledged.
 //
 // In lockstep a row is left out only where nobody is left who could repeat its states: for ticks
-// before the first state that a resumed recorder heard, or that was heard of a new world.
+// before the first state that a resumed recorder heard, or that was heard of a new world, or that
+// came while nothing could be written.
 #pragma once
 
 #include <map>
@@ -39,7 +41,7 @@ struct RunFacts {
 
 class Recorder {
  public:
-  /// Writes to streams that outlive it; the caller checks them for errors.
+  /// Writes to streams that outlive it; the caller mends those that are bad and says go_on().
   /// @param run  the run to record; 0: the run of the first mission heard
   Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan, std::ostream& trajectory,
            std::ostream& metrics);
@@ -49,6 +51,10 @@ class Recorder {
   /// goes on bit for bit; metrics rows that are due for them and missing are written.
   /// @pre nothing has been received
   void resume(RunData past);
+
+  /// The streams that were bad are good again: what they were given is written. A world that has
+  /// given this recorder up takes it back under its new incarnation.
+  void go_on(Instant now);
 
   void receive(const Message& message, Instant now);
   void advance(Instant now, Outbox& out);
@@ -80,6 +86,7 @@ class Recorder {
   void meet(const Header& world, Instant now);
   void begin();
   void replay(const RunData& past);
+  bool writing() const { return trajectory_.good() && metrics_.good(); }
   void write_rows(Instant now);
   void acknowledge(Instant now, Outbox& out);
   bool write_next_row();
@@ -115,6 +122,7 @@ class Recorder {
   std::string reason_;
 
   Incarnation world_ = 0;  // the last heard
+  Tick newest_ = 0;        // state heard
   Tick lost_before_ = 0;   // states of earlier ticks may be gone for good
   std::optional<RunData> past_;  // until the mission is known
   bool resumed_ = false;

@@ -3,19 +3,16 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <utility>
 
 namespace ergocast {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A stream that failed earlier does not remember why; whether the disk is full can still be seen.
-std::string error_at(const fs::path& file) {
-  if (errno != 0) return file.string() + ": " + std::strerror(errno);
-  std::error_code error;
-  const auto space = fs::space(file.parent_path(), error);
-  const bool full = !error && space.available < 65536;
-  return file.string() + (full ? ": the disk is full" : ": cannot be written");
+std::string error_at(const fs::path& file, int error) {
+  return file.string() + ": " + (error != 0 ? std::strerror(error) : "cannot be written");
 }
 
 }  // namespace
@@ -58,9 +55,8 @@ RunRecord::Created RunRecord::begin(const fs::path& folder, int segment, const c
     std::error_code error;
     const bool taken = fs::file_size(file, error) > 0 && !error;
     if (taken) return file.string() + ": " + if_taken;
-    errno = 0;
-    stream->open(file, std::ios::binary);
-    if (!*stream) return error_at(file);
+    stream->open(file);
+    if (!*stream) return error_at(file, stream->error());
   }
   return record;
 }
@@ -72,9 +68,10 @@ fs::path RunRecord::trajectory_file() const {
 fs::path RunRecord::metrics_file() const { return segment_file(folder_, kMetricsFile, segment_); }
 
 std::optional<std::string> RunRecord::flush() {
-  errno = 0;
-  if (!trajectory_.flush()) return error_at(trajectory_file());
-  if (!metrics_.flush()) return error_at(metrics_file());
+  for (auto [stream, file] : {std::pair{&trajectory_, trajectory_file()}, {&metrics_, metrics_file()}}) {
+    stream->clear();
+    if (!stream->flush()) return error_at(file, stream->error());
+  }
   return std::nullopt;
 }
 
@@ -92,7 +89,7 @@ std::optional<std::string> write_file(const fs::path& file, std::string_view tex
   out << text << std::flush;
   std::error_code error;
   if (!out) {
-    const std::string problem = error_at(file);
+    const std::string problem = error_at(file, errno);
     fs::remove(temporary, error);
     return problem;
   }

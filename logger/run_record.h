@@ -3,12 +3,13 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
+
+#include "logger/line_file.h"
 
 namespace ergocast {
 
@@ -42,7 +43,8 @@ class RunRecord {
   bool good() const { return trajectory_.good() && metrics_.good(); }
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Hands everything to the operating system. The first write error, such as a full disk, if any.
+  /// Hands everything to the operating system, also what it has refused before. The write error,
+  /// such as a full disk, if any; nothing that was written is lost by it, nor is half a line left.
   std::optional<std::string> flush();
 
   /// Removes the files of this segment.
@@ -56,7 +58,7 @@ class RunRecord {
 
   std::filesystem::path folder_;
   int segment_;
-  std::ofstream trajectory_, metrics_;
+  LineFile trajectory_, metrics_;
 };
 
 /// Writes a whole file under another name and renames it, so that nobody ever sees half of it.

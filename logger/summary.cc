@@ -132,6 +132,8 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   summary["gaps"] = facts.gaps;
   if (facts.halted) summary["emergency_stop"] = true;
   summary["segments"] = context.segments;
+  summary["interruptions"] = context.interruptions;
+  summary["events_removed"] = context.events_removed;
   summary["missed_deadlines"] = facts.missed_deadlines;
   summary["skipped_ticks"] = facts.skipped_ticks;
   if (mission && mission->speed_limit_mps > 0) {

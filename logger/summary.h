@@ -20,6 +20,8 @@ struct RunContext {
   bool simulated = false;     ///< in one process, without a network
   double wall_time_s = 0;     ///< of the present segment
   int segments = 1;
+  int interruptions = 0;      ///< how often nothing could be written for a while
+  int events_removed = 0;     ///< segments of the event log, for its limit
   RefusalCounts refused{};    ///< by whoever records
   std::int64_t kernel_drops = 0;
   bool cpu_has_fma = false;

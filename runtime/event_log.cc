@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <lcm/lcm-cpp.hpp>
+#include <map>
 
 namespace ergocast {
 namespace {
@@ -17,12 +18,27 @@ std::int64_t wall_clock_us() {
   return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
+/// Sizes of the segments in a folder, by number.
+std::map<int, std::int64_t> segments_in(const std::filesystem::path& folder) {
+  std::map<int, std::int64_t> segments;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    int number = 0, end = 0;
+    const std::string name = entry.path().filename().string();
+    const bool ours = std::sscanf(name.c_str(), "events-%d.lcm%n", &number, &end) == 1;
+    if (!ours || static_cast<std::size_t>(end) != name.size()) continue;
+    const auto bytes = entry.file_size(error);
+    segments[number] = error ? 0 : static_cast<std::int64_t>(bytes);
+  }
+  return segments;
+}
+
 }  // namespace
 
-EventLog::EventLog(std::filesystem::path folder, std::int64_t segment_bytes)
-    : folder_(std::move(folder)), segment_bytes_(segment_bytes) {
-  std::error_code ignored;
-  while (std::filesystem::exists(segment_file(first_segment_), ignored)) ++first_segment_;
+EventLog::EventLog(std::filesystem::path folder, EventLogLimits limits)
+    : folder_(std::move(folder)), limits_(limits) {
+  const auto there = segments_in(folder_);
+  if (!there.empty()) first_segment_ = there.rbegin()->first + 1;
   segment_ = first_segment_;
   open_next();
 }
@@ -30,7 +46,15 @@ EventLog::EventLog(std::filesystem::path folder, std::int64_t segment_bytes)
 EventLog::~EventLog() = default;
 
 void EventLog::fail() {
-  if (!error_) error_ = file_.string() + ": " + std::strerror(errno);
+  if (error_) return;
+  error_ = file_.string() + ": " + std::strerror(errno);
+  log_.reset();
+  std::error_code ignored;
+  if (flushed_ > 0) {
+    std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(flushed_), ignored);
+  } else if (std::filesystem::remove(file_, ignored)) {
+    --segment_;
+  }
 }
 
 std::filesystem::path EventLog::segment_file(int segment) const {
@@ -40,28 +64,51 @@ std::filesystem::path EventLog::segment_file(int segment) const {
 }
 
 void EventLog::open_next() {
-  flush();
+  error_.reset();
+  log_.reset();
+  make_room();
+  written_ = flushed_ = 0;
   file_ = segment_file(segment_++);
   log_ = std::make_unique<lcm::LogFile>(file_.string(), "w");
   if (!log_->good()) fail();
-  written_ = 0;
+}
+
+/// For a whole segment more.
+void EventLog::make_room() {
+  auto there = segments_in(folder_);
+  std::int64_t total = 0;
+  for (const auto& [number, bytes] : there) total += bytes;
+  while (!there.empty() && total + limits_.segment_bytes > limits_.total_bytes) {
+    std::error_code error;
+    if (!std::filesystem::remove(segment_file(there.begin()->first), error)) return;
+    total -= there.begin()->second;
+    there.erase(there.begin());
+    ++removed_;
+  }
 }
 
 void EventLog::write(std::string_view channel, std::span<const std::byte> bytes) {
   if (error_) return;
-  if (written_ >= segment_bytes_) open_next();
+  if (written_ >= limits_.segment_bytes && !flush()) open_next();
+  if (error_) return;
   lcm::LogEvent event{};
   event.timestamp = wall_clock_us();
   event.channel = channel;
   event.datalen = static_cast<std::int32_t>(bytes.size());
   // LCM only reads it; its type is not const because the same struct serves for reading a log.
   event.data = const_cast<std::byte*>(bytes.data());
-  if (!log_->good() || log_->writeEvent(&event) != 0) fail();
+  if (log_->writeEvent(&event) != 0) return fail();
   written_ += kEventHeaderBytes + static_cast<std::int64_t>(channel.size() + bytes.size());
 }
 
 std::optional<std::string> EventLog::flush() {
-  if (log_ && log_->good() && std::fflush(log_->getFilePtr()) != 0) fail();
+  if (error_) open_next();
+  if (error_) return error_;
+  if (std::fflush(log_->getFilePtr()) != 0) {
+    fail();
+  } else {
+    flushed_ = written_;
+  }
   return error_;
 }
 

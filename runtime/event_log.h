@@ -15,20 +15,29 @@ class LogFile;
 
 namespace ergocast {
 
-/// events-000.lcm, events-001.lcm, … in one folder, from the first number that is not taken: the
-/// log that a killed process left may end amid a message.
+inline constexpr std::int64_t kEventLogMib = 4096;
+
+struct EventLogLimits {
+  std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment is closed and the next begun
+  std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest go first
+};
+
+/// events-000.lcm, events-001.lcm, … in one folder, after the highest number that is taken: the log
+/// that a killed process left may end amid a message.
 class EventLog {
  public:
-  /// A segment that has grown to this is closed and the next begun.
-  static constexpr std::int64_t kSegmentBytes = 64 << 20;
-
-  explicit EventLog(std::filesystem::path folder, std::int64_t segment_bytes = kSegmentBytes);
+  explicit EventLog(std::filesystem::path folder, EventLogLimits limits = {});
   ~EventLog();
 
+  /// Dropped while nothing can be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
 
-  /// Hands everything to the operating system. The first write error since the start, if any.
+  /// Hands everything to the operating system, after a write error in a new segment: the old one
+  /// ends with the last flush. The error, if there still is one.
   std::optional<std::string> flush();
+
+  /// Segments that had to go for the limit.
+  int removed() const { return removed_; }
 
   /// Removes the segments that this log has begun.
   void discard();
@@ -36,11 +45,13 @@ class EventLog {
  private:
   std::filesystem::path segment_file(int segment) const;
   void open_next();
+  void make_room();
   void fail();
 
   std::filesystem::path folder_, file_;
-  std::int64_t segment_bytes_, written_ = 0;
-  int first_segment_ = 0, segment_ = 0;
+  EventLogLimits limits_;
+  std::int64_t written_ = 0, flushed_ = 0;  // bytes of the present segment
+  int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::unique_ptr<lcm::LogFile> log_;
   std::optional<std::string> error_;
 };

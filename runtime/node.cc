@@ -81,6 +81,13 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
   app.set_version_flag("--version", version_text());
 }
 
+void add_event_log_option(CLI::App& app, std::int64_t& mib) {
+  app.add_option("--event-log-limit", mib, "Most that events-*.lcm may hold; the oldest go first")
+      ->capture_default_str()
+      ->check(CLI::Range(128, 1 << 30))  // two segments at least
+      ->type_name("MIB");
+}
+
 int parse_command_line(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);

@@ -47,6 +47,9 @@ struct NodeOptions : BusOptions {
 /// Besides, --log-level (default: $ERGOCAST_LOG_LEVEL, or info) and --version.
 void add_node_options(CLI::App& app, NodeOptions& options);
 
+/// --event-log-limit: of those who write one. @param mib  its default
+void add_event_log_option(CLI::App& app, std::int64_t& mib);
+
 /// Parses; the exit code if the program has to end here (0 after --help), −1 if it goes on.
 int parse_command_line(CLI::App& app, int argc, char** argv);
 
