@@ -382,6 +382,7 @@ void Agent::publish_status(Instant now, Outbox& out) {
   status.contributions_relayed = anti_entropy_->relayed();
   status.missed_ticks = missed_ticks_;
   status.refused = refused_;
+  status.babbler = babbler_;
   status.kernel_drops = kernel_drops_;
   status.loop_lag_s = std::exchange(loop_lag_s_, 0);
   status.host = identity_.host;

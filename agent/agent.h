@@ -72,6 +72,7 @@ class Agent {
 
   /// What the transport counted; shown in the status.
   void count_refused(Refusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
+  void note_babbler(AgentId agent) { babbler_ = agent; }
   void set_kernel_drops(std::int64_t drops) { kernel_drops_ = drops; }
   /// How late or deaf its process was; the next status tells the worst since the last.
   void note_loop_lag(double lag_s) { loop_lag_s_ = std::max(loop_lag_s_, lag_s); }
@@ -152,6 +153,7 @@ class Agent {
   std::optional<Instant> mission_repeated_;
   Sequencer sequencer_;
   std::int64_t received_ = 0, contributions_received_ = 0, missed_ticks_ = 0, kernel_drops_ = 0;
+  AgentId babbler_ = kUnassigned;
   double loop_lag_s_ = 0;
   RefusalCounts refused_{};
 

@@ -15,7 +15,6 @@ constexpr double kLongestDelay_s = 0.25;
 /// Two complaints further apart are not in a row: a teammate that was cut off starts anew.
 constexpr auto kComplaintLife = 5s;
 constexpr std::size_t kMaxComplaints = 8192;
-constexpr std::size_t kMaxAnswers = 256;
 constexpr int kToleratedPeriods = 2;
 
 /// Whether who holds `steps` and `mark` of a row of ours is worth an answer.
@@ -85,11 +84,21 @@ void AntiEntropy::consider(const Author& requester, const Author& author, bool l
   if (sequence <= former->second.sequence) return;
   const bool in_a_row = now - former->second.at <= kComplaintLife;
   former->second = {sequence, now};
-  if (!in_a_row || answers_.count(author) != 0 || answers_.size() >= kMaxAnswers) return;
+  if (!in_a_row || answers_.count(author) != 0 || !may_answer(now, tick)) return;
   const double delay_s = kLongestDelay_s * uniform_pair(seed_, Purpose::kAnswer,
                                                         static_cast<std::uint32_t>(self_.agent),
                                                         ++draws_).x();
   answers_.emplace(author, Deadline::in(seconds(delay_s), now, delay_s, dt_s_, tick));
+}
+
+bool AntiEntropy::may_answer(Instant now, Tick tick) {
+  if (next_window_.due(now, tick)) {
+    next_window_ = Deadline::in(1s, now, 1, dt_s_, tick);
+    window_answers_ = 0;
+  }
+  if (answers_.size() >= kMaxAnswers || window_answers_ >= kMaxAnswers) return false;
+  ++window_answers_;
+  return true;
 }
 
 void AntiEntropy::on_relayed(const Contribution& theirs, const CoverageTable& table) {

@@ -16,6 +16,10 @@ namespace ergocast {
 
 class AntiEntropy {
  public:
+  /// Rows that are about to be repeated at any time, and rows that it takes up in a second, by the
+  /// clock or of the mission, whatever digests say.
+  static constexpr std::size_t kMaxAnswers = 256;
+
   /// @param seed  of the delays before an answer
   AntiEntropy(const Author& self, std::uint64_t seed, double dt_s)
       : self_(self), seed_(seed), dt_s_(dt_s) {}
@@ -50,11 +54,15 @@ class AntiEntropy {
   void consider(const Author& requester, const Author& author, bool lacks, std::int64_t sequence,
                 Instant now, Tick tick);
 
+  bool may_answer(Instant now, Tick tick);
+
   Author self_;
   std::uint64_t seed_;
   double dt_s_;
   std::map<std::pair<Author, Author>, Complaint> complaints_;  // (who lacks, whose coverage)
   std::map<Author, Deadline> answers_;
+  Deadline next_window_;
+  std::size_t window_answers_ = 0;
   std::uint64_t draws_ = 0;
   std::int64_t relayed_ = 0;
 };

@@ -12,16 +12,23 @@ namespace ergocast {
 
 class Hearing {
  public:
+  /// As many lives as a roster may have entries.
+  static constexpr std::size_t kMaxHeard = std::size_t{4} * kMaxAgents;
+
   /// A message of `from`'s own has arrived.
   void count(const Header& from) {
-    Heard& heard = heard_[{from.sender, from.incarnation}];
+    Heard* const known = find_or_add({from.sender, from.incarnation});
+    if (known == nullptr) return;
+    Heard& heard = *known;
     if (heard.count == 0) heard.first = from.sequence;
     heard.last = std::max(heard.last, from.sequence);
     ++heard.count;
   }
 
   /// The coverage of `author` has grown for us, by whatever way it came.
-  void news(const Author& author, Tick tick) { heard_[author].news_tick = tick; }
+  void news(const Author& author, Tick tick) {
+    if (Heard* const heard = find_or_add(author)) heard->news_tick = tick;
+  }
 
   /// Messages missing in the sequences that were heard.
   std::int64_t lost() const {
@@ -50,6 +57,11 @@ class Hearing {
       return count == 0 ? 0 : std::max<std::int64_t>(0, last - first + 1 - count);
     }
   };
+  Heard* find_or_add(const Author& author) {
+    if (heard_.size() >= kMaxHeard && !heard_.contains(author)) return nullptr;
+    return &heard_[author];
+  }
+
   std::map<Author, Heard> heard_;
 };
 

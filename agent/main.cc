@@ -54,8 +54,12 @@ int run(const NodeOptions& node, AgentId requested_id) {
   live(agent, transport, signals, [&] { agent.leave("told to stop by a signal"); }, [&] {
     transport.set_run(agent.run());
     agent.note_loop_lag(lag.take_s());
+    if (const auto& mission = agent.follower().mission()) {
+      transport.limit_agents(allowance_of(*mission, agent.follower().roster().size()), agent.tick());
+    }
     if (watch.look(now())) {
       agent.set_kernel_drops(watch.kernel_drops());
+      agent.note_babbler(transport.babbler());
       waiting.look(agent, now());
     }
     if (agent.phase() == logged) return;

@@ -97,6 +97,9 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
   live(coordinator, transport, signals, stop, [&] {
     transport.set_run(coordinator.run());
+    if (const Mission* mission = coordinator.mission()) {
+      transport.limit_agents(allowance_of(*mission, coordinator.roster().size()), coordinator.tick());
+    }
     watch.look(now());
     roster.look(coordinator, now());
     strangers.look(coordinator);

@@ -132,6 +132,7 @@ struct AgentStatus {
   std::int64_t contributions_relayed = 0;  ///< blocks of others that it repeated
   std::int64_t missed_ticks = 0;         ///< world ticks that came and went without a command
   RefusalCounts refused{};
+  AgentId babbler = kUnassigned;  ///< the last whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
   double loop_lag_s = 0;  ///< the worst since its last status: how late or deaf its process was
   std::string host;

@@ -81,7 +81,7 @@ bool sizes_match(const mission_t*, std::span<const std::byte> bytes) {
 
 bool sizes_match(const agent_status_t*, std::span<const std::byte> bytes) {
   Tail tail(bytes, kHeaderEnd);
-  return tail.skip(1 + 8 + 8 + 4 + 8 * 7 + 8 * kRefusalKinds + 8 + 8) && tail.string(kMaxHostLength) &&
+  return tail.skip(1 + 8 + 8 + 4 + 8 * 7 + 8 * kRefusalKinds + 4 + 8 + 8) && tail.string(kMaxHostLength) &&
          tail.ended();
 }
 

@@ -164,6 +164,7 @@ agent_status_t to_wire(const AgentStatus& m) {
   w.contributions_relayed = m.contributions_relayed;
   w.missed_ticks = m.missed_ticks;
   std::copy(m.refused.begin(), m.refused.end(), w.refused);
+  w.babbler = m.babbler;
   w.kernel_drops = m.kernel_drops;
   w.loop_lag_s = m.loop_lag_s;
   w.status_host = bounded(m.host, kMaxHostLength);
@@ -172,7 +173,7 @@ agent_status_t to_wire(const AgentStatus& m) {
 bool from_wire(const agent_status_t& w, AgentStatus& m) {
   if (w.phase < 0 || w.phase > static_cast<int>(AgentPhase::kFinished) ||
       w.header.sender < kUnassigned || w.header.sender >= kMaxAgents ||
-      !plausible_sender(w.waiting_for) || !plausible_quantity(w.ergodic_metric) ||
+      !plausible_sender(w.waiting_for) || w.babbler < kUnassigned || w.babbler >= kMaxAgents || !plausible_quantity(w.ergodic_metric) ||
       !plausible_quantity(w.max_staleness_s) || !plausible_quantity(w.loop_lag_s) ||
       w.answered_tick < -1 || w.answered_tick > kMostEver || !plausible_text(w.status_host) ||
       !std::all_of(std::begin(w.refused), std::end(w.refused), plausible_count)) {
@@ -196,6 +197,7 @@ bool from_wire(const agent_status_t& w, AgentStatus& m) {
   m.contributions_relayed = w.contributions_relayed;
   m.missed_ticks = w.missed_ticks;
   std::copy_n(w.refused, kRefusalKinds, m.refused.begin());
+  m.babbler = w.babbler;
   m.kernel_drops = w.kernel_drops;
   m.loop_lag_s = w.loop_lag_s;
   m.host = w.status_host;

@@ -214,6 +214,9 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLi
   const auto stop = [&] { recorder.stop("the logger was told to stop"); };
   live(recorder, transport, signals, stop, [&] {
     transport.set_run(recorder.run());
+    if (const auto& mission = recorder.follower().mission()) {
+      transport.limit_agents(allowance_of(*mission, recorder.follower().roster().size()), recorder.newest());
+    }
     logger.attend(now());
     if (watch.look(now())) logger.flush(now());
   });

@@ -71,8 +71,9 @@ void Recorder::receive(const Message& message, Instant now) {
   if (finished_ || (run_ != 0 && from.run != run_)) return;
   if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
   if (const auto* status = std::get_if<AgentStatus>(&message)) {
-    if (statuses_.size() > static_cast<std::size_t>(kMaxAgents) * kMaxIncarnationsPerAgent) return;
-    AgentStatus& latest = statuses_[{from.sender, from.incarnation}];
+    const Author author{from.sender, from.incarnation};
+    if (statuses_.size() >= kMaxStatuses && !statuses_.contains(author)) return;
+    AgentStatus& latest = statuses_[author];
     if (from.sequence <= latest.header.sequence) return;
     const double worst_lag_s = std::max(latest.loop_lag_s, status->loop_lag_s);
     latest = *status;

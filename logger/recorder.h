@@ -41,6 +41,9 @@ struct RunFacts {
 
 class Recorder {
  public:
+  /// Lives of agents whose last status is kept.
+  static constexpr std::size_t kMaxStatuses = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
+
   /// Writes to streams that outlive it; the caller mends those that are bad and says go_on().
   /// @param run  the run to record; 0: the run of the first mission heard
   Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan, std::ostream& trajectory,
@@ -73,6 +76,8 @@ class Recorder {
   /// The newest of each, but with the worst loop lag of all.
   const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
   Tick next_row() const { return next_row_; }
+  /// The newest of which a state was heard.
+  Tick newest() const { return newest_; }
 
  private:
   struct State {

@@ -44,6 +44,12 @@ bool TrafficWatch::look(Instant now) {
     spdlog::warn("messages refused since the start:{}{}", reasons,
                  key_advice(refused, transport_.keyed()));
   }
+  constexpr auto kRate = static_cast<std::size_t>(Refusal::kRate);
+  if (refused[kRate] != logged_[kRate]) {
+    spdlog::warn("agent {} babbles: it sends more than eight times what the mission asks of an agent, "
+                 "and the rest is refused; stop it, or mend its program",
+                 transport_.babbler());
+  }
   if (kernel_drops_ != logged_drops_) {
     spdlog::warn("the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "
                  "recv_buf_size in the URL", kernel_drops_);

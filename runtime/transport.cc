@@ -59,6 +59,7 @@ class LcmTransport final : public Transport {
 
   void set_run(RunId run) override { run_ = run; }
   void publish(const Outgoing& outgoing) override;
+  void limit_agents(const Allowance& allowance, Tick tick) override { rates_.allow(allowance, tick); }
   Instant deliver_until(Instant deadline, int wake_fd) override;
   bool keyed() const override { return seal_.keyed(); }
   std::int64_t kernel_drops() const override { return drops_of(sockets_); }
@@ -90,6 +91,7 @@ class LcmTransport final : public Transport {
   RunId run_;
   Seal seal_;
   Handlers handlers_;
+  RateLimit rates_;
   std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
   std::array<Line, kBusCount> lines_{};
   std::vector<pollfd> ready_;             // of the buses we listen to, then the caller's
@@ -147,6 +149,10 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
     const Message& message = std::get<Message>(decoded);
     const auto transmitter = transmitter_of(message, channel);
     if (!transmitter) return refuse(Refusal::kType);
+    if (!rates_.admit(*transmitter, now())) {
+      babbler_ = *transmitter;
+      return refuse(Refusal::kRate);
+    }
     if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);
     handlers_.on_message(message, *transmitter);
   } catch (...) {  // an exception that passes through LCM's C frames would abort the next call

@@ -16,6 +16,7 @@
 #include "core/messages.h"
 #include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
+#include "runtime/rate_limit.h"
 
 namespace ergocast {
 
@@ -48,6 +49,8 @@ class Transport {
 
   virtual void set_run(RunId run) = 0;
   virtual void publish(const Outgoing& outgoing) = 0;
+  /// What an agent may say from now on, and how far the world is; nothing is limited before.
+  virtual void limit_agents(const Allowance& allowance, Tick tick) = 0;
 
   /// Waits until something arrives, `deadline` has come or `wake_fd` (−1: none) is readable, for
   /// kLongestWait at most, and hands over what has arrived; at most a bounded number of datagrams, so that a flood cannot
@@ -68,6 +71,9 @@ class Transport {
   /// Whether only who has the team's key is believed.
   virtual bool keyed() const = 0;
 
+  /// The last agent of whose messages some were refused for their rate; kUnassigned: none.
+  AgentId babbler() const { return babbler_; }
+
   /// Datagrams that the kernel dropped at our sockets for want of buffer space.
   virtual std::int64_t kernel_drops() const = 0;
 
@@ -77,6 +83,7 @@ class Transport {
  protected:
   RefusalCounts refused_{};
   UnknownFormat unknown_format_;
+  AgentId babbler_ = kUnassigned;
 };
 
 }  // namespace ergocast

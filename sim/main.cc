@@ -29,6 +29,9 @@ int run(const NodeOptions& node) {
   const auto stop = [&] { world.stop("the world was told to stop"); };
   live(world, transport, signals, stop, [&] {
     transport.set_run(world.run());
+    if (const auto& mission = world.follower().mission()) {
+      transport.limit_agents(allowance_of(*mission, world.follower().roster().size()), world.tick());
+    }
     watch.look(now());
     if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());
     begun = world.begun_at().has_value();

@@ -40,6 +40,7 @@ class World {
   bool failed() const { return follower_.plan_problem().has_value(); }
   RunId run() const { return run_; }
   const std::string& reason() const { return reason_; }
+  const MissionFollower& follower() const { return follower_; }
   Tick tick() const { return tick_; }
   /// The tick from which it goes on, once it moves; above 0 if another world began the mission.
   std::optional<Tick> begun_at() const { return begun_at_; }

@@ -326,6 +326,28 @@ TEST_F(Repair, AFloodOfDigestsGetsNoMoreThanOneAnswerAtATime) {
   EXPECT_LT(blocks, 2u * 100u);
 }
 
+TEST_F(Repair, NoMoreRowsAreTakenUpInASecondThanItsLimitWhateverDigestsSay) {
+  constexpr auto kMost = static_cast<int>(AntiEntropy::kMaxAnswers);
+  std::vector<Author> gone;
+  for (int i = 0; i <= kMost; ++i) gone.push_back({5 + i / 13, 5000 + static_cast<Incarnation>(i)});
+  for (const Author& author : gone) admit({author, 0, 4});
+  for (const Author& author : gone) hold(author, 9);
+  const auto all_complain = [&](Instant now) {
+    for (const Author& author : gone) complain(1, author, 0, now);
+  };
+  const auto rows_answered = [&](Instant now) {
+    const auto authors = answered(now);
+    return static_cast<int>(std::set<Author>(authors.begin(), authors.end()).size());
+  };
+  all_complain(at(0s));
+  all_complain(at(1s));
+  EXPECT_EQ(rows_answered(at(1s)), kMost) << "one of them waits";
+  all_complain(at(1500ms));
+  EXPECT_EQ(rows_answered(at(1500ms)), 0);
+  all_complain(at(2s));
+  EXPECT_EQ(rows_answered(at(2s)), kMost);
+}
+
 TEST_F(Repair, WhoHasComplainedAndGoneMakesRoomForOthers) {
   roster = roster_of(kMaxAgents);
   for (AgentId id = 1; id < kMaxAgents; ++id) hold(author_of(id), 20);

@@ -90,6 +90,14 @@ TEST(MissionFollower, APartOfARevisionThatNeverCompletesBlocksNoOlderOne) {
   EXPECT_TRUE(follower.receive(part_of(98, kParts - 1)));
 }
 
+TEST(MissionFollower, KeepsTheNewestFourUnfinishedRevisionsAndNoMore) {
+  MissionFollower follower = new_follower();
+  for (int revision = 1; revision <= 5; ++revision) follower.receive(part_of(revision, 0));
+  for (int p = 1; p < kParts; ++p) EXPECT_FALSE(follower.receive(part_of(1, p))) << "forgotten";
+  for (int p = 1; p < kParts - 1; ++p) EXPECT_FALSE(follower.receive(part_of(2, p)));
+  EXPECT_TRUE(follower.receive(part_of(2, kParts - 1)));
+}
+
 TEST(MissionFollower, KeepsWhatItHasUntilANewerRevisionIsComplete) {
   MissionFollower follower = new_follower();
   for (int p = 0; p < kParts; ++p) follower.receive(part_of(1, p));

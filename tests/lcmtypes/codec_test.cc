@@ -72,6 +72,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(status_wire.missed_ticks, 10);
   EXPECT_TRUE(std::equal(std::begin(status_wire.refused), std::end(status_wire.refused),
                          agent_status().refused.begin()));
+  EXPECT_EQ(status_wire.babbler, 22);
   EXPECT_EQ(status_wire.kernel_drops, 17);
   EXPECT_EQ(status_wire.loop_lag_s, 0.25);
   EXPECT_EQ(status_wire.status_host, "host.example");

@@ -219,6 +219,8 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
                            [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(4); }),
       changed<AgentStatus>(agent_status(),
                            [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(-1); }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.babbler = -2; }),
+      changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.babbler = kMaxAgents; }),
       changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.loop_lag_s = -1e-9; }),
       changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.max_staleness_s = -1; }),
       changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.ergodic_metric = -1; }),

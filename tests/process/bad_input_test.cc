@@ -1,5 +1,4 @@
 // One clear error, the documented exit code, and nothing written.
-#include <sys/mount.h>
 
 #include "tests/process/programs.h"
 
@@ -108,20 +107,6 @@ TEST_F(BadInput, LoggerRefusesAFolderWithARecord) {
   EXPECT_EQ(run("ergocast-logger", {"--out", out(), "--lcm-url", "udpm://239.255.76.67:24800"}), 2);
   EXPECT_TRUE(said("already a record")) << output();
   EXPECT_EQ(text_of(record), "old");
-}
-
-TEST_F(BadInput, AFullDiskEndsTheRunAndIsNamed) {
-  if (!may_mount()) GTEST_SKIP() << "the small disk this needs cannot be mounted here";
-  const auto disk = folder_ / "disk";
-  std::filesystem::create_directory(disk);
-  ASSERT_EQ(mount("none", disk.c_str(), "tmpfs", 0, "size=2m"), 0);
-  EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--out", disk / "run"}), 4);
-  EXPECT_TRUE(said("disk is full") || said("No space left")) << output();
-  std::filesystem::remove_all(disk / "run");
-  EXPECT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "10000",
-                      "--out", disk / "simulated"}), 4);
-  EXPECT_TRUE(said("disk is full") || said("No space left")) << output();
-  umount(disk.c_str());
 }
 
 TEST_F(BadInput, WithoutAMulticastRouteTheCommandsThatMendItAreNamed) {

@@ -1,0 +1,56 @@
+#include "runtime/rate_limit.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/messages.h"
+
+namespace ergocast {
+namespace {
+
+constexpr double kMargin = 8;
+/// How often the world repeats a tick at the most, which everybody repeats its words at. In real
+/// time it repeats none, but the network may.
+constexpr double kLockstepRepeatsPerSecond = 50, kRealtimeRepeatsPerSecond = 5;
+/// Statuses, digests and answers to a world that asks, besides those of mission time.
+constexpr double kOthersPerSecond = 40;
+/// What whoever was held up may find waiting: LCM's queues and the kernel's buffers hold less.
+constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
+
+double parts(std::size_t count, int of) {
+  return static_cast<double>((count + static_cast<std::size_t>(of) - 1) / static_cast<std::size_t>(of));
+}
+
+}  // namespace
+
+Allowance allowance_of(const Mission& mission, std::size_t members) {
+  const Timing& timing = mission.timing;
+  const double blocks = parts(static_cast<std::size_t>(mission.basis.mode_count()), kBlockSize);
+  const double digests = parts(members, kMaxDigestEntriesPerMessage);
+  const double repeats =
+      timing.pace == Pace::kLockstep ? kLockstepRepeatsPerSecond : kRealtimeRepeatsPerSecond;
+  const double relayed = static_cast<double>(members) * blocks;
+  Allowance allowance;
+  allowance.per_tick = kMargin * (blocks / timing.broadcast_period_ticks + 1 +
+                                  (1 + digests + relayed) * std::min(1.0, timing.dt_s));
+  allowance.per_second = kMargin * (repeats * (blocks + 1) + relayed + digests + kOthersPerSecond);
+  allowance.most = kBacklog_s * allowance.per_second + kBacklogTicks * allowance.per_tick + kBacklogMessages;
+  return allowance;
+}
+
+bool RateLimit::admit(AgentId from, Instant now) {
+  if (allowance_.most == 0 || from < 0 || from >= kMaxAgents) return true;
+  Budget& budget = budgets_[static_cast<std::size_t>(from)];
+  const double waited_s = std::chrono::duration<double>(now - budget.at).count();
+  const auto ticks = static_cast<double>(std::max<Tick>(0, tick_ - budget.tick));
+  budget.left = budget.begun
+                    ? std::min(allowance_.most, budget.left + waited_s * allowance_.per_second +
+                                                    ticks * allowance_.per_tick)
+                    : allowance_.most;
+  budget = {budget.left, now, std::max(budget.tick, tick_), true};
+  if (budget.left < 1) return false;
+  budget.left -= 1;
+  return true;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,108 @@
+// The event log's limits, and a disk that takes no more.
+#include "runtime/event_log.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <lcm/lcm-cpp.hpp>
+#include <set>
+#include <vector>
+
+namespace ergocast {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of 1000 bytes with what LCM writes around it.
+const std::vector<std::byte> kEvent(1000 - 28 - 4);
+
+class EventLogTest : public ::testing::Test {
+ protected:
+  EventLogTest() {
+    std::string name = fs::temp_directory_path() / "ergocast-test-XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~EventLogTest() override { fs::remove_all(folder_); }
+
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    return names;
+  }
+  std::uintmax_t bytes() const {
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::directory_iterator(folder_)) bytes += entry.file_size();
+    return bytes;
+  }
+  /// How many events a segment holds, and whether it ends with a whole one.
+  int events(const std::string& name) const {
+    lcm::LogFile log(folder_ / name, "r");
+    int count = 0;
+    while (log.readNextEvent() != nullptr) ++count;
+    EXPECT_EQ(fs::file_size(folder_ / name), static_cast<std::uintmax_t>(count) * 1000) << name;
+    return count;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(EventLogTest, HoldsNoMoreThanItsLimitAndLosesItsOldestSegmentsFirst) {
+  EventLog log(folder_, {.segment_bytes = 10000, .total_bytes = 40000});
+  for (int i = 0; i < 40; ++i) log.write("NAME", kEvent);
+  EXPECT_EQ(log.flush(), std::nullopt);
+  EXPECT_EQ(bytes(), 40000U);
+  EXPECT_EQ(log.removed(), 0);
+  log.write("NAME", kEvent);
+  EXPECT_EQ(log.flush(), std::nullopt);
+  EXPECT_EQ(log.removed(), 1);
+  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm", "events-002.lcm", "events-003.lcm", "events-004.lcm"}));
+  for (int i = 0; i < 1000; ++i) {
+    log.write("NAME", kEvent);
+    ASSERT_LE(bytes(), 40000U) << i;
+  }
+}
+
+TEST_F(EventLogTest, GoesOnAfterTheHighestNumberAndCountsWhatOthersLeft) {
+  for (int i = 0; i < 3; ++i) {
+    EventLog log(folder_, {.segment_bytes = 10000, .total_bytes = 20000});
+    for (int event = 0; event < 10; ++event) log.write("NAME", kEvent);
+  }
+  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm", "events-002.lcm"}));
+}
+
+/// A disk on which no file may grow beyond 5500 bytes.
+class FullDisk {
+ public:
+  FullDisk() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &former_);
+    const rlimit full{5500, former_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &full);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &former_); }
+
+ private:
+  rlimit former_{};
+};
+
+TEST_F(EventLogTest, AFullDiskCostsEventsButTearsNone) {
+  EventLog log(folder_);
+  for (int i = 0; i < 3; ++i) log.write("NAME", kEvent);
+  ASSERT_EQ(log.flush(), std::nullopt);
+  {
+    const FullDisk full;
+    for (int i = 0; i < 5; ++i) log.write("NAME", kEvent);
+    EXPECT_NE(log.flush(), std::nullopt);
+    log.write("NAME", kEvent);
+  }
+  EXPECT_EQ(events("events-000.lcm"), 3) << "up to the last flush";
+  EXPECT_EQ(log.flush(), std::nullopt);
+  log.write("NAME", kEvent);
+  ASSERT_EQ(log.flush(), std::nullopt);
+  EXPECT_EQ(events("events-001.lcm"), 1);
+}
+
+}  // namespace
+}  // namespace ergocast
