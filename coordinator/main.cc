@@ -97,8 +97,8 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
   live(coordinator, transport, signals, stop, [&] {
     transport.set_run(coordinator.run());
-    if (const Mission* mission = coordinator.mission()) {
-      transport.limit_agents(allowance_of(*mission, coordinator.roster().size()), coordinator.tick());
+    if (const Mission* flown = coordinator.mission()) {
+      transport.limit_agents(allowance_of(*flown, coordinator.roster().size()), coordinator.tick());
     }
     watch.look(now());
     roster.look(coordinator, now());
