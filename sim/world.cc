@@ -180,8 +180,8 @@ void World::on(const Command& command) {
   const auto newer_than = [&](const std::optional<Command>& known) {
     return !known || command.header.tick > known->header.tick;
   };
-  const bool stand_still = command.velocity_mps.isZero(0);
-  if (stand_still && command.header.tick == body.answered()) {
+  const bool again = body.command && command.header.tick == body.answered();
+  if (again && command.velocity_mps.isZero(0)) {
     body.command->velocity_mps.setZero();  // the one second thought that an agent may have
   } else if (newer_than(body.command)) {
     body.command_before = std::exchange(body.command, command);
