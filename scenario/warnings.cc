@@ -13,10 +13,11 @@ constexpr double kDeviations = 6;
 
 /// What the law's noise is, in the scenario's own words.
 std::string noise_text(const ControlLaw& law, double dt_s) {
-  const std::string steps = "noise_intensity / sqrt(dt_s)";
-  if (law.perturbation == Perturbation::kConstant) return steps;
-  return steps + " and a push of " + shortest(rounded_up(greatest_push_mps(law, dt_s))) +
-         " m/s held for " + shortest(static_cast<double>(push_ticks(law, dt_s)) * dt_s) + " s";
+  const std::string own = "noise_intensity / sqrt(dt_s)";
+  if (law.perturbation == Perturbation::kConstant) return own;
+  const Tick held = push_ticks(law, dt_s);
+  return own + " and a push of " + shortest(rounded_up(greatest_push_mps(law, dt_s))) +
+         " m/s held for " + std::to_string(held) + (held == 1 ? " step" : " steps");
 }
 
 /// A limit below what the law commands cuts the tails of its noise off.

@@ -47,7 +47,7 @@ TEST(Warnings, OfTheAdaptiveLawCountTheHeldPushAndNotTheCeilingInAStep) {
   const std::string law = "noise_intensity: 0.5 noise_ceiling: 2.5 contraction_gain_per_s: 0";
   const std::string warning = warnings_of(limited(law, "33"));
   EXPECT_TRUE(has(warning, "commands up to 33.47 m/s"));
-  EXPECT_TRUE(has(warning, "a push of 4.473 m/s held for 0.3"));
+  EXPECT_TRUE(has(warning, "a push of 4.473 m/s held for 3 steps"));
   EXPECT_EQ(warnings_of(limited(law, "33.5")), "");
 }
 
