@@ -1,8 +1,11 @@
 // Floods on the buses of a team that goes on flying.
+#include <lcm/lcm-cpp.hpp>
+#include <map>
+
 #include "core/messages.h"
 #include "runtime/socket.h"
 #include "tests/process/mission.h"
-#include "tests/process/stranger.h"
+#include "tests/process/witness.h"
 
 namespace ergocast::test {
 namespace {
@@ -44,6 +47,94 @@ TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
   mission.send(SIGTERM);
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_EQ(summary()["restarts"], 0);
+}
+
+/// Says a hundred times whatever agent 3 says: so it sounds to the others when one of them babbles.
+class Babbler {
+ public:
+  explicit Babbler(const std::string& url) : bus_(std::get<LcmUrl>(LcmUrl::parse(url)).of(Bus::kSwarm)) {
+    bus_.subscribe("ERGOCAST_(CONTRIBUTION|DIGEST|AGENT_STATUS)_3", &Babbler::hear, this)->setQueueCapacity(0);
+  }
+  void babble() { bus_.handleTimeout(5); }
+
+ private:
+  /// What is heard may be our own.
+  void hear(const lcm::ReceiveBuffer* heard, const std::string& channel) {
+    if (heard->data_size < 36) return;
+    std::int64_t sequence = 0;
+    for (int i = 28; i < 36; ++i) sequence = sequence << 8 | static_cast<const std::uint8_t*>(heard->data)[i];
+    if (sequence <= newest_) return;
+    newest_ = sequence;
+    for (int i = 0; i < 99; ++i) bus_.publish(channel, heard->data, heard->data_size);
+  }
+
+  lcm::LCM bus_;
+  std::int64_t newest_ = 0;
+};
+
+class Babble : public Flood {
+ protected:
+  /// What `ergocast status` says of the agents.
+  nlohmann::json agents() {
+    ergocast({"status", "--json", "--lcm-url", kUrl});
+    return nlohmann::json::parse(output())["agents"];
+  }
+};
+
+TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFliesOn) {
+  Child mission = launch_endless(scenario(), {"--realtime=1", "--lcm-url", kUrl});
+  for (const auto& agent : agents()) EXPECT_EQ(agent["refused"]["rate"], 0) << agent;
+  {
+    Babbler babbler(kUrl);
+    const auto named = [this] { return log_of("agent-0").find("agent 3 babbles") != std::string::npos; };
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!named() && std::chrono::steady_clock::now() < deadline) babbler.babble();
+    ASSERT_TRUE(named()) << log_of("agent-0");
+    const Instant then = now();
+    while (now() - then < std::chrono::seconds(2)) babbler.babble();
+  }
+  for (const auto& agent : agents()) {
+    if (agent["id"] == 3) continue;
+    EXPECT_GT(agent["refused"]["rate"], 0) << agent;
+    EXPECT_EQ(agent["babbler"], 3) << agent;
+    EXPECT_EQ(agent["state"], "ok") << agent;
+  }
+  EXPECT_TRUE(moves_on(10000));
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["restarts"], 0);
+  EXPECT_LT(summary()["missed_deadlines"], summary()["ticks"]) << "of four times as many";
+}
+
+/// Resident memory after a while and much later. ERGOCAST_LONG_TICKS makes it a longer flight.
+TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
+  constexpr long kGrowth_kb = 1024;
+  constexpr Tick kWarmUp = 3000;
+  const char* longer = std::getenv("ERGOCAST_LONG_TICKS");
+  const Tick ticks = longer != nullptr ? std::stoll(longer) : 9000;
+  Child mission = launch_endless(scenario("broadcast_period_ticks: 5"),
+                                 {"--lcm-url", kUrl, "--event-log-limit", "128"});
+  kill_next(agent(2));
+  Witness witness(kUrl);
+  const auto fly_to = [&witness](Tick tick) {
+    return witness.hears([&] { return witness.answered(witness.member(0)) >= tick; });
+  };
+  ASSERT_TRUE(fly_to(kWarmUp)) << said();
+  std::map<std::string, std::pair<pid_t, long>> before;
+  for (const char* program : {"ergocast-logger", "ergocast-sim", "ergocast-coordinator", "--id 0", "--id 2"}) {
+    const auto found = pids({program, "--run-id"});
+    ASSERT_EQ(found.size(), 1U) << program;
+    before[program] = {found.front(), resident_kb(found.front())};
+  }
+  for (Tick tick = kWarmUp; tick < ticks; tick += 3000) ASSERT_TRUE(fly_to(tick + 3000)) << said();
+  for (const auto& [program, at] : before) {
+    const long grown_kb = resident_kb(at.first) - at.second;
+    RecordProperty(program + "_grown_kb", std::to_string(grown_kb));
+    EXPECT_LT(grown_kb, kGrowth_kb) << program;
+  }
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["messages"]["refused"]["rate"], 0);
 }
 
 }  // namespace
