@@ -88,8 +88,8 @@ std::string command_that_loads(const LcmUrl& url, const std::filesystem::path& r
   const bool named = url.base_port == LcmUrl{}.base_port ||
                      (url.base_port >= kFirstBasePort && url.base_port <= kLastBasePort);
   if (named) return "nft -f " + rules.string();
-  const std::string ports = std::to_string(url.base_port) + "-" +
-                            std::to_string(url.base_port + kBusCount - 1);
+  const std::string ports =
+      std::to_string(url.base_port) + "-" + std::to_string(url.base_port + kBusCount - 1);
   return "sed 's/^define.*{/& " + ports + ",/' " + rules.string() + " | nft -f -";
 }
 
@@ -109,9 +109,12 @@ Finding fragment_rule_finding(const LcmUrl& url, const std::optional<std::string
                               const std::filesystem::path& rules) {
   const char* check = "LCM fragments";
   const std::string why =
-      "One crafted fragment crashes a program that uses LCM. Ours keep them out once their sockets are "
-      "open; the rule covers their first moment and other programs, too. As root, until the next start:";
-  const Finding missing{check, Level::kNote, "no rule drops them", why, command_that_loads(url, rules)};
+      "One crafted fragment crashes a program that uses LCM. Ours keep them out once their sockets "
+      "are "
+      "open; the rule covers their first moment and other programs, too. As root, until the next "
+      "start:";
+  const Finding missing{check, Level::kNote, "no rule drops them", why,
+                        command_that_loads(url, rules)};
   if (!ruleset) {
     Finding unknown = missing;
     unknown.found = "only root can tell whether a rule drops them (nft list ruleset)";
@@ -121,7 +124,8 @@ Finding fragment_rule_finding(const LcmUrl& url, const std::optional<std::string
     const int covered = covered_ports(json::parse(*ruleset), url);
     if (covered == kBusCount) return {check, Level::kOk, "dropped at our ports", "", ""};
     Finding partly = missing;
-    if (covered > 0) partly.found = "a rule drops them at " + std::to_string(covered) + " of our 3 ports";
+    if (covered > 0)
+      partly.found = "a rule drops them at " + std::to_string(covered) + " of our 3 ports";
     return partly;
   } catch (const json::exception&) {
     return missing;

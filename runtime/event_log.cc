@@ -89,8 +89,11 @@ void EventLog::make_room() {
 
 void EventLog::write(std::string_view channel, std::span<const std::byte> bytes) {
   if (error_) return;
-  if (written_ >= limits_.segment_bytes && !flush()) open_next();
-  if (error_) return;
+  if (written_ >= limits_.segment_bytes) {
+    if (std::fflush(log_->getFilePtr()) != 0) return fail();
+    open_next();
+    if (error_) return;
+  }
   lcm::LogEvent event{};
   event.timestamp = wall_clock_us();
   event.channel = channel;
@@ -102,13 +105,10 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes)
 }
 
 std::optional<std::string> EventLog::flush() {
-  if (error_) open_next();
-  if (error_) return error_;
-  if (std::fflush(log_->getFilePtr()) != 0) {
-    fail();
-  } else {
-    flushed_ = written_;
-  }
+  if (error_ && told_) open_next();
+  if (!error_ && std::fflush(log_->getFilePtr()) != 0) fail();
+  if (!error_) flushed_ = written_;
+  told_ = error_.has_value();
   return error_;
 }
 

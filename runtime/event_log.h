@@ -32,8 +32,8 @@ class EventLog {
   /// Dropped while nothing can be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
 
-  /// Hands everything to the operating system, after a write error in a new segment: the old one
-  /// ends with the last flush. The error, if there still is one.
+  /// Hands everything to the operating system. The write error since the last call, if any: the
+  /// segment then ends with its last flush, and the next call begins a new one.
   std::optional<std::string> flush();
 
   /// Segments that had to go for the limit.
@@ -54,6 +54,7 @@ class EventLog {
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::unique_ptr<lcm::LogFile> log_;
   std::optional<std::string> error_;
+  bool told_ = false;  // the error, to the caller
 };
 
 }  // namespace ergocast

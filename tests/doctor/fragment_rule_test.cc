@@ -12,10 +12,13 @@ std::string ruleset(const std::string& hook, const std::string& ports, const std
     {"table": {"family": "inet", "name": "ergocast", "handle": 3}},
     {"chain": {"family": "inet", "table": "ergocast", "name": "in", "type": "filter", "hook": ")" +
          hook + R"(", "prio": -10, "policy": "accept"}},
-    {"rule": {"family": "inet", "table": "ergocast", "chain": "in", "handle": 3, "expr": [)" + more +
+    {"rule": {"family": "inet", "table": "ergocast", "chain": "in", "handle": 3, "expr": [)" +
+         more +
          R"({"match": {"op": "==", "left": {"payload": {"protocol": "udp", "field": "dport"}}, "right": )" +
-         ports + R"(}}, {"match": {"op": "==", "left": {"payload": {"base": "th", "offset": 64, "len": 32}},
-    "right": 1279471667}}, {"counter": {"packets": 0, "bytes": 0}}, {")" + verdict + R"(": null}]}}]})";
+         ports +
+         R"(}}, {"match": {"op": "==", "left": {"payload": {"base": "th", "offset": 64, "len": 32}},
+    "right": 1279471667}}, {"counter": {"packets": 0, "bytes": 0}}, {")" +
+         verdict + R"(": null}]}}]})";
 }
 
 Finding finding(const std::optional<std::string>& rules, int port = 24000) {
@@ -24,8 +27,9 @@ Finding finding(const std::optional<std::string>& rules, int port = 24000) {
 
 TEST(FragmentRule, InForceAtAllThreePortsIsAllRight) {
   EXPECT_EQ(finding(ruleset("input", R"({"range": [24000, 26999]})", "drop")).level, Level::kOk);
-  EXPECT_EQ(finding(ruleset("input", R"({"set": [7667, {"range": [24000, 24002]}]})", "drop")).level,
-            Level::kOk);
+  EXPECT_EQ(
+      finding(ruleset("input", R"({"set": [7667, {"range": [24000, 24002]}]})", "drop")).level,
+      Level::kOk);
 }
 
 TEST(FragmentRule, ThatDropsNotAllOfThemIsNoted) {
@@ -35,8 +39,9 @@ TEST(FragmentRule, ThatDropsNotAllOfThemIsNoted) {
        {ruleset("output", R"({"range": [24000, 26999]})", "drop"),
         ruleset("input", R"({"range": [24000, 26999]})", "accept"),
         ruleset("input", R"({"range": [25000, 26999]})", "drop"),
-        ruleset("input", R"({"range": [24000, 26999]})", "drop",
-                R"({"match": {"op": "==", "left": {"meta": {"key": "iifname"}}, "right": "eth9"}},)"),
+        ruleset(
+            "input", R"({"range": [24000, 26999]})", "drop",
+            R"({"match": {"op": "==", "left": {"meta": {"key": "iifname"}}, "right": "eth9"}},)"),
         std::string(R"({"nftables": []})"), std::string("{}"), std::string("no JSON")}) {
     EXPECT_EQ(finding(rules).level, Level::kNote) << rules;
     EXPECT_EQ(finding(rules).found, "no rule drops them") << rules;

@@ -18,18 +18,18 @@ void append(std::string& bytes, std::uint32_t number) {
 /// beginning, or as 32 bits have it: 4 GB behind it. LCM's check of that overflows.
 std::string crafted_fragment(const std::string& channel) {
   std::string bytes = "LC03";
-  append(bytes, 1);                          // the message's number
-  append(bytes, 1000);                       // its size
-  append(bytes, -64U);                       // the fragment's place
-  append(bytes, 2);                          // fragment 0 of 2
+  append(bytes, 1);     // the message's number
+  append(bytes, 1000);  // its size
+  append(bytes, -64U);  // the fragment's place
+  append(bytes, 2);     // fragment 0 of 2
   return bytes + channel + std::string(1 + 64, '\0');
 }
 
 void send_to(const std::string& address, Bus bus, const std::string& bytes) {
   const Socket socket(AF_INET, SOCK_DGRAM);
   const sockaddr_in to = address_of(address, kBasePort + static_cast<int>(bus));
-  ASSERT_EQ(sendto(socket.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
-                   sizeof to),
+  ASSERT_EQ(sendto(socket.fd(), bytes.data(), bytes.size(), 0,
+                   reinterpret_cast<const sockaddr*>(&to), sizeof to),
             static_cast<ssize_t>(bytes.size()));
 }
 
@@ -52,8 +52,9 @@ class Fragments : public FlyingMission {
   static int send_to_everybody() {
     int sent = 0;
     for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
-      for (const char* channel : {"ERGOCAST_HELLO", "ERGOCAST_MISSION", "ERGOCAST_STOP", "ERGOCAST_TEAM_STATUS",
-                                  "ERGOCAST_CONTRIBUTION_1", "ERGOCAST_WORLD_STATE", "ERGOCAST_COMMAND_1"}) {
+      for (const char* channel :
+           {"ERGOCAST_HELLO", "ERGOCAST_MISSION", "ERGOCAST_STOP", "ERGOCAST_TEAM_STATUS",
+            "ERGOCAST_CONTRIBUTION_1", "ERGOCAST_WORLD_STATE", "ERGOCAST_COMMAND_1"}) {
         send_to(kGroup, bus, crafted_fragment(channel));
         ++sent;
       }
@@ -88,9 +89,11 @@ TEST_F(Fragments, CrashAnAgentOnceWhoIsStartedAgainAndGetsItsSumBack) {
   ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 0; }));
   const Author former = member();
   send_to("127.0.0.1", Bus::kWorld, crafted_fragment("ERGOCAST_HELLO"));
-  ASSERT_TRUE(witness.hears([&] { return said("agent-2") && said("was killed by SIGSEGV"); })) << said();
+  ASSERT_TRUE(witness.hears([&] { return said("agent-2") && said("was killed by SIGSEGV"); }))
+      << said();
   ASSERT_TRUE(witness.hears([&] { return member() != former; })) << said();
-  EXPECT_TRUE(witness.hears([&] { return witness.held(member(), former) >= witness.said(former); }));
+  EXPECT_TRUE(
+      witness.hears([&] { return witness.held(member(), former) >= witness.said(former); }));
   EXPECT_TRUE(moves_on()) << said();
   mission.send(SIGTERM);
   EXPECT_EQ(wait_for(mission), 0) << said();
@@ -129,7 +132,8 @@ TEST_F(Fragments, TheDoctorSaysWhetherARuleDropsThem) {
   EXPECT_EQ(missing["level"], "note") << missing;
   // The file's folder is named where the programs are installed, or in the tree of their sources.
   const std::string command = missing["remedy"];
-  ASSERT_EQ(std::system(("cd " ERGOCAST_SOURCE_DIR "/packaging/nftables && " + command).c_str()), 0) << missing;
+  ASSERT_EQ(std::system(("cd " ERGOCAST_SOURCE_DIR "/packaging/nftables && " + command).c_str()), 0)
+      << missing;
   EXPECT_EQ(finding()["level"], "ok") << finding();
 }
 

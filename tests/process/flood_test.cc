@@ -25,9 +25,12 @@ class Flood : public FlyingMission {
     const Socket socket(AF_INET, SOCK_DGRAM);
     const sockaddr_in to = address_of(url.group, url.base_port + static_cast<int>(bus));
     for (int i = 0; i < 100000; ++i) {
-      const std::string bytes = std::string("LC02\0\0\0\1", 8) + stem + std::to_string(i) + std::string(20, '\0');
-      sendto(socket.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
-      if (i % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that all are heard
+      const std::string bytes =
+          std::string("LC02\0\0\0\1", 8) + stem + std::to_string(i) + std::string(20, '\0');
+      sendto(socket.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+             sizeof to);
+      if (i % 50 == 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that all are heard
     }
   }
 };
@@ -52,8 +55,10 @@ TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
 /// Says a hundred times whatever agent 3 says: so it sounds to the others when one of them babbles.
 class Babbler {
  public:
-  explicit Babbler(const std::string& url) : bus_(std::get<LcmUrl>(LcmUrl::parse(url)).of(Bus::kSwarm)) {
-    bus_.subscribe("ERGOCAST_(CONTRIBUTION|DIGEST|AGENT_STATUS)_3", &Babbler::hear, this)->setQueueCapacity(0);
+  explicit Babbler(const std::string& url)
+      : bus_(std::get<LcmUrl>(LcmUrl::parse(url)).of(Bus::kSwarm)) {
+    bus_.subscribe("ERGOCAST_(CONTRIBUTION|DIGEST|AGENT_STATUS)_3", &Babbler::hear, this)
+        ->setQueueCapacity(0);
   }
   void babble() { bus_.handleTimeout(5); }
 
@@ -62,7 +67,8 @@ class Babbler {
   void hear(const lcm::ReceiveBuffer* heard, const std::string& channel) {
     if (heard->data_size < 36) return;
     std::int64_t sequence = 0;
-    for (int i = 28; i < 36; ++i) sequence = sequence << 8 | static_cast<const std::uint8_t*>(heard->data)[i];
+    for (int i = 28; i < 36; ++i)
+      sequence = sequence << 8 | static_cast<const std::uint8_t*>(heard->data)[i];
     if (sequence <= newest_) return;
     newest_ = sequence;
     for (int i = 0; i < 99; ++i) bus_.publish(channel, heard->data, heard->data_size);
@@ -86,7 +92,9 @@ TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFlie
   for (const auto& agent : agents()) EXPECT_EQ(agent["refused"]["rate"], 0) << agent;
   {
     Babbler babbler(kUrl);
-    const auto named = [this] { return log_of("agent-0").find("agent 3 babbles") != std::string::npos; };
+    const auto named = [this] {
+      return log_of("agent-0").find("agent 3 babbles") != std::string::npos;
+    };
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (!named() && std::chrono::steady_clock::now() < deadline) babbler.babble();
     ASSERT_TRUE(named()) << log_of("agent-0");
@@ -121,7 +129,8 @@ TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
   };
   ASSERT_TRUE(fly_to(kWarmUp)) << said();
   std::map<std::string, std::pair<pid_t, long>> before;
-  for (const char* program : {"ergocast-logger", "ergocast-sim", "ergocast-coordinator", "--id 0", "--id 2"}) {
+  for (const char* program :
+       {"ergocast-logger", "ergocast-sim", "ergocast-coordinator", "--id 0", "--id 2"}) {
     const auto found = pids({program, "--run-id"});
     ASSERT_EQ(found.size(), 1U) << program;
     before[program] = {found.front(), resident_kb(found.front())};

@@ -57,7 +57,8 @@ TEST_F(EventLogTest, HoldsNoMoreThanItsLimitAndLosesItsOldestSegmentsFirst) {
   log.write("NAME", kEvent);
   EXPECT_EQ(log.flush(), std::nullopt);
   EXPECT_EQ(log.removed(), 1);
-  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm", "events-002.lcm", "events-003.lcm", "events-004.lcm"}));
+  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm", "events-002.lcm", "events-003.lcm",
+                                            "events-004.lcm"}));
   for (int i = 0; i < 1000; ++i) {
     log.write("NAME", kEvent);
     ASSERT_LE(bytes(), 40000U) << i;

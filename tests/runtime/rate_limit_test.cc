@@ -58,8 +58,10 @@ constexpr int kHonest = 4;
 
 TEST(RateLimit, DoesNotMeetAnHonestAgentHoweverFastTheTeamIs) {
   for (const double ticks_per_second : {1.0, 10.0, 4000.0, 1e6}) {
-    EXPECT_EQ(refused(mission_of(Pace::kLockstep), kHonest, ticks_per_second), 0) << ticks_per_second;
-    EXPECT_EQ(refused(mission_of(Pace::kRealtime), kHonest, ticks_per_second), 0) << ticks_per_second;
+    EXPECT_EQ(refused(mission_of(Pace::kLockstep), kHonest, ticks_per_second), 0)
+        << ticks_per_second;
+    EXPECT_EQ(refused(mission_of(Pace::kRealtime), kHonest, ticks_per_second), 0)
+        << ticks_per_second;
   }
   // The largest basis: 32 blocks.
   EXPECT_EQ(refused(mission_of(Pace::kLockstep, 64), 32 + 3, 4000), 0);

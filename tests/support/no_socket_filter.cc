@@ -5,7 +5,8 @@
 
 #include <cerrno>
 
-extern "C" int setsockopt(int fd, int level, int name, const void* value, socklen_t length) noexcept {
+extern "C" int setsockopt(int fd, int level, int name, const void* value,
+                          socklen_t length) noexcept {
   if (level == SOL_SOCKET && name == SO_ATTACH_FILTER) {
     errno = ENOPROTOOPT;
     return -1;
