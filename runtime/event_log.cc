@@ -12,6 +12,8 @@ namespace {
 
 /// What LCM writes around a message: its number, time and lengths.
 constexpr std::int64_t kEventHeaderBytes = 28;
+/// More than the C library keeps to itself before it writes.
+constexpr std::int64_t kUnwrittenBytes = 1 << 17;
 
 std::int64_t wall_clock_us() {
   using namespace std::chrono;
@@ -49,9 +51,12 @@ void EventLog::fail() {
   if (error_) return;
   error_ = file_.string() + ": " + std::strerror(errno);
   log_.reset();
+  // Half an event is taken back.
   std::error_code ignored;
-  if (flushed_ > 0) {
-    std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(flushed_), ignored);
+  const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file_, ignored));
+  while (!ends_.empty() && ends_.back() > bytes) ends_.pop_back();
+  if (!ends_.empty()) {
+    std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(ends_.back()), ignored);
   } else if (std::filesystem::remove(file_, ignored)) {
     --segment_;
   }
@@ -67,7 +72,8 @@ void EventLog::open_next() {
   error_.reset();
   log_.reset();
   make_room();
-  written_ = flushed_ = 0;
+  written_ = 0;
+  ends_.clear();
   file_ = segment_file(segment_++);
   log_ = std::make_unique<lcm::LogFile>(file_.string(), "w");
   if (!log_->good()) fail();
@@ -102,12 +108,13 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes)
   event.data = const_cast<std::byte*>(bytes.data());
   if (log_->writeEvent(&event) != 0) return fail();
   written_ += kEventHeaderBytes + static_cast<std::int64_t>(channel.size() + bytes.size());
+  ends_.push_back(written_);
+  while (ends_.front() < written_ - kUnwrittenBytes) ends_.pop_front();
 }
 
 std::optional<std::string> EventLog::flush() {
   if (error_ && told_) open_next();
   if (!error_ && std::fflush(log_->getFilePtr()) != 0) fail();
-  if (!error_) flushed_ = written_;
   told_ = error_.has_value();
   return error_;
 }

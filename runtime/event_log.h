@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -33,7 +34,7 @@ class EventLog {
   void write(std::string_view channel, std::span<const std::byte> bytes);
 
   /// Hands everything to the operating system. The write error since the last call, if any: the
-  /// segment then ends with its last flush, and the next call begins a new one.
+  /// segment then ends with its last whole event, and the next call begins a new one.
   std::optional<std::string> flush();
 
   /// Segments that had to go for the limit.
@@ -50,7 +51,8 @@ class EventLog {
 
   std::filesystem::path folder_, file_;
   EventLogLimits limits_;
-  std::int64_t written_ = 0, flushed_ = 0;  // bytes of the present segment
+  std::int64_t written_ = 0;       // bytes of the present segment
+  std::deque<std::int64_t> ends_;  // of its last events
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::unique_ptr<lcm::LogFile> log_;
   std::optional<std::string> error_;
