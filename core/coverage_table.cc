@@ -15,8 +15,8 @@ namespace {
 double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(steps) * 0x1p-53; }
 
 /// Divides kBlockSize, so that reading so many never leaves a row.
-constexpr int kModesAtOnce = 8;
-static_assert(kBlockSize % kModesAtOnce == 0);
+constexpr int kModesPerStride = 8;
+static_assert(kBlockSize % kModesPerStride == 0);
 
 bool in_range(const Contribution& c, double dt_s) {
   const double expected_s = static_cast<double>(c.steps) * dt_s;
@@ -115,15 +115,15 @@ void CoverageTable::average(Coefficients& coverage) const {
     const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
     const int end = std::min((b + 1) * kBlockSize, basis_.mode_count());
     // A few modes at a time over all rows: their sums stay in registers.
-    for (int first = b * kBlockSize; first < end; first += kModesAtOnce) {
-      std::array<double, kModesAtOnce> team{};
+    for (int first = b * kBlockSize; first < end; first += kModesPerStride) {
+      std::array<double, kModesPerStride> team{};
       for (const Row& row : rows_) {
         if (!row.counts) continue;
         const double* sums = row.sums.data() + first;
-        for (int k = 0; k < kModesAtOnce; ++k) team[k] += sums[k];
+        for (int k = 0; k < kModesPerStride; ++k) team[k] += sums[k];
       }
       double* out = coverage.data() + first;
-      const int count = std::min(kModesAtOnce, end - first);
+      const int count = std::min(kModesPerStride, end - first);
       for (int k = 0; k < count; ++k) out[k] = team[k] * per_second;
     }
   }

@@ -44,7 +44,7 @@ std::string bounded(const std::string& text, int limit) {
   // Not in the middle of a UTF-8 character.
   while (text.size() > size && size > 0 && (text[size] & 0xC0) == 0x80) --size;
   std::string cut = text.substr(0, size);
-  cut = cut.substr(0, cut.find('\0'));
+  cut.resize(std::min(cut.find('\0'), cut.size()));
   std::replace_if(cut.begin(), cut.end(), is_control, ' ');
   return cut;
 }

@@ -12,6 +12,8 @@
 
 namespace ergocast {
 
+constexpr double kRoomLeft = 66, kRoomBelow = 48;  ///< of a plot, for labels
+
 enum class Scale { kLinear, kLog };
 
 /// One axis. Made by one of the functions below, low < high, both finite, and both > 0 if

@@ -9,19 +9,20 @@
 namespace ergocast {
 namespace {
 
-constexpr double kLeft = 66, kBelow = 48, kBar = 72;  // room for labels around a plot
-constexpr double kTitled = 30, kLegend = 48;          // room above it
-constexpr double kSide = 424;                         // of a map that shares its row with another
+constexpr double kBar = 72;                   // room for the bar of colours
+constexpr double kTitled = 30, kLegend = 48;  // room above it
+constexpr double kSide = 424;                 // of a map that shares its row with another
 constexpr double kWholeRow = 990;
-constexpr double kMostCells = 128;                    // along the longer side of a field
-constexpr double kFewestCells = kMaxModesPerAxis;     // so that no mode is mistaken for another
+constexpr double kMostCells = 128;                 // along the longer side of a field
+constexpr double kFewestCells = kMaxModesPerAxis;  // so that no mode is mistaken for another
 
 /// The largest box of the proportions of `size` in kSide × `width`; never thinner than what can
 /// carry labels.
 Box fitted(double top, double width, const Eigen::Vector2d& size) {
   constexpr double kThinnest = 60;
   const double scale = std::min(width / size.x(), kSide / size.y());
-  return {kLeft, top, std::max(size.x() * scale, kThinnest), std::max(size.y() * scale, kThinnest)};
+  return {kRoomLeft, top, std::max(size.x() * scale, kThinnest),
+          std::max(size.y() * scale, kThinnest)};
 }
 
 /// Maps of long domains get a row of their own.
@@ -113,8 +114,8 @@ void draw_lines(Svg& svg, const DrawnTracks& tracks, const Box& area) {
   const std::string width = fixed(stroke_width(tracks.length, area), 2);
   svg.begin_clip({area.left - 1, area.top - 1, area.width + 2, area.height + 2});
   for (const auto& [agent, line] : tracks.lines) {
-    svg.path(path_data(line), "class=\"curve\" stroke-width=\"" + width + "\" stroke=\"" +
-                                  agent_color(agent) + '"');
+    svg.path(path_data(line),
+             "class=\"curve\" stroke-width=\"" + width + "\" stroke=\"" + agent_color(agent) + '"');
   }
   svg.end_clip();
 }
@@ -131,8 +132,8 @@ void draw_ends(Svg& svg, const RunData& run, const Plot& plot) {
   }
   for (const auto& [agent, track] : run.tracks) {
     const Eigen::Vector2d start = plot.at(track.front().x_m);
-    const std::string cross = path_data({start - falling, start + falling}) +
-                              path_data({start - rising, start + rising});
+    const std::string cross =
+        path_data({start - falling, start + falling}) + path_data({start - rising, start + rising});
     svg.path(cross, "fill=\"none\" stroke=\"#fff\" stroke-width=\"4.6\" stroke-linecap=\"round\"");
     svg.path(cross, "fill=\"none\" stroke-width=\"2.4\" stroke=\"" + agent_color(agent) + '"');
   }
@@ -188,9 +189,8 @@ Axis mode_axis(const std::string& title, int modes) {
 
 /// log |c − μ| between the decades `low` and `high`, as 0 … 1.
 Field log_levels(const Coefficients& difference, const Axis& colors) {
-  return difference.unaryExpr([&](double value) {
-    return value > colors.low ? colors.position(value) : 0.0;
-  });
+  return difference.unaryExpr(
+      [&](double value) { return value > colors.low ? colors.position(value) : 0.0; });
 }
 
 /// The three decades below the largest difference.
@@ -203,7 +203,7 @@ Axis difference_axis(const Coefficients& difference) {
 
 Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target) {
   const Box area = map_area(kLegend, mission.domain);
-  Svg svg(area.right() + kBar, area.bottom() + kBelow, "trajectories", "Trajectories");
+  Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "trajectories", "Trajectories");
   Plot plot(svg, area, x_axis(mission.domain), y_axis(mission.domain));
 
   const Field ground =
@@ -217,7 +217,7 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
   draw_lines(svg, tracks, area);
   draw_ends(svg, run, plot);
   draw_numbers(svg, run, plot);
-  agent_legend(svg, run, kLeft, 4, area.width);
+  agent_legend(svg, run, kRoomLeft, 4, area.width);
   if (!run.empty()) draw_signs(svg, area.right() + kBar - 8, 4);
   color_bar(svg, area, pencil(), range_axis("density, × uniform", "", 0, densest));
   return {"trajectories", "Where the agents went", trajectories_caption(run, tracks.from_s),
@@ -236,7 +236,7 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
   const Box second = long_domain(mission.domain)
                          ? Box{first.left, first.bottom() + kGap, first.width, first.height}
                          : Box{first.right() + kGap, first.top, first.width, first.height};
-  Svg svg(second.right() + kBar, second.bottom() + kBelow, "coverage",
+  Svg svg(second.right() + kBar, second.bottom() + kRoomBelow, "coverage",
           "Coverage beside the target");
   draw_field(svg, first, achieved, brightest, mission.domain, "achieved: Σ cₖ fₖ");
   draw_field(svg, second, target, brightest, mission.domain, "target: Σ μₖ fₖ");
@@ -258,7 +258,7 @@ Figure coefficients_figure(const Coefficients& coverage, const Mission& mission)
   const Axis colors = difference_axis(difference);
   const Eigen::Vector2d modes(mission.basis.modes_x, mission.basis.modes_y);
   const Box area = fitted(kTitled, kSide, modes);
-  Svg svg(area.right() + kBar, area.bottom() + kBelow, "coefficients", "Differences by mode");
+  Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "coefficients", "Differences by mode");
   Plot plot(svg, area, mode_axis("m (half waves along x)", mission.basis.modes_x),
             mode_axis("n (half waves along y)", mission.basis.modes_y));
   if (coverage(0, 0) == 0) {

@@ -10,7 +10,7 @@
 namespace ergocast {
 namespace {
 
-constexpr double kLeft = 66, kRight = 18, kBelow = 48;
+constexpr double kRight = 18;
 constexpr const char* kNothing = "nothing was recorded";
 
 /// One column of metrics.csv over time.
@@ -178,7 +178,7 @@ Figure metric_figure(const RunData& run, const Mission& mission) {
   const double first_s = metric.points.empty() ? 1 : metric.points.front().x();
 
   Svg svg(kWidth, kHeight, "ergodic_metric", "Ergodic metric over time");
-  Plot plot(svg, {kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBelow},
+  Plot plot(svg, {kRoomLeft, kTop, kWidth - kRoomLeft - kRight, kHeight - kTop - kRoomBelow},
             log_axis("t [s]", first_s, run.end_s()),
             log_axis("ergodic metric φ²", metric.low / kMargin, metric.high * kMargin));
   plot.grid();
@@ -187,7 +187,7 @@ Figure metric_figure(const RunData& run, const Mission& mission) {
   if (law) draw_fit(svg, plot, *law);
   if (metric.points.size() < 2) plot.say(run.metrics.empty() ? kNothing : "too short for a curve");
   plot.frame();
-  svg.text({kLeft, kTop - 10}, "class=\"note\"", conventions_line(mission.basis));
+  svg.text({kRoomLeft, kTop - 10}, "class=\"note\"", conventions_line(mission.basis));
 
   std::string caption =
       "How far the team's time-averaged positions are from the target, seen by an observer who "
@@ -203,11 +203,10 @@ Figure speeds_figure(const RunData& run, const Mission& mission) {
   constexpr double kWidth = 562, kHeight = 502;
   const Speeds speeds = speeds_of(run, mission.timing.dt_s);
   Svg svg(kWidth, kHeight, "speeds", "Commanded speeds");
-  const double top = 12 + agent_legend(svg, run, kLeft, 4, kWidth - kLeft - kRight);
-  Plot plot(svg, {kLeft, top, kWidth - kLeft - kRight, kHeight - top - kBelow},
+  const double top = 12 + agent_legend(svg, run, kRoomLeft, 4, kWidth - kRoomLeft - kRight);
+  Plot plot(svg, {kRoomLeft, top, kWidth - kRoomLeft - kRight, kHeight - top - kRoomBelow},
             time_axis(run, mission),
-            amount_axis("commanded speed", "m/s",
-                        std::max(speeds.fastest, mission.law.u_max_mps)));
+            amount_axis("commanded speed", "m/s", std::max(speeds.fastest, mission.law.u_max_mps)));
   plot.grid();
   draw_band(svg, plot, speeds);
   draw_means(plot, speeds);
@@ -230,10 +229,10 @@ Figure communication_figure(const RunData& run, const Mission& mission) {
       {"Spread of φ² among the agents", "",
        series(run, [](const MetricsRow& r) { return r.spread; })},
   };
-  Svg svg(kWidth, kTop + 2 * kPanelHeight + kRowGap + kBelow - 4, "communication",
+  Svg svg(kWidth, kTop + 2 * kPanelHeight + kRowGap + kRoomBelow - 4, "communication",
           "Communication over time");
   for (int i = 0; i < 4; ++i) {
-    const double left = i % 2 == 0 ? kLeft : kWidth - kRight - kPanelWidth;
+    const double left = i % 2 == 0 ? kRoomLeft : kWidth - kRight - kPanelWidth;
     const double top = kTop + (i / 2) * (kPanelHeight + kRowGap);
     draw_panel(svg, {left, top, kPanelWidth, kPanelHeight}, time_axis(run, mission), panels[i]);
   }

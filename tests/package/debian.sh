@@ -42,6 +42,7 @@ apt_install() {
 }
 
 # Sets $deb: the package of this build.
+# shellcheck disable=SC2034  # the tests that source this file read it
 pack() {
   (cd "$work" && cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work" >"$work/cpack.log" 2>&1) ||
     { cat "$work/cpack.log" >&2; fail cpack; }
@@ -69,5 +70,5 @@ make_bare_system() {
 mount -t proc proc /proc
 mount -t tmpfs -o mode=755,size=2g tmpfs "$root"
 work=$root/tmp/test
-mkdir -p -m 1777 "$root/tmp"
+mkdir -m 1777 "$root/tmp"
 mkdir "$work"

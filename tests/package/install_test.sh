@@ -12,7 +12,7 @@ files_of_system() {
 }
 
 check_contents() {
-  local path strange
+  local strange
   strange=$(dpkg-deb --fsys-tarfile "$deb" | tar -t | grep -vE '^\./((usr|etc/ergocast)(/.*)?|etc/)?$' || true)
   [ -z "$strange" ] || fail "the package has files outside /usr and /etc/ergocast: $strange"
   strange=$(dpkg-deb --fsys-tarfile "$deb" | tar -tv | awk '$1 !~ /^l/ && ($1 ~ /^.....w|^........w/ || $2 != "root/root")')

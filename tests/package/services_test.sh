@@ -42,7 +42,7 @@ boot() {
   systemd-nspawn --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
     --link-journal=no --console=pipe --directory="$root" --boot </dev/null >"$work/boot.log" 2>&1 &
   local nspawn=$!
-  up() { kill -0 $nspawn 2>/dev/null || { cat "$work/boot.log"; fail 'systemd-nspawn'; }
+  up() { kill -0 "$nspawn" 2>/dev/null || { cat "$work/boot.log"; fail 'systemd-nspawn'; }
          init=$(pgrep -x -o systemd) && there systemctl is-system-running 2>/dev/null | grep -qE 'running|degraded'; }
   eventually up
   there_ip link set lo up

@@ -85,7 +85,7 @@ class Installed : public Deploy {
     namespace fs = std::filesystem;
     fs::create_directories(folder_ / "bin");
     fs::create_directories(folder_ / "share/ergocast");
-    fs::copy(std::filesystem::path(ERGOCAST_BIN_DIR) / "ergocast", folder_ / "bin");
+    fs::copy(program_folder() / "ergocast", folder_ / "bin");
     fs::copy(ERGOCAST_SCENARIO_DIR, folder_ / "share/ergocast/scenarios",
              fs::copy_options::recursive);
   }

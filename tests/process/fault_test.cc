@@ -57,7 +57,7 @@ TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
 
 TEST_F(Fault, ParentThatIgnoresItsChildrenIsNoObstacle) {
   signal(SIGCHLD, SIG_IGN);  // is inherited
-  EXPECT_EQ(std::system(("exec " ERGOCAST_BIN_DIR "/ergocast run " +
+  EXPECT_EQ(std::system(("exec " + (program_folder() / "ergocast").string() + " run " +
                          scenario_file("quadrimodal_corners").string() +
                          " --duration 5 --out " + out().string() + " >/dev/null 2>&1").c_str()),
             -1);  // whoever ignores children cannot ask how they ended

@@ -42,6 +42,12 @@ inline bool eventually(const std::function<bool()>& condition) {
   return true;
 }
 
+/// Where our programs are: those of this build, unless the environment names others.
+inline std::filesystem::path program_folder() {
+  const char* others = std::getenv("ERGOCAST_BIN_DIR");
+  return others != nullptr ? others : ERGOCAST_BIN_DIR;
+}
+
 /// A folder that is gone after the test, and the programs' network.
 class OwnHost : public ::testing::Test {
  protected:
@@ -60,7 +66,7 @@ class OwnHost : public ::testing::Test {
 
   /// Starts one of our programs; its output goes to `log`.
   Child start(const std::string& program, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), (std::filesystem::path(ERGOCAST_BIN_DIR) / program).string());
+    arguments.insert(arguments.begin(), (program_folder() / program).string());
     log_ = folder_ / ("output-" + std::to_string(++started_));
     return std::get<Child>(Child::start({arguments, log_, SIGKILL}));
   }

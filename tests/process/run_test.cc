@@ -125,9 +125,9 @@ TEST_F(MissionRun, EventsReplayWithLcmLogplayer) {
 }
 
 TEST_F(MissionRun, AnAgentNeedsNoMoreThanThirtyMegabytes) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer needs more than the program";
-#endif
+  if (std::getenv("ERGOCAST_BIN_DIR") != nullptr) {
+    GTEST_SKIP() << "the programs are of another build, whose memory is not ours to judge";
+  }
   Child mission = start("ergocast", {"run", scenario_file("quadrimodal_corners").string(),
                                      "--duration", "100000", "--out", out()});
   ASSERT_TRUE(recorded(100000)) << output();
