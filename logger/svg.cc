@@ -40,8 +40,10 @@ std::string pixels(double value) {
 }
 
 Svg::Svg(double width, double height, std::string name, std::string_view description)
-    : name_(std::move(name)), width_(width), height_(height) {
-  body_ = "<title>" + escape(description) + "</title>\n<style>" + kStyle + "</style>\n";
+    : name_(std::move(name)),
+      body_("<title>" + escape(description) + "</title>\n<style>" + kStyle + "</style>\n"),
+      width_(width),
+      height_(height) {
   rect({0, 0, width, height}, "class=\"paper\"");
 }
 

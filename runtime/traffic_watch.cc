@@ -27,7 +27,7 @@ std::string key_advice(const RefusalCounts& refused, bool keyed) {
 
 bool TrafficWatch::look(Instant now) {
   if (now < next_look_) return false;
-  next_look_ = now + std::chrono::seconds(1);
+  next_look_ = now + 1s;
   if (transport_.renew_membership()) spdlog::warn("listening on another network interface from now on");
   kernel_drops_ = transport_.kernel_drops();
   warn_of_unknown_format(now);
