@@ -8,9 +8,11 @@
 namespace ergocast {
 namespace {
 
+/// The whole of `text`, in the range of `number`.
 template <class Number>
 bool read(std::string_view text, Number& number, int base = 10) {
-  return std::from_chars(text.data(), text.data() + text.size(), number, base).ec == std::errc();
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
+  return error == std::errc() && end == text.data() + text.size();
 }
 
 }  // namespace
@@ -28,9 +30,11 @@ std::vector<UdpSocket> parse_socket_table(std::string_view table) {
     const std::string_view local = words[kLocal];
     const std::size_t colon = local.rfind(':');
     if (colon == local.npos) continue;
+    std::uint16_t port = 0;
     UdpSocket socket;
-    if (read(local.substr(colon + 1), socket.port, 16) && read(words[kInode], socket.inode) &&
-        read(words[kDrops], socket.drops)) {
+    if (read(local.substr(colon + 1), port, 16) && read(words[kInode], socket.inode) &&
+        read(words[kDrops], socket.drops) && socket.drops >= 0) {
+      socket.port = port;
       sockets.push_back(socket);
     }
   }

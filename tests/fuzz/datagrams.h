@@ -1,0 +1,34 @@
+// Datagrams that lie: bytes changed where fields are, and the tag made right again.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/messages.h"
+
+namespace ergocast::fuzz {
+
+inline constexpr std::size_t kHeaderBytes = 60;
+
+/// A short stream of numbers that follows from its seed.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t next();
+  /// Below `sides`, which is above 0.
+  std::size_t below(std::size_t sides) { return next() % sides; }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Gives a datagram of at least kHeaderBytes the tag that a sender without a key would.
+void retag(std::span<std::uint8_t> datagram);
+
+/// Changes one thing: a field's number, a string's length, a few bits, the size; the new size, at
+/// most space.size(). The tag is as wrong as that makes it.
+std::size_t mutate_datagram(std::span<std::uint8_t> space, std::size_t size, Dice& dice);
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,20 @@
+// A file of faults for the laboratory.
+#include "cli/fault_file.h"
+#include "tests/fuzz/files.h"
+#include "tests/fuzz/target.h"
+
+namespace ergocast::fuzz {
+
+FUZZ_TARGET(faults) {
+  const auto read = cli::read_faults(memory_file(input));
+  if (const auto* problems = std::get_if<std::vector<std::string>>(&read)) {
+    ERGOCAST_REQUIRE(!problems->empty());
+    return;
+  }
+  const auto& faults = std::get<lab::Faults>(read);
+  for (const lab::FaultField& field : lab::fault_fields()) {
+    ERGOCAST_REQUIRE(faults.*field.value >= 0 && faults.*field.value <= field.most);
+  }
+}
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,21 @@
+// A bus's URL: what is accepted is spelled so that it reads back the same.
+#include "runtime/lcm_url.h"
+
+#include "tests/fuzz/target.h"
+
+namespace ergocast::fuzz {
+
+FUZZ_TARGET(lcm_url) {
+  const auto parsed = LcmUrl::parse(text_of(input));
+  if (const auto* problem = std::get_if<std::string>(&parsed)) {
+    ERGOCAST_REQUIRE(!problem->empty());
+    return;
+  }
+  const LcmUrl& url = std::get<LcmUrl>(parsed);
+  ERGOCAST_REQUIRE(url.base_port >= 1 && url.base_port + kBusCount - 1 <= 65535);
+  const auto again = LcmUrl::parse(url.base());
+  ERGOCAST_REQUIRE(std::holds_alternative<LcmUrl>(again));
+  ERGOCAST_REQUIRE(std::get<LcmUrl>(again).of(Bus::kCommand) == url.of(Bus::kCommand));
+}
+
+}  // namespace ergocast::fuzz

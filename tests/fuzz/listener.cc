@@ -1,0 +1,110 @@
+// One core that hears nothing but a stranger who knows its run: it does not break, holds nothing
+// that cannot be, and says nothing that would be refused.
+//
+// The first byte of the input is Features, the second says who listens.
+#include <sstream>
+
+#include "lcmtypes/codec.h"
+#include "status/team_text.h"
+#include "tests/fuzz/small_team.h"
+#include "tests/fuzz/target.h"
+#include "tests/fuzz/turns.h"
+#include "tests/support/team.h"
+
+namespace ergocast::fuzz {
+namespace {
+
+/// Whatever was heard, what a core says is accepted by its own.
+void check_said(const Outbox& said) {
+  static std::vector<std::byte> bytes;
+  for (const Outgoing& outgoing : said) {
+    encode(outgoing.message, bytes);
+    ERGOCAST_REQUIRE(std::holds_alternative<Message>(decode(bytes, test::kRun)));
+  }
+}
+
+/// Plays `input` to `core`, which begins to live a second after the clock.
+template <class Core, class Receive>
+Instant listen(Input input, Core& core, const Receive& receive) {
+  Instant now = test::at(std::chrono::seconds(1));
+  const auto act = [&] {
+    Outbox out;
+    core.advance(now, out);
+    check_said(out);
+  };
+  act();
+  play(
+      input,
+      [&](std::chrono::nanoseconds time) {
+        now += time;
+        act();
+      },
+      [&](std::span<const std::byte> datagram, AgentId transmitter) {
+        const auto decoded = decode(datagram, test::kRun);
+        const auto* message = std::get_if<Message>(&decoded);
+        if (message != nullptr) receive(*message, now, transmitter_in(*message, transmitter));
+      });
+  act();
+  return now;
+}
+
+void agent_listens(Input input) {
+  Agent agent({test::kRun, 0, test::life_of(0), "here", "1"}, decoder_of(mission_with(input[0])));
+  listen(input, agent, [&agent](const Message& message, Instant now, AgentId transmitter) {
+    agent.receive(message, now, transmitter);
+  });
+  check(agent);
+}
+
+void coordinator_listens(Input input) {
+  const bool takes_over = (input[0] & kCoordinatorTakesOver) != 0;
+  Coordinator coordinator({test::kRun, test::kCoordinatorLife, "base", "1"},
+                          decoder_of(mission_with(input[0])), kPlan,
+                          takes_over ? Takeover::kIfFlying : Takeover::kNever);
+  listen(input, coordinator, [&coordinator](const Message& message, Instant now, AgentId) {
+    coordinator.receive(message, now);
+  });
+}
+
+void world_listens(Input input) {
+  World world(test::kRun, test::kWorldLife, decoder_of(mission_with(input[0])));
+  listen(input, world,
+         [&world](const Message& message, Instant now, AgentId) { world.receive(message, now); });
+  ERGOCAST_REQUIRE(world.tick() >= 0);
+}
+
+void recorder_listens(Input input) {
+  std::ostringstream trajectory, metrics;
+  Recorder recorder(test::kRun, test::kLoggerLife, decoder_of(mission_with(input[0])), trajectory,
+                    metrics);
+  listen(input, recorder, [&recorder](const Message& message, Instant now, AgentId) {
+    recorder.receive(message, now);
+  });
+  check_table(trajectory.view());
+  check_table(metrics.view());
+}
+
+/// `ergocast status` as a core that says nothing.
+struct Viewer : TeamView {
+  using TeamView::TeamView;
+  void advance(Instant, Outbox&) {}
+};
+
+void viewer_listens(Input input) {
+  Viewer view(test::kRun, decoder_of(mission_with(input[0])), test::at(std::chrono::seconds(1)));
+  const Instant now = listen(input, view, [&view](const Message& message, Instant at, AgentId) {
+    view.receive(message, at);
+  });
+  check(view.picture(now));
+}
+
+}  // namespace
+
+FUZZ_TARGET_WITH(listener, &mutate_turns) {
+  if (input.size() < kPrefixBytes) return;
+  constexpr void (*kListeners[])(Input) = {&agent_listens, &coordinator_listens, &world_listens,
+                                           &recorder_listens, &viewer_listens};
+  kListeners[input[1] % std::size(kListeners)](input);
+}
+
+}  // namespace ergocast::fuzz

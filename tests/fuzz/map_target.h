@@ -1,0 +1,31 @@
+// What the targets of all map formats do: read every row, and check the promises of
+// maps/map_file.h.
+#pragma once
+
+#include <vector>
+
+#include "maps/map_file.h"
+#include "tests/fuzz/files.h"
+#include "tests/fuzz/target.h"
+
+namespace ergocast::fuzz {
+
+/// Reads at most a million cells: what comes later is read as what came before.
+inline void read_map(Input input, OpenedMap (*open)(const std::filesystem::path&)) {
+  const OpenedMap opened = open(memory_file(input));
+  if (const auto* problem = std::get_if<MapProblem>(&opened)) {
+    ERGOCAST_REQUIRE(!problem->what.empty() && !problem->remedy.empty());
+    return;
+  }
+  MapFile& map = *std::get<0>(opened);
+  ERGOCAST_REQUIRE(map.columns() >= 1 && map.columns() <= kMaxMapSide);
+  ERGOCAST_REQUIRE(map.rows() >= 1 && map.rows() <= kMaxMapSide);
+  std::vector<double> row(static_cast<std::size_t>(map.columns()));
+  const int rows = std::min(map.rows(), 1 + (1 << 20) / map.columns());
+  for (int i = 0; i < rows; ++i) {
+    if (map.next_row(row)) return;
+    for (const double value : row) ERGOCAST_REQUIRE(value >= 0 && value <= kMaxMapValue);
+  }
+}
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,56 @@
+// The tables of a run directory: trajectory.csv, and after a line "--" metrics.csv.
+#include <cmath>
+
+#include "logger/recorder.h"
+#include "logger/run_data.h"
+#include "tests/fuzz/files.h"
+#include "tests/fuzz/target.h"
+#include "tests/support/team.h"
+
+namespace ergocast::fuzz {
+namespace {
+
+void check(const RunData& run) {
+  std::pair<Tick, AgentId> last{-1, -1};
+  for_each_row(run, [&last](AgentId id, const TrackPoint& row) {
+    ERGOCAST_REQUIRE(std::pair(row.tick, id) > last);
+    last = {row.tick, id};
+  });
+  const auto slope = fit_last_decade(run);
+  ERGOCAST_REQUIRE(!slope || !std::isnan(slope->slope));
+  const Coefficients coverage = coverage_of(run, test::small_mission(2));
+  for (const double c : coverage.reshaped()) ERGOCAST_REQUIRE(std::abs(c) <= 1 + 1e-6);
+}
+
+/// A restarted logger goes on with such a record.
+void resume(RunData run) {
+  std::ostringstream trajectory, metrics;
+  Recorder recorder(test::kRun, test::kLoggerLife, test::decoder_of(test::small_mission(2)),
+                    trajectory, metrics);
+  recorder.resume(std::move(run));
+  const Instant now = test::at(std::chrono::seconds(1));
+  recorder.receive(test::mission_part(0, MissionState::kRunning, test::roster_of(2)), now);
+  Outbox out;
+  recorder.advance(now, out);
+}
+
+}  // namespace
+
+FUZZ_TARGET(run_tables) {
+  static const Folder folder;
+  constexpr std::string_view kSeparator = "--\n";
+  const std::string_view text = text_of(input);
+  const std::size_t end = std::min(text.find(kSeparator), text.size());
+  const std::size_t next = std::min(end + kSeparator.size(), text.size());
+  folder.write("trajectory.csv", text.substr(0, end));
+  folder.write("metrics.csv", text.substr(next));
+  auto read = read_run(folder.path());
+  if (const auto* problem = std::get_if<std::string>(&read)) {
+    ERGOCAST_REQUIRE(!problem->empty());
+    return;
+  }
+  check(std::get<RunData>(read));
+  resume(std::move(std::get<RunData>(read)));
+}
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,50 @@
+// A scenario from its text to its plan: refused with problems that say where, what and what to do,
+// or a mission that its own printed text and its own plan lead to again.
+#include "scenario/scenario.h"
+
+#include "tests/fuzz/files.h"
+#include "tests/fuzz/target.h"
+
+namespace ergocast::fuzz {
+namespace {
+
+/// A folder with the maps map.csv and map.asc, for scenarios that name them.
+const Folder& folder_with_maps() {
+  static const Folder folder;
+  static const bool written = [] {
+    folder.write("map.csv", "0,1\n2,3\n");
+    folder.write("map.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 500\n0 1\n2 3\n");
+    return true;
+  }();
+  ERGOCAST_REQUIRE(written);
+  return folder;
+}
+
+/// Correlated Gaussians take seconds here, and long texts hide nothing that short ones do not show.
+bool too_costly(std::string_view text) {
+  return text.size() > 2048 || text.find("xy_m2") != text.npos;
+}
+
+}  // namespace
+
+FUZZ_TARGET(scenario) {
+  const std::string_view text = text_of(input);
+  if (too_costly(text)) return;
+  const std::string file = (folder_with_maps().path() / "fuzzed.textproto").string();
+  const auto parsed = Scenario::parse(text, file);
+  if (const auto* problems = std::get_if<std::vector<Problem>>(&parsed)) {
+    ERGOCAST_REQUIRE(!problems->empty());
+    for (const Problem& problem : *problems) {
+      ERGOCAST_REQUIRE(!problem.where.empty() && !problem.what.empty() && !problem.remedy.empty());
+    }
+    return;
+  }
+  const Scenario& scenario = std::get<Scenario>(parsed);
+  const auto planned = Scenario::from_plan(scenario.plan());
+  ERGOCAST_REQUIRE(std::holds_alternative<Scenario>(planned));
+  const auto again = Scenario::parse(scenario.print(), file);
+  ERGOCAST_REQUIRE(std::holds_alternative<Scenario>(again));
+  ERGOCAST_REQUIRE(std::get<Scenario>(again).plan() == scenario.plan());
+}
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,154 @@
+// Writes the binary inputs that the corpora began with: fuzz-seeds DIRECTORY
+// To be run again when a message or the plan has changed its format.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "doctor/peer_ledger.h"
+#include "lcmtypes/channels.h"
+#include "scenario/scenario.h"
+#include "tests/fuzz/small_team.h"
+#include "tests/lcmtypes/sample_messages.h"
+#include "tests/support/grey_png.h"
+
+namespace ergocast::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+/// Adds a file to a target's corpus.
+class Seeds {
+ public:
+  explicit Seeds(fs::path corpora) : corpora_(std::move(corpora)) {}
+  fs::path file(const std::string& target, const std::string& name) const {
+    fs::create_directories(corpora_ / target);
+    return corpora_ / target / name;
+  }
+  void add(const std::string& target, const std::string& name, const std::string& content) const {
+    std::ofstream(file(target, name), std::ios::binary) << content;
+  }
+
+ private:
+  fs::path corpora_;
+};
+
+std::string text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+/// With its length before it, in two bytes.
+std::string framed(const std::string& content) {
+  return std::string{static_cast<char>(content.size() / 256),
+                     static_cast<char>(content.size() % 256)} +
+         content;
+}
+
+const char* const kKinds[] = {"hello", "mission", "contribution", "agent_status", "team_status",
+                              "stop",  "world",   "command",      "record_ack",   "digest"};
+
+void datagrams(const Seeds& seeds) {
+  for (const Message& message : test::every_message()) {
+    const std::string channel = channel_of(message);
+    const std::string bytes = text_of(test::encoded(message));
+    seeds.add("datagram", kKinds[message.index()],
+              static_cast<char>(channel.size()) + channel + bytes);
+    seeds.add("overheard", kKinds[message.index()],
+              framed("LC02" + std::string(4, '\1') + channel + '\0' + bytes));
+  }
+}
+
+/// One turn of a conversation.
+std::string turn(int wait, AgentId transmitter, const std::string& datagram) {
+  return std::string{static_cast<char>(wait), static_cast<char>(transmitter)} + framed(datagram);
+}
+
+/// What a team says that flies by itself, one message of every kind at a time.
+std::vector<std::string> everything_said(SmallTeam& team) {
+  std::vector<std::string> turns;
+  std::map<std::size_t, int> said;
+  team.on_sent = [&](AgentId transmitter, const std::vector<std::byte>& bytes) {
+    const auto message = std::get<Message>(decode(bytes, 0));
+    const int most = std::holds_alternative<MissionPart>(message)    ? 6
+                     : std::holds_alternative<Contribution>(message) ? 1
+                                                                     : 3;
+    if (++said[message.index()] <= most) turns.push_back(turn(2, transmitter, text_of(bytes)));
+  };
+  for (int i = 0; i < 30; ++i) team.pass(i == 0 ? 0ms : 100ms);
+  team.check();
+  return turns;
+}
+
+void conversations(const Seeds& seeds) {
+  for (int bit = -1; bit < 8; ++bit) {
+    const auto features = static_cast<char>(bit < 0 ? 0 : 1 << bit);
+    const std::string name = bit < 0 ? "plain" : "feature-" + std::to_string(bit);
+    SmallTeam team(static_cast<std::uint8_t>(features));
+    std::string said;
+    for (const std::string& turn : everything_said(team)) said += turn;
+    std::string alone;
+    for (int i = 0; i < 8; ++i) alone += turn(i < 6 ? 3 : 4, 0, "");
+    seeds.add("team", name, std::string{features, '\0'} + alone);
+    if (bit < 1) seeds.add("team", name + "-echo", std::string{features, '\0'} + said);
+    for (const char who : {0, 1, 2, 3, 4}) {
+      const bool telling = bit < 1 || (bit == 6 && who == 0) || (bit == 7 && who == 1);
+      if (!telling) continue;
+      seeds.add("listener", name + "-" + std::to_string(who), std::string{features, who} + said);
+    }
+  }
+}
+
+void probes(const Seeds& seeds) {
+  doctor::PeerLedger ours(7, "here", "1"), theirs(8, "there", "1");
+  std::string heard;
+  for (int i = 0; i < 6; ++i) {
+    const Instant now{1s + i * 50ms};
+    const doctor::Probe question = ours.next(now), answer = theirs.next(now);
+    theirs.take(question, "10.0.0.1", now);
+    std::vector<std::byte> bytes;
+    doctor::write(answer, bytes);
+    heard += framed(text_of(bytes));
+  }
+  seeds.add("probe", "six", heard);
+}
+
+void plans(const Seeds& seeds) {
+  const std::string small =
+      "domain { size_x_m: 2000 size_y_m: 1000 } target { uniform_weight: 1 } "
+      "basis { modes_x: 3 modes_y: 3 } law { u_max_mps: 10 } time { duration_s: 10 } "
+      "agents { random_count: 2 }";
+  const auto minimal = Scenario::parse(small, "small");
+  seeds.add("plan", "small", text_of(std::get<Scenario>(minimal).plan()));
+  const auto shipped = Scenario::load(ERGOCAST_SCENARIO_DIR "/quadrimodal_corners.textproto");
+  seeds.add("plan", "quadrimodal_corners", text_of(std::get<Scenario>(shipped).plan()));
+}
+
+void pictures(const Seeds& seeds) {
+  const auto slope = [](int column, int row, int) { return 16 * column + row; };
+  test::write_png(seeds.file("map_png", "grey8"), 5, 4, {}, slope);
+  test::write_png(seeds.file("map_png", "grey16"), 5, 4, {.bits = 16}, slope);
+  test::write_png(seeds.file("map_png", "masked"), 5, 4, {.color = PNG_COLOR_TYPE_GRAY_ALPHA},
+                  slope);
+  test::write_png(seeds.file("map_png", "interlaced"), 5, 4, {.interlace = PNG_INTERLACE_ADAM7},
+                  slope);
+  test::write_png(seeds.file("map_png", "palette"), 5, 4, {.color = PNG_COLOR_TYPE_PALETTE},
+                  [](int column, int, int) { return column % 2; });
+  test::write_png(seeds.file("map_png", "colours"), 5, 4, {.color = PNG_COLOR_TYPE_RGB}, slope);
+}
+
+}  // namespace
+}  // namespace ergocast::fuzz
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: fuzz-seeds DIRECTORY\n");
+    return 2;
+  }
+  const ergocast::fuzz::Seeds seeds(argv[1]);
+  ergocast::fuzz::datagrams(seeds);
+  ergocast::fuzz::conversations(seeds);
+  ergocast::fuzz::probes(seeds);
+  ergocast::fuzz::plans(seeds);
+  ergocast::fuzz::pictures(seeds);
+}

@@ -1,0 +1,142 @@
+#include "tests/fuzz/small_team.h"
+
+#include <cmath>
+
+#include "core/require.h"
+#include "lcmtypes/codec.h"
+#include "status/team_text.h"
+#include "tests/support/team.h"
+
+namespace ergocast::fuzz {
+namespace {
+
+using namespace std::chrono_literals;
+using test::kRun;
+
+constexpr int kAgents = 2;
+/// So often a team answers itself at one instant: about one lockstep tick.
+constexpr int kMostRounds = 4;
+
+}  // namespace
+
+Mission mission_with(std::uint8_t features) {
+  Mission mission = test::small_mission(kAgents);
+  mission.law.contraction_gain_per_s = 1e-3;
+  mission.law.contraction_center_m = mission.domain.center_m();
+  mission.law.noise_intensity = 0.1;
+  mission.timing.tick_count = 40;
+  mission.timing.dt_s = 0.1;
+  if (features & kRealtimePace) mission.timing.pace = Pace::kRealtime;
+  if (features & kAdaptiveBroadcast) mission.timing.broadcast_error_budget = 0.5;
+  if (features & kRadioRange) mission.radio_range_m = 150;
+  if (features & kForgetting) mission.forget_silent_after_s = 4;
+  if (features & kEviction) mission.timing.on_timeout = OnTimeout::kEvict;
+  mission.wait_for_logger = (features & kWaitsForLogger) != 0;
+  if (features & kTwoBlocks) {
+    mission.basis.modes_x = mission.basis.modes_y = 12;
+    mission.target_coefficients = Coefficients::Zero(12, 12);
+    mission.target_coefficients(0, 0) = 1;
+  }
+  return mission;
+}
+
+/// The one plan that these missions have; any other is no plan.
+const std::vector<std::byte> kPlan{std::byte{1}};
+
+PlanDecoder decoder_of(const Mission& mission) {
+  return [mission](std::span<const std::byte> plan) -> std::variant<Mission, std::string> {
+    if (std::equal(plan.begin(), plan.end(), kPlan.begin(), kPlan.end())) return mission;
+    return "this is no plan";
+  };
+}
+
+AgentId transmitter_in(const Message& message, AgentId transmitter) {
+  const bool may_be_relayed = std::holds_alternative<Contribution>(message);
+  return may_be_relayed && transmitter < kMaxAgents ? transmitter : header_of(message).sender;
+}
+
+void check(const Agent& agent) {
+  if (agent.coverage() == nullptr) return;
+  const auto most = static_cast<std::size_t>(kMaxAgents * kMaxIncarnationsPerAgent);
+  ERGOCAST_REQUIRE(agent.coverage()->row_count() <= most);
+  for (const double c : agent.team_coverage().reshaped()) {
+    ERGOCAST_REQUIRE(std::abs(c) <= 1 + 1e-6);
+  }
+}
+
+void check(const TeamPicture& picture) {
+  for (const std::string& text : {team_table(picture, false), team_json(picture)}) {
+    for (const char c : text) ERGOCAST_REQUIRE(c == '\n' || (c & 0xE0) != 0);
+  }
+}
+
+void check_table(std::string_view table) {
+  ERGOCAST_REQUIRE(table.find("nan") == table.npos && table.find("inf") == table.npos);
+}
+
+SmallTeam::SmallTeam(std::uint8_t features)
+    : mission_(mission_with(features)),
+      world_(kRun, test::kWorldLife, decoder_of(mission_)),
+      coordinator_({kRun, test::kCoordinatorLife, "base", "1"}, decoder_of(mission_), kPlan,
+                   features & kCoordinatorTakesOver ? Takeover::kIfFlying : Takeover::kNever),
+      recorder_(kRun, test::kLoggerLife, decoder_of(mission_), trajectory_, metrics_),
+      view_(kRun, decoder_of(mission_), now_) {
+  for (AgentId id = 0; id < kAgents; ++id) {
+    agents_.emplace_back(AgentIdentity{kRun, id, test::life_of(id), "here", "1"},
+                         decoder_of(mission_));
+  }
+}
+
+void SmallTeam::take(const Message& message, AgentId transmitter) {
+  for (Agent& agent : agents_) agent.receive(message, now_, transmitter);
+  world_.receive(message, now_);
+  coordinator_.receive(message, now_);
+  recorder_.receive(message, now_);
+  view_.receive(message, now_);
+}
+
+void SmallTeam::hear(std::span<const std::byte> datagram, AgentId transmitter) {
+  const auto decoded = decode(datagram, kRun);
+  const auto* message = std::get_if<Message>(&decoded);
+  if (message != nullptr) take(*message, transmitter_in(*message, transmitter));
+}
+
+void SmallTeam::pass(std::chrono::nanoseconds time) {
+  now_ += time;
+  advance_all();
+}
+
+void SmallTeam::advance_all() {
+  for (int round = 0; round < kMostRounds; ++round) {
+    Outbox out;
+    coordinator_.advance(now_, out);
+    world_.advance(now_, out);
+    for (Agent& agent : agents_) agent.advance(now_, out);
+    recorder_.advance(now_, out);
+    if (out.empty()) return;
+    deliver(out);
+  }
+}
+
+void SmallTeam::deliver(const Outbox& out) {
+  for (const Outgoing& outgoing : out) {
+    encode(outgoing.message, bytes_);
+    const auto decoded = decode(bytes_, kRun);
+    // Whatever was heard, what the team says itself is accepted by its own.
+    ERGOCAST_REQUIRE(std::holds_alternative<Message>(decoded));
+    const AgentId transmitter =
+        outgoing.relayer == kUnassigned ? header_of(outgoing.message).sender : outgoing.relayer;
+    if (on_sent) on_sent(transmitter, bytes_);
+    take(std::get<Message>(decoded), transmitter);
+  }
+}
+
+void SmallTeam::check() const {
+  for (const Agent& agent : agents_) fuzz::check(agent);
+  ERGOCAST_REQUIRE(world_.tick() >= 0 && world_.tick() <= mission_.timing.tick_count);
+  check_table(trajectory_.view());
+  check_table(metrics_.view());
+  fuzz::check(view_.picture(now_));
+}
+
+}  // namespace ergocast::fuzz

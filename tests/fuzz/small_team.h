@@ -1,0 +1,77 @@
+// A whole team in one process, two agents, that hears what a fuzzer says among its own messages.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "agent/agent.h"
+#include "coordinator/coordinator.h"
+#include "logger/recorder.h"
+#include "sim/world.h"
+#include "status/team_view.h"
+
+namespace ergocast::fuzz {
+
+/// Which kind of mission is flown; every bit a feature.
+enum Features : std::uint8_t {
+  kRealtimePace = 1,
+  kAdaptiveBroadcast = 2,
+  kRadioRange = 4,
+  kForgetting = 8,
+  kEviction = 16,
+  kWaitsForLogger = 32,
+  kTwoBlocks = 64,
+  kCoordinatorTakesOver = 128,
+};
+
+/// A short mission that two agents fly, with these features.
+Mission mission_with(std::uint8_t features);
+/// The one plan that these missions have, and its decoder: any other is no plan.
+extern const std::vector<std::byte> kPlan;
+PlanDecoder decoder_of(const Mission& mission);
+
+/// Who `message` is heard from if `transmitter` claims to have sent it: only contributions are
+/// relayed.
+AgentId transmitter_in(const Message& message, AgentId transmitter);
+
+/// Abort if an agent holds what cannot be, or what it shows would steer a terminal, or a number in
+/// a table is none.
+void check(const Agent& agent);
+void check(const TeamPicture& picture);
+void check_table(std::string_view table);
+
+class SmallTeam {
+ public:
+  explicit SmallTeam(std::uint8_t features);
+
+  /// A stranger's datagram, as the transport would hand it on.
+  void hear(std::span<const std::byte> datagram, AgentId transmitter);
+  /// Time goes on, and everybody does what is due and hears the others.
+  void pass(std::chrono::nanoseconds time);
+
+  /// Aborts if what anybody holds or has written cannot be.
+  void check() const;
+
+  /// Sees every datagram that the team sends.
+  std::function<void(AgentId transmitter, const std::vector<std::byte>&)> on_sent;
+
+ private:
+  void take(const Message& message, AgentId transmitter);
+  void advance_all();
+  void deliver(const Outbox& out);
+
+  Instant now_{std::chrono::seconds(1)};
+  Mission mission_;
+  std::ostringstream trajectory_, metrics_;
+  std::vector<Agent> agents_;
+  World world_;
+  Coordinator coordinator_;
+  Recorder recorder_;
+  TeamView view_;
+  std::vector<std::byte> bytes_;
+};
+
+}  // namespace ergocast::fuzz

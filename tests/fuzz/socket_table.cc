@@ -1,0 +1,14 @@
+// The kernel's table of UDP sockets.
+#include "runtime/socket_table.h"
+
+#include "tests/fuzz/target.h"
+
+namespace ergocast::fuzz {
+
+FUZZ_TARGET(socket_table) {
+  for (const UdpSocket& socket : parse_socket_table(text_of(input))) {
+    ERGOCAST_REQUIRE(socket.port >= 0 && socket.port <= 65535 && socket.drops >= 0);
+  }
+}
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,26 @@
+// summary.json as the report reads it back: whatever JSON it is, a page comes of it.
+#include "logger/summary.h"
+
+#include "logger/page.h"
+#include "tests/fuzz/files.h"
+#include "tests/fuzz/target.h"
+#include "tests/support/team.h"
+
+namespace ergocast::fuzz {
+
+FUZZ_TARGET(summary) {
+  static const Folder folder;
+  static const Mission mission = test::small_mission(2);
+  folder.write("summary.json", text_of(input));
+  const auto read = read_summary(folder.path());
+  if (const auto* problem = std::get_if<std::string>(&read)) {
+    ERGOCAST_REQUIRE(!problem->empty());
+    return;
+  }
+  const auto& summary = std::get<nlohmann::ordered_json>(read);
+  const std::string page = report_page({}, mission, summary, {});
+  ERGOCAST_REQUIRE(page.find("<script>alert") == std::string::npos);
+  to_text(summary);
+}
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,21 @@
+// A team that flies, among whose messages a stranger's come: nobody in it breaks, and nobody says
+// what the others would not accept. The first byte of the input is Features.
+#include "tests/fuzz/small_team.h"
+#include "tests/fuzz/target.h"
+#include "tests/fuzz/turns.h"
+
+namespace ergocast::fuzz {
+
+FUZZ_TARGET_WITH(team, &mutate_turns) {
+  if (input.size() < kPrefixBytes) return;
+  SmallTeam team(input[0]);
+  team.pass(std::chrono::nanoseconds(0));
+  play(
+      input, [&team](std::chrono::nanoseconds time) { team.pass(time); },
+      [&team](std::span<const std::byte> datagram, AgentId transmitter) {
+        team.hear(datagram, transmitter);
+      });
+  team.check();
+}
+
+}  // namespace ergocast::fuzz

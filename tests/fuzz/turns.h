@@ -1,0 +1,34 @@
+// What a stranger says, one datagram after the other: the input of the targets that have a state.
+//
+// First kPrefixBytes that the target reads. Then turns of 4 bytes and a datagram: how long to wait
+// before it (an index of kWaits), who transmits it, its length (2 bytes, high one first). Tags are
+// made right, so that a change reaches whoever listens.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/ids.h"
+#include "tests/fuzz/target.h"
+
+namespace ergocast::fuzz {
+
+inline constexpr std::size_t kPrefixBytes = 2;
+inline constexpr std::size_t kMostTurns = 32;
+inline constexpr std::array<std::chrono::milliseconds, 8> kWaits = {
+    std::chrono::milliseconds(0),    std::chrono::milliseconds(1),
+    std::chrono::milliseconds(20),   std::chrono::milliseconds(100),
+    std::chrono::milliseconds(500),  std::chrono::milliseconds(1000),
+    std::chrono::milliseconds(4000), std::chrono::milliseconds(60000)};
+
+/// Calls `wait` and then `hear` for each turn, `hear` only if there is a datagram.
+void play(Input input, const std::function<void(std::chrono::nanoseconds)>& wait,
+          const std::function<void(std::span<const std::byte>, AgentId transmitter)>& hear);
+
+/// Changes one turn, or the order of the turns.
+std::size_t mutate_turns(std::span<std::uint8_t> space, std::size_t size, std::uint64_t seed);
+
+}  // namespace ergocast::fuzz
