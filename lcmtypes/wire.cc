@@ -27,6 +27,8 @@ Header from_wire(const header_t& w) {
 constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
 
 bool plausible_count(std::int64_t count) { return count >= 0 && count <= kMostEver; }
+/// A tick, or −1: none.
+bool plausible_tick(Tick tick) { return tick == -1 || plausible_count(tick); }
 
 bool plausible_quantity(double value) { return std::isfinite(value) && value >= 0; }
 bool plausible_sender(std::int32_t id) { return id >= kOperator && id < kMaxAgents; }
@@ -109,8 +111,8 @@ bool from_wire(const mission_t& w, MissionPart& m) {
   m.part = w.part;
   m.parts = w.parts;
   for (const roster_entry_t& e : w.roster) {
-    if (e.id < 0 || e.id >= kMaxAgents || e.active_from < 0 || e.active_until < -1 ||
-        e.forgotten_from < -1) {
+    if (e.id < 0 || e.id >= kMaxAgents || !plausible_count(e.active_from) ||
+        !plausible_tick(e.active_until) || !plausible_tick(e.forgotten_from)) {
       return false;
     }
     m.roster.push_back({{e.id, static_cast<Incarnation>(e.nonce)}, e.active_from, e.active_until,
@@ -136,7 +138,8 @@ contribution_t to_wire(const Contribution& m) {
 }
 /// Whether the sums can be true is for CoverageTable::merge, which knows the mission.
 bool from_wire(const contribution_t& w, Contribution& m) {
-  if (w.header.sender < 0 || w.header.sender >= kMaxAgents || !std::isfinite(w.elapsed_s)) {
+  if (w.header.sender < 0 || w.header.sender >= kMaxAgents || !std::isfinite(w.elapsed_s) ||
+      !plausible_count(w.steps) || !plausible_count(w.next_broadcast_tick)) {
     return false;
   }
   m.header = from_wire(w.header);
@@ -175,7 +178,7 @@ bool from_wire(const agent_status_t& w, AgentStatus& m) {
       w.header.sender < kUnassigned || w.header.sender >= kMaxAgents ||
       !plausible_sender(w.waiting_for) || w.babbler < kUnassigned || w.babbler >= kMaxAgents || !plausible_quantity(w.ergodic_metric) ||
       !plausible_quantity(w.max_staleness_s) || !plausible_quantity(w.loop_lag_s) ||
-      w.answered_tick < -1 || w.answered_tick > kMostEver || !plausible_text(w.status_host) ||
+      !plausible_tick(w.answered_tick) || !plausible_text(w.status_host) ||
       !std::all_of(std::begin(w.refused), std::end(w.refused), plausible_count)) {
     return false;
   }
@@ -276,8 +279,8 @@ bool from_wire(const world_state_t& w, WorldState& m) {
   m.part = w.state_part;
   m.parts = w.state_parts;
   m.vehicle_count = w.vehicle_count;
-  if (m.header.tick < 0 || m.roster_revision < 0 || m.part < 0 || m.part >= m.parts ||
-      m.parts > kMaxAgents || !plausible_count(m.missed_deadlines) ||
+  if (m.header.tick < 0 || !plausible_count(m.roster_revision) || m.part < 0 ||
+      m.part >= m.parts || m.parts > kMaxAgents || !plausible_count(m.missed_deadlines) ||
       !plausible_count(m.skipped_ticks) || !plausible_count(m.clamped_commands)) {
     return false;
   }
@@ -285,8 +288,8 @@ bool from_wire(const world_state_t& w, WorldState& m) {
     const vehicle_t& v = w.vehicles[i];
     m.vehicles[i] = {v.vehicle_id, v.vehicle_answered_tick, vector3(v.position_m),
                      vector3(v.velocity_mps)};
-    if (v.vehicle_id < 0 || v.vehicle_id >= kMaxAgents || !m.vehicles[i].position_m.allFinite() ||
-        !m.vehicles[i].velocity_mps.allFinite()) {
+    if (v.vehicle_id < 0 || v.vehicle_id >= kMaxAgents || !plausible_tick(v.vehicle_answered_tick) ||
+        !m.vehicles[i].position_m.allFinite() || !m.vehicles[i].velocity_mps.allFinite()) {
       return false;
     }
   }
@@ -345,8 +348,7 @@ bool from_wire(const record_ack_t& w, RecordAck& m) {
 }
 
 bool plausible(const Header& h) {
-  return plausible_sender(h.sender) && plausible_count(h.sequence) &&
-         h.tick >= -1 && h.tick <= kMostEver;
+  return plausible_sender(h.sender) && plausible_count(h.sequence) && plausible_tick(h.tick);
 }
 
 }  // namespace ergocast

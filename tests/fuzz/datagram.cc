@@ -1,5 +1,6 @@
 // One datagram under some channel, as it came and with its tag made right: what is accepted says
-// the same when it is sent again, and one message alone cannot break a table.
+// the same when it is sent again, one message alone cannot break a table, and who has a key accepts
+// nothing.
 //
 // Input: a byte with the length of the channel's name, the name, the datagram.
 #include <cmath>
@@ -28,7 +29,7 @@ void check_accepted(const Message& message, std::string_view channel,
                     std::span<const std::byte> bytes) {
   std::vector<std::byte> again;
   encode(message, again);
-  // The one field that can be written in several ways: any number but 0 is true.
+  // Its truth values can be written in several ways: any number but 0 is true.
   if (!std::holds_alternative<Stop>(message)) {
     ERGOCAST_REQUIRE(std::equal(again.begin(), again.end(), bytes.begin(), bytes.end()));
   }
@@ -41,6 +42,8 @@ void check_accepted(const Message& message, std::string_view channel,
 }
 
 void take(std::span<const std::byte> bytes, std::string_view channel) {
+  static const Seal seal(MissionKey{{std::byte{7}}, {std::byte{8}}, {}});
+  ERGOCAST_REQUIRE(std::holds_alternative<Refusal>(decode(bytes, 0, seal, channel)));
   const auto decoded = decode(bytes, 0);
   if (const auto* message = std::get_if<Message>(&decoded))
     check_accepted(*message, channel, bytes);

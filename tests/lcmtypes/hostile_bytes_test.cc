@@ -80,6 +80,8 @@ TEST(Codec, UnknownTypesAreRefusedEvenWithACorrectTag) {
 
 constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+/// A count that would only overflow.
+constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
 
 TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
   constexpr std::size_t kRosterCount = kSignatureEnd + 17, kPlanSize = kSignatureEnd + 21,
@@ -211,6 +213,13 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<Part>(mission_part(), [](Part& m) { m.roster[1].author.agent = kMaxAgents; }),
       changed<Part>(mission_part(), [](Part& m) { m.roster[1].active_from = -1; }),
       changed<Part>(mission_part(), [](Part& m) { m.roster[1].active_until = -2; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].active_from = kHuge; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].active_until = kHuge; }),
+      changed<Part>(mission_part(), [](Part& m) { m.roster[1].forgotten_from = kHuge; }),
+      changed<Contribution>(contribution(), [](Contribution& m) { m.steps = -1; }),
+      changed<Contribution>(contribution(), [](Contribution& m) { m.steps = kHuge; }),
+      changed<Contribution>(contribution(), [](Contribution& m) { m.next_broadcast_tick = -1; }),
+      changed<Contribution>(contribution(), [](Contribution& m) { m.next_broadcast_tick = kHuge; }),
       changed<Contribution>(contribution(), [](Contribution& m) { m.header.sender = -1; }),
       changed<Contribution>(contribution(), [](Contribution& m) { m.header.sender = kMaxAgents; }),
       changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.header.sender = kCoordinator; }),
@@ -236,6 +245,13 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
                           [](TeamStatus& m) { m.state = static_cast<MissionState>(9); }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.header.tick = -1; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.roster_revision = -1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.roster_revision = kHuge; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.missed_deadlines = -1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.missed_deadlines = kHuge; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.skipped_ticks = -1; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.skipped_ticks = kHuge; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.vehicles[1].answered_tick = -2; }),
+      changed<WorldState>(world_state(), [](WorldState& m) { m.vehicles[1].answered_tick = kHuge; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.part = -1; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.part = m.parts; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.part = 0, m.parts = 0; }),
@@ -261,7 +277,6 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
 }
 
 TEST(Codec, CountsThatOnlyOverflowAreRefused) {
-  constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
   for (const Message& original : every_message()) {
     const auto with = [&](const std::function<void(Header&)>& change) {
       Message message = original;

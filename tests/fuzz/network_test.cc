@@ -1,0 +1,139 @@
+// A team that flies in real time while somebody throws damaged datagrams at its buses: nobody dies,
+// nothing is accepted, and the mission is flown to its end.
+//
+// A short run asserts no time. A long one, which prints how many deadlines were missed with and
+// without: ERGOCAST_FUZZ_DATAGRAMS=1000000 ERGOCAST_FUZZ_PER_S=5000 bin/fuzz_network_tests
+#include <cstdlib>
+#include <lcm/lcm-cpp.hpp>
+
+#include "runtime/key_file.h"
+#include "tests/fuzz/vandal.h"
+#include "tests/process/mission.h"
+
+namespace ergocast::test {
+namespace {
+
+using fuzz::Vandal;
+
+long setting(const char* name, long otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::atol(text);
+}
+
+/// Ids of all processes of the mission.
+std::vector<pid_t> crew() {
+  std::vector<pid_t> all;
+  for (const char* program :
+       {"ergocast-agent", "ergocast-sim", "ergocast-logger", "ergocast-coordinator"}) {
+    const auto some = pids({program});
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// Resident memory of a process [kB].
+long resident_kb(pid_t pid) {
+  const std::string status = text_of("/proc/" + std::to_string(pid) + "/status");
+  const auto at = status.find("VmRSS:");
+  return at == status.npos ? 0 : std::atol(status.c_str() + at + 6);
+}
+long largest_kb(const std::vector<pid_t>& pids) {
+  long most = 0;
+  for (const pid_t pid : pids) most = std::max(most, resident_kb(pid));
+  return most;
+}
+
+/// How many messages the logger has accepted, and how many of those were forged.
+std::pair<int, int> accepted(const std::filesystem::path& folder, const Vandal& vandal) {
+  int all = 0, forged = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".lcm") continue;
+    lcm::LogFile log(file.path(), "r");
+    while (const lcm::LogEvent* event = log.good() ? log.readNextEvent() : nullptr) {
+      const auto* data = static_cast<const std::uint8_t*>(event->data);
+      ++all;
+      if (vandal.forged(event->channel, {data, static_cast<std::size_t>(event->datalen)})) ++forged;
+    }
+  }
+  return {all, forged};
+}
+
+class HostileNetwork : public FlyingMission {
+ protected:
+  /// Deadlines missed in a stretch of the mission.
+  struct Stretch {
+    Tick ticks = 0;
+    std::int64_t missed = 0;
+    double share() const {
+      return static_cast<double>(missed) / (4.0 * static_cast<double>(std::max<Tick>(1, ticks)));
+    }
+  };
+
+  /// Listens for so long, striking so often, if at all.
+  static Stretch spend(Vandal& vandal, std::chrono::duration<double> time, long strikes) {
+    const Tick tick = vandal.tick();
+    const std::int64_t missed = vandal.missed_deadlines();
+    const auto begin = std::chrono::steady_clock::now();
+    for (long done = 0; done < strikes || std::chrono::steady_clock::now() < begin + time;) {
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+      const long due =
+          std::min(strikes, static_cast<long>(static_cast<double>(strikes) * (spent / time)));
+      for (; done < due; ++done) vandal.strike();
+      vandal.listen();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return {vandal.tick() - tick, vandal.missed_deadlines() - missed};
+  }
+
+  void fly_among_vandals(const std::vector<std::string>& more, const Seal& seal) {
+    const long strikes = setting("ERGOCAST_FUZZ_DATAGRAMS", 20000);
+    const std::chrono::duration<double> time(
+        static_cast<double>(strikes) / static_cast<double>(setting("ERGOCAST_FUZZ_PER_S", 4000)));
+    std::vector<std::string> arguments{"--realtime", "--lcm-url", kUrl};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    Child mission = launch_endless(scenario(), arguments);
+    Vandal vandal(std::get<LcmUrl>(LcmUrl::parse(kUrl)), seal, 1);
+    const std::vector<pid_t> before = crew();
+    ASSERT_EQ(before.size(), 7U);
+    const long memory_kb = largest_kb(before);
+    const Stretch quiet = spend(vandal, std::max(time / 4, std::chrono::duration<double>(3)), 0);
+    ASSERT_GT(vandal.heard(), 100U);
+    const Stretch stormy = spend(vandal, time, strikes);
+    ASSERT_TRUE(moves_on()) << said();
+    EXPECT_EQ(crew(), before) << said();
+    std::printf(
+        "%ld datagrams in %.0f s; of the deadlines were missed: quiet %.4f, stormy %.4f; "
+        "largest process %ld kB, then %ld kB\n",
+        strikes, time.count(), quiet.share(), stormy.share(), memory_kb, largest_kb(before));
+    mission.send(SIGINT);
+    EXPECT_EQ(wait_for(mission), 0) << said();
+    check(vandal, strikes);
+  }
+
+  void check(const Vandal& vandal, long strikes) {
+    EXPECT_EQ(vandal.sent(), strikes);
+    const auto [all, forged] = accepted(out(), vandal);
+    EXPECT_GT(all, 1000);
+    EXPECT_EQ(forged, 0);
+    EXPECT_EQ(summary()["restarts"], 0);
+    const auto refused = summary()["messages"]["refused"];
+    std::printf("%d messages accepted, %d of them forged; refused: %s\n", all, forged,
+                refused.dump().c_str());
+    EXPECT_GT(refused["tag"], strikes / 10);
+    EXPECT_EQ(refused["range"], 0) << "something that was forged has been believed";
+  }
+};
+
+TEST_F(HostileNetwork, WhatFailsTheHashIsRefused) { fly_among_vandals({}, {}); }
+
+TEST_F(HostileNetwork, WithAKeyAlsoWhatHasTheRightHashIs) {
+  const std::filesystem::path file = folder_ / "c.key";
+  const MissionKey key = make_mission_key();
+  ASSERT_EQ(write_key_file(file, key_text(key, true)), std::nullopt);
+  fly_among_vandals({"--key-file", file}, Seal(key));
+  EXPECT_GT(summary()["messages"]["refused"]["unkeyed"], 0);
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,62 @@
+// Somebody on the network of a team who keeps what it says and sends it back damaged.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "lcmtypes/seal.h"
+#include "runtime/lcm_url.h"
+#include "runtime/socket.h"
+#include "tests/fuzz/datagrams.h"
+
+namespace ergocast::fuzz {
+
+class Vandal {
+ public:
+  /// @param keyed  whether the team has a key: then some forgeries get the tag that is right
+  /// without
+  Vandal(const LcmUrl& url, bool keyed, std::uint64_t seed);
+
+  /// Takes in what has arrived. While nothing has been sent yet it is kept.
+  void listen();
+  /// Sends one datagram to one of the buses.
+  void strike();
+
+  std::size_t heard() const { return heard_.size(); }
+  std::int64_t sent() const { return sent_; }
+  /// Whether a message of these bytes was sent by us.
+  bool forged(const std::string& channel, std::span<const std::uint8_t> message) const {
+    return forgeries_.contains(mark(channel, message));
+  }
+
+  /// As the world says: its tick, and the commands that came too late so far.
+  Tick tick() const { return tick_; }
+  std::int64_t missed_deadlines() const { return missed_deadlines_; }
+
+ private:
+  struct Packet {
+    int bus;
+    std::string channel;
+    std::vector<std::uint8_t> message;
+  };
+
+  static std::uint64_t mark(const std::string& channel, std::span<const std::uint8_t> message);
+  void take(int bus, std::span<const std::uint8_t> datagram);
+  Packet damaged(const Packet& original);
+  std::vector<std::uint8_t> wrapped(const Packet& packet);
+
+  LcmUrl url_;
+  Seal seal_;
+  Dice dice_;
+  std::vector<Socket> ears_;
+  Socket mouth_;
+  std::vector<Packet> heard_;
+  std::unordered_set<std::uint64_t> forgeries_;
+  std::int64_t sent_ = 0;
+  Tick tick_ = 0;
+  std::int64_t missed_deadlines_ = 0;
+};
+
+}  // namespace ergocast::fuzz
