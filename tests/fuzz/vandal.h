@@ -15,9 +15,9 @@ namespace ergocast::fuzz {
 
 class Vandal {
  public:
-  /// @param keyed  whether the team has a key: then some forgeries get the tag that is right
-  /// without
-  Vandal(const LcmUrl& url, bool keyed, std::uint64_t seed);
+  /// @param seal  the team's, with which only its state is read. If it has a key, some forgeries get
+  ///              the tag that would be right without one.
+  Vandal(const LcmUrl& url, const Seal& seal, std::uint64_t seed);
 
   /// Takes in what has arrived. While nothing has been sent yet it is kept.
   void listen();
