@@ -42,7 +42,9 @@ TEST_P(SilentAgent, ItsVehicleStandsOnceItsLastCommandIsTooOld) {
   for (const auto& [tick, agents] : rows) {
     if (tick <= last + kHoldTicks || !agents.contains(1)) continue;
     EXPECT_TRUE(agents.at(1).stands()) << tick;
-    if (rest != nullptr) EXPECT_EQ(agents.at(1).x_m, rest->x_m) << tick;
+    if (rest != nullptr) {
+      EXPECT_EQ(agents.at(1).x_m, rest->x_m) << tick;
+    }
     rest = &agents.at(1);
     ++stood;
   }
