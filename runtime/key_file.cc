@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <string_view>
@@ -49,9 +50,23 @@ bool from_hex(const std::string& text, std::array<std::byte, N>& bytes) {
          size == N && text.size() == 2 * N;
 }
 
-std::optional<std::string> why_not_private(const struct stat& info, const std::string& name) {
+/// Whether the open file lies in the folder that systemd makes for one service. There an access
+/// control list lets the service's user read it, and what it permits shows as the group's rights.
+bool is_credential(const struct stat& info, const std::filesystem::path& file) {
+  const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
+  if (folder == nullptr || *folder == '\0') return false;
+  const std::filesystem::path there = std::filesystem::path(folder) / file.filename();
+  struct stat same {};
+  return lstat(there.c_str(), &same) == 0 && same.st_dev == info.st_dev &&
+         same.st_ino == info.st_ino;
+}
+
+std::optional<std::string> why_not_private(const struct stat& info,
+                                           const std::filesystem::path& file) {
+  const std::string name = file.string();
   if (!S_ISREG(info.st_mode)) return name + ": not a file";
-  if ((info.st_mode & 077) != 0) {
+  const mode_t others = info.st_mode & 077;
+  if (others != 0 && !(others == 040 && is_credential(info, file))) {
     return name + ": others than its owner may use this key; chmod 600 " + name;
   }
   // Root reads everybody's files; whoever owns one can still exchange it.
@@ -127,7 +142,7 @@ std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path&
   if (opened.fd() < 0 || fstat(opened.fd(), &info) != 0) {
     return name + ": " + std::strerror(errno) + "; `ergocast keygen` makes keys";
   }
-  if (const auto problem = why_not_private(info, name)) return *problem;
+  if (const auto problem = why_not_private(info, file)) return *problem;
   std::string text(kLongestFile, '\0');
   const ssize_t size = ::read(opened.fd(), text.data(), text.size());
   if (size < 0) return name + ": " + std::strerror(errno);

@@ -22,7 +22,8 @@ MissionKey make_mission_key();
 std::string key_text(const MissionKey& key, bool for_coordinator);
 
 /// The key in `file`, or one sentence that says what is wrong with it and what to do. Refused are
-/// files that others than their owner may read or write, and those of other users.
+/// files that others than their owner may read or write, and those of other users. A file in
+/// $CREDENTIALS_DIRECTORY, where systemd puts what is one service's, may be readable by its group.
 std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path& file);
 
 /// Writes a file that only its owner may read; never over another. An error names the remedy.

@@ -77,6 +77,34 @@ TEST_F(KeyFile, LoosePermissionsAreRefusedWithTheRemedy) {
   }
 }
 
+TEST_F(KeyFile, OnlyACredentialOfSystemdMayBeReadableByItsGroup) {
+  const std::string text = key_text(make_mission_key(), false);
+  const fs::path credentials = folder_ / "credentials";
+  fs::create_directory(credentials);
+  const auto is_read = [](const fs::path& path) {
+    return std::holds_alternative<MissionKey>(read_key_file(path));
+  };
+  ::setenv("CREDENTIALS_DIRECTORY", credentials.c_str(), 1);
+  const fs::path inside = credentials / "a.key";
+  fs::copy_file(file(text, 0440), inside);
+  EXPECT_TRUE(is_read(inside));
+  for (const mode_t mode : {0444, 0460, 0450, 0404}) {
+    ::chmod(inside.c_str(), mode);
+    EXPECT_FALSE(is_read(inside)) << mode;
+  }
+  // Neither one of the same name elsewhere nor what a link leads to.
+  EXPECT_FALSE(is_read(folder_ / "a.key"));
+  fs::remove(inside);
+  fs::create_symlink(folder_ / "a.key", inside);
+  EXPECT_FALSE(is_read(inside));
+  for (const char* folder : {"", "/"}) {
+    ::setenv("CREDENTIALS_DIRECTORY", folder, 1);
+    EXPECT_FALSE(is_read(folder_ / "a.key")) << folder;
+  }
+  ::unsetenv("CREDENTIALS_DIRECTORY");
+  EXPECT_FALSE(is_read(folder_ / "a.key"));
+}
+
 TEST_F(KeyFile, OtherThingsThanFilesAreRefused) {
   const auto of = [](const fs::path& path) { return std::get<std::string>(read_key_file(path)); };
   EXPECT_NE(of(folder_ / "missing").find("No such file"), std::string::npos);
