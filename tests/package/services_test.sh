@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The installed services under a systemd of the test's own (systemd-nspawn): they fly a mission, come
-# back after crashes, end in order, and are shut in.
+# back after crashes, end in order, take a mission key, and are shut in.
 # shellcheck disable=SC2034
 more_tools='systemd-nspawn nsenter pgrep'
 
@@ -166,9 +166,48 @@ check_next_mission() {
   done
 }
 
+# Sets up what "ergocast deploy --keys" says, with an ssh into this system and a sudo for root.
+use_keys() {
+  mkdir "$work/bin"
+  cat >"$work/bin/ssh" <<END
+#!/bin/sh
+exec nsenter -t $init --mount --uts --ipc --net --pid --root --wd -- sh -c "\$2"
+END
+  printf '#!/bin/sh\nexec "$@"\n' >"$root/usr/local/bin/sudo"
+  chmod +x "$work/bin/ssh" "$root/usr/local/bin/sudo"
+  "$build/bin/ergocast" keygen "$work/team" >/dev/null
+  echo 'box coordinator logger sim agents=4' >"$work/hosts"
+  "$build/bin/ergocast" deploy "$root/etc/ergocast/test.textproto" --hosts "$work/hosts" --to systemd \
+    --keys "$work/team" --out "$work" >/dev/null
+  PATH=$work/bin:$PATH "$work/quadrimodal_corners-systemd.sh" setup
+}
+
+check_mission_with_keys() {
+  local url='udpm://239.255.76.67:7667?ttl=0'
+  there systemctl stop $all
+  use_scenario 100000
+  use_keys
+  [ "$(there stat -c '%a %U' /etc/ergocast/mission.key /etc/ergocast/mission.coordinator.key | uniq)" = '600 root' ] ||
+    fail 'others may read the keys'
+  # An agent without the key hears that there is one.
+  there systemd-run --quiet --unit=outsider ergocast-agent --lcm-url "$url"
+  there systemctl start $all
+  eventually recorded 500
+  outsider_says() { there journalctl -o cat -u outsider | grep -q 'a team with a --key-file is on this URL'; }
+  eventually outsider_says
+  there systemctl stop outsider
+  ! there ergocast status --lcm-url "$url" >"$work/said" 2>&1 || fail 'the team flies without its key'
+  grep -q 'has a mission key' "$work/said" || fail "status: $(cat "$work/said")"
+  there ergocast status --lcm-url "$url" --key-file /etc/ergocast/mission.key >"$work/said" 2>&1 ||
+    fail "status: $(cat "$work/said")"
+  there systemctl stop ergocast-coordinator
+  ended() { there grep -q '"result": "stopped"' $records/latest/summary.json; }
+  eventually ended
+}
+
 check_removal() {
   there systemctl enable ergocast-sim 2>/dev/null
-  rm "$root/etc/ergocast/test.textproto"
+  rm -r "$root/etc/ergocast/test.textproto" "$root/etc/ergocast/mission"
   there dpkg --purge ergocast >/dev/null
   [ -z "$(there pgrep -f ergocast || true)" ] || fail 'services run on'
   [ -z "$(there find /etc /var/lib /usr -iname '*ergocast*' ! -path '*/dpkg/*' ! -path '*.service.d' | head)" ] ||
@@ -187,5 +226,6 @@ check_crash_on_the_ground
 check_bad_input
 check_late_network
 check_next_mission
+check_mission_with_keys
 check_removal
 echo 'the services fly, come back and end'
