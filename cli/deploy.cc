@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/key_pair.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
 #include "runtime/node.h"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 struct DeployOptions {
   fs::path scenario, hosts, out;
-  std::string to;
+  std::string to, keys;
   std::optional<LcmUrl> url;
 };
 
@@ -113,6 +114,13 @@ int deploy(const DeployOptions& options) {
     problems.push_back(std::move(problem));
   }
   if (!problems.empty()) return complain(problems);
+  if (!options.keys.empty()) {
+    if (const auto problem = problem_of_key_pair(options.keys)) {
+      std::fprintf(stderr, "%s\n", problem->c_str());
+      return kExitBadInput;
+    }
+    mission.keys = fs::absolute(options.keys).lexically_normal();
+  }
   const auto render = options.to == "ssh"       ? ssh_files
                       : options.to == "systemd" ? systemd_files
                                                 : compose_files;
@@ -155,6 +163,11 @@ void add_deploy(CLI::App& app, Action& action) {
           },
           "Base URL of the three buses (default: LCM's own group, with ttl=1 if it takes one)")
       ->type_name("URL");
+  command
+      ->add_option("--keys", options->keys,
+                   "The team's mission key, as given to `ergocast keygen`: NAME.key goes to every "
+                   "host, NAME.coordinator.key to the coordinator's (default: no key)")
+      ->type_name("NAME");
   command
       ->add_option("--out", options->out,
                    "Write into this folder (default: to the standard output)")

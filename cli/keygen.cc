@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/key_pair.h"
 #include "runtime/key_file.h"
 #include "runtime/node.h"
 
@@ -15,7 +16,7 @@ int complain(const std::string& problem) {
 }
 
 int make_keys(const std::string& name) {
-  const std::string team = name + ".key", coordinator = name + ".coordinator.key";
+  const std::string team = team_key_file(name), coordinator = coordinator_key_file(name);
   const MissionKey key = make_mission_key();
   // The coordinator's first: without it nobody could use the team's.
   if (const auto problem = write_key_file(coordinator, key_text(key, true))) return complain(*problem);

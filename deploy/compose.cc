@@ -28,21 +28,42 @@ std::string list(const std::vector<std::string>& words) {
   return text + ']';
 }
 
-std::string scenario_mount(const DeployMission& mission) {
-  return "      - type: bind\n        source: " + yaml(mission.folder.string()) +
-         "\n        target: /mission\n        read_only: true\n";
+constexpr const char* kTeamKey = "./mission.key";
+constexpr const char* kCoordinatorKey = "./mission.coordinator.key";
+
+/// Unlike Compose's short form, this one makes no folder of a file that is missing.
+std::string mount(const std::string& source, const std::string& target) {
+  return "      - type: bind\n        source: " + yaml(source) + "\n        target: " + target +
+         "\n        read_only: true\n";
 }
 
 std::string service(const std::string& name, const char* restart,
-                    const std::vector<std::string>& command, const std::string& more = "") {
+                    const std::vector<std::string>& command, const std::string& volumes,
+                    const std::string& more = "") {
   return "  " + name + ":\n    <<: *ergocast\n    restart: " + restart +
-         "\n    entrypoint: " + list(command) + "\n    command: []\n" + more;
+         "\n    entrypoint: " + list(command) + "\n    command: []\n" + more +
+         (volumes.empty() ? "" : "    volumes:\n" + volumes);
 }
 
 /// Codes 2 (bad input) and 4 (the mission failed) become 0: a restart mends neither.
 std::vector<std::string> unless_in_vain(std::vector<std::string> command) {
   command.insert(command.begin(), {"tini", "-e", "2", "-e", "4", "--"});
   return command;
+}
+
+/// What has to lie beside the file on its host, and whose it is there.
+std::string key_head(const DeployHost& host, const DeployMission& mission) {
+  if (mission.keys.empty()) return "";
+  const std::string name = mission.keys.string();
+  const bool team = !processes_of(host).empty();
+  std::string text =
+      "# Beside this file have to lie, owned by the image's user 1000 and with mode 600,\n";
+  const auto copy = [&text](const std::string& file, const std::string& of) {
+    text += "#   " + file + ", a copy of " + yaml(of) + '\n';
+  };
+  if (team) copy(kTeamKey, name + ".key");
+  if (host.coordinator) copy(kCoordinatorKey, name + ".coordinator.key");
+  return text;
 }
 
 std::string head(const DeployHost& host, const DeployMission& mission, const std::string& name) {
@@ -56,7 +77,7 @@ std::string head(const DeployHost& host, const DeployMission& mission, const std
   }
   if (host.logger)
     text += "# The record goes into a folder below ./runs, a new one for every mission.\n";
-  return text;
+  return text + key_head(host, mission);
 }
 
 /// @param alone  there is no other host: the containers have a bridge of their own
@@ -64,21 +85,26 @@ std::string compose_text(const DeployHost& host, const DeployMission& mission, b
   std::string text =
       "version: \"3.8\"\n\nx-ergocast: &ergocast\n  image: ergocast\n  environment:\n    "
       "LCM_DEFAULT_URL: " +
-      yaml(mission.url.base()) + "\n  stop_grace_period: 30s\n";
+      yaml(mission.url.base()) + '\n';
+  const bool keyed = !mission.keys.empty();
+  if (keyed) text += "    ERGOCAST_KEY_FILE: /mission.key\n";
+  const std::string key = keyed ? mount(kTeamKey, "/mission.key") : "";
+  text += "  stop_grace_period: 30s\n";
   if (!alone) text += "  network_mode: host\n";
   text += "\nservices:\n";
   for (const DeployProcess& process : processes_of(host)) {
     // The image's script: every mission into a folder of its own, owned by whoever owns ./runs.
     text += process.name == "logger"
-                ? service("logger", "\"on-failure:5\"", {"record"},
-                          "    user: root\n    volumes:\n      - ./runs:/runs\n")
-                : service(process.name, "\"on-failure:5\"", unless_in_vain(process.command));
+                ? service("logger", "\"on-failure:5\"", {"record"}, "      - ./runs:/runs\n" + key,
+                          "    user: root\n")
+                : service(process.name, "\"on-failure:5\"", unless_in_vain(process.command), key);
   }
   if (host.coordinator) {
     // One that is started again would begin a second mission.
     text += service("coordinator", "\"no\"",
                     {"ergocast-coordinator", "/mission/" + mission.files.front()},
-                    "    volumes:\n" + scenario_mount(mission));
+                    mount(mission.folder.string(), "/mission") +
+                        (keyed ? mount(kCoordinatorKey, "/mission.key") : ""));
   }
   return text;
 }

@@ -38,6 +38,8 @@ struct DeployMission {
       files;  ///< the scenario's file in `folder`, then its maps, relative to it
   int quorum = 1;
   LcmUrl url;
+  /// Whole path of the mission key, as `ergocast keygen` was given it; empty: none.
+  std::filesystem::path keys;
 };
 
 /// What a sound hosts file lacks for this mission. `file` is what the problems call it.

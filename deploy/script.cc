@@ -45,8 +45,9 @@ std::string script_settings(const std::vector<DeployHost>& hosts, const DeployMi
   }
   return "\nmission=" + shell_word(mission.name) + "\nurl=" + shell_word(mission.url.base()) +
          "\nscenario_folder=" + shell_word(mission.folder.string()) +
-         "\nscenario_files=" + array(mission.files) + "\ncoordinator=" + shell_word(coordinator) +
-         "\nhosts=" + array(addresses) + '\n';
+         "\nscenario_files=" + array(mission.files) +
+         "\nkeys=" + shell_word(mission.keys.string()) +
+         "\ncoordinator=" + shell_word(coordinator) + "\nhosts=" + array(addresses) + '\n';
 }
 
 }  // namespace ergocast

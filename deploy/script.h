@@ -11,7 +11,7 @@ std::string shell_word(std::string_view text);
 /// `head` with the script's name for %SCRIPT% and the multicast group for %GROUP%.
 std::string script_head(std::string head, const std::string& name, const DeployMission& mission);
 
-/// The variables mission, url, scenario_folder, scenario_files, coordinator and hosts.
+/// The variables mission, url, scenario_folder, scenario_files, keys, coordinator and hosts.
 std::string script_settings(const std::vector<DeployHost>& hosts, const DeployMission& mission);
 
 }  // namespace ergocast

@@ -7,7 +7,7 @@ namespace {
 constexpr const char* kHead = R"sh(#!/usr/bin/env bash
 # A mission on several hosts over ssh, written by "ergocast deploy".
 #
-#   %SCRIPT% start           copy the scenario and start every process, the coordinator last
+#   %SCRIPT% start           copy scenario and keys and start every process, the coordinator last
 #   %SCRIPT% status          what runs where
 #   %SCRIPT% stop            end the mission in order
 #   %SCRIPT% collect [DIR]   fetch record and logs of the latest mission
@@ -24,6 +24,11 @@ folder=ergocast/$mission
 constexpr const char* kBody = R"sh(
 prepare() {
   ssh -n "$1" "mkdir -p $folder/$now/log $folder/$now/record && ln -sfn $now $folder/latest"
+}
+
+# Nobody else may read it, not even for a moment; and it lies where "collect" leaves it.
+copy_key() {
+  ssh "$1" "umask 077 && cd $folder && cat >$2.new && mv -f $2.new $2" <"$keys${2#mission}"
 }
 
 launch() {
@@ -85,6 +90,10 @@ case ${1:-} in
     for host in "${hosts[@]}"; do prepare "$host"; done
     tar -C "$scenario_folder" -cf - -- "${scenario_files[@]}" |
       ssh "$coordinator" "tar -C $folder/latest -xf -"
+    if [ -n "$keys" ]; then
+      for host in "${hosts[@]}"; do copy_key "$host" mission.key; done
+      copy_key "$coordinator" mission.coordinator.key
+    fi
     each_process launch
     ;;
   status)
@@ -113,9 +122,12 @@ case ${1:-} in
 esac
 )sh";
 
-std::string process_line(const DeployHost& host, const DeployProcess& process) {
+/// @param key  the file on that host; the processes' folder is one below
+std::string process_line(const DeployHost& host, const DeployProcess& process,
+                         const DeployMission& mission, const char* key = "mission.key") {
   std::string line = "  \"$1\" " + shell_word(host.address) + ' ' + process.name;
   for (const std::string& word : process.command) line += ' ' + shell_word(word);
+  if (!mission.keys.empty()) line += std::string(" --key-file ../") + key;
   return line + '\n';
 }
 
@@ -132,10 +144,13 @@ std::string process_table(const std::vector<DeployHost>& hosts, const DeployMiss
   std::string last;
   for (const DeployHost& host : hosts) {
     text += "  # " + host.name + ": " + roles_of(host) + '\n';
-    for (const DeployProcess& process : processes_of(host)) text += process_line(host, process);
+    for (const DeployProcess& process : processes_of(host)) {
+      text += process_line(host, process, mission);
+    }
     if (!host.coordinator) continue;
     last =
-        process_line(host, {"coordinator", {"ergocast-coordinator", "./" + mission.files.front()}});
+        process_line(host, {"coordinator", {"ergocast-coordinator", "./" + mission.files.front()}},
+                     mission, "mission.coordinator.key");
   }
   return text + "  # The coordinator starts the mission.\n" + last + "}\n";
 }

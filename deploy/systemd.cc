@@ -7,7 +7,7 @@ namespace {
 constexpr const char* kHead = R"sh(#!/usr/bin/env bash
 # A mission with the systemd services of the Debian package, written by "ergocast deploy".
 #
-#   %SCRIPT% setup     write /etc/ergocast/ergocast.env on every host and copy the scenario
+#   %SCRIPT% setup     write /etc/ergocast/ergocast.env on every host, copy scenario and keys
 #   %SCRIPT% start     start every service, the coordinator last: the mission begins
 #   %SCRIPT% status    show all services
 #   %SCRIPT% stop      end the mission in order
@@ -29,6 +29,15 @@ ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}
 END
 }
 
+# install_key HOST FILE DROP-IN UNITS: FILE, for root only, and what hands it to these services.
+install_key() {
+  local folder=/etc/systemd/system/$4.service.d shipped=/usr/share/ergocast/systemd/$3
+  ssh "$1" "ls $shipped >/dev/null && cd /etc/ergocast &&
+    sudo sh -c 'umask 077 && cat >$2.new && mv -f $2.new $2' &&
+    sudo mkdir -p $folder && sudo ln -sf $shipped $folder/ && sudo systemctl daemon-reload" \
+    <"$keys${2#mission}"
+}
+
 on_services() {
   local host=$1
   shift
@@ -43,6 +52,10 @@ case ${1:-} in
     tar -C "$scenario_folder" --mode=a+rX -cf - -- "${scenario_files[@]}" |
       ssh "$coordinator" 'sudo mkdir -p /etc/ergocast/mission &&
         sudo tar -C /etc/ergocast/mission --no-same-owner -xf -'
+    if [ -n "$keys" ]; then
+      for host in "${hosts[@]}"; do install_key "$host" mission.key mission-key.conf ergocast-; done
+      install_key "$coordinator" mission.coordinator.key signing-key.conf ergocast-coordinator
+    fi
     ;;
   start | enable | disable)
     verb=$1

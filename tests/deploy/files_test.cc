@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "deploy/deploy.h"
 #include "deploy/script.h"
@@ -28,6 +29,13 @@ class DeployFiles : public ::testing::Test {
         "ground ops@10.0.0.1 coordinator logger sim\nrover pi@10.0.0.2 agent 0 3\n", "hosts"));
   }
   ~DeployFiles() override { fs::remove_all(folder_); }
+
+  /// Both files of a mission key, under a name that needs care; their text is their own name.
+  void make_keys() {
+    mission_.keys = folder_ / "our team's";
+    for (const char* end : {".key", ".coordinator.key"})
+      std::ofstream(mission_.keys.string() + end) << end + 1 << "\n";
+  }
 
   /// What a shell command prints; the file's text is in $file.
   std::string output(const std::string& command, const std::string& text = "") {
@@ -85,6 +93,23 @@ TEST_F(DeployFiles, TheSshScriptNamesEveryProcessAndTheCoordinatorLast) {
             "ops@10.0.0.1 coordinator ergocast-coordinator ./survey.textproto\n");
 }
 
+TEST_F(DeployFiles, TheSshScriptGivesEveryProcessItsOwnKey) {
+  make_keys();
+  const std::string script = ssh_files(hosts_, mission_)[0].text;
+  const std::string starts =
+      output("set -- start; . \"$file\" | grep -o '^starting .*'",
+             // An ssh on which nothing runs yet and which lists what it would start.
+             "ssh() { case $* in *nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
+             "*.key*) echo \"$1 $(cat)\" >>\"$file.keys\";; esac; }\ntar() { :; }\n" +
+                 script);
+  EXPECT_TRUE(has(starts, "ergocast-agent --id 3 --key-file ../mission.key --lcm-url"));
+  EXPECT_TRUE(has(starts, "ergocast-sim --key-file ../mission.key"));
+  EXPECT_TRUE(has(starts, "ergocast-logger --out record --key-file ../mission.key"));
+  EXPECT_TRUE(has(starts, "./survey.textproto --key-file ../mission.coordinator.key")) << starts;
+  EXPECT_EQ(output("cat \"$file.keys\""),
+            "ops@10.0.0.1 key\npi@10.0.0.2 key\nops@10.0.0.1 coordinator.key\n");
+}
+
 TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
   // An ssh that says what it would do.
   const std::string ssh =
@@ -113,6 +138,50 @@ TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
                                "\nERGOCAST_SCENARIO=/etc/ergocast/mission/survey.textproto\n";
   EXPECT_EQ(setup, "ops@10.0.0.1\n" + settings + "pi@10.0.0.2\n" + settings +
                        "ops@10.0.0.1\n-r--r--r-- survey.textproto\n-r--r--r-- maps/lake.png\n");
+}
+
+TEST_F(DeployFiles, TheSystemdScriptHandsTheKeysToTheServices) {
+  make_keys();
+  mission_.folder = folder_;
+  std::ofstream(folder_ / "survey.textproto") << "x";
+  mission_.files = {"survey.textproto"};
+  const std::string ssh =
+      "ssh() { case $2 in *.key*) echo \"$1 $(cat) $2\" | tr '\\n' ' '; echo;; *) cat >/dev/null;; "
+      "esac; }\n";
+  const std::string script = ssh + systemd_files(hosts_, mission_)[0].text;
+  const std::string setup = output("set -- setup; . \"$file\"", script);
+  EXPECT_EQ(status_, 0) << setup;
+  std::istringstream lines(setup);
+  std::string line;
+  const std::vector<std::vector<std::string>> expected = {
+      {"ops@10.0.0.1 key ", "umask 077", "mission.key", "/ergocast-.service.d",
+       "/mission-key.conf"},
+      {"pi@10.0.0.2 key ", "umask 077", "mission.key", "/ergocast-.service.d", "/mission-key.conf"},
+      {"ops@10.0.0.1 coordinator.key ", "mission.coordinator.key",
+       "/ergocast-coordinator.service.d", "/signing-key.conf"}};
+  for (const auto& parts : expected) {
+    ASSERT_TRUE(std::getline(lines, line)) << setup;
+    for (const std::string& part : parts) EXPECT_TRUE(has(line, part)) << part << "\n" << setup;
+  }
+  EXPECT_FALSE(std::getline(lines, line)) << setup;
+  mission_.keys.clear();
+  EXPECT_EQ(output("set -- setup; . \"$file\"", ssh + systemd_files(hosts_, mission_)[0].text), "");
+}
+
+TEST_F(DeployFiles, ComposeMountsTheTeamsKeyAndForTheCoordinatorItsOwn) {
+  make_keys();
+  hosts_[0].logger = hosts_[0].sim = false;
+  const auto files = compose_files(hosts_, mission_);
+  const std::string team = "source: \"./mission.key\"\n        target: /mission.key\n";
+  const std::string own = "source: \"./mission.coordinator.key\"\n        target: /mission.key\n";
+  EXPECT_FALSE(has(files[0].text, "./mission.key")) << files[0].text;
+  EXPECT_TRUE(has(files[0].text, own)) << files[0].text;
+  EXPECT_TRUE(has(files[1].text, team)) << files[1].text;
+  EXPECT_FALSE(has(files[1].text, "coordinator")) << files[1].text;
+  for (const TextFile& file : files) {
+    EXPECT_TRUE(has(file.text, "    ERGOCAST_KEY_FILE: /mission.key\n")) << file.text;
+    EXPECT_TRUE(has(file.text, "our team's")) << file.text;
+  }
 }
 
 TEST_F(DeployFiles, ComposeHasAFileForEveryHostOnItsOwnNetwork) {
@@ -144,6 +213,7 @@ TEST_F(DeployFiles, ComposeOfOneHostHasABridge) {
 TEST_F(DeployFiles, ComposeReadsWhatItIsGiven) {
   if (std::system("docker-compose --version >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "docker-compose is missing";
+  make_keys();
   for (const TextFile& file : compose_files(hosts_, mission_)) {
     const std::string said = output("docker-compose -f \"$file\" config", file.text);
     EXPECT_EQ(status_, 0) << said;

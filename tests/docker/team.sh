@@ -4,7 +4,7 @@
 person=4321
 over=
 export COMPOSE_PROJECT_NAME=team ERGOCAST_SCENARIOS=$work/scenarios ERGOCAST_SCENARIO=patient
-export ERGOCAST_AGENTS ERGOCAST_OPTIONS ERGOCAST_RUNS
+export ERGOCAST_AGENTS ERGOCAST_OPTIONS ERGOCAST_RUNS ERGOCAST_KEYS=$work/team
 
 # Whose the scenarios are, so that the records are to be, too.
 make_person() {
@@ -13,6 +13,12 @@ make_person() {
   sed 's/pace: .*/& lockstep_timeout_s: 600/' "$file" >"$ERGOCAST_SCENARIOS/patient.textproto"
   sed 's/pace: .*/& admission_timeout_s: 5/' "$file" >"$ERGOCAST_SCENARIOS/impatient.textproto"
   chown -R $person "$ERGOCAST_SCENARIOS"
+}
+
+# make_keys NAME  as the compose files want them
+make_keys() {
+  expect "$build/bin/ergocast" keygen "$1"
+  chown 1000 "$1.key" "$1.coordinator.key"
 }
 
 complain() {

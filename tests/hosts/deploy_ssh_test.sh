@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What "ergocast deploy --to ssh" prints flies a mission: three hosts on a bridge, and an ssh that goes
+# What "ergocast deploy --to ssh" prints flies a mission, with keys and without: three hosts on a bridge, and an ssh that goes
 # into the network namespace of the host it is given.
 #   deploy_ssh_test.sh BIN_DIR SCENARIO
 set -euo pipefail
@@ -60,15 +60,19 @@ eventually() {
 }
 # No host but its own knows where the scenario lies.
 scenario="$work/home with space's/mission.textproto"
+# use_scenario SECONDS FILE [OPTION…]
 use_scenario() {
+  local folder
+  folder=$work/$1
   sed "s/duration_s: 600/duration_s: $1/" "$2" >"$scenario"
+  shift 2
   cat >"$work/hosts.txt" <<'END'
 ground  ops@10.0.0.1   coordinator logger sim
 rover1  pi@10.0.0.11   agent 0 2
 rover2  pi@10.0.0.12   agents=2   # 1 and 3
 END
-  "$bin/ergocast" deploy "$scenario" --hosts "$work/hosts.txt" --to ssh --out "$work/$1" >/dev/null
-  script=$work/$1/quadrimodal_corners-ssh.sh
+  "$bin/ergocast" deploy "$scenario" --hosts "$work/hosts.txt" --to ssh --out "$folder" "$@" >/dev/null
+  script=$folder/quadrimodal_corners-ssh.sh
 }
 all_ended() { [ "$("$script" status | grep -c ' running ' || true)" = 0 ]; }
 all_running() { [ "$("$script" status | grep -c ' running ')" = 7 ]; }
@@ -87,10 +91,21 @@ for log in ground/log/coordinator ground/log/logger ground/log/sim rover1/log/ag
 done
 "$bin/ergocast" verify "$record" || fail 'the record is not what the simulation gives'
 
-use_scenario 100000 "$2"
+# With keys.
+(cd "$work" && "$bin/ergocast" keygen "our team's" >/dev/null)
+use_scenario 100000 "$2" --keys "$work/our team's"
 "$script" start
 eventually recorded 1000
 eventually all_running
+ask() { ip netns exec 10.0.0.11 "$bin/ergocast" status --lcm-url 'udpm://239.255.76.67:7667?ttl=1' "$@" >"$work/said" 2>&1; }
+if ask; then fail 'the team flies without its key'; fi
+grep -q 'has a mission key' "$work/said" || fail "said: $(cat "$work/said")"
+ask --key-file "$work/our team's.key" || fail "status: $(cat "$work/said")"
+[ "$(cd "$work/home" && find . -name '*.key*' -printf '%p %m\n' | sort)" = "\
+./10.0.0.1/ergocast/quadrimodal_corners/mission.coordinator.key 600
+./10.0.0.1/ergocast/quadrimodal_corners/mission.key 600
+./10.0.0.11/ergocast/quadrimodal_corners/mission.key 600
+./10.0.0.12/ergocast/quadrimodal_corners/mission.key 600" ] || fail "keys lie elsewhere: $(find "$work/home" -name '*.key*')"
 if "$script" start 2>"$work/said"; then fail 'a second mission begins over the first'; fi
 grep -q 'still running' "$work/said" || fail "said: $(cat "$work/said")"
 "$script" stop
@@ -99,4 +114,6 @@ grep -q '"result": "stopped"' "$work/home/10.0.0.1/ergocast/quadrimodal_corners/
   fail "not stopped in order: $(head -c 600 "$work/home/10.0.0.1/ergocast/quadrimodal_corners/latest/record/summary.json")"
 [ "$(find "$work/home/10.0.0.1/ergocast/quadrimodal_corners" -mindepth 1 -maxdepth 1 -type d | wc -l)" = 2 ] ||
   fail 'the missions share a folder'
+"$script" collect "$work/collected"
+[ -z "$(find "$work/collected" -name '*.key*')" ] || fail 'keys were collected'
 echo 'the printed script flies, shows, stops and collects'

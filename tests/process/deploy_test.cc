@@ -67,6 +67,35 @@ TEST_F(Deploy, NamesEveryProblemAtOnce) {
   EXPECT_TRUE(said("cannot be read")) << output();
 }
 
+TEST_F(Deploy, RefusesKeysThatWouldNotDo) {
+  const std::string name = folder_ / "team";
+  EXPECT_EQ(deploy("ssh", kTwoHosts, {"--keys", name}), 2);
+  EXPECT_TRUE(said(name + ".key: there is no such file; `ergocast keygen " + name)) << output();
+  ASSERT_EQ(ergocast({"keygen", name}), 0);
+  EXPECT_EQ(deploy("ssh", kTwoHosts, {"--keys", name}), 0) << output();
+  EXPECT_TRUE(said("keys=" + name + "\n")) << output();
+
+  const std::string other = folder_ / "other";
+  ASSERT_EQ(ergocast({"keygen", other}), 0);
+  const auto exchange = [&](const char* from, const char* to) {
+    std::filesystem::copy_file(from + std::string(".key"), to + std::string(".key"),
+                               std::filesystem::copy_options::overwrite_existing);
+  };
+  exchange((other + ".coordinator").c_str(), (name + ".coordinator").c_str());
+  EXPECT_EQ(deploy("systemd", kTwoHosts, {"--keys", name}), 2);
+  EXPECT_TRUE(said("different keys")) << output();
+  exchange((other + ".coordinator").c_str(), name.c_str());
+  EXPECT_EQ(deploy("compose", kTwoHosts, {"--keys", name}), 2);
+  EXPECT_TRUE(said("every host could begin and end missions")) << output();
+  exchange(other.c_str(), name.c_str());
+  exchange(other.c_str(), (name + ".coordinator").c_str());
+  EXPECT_EQ(deploy("compose", kTwoHosts, {"--keys", name}), 2);
+  EXPECT_TRUE(said("cannot begin or end missions")) << output();
+  std::filesystem::permissions(name + ".key", std::filesystem::perms(0644));
+  EXPECT_EQ(deploy("ssh", kTwoHosts, {"--keys", name}), 2);
+  EXPECT_TRUE(said("chmod 600")) << output();
+}
+
 TEST_F(Deploy, RefusesAMapThatLiesElsewhere) {
   const auto shipped = scenario_file("lake_search").parent_path();
   std::string text = text_of(scenario_file("lake_search"));
