@@ -52,7 +52,7 @@ TEST(FullDisk, InLockstepTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
   Record record(long_mission(Pace::kLockstep));
   for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
   fill(record);
-  for (Tick tick = 11; tick <= 5000; ++tick) record.tell(state_of(tick), at(1s));
+  for (Tick tick = 11; tick <= 5000; ++tick) record.tell(state_of(tick), at(59s));
   free_space(record, at(60s));
   advance(record.recorder, at(60s));
   // What it holds, 1024 ticks from the first missing on; then the world's repeats, after a while.
