@@ -46,8 +46,9 @@ TEST_F(DrivenRobots, StandStillAtOnceWhenTheyAreToldToStop) {
   EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
   EXPECT_TRUE(driver.says("stopped at once")) << driver.said();
   EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
-  for (const auto& [id, row] : recorded_rows(out()).rbegin()->second)
-    EXPECT_TRUE(row.stands()) << id;
+  const auto rows = recorded_rows(out());
+  ASSERT_FALSE(rows.empty());
+  for (const auto& [id, row] : rows.rbegin()->second) EXPECT_TRUE(row.stands()) << id;
 }
 
 TEST_F(DrivenRobots, RefuseAMissionInLockstep) {

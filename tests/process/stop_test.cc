@@ -17,6 +17,11 @@ class StopCommand : public ByHand {
   }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
 
+  /// Whether the record says so, whatever it adds about late commands.
+  bool was_ended(const std::string& reason) const {
+    return summary()["reason"].get<std::string>().starts_with(reason);
+  }
+
   std::filesystem::path endless(bool realtime) {
     std::string text = text_of(scenario());
     text.replace(text.find("duration_s: 600"), 15, "duration_s: 100000 realtime_factor: 10");
@@ -58,7 +63,7 @@ TEST_P(Stopped, InOrderByTheCoordinator) {
   EXPECT_TRUE(answered("stopped by `ergocast stop` on " + host_name())) << output();
   for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->said();
   EXPECT_EQ(summary()["result"], "stopped");
-  EXPECT_EQ(summary()["reason"], "stopped by `ergocast stop` on " + host_name());
+  EXPECT_TRUE(was_ended("stopped by `ergocast stop` on " + host_name()));
   EXPECT_FALSE(summary().contains("emergency_stop"));
   EXPECT_EQ(ergocast({"verify", out()}), GetParam() ? 2 : 0) << output();
 }
@@ -69,7 +74,7 @@ TEST_P(Stopped, AtOnce) {
   EXPECT_TRUE(answered("all stand still")) << output();
   for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->said();
   EXPECT_EQ(summary()["result"], "stopped");
-  EXPECT_EQ(summary()["reason"], "stopped at once by `ergocast stop --now` on " + host_name());
+  EXPECT_TRUE(was_ended("stopped at once by `ergocast stop --now` on " + host_name()));
   expect_halt();
   EXPECT_EQ(ergocast({"verify", out()}), GetParam() ? 2 : 0) << output();
 }
