@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/key_pair.h"
 #include "runtime/key_file.h"
 #include "runtime/node.h"
@@ -10,19 +11,14 @@
 namespace ergocast::cli {
 namespace {
 
-int complain(const std::string& problem) {
-  std::fprintf(stderr, "%s\n", problem.c_str());
-  return kExitBadInput;
-}
-
 int make_keys(const std::string& name) {
   const std::string team = team_key_file(name), coordinator = coordinator_key_file(name);
   const MissionKey key = make_mission_key();
   // The coordinator's first: without it nobody could use the team's.
-  if (const auto problem = write_key_file(coordinator, key_text(key, true))) return complain(*problem);
+  if (const auto problem = write_key_file(coordinator, key_text(key, true))) return complain(kExitBadInput, *problem);
   if (const auto problem = write_key_file(team, key_text(key, false))) {
     std::remove(coordinator.c_str());
-    return complain(*problem);
+    return complain(kExitBadInput, *problem);
   }
   std::printf(
       "%s: for every agent, world, driver, logger and whoever watches\n"

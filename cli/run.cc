@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/launcher.h"
 #include "cli/mission_watch.h"
 #include "cli/progress.h"
@@ -98,11 +99,6 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
   display.say("  swarm    " + setup.url.of(Bus::kSwarm));
   display.say("  world    " + setup.url.of(Bus::kWorld));
   display.say("  command  " + setup.url.of(Bus::kCommand));
-}
-
-int complain(ExitCode code, const std::string& problem) {
-  std::fprintf(stderr, "%s\n", problem.c_str());
-  return code;
 }
 
 /// Flies the mission on a network that works, into a run directory that is ready.

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/progress.h"
 #include "cli/run_directory.h"
 #include "lab/swarm.h"
@@ -49,11 +50,6 @@ double fly(lab::Swarm& swarm, const Mission& mission, const RunRecord& record) {
     if (!record.good()) break;
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-int complain(ExitCode code, const std::string& problem) {
-  std::fprintf(stderr, "%s\n", problem.c_str());
-  return code;
 }
 
 }  // namespace

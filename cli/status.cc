@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/nobody.h"
 #include "cli/team_screen.h"
 #include "runtime/clock.h"
@@ -72,11 +73,6 @@ class Listener {
   std::unique_ptr<Transport> transport_;
   std::map<RunId, TeamView> runs_;
 };
-
-int complain(ExitCode code, const std::string& problem) {
-  std::fprintf(stderr, "%s\n", problem.c_str());
-  return code;
-}
 
 int choose(const Listener& listener) {
   std::string text = "several runs are heard on this URL; choose one with --run-id:";

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/nobody.h"
 #include "cli/stop_word.h"
 #include "cli/team_ears.h"
@@ -23,23 +24,18 @@ using namespace std::chrono_literals;
 /// Longer than any agent is silent: whoever else flies on this URL is heard by then.
 constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 /// How long to listen for anybody, and for a coordinator.
-constexpr auto kPatience = 3s;
+constexpr auto kHearing = 3s;
 /// How long a coordinator may take to end the mission, and then the team to go.
 constexpr auto kAnswerPatience = 5s;
 constexpr auto kLongest = 15s;
 /// For so long an emergency stop is said in any case: who is deaf for a moment hears it, too.
 constexpr auto kLeastInsistence = 1s;
-constexpr auto kTurn = 20ms;
-constexpr std::size_t kMostRuns = 16;
+constexpr auto kStopTurn = 20ms;
+constexpr std::size_t kMostRunsHeard = 16;
 
 struct StopOptions : BusOptions {
   bool at_once = false;
 };
-
-int complain(ExitCode code, const std::string& problem) {
-  std::fprintf(stderr, "%s\n", problem.c_str());
-  return code;
-}
 
 class Stopping {
  public:
@@ -61,7 +57,7 @@ class Stopping {
 
   /// Finds the run, stops it and says how that went: the exit code.
   int stop() {
-    while (!found() && now() < since_ + kPatience) {
+    while (!found() && now() < since_ + kHearing) {
       if (!listen()) return kExitFailed;
     }
     if (runs_.size() > 1) return choose();
@@ -75,12 +71,12 @@ class Stopping {
  private:
   void hear(const Message& message) {
     const RunId run = header_of(message).run;
-    if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
+    if (run == 0 || (runs_.size() >= kMostRunsHeard && !runs_.contains(run))) return;
     runs_[run].receive(message, now());
   }
   /// False if a signal came.
   bool listen() {
-    transport_->deliver_until(now() + kTurn, signals_.fd());
+    transport_->deliver_until(now() + kStopTurn, signals_.fd());
     return signals_.take() == 0;
   }
   bool found() const {
@@ -110,7 +106,7 @@ class Stopping {
     const auto waited = now() - since_;
     const auto left = team.still_there(now());
     const bool obeyed = options_.at_once ? waited >= kLeastInsistence : team.over();
-    if (team.unheard()) return waited < kPatience ? std::nullopt : std::optional(nobody());
+    if (team.unheard()) return waited < kHearing ? std::nullopt : std::optional(nobody());
     if (obeyed && left.empty()) return conclude(team);
     if (waited >= kLongest) {
       return complain(kExitFailed,
@@ -119,7 +115,7 @@ class Stopping {
                                             : ": ergocast stop --now stops them at once"));
     }
     if (obeyed || options_.at_once) return std::nullopt;
-    if (!team.coordinator_heard() && waited >= kPatience) {
+    if (!team.coordinator_heard() && waited >= kHearing) {
       return complain(kExitFailed,
                       "no coordinator is heard, and nobody else ends a mission in order: "
                       "ergocast stop --now stops the team at once");

@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/fault_file.h"
 #include "cli/progress_line.h"
 #include "cli/run_directory.h"
@@ -117,11 +118,6 @@ class Desk {
   std::uint64_t next_row_;
 };
 
-int complain(const std::string& problem) {
-  std::fprintf(stderr, "%s\n", problem.c_str());
-  return kExitBadInput;
-}
-
 }  // namespace
 
 int trials(const TrialsOptions& options) {
@@ -132,7 +128,7 @@ int trials(const TrialsOptions& options) {
   const auto& path = options.mission.out;
   std::ofstream csv;
   if (!path.empty()) csv.open(path);
-  if (!path.empty() && !csv) return complain(path.string() + ": cannot be written (--out takes a file here)");
+  if (!path.empty() && !csv) return complain(kExitBadInput, path.string() + ": cannot be written (--out takes a file here)");
 
   std::ostream nowhere(nullptr);
   const auto fly = [&](std::uint64_t job) {
@@ -162,7 +158,7 @@ int trials(const TrialsOptions& options) {
   std::printf("%lld of %llu missions flown in %.1f s\n%s", static_cast<long long>(totals.trials),
               static_cast<unsigned long long>(options.seeds.count()), wall_s,
               totals.describe(wall_s).c_str());
-  if (!path.empty() && !csv) return complain(path.string() + ": writing failed; rows are missing");
+  if (!path.empty() && !csv) return complain(kExitBadInput, path.string() + ": writing failed; rows are missing");
   return totals.failed > 0 ? kExitFailed : kExitDone;
 }
 
