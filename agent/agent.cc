@@ -53,14 +53,18 @@ void Agent::receive(const Message& message, Instant now, AgentId transmitter) {
   if (const auto* m = std::get_if<Hello>(&message)) return on(*m, now);
   if (const auto* m = std::get_if<MissionPart>(&message)) return on(*m, now);
   if (const auto* m = std::get_if<AgentStatus>(&message)) return on(*m, now);
-  if (const auto* m = std::get_if<Stop>(&message)) return on(*m);
+  // Of a run that it does not know, it may be the end of a former one, said again.
+  if (const auto* m = std::get_if<Stop>(&message); m && identity_.run != 0) return on(*m);
 }
 
 void Agent::on(const MissionPart& part, Instant now) {
   if (identity_.run == 0) identity_.run = part.header.run;
   if (freshness_.is_news(part.header)) coordinator_heard_ = now;
   // Said by somebody else; or by one who has not heard of what came later, or will not be heard.
-  if (part.revision >= follower_.revision()) mission_repeat_.reset();
+  // That is believed twice only: it may be a recording of one part.
+  if (part.revision >= follower_.revision() && mission_repeat_ && ++repeats_left_to_others_ <= 2) {
+    mission_repeat_.reset();
+  }
   if (part.revision < follower_.revision()) plan_mission_repeat(now);
   const std::int64_t foreign_plans = follower_.foreign_plans();
   const bool news = follower_.receive(part);
@@ -152,6 +156,7 @@ void Agent::on(const Digest& theirs, Instant now) {
 
 void Agent::on(const Hello& hello, Instant now) {
   if (!follower_.mission()) return;
+  if (!freshness_.is_news(hello.header)) return;
   if (hello.header.sender == kWorld && table_) world_asks_ = true;
   const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
   if (knows_no_mission) plan_mission_repeat(now);
@@ -252,6 +257,7 @@ void Agent::help_others(Instant now, Outbox& out) {
 /// Also before it is admitted: it may be the only one left who knows the mission.
 void Agent::repeat_mission(Instant now, Outbox& out) {
   mission_repeat_.reset();
+  repeats_left_to_others_ = 0;
   mission_repeated_ = now;
   for (const MissionPart& part : follower_.parts()) {
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) out.push_back({bus, part});

@@ -151,6 +151,7 @@ class Agent {
   Deadline next_status_, next_digest_;
   std::optional<Instant> mission_repeat_;  // somebody has asked for the mission
   std::optional<Instant> mission_repeated_;
+  int repeats_left_to_others_ = 0;
   Sequencer sequencer_;
   std::int64_t received_ = 0, contributions_received_ = 0, missed_ticks_ = 0, kernel_drops_ = 0;
   AgentId babbler_ = kUnassigned;

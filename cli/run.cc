@@ -83,6 +83,7 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
   if (launcher.failure()) fail(*launcher.failure());
   if (mission.failed()) fail(mission.reason());
   summary["reason"] = summary.value("reason", "") + launcher.losses();
+  summary["authenticated"] = !setup.key_file.empty();
   summary["restarts"] = launcher.restarts();
   summary["record_complete"] = !launcher.record_broken() && !cut_short;
   auto processes = nlohmann::ordered_json::array();
@@ -99,6 +100,7 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
   display.say("  swarm    " + setup.url.of(Bus::kSwarm));
   display.say("  world    " + setup.url.of(Bus::kWorld));
   display.say("  command  " + setup.url.of(Bus::kCommand));
+  display.say("  key      " + (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
 /// Flies the mission on a network that works, into a run directory that is ready.

@@ -1,4 +1,5 @@
 // `ergocast stop`: ends a mission from any host on its buses, and says whether the team obeyed.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -60,12 +61,11 @@ class Stopping {
     while (!found() && now() < since_ + kHearing) {
       if (!listen()) return kExitFailed;
     }
-    if (runs_.size() > 1) return choose();
+    if (runs_.size() > 1 && !options_.at_once) return choose();
     if (runs_.empty() && options_.run == 0) return nobody();
-    const RunId run = options_.run != 0 ? options_.run : runs_.begin()->first;
-    transport_->set_run(run);
+    if (options_.run != 0) runs_[options_.run];
     since_ = now();
-    return insist(run);
+    return insist();
   }
 
  private:
@@ -84,21 +84,33 @@ class Stopping {
     return runs_.size() > 1 || (!runs_.empty() && now() >= since_ + kLookAround);
   }
 
-  int insist(RunId run) {
-    StopWord word(run, false,
-                  (options_.at_once ? "stopped at once by `ergocast stop --now` on "
-                                    : "stopped by `ergocast stop` on ") +
-                      host_name());
-    std::printf("run %s: %s\n", to_hex(run).c_str(),
-                options_.at_once ? "telling everybody to stand still"
-                                 : "asking the coordinator to end the mission");
-    std::fflush(stdout);
-    const RunHeard& team = runs_[run];
-    while (true) {
-      if (options_.at_once || !team.over()) word.repeat(*transport_, now(), options_.at_once);
-      if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
-      if (const auto code = verdict(team)) return *code;
+  /// In an emergency all runs on the URL are meant: nobody has time to choose.
+  int insist() {
+    std::map<RunId, StopWord> words;
+    for (const auto& [run, team] : runs_) {
+      words.try_emplace(run, run, false,
+                        (options_.at_once ? "stopped at once by `ergocast stop --now` on "
+                                          : "stopped by `ergocast stop` on ") +
+                            host_name());
+      std::printf("run %s: %s\n", to_hex(run).c_str(),
+                  options_.at_once ? "telling everybody to stand still"
+                                   : "asking the coordinator to end the mission");
     }
+    std::fflush(stdout);
+    int worst = kExitDone;
+    while (!words.empty()) {
+      for (auto& [run, word] : words) {
+        if (!options_.at_once && runs_[run].over()) continue;
+        word.repeat(*transport_, now(), options_.at_once);
+      }
+      if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
+      std::erase_if(words, [&](const auto& one) {
+        const auto code = verdict(runs_[one.first]);
+        worst = std::max(worst, code.value_or(kExitDone));
+        return code.has_value();
+      });
+    }
+    return worst;
   }
 
   /// The exit code once it is known.
@@ -179,9 +191,8 @@ void add_stop(CLI::App& app, Action& action) {
       "--now", options->at_once,
       "Emergency: agents and world stand still within a tick, also without a coordinator");
   command->footer(
-      "Without --now the coordinator ends the mission for all. With --now and --run-id it listens "
-      "for\n"
-      "nobody first.\n"
+      "Without --now the coordinator ends the mission for all. With --now all runs that are heard\n"
+      "stop; with --run-id besides, it listens for nobody first.\n"
       "Exit codes: 0 the team was seen to end; 2 several runs are heard; 3 LCM cannot be used;\n"
       "4 nobody is heard, or somebody goes on.");
   command->callback([&action, options] { action = [options] { return stop(*options); }; });

@@ -33,6 +33,7 @@ void RunHeard::receive(const Message& message, Instant now) {
     }
     return;
   }
+  if (!freshness_.is_news(from)) return;
   if (const auto* status = std::get_if<AgentStatus>(&message)) {
     const Author author{from.sender, from.incarnation};
     if (from.sender < 0 || (agents_.size() >= kMostLives && !agents_.contains(author))) return;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 
@@ -36,6 +37,7 @@ class RunHeard {
     Instant heard{};
     bool finished = false;
   };
+  Freshness freshness_;
   std::map<Author, Seen> agents_;
   std::map<AgentId, Instant> processes_;
   std::map<AgentId, Eigen::Vector3d> velocities_mps_;  // in the newest state

@@ -93,7 +93,7 @@ std::optional<Finding> Overheard::key_finding() const {
     return Finding{"swarm bus", Level::kWarning, "messages that this key does not open",
                    "They are damaged, or their senders have another key and refuse all that this "
                    "host says.",
-                   "sha256sum FILE   # of --key-file, on every host"};
+                   "head -n 3 FILE | sha256sum   # of --key-file, on every host: what both files of a key share"};
   }
   if (other_key_ > 0) {
     return Finding{"swarm bus", Level::kNote, "a team with a mission key, or damage",

@@ -94,7 +94,7 @@ void Recorder::receive(const Message& message, Instant now) {
     }
     return;
   }
-  if (const auto* stop = std::get_if<Stop>(&message); stop && stop->now && !over_since_) {
+  if (const auto* stop = std::get_if<Stop>(&message); stop && stop->now && run_ != 0 && !over_since_) {
     over_since_ = now;
     facts_.halted = true;
     failed_ = stop->failed;

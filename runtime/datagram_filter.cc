@@ -19,20 +19,24 @@ constexpr std::uint32_t kMagicAt = kUdpHeaderBytes, kNameAt = kUdpHeaderBytes + 
 constexpr std::uint32_t kUnfragmented = 0x4c433032;  // "LC02"
 constexpr std::uint32_t kKeepAll = 0xffff;
 constexpr std::uint32_t kKeepTooLittle = kUdpHeaderBytes + 4;
+/// No message of ours is shorter, and no name or number is looked for beyond it.
+constexpr std::uint32_t kShortest = kNameAt + 60;
 
 /// A program for the kernel, whose jumps go forward only and whose conditional ones not far.
 class Filter {
  public:
   Filter() {
+    load(BPF_LD | BPF_W | BPF_LEN, 0);
+    pass_if(BPF_JGE, kShortest);
     load(BPF_LD | BPF_W | BPF_ABS, kMagicAt);
     pass_if(BPF_JEQ, kUnfragmented);
     for (const ChannelName& name : channel_names()) accept(name);
     end(kKeepTooLittle);
   }
 
-  void attach(int socket) {
+  bool attach(int socket) {
     sock_fprog program{static_cast<unsigned short>(code_.size()), code_.data()};
-    setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program);
+    return setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) == 0;
   }
 
  private:
@@ -91,6 +95,6 @@ class Filter {
 
 }  // namespace
 
-void admit_only_our_channels(int socket) { Filter().attach(socket); }
+bool admit_only_our_channels(int socket) { return Filter().attach(socket); }
 
 }  // namespace ergocast

@@ -43,7 +43,9 @@ void add_key_option(CLI::App& app, Seal& seal, std::string* file) {
   app.add_option_function<std::string>(
          "--key-file",
          [&seal, file](const std::string& name) {
-           if (name.empty()) return;
+           if (name.empty()) {
+            throw CLI::ValidationError("--key-file", "no name; leave it out to fly without a key");
+          }
            const auto key = read_key_file(name);
            if (const auto* problem = std::get_if<std::string>(&key)) {
              throw CLI::ValidationError("--key-file", *problem);

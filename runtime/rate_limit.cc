@@ -38,9 +38,9 @@ Allowance allowance_of(const Mission& mission, std::size_t members) {
   return allowance;
 }
 
-bool RateLimit::admit(AgentId from, Instant now) {
+bool RateLimit::admit(AgentId from, bool is_news, Instant now) {
   if (allowance_.most == 0 || from < 0 || from >= kMaxAgents) return true;
-  Budget& budget = budgets_[static_cast<std::size_t>(from)];
+  Budget& budget = budgets_[is_news ? 1 : 0][static_cast<std::size_t>(from)];
   const double waited_s = std::chrono::duration<double>(now - budget.at).count();
   const auto ticks = static_cast<double>(std::max<Tick>(0, tick_ - budget.tick));
   budget.left = budget.begun

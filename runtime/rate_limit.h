@@ -27,9 +27,10 @@ class RateLimit {
   /// @param tick  the newest that the world is known to have reached
   void allow(const Allowance& allowance, Tick tick) { allowance_ = allowance, tick_ = tick; }
 
-  /// Takes one message off the budget of `from`; false if there is none left. Who is no agent has
-  /// no budget, nor has anybody before allow() was called: all they say is admitted.
-  bool admit(AgentId from, Instant now);
+  /// Takes one message off a budget of `from`; false if there is none left. What has been heard
+  /// before has a budget of its own: others may repeat it, and not at the cost of who has said it.
+  /// Who is no agent has no budget, nor has anybody before allow() was called: all is admitted.
+  bool admit(AgentId from, bool is_news, Instant now);
 
  private:
   struct Budget {
@@ -40,7 +41,7 @@ class RateLimit {
   };
   Allowance allowance_;
   Tick tick_ = 0;
-  std::array<Budget, kMaxAgents> budgets_{};
+  std::array<std::array<Budget, kMaxAgents>, 2> budgets_{};
 };
 
 }  // namespace ergocast

@@ -16,14 +16,26 @@ namespace {
 /// What refusals that have to do with keys say about the hosts of a team.
 std::string key_advice(const RefusalCounts& refused, bool keyed) {
   const auto some = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)] > 0; };
-  if (some(Refusal::kUnkeyed)) return "; unkeyed: somebody speaks without our --key-file";
-  if (some(Refusal::kUnsigned)) return "; unsigned: a mission needs the coordinator's --key-file";
-  if (!some(Refusal::kTag)) return "";
-  return keyed ? "; tag: damaged, or somebody has another --key-file"
-               : "; tag: damaged, or a team with a --key-file is on this URL";
+  std::string advice;
+  if (some(Refusal::kUnkeyed)) advice += "; unkeyed: somebody speaks without our --key-file";
+  if (some(Refusal::kUnsigned)) {
+    advice += "; unsigned: somebody without the coordinator's --key-file tries to begin or end missions";
+  }
+  if (some(Refusal::kTag)) {
+    advice += keyed ? "; tag: damaged, or somebody has another --key-file"
+                    : "; tag: damaged, or a team with a --key-file is on this URL";
+  }
+  return advice;
 }
 
 }  // namespace
+
+TrafficWatch::TrafficWatch(Transport& transport) : transport_(transport) {
+  if (!transport.filtered()) {
+    spdlog::warn("the kernel does not keep foreign datagrams from LCM, which some can crash: load "
+                 "packaging/nftables/ergocast.nft (nft -f FILE)");
+  }
+}
 
 bool TrafficWatch::look(Instant now) {
   if (now < next_look_) return false;

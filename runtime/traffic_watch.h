@@ -10,7 +10,8 @@ namespace ergocast {
 
 class TrafficWatch {
  public:
-  explicit TrafficWatch(Transport& transport) : transport_(transport) {}
+  /// Says at once what the transport lacks.
+  explicit TrafficWatch(Transport& transport);
 
   /// To be called every turn. Once a second it looks; what is new is logged at most every 10 s.
   /// @return whether this was the turn that looked: the time for what is done once a second

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <lcm/lcm-cpp.hpp>
 
+#include "core/freshness.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
 #include "runtime/clock.h"
@@ -62,6 +63,7 @@ class LcmTransport final : public Transport {
   void limit_agents(const Allowance& allowance, Tick tick) override { rates_.allow(allowance, tick); }
   Instant deliver_until(Instant deadline, int wake_fd) override;
   bool keyed() const override { return seal_.keyed(); }
+  bool filtered() const override { return filtered_; }
   std::int64_t kernel_drops() const override { return drops_of(sockets_); }
   bool renew_membership() override { return membership_->renew(); }
 
@@ -92,6 +94,8 @@ class LcmTransport final : public Transport {
   Seal seal_;
   Handlers handlers_;
   RateLimit rates_;
+  bool filtered_ = true;
+  std::array<Freshness, kBusCount> freshness_;
   std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
   std::array<Line, kBusCount> lines_{};
   std::vector<pollfd> ready_;             // of the buses we listen to, then the caller's
@@ -113,9 +117,9 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
     // LCM tests itself here; a subscription after a failed test would abort the process later.
     const int fd = buses_[at]->getFileno();
     if (fd < 0) return url.of(one.bus) + ": LCM's self test failed\n" + kFirewall;
-    for (const int socket : sockets_at(url.base_port + static_cast<int>(one.bus), 1)) {
-      admit_only_our_channels(socket);
-    }
+    const auto sockets = sockets_at(url.base_port + static_cast<int>(one.bus), 1);
+    filtered_ = filtered_ && !sockets.empty() &&
+                std::all_of(sockets.begin(), sockets.end(), admit_only_our_channels);
     lines_[at] = {this, one.bus};
     buses_[at]
         ->subscribe(std::string(kPrefix) + "(" + one.channels + ")", &Line::on_datagram, &lines_[at])
@@ -149,8 +153,9 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
     const Message& message = std::get<Message>(decoded);
     const auto transmitter = transmitter_of(message, channel);
     if (!transmitter) return refuse(Refusal::kType);
-    if (!rates_.admit(*transmitter, now())) {
-      babbler_ = *transmitter;
+    const bool is_news = freshness_[static_cast<std::size_t>(bus)].is_news(header_of(message));
+    if (!rates_.admit(*transmitter, is_news, now())) {
+      if (is_news) babbler_ = *transmitter;
       return refuse(Refusal::kRate);
     }
     if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);

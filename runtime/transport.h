@@ -70,6 +70,8 @@ class Transport {
 
   /// Whether only who has the team's key is believed.
   virtual bool keyed() const = 0;
+  /// Whether the kernel keeps from LCM what is none of our messages.
+  virtual bool filtered() const = 0;
 
   /// The last agent of whose messages some were refused for their rate; kUnassigned: none.
   AgentId babbler() const { return babbler_; }

@@ -60,7 +60,7 @@ void World::receive(const Message& message, Instant now) {
     if (over_since_ && (halted_ || follower_.over()) && record_complete()) finish(why_over());
     return;
   }
-  if (const auto* stop = std::get_if<Stop>(&message)) on(*stop);
+  if (const auto* stop = std::get_if<Stop>(&message); stop && run_ != 0) on(*stop);
 }
 
 void World::on(const Stop& stop) {

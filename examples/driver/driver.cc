@@ -15,7 +15,7 @@ void Driver::receive(const Message& message, Instant now) {
   if (finished_ || (run_ != 0 && header_of(message).run != run_)) return;
   if (const auto* command = std::get_if<Command>(&message)) return on(*command);
   if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
-  if (const auto* over = std::get_if<Stop>(&message); over && over->now) {
+  if (const auto* over = std::get_if<Stop>(&message); over && over->now && run_ != 0) {
     stop(over->reason);
     halted_ = running_;
   }

@@ -18,26 +18,26 @@ Mission mission_of(Pace pace, int modes_per_axis = 16) {
 TEST(RateLimit, ABudgetHoldsExactlyWhatItIsAllowed) {
   RateLimit limit;
   limit.allow({.per_second = 10, .per_tick = 2, .most = 100}, 0);
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(3, at(1s))) << i;
-  EXPECT_FALSE(limit.admit(3, at(1s)));
-  EXPECT_TRUE(limit.admit(4, at(1s))) << "each has a budget of its own";
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(limit.admit(3, at(2s))) << i;
-  EXPECT_FALSE(limit.admit(3, at(2s)));
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(3, true, at(1s))) << i;
+  EXPECT_FALSE(limit.admit(3, true, at(1s)));
+  EXPECT_TRUE(limit.admit(4, true, at(1s))) << "each has a budget of its own";
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(limit.admit(3, true, at(2s))) << i;
+  EXPECT_FALSE(limit.admit(3, true, at(2s)));
   limit.allow({.per_second = 10, .per_tick = 2, .most = 100}, 3);
-  for (int i = 0; i < 6; ++i) EXPECT_TRUE(limit.admit(3, at(2s))) << i;
-  EXPECT_FALSE(limit.admit(3, at(2s)));
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(3, at(1000s))) << "no more is saved up";
-  EXPECT_FALSE(limit.admit(3, at(1000s)));
+  for (int i = 0; i < 6; ++i) EXPECT_TRUE(limit.admit(3, true, at(2s))) << i;
+  EXPECT_FALSE(limit.admit(3, true, at(2s)));
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(3, true, at(1000s))) << "no more is saved up";
+  EXPECT_FALSE(limit.admit(3, true, at(1000s)));
 }
 
 TEST(RateLimit, OnlyAgentsHaveABudgetAndOnlyInAMission) {
   RateLimit limit;
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(3, at(1s)));
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(3, true, at(1s)));
   limit.allow({.per_second = 1, .per_tick = 0, .most = 1}, 0);
-  EXPECT_TRUE(limit.admit(3, at(1s)));
-  EXPECT_FALSE(limit.admit(3, at(1s)));
+  EXPECT_TRUE(limit.admit(3, true, at(1s)));
+  EXPECT_FALSE(limit.admit(3, true, at(1s)));
   for (const AgentId other : {kUnassigned, kCoordinator, kWorld, kLogger, kOperator, kMaxAgents}) {
-    for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(other, at(1s)));
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(other, true, at(1s)));
   }
 }
 
@@ -48,7 +48,7 @@ int refused(const Mission& mission, int messages_per_tick, double ticks_per_seco
   for (Tick tick = 0; tick < 10000; ++tick) {
     limit.allow(allowance_of(mission, 4), tick);
     const Instant now = Instant{} + seconds(static_cast<double>(tick) / ticks_per_second);
-    for (int i = 0; i < messages_per_tick; ++i) refused += limit.admit(0, now) ? 0 : 1;
+    for (int i = 0; i < messages_per_tick; ++i) refused += limit.admit(0, true, now) ? 0 : 1;
   }
   return refused;
 }
@@ -77,8 +77,8 @@ TEST(RateLimit, ABacklogOfTenSecondsIsNoBabble) {
   const Mission mission = mission_of(Pace::kRealtime);
   RateLimit limit;
   limit.allow(allowance_of(mission, 4), 0);
-  EXPECT_TRUE(limit.admit(0, at(1s)));
-  for (int i = 0; i < 10 * 10 * kHonest + 2000; ++i) EXPECT_TRUE(limit.admit(0, at(1s))) << i;
+  EXPECT_TRUE(limit.admit(0, true, at(1s)));
+  for (int i = 0; i < 10 * 10 * kHonest + 2000; ++i) EXPECT_TRUE(limit.admit(0, true, at(1s))) << i;
 }
 
 }  // namespace
