@@ -38,8 +38,9 @@ void add_keygen(CLI::App& app, Action& action) {
   command->add_option("NAME", *name, "Writes NAME.key and NAME.coordinator.key, never over others")
       ->capture_default_str();
   command->footer(
-      "Whoever has NAME.key can speak for any agent and read along; only NAME.coordinator.key begins\n"
-      "and ends missions. Exit codes: 0 done; 2 a file is there already or cannot be written.");
+      "Whoever has NAME.key can speak for any agent; only NAME.coordinator.key signs what begins and\n"
+      "ends missions. Nothing is encrypted.\n"
+      "Exit codes: 0 done; 2 a file is there already or cannot be written.");
   command->callback([name, &action] { action = [name] { return make_keys(*name); }; });
 }
 

@@ -32,7 +32,7 @@ class LineFile : public std::ostream {
     std::uintmax_t written_bytes = 0;
     int error = 0;
 
-    ~Waiting() override { sync(); }
+    ~Waiting() override { write(); }
     bool write();
     int sync() override { return write() ? 0 : -1; }
     int_type overflow(int_type c) override;
