@@ -36,7 +36,7 @@ Agent informed_agent(Mission mission = small_mission(2)) {
 }
 
 Hello question_of(AgentId who, Tick tick) {
-  return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, 1, tick}, kUnassigned, "", ""};
+  return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, next_sequence(), tick}, kUnassigned, "", ""};
 }
 
 std::size_t repeated_after(Agent& agent, const Message& message) {
