@@ -35,8 +35,9 @@ Agent informed_agent(Mission mission = small_mission(2)) {
   return agent;
 }
 
+/// Above what its asker has said in the tests.
 Hello question_of(AgentId who, Tick tick) {
-  return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, next_sequence(), tick}, kUnassigned, "", ""};
+  return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, 1000 + next_sequence(), tick}, kUnassigned, "", ""};
 }
 
 std::size_t repeated_after(Agent& agent, const Message& message) {
