@@ -174,20 +174,33 @@ TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
   EXPECT_TRUE(answered("nobody of run 00000000000000b2 was heard on ")) << output();
 }
 
-TEST_F(StopCommand, OfSeveralRunsOnOneUrlStopsNone) {
-  Stranger stranger(kUrl);
-  Program& undecided = hand("ergocast", {"stop", "--now"});
+/// Coordinators of two runs speak until `done`.
+void two_runs_speak_until(const std::function<bool()>& done) {
+  Stranger stranger("udpm://239.255.76.67:24700?ttl=0");
   ASSERT_TRUE(eventually([&] {
     for (const RunId run : {0xa1, 0xb2}) {
       TeamStatus team;
       team.header = {run, kCoordinator, run, 0, 7};
       stranger.say(Bus::kSwarm, team);
     }
-    return !undecided.child.running();
+    return done();
   }));
+}
+
+TEST_F(StopCommand, OfSeveralRunsOnOneUrlEndsNoneInOrder) {
+  Program& undecided = hand("ergocast", {"stop"});
+  two_runs_speak_until([&] { return !undecided.child.running(); });
   EXPECT_EQ(wait_for(undecided.child), 2) << undecided.said();
   EXPECT_TRUE(undecided.says("--run-id 00000000000000a1")) << undecided.said();
   EXPECT_TRUE(undecided.says("--run-id 00000000000000b2")) << undecided.said();
+}
+
+TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
+  Program& decided = hand("ergocast", {"stop", "--now"});
+  two_runs_speak_until([&] { return decided.said().find("telling") != std::string::npos; });
+  EXPECT_TRUE(decided.says("run 00000000000000a1: telling everybody to stand still"));
+  EXPECT_TRUE(decided.says("run 00000000000000b2: telling everybody to stand still"));
+  EXPECT_EQ(wait_for(decided.child), 0) << decided.said();
 }
 
 }  // namespace
