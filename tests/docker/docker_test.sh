@@ -149,9 +149,8 @@ what_deploy_writes_flies() {
   printf 'box coordinator logger sim agent 0 1 agents=2\n' >"$work/hosts"
   ERGOCAST_RUNS=$work/deployed/runs
   mkdir "$work/deployed"
-  make_keys "$work/deployed/mission"
   expect "$build/bin/ergocast" deploy "$ERGOCAST_SCENARIOS/patient.textproto" --hosts "$work/hosts" \
-    --to compose --keys "$work/deployed/mission" --out "$work/deployed"
+    --to compose --out "$work/deployed"
   expect docker-compose -f "$work/deployed/compose.yaml" up --detach
   expect_complete
   expect docker-compose -f "$work/deployed/compose.yaml" down
