@@ -3,9 +3,9 @@
 #include <sys/timex.h>
 #include <unistd.h>
 
-#include <cstdio>
-#include <memory>
 #include <sstream>
+
+#include "doctor/command_output.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -61,13 +61,7 @@ Finding clock_finding(std::optional<bool> synchronised) {
 
 std::string firewall_rules() {
   if (geteuid() != 0) return "";
-  const char* command =
-      "PATH=$PATH:/usr/sbin:/sbin; { nft list chains || iptables -S INPUT; } 2>/dev/null";
-  const std::unique_ptr<FILE, int (*)(FILE*)> output(popen(command, "r"), pclose);
-  std::string text;
-  char line[512];
-  while (output && std::fgets(line, sizeof line, output.get()) != nullptr) text += line;
-  return text;
+  return output_of("{ nft list chains || iptables -S INPUT; } 2>/dev/null");
 }
 
 std::optional<Finding> firewall_finding(std::string_view rules, const std::string& group) {

@@ -26,12 +26,13 @@ struct Table {
   std::array<std::string, kNames.size()> plain;
   std::array<std::array<std::string, kMaxAgents + 1>, kNames.size()> numbered;  // [0] is id −1
 
+  static std::size_t index(AgentId id) { return static_cast<std::size_t>(id) + 1; }
+
   Table() {
     for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
       plain[kind] = kNames[kind];
       for (int id = -1; id < kMaxAgents; ++id) {
-        numbered[kind][static_cast<std::size_t>(id + 1)] =
-            plain[kind] + "_" + (id < 0 ? "NEW" : std::to_string(id));
+        numbered[kind][index(id)] = plain[kind] + "_" + (id < 0 ? "NEW" : std::to_string(id));
       }
     }
   }
@@ -44,7 +45,7 @@ const Table& table() {
 
 const std::string& name(std::size_t kind, AgentId id) {
   const bool numbered = id >= kUnassigned && id < kMaxAgents;
-  return numbered ? table().numbered[kind][static_cast<std::size_t>(id + 1)] : table().plain[kind];
+  return numbered ? table().numbered[kind][Table::index(id)] : table().plain[kind];
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "core/require.h"
 
@@ -33,11 +34,18 @@ bool plausible_tick(Tick tick) { return tick == -1 || plausible_count(tick); }
 bool plausible_quantity(double value) { return std::isfinite(value) && value >= 0; }
 bool plausible_sender(std::int32_t id) { return id >= kOperator && id < kMaxAgents; }
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+/// The first character that means something to a terminal: C0, DEL, or C1 in UTF-8.
 /// What others say of themselves ends up in logs and on terminals.
-bool plausible_text(const std::string& text) {
-  return std::none_of(text.begin(), text.end(), is_control);
+std::string_view find_control(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c < 0x20 || c == 0x7F) return text.substr(i, 1);
+    const bool has_next = c == 0xC2 && i + 1 < text.size();
+    if (has_next && (text[i + 1] & 0xE0) == 0x80) return text.substr(i, 2);
+  }
+  return {};
 }
+bool plausible_text(const std::string& text) { return find_control(text).empty(); }
 
 /// At most `limit` characters, none of which means something to a terminal, up to a NUL: so that
 /// what we send is what we accept.
@@ -47,7 +55,9 @@ std::string bounded(const std::string& text, int limit) {
   while (text.size() > size && size > 0 && (text[size] & 0xC0) == 0x80) --size;
   std::string cut = text.substr(0, size);
   cut.resize(std::min(cut.find('\0'), cut.size()));
-  std::replace_if(cut.begin(), cut.end(), is_control, ' ');
+  for (auto control = find_control(cut); !control.empty(); control = find_control(cut)) {
+    cut.replace(static_cast<std::size_t>(control.data() - cut.data()), control.size(), " ");
+  }
   return cut;
 }
 
@@ -161,7 +171,8 @@ agent_status_t to_wire(const AgentStatus& m) {
   w.waiting_for = m.waiting_for;
   w.answered_tick = m.answered_tick;
   w.contributions_received = m.contributions_received;
-  w.contributions_lost = m.contributions_lost;
+  // Whoever jumps ahead in its numbering makes others count what never was.
+  w.contributions_lost = std::min(m.contributions_lost, kMostEver);
   w.messages_sent = m.messages_sent;
   w.messages_received = m.messages_received;
   w.contributions_relayed = m.contributions_relayed;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
+#include "lcmtypes/seal.h"
 
 namespace ergocast {
 namespace {
@@ -21,6 +22,8 @@ constexpr std::uint32_t kKeepAll = 0xffff;
 constexpr std::uint32_t kKeepTooLittle = kUdpHeaderBytes + 4;
 /// No message of ours is shorter, and no name or number is looked for beyond it.
 constexpr std::uint32_t kShortest = kNameAt + 60;
+/// LCM allows names of 63 characters; what is longer than any message of ours only fills its queue.
+constexpr std::uint32_t kLongest = kNameAt + 64 + static_cast<std::uint32_t>(kMaxDatagramBytes);
 
 /// A program for the kernel, whose jumps go forward only and whose conditional ones not far.
 class Filter {
@@ -28,6 +31,8 @@ class Filter {
   Filter() {
     load(BPF_LD | BPF_W | BPF_LEN, 0);
     pass_if(BPF_JGE, kShortest);
+    code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kLongest, 0, 1));
+    end(kKeepTooLittle);
     load(BPF_LD | BPF_W | BPF_ABS, kMagicAt);
     pass_if(BPF_JEQ, kUnfragmented);
     for (const ChannelName& name : channel_names()) accept(name);

@@ -5,7 +5,8 @@
 namespace ergocast {
 
 /// From now on the kernel passes on to this socket of LCM's only unfragmented LCM messages under
-/// our channels' names (with any number of up to three digits where there is one for each agent).
+/// our channels' names (with any number of up to three digits where there is one for each agent),
+/// and no longer than ours.
 /// Of any other datagram nothing is left but four bytes, which LCM throws away at once; the kernel
 /// would count one that is dropped as lost for want of buffer space. Needs no privileges. False if
 /// the kernel cannot do it: then it passes on everything.

@@ -1,11 +1,14 @@
 #include "runtime/event_log.h"
 
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
+#include <optional>
+#include <string_view>
 
 namespace ergocast {
 namespace {
@@ -20,17 +23,24 @@ std::int64_t wall_clock_us() {
   return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
+std::optional<int> segment_number(std::string_view file) {
+  constexpr std::string_view kBefore = "events-", kAfter = ".lcm";
+  if (!file.starts_with(kBefore) || !file.ends_with(kAfter)) return std::nullopt;
+  const char* const end = file.data() + file.size() - kAfter.size();
+  int number = 0;
+  const auto [rest, error] = std::from_chars(file.data() + kBefore.size(), end, number);
+  return error == std::errc() && rest == end && number >= 0 ? std::optional(number) : std::nullopt;
+}
+
 /// Sizes of the segments in a folder, by number.
 std::map<int, std::int64_t> segments_in(const std::filesystem::path& folder) {
   std::map<int, std::int64_t> segments;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    int number = 0, end = 0;
-    const std::string name = entry.path().filename().string();
-    const bool ours = std::sscanf(name.c_str(), "events-%d.lcm%n", &number, &end) == 1;
-    if (!ours || static_cast<std::size_t>(end) != name.size()) continue;
+    const std::optional<int> number = segment_number(entry.path().filename().string());
+    if (!number) continue;
     const auto bytes = entry.file_size(error);
-    segments[number] = error ? 0 : static_cast<std::int64_t>(bytes);
+    segments[*number] = error ? 0 : static_cast<std::int64_t>(bytes);
   }
   return segments;
 }

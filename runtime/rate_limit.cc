@@ -18,7 +18,8 @@ constexpr double kOthersPerSecond = 40;
 constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
 double parts(std::size_t count, int of) {
-  return static_cast<double>((count + static_cast<std::size_t>(of) - 1) / static_cast<std::size_t>(of));
+  const std::size_t whole = (count + static_cast<std::size_t>(of) - 1) / static_cast<std::size_t>(of);
+  return static_cast<double>(whole);
 }
 
 }  // namespace

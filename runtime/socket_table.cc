@@ -18,7 +18,7 @@ bool read(std::string_view text, Number& number, int base = 10) {
 }  // namespace
 
 std::vector<UdpSocket> parse_socket_table(std::string_view table) {
-  constexpr std::size_t kLocal = 1, kInode = 9, kDrops = 12, kColumns = 13;
+  constexpr std::size_t kLocal = 1, kInode = 9, kColumns = 13;
   std::vector<UdpSocket> sockets;
   std::istringstream lines{std::string(table)};
   std::string line;
@@ -32,8 +32,7 @@ std::vector<UdpSocket> parse_socket_table(std::string_view table) {
     if (colon == local.npos) continue;
     std::uint16_t port = 0;
     UdpSocket socket;
-    if (read(local.substr(colon + 1), port, 16) && read(words[kInode], socket.inode) &&
-        read(words[kDrops], socket.drops) && socket.drops >= 0) {
+    if (read(local.substr(colon + 1), port, 16) && read(words[kInode], socket.inode)) {
       socket.port = port;
       sockets.push_back(socket);
     }

@@ -1,4 +1,4 @@
-// The kernel's table of UDP sockets, /proc/net/udp: the only place that says what it dropped.
+// The kernel's table of UDP sockets, /proc/net/udp: which ports are taken, and by whom.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,6 @@ namespace ergocast {
 struct UdpSocket {
   int port = 0;
   unsigned long inode = 0;  ///< by which a process is found to hold it
-  std::int64_t drops = 0;   ///< datagrams thrown away for want of buffer space
   bool operator==(const UdpSocket&) const = default;
 };
 

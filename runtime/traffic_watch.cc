@@ -32,8 +32,8 @@ std::string key_advice(const RefusalCounts& refused, bool keyed) {
 
 TrafficWatch::TrafficWatch(Transport& transport) : transport_(transport) {
   if (!transport.filtered()) {
-    spdlog::warn("the kernel does not keep foreign datagrams from LCM, which some can crash: load "
-                 "packaging/nftables/ergocast.nft (nft -f FILE)");
+    spdlog::warn("the kernel does not keep foreign datagrams from LCM, which some can crash: "
+                 "`ergocast doctor` names a firewall rule that does");
   }
 }
 
@@ -57,11 +57,18 @@ bool TrafficWatch::look(Instant now) {
                  key_advice(refused, transport_.keyed()));
   }
   constexpr auto kRate = static_cast<std::size_t>(Refusal::kRate);
-  if (refused[kRate] != logged_[kRate]) {
+  const std::int64_t repeated = refused[kRate] - transport_.babbled();
+  if (transport_.babbled() != logged_babble_) {
     spdlog::warn("agent {} babbles: it sends more than eight times what the mission asks of an agent, "
                  "and the rest is refused; stop it, or mend its program",
                  transport_.babbler());
   }
+  if (repeated != logged_repeats_) {
+    spdlog::warn("somebody repeats what agents have said, far more often than they would, and the rest "
+                 "is refused: look for who records on this network");
+  }
+  logged_babble_ = transport_.babbled();
+  logged_repeats_ = repeated;
   if (kernel_drops_ != logged_drops_) {
     spdlog::warn("the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "
                  "recv_buf_size in the URL", kernel_drops_);

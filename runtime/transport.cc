@@ -1,13 +1,11 @@
 #include "runtime/transport.h"
 
+#include <linux/sock_diag.h>
 #include <poll.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <lcm/lcm-cpp.hpp>
 
 #include "core/freshness.h"
@@ -17,7 +15,6 @@
 #include "runtime/datagram_filter.h"
 #include "runtime/group_membership.h"
 #include "runtime/socket.h"
-#include "runtime/socket_table.h"
 
 namespace ergocast {
 namespace {
@@ -29,26 +26,18 @@ constexpr std::string_view kPrefix = "ERGOCAST_";
 constexpr const char* kFirewall =
     "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
 
-/// What the kernel dropped at these sockets. Several processes share a port, so they are found by
-/// their inodes.
-std::int64_t drops_of(const std::vector<unsigned long>& inodes) {
-  std::ifstream file("/proc/net/udp");
-  const std::string table(std::istreambuf_iterator<char>(file), {});
+/// What the kernel dropped at these sockets. /proc/net/udp says it, too, but takes the longer the more
+/// sockets others have.
+std::int64_t drops_of(const std::vector<int>& sockets) {
   std::int64_t drops = 0;
-  for (const UdpSocket& socket : parse_socket_table(table)) {
-    if (std::find(inodes.begin(), inodes.end(), socket.inode) != inodes.end()) drops += socket.drops;
+  for (const int socket : sockets) {
+    std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
+    socklen_t bytes = sizeof memory;
+    if (getsockopt(socket, SOL_SOCKET, SO_MEMINFO, memory.data(), &bytes) == 0) {
+      drops += memory[SK_MEMINFO_DROPS];
+    }
   }
   return drops;
-}
-
-/// Inodes of this process's open sockets.
-std::vector<unsigned long> own_sockets() {
-  std::vector<unsigned long> inodes;
-  for (int fd = 0; fd < 256; ++fd) {
-    struct stat info {};
-    if (fstat(fd, &info) == 0 && S_ISSOCK(info.st_mode)) inodes.push_back(info.st_ino);
-  }
-  return inodes;
 }
 
 class LcmTransport final : public Transport {
@@ -100,7 +89,7 @@ class LcmTransport final : public Transport {
   std::array<Line, kBusCount> lines_{};
   std::vector<pollfd> ready_;             // of the buses we listen to, then the caller's
   std::vector<lcm::LCM*> listened_;
-  std::vector<unsigned long> sockets_;
+  std::vector<int> sockets_;  // that we listen to
   std::optional<GroupMembership> membership_;
   std::vector<std::byte> bytes_;
 };
@@ -120,6 +109,7 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
     const auto sockets = sockets_at(url.base_port + static_cast<int>(one.bus), 1);
     filtered_ = filtered_ && !sockets.empty() &&
                 std::all_of(sockets.begin(), sockets.end(), admit_only_our_channels);
+    sockets_.insert(sockets_.end(), sockets.begin(), sockets.end());
     lines_[at] = {this, one.bus};
     buses_[at]
         ->subscribe(std::string(kPrefix) + "(" + one.channels + ")", &Line::on_datagram, &lines_[at])
@@ -128,7 +118,6 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
     listened_.push_back(buses_[at].get());
   }
   ready_.push_back({-1, POLLIN, 0});
-  sockets_ = own_sockets();
   membership_.emplace(url);
   return std::nullopt;
 }
@@ -155,7 +144,7 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
     if (!transmitter) return refuse(Refusal::kType);
     const bool is_news = freshness_[static_cast<std::size_t>(bus)].is_news(header_of(message));
     if (!rates_.admit(*transmitter, is_news, now())) {
-      if (is_news) babbler_ = *transmitter;
+      if (is_news) babbler_ = *transmitter, ++babbled_;
       return refuse(Refusal::kRate);
     }
     if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);

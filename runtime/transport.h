@@ -73,8 +73,10 @@ class Transport {
   /// Whether the kernel keeps from LCM what is none of our messages.
   virtual bool filtered() const = 0;
 
-  /// The last agent of whose messages some were refused for their rate; kUnassigned: none.
+  /// The last agent that said more than its share, so that some was refused; kUnassigned: none.
   AgentId babbler() const { return babbler_; }
+  /// How many were refused for that, and not because others have repeated what an agent once said.
+  std::int64_t babbled() const { return babbled_; }
 
   /// Datagrams that the kernel dropped at our sockets for want of buffer space.
   virtual std::int64_t kernel_drops() const = 0;
@@ -86,6 +88,7 @@ class Transport {
   RefusalCounts refused_{};
   UnknownFormat unknown_format_;
   AgentId babbler_ = kUnassigned;
+  std::int64_t babbled_ = 0;
 };
 
 }  // namespace ergocast

@@ -5,18 +5,15 @@
 namespace ergocast::doctor {
 namespace {
 
-// As /proc/net/udp has them; 5DC0 is 24000.
-constexpr const char* kTable =
-    "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout "
-    "inode ref pointer drops\n"
-    " 1028: 00000000:5DC0 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 "
-    "111 2 0000000000000000 0\n"
-    " 1029: 434CFFEF:5DC2 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 "
-    "222 2 0000000000000000 0\n"
-    " 1030: 00000000:5DC3 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 "
-    "333 2 0000000000000000 0\n"
-    " torn\n"
-    " 1031: nonsense 00000000:0000 07 0 0 0 0 0 x\n";
+/// A socket as /proc/net/udp has it.
+std::string socket_at(const std::string& hex_port, const std::string& inode) {
+  return " 1028: 00000000:" + hex_port + " 00000000:0000 07 00000000:00000000 00:00000000 00000000" +
+         "     0        0 " + inode + " 2 0000000000000000 0\n";
+}
+
+/// Of the ports 24000, 24002 and 24003.
+const std::string kTable = "  sl  local_address rem_address\n" + socket_at("5DC0", "111") +
+                           socket_at("5DC2", "222") + socket_at("5DC3", "333");
 
 class Ports : public Folder {
  protected:

@@ -154,6 +154,21 @@ TEST(Codec, TextsThatMeanSomethingToATerminalAreRefused) {
   EXPECT_EQ(verdict(retagged(host)), "range");
 }
 
+// U+009B begins a sequence as ESC [ does; U+00A0 and what comes after it are letters and signs.
+TEST(Codec, SecondControlCharactersAreRefusedInUtf8AndOtherCharactersAreNot) {
+  for (int second = 0x80; second < 0xC0; ++second) {
+    Bytes bytes = encoded(stop());
+    bytes[bytes.size() - 3] = std::byte{0xC2};
+    bytes[bytes.size() - 2] = static_cast<std::byte>(second);
+    EXPECT_EQ(verdict(retagged(bytes)), second < 0xA0 ? "range" : "accepted") << second;
+  }
+}
+
+TEST(Codec, WhatWeSayOurselvesMeansNothingToATerminal) {
+  const Stop said{header_of_sender(kOperator), true, "a\x1b[2J b\xC2\x9B" "2J \xC3\xA9 \x9B"};
+  EXPECT_EQ(decoded_as<Stop>(encoded(said)).reason, "a [2J b 2J \xC3\xA9 \x9B");
+}
+
 TEST(Codec, StringsLongerThanTheirLimitAreRefusedEvenIfTheBytesAreThere) {
   Bytes bytes = encoded(Stop{header_of_sender(kOperator), true, std::string(kMaxReasonLength, 'r')});
   bytes.insert(bytes.end() - 1, std::byte{'r'});
@@ -291,9 +306,8 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
     EXPECT_EQ(with([](Header& h) { h.sender = kMaxAgents; }), "range");
   }
   for (std::int64_t AgentStatus::*count :
-       {&AgentStatus::contributions_received, &AgentStatus::contributions_lost,
-        &AgentStatus::messages_sent, &AgentStatus::messages_received, &AgentStatus::missed_ticks,
-        &AgentStatus::kernel_drops}) {
+       {&AgentStatus::contributions_received, &AgentStatus::messages_sent,
+        &AgentStatus::messages_received, &AgentStatus::missed_ticks, &AgentStatus::kernel_drops}) {
     for (const std::int64_t bad : {kHuge, std::int64_t{-1}}) {
       AgentStatus status = agent_status();
       status.*count = bad;
@@ -303,6 +317,13 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
   AgentStatus status = agent_status();
   status.refused[5] = kHuge;
   EXPECT_EQ(verdict(Message(status)), "range");
+}
+
+// Whoever leaps ahead in its numbering makes others count what never was; they are to be heard still.
+TEST(Codec, MoreLossesThanThereCanBeAreSaidAsTheMostThatIsAccepted) {
+  AgentStatus status = agent_status();
+  status.contributions_lost = std::int64_t{1} << 57;
+  EXPECT_EQ(decoded_as<AgentStatus>(encoded(status)).contributions_lost, std::int64_t{1} << 48);
 }
 
 TEST(Codec, AnotherRunsMessagesAreRefusedUnlessAnyRunWillDo) {

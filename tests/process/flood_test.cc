@@ -34,7 +34,29 @@ class Flood : public FlyingMission {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that all are heard
     }
   }
+  /// What is said on a channel of ours, but fifty times as long as any message.
+  static void send_long_datagrams(Bus bus) {
+    const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
+    const Socket socket(AF_INET, SOCK_DGRAM);
+    const sockaddr_in to = address_of(url.group, url.base_port + static_cast<int>(bus));
+    const std::string bytes =
+        std::string("LC02\0\0\0\1ERGOCAST_HELLO", 22) + std::string(60000, '\0');
+    for (int i = 0; i < 20000; ++i) {
+      sendto(socket.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+             sizeof to);
+    }
+  }
 };
+
+TEST_F(Flood, OfDatagramsLongerThanOursCostsNoMemory) {
+  Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
+  const pid_t who = pids(agent(0)).front();
+  const long before_kb = resident_kb(who);
+  send_long_datagrams(Bus::kSwarm);
+  EXPECT_LT(resident_kb(who) - before_kb, 2000);
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+}
 
 TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
   constexpr long kGrowth_kb = 2000;
@@ -53,7 +75,6 @@ TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
   EXPECT_EQ(summary()["restarts"], 0);
 }
 
-/// Says a hundred times whatever agent 3 says: so it sounds to the others when one of them babbles.
 /// Says what agent 3 has said, again and again; or, in its place, as if it said so much itself.
 class Babbler {
  public:
