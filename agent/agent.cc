@@ -20,9 +20,10 @@ constexpr double kStatusMissionPeriod_s = 1.0;
 constexpr auto kDigestPeriod = 1s;
 constexpr double kDigestMissionPeriod_s = 1.0;
 /// Whoever asks for the mission gets it from one of us, after a random share of this; and from each
-/// of us at most so often.
+/// of us at most so often, or where an old one is heard, which may be a recording, so often.
 constexpr auto kLongestRepeatDelay = 50ms;
-constexpr auto kMissionRepeatGap = 500ms;
+constexpr auto kAnswerGap = 100ms;
+constexpr auto kCorrectionGap = 500ms;
 /// A world that says nothing for so long is worth a word.
 constexpr auto kWorldSilence = 1s;
 /// How far ahead of us a teammate's coverage may be before it counts as forged.
@@ -65,7 +66,7 @@ void Agent::on(const MissionPart& part, Instant now) {
   if (part.revision >= follower_.revision() && mission_repeat_ && ++repeats_left_to_others_ <= 2) {
     mission_repeat_.reset();
   }
-  if (part.revision < follower_.revision()) plan_mission_repeat(now);
+  if (part.revision < follower_.revision()) plan_mission_repeat(now, kCorrectionGap);
   const std::int64_t foreign_plans = follower_.foreign_plans();
   const bool news = follower_.receive(part);
   if (follower_.foreign_plans() != foreign_plans) count_refused(Refusal::kRange);
@@ -159,12 +160,12 @@ void Agent::on(const Hello& hello, Instant now) {
   if (!freshness_.is_news(hello.header)) return;
   if (hello.header.sender == kWorld && table_) world_asks_ = true;
   const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
-  if (knows_no_mission) plan_mission_repeat(now);
+  if (knows_no_mission) plan_mission_repeat(now, kAnswerGap);
 }
 
-void Agent::plan_mission_repeat(Instant now) {
+void Agent::plan_mission_repeat(Instant now, PacingClock::duration gap) {
   if (mission_repeat_) return;
-  if (mission_repeated_ && now - *mission_repeated_ < kMissionRepeatGap) return;
+  if (mission_repeated_ && now - *mission_repeated_ < gap) return;
   const double share = uniform_pair(identity_.incarnation, Purpose::kAnswer, 0,
                                     static_cast<std::uint64_t>(received_)).x();
   mission_repeat_ = now + std::chrono::duration_cast<PacingClock::duration>(share * kLongestRepeatDelay);
@@ -311,10 +312,12 @@ bool Agent::abandoned(Instant now) const {
                       now - std::max(world_heard_, coordinator_heard_));
 }
 
+/// At least us: a roster may already say that all have left.
 int Agent::members() const {
-  return static_cast<int>(std::count_if(
+  const auto active = std::count_if(
       follower_.roster().begin(), follower_.roster().end(),
-      [this](const RosterEntry& entry) { return entry.active_at(tick_); }));
+      [this](const RosterEntry& entry) { return entry.active_at(tick_); });
+  return std::max(1, static_cast<int>(active));
 }
 
 void Agent::broadcast(Outbox& out) {

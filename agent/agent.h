@@ -105,7 +105,7 @@ class Agent {
   bool may_answer();
   void answer(Outbox& out);
   void help_others(Instant now, Outbox& out);
-  void plan_mission_repeat(Instant now);
+  void plan_mission_repeat(Instant now, PacingClock::duration gap);
   void repeat_mission(Instant now, Outbox& out);
   void tell_world(Outbox& out);
   void stand_still(Outbox& out);

@@ -12,9 +12,6 @@ namespace ergocast {
 
 class Hearing {
  public:
-  /// As many lives as a roster may have entries.
-  static constexpr std::size_t kMaxHeard = std::size_t{4} * kMaxAgents;
-
   /// A message of `from`'s own has arrived.
   void count(const Header& from) {
     Heard* const known = find_or_add({from.sender, from.incarnation});
@@ -58,7 +55,7 @@ class Hearing {
     }
   };
   Heard* find_or_add(const Author& author) {
-    if (heard_.size() >= kMaxHeard && !heard_.contains(author)) return nullptr;
+    if (heard_.size() >= kMaxRosterEntries && !heard_.contains(author)) return nullptr;
     return &heard_[author];
   }
 

@@ -5,13 +5,13 @@ namespace {
 
 /// Why nobody is believed, if that has to do with keys.
 std::string key_problem(const BusOptions& options, const RefusalCounts& refused) {
-  const auto some = [&refused](Refusal kind) {
-    return refused[static_cast<std::size_t>(kind)] > 0;
-  };
+  const auto count = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)]; };
   const std::string url = options.url.base();
-  if (some(Refusal::kUnkeyed))
+  // Some of either may be a stranger's.
+  if (count(Refusal::kUnkeyed) > count(Refusal::kTag)) {
     return "the team on " + url + " has no mission key: ask without --key-file";
-  if (!some(Refusal::kTag)) return "";
+  }
+  if (count(Refusal::kTag) == 0) return "";
   return options.seal.keyed()
              ? "the team on " + url + " has another mission key than " + options.key_file
              : "the team on " + url + " has a mission key: give it with --key-file";

@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/nobody.h"
+#include "cli/team_ears.h"
 #include "cli/team_screen.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
@@ -27,7 +28,6 @@ using namespace std::chrono_literals;
 constexpr auto kPatience = 2500ms;
 constexpr auto kTurn = 50ms;
 constexpr auto kLastWord = 1s;
-constexpr std::size_t kMostRuns = 16;
 
 struct StatusOptions : BusOptions {
   bool watch = false, json = false;
@@ -40,11 +40,7 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = Transport::open(options_.url, options_.run, options_.seal,
-                                  {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
-                                   {Bus::kWorld, "WORLD_STATE"},
-                                   {Bus::kCommand, "RECORD_ACK"}},
-                                  {.on_message = [this](const Message& m, AgentId) { hear(m); }});
+    auto opened = listen_to_teams(options_, [this](const Message& message) { hear(message); });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "cli/commands.h"
@@ -32,7 +33,9 @@ constexpr auto kLongest = 15s;
 /// For so long an emergency stop is said in any case: who is deaf for a moment hears it, too.
 constexpr auto kLeastInsistence = 1s;
 constexpr auto kStopTurn = 20ms;
-constexpr std::size_t kMostRunsHeard = 16;
+/// Runs beyond kMostRuns that are told in one turn.
+constexpr std::size_t kMostInATurn = 256;
+constexpr const char* kAtOnce = "stopped at once by `ergocast stop --now` on ";
 
 struct StopOptions : BusOptions {
   bool at_once = false;
@@ -45,11 +48,7 @@ class Stopping {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = Transport::open(options_.url, options_.run, options_.seal,
-                                  {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
-                                   {Bus::kWorld, "WORLD_STATE"},
-                                   {Bus::kCommand, "RECORD_ACK"}},
-                                  {.on_message = [this](const Message& m, AgentId) { hear(m); }});
+    auto opened = listen_to_teams(options_, [this](const Message& message) { hear(message); });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -64,6 +63,7 @@ class Stopping {
     if (runs_.size() > 1 && !options_.at_once) return choose();
     if (runs_.empty() && options_.run == 0) return nobody();
     if (options_.run != 0) runs_[options_.run];
+    if (!options_.at_once) transport_->set_run(runs_.begin()->first);
     since_ = now();
     return insist();
   }
@@ -71,8 +71,12 @@ class Stopping {
  private:
   void hear(const Message& message) {
     const RunId run = header_of(message).run;
-    if (run == 0 || (runs_.size() >= kMostRunsHeard && !runs_.contains(run))) return;
-    runs_[run].receive(message, now());
+    if (run == 0) return;
+    if (runs_.size() < kMostRuns || runs_.contains(run)) {
+      runs_[run].receive(message, now());
+    } else if (crowd_.size() < kMostInATurn) {
+      crowd_.insert(run);
+    }
   }
   /// False if a signal came.
   bool listen() {
@@ -84,33 +88,55 @@ class Stopping {
     return runs_.size() > 1 || (!runs_.empty() && now() >= since_ + kLookAround);
   }
 
-  /// In an emergency all runs on the URL are meant: nobody has time to choose.
+  /// In an emergency all runs on the URL are meant, also those heard later: nobody has time to
+  /// choose.
   int insist() {
     std::map<RunId, StopWord> words;
-    for (const auto& [run, team] : runs_) {
-      words.try_emplace(run, run, false,
-                        (options_.at_once ? "stopped at once by `ergocast stop --now` on "
-                                          : "stopped by `ergocast stop` on ") +
-                            host_name());
+    std::map<RunId, int> codes;
+    do {
+      for (const auto& [run, team] : runs_) {
+        if (!codes.contains(run)) say(run, team, words);
+      }
+      say_to_the_crowd();
+      if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
+      for (const auto& [run, word] : words) {
+        if (codes.contains(run)) continue;
+        if (const auto code = verdict(runs_[run])) codes[run] = *code;
+      }
+    } while (codes.size() < runs_.size());
+    if (crowded_) {
+      return complain(kExitFailed, "more than " + std::to_string(kMostRuns) +
+                                       " runs were heard, recordings of former ones perhaps; all "
+                                       "were told, but not all were seen to obey: say it again "
+                                       "with --run-id");
+    }
+    return std::max_element(codes.begin(), codes.end(), [](const auto& a, const auto& b) {
+             return a.second < b.second;
+           })->second;
+  }
+
+  /// Nobody is to go on because others, or recordings of them, have filled the table.
+  void say_to_the_crowd() {
+    if (!options_.at_once) return;
+    for (const RunId run : crowd_) {
+      StopWord(run, false, kAtOnce + host_name()).repeat(*transport_, now(), true);
+    }
+    crowded_ = crowded_ || !crowd_.empty();
+    crowd_.clear();
+  }
+
+  void say(RunId run, const RunHeard& team, std::map<RunId, StopWord>& words) {
+    const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
+    const auto [word, is_new] = words.try_emplace(run, run, false, how + host_name());
+    if (is_new) {
       std::printf("run %s: %s\n", to_hex(run).c_str(),
                   options_.at_once ? "telling everybody to stand still"
                                    : "asking the coordinator to end the mission");
+      std::fflush(stdout);
     }
-    std::fflush(stdout);
-    int worst = kExitDone;
-    while (!words.empty()) {
-      for (auto& [run, word] : words) {
-        if (!options_.at_once && runs_[run].over()) continue;
-        word.repeat(*transport_, now(), options_.at_once);
-      }
-      if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
-      std::erase_if(words, [&](const auto& one) {
-        const auto code = verdict(runs_[one.first]);
-        worst = std::max(worst, code.value_or(kExitDone));
-        return code.has_value();
-      });
+    if (options_.at_once || !team.over()) {
+      word->second.repeat(*transport_, now(), options_.at_once);
     }
-    return worst;
   }
 
   /// The exit code once it is known.
@@ -141,6 +167,11 @@ class Stopping {
   }
 
   int conclude(const RunHeard& team) const {
+    if (options_.at_once && !team.world_heard() && team.tick() > 0) {
+      return complain(kExitFailed, "nobody is heard any more, but no world or driver was heard "
+                                   "before either: whether the vehicles stand still is not known: "
+                                   "look at them");
+    }
     if (options_.at_once && !team.stands_still()) {
       return complain(kExitFailed, "the world is silent, and in its last state, of tick " +
                                        std::to_string(team.tick()) +
@@ -170,6 +201,8 @@ class Stopping {
   StopSignals& signals_;
   std::unique_ptr<Transport> transport_;
   std::map<RunId, RunHeard> runs_;
+  std::set<RunId> crowd_;  // heard since the last turn, beyond kMostRuns
+  bool crowded_ = false;
   Instant since_{};
 };
 
@@ -194,7 +227,7 @@ void add_stop(CLI::App& app, Action& action) {
       "Without --now the coordinator ends the mission for all. With --now all runs that are heard\n"
       "stop; with --run-id besides, it listens for nobody first.\n"
       "Exit codes: 0 the team was seen to end; 2 several runs are heard; 3 LCM cannot be used;\n"
-      "4 nobody is heard, or somebody goes on.");
+      "4 nobody is heard, somebody goes on, or what the vehicles do is not known.");
   command->callback([&action, options] { action = [options] { return stop(*options); }; });
 }
 

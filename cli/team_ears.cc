@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace ergocast::cli {
 namespace {
@@ -19,6 +20,16 @@ std::string name_of(AgentId sender) {
 }
 
 }  // namespace
+
+std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
+    const BusOptions& options, std::function<void(const Message&)> hear) {
+  return Transport::open(
+      options.url, options.run, options.seal,
+      {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
+       {Bus::kWorld, "WORLD_STATE"},
+       {Bus::kCommand, "RECORD_ACK"}},
+      {.on_message = [hear = std::move(hear)](const Message& message, AgentId) { hear(message); }});
+}
 
 void RunHeard::receive(const Message& message, Instant now) {
   const Header& from = header_of(message);

@@ -1,16 +1,29 @@
-// The runs that speak on one URL, and whether they still do: what `ergocast stop` goes by.
+// The runs that speak on one URL: what `ergocast status` and `ergocast stop` listen to, and whether
+// they still speak, which `stop` goes by.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
+#include "runtime/node.h"
+#include "runtime/transport.h"
 
 namespace ergocast::cli {
+
+/// Runs on one URL that are told apart.
+inline constexpr std::size_t kMostRuns = 16;
+
+/// Hears all that tells how teams are. An error says why LCM cannot be used.
+std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
+    const BusOptions& options, std::function<void(const Message&)> hear);
 
 /// What was heard of one run.
 class RunHeard {
@@ -23,6 +36,7 @@ class RunHeard {
   Tick tick() const { return tick_; }
   bool unheard() const { return agents_.empty() && processes_.empty() && !over_; }
   bool coordinator_heard() const { return processes_.contains(kCoordinator); }
+  bool world_heard() const { return world_tick_ >= 0; }
   /// Whether no vehicle moved in the newest state of the world; true if none was heard.
   bool stands_still() const;
 

@@ -24,7 +24,6 @@ constexpr auto kFarewell = 1s;
 /// Real time: how long the team gets to hear of a change before it takes effect.
 constexpr double kNotice_s = 2;
 constexpr std::size_t kMaxStrangers = 64;
-constexpr std::size_t kMaxRosterEntries = static_cast<std::size_t>(kMaxAgents) * 4;
 
 }  // namespace
 
@@ -38,7 +37,7 @@ Presence Coordinator::presence(const RosterEntry& entry, Instant now) const {
   return alive(entry, now) ? Presence::kAlive : Presence::kSilent;
 }
 
-Coordinator::Coordinator(CoordinatorIdentity identity, PlanDecoder decode_plan,
+Coordinator::Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode_plan,
                          std::vector<std::byte> plan, Takeover takeover)
     : run_(identity.run),
       incarnation_(identity.incarnation),

@@ -16,7 +16,7 @@ constexpr auto kQuestionPeriod = 250ms;
 /// A coordinator whose TEAM_STATUS, which nobody repeats, was heard within this time is alive.
 constexpr auto kRivalLife = 1s;
 /// After the first answer, for newer revisions from agents that heard more of the predecessor.
-constexpr auto kSecondOpinions = 200ms;
+constexpr auto kSecondOpinions = 600ms;
 constexpr auto kTakeoverPatience = 30s;
 /// The predecessor may have said some revisions that nobody has repeated to us.
 constexpr std::int64_t kRevisionLead = 1000;

@@ -28,7 +28,7 @@ class Freshness {
   }
 
   /// Twice as many as a roster has room for: coordinators, worlds and loggers live more than once.
-  static constexpr std::size_t kMostLives = 1024;
+  static constexpr std::size_t kMostLives = 2 * kMaxRosterEntries;
 
  private:
   std::map<Author, std::int64_t> newest_;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -22,6 +23,8 @@ using Tick = std::int64_t;
 
 inline constexpr int kMaxAgents = 128;
 inline constexpr int kMaxIncarnationsPerAgent = 16;
+/// Lives of all agents together.
+inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 inline constexpr int kMaxModesPerAxis = 64;
 inline constexpr int kMaxHostLength = 63;
 inline constexpr int kMaxVersionLength = 31;

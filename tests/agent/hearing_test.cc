@@ -16,13 +16,13 @@ TEST(Hearing, RemembersNoMoreLivesThanARosterHas) {
   const auto lose_one = [&hearing](Incarnation life) {
     for (const std::int64_t sequence : {1, 3}) hearing.count({kRun, 1, life, sequence, 0});
   };
-  for (Incarnation life = 1; life <= Hearing::kMaxHeard; ++life) lose_one(life);
-  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(Hearing::kMaxHeard));
-  lose_one(Hearing::kMaxHeard + 1);
-  hearing.news({1, Hearing::kMaxHeard + 2}, 5);
-  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(Hearing::kMaxHeard));
+  for (Incarnation life = 1; life <= kMaxRosterEntries; ++life) lose_one(life);
+  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(kMaxRosterEntries));
+  lose_one(kMaxRosterEntries + 1);
+  hearing.news({1, kMaxRosterEntries + 2}, 5);
+  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(kMaxRosterEntries));
   hearing.count({kRun, 1, 1, 5, 0});
-  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(Hearing::kMaxHeard) + 1) << "of those it goes on";
+  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(kMaxRosterEntries) + 1) << "of those it goes on";
 }
 
 // ---- what is refused -----------------------------------------------------------------------------

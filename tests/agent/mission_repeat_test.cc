@@ -115,14 +115,34 @@ TEST(MissionRepeat, IsNeededIfSomebodyElseKnowsLess) {
   EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 50ms))).size(), 4u);
 }
 
-TEST(MissionRepeat, ComesTwiceASecondAtMost) {
+/// How often the mission is repeated in 3 s to somebody who says something each millisecond.
+template <class Say>
+std::size_t repeats_to(Say say) {
   Agent agent = informed_agent();
   std::size_t parts = 0;
   for (int ms = 0; ms < 3000; ++ms) {
-    agent.receive(question_of(kCoordinator, -1), at(10s + ms * 1ms));
+    agent.receive(say(), at(10s + ms * 1ms));
     parts += only<MissionPart>(advance(agent, at(10s + ms * 1ms))).size();
   }
-  EXPECT_EQ(parts, 4u * 6u) << "every 500 ms and a little";
+  return parts / 4;
+}
+
+TEST(MissionRepeat, ComesTwiceASecondAtMostToWhoSaysAnOldOne) {
+  EXPECT_EQ(repeats_to([] { return two_parts(2)[0]; }), 6u) << "every 500 ms and a little";
+}
+
+TEST(MissionRepeat, ComesTenTimesASecondAtMostToWhoAsks) {
+  const std::size_t answers = repeats_to([] { return question_of(kCoordinator, -1); });
+  EXPECT_GE(answers, 20u);
+  EXPECT_LE(answers, 30u);
+}
+
+// Recordings of an old mission must not use up the answers to who asks.
+TEST(MissionRepeat, ComesToWhoAsksAlsoJustAfterAnOldOneWasCorrected) {
+  Agent agent = informed_agent();
+  EXPECT_EQ(repeated_after(agent, two_parts(2)[0]), 4u);
+  agent.receive(question_of(kCoordinator, -1), at(10s + 151ms));
+  EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 201ms))).size(), 4u);
 }
 
 // ---- where it was --------------------------------------------------------------------------------

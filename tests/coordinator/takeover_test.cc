@@ -146,11 +146,11 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   advance(coordinator, at(0s));
   coordinator.receive(status_of(0, 1), at(0s));
   coordinator.receive(memory_of(5), at(100ms));
-  EXPECT_LE(coordinator.next_wakeup(), at(300ms)) << "a moment for other opinions";
+  EXPECT_LE(coordinator.next_wakeup(), at(700ms)) << "a moment for other opinions";
   coordinator.receive(memory_of(7, roster), at(250ms));
   coordinator.receive(memory_of(6), at(260ms));
-  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(299ms))).empty());
-  const MissionPart said = said_by(advance(coordinator, at(300ms)));
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(699ms))).empty());
+  const MissionPart said = said_by(advance(coordinator, at(700ms)));
   EXPECT_TRUE(coordinator.took_over());
   EXPECT_EQ(said.header.run, kRun);
   EXPECT_EQ(said.header.incarnation, kSuccessorLife);
@@ -172,7 +172,7 @@ TEST(TakeoverMust, NeedsNoPlanOfItsOwn) {
   advance(coordinator, at(0s));
   coordinator.receive(status_of(0, 1), at(0s));
   coordinator.receive(memory_of(3), at(0s));
-  EXPECT_EQ(said_by(advance(coordinator, at(200ms))).plan, kPlan);
+  EXPECT_EQ(said_by(advance(coordinator, at(600ms))).plan, kPlan);
   ASSERT_NE(coordinator.mission(), nullptr);
   EXPECT_EQ(coordinator.mission()->name, "small");
 }
@@ -183,7 +183,7 @@ TEST(Takeover, OfAnotherVersionsPlanIsRefusedWithItsDecodersSentence) {
   advance(coordinator, at(0s));
   coordinator.receive(status_of(0, 1), at(0s));
   coordinator.receive(memory_of(3), at(0s));
-  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(200ms))).empty());
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(600ms))).empty());
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
   EXPECT_EQ(coordinator.reason(), "run 0000000000001234: too new");
@@ -197,7 +197,7 @@ TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
     MissionPart other = memory_of(3);
     other.plan.push_back(std::byte{9});
     coordinator.receive(other, at(0s));
-    const Outbox out = advance(coordinator, at(200ms));
+    const Outbox out = advance(coordinator, at(600ms));
     EXPECT_TRUE(only<MissionPart>(out).empty());
     EXPECT_TRUE(coordinator.finished());
     EXPECT_EQ(coordinator.state(), MissionState::kFailed);
@@ -256,7 +256,7 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
     coordinator.receive(status_of(0, 1), at(0s));
     if (remembered < 12) coordinator.receive(world_where(12, {11, 11}), at(100ms));
     coordinator.receive(memory_of(3, roster_of(2), remembered), at(100ms));
-    advance(coordinator, at(300ms));
+    advance(coordinator, at(700ms));
     ASSERT_TRUE(coordinator.took_over());
     EXPECT_EQ(coordinator.tick(), 12);
     // The restarted agent's former life covered twelve ticks, not none.
@@ -331,13 +331,13 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
     return two;
   }();
   Coordinator one = both[0], other = both[1];
-  const MissionPart ones = said_by(advance(one, at(200ms)));
-  const MissionPart others = said_by(advance(other, at(200ms)));
+  const MissionPart ones = said_by(advance(one, at(600ms)));
+  const MissionPart others = said_by(advance(other, at(600ms)));
   ASSERT_EQ(ones.revision, others.revision);
-  one.receive(alive(kSuccessorLife + 1), at(200ms));
-  other.receive(alive(kSuccessorLife), at(200ms));
-  one.receive(others, at(201ms));
-  other.receive(ones, at(201ms));
+  one.receive(alive(kSuccessorLife + 1), at(600ms));
+  other.receive(alive(kSuccessorLife), at(600ms));
+  one.receive(others, at(601ms));
+  other.receive(ones, at(601ms));
   EXPECT_NE(one.finished(), other.finished());
 }
 

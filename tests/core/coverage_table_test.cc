@@ -368,13 +368,19 @@ TEST(CoverageTableAccepts, HonestRoundingOfManyAdditions) {
   EXPECT_EQ(table.merge(block, kSteps), Merge::kNewer);
 }
 
-TEST(CoverageTableLimits, SixteenLivesOfAnAgentAndTheOthersAreNotAffected) {
-  CoverageTable table = table_of(2);
+/// What is said after the first step, with four modes.
+Contribution first_step() {
   Contribution block;
   block.steps = 1;
   block.elapsed_s = kDt;
   block.mode_count = 4;
   block.sums[0] = kDt;
+  return block;
+}
+
+TEST(CoverageTableLimits, SixteenLivesOfAnAgentAndTheOthersAreNotAffected) {
+  CoverageTable table = table_of(2);
+  Contribution block = first_step();
   block.header.sender = 3;
   for (Incarnation life = 1; life <= 40; ++life) {
     block.header.incarnation = life;
@@ -393,11 +399,7 @@ TEST(CoverageTableLimits, SixteenLivesOfAnAgentAndTheOthersAreNotAffected) {
 
 TEST(CoverageTableLimits, AgentsBeyondTheLimitGetNoRow) {
   CoverageTable table = table_of(2);
-  Contribution block;
-  block.steps = 1;
-  block.elapsed_s = kDt;
-  block.mode_count = 4;
-  block.sums[0] = kDt;
+  Contribution block = first_step();
   block.header.incarnation = 1;
   for (const AgentId agent : {-1, -5, kMaxAgents, std::numeric_limits<AgentId>::max()}) {
     block.header.sender = agent;

@@ -9,8 +9,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const std::vector<std::string> kSim{"ergocast-sim"}, kLogger{"ergocast-logger"},
-    kCoordinator{"ergocast-coordinator"};
+const std::vector<std::string> kSimProcess{"ergocast-sim"}, kLoggerProcess{"ergocast-logger"},
+    kCoordinatorProcess{"ergocast-coordinator"};
 
 /// How many events an event log holds up to where it was cut off.
 int events_in(const std::filesystem::path& file) {
@@ -97,7 +97,7 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
 
 TEST_F(Restart, KilledWorldGoesOnWhereTheAgentsWere) {
   Child mission = launch(scenario());
-  kill_next(kSim);
+  kill_next(kSimProcess);
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_TRUE(said("sim: restarted (1 of 3)")) << said();
   EXPECT_EQ(summary()["result"], "done");
@@ -109,7 +109,7 @@ TEST_F(Restart, KilledCoordinatorTakesTheMissionOver) {
   Child mission = launch(scenario());
   // One that does not answer holds the mission until the coordinator is back.
   signal_to(agent(0), SIGSTOP);
-  kill_next(kCoordinator);
+  kill_next(kCoordinatorProcess);
   ASSERT_TRUE(logs("coordinator", "taken over")) << said();
   signal_to(agent(0), SIGCONT);
   EXPECT_EQ(wait_for(mission), 0) << said();
@@ -121,7 +121,7 @@ TEST_F(Restart, KilledCoordinatorTakesTheMissionOver) {
 
 TEST_F(Restart, KilledLoggerGoesOnInASecondSegmentAndLosesNothing) {
   Child mission = launch(scenario());
-  kill_next(kLogger);
+  kill_next(kLoggerProcess);
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_EQ(summary()["result"], "done");
   EXPECT_EQ(summary()["segments"], 2);
@@ -133,16 +133,16 @@ TEST_F(Restart, KilledLoggerGoesOnInASecondSegmentAndLosesNothing) {
 
 TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
-  kill_next(kCoordinator);
+  kill_next(kCoordinatorProcess);
   ASSERT_TRUE(logs("coordinator", "taken over")) << said();
   ASSERT_TRUE(moves_on()) << said();
-  kill_next(kSim);
+  kill_next(kSimProcess);
   ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
   ASSERT_TRUE(moves_on()) << said();
   Witness witness(kUrl);
   ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
   const Tick flown = witness.answered(witness.member(0));
-  kill_next(kLogger);
+  kill_next(kLoggerProcess);
   EXPECT_GE(last_tick(out() / "trajectory.csv"), flown - 50) << "more than a second lost";
   ASSERT_TRUE(moves_on()) << said();
   mission.send(SIGINT);
@@ -158,7 +158,7 @@ TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
 TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
   Child mission = launch(scenario());
   signal_to(agent(0), SIGSTOP);  // holds the mission
-  kill_for_good(kCoordinator);
+  kill_for_good(kCoordinatorProcess);
   ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
   signal_to(agent(0), SIGCONT);
   EXPECT_EQ(wait_for(mission), 0) << said();
@@ -172,7 +172,7 @@ TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
 
 TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
   Child mission = launch_endless(scenario("lockstep_timeout_s: 5"));
-  kill_for_good(kCoordinator);
+  kill_for_good(kCoordinatorProcess);
   ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
   kill_next(agent(1));
   EXPECT_EQ(wait_for(mission), 4) << said();
@@ -184,7 +184,7 @@ TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
 TEST_F(Restart, AMissionThatNobodyKnowsYetIsBegunByTheNextCoordinator) {
   Child mission = start("ergocast", {"run", scenario(), "--out", out(), "--duration", "20"});
   mission_log_ = log_;
-  kill_next(kCoordinator);
+  kill_next(kCoordinatorProcess);
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_EQ(summary()["result"], "done");
   expect_identical_to_its_simulation();
@@ -192,7 +192,7 @@ TEST_F(Restart, AMissionThatNobodyKnowsYetIsBegunByTheNextCoordinator) {
 
 TEST_F(Restart, WorldThatDiesAgainAndAgainFailsTheMission) {
   Child mission = launch_endless(scenario());
-  kill_for_good(kSim);
+  kill_for_good(kSimProcess);
   EXPECT_EQ(wait_for(mission), 4) << said();
   EXPECT_EQ(summary()["result"], "failed");
   EXPECT_EQ(summary()["reason"], "sim was killed by SIGKILL after 3 restarts");
@@ -209,7 +209,7 @@ TEST_F(Restart, AgentThatDiesAgainAndAgainFailsTheMission) {
 
 TEST_F(Restart, WithoutALoggerTheTeamGoesOnAndTheRunSaysThatTheRecordIsNotComplete) {
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
-  kill_for_good(kLogger);
+  kill_for_good(kLoggerProcess);
   ASSERT_TRUE(eventually([this] { return said("the team goes on without a record"); })) << said();
   Witness witness(kUrl);
   ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
@@ -227,7 +227,7 @@ TEST_F(Restart, AgentOrWorldThatIsToldToStopIsNamedAndReplaced) {
   Child mission = launch_endless(scenario());
   signal_to(agent(0), SIGTERM);
   ASSERT_TRUE(logs("agent-0", ": running", 2)) << said();
-  signal_to(kSim, SIGTERM);
+  signal_to(kSimProcess, SIGTERM);
   ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
   ASSERT_TRUE(moves_on()) << said();
   mission.send(SIGTERM);

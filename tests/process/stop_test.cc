@@ -1,6 +1,8 @@
 // `ergocast stop`: a mission of real processes is ended from outside, in order and at once.
+#include <set>
 #include <utility>
 
+#include "runtime/clock.h"
 #include "runtime/node.h"
 #include "tests/process/mission.h"
 #include "tests/process/record.h"
@@ -200,7 +202,37 @@ TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
   two_runs_speak_until([&] { return decided.said().find("telling") != std::string::npos; });
   EXPECT_TRUE(decided.says("run 00000000000000a1: telling everybody to stand still"));
   EXPECT_TRUE(decided.says("run 00000000000000b2: telling everybody to stand still"));
-  EXPECT_EQ(wait_for(decided.child), 0) << decided.said();
+  EXPECT_EQ(wait_for(decided.child), 4) << decided.said();
+  EXPECT_TRUE(decided.says("no world or driver was heard")) << "so nobody knows about vehicles";
+}
+
+// Whoever has recorded many runs of the same key cannot hide another one behind them.
+TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
+  std::set<RunId> told;
+  const auto listener = std::get<0>(Transport::open(
+      std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {{Bus::kSwarm, "STOP"}},
+      {.on_message = [&](const Message& stop, AgentId) { told.insert(header_of(stop).run); }}));
+  Stranger stranger(kUrl);
+  Program& decided = hand("ergocast", {"stop", "--now"});
+  ASSERT_TRUE(eventually([&] {
+    for (RunId run = 1; run <= 20; ++run) {
+      TeamStatus team;
+      team.header = {run, kCoordinator, run, 0, 7};
+      stranger.say(Bus::kSwarm, team);
+    }
+    listener->deliver_until(now(), -1);
+    return told.size() == 20;
+  }));
+  EXPECT_EQ(wait_for(decided.child), 4) << decided.said();
+  EXPECT_TRUE(decided.says("more than 16 runs were heard")) << decided.said();
+}
+
+TEST_F(StopCommand, InAnEmergencyDoesNotSayThatVehiclesStandWhoseWorldIsSilent) {
+  fly(endless(true));
+  signal_to({"ergocast-sim"}, SIGSTOP);
+  EXPECT_EQ(stop({"--now"}), 4) << output();
+  EXPECT_TRUE(answered("look at them")) << output();
+  signal_to({"ergocast-sim"}, SIGCONT);
 }
 
 }  // namespace

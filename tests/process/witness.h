@@ -21,7 +21,8 @@ class Witness {
   explicit Witness(const std::string& url, const Seal& seal = {}) {
     transport_ = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(url)), 0, seal,
-        {{Bus::kSwarm, "MISSION|CONTRIBUTION_.*|DIGEST_.*|AGENT_STATUS_.*"}, {Bus::kCommand, "COMMAND_.*"}},
+        {{Bus::kSwarm, "MISSION|CONTRIBUTION_.*|DIGEST_.*|AGENT_STATUS_.*"},
+         {Bus::kCommand, "COMMAND_.*|RECORD_ACK"}},
         {.on_message = [this](const Message& message, AgentId) { hear(message); }}));
   }
 
@@ -67,6 +68,8 @@ class Witness {
     const auto tick = answered_.find(author);
     return tick == answered_.end() ? -1 : tick->second;
   }
+  /// The last tick that the logger has acknowledged; −1 if it has not been heard.
+  Tick recorded() const { return recorded_; }
   /// Whether its last two statuses are of one tick: in lockstep, half a second without progress.
   bool stands_still(const Author& author) const {
     const auto ticks = status_ticks_.find(author);
@@ -77,6 +80,7 @@ class Witness {
   void hear(const Message& message) {
     const Author author{header_of(message).sender, header_of(message).incarnation};
     if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
+    if (const auto* ack = std::get_if<RecordAck>(&message)) recorded_ = ack->header.tick;
     if (std::holds_alternative<AgentStatus>(message)) {
       auto& [before_last, last] = status_ticks_.try_emplace(author, -2, -1).first->second;
       before_last = std::exchange(last, header_of(message).tick);
@@ -101,6 +105,7 @@ class Witness {
   std::map<Author, std::pair<Tick, Tick>> status_ticks_;  // of its last two
   std::map<std::pair<Author, int>, Contribution> blocks_;
   std::map<Author, Tick> answered_;
+  Tick recorded_ = -1;
   std::map<std::pair<Author, Author>, std::int64_t> held_;
 };
 
