@@ -50,14 +50,14 @@ Finding not_tried(const doctor::Examination& host, int seconds) {
               "'   # on every host"};
 }
 
-doctor::PeerTest try_peers(const LcmUrl& url, int seconds) {
+doctor::PeerTest try_peers(const LcmUrl& url, const Seal& seal, int seconds) {
   if (isatty(STDERR_FILENO) == 1) {
     std::fprintf(stderr,
                  "Listening for other hosts for %d s. Start the same there now:\n"
                  "    ergocast doctor --peer %d --lcm-url '%s'\n",
                  seconds, seconds, url.base().c_str());
   }
-  return doctor::try_peers(url, std::chrono::seconds(seconds));
+  return doctor::try_peers(url, seal, std::chrono::seconds(seconds));
 }
 
 int diagnose(const DoctorOptions& options) {
@@ -65,8 +65,8 @@ int diagnose(const DoctorOptions& options) {
   doctor::Examination host = doctor::examine(url, options.seal, options.peer_seconds.has_value());
   doctor::PeerTest test;
   if (options.peer_seconds && host.lcm_usable && host.port_taken.empty()) {
-    test = try_peers(url, *options.peer_seconds);
-    const Findings more = doctor::peer_findings(url, test, version());
+    test = try_peers(url, options.seal, *options.peer_seconds);
+    const Findings more = doctor::peer_findings(url, test, version(), options.seal.fingerprint());
     host.findings.insert(host.findings.end(), more.begin(), more.end());
   } else if (options.peer_seconds) {
     host.findings.push_back(not_tried(host, *options.peer_seconds));

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/messages.h"
+#include "doctor/command_output.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -34,7 +33,7 @@ std::set<Chain> input_chains(const json& ruleset) {
     if (!entry.contains("chain")) continue;
     const json& chain = entry["chain"];
     const std::string hook = chain.value("hook", "");
-    if (hook != "input" && hook != "prerouting") continue;
+    if ((hook != "input" && hook != "prerouting") || chain.value("type", "") != "filter") continue;
     chains.insert(chain_of(chain, "name"));
   }
   return chains;
@@ -49,17 +48,28 @@ bool has_port(const json& right, int port) {
                      [port](const json& one) { return has_port(one, port); });
 }
 
+/// Whether nothing in the rule but what is named here acts on a packet.
+bool consists_of(const json& rule, const std::set<std::string>& statements) {
+  const json& parts = rule.at("expr");
+  return std::all_of(parts.begin(), parts.end(), [&](const json& part) {
+    return part.is_object() && part.size() == 1 && statements.contains(part.begin().key());
+  });
+}
+
 /// Whether the rule drops every fragment of LCM's that comes to `port`.
 bool drops_fragments(const json& rule, int port) {
+  if (!consists_of(rule, {"match", "counter", "drop"})) return false;
   bool fragments = false, drops = false, here = true;
   for (const json& part : rule.at("expr")) {
     drops = drops || part.contains("drop");
     if (!part.contains("match")) continue;
     const json& match = part["match"];
     const json payload = match.at("left").value("payload", json::object());
-    if (payload == json{{"base", "th"}, {"offset", 64}, {"len", 32}}) {
+    const bool equals = match.value("op", "==") == "==";
+    if (equals && payload == json{{"base", "th"}, {"offset", 64}, {"len", 32}}) {
       fragments = match.at("right") == kFragmentMagic;
-    } else if (payload.value("field", "") == "dport") {
+    } else if (equals && payload.value("field", "") == "dport" &&
+               payload.value("protocol", "") == "udp") {
       here = here && has_port(match.at("right"), port);
     } else {
       here = false;  // drops less than all
@@ -68,17 +78,27 @@ bool drops_fragments(const json& rule, int port) {
   return fragments && drops && here;
 }
 
+/// Whether fragments to `port` are dropped in one of the chains before another rule there may let
+/// them through.
+bool is_covered(const json& ruleset, std::set<Chain> chains, int port) {
+  for (const json& entry : ruleset.at("nftables")) {
+    if (!entry.contains("rule")) continue;
+    const json& rule = entry["rule"];
+    const Chain chain = chain_of(rule, "chain");
+    if (chains.contains(chain) && drops_fragments(rule, port)) return true;
+    if (!consists_of(rule, {"match", "counter", "limit", "log", "drop", "reject"})) {
+      chains.erase(chain);
+    }
+  }
+  return false;
+}
+
 /// How many of the URL's ports are covered.
 int covered_ports(const json& ruleset, const LcmUrl& url) {
   const std::set<Chain> chains = input_chains(ruleset);
   int covered = 0;
   for (int port = url.base_port; port < url.base_port + kBusCount; ++port) {
-    const auto& all = ruleset.at("nftables");
-    covered += std::any_of(all.begin(), all.end(), [&](const json& entry) {
-      if (!entry.contains("rule")) return false;
-      const json& rule = entry["rule"];
-      return chains.contains(chain_of(rule, "chain")) && drops_fragments(rule, port);
-    });
+    covered += is_covered(ruleset, chains, port) ? 1 : 0;
   }
   return covered;
 }
@@ -97,11 +117,7 @@ std::string command_that_loads(const LcmUrl& url, const std::filesystem::path& r
 
 std::optional<std::string> nft_ruleset() {
   if (geteuid() != 0) return std::nullopt;
-  const std::unique_ptr<FILE, int (*)(FILE*)> output(
-      popen("PATH=$PATH:/usr/sbin:/sbin; nft -j list ruleset 2>/dev/null", "r"), pclose);
-  std::string text;
-  char piece[4096];
-  while (output && std::fgets(piece, sizeof piece, output.get()) != nullptr) text += piece;
+  const std::string text = output_of("nft -j list ruleset 2>/dev/null");
   return text.empty() ? std::nullopt : std::optional(text);
 }
 
@@ -110,9 +126,8 @@ Finding fragment_rule_finding(const LcmUrl& url, const std::optional<std::string
   const char* check = "LCM fragments";
   const std::string why =
       "One crafted fragment crashes a program that uses LCM. Ours keep them out once their sockets "
-      "are "
-      "open; the rule covers their first moment and other programs, too. As root, until the next "
-      "start:";
+      "are open; the rule covers their first moment and other programs, too. As root, until the "
+      "next start:";
   const Finding missing{check, Level::kNote, "no rule drops them", why,
                         command_that_loads(url, rules)};
   if (!ruleset) {

@@ -50,7 +50,13 @@ std::string losses(const Peer& peer) {
          " % to it";
 }
 
-Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& version) {
+std::string other_key(const Peer& peer, std::uint64_t key) {
+  if (peer.key == 0) return "it has no mission key and this host has one";
+  return key == 0 ? "it has a mission key and this host has none" : "it has another mission key";
+}
+
+Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& version,
+                     std::uint64_t key) {
   Finding finding{"peer " + peer.host, Level::kOk, "", "", ""};
   if (!peer.to_it) {
     if (peer.judged()) return one_way(url, peer);
@@ -70,6 +76,11 @@ Finding peer_finding(const LcmUrl& url, const Peer& peer, const std::string& ver
     finding.found += ", but it has version " + peer.version + " and this host " + version;
     finding.why = "The programs of a team must be of one version.";
     finding.remedy = "ergocast --version   # on every host";
+  } else if (peer.key != key) {
+    finding.level = Level::kWarning;
+    finding.found += ", but " + other_key(peer, key);
+    finding.why = "All programs of a team need the same mission key, or none.";
+    finding.remedy = here_again(url) + " --key-file FILE   # on every host, with the team's file";
   } else if (worst > kMuchLost_percent) {
     finding.level = Level::kWarning;
     finding.found += ", lost: " + losses(peer);
@@ -98,7 +109,8 @@ Finding nobody(const LcmUrl& url, const PeerTest& test) {
 
 }  // namespace
 
-Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::string& version) {
+Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::string& version,
+                       std::uint64_t key) {
   if (!test.error.empty()) {
     return {{"peers", Level::kProblem, test.error,
              "No probe could be sent, or none be listened for: no route, or a firewall.",
@@ -106,7 +118,7 @@ Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::strin
   }
   if (test.peers.empty()) return {nobody(url, test)};
   Findings findings;
-  for (const Peer& peer : test.peers) findings.push_back(peer_finding(url, peer, version));
+  for (const Peer& peer : test.peers) findings.push_back(peer_finding(url, peer, version, key));
   if (test.only_heard_by_others > 0) {
     findings.push_back(
         {"peers", Level::kProblem,

@@ -27,12 +27,13 @@ double Peer::round_trip_s(double quantile) const {
   return round_trips_s[static_cast<std::size_t>(std::lround(quantile * last))];
 }
 
-PeerLedger::PeerLedger(std::uint64_t nonce, std::string host, std::string version)
-    : nonce_(nonce), host_(std::move(host)), version_(std::move(version)) {}
+PeerLedger::PeerLedger(std::uint64_t nonce, std::string host, std::string version,
+                       std::uint64_t key)
+    : nonce_(nonce), host_(std::move(host)), version_(std::move(version)), key_(key) {}
 
 Probe PeerLedger::next(Instant now) {
   ERGOCAST_REQUIRE(sent_at_.size() < kMaxProbes);
-  Probe probe{nonce_, sent(), host_, version_, {}};
+  Probe probe{nonce_, sent(), host_, version_, {}, key_};
   for (const auto& [nonce, row] : rows_) {
     if (now - row.last_at > kForgotten) continue;
     probe.echoes.push_back({nonce, row.first, row.last, row.peer.from_it.heard,
@@ -48,6 +49,7 @@ void PeerLedger::take(const Probe& probe, const std::string& address, Instant no
   Row& row = rows_[probe.nonce];
   row.peer.host = probe.host;
   row.peer.version = probe.version;
+  row.peer.key = probe.key;
   row.peer.address = address;
   count(probe, now, row);
   for (const Echo& echo : probe.echoes) {

@@ -28,6 +28,7 @@ struct Peer {
   std::optional<Loss> to_it;          ///< as it says; nothing if it never says that it hears us
   std::vector<double> round_trips_s;  ///< ascending
   std::int64_t duplicates = 0;
+  std::uint64_t key = 0;  ///< the fingerprint of its mission key; 0 without one
 
   /// Whether it was heard for long enough (half a second) to say whom it hears.
   bool judged() const { return from_it.heard.all() >= kProbesPerSecond / 2; }
@@ -37,7 +38,8 @@ struct Peer {
 
 class PeerLedger {
  public:
-  PeerLedger(std::uint64_t nonce, std::string host, std::string version);
+  /// @param key  the fingerprint of ours
+  PeerLedger(std::uint64_t nonce, std::string host, std::string version, std::uint64_t key = 0);
 
   /// The next probe to send. @pre at most kMaxProbes times
   Probe next(Instant now);
@@ -62,6 +64,7 @@ class PeerLedger {
 
   std::uint64_t nonce_;
   std::string host_, version_;
+  std::uint64_t key_;
   std::vector<Instant> sent_at_;
   std::map<std::uint64_t, Row> rows_;
   struct Rumour {

@@ -46,7 +46,7 @@ void hear_until(Instant deadline, const Socket& listener, PeerLedger& ledger) {
 
 }  // namespace
 
-PeerTest try_peers(const LcmUrl& url, std::chrono::seconds duration) {
+PeerTest try_peers(const LcmUrl& url, const Seal& seal, std::chrono::seconds duration) {
   PeerTest test;
   const Socket listener = group_listener(url.group, url.base_port, test.error);
   if (!test.error.empty()) return test;
@@ -55,7 +55,7 @@ PeerTest try_peers(const LcmUrl& url, std::chrono::seconds duration) {
   setsockopt(sender.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   const sockaddr_in group = address_of(url.group, url.base_port);
 
-  PeerLedger ledger(random_identity(), host_name(), version());
+  PeerLedger ledger(random_identity(), host_name(), version(), seal.fingerprint());
   std::vector<std::byte> bytes;
   const auto count = static_cast<std::uint32_t>(duration.count() * kProbesPerSecond);
   const Instant start = now();

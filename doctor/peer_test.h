@@ -7,6 +7,7 @@
 
 #include "doctor/finding.h"
 #include "doctor/peer_ledger.h"
+#include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {
@@ -19,10 +20,12 @@ struct PeerTest {
 };
 
 /// For so long, with kProbesPerSecond. @pre at most kMaxPeerSeconds
-PeerTest try_peers(const LcmUrl& url, std::chrono::seconds duration);
+PeerTest try_peers(const LcmUrl& url, const Seal& seal, std::chrono::seconds duration);
 
 /// One finding for each peer, or one that nobody was heard.
 /// @param version  ours
-Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::string& version);
+/// @param key  the fingerprint of ours
+Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::string& version,
+                       std::uint64_t key = 0);
 
 }  // namespace ergocast::doctor

@@ -9,10 +9,10 @@
 namespace ergocast::doctor {
 namespace {
 
-constexpr std::string_view kMagic = "ergocast-doctor1";
+constexpr std::string_view kMagic = "ergocast-doctor2";
 constexpr std::size_t kHostBytes = 32, kVersionBytes = 16;
 constexpr std::size_t kEchoBytes = 8 + 4 * 4 + 8;
-constexpr std::size_t kHeaderBytes = kMagic.size() + 8 + 4 + kHostBytes + kVersionBytes + 4;
+constexpr std::size_t kHeaderBytes = kMagic.size() + 8 + 4 + kHostBytes + kVersionBytes + 8 + 4;
 constexpr std::uint64_t kLongestHold_ns = 60'000'000'000;
 
 /// Big-endian, like LCM.
@@ -67,6 +67,7 @@ void write(const Probe& probe, std::vector<std::byte>& out) {
   put(probe.sequence, out);
   put_text(probe.host, kHostBytes, out);
   put_text(probe.version, kVersionBytes, out);
+  put(probe.key, out);
   const std::size_t count = std::min(probe.echoes.size(), kMaxPeers);
   put(static_cast<std::uint32_t>(count), out);
   for (std::size_t i = 0; i < count; ++i) {
@@ -92,6 +93,7 @@ std::optional<Probe> read(std::span<const std::byte> bytes) {
   probe.sequence = take<std::uint32_t>(bytes);
   probe.host = take_text(kHostBytes, bytes);
   probe.version = take_text(kVersionBytes, bytes);
+  probe.key = take<std::uint64_t>(bytes);
   const std::size_t count = take<std::uint32_t>(bytes);
   if (probe.sequence >= kMaxProbes || count > kMaxPeers) return std::nullopt;
   const std::size_t filled = kHeaderBytes + count * kEchoBytes;

@@ -42,6 +42,7 @@ struct Probe {
   std::uint32_t sequence = 0;
   std::string host, version;
   std::vector<Echo> echoes;
+  std::uint64_t key = 0;  ///< the fingerprint of its mission key; 0 without one
 };
 
 /// The bytes of `probe`, in `out`. Names are cut at 32 and 16 bytes, echoes at kMaxPeers.

@@ -67,6 +67,16 @@ Seal::Seal(const MissionKey& key) : key_(std::make_shared<const MissionKey>(key)
   ERGOCAST_REQUIRE(sodium_init() >= 0);
 }
 
+std::uint64_t Seal::fingerprint() const {
+  if (!keyed()) return 0;
+  Tag hash;
+  crypto_generichash(raw(hash), hash.size(), raw(key_->coordinator), key_->coordinator.size(),
+                     raw(key_->shared), key_->shared.size());
+  std::uint64_t fingerprint = 0;
+  std::memcpy(&fingerprint, hash.data(), sizeof fingerprint);
+  return fingerprint;
+}
+
 void Seal::close(std::span<std::byte> bytes, bool has_signature, std::string_view channel) const {
   if (has_signature && keyed() && key_->signing) sign(bytes);
   const Blanked message(bytes, kTagBytes);

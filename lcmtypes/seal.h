@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,8 @@ class Seal {
   explicit Seal(const MissionKey& key);
 
   bool keyed() const { return key_ != nullptr; }
+  /// By which two hosts tell whether they have the same key without showing it; 0 without one.
+  std::uint64_t fingerprint() const;
   /// Whether it can speak for the coordinator: always, if there is no key.
   bool can_sign() const { return !keyed() || key_->signing; }
 

@@ -10,8 +10,8 @@ Peer peer(ProbeCount heard) {
   return one;
 }
 
-Finding said_of(const Peer& one) {
-  return peer_findings(url_of("ttl=1"), {{one}, 0, 200, ""}, "0.1.0").at(0);
+Finding said_of(const Peer& one, std::uint64_t key = 0) {
+  return peer_findings(url_of("ttl=1"), {{one}, 0, 200, ""}, "0.1.0", key).at(0);
 }
 
 TEST(PeerFindings, AllRight) { EXPECT_EQ(said_of(peer({150, 50})).level, Level::kOk); }
@@ -56,6 +56,17 @@ TEST(PeerFindings, AnotherVersionIsAWarning) {
   Peer old = peer({150, 50});
   old.version = "0.0.9";
   EXPECT_EQ(said_of(old).level, Level::kWarning);
+}
+
+TEST(PeerFindings, AnotherMissionKeyIsAWarningThatSaysWhoHasOne) {
+  Peer one = peer({150, 50});
+  EXPECT_TRUE(contains(said_of(one, 7).found, "it has no mission key and this host has one"));
+  one.key = 8;
+  EXPECT_TRUE(contains(said_of(one, 7).found, "it has another mission key"));
+  EXPECT_TRUE(contains(said_of(one, 0).found, "it has a mission key and this host has none"));
+  EXPECT_EQ(said_of(one, 0).level, Level::kWarning);
+  EXPECT_TRUE(contains(said_of(one, 0).remedy, "--key-file"));
+  EXPECT_EQ(said_of(one, 8).level, Level::kOk);
 }
 
 TEST(PeerFindings, DuplicatesAreANote) {

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 /// Two hosts that probe in turn; what is between them is said by two functions of the sequence.
 struct Pair {
-  PeerLedger a{1, "alpha", "0.1.0"}, b{2, "beta", "0.1.0"};
+  PeerLedger a{1, "alpha", "0.1.0"}, b{2, "beta", "0.1.0", 77};
   Instant at{1h};
 
   template <class FromA, class FromB>
@@ -37,6 +37,7 @@ TEST(PeerLedger, BothHearEachOtherAndKnowIt) {
   ASSERT_EQ(peers.size(), 1u);
   EXPECT_EQ(peers[0].host, "beta");
   EXPECT_EQ(peers[0].address, "10.0.0.2");
+  EXPECT_EQ(peers[0].key, 77u);
   EXPECT_EQ(peers[0].from_it.percent(), 0);
   EXPECT_EQ(peers[0].from_it.heard.all(), 40u);
   ASSERT_TRUE(peers[0].to_it.has_value());

@@ -8,7 +8,7 @@ namespace ergocast::doctor {
 namespace {
 
 Probe full_probe(std::uint32_t sequence) {
-  Probe probe{0x1234567890abcdef, sequence, "robot-1", "0.1.0", {}};
+  Probe probe{0x1234567890abcdef, sequence, "robot-1", "0.1.0", {}, 0xfedcba9876543210};
   for (std::uint64_t i = 0; i < kMaxPeers; ++i) probe.echoes.push_back({i + 1, 4, 11, {5, 1}, 99});
   return probe;
 }
@@ -30,6 +30,7 @@ TEST(Probe, ComesBackAsItWasWritten) {
     EXPECT_EQ(got->sequence, sequence);
     EXPECT_EQ(got->host, "robot-1");
     EXPECT_EQ(got->version, "0.1.0");
+    EXPECT_EQ(got->key, sent.key);
     ASSERT_EQ(got->echoes.size(), kMaxPeers);
     EXPECT_EQ(got->echoes[3].nonce, 4u);
     EXPECT_EQ(got->echoes[3].last, 11u);

@@ -56,6 +56,16 @@ TEST(Seal, EveryMessageOfTheTeamIsOpenedByEveryMember) {
   }
 }
 
+TEST(Seal, FingerprintsAreEqualForEqualKeysOnly) {
+  EXPECT_EQ(kMemberSeal.fingerprint(), kCoordinatorSeal.fingerprint());
+  EXPECT_NE(kMemberSeal.fingerprint(), kOtherTeam.fingerprint());
+  EXPECT_NE(kMemberSeal.fingerprint(), 0u);
+  EXPECT_EQ(Seal().fingerprint(), 0u);
+  MissionKey half = key_of(1);
+  half.coordinator = key_of(2).coordinator;
+  EXPECT_NE(Seal(half).fingerprint(), kMemberSeal.fingerprint()) << "obeys somebody else";
+}
+
 TEST(Seal, WhatHasNoKeyOrAnotherIsRefusedByName) {
   for (const Message& message : every_message()) {
     const std::string& channel = channel_of(message);
