@@ -25,7 +25,7 @@ struct DeployOptions {
   std::optional<LcmUrl> url;
 };
 
-int complain(const std::vector<Problem>& problems) {
+int complain_of(const std::vector<Problem>& problems) {
   for (const Problem& problem : problems) std::fprintf(stderr, "%s\n", to_string(problem).c_str());
   return kExitBadInput;
 }
@@ -77,12 +77,12 @@ int print(const std::vector<TextFile>& files) {
 }
 
 /// Writes all files, or none if one of them is there already.
-int write(const std::vector<TextFile>& files, const fs::path& folder) {
+int write_files(const std::vector<TextFile>& files, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   for (const TextFile& file : files) {
     if (!fs::exists(fs::symlink_status(folder / file.name, error))) continue;
-    return complain({{"--out " + folder.string(), file.name + " is there already",
+    return complain_of({{"--out " + folder.string(), file.name + " is there already",
                       "give a new folder, or remove the file"}});
   }
   for (const TextFile& file : files) {
@@ -102,7 +102,7 @@ int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, {});
   if (!scenario) return kExitBadInput;
   const auto read = read_hosts(options.hosts);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return complain(*problems);
+  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return complain_of(*problems);
   const auto& hosts = std::get<std::vector<DeployHost>>(read);
 
   std::vector<Problem> problems;
@@ -113,7 +113,7 @@ int deploy(const DeployOptions& options) {
   for (Problem& problem : problems_of(hosts, mission, options.hosts.string(), apart)) {
     problems.push_back(std::move(problem));
   }
-  if (!problems.empty()) return complain(problems);
+  if (!problems.empty()) return complain_of(problems);
   if (!options.keys.empty()) {
     if (const auto problem = problem_of_key_pair(options.keys)) {
       std::fprintf(stderr, "%s\n", problem->c_str());
@@ -125,7 +125,7 @@ int deploy(const DeployOptions& options) {
                       : options.to == "systemd" ? systemd_files
                                                 : compose_files;
   const std::vector<TextFile> files = render(hosts, mission);
-  return options.out.empty() ? print(files) : write(files, options.out);
+  return options.out.empty() ? print(files) : write_files(files, options.out);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace ergocast::cli {
@@ -37,7 +38,7 @@ std::size_t terminal_width() {
 
 std::string clock_text(double seconds) {
   char text[32];
-  const auto s = static_cast<long>(std::min(seconds, 359999.0) + 0.5);
+  const auto s = std::lround(std::min(seconds, 359999.0));
   if (s >= 3600) {
     std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
   } else {

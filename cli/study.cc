@@ -17,13 +17,13 @@
 namespace ergocast::cli {
 namespace {
 
-constexpr std::uint64_t kMostRuns = 1000000;
-constexpr std::size_t kMostFailuresShown = 20;
+constexpr std::uint64_t kMostStudyRuns = 1000000;
+constexpr std::size_t kMostFailuresNamed = 20;
 
 /// One run: a point and a seed.
 using Run = std::pair<std::size_t, std::uint64_t>;
 
-int complain(const std::vector<std::string>& problems) {
+int complain_of_all(const std::vector<std::string>& problems) {
   for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
   return kExitBadInput;
 }
@@ -84,7 +84,7 @@ class Campaign {
   }
 
   void fail(const Run& run, const std::string& how) {
-    if (++failed_ > kMostFailuresShown) return;
+    if (++failed_ > kMostFailuresNamed) return;
     const studies::Study& study = points_.identity.study;
     progress_.say(name_of(study.points[run.first], study) + ", seed " + std::to_string(run.second) +
                   ": " + how);
@@ -156,16 +156,17 @@ void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
 int study(const StudyOptions& options) {
   const auto compiled = study_points(options);
   if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled))
-    return complain(*problems);
+    return complain_of_all(*problems);
   const auto& points = std::get<StudyPoints>(compiled);
   const std::size_t count = points.scenarios.size();
-  if (options.seeds.count() > kMostRuns / count) {
-    return complain({"--seeds: " + std::to_string(count) + " points with " +
-                     std::to_string(options.seeds.count()) + " seeds each are above the limit, " +
-                     std::to_string(kMostRuns) + " runs (give fewer)"});
+  if (options.seeds.count() > kMostStudyRuns / count) {
+    return complain_of_all({"--seeds: " + std::to_string(count) + " points with " +
+                            std::to_string(options.seeds.count()) +
+                            " seeds each are above the limit, " + std::to_string(kMostStudyRuns) +
+                            " runs (give fewer)"});
   }
   auto opened = StudyDirectory::open(options.out, points.identity);
-  if (const auto* problem = std::get_if<std::string>(&opened)) return complain({*problem});
+  if (const auto* problem = std::get_if<std::string>(&opened)) return complain_of_all({*problem});
   StudyDirectory& directory = *std::get<0>(opened);
 
   Campaign campaign(points, missing_runs(count, options.seeds, directory.done()), directory);

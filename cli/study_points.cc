@@ -50,7 +50,7 @@ std::vector<FieldValue> combination(const std::vector<Variation>& variations, st
   return fields;
 }
 
-std::string text_of(const std::vector<FieldValue>& fields) {
+std::string words_of(const std::vector<FieldValue>& fields) {
   std::string text;
   for (const FieldValue& field : fields)
     text += (text.empty() ? "" : ", ") + field.path + "=" + field.value;
@@ -112,7 +112,7 @@ class Compiler {
       if (const auto* scenario = std::get_if<Scenario>(&loaded)) {
         add(*scenario, overrides.fields, file);
       } else {
-        complaints.add(std::get<std::vector<Problem>>(loaded), text_of(overrides.fields));
+        complaints.add(std::get<std::vector<Problem>>(loaded), words_of(overrides.fields));
       }
     }
     complaints.say(combinations_, problems_);
@@ -128,7 +128,7 @@ class Compiler {
     point.duration_s = static_cast<double>(timing.tick_count) * timing.dt_s;
     // The seed is each run's.
     const std::string hash = plan_hash(scenario.with_seed(0).plan());
-    const std::string text = file.string() + (fields.empty() ? "" : " with " + text_of(fields));
+    const std::string text = file.string() + (fields.empty() ? "" : " with " + words_of(fields));
     const auto [twin, is_new] = plans_.emplace(hash, text);
     if (!is_new)
       problems_.push_back(text + ": is the same mission as " + twin->second +

@@ -1,3 +1,4 @@
+#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <sstream>
@@ -54,10 +55,15 @@ std::string why_not_repeatable(const nlohmann::ordered_json& summary, std::size_
 /// Tick and agent of a row of trajectory.csv, by which its rows ascend; nothing if it has none.
 using RowKey = std::pair<Tick, AgentId>;
 std::optional<RowKey> key_of(const std::string& row) {
-  long long tick = 0;
-  int agent = 0;
-  if (std::sscanf(row.c_str(), "%lld,%*[^,],%d,", &tick, &agent) != 2) return {};
-  return RowKey{tick, agent};
+  const std::size_t time = row.find(',') + 1, agent = row.find(',', time) + 1;
+  if (time == 0 || agent == 0) return {};
+  RowKey key;
+  const char* const begin = row.data();
+  const auto tick_read = std::from_chars(begin, begin + time, key.first);
+  const auto agent_read = std::from_chars(begin + agent, begin + row.size(), key.second);
+  const bool whole = *tick_read.ptr == ',' && *agent_read.ptr == ',';
+  return tick_read.ec == std::errc() && agent_read.ec == std::errc() && whole ? std::optional(key)
+                                                                              : std::nullopt;
 }
 
 /// Compares the recorded trajectory with one that is simulated, row by row and bit by bit. Rows that

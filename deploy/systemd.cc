@@ -4,7 +4,7 @@
 namespace ergocast {
 namespace {
 
-constexpr const char* kHead = R"sh(#!/usr/bin/env bash
+constexpr const char* kUnitHead = R"sh(#!/usr/bin/env bash
 # A mission with the systemd services of the Debian package, written by "ergocast deploy".
 #
 #   %SCRIPT% setup     write /etc/ergocast/ergocast.env on every host, copy scenario and keys
@@ -19,7 +19,7 @@ constexpr const char* kHead = R"sh(#!/usr/bin/env bash
 set -euo pipefail
 )sh";
 
-constexpr const char* kBody = R"sh(
+constexpr const char* kUnitBody = R"sh(
 failed=no
 
 write_settings() {
@@ -107,8 +107,8 @@ std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
                                     const DeployMission& mission) {
   const std::string name = mission.name + "-systemd.sh";
   return {{name,
-           script_head(kHead, name, mission) + script_settings(hosts, mission) +
-               service_table(hosts) + kBody,
+           script_head(kUnitHead, name, mission) + script_settings(hosts, mission) +
+               service_table(hosts) + kUnitBody,
            true}};
 }
 

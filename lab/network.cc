@@ -30,7 +30,7 @@ Network::Network(std::uint64_t seed, const Faults& faults, int seats)
       link_cuts_(static_cast<std::size_t>(seats * seats)) {}
 
 int Network::send(Instant now, Seat from, const Seats& to, Bus bus, AgentId transmitter,
-                  std::shared_ptr<const Message> message) {
+                  const std::shared_ptr<const Message>& message) {
   Seats at_once;  // all whom nothing special happens to
   int corrupted = 0;
   for (Seat seat = 0; seat < seats_; ++seat) {

@@ -49,7 +49,7 @@ class Network {
   /// @param transmitter  as receivers see it
   /// @return  how many copies are to be corrupted; they are the caller's to damage and to refuse
   int send(Instant now, Seat from, const Seats& to, Bus bus, AgentId transmitter,
-           std::shared_ptr<const Message> message);
+           const std::shared_ptr<const Message>& message);
 
   /// Instant::max() if nothing is on its way.
   Instant next() const { return queue_.empty() ? Instant::max() : queue_.top().at; }
@@ -79,7 +79,8 @@ class Network {
   };
 
   std::size_t pair_index(Seat from, Seat to) const {
-    return static_cast<std::size_t>(from * seats_ + to);
+    const int index = from * seats_ + to;
+    return static_cast<std::size_t>(index);
   }
   Fate fate_of(Instant now, std::size_t pair, Bus bus);
   Instant arrival(Instant now, Link& link, std::uint32_t link_index, double reorders, double clogs);

@@ -232,8 +232,9 @@ Figure communication_figure(const RunData& run, const Mission& mission) {
   Svg svg(kWidth, kTop + 2 * kPanelHeight + kRowGap + kRoomBelow - 4, "communication",
           "Communication over time");
   for (int i = 0; i < 4; ++i) {
-    const double left = i % 2 == 0 ? kRoomLeft : kWidth - kRight - kPanelWidth;
-    const double top = kTop + (i / 2) * (kPanelHeight + kRowGap);
+    const int column = i % 2, row = i / 2;
+    const double left = column == 0 ? kRoomLeft : kWidth - kRight - kPanelWidth;
+    const double top = kTop + row * (kPanelHeight + kRowGap);
     draw_panel(svg, {left, top, kPanelWidth, kPanelHeight}, time_axis(run, mission), panels[i]);
   }
   return {"communication", "What the agents heard of each other",

@@ -79,7 +79,7 @@ std::string cards(const RunData& run, const Mission& mission, const Json& summar
 }
 
 std::string mode_text(const Json& summary) {
-  const std::string mode = said(summary, "mode").value_or("");
+  std::string mode = said(summary, "mode").value_or("");
   if (mode == "lockstep") return "lockstep: every tick waits for every agent";
   if (mode == "realtime") {
     return "real time × " + said(summary, "realtime_factor").value_or("1");

@@ -72,6 +72,7 @@ class PngMap : public MapFile {
     return read && png_sig_cmp(bytes, 0, sizeof bytes) == 0;
   }
 
+  // libpng reports what is wrong by a jump. NOLINTBEGIN(cert-err52-cpp)
   bool read_header() {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_init_io(png_, stream_);
@@ -94,6 +95,7 @@ class PngMap : public MapFile {
     if (last) png_read_end(png_, nullptr);
     return true;
   }
+  // NOLINTEND(cert-err52-cpp)
 
   MapProblem damaged() const {
     return {file_.string() + " is damaged or cut short: " + said_, "write it again"};

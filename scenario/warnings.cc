@@ -37,8 +37,11 @@ void warn_of_speed_limit(const Mission& mission, Findings& findings) {
                    " + contraction at the farthest corner " + shortest(rounded_up(pull_mps)) +
                    " + 6 deviations of its noise " + shortest(rounded_up(noise_mps)) + " (" +
                    noise_text(law, dt_s) + ")",
-               "write at least " + needed +
-                   ", less noise or a greater dt_s, or accept it: the cuts are counted");
+               mission.speed_limit_mps < law.u_max_mps
+                   ? "give vehicles that are no faster a law.u_max_mps of at most " +
+                         shortest(mission.speed_limit_mps) + ": even without noise it is cut"
+                   : "write at least " + needed +
+                         ", less noise or a greater dt_s, or accept it: the cuts are counted");
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ class Driver {
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
   /// Commands that were faster than the scenario's speed limit.
   std::int64_t clamped_commands() const { return clamped_commands_; }
+  const MissionFollower& follower() const { return follower_; }
   const Robot& robot(AgentId id) const { return drives_.at(id).robot; }
 
  private:

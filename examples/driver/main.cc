@@ -24,7 +24,13 @@ int run(const NodeOptions& node, double speed_limit_mps) {
   spdlog::info("waiting for a mission on {}", node.url.base());
 
   live(driver, transport, signals, [&] { driver.stop("the driver was told to stop"); },
-       [&] { transport.set_run(driver.run()); });
+       [&] {
+         transport.set_run(driver.run());
+         if (const auto& mission = driver.follower().mission()) {
+           transport.limit_agents(allowance_of(*mission, driver.follower().roster().size()),
+                                  driver.tick());
+         }
+       });
   spdlog::log(driver.failed() ? spdlog::level::err : spdlog::level::info,
               "finished at tick {}: {}; {} commands too late, {} cut to the speed limit",
               driver.tick(), driver.reason(), driver.missed_deadlines(), driver.clamped_commands());

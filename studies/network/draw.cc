@@ -61,12 +61,12 @@ Point compare(const Table& table, const Table& reference, double x) {
 
 Curve curve_of(const Study& study, int agents, const fs::path& folder) {
   Curve curve{agents, {}};
-  const std::string team = "-" + std::to_string(agents);
+  const std::string team = "-" + std::to_string(agents), name = study.name + team + "-";
   const fs::path reference_file = folder / (study.reference + team + ".csv");
   if (!fs::exists(reference_file)) return curve;
   const Table reference = read_table(reference_file);
   for (const std::string& value : study.values) {
-    const fs::path file = folder / (study.name + team + "-" + value + ".csv");
+    const fs::path file = folder / (name + value + ".csv");
     if (!fs::exists(file)) continue;
     curve.points.push_back(compare(read_table(file), reference, std::stod(value) * study.unit));
   }

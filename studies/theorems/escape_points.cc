@@ -23,7 +23,8 @@ Row row_of(const Point& p, const Spreads& spreads, const std::filesystem::path& 
   const EscapeLaw law(spreads.counted, mission, far_m(p));
   row.law_median_s = law.quantile_s(0.5);
   row.without_past_s = EscapeLaw(spreads.neglected, mission, far_m(p)).quantile_s(0.5);
-  for (double t_s = 0; t_s <= kUntil_s; t_s += mission.timing.dt_s) {
+  for (Tick tick = 0; static_cast<double>(tick) * mission.timing.dt_s <= kUntil_s; ++tick) {
+    const double t_s = static_cast<double>(tick) * mission.timing.dt_s;
     row.distance = std::max(row.distance, std::abs(row.share_by(t_s) - law.probability(t_s)));
   }
   return row;

@@ -58,7 +58,10 @@ void print(const InvariantSet& set, const Table& table) {
 
 Curve shares_over_time(const std::vector<double>& times_s, const std::string& color) {
   Curve curve{color, {}, "none"};
-  for (double t_s = 0; t_s <= kUntil_s; t_s += 1) curve.points.push_back({t_s, share_by(times_s, t_s)});
+  for (int second = 0; second <= kUntil_s; ++second) {
+    const double t_s = second;
+    curve.points.push_back({t_s, share_by(times_s, t_s)});
+  }
   return curve;
 }
 

@@ -90,7 +90,8 @@ Panel distributions(const std::vector<Row>& rows, int start) {
       if (p.near || p.start != start || p.sigma != sigma || p.exponent != 1 || p.epsilon != kPaperEpsilon) continue;
       Curve measured{agent_color(color), {}, "none"}, law{"#333333", {}, "4 4"};
       const EscapeLaw predicted(row.spreads.counted, mission_of(p), far_m(p));
-      for (double t_s = 0; t_s <= panel.x.high; t_s += 0.5) {
+      for (int half = 0; half <= 2 * panel.x.high; ++half) {
+        const double t_s = 0.5 * half;
         measured.points.push_back({t_s, row.share_by(t_s)});
         law.points.push_back({t_s, predicted.probability(t_s)});
       }

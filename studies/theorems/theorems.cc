@@ -56,7 +56,7 @@ int run(int argc, char** argv) {
   if (what == "list" && argc == 2) {
     for (const Part& part : all_parts(1)) std::cout << part.name << '\n';
   } else if (what == "simulate" && argc == 5) {
-    simulate(argv[2], argv[3], std::atoi(argv[4]));
+    simulate(argv[2], argv[3], std::stoi(argv[4]));
   } else if (what == "report" && argc == 4) {
     report(argv[2], argv[3]);
   } else {

@@ -133,12 +133,15 @@ hosts_without_bridges_fly_too() {
   over=
 }
 
-a_team_with_keys_flies() {
+a_team_with_keys_flies_and_who_has_none_is_told() {
   make_keys "$ERGOCAST_KEYS"
   over='-f compose.keys.yaml'
   fly keyed 4 --duration 100000
   becomes recorded 10000
   expect docker exec "$(one coordinator)" ergocast status
+  ! docker run --rm --network team_default ergocast status >"$work/keyless" 2>&1 ||
+    complain 'it flies without its key'
+  expect grep 'has a mission key' "$work/keyless"
   compose stop
   expect grep -q '"result": "stopped"' "$ERGOCAST_RUNS"/*/summary.json
   land
@@ -149,8 +152,9 @@ what_deploy_writes_flies() {
   printf 'box coordinator logger sim agent 0 1 agents=2\n' >"$work/hosts"
   ERGOCAST_RUNS=$work/deployed/runs
   mkdir "$work/deployed"
+  make_keys "$work/deployed/mission"
   expect "$build/bin/ergocast" deploy "$ERGOCAST_SCENARIOS/patient.textproto" --hosts "$work/hosts" \
-    --to compose --out "$work/deployed"
+    --to compose --keys "$work/deployed/mission" --out "$work/deployed"
   expect docker-compose -f "$work/deployed/compose.yaml" up --detach
   expect_complete
   expect docker-compose -f "$work/deployed/compose.yaml" down
@@ -178,7 +182,7 @@ for name in the_image_runs_every_program_and_nothing_as_root \
   a_logger_that_dies_goes_on_with_its_record \
   in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order \
   hosts_without_bridges_fly_too \
-  a_team_with_keys_flies \
+  a_team_with_keys_flies_and_who_has_none_is_told \
   what_deploy_writes_flies; do
   claim $name
 done

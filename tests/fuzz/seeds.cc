@@ -100,7 +100,7 @@ void conversations(const Seeds& seeds) {
 }
 
 void probes(const Seeds& seeds) {
-  doctor::PeerLedger ours(7, "here", "1"), theirs(8, "there", "1");
+  doctor::PeerLedger ours(7, "here", "1"), theirs(8, "there", "1", 9);
   std::string heard;
   for (int i = 0; i < 6; ++i) {
     const Instant now{1s + i * 50ms};

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
@@ -35,7 +36,8 @@ class LineFileTest : public ::testing::Test {
   }
 
   rlimit former_{};
-  const fs::path file_ = fs::path(testing::TempDir()) / "line_file_test.csv";
+  const fs::path file_ = fs::path(testing::TempDir()) /
+                         ("line_file_test-" + std::to_string(getpid()) + ".csv");
 };
 
 TEST_F(LineFileTest, HalfALineIsTakenBackAndNothingIsLost) {

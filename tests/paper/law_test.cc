@@ -13,8 +13,6 @@
 namespace ergocast::test {
 namespace {
 
-constexpr double kError = 1e-9;
-
 Mission mission_from(const std::string& start, std::uint64_t seed = 1) {
   const auto file =
       std::filesystem::path(ERGOCAST_SOURCE_DIR) / "studies/law" / (start + ".textproto");

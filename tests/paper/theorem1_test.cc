@@ -21,7 +21,6 @@ using studies::EscapeLaw;
 using studies::Past;
 using studies::Start;
 
-constexpr double kError = 1e-9;
 constexpr int kSeeds = 1000;
 
 /// Fig. 2's law from one start, with another noise.

@@ -20,8 +20,6 @@ using lab::Edges;
 using studies::driven_outward;
 using studies::mean_square_bound_m2;
 
-constexpr double kError = 1e-9;
-
 ControlLaw law_of(double gain_per_s, double sigma) {
   ControlLaw law;
   law.u_max_mps = 10;

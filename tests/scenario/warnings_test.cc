@@ -41,9 +41,15 @@ TEST(Warnings, OfALimitBelowTheConstantLawsCommands) {
   EXPECT_EQ(warnings_of(with_step("14.36")), "");
 }
 
+TEST(Warnings, OfALimitBelowTheInputItselfNameThatInstead) {
+  const std::string warning = warnings_of(limited("", "3"));
+  EXPECT_TRUE(has(warning, "a law.u_max_mps of at most 3")) << warning;
+  EXPECT_FALSE(has(warning, "write at least")) << warning;
+}
+
 TEST(Warnings, OfTheAdaptiveLawCountTheHeldPushAndNotTheCeilingInAStep) {
-  // The push is held for (2.5/5)² = 0.25 s, 3 steps of 0.1 s: √((6.25 − 0.25)/0.3) = 4.472 m/s;
-  // 6 √(0.25/0.1 + 4.472²) = 28.46. The ceiling in one step would be 6 · 2.5/√0.1 = 47.4.
+  // The push is held for (2.5/5)² = 0.25 s, 3 steps of 0.1 s: √((6.25 − 0.25)/0.3) = 4.472 m/s.
+  // So 6 √(0.25/0.1 + 4.472²) = 28.46. The ceiling in one step would be 6 · 2.5/√0.1 = 47.4.
   const std::string law = "noise_intensity: 0.5 noise_ceiling: 2.5 contraction_gain_per_s: 0";
   const std::string warning = warnings_of(limited(law, "33"));
   EXPECT_TRUE(has(warning, "commands up to 33.47 m/s"));

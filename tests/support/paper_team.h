@@ -19,6 +19,9 @@ inline Mission shipped_mission(const std::string& name, const Overrides& overrid
   return std::get<Scenario>(Scenario::load(file, overrides)).mission();
 }
 
+/// How probable a test may be to fail although what it claims is true, with other seeds.
+inline constexpr double kError = 1e-9;
+
 using PaperTeam = lab::IdealTeam;
 
 inline double median(std::vector<double> values) {
