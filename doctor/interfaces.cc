@@ -1,9 +1,14 @@
 #include "doctor/interfaces.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
 
+// After <net/if.h>, beside which it only adds what that lacks.
+#include <linux/if.h>
+
+#include <algorithm>
 #include <cstring>
 #include <memory>
 
@@ -13,26 +18,29 @@
 namespace ergocast::doctor {
 namespace {
 
-Interface look_at(int socket, const char* name) {
-  Interface found;
-  found.name = name;
+std::string text_of(const sockaddr& address) {
+  sockaddr_in ipv4{};
+  std::memcpy(&ipv4, &address, sizeof ipv4);
+  char text[INET_ADDRSTRLEN] = "";
+  inet_ntop(AF_INET, &ipv4.sin_addr, text, sizeof text);
+  return text;
+}
+
+int mtu_of(int socket, const std::string& name) {
   ifreq request{};
-  std::strncpy(request.ifr_name, name, IFNAMSIZ - 1);
-  if (ioctl(socket, SIOCGIFFLAGS, &request) == 0) {
-    const auto flags = static_cast<unsigned>(static_cast<unsigned short>(request.ifr_flags));
-    found.up = (flags & IFF_UP) != 0;
-    found.carrier = (flags & IFF_RUNNING) != 0;
-    found.loopback = (flags & IFF_LOOPBACK) != 0;
-    found.multicast = (flags & IFF_MULTICAST) != 0;
-  }
-  if (ioctl(socket, SIOCGIFMTU, &request) == 0) found.mtu_bytes = request.ifr_mtu;
-  if (ioctl(socket, SIOCGIFADDR, &request) == 0) {
-    sockaddr_in address{};
-    std::memcpy(&address, &request.ifr_addr, sizeof address);
-    char text[INET_ADDRSTRLEN] = "";
-    inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
-    found.address = text;
-  }
+  std::strncpy(request.ifr_name, name.c_str(), IFNAMSIZ - 1);
+  return ioctl(socket, SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 0;
+}
+
+Interface look_at(int socket, const ifaddrs& link) {
+  Interface found;
+  found.name = link.ifa_name;
+  found.up = (link.ifa_flags & IFF_UP) != 0;
+  // Not IFF_RUNNING, which the kernel brings up to date once a second.
+  found.carrier = (link.ifa_flags & IFF_LOWER_UP) != 0;
+  found.loopback = (link.ifa_flags & IFF_LOOPBACK) != 0;
+  found.multicast = (link.ifa_flags & IFF_MULTICAST) != 0;
+  found.mtu_bytes = mtu_of(socket, found.name);
   return found;
 }
 
@@ -40,12 +48,18 @@ Interface look_at(int socket, const char* name) {
 
 std::vector<Interface> interfaces() {
   const Socket socket(AF_INET, SOCK_DGRAM);
-  const std::unique_ptr<struct if_nameindex, void (*)(struct if_nameindex*)> names(
-      if_nameindex(), if_freenameindex);
+  ifaddrs* list = nullptr;
   std::vector<Interface> found;
-  if (!names || socket.fd() < 0) return found;
-  for (const auto* one = names.get(); one->if_index != 0; ++one) {
-    found.push_back(look_at(socket.fd(), one->if_name));
+  if (socket.fd() < 0 || getifaddrs(&list) != 0) return found;
+  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owned(list, freeifaddrs);
+  // Every interface has an entry of the family AF_PACKET, which come first, and one for each address.
+  for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr) continue;
+    if (one->ifa_addr->sa_family == AF_PACKET) found.push_back(look_at(socket.fd(), *one));
+    if (one->ifa_addr->sa_family != AF_INET) continue;
+    const auto its = std::find_if(found.begin(), found.end(),
+                                  [&](const Interface& i) { return i.name == one->ifa_name; });
+    if (its != found.end() && its->address.empty()) its->address = text_of(*one->ifa_addr);
   }
   return found;
 }
