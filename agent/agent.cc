@@ -158,7 +158,7 @@ void Agent::on(const Digest& theirs, Instant now) {
 void Agent::on(const Hello& hello, Instant now) {
   if (!follower_.mission()) return;
   if (!freshness_.is_news(hello.header)) return;
-  if (hello.header.sender == kWorld && table_) world_asks_ = true;
+  if (hello.header.sender == kWorld && table_) world_asks_ = hello.header.incarnation;
   const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
   if (knows_no_mission) plan_mission_repeat(now, kAnswerGap);
 }
@@ -266,10 +266,11 @@ void Agent::repeat_mission(Instant now, Outbox& out) {
 }
 
 void Agent::tell_world(Outbox& out) {
-  world_asks_ = false;
-  for (const Command& command : {command_before_, last_command_}) {
+  for (Command command : {command_before_, last_command_}) {
+    command.asked_by = *world_asks_;
     publish(Bus::kCommand, command, command.header.tick, out);
   }
+  world_asks_.reset();
 }
 
 /// The last word to the vehicle, whose driver may know no STOP.

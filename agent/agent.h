@@ -144,7 +144,7 @@ class Agent {
   Command last_command_, command_before_;  // header.tick −1: none yet
   AgentId waiting_for_ = kUnassigned;
   Instant world_heard_{}, coordinator_heard_{};  // the latter also through a teammate
-  bool world_asks_ = false;  // where we were: it has just started
+  std::optional<Incarnation> world_asks_;  // where we were: it has just started
   bool halted_ = false;      // its vehicle has yet to be told
 
   Instant next_hello_{};

@@ -182,6 +182,7 @@ struct Command {
   Header header;                           ///< header.tick is the tick it answers; −1: none yet
   Eigen::Vector3d position_m{0, 0, 0};     ///< from which it was computed
   Eigen::Vector3d velocity_mps{0, 0, 0};
+  Incarnation asked_by = 0;  ///< the world whose question it answers; 0: it answers a tick
 };
 
 /// The logger has everything up to and including header.tick (−1: it is ready).

@@ -312,10 +312,12 @@ command_t to_wire(const Command& m) {
   w.header = to_wire(m.header);
   copy3(m.position_m, w.command_position_m);
   copy3(m.velocity_mps, w.command_velocity_mps);
+  w.command_asked_by = static_cast<std::int64_t>(m.asked_by);
   return w;
 }
 bool from_wire(const command_t& w, Command& m) {
-  m = {from_wire(w.header), vector3(w.command_position_m), vector3(w.command_velocity_mps)};
+  m = {from_wire(w.header), vector3(w.command_position_m), vector3(w.command_velocity_mps),
+       static_cast<Incarnation>(w.command_asked_by)};
   return m.header.sender >= 0 && m.header.sender < kMaxAgents && m.position_m.allFinite() && m.velocity_mps.allFinite();
 }
 

@@ -165,6 +165,8 @@ void World::take_roster() {
 void World::on(const Command& command) {
   const auto at = bodies_.find(command.header.sender);
   if (at == bodies_.end() || at->second.author.incarnation != command.header.incarnation) return;
+  // Recorded commands, and answers to a world before us, do not say where the team is now.
+  if (asking_since_ && command.asked_by != incarnation_) return;
   Body& body = at->second;
   const Mission& mission = *follower_.mission();
   const Eigen::Vector2d step_m = command.velocity_mps.head<2>() * mission.timing.dt_s;

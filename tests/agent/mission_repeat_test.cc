@@ -172,6 +172,7 @@ TEST(WorldQuestion, BeforeTheFirstTickIsAnsweredByNowhereYet) {
   Agent agent = running_agent(small_mission(1));
   for (const Command& command : only<Command>(tell(agent, question_of(kWorld, 0)))) {
     EXPECT_EQ(command.header.tick, -1);
+    EXPECT_EQ(command.asked_by, kWorldLife);
   }
   EXPECT_EQ(only<Command>(tell(agent, question_of(kWorld, 0))).size(), 2u);
 }

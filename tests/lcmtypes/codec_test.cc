@@ -96,6 +96,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(command_wire.command_velocity_mps[0], -4);
   EXPECT_EQ(command_wire.command_velocity_mps[1], 5);
   EXPECT_EQ(command_wire.command_velocity_mps[2], 6);
+  EXPECT_EQ(static_cast<Incarnation>(command_wire.command_asked_by), 0xfeedfacecafebeef);
 }
 
 TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {

@@ -109,7 +109,7 @@ inline WorldState world_state() {
   return m;
 }
 
-inline Command command() { return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}}; }
+inline Command command() { return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}, 0xfeedfacecafebeef}; }
 
 inline RecordAck record_ack() { return {header_of_sender(kLogger)}; }
 

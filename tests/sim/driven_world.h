@@ -12,9 +12,13 @@ namespace ergocast::test {
 
 inline World world_of(const Mission& mission) { return {kRun, kWorldLife, decoder_of(mission)}; }
 
-/// Every agent's answer to the question where it was.
-inline void nobody_has_moved(World& world, int agents, Instant now) {
-  for (AgentId id = 0; id < agents; ++id) world.receive(command_of(id, -1, {0, 0}), now);
+/// Every agent's answer to the question of this life of the world where it was.
+inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation life = kWorldLife) {
+  for (AgentId id = 0; id < agents; ++id) {
+    Command answer = command_of(id, -1, {0, 0});
+    answer.asked_by = life;
+    world.receive(answer, now);
+  }
 }
 
 /// A world whose mission runs since `now`, all planned agents admitted; nothing published yet.

@@ -62,7 +62,7 @@ class Flight {
   World begin(Incarnation life) const {
     World world(kRun, life, decoder_of(mission_));
     world.receive(mission_part(0, MissionState::kRunning, roster_of(3)), now_);
-    if (life == 1) nobody_has_moved(world, 3, now_);
+    if (life == 1) nobody_has_moved(world, 3, now_, life);
     return world;
   }
 
@@ -133,9 +133,11 @@ INSTANTIATE_TEST_SUITE_P(Disturbance, WorldRestarted, ::testing::Values(0.0, 3.0
 
 // ---- what the team's answers mean ----------------------------------------------------------------
 
+/// One of an agent's two answers to the question.
 Command command_from(AgentId id, Tick tick, const Eigen::Vector2d& x_m, const Eigen::Vector2d& v_mps) {
   Command command = command_of(id, tick, v_mps);
   command.position_m << x_m, 0;
+  command.asked_by = kWorldLife;
   return command;
 }
 
@@ -150,7 +152,7 @@ World asking_world(const Mission& mission) {
 
 TEST(WorldAsks, TenTimesASecondAndMovesNobodyMeanwhile) {
   World world = asking_world(small_mission(2));
-  world.receive(command_of(0, -1, {0, 0}), at(0s));
+  nobody_has_moved(world, 1, at(0s));
   int questions = 0;
   for (int ms = 10; ms <= 1000; ms += 10) {
     for (const Outgoing& outgoing : advance(world, at(ms * 1ms))) {
@@ -217,6 +219,20 @@ TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
   EXPECT_EQ(only<Hello>(advance(world, at(100ms))).size(), 1u) << "it asks again";
   world.receive(command_from(0, 8, {300, 400}, {1, 0}), at(101ms));
   EXPECT_EQ(applied(state_after(world, at(101ms))), Eigen::Vector2d(1, 0));
+}
+
+TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
+  World world = asking_world(small_mission(1));
+  for (const Incarnation asked_by : {Incarnation{0}, kWorldLife - 1}) {
+    for (const Tick tick : {4, 5}) {
+      Command recording = command_from(0, tick, {300, 400}, {1, 0});
+      recording.asked_by = asked_by;
+      world.receive(recording, at(0s));
+    }
+  }
+  EXPECT_TRUE(states_after(world, at(1ms)).empty()) << "what was said before does not say where it is";
+  for (const Tick tick : {8, 9}) world.receive(command_from(0, tick, {301, 401}, {0, 1}), at(1s));
+  EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
 }
 
 TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {

@@ -66,6 +66,7 @@ TEST(WorldSpeedLimit, HoldsForAWorldThatRemembersByTheAgentsCommands) {
       Command command =
           command_of(id, tick, tick == 1 ? Eigen::Vector2d(0, 7) : Eigen::Vector2d(1, 0));
       command.position_m = before.vehicles[static_cast<std::size_t>(id)].position_m;
+      command.asked_by = kWorldLife;
       second.receive(command, at(0s));
     }
   }
@@ -115,6 +116,7 @@ TEST(WorldNumbers, OfAPlaceOutsideTheDomainAWorldThatBeginsTakesNothing) {
   for (const double x_m : {-1.0, 2001.0, kHuge, nan}) {
     Command command = command_of(0, 7, {1, 0});
     command.position_m = {x_m, 500, 0};
+    command.asked_by = kWorldLife;
     world.receive(command, at(0s));
   }
   EXPECT_EQ(world.refused(), 4);
