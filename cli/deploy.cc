@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/key_pair.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
@@ -24,11 +25,6 @@ struct DeployOptions {
   std::string to, keys;
   std::optional<LcmUrl> url;
 };
-
-int complain_of(const std::vector<Problem>& problems) {
-  for (const Problem& problem : problems) std::fprintf(stderr, "%s\n", to_string(problem).c_str());
-  return kExitBadInput;
-}
 
 /// Whether a relative path is plain enough for shells, settings files and remote folders.
 bool is_plain(const std::string& path) {
@@ -82,15 +78,13 @@ int write_files(const std::vector<TextFile>& files, const fs::path& folder) {
   fs::create_directories(folder, error);
   for (const TextFile& file : files) {
     if (!fs::exists(fs::symlink_status(folder / file.name, error))) continue;
-    return complain_of({{"--out " + folder.string(), file.name + " is there already",
-                      "give a new folder, or remove the file"}});
+    return complain(kExitBadInput, to_string(Problem{"--out " + folder.string(),
+                                                     file.name + " is there already",
+                                                     "give a new folder, or remove the file"}));
   }
   for (const TextFile& file : files) {
     const fs::path path = folder / file.name;
-    if (const auto problem = write_file(path, file.text)) {
-      std::fprintf(stderr, "%s\n", problem->c_str());
-      return kExitBadInput;
-    }
+    if (const auto problem = write_file(path, file.text)) return complain(kExitBadInput, *problem);
     const auto mode = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
     if (file.executable) fs::permissions(path, mode, fs::perm_options::add, error);
     std::printf("%s\n", path.c_str());
@@ -102,7 +96,7 @@ int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, {});
   if (!scenario) return kExitBadInput;
   const auto read = read_hosts(options.hosts);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return complain_of(*problems);
+  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return complain(kExitBadInput, *problems);
   const auto& hosts = std::get<std::vector<DeployHost>>(read);
 
   std::vector<Problem> problems;
@@ -113,12 +107,9 @@ int deploy(const DeployOptions& options) {
   for (Problem& problem : problems_of(hosts, mission, options.hosts.string(), apart)) {
     problems.push_back(std::move(problem));
   }
-  if (!problems.empty()) return complain_of(problems);
+  if (!problems.empty()) return complain(kExitBadInput, problems);
   if (!options.keys.empty()) {
-    if (const auto problem = problem_of_key_pair(options.keys)) {
-      std::fprintf(stderr, "%s\n", problem->c_str());
-      return kExitBadInput;
-    }
+    if (const auto problem = problem_of_key_pair(options.keys)) return complain(kExitBadInput, *problem);
     mission.keys = fs::absolute(options.keys).lexically_normal();
   }
   const auto render = options.to == "ssh"       ? ssh_files

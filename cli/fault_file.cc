@@ -1,8 +1,9 @@
 #include "cli/fault_file.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <fstream>
+
+#include "core/read_number.h"
 
 namespace ergocast::cli {
 namespace {
@@ -20,11 +21,9 @@ std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
   for (const lab::FaultField& field : lab::fault_fields()) {
     if (item.fullname() != field.name) continue;
     const std::string text = item.inputs.size() == 1 ? item.inputs.front() : "";
-    double value = -1;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = read.ec == std::errc() && read.ptr == text.data() + text.size();
-    if (whole && value >= 0 && value <= field.most) {
-      faults.*field.value = value;
+    const auto value = read_number<double>(text);
+    if (value >= 0.0 && value <= field.most) {
+      faults.*field.value = *value;
       return "";
     }
     char range[64];

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 constexpr int kMaxRestarts = 3;
 constexpr auto kFirstBackOff = 500ms;
 /// How long processes may take to end by themselves, and then after SIGTERM.
-constexpr auto kLastPatience = 6s;
+constexpr auto kEndPatience = 6s;
 constexpr auto kPoliteness = 2s;
 constexpr int kLinesOfExplanation = 5;
 
@@ -88,8 +88,8 @@ void Launcher::attend(Instant now, Stage stage) {
     }
   }
   if (!end_expected_) return;
-  if (pressed_ < 1 && now - *end_expected_ > kLastPatience) press(1);
-  if (pressed_ < 2 && now - *end_expected_ > kLastPatience + kPoliteness) press(2);
+  if (pressed_ < 1 && now - *end_expected_ > kEndPatience) press(1);
+  if (pressed_ < 2 && now - *end_expected_ > kEndPatience + kPoliteness) press(2);
 }
 
 void Launcher::take_note(Process& process, Instant now, Stage stage) {

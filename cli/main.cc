@@ -1,12 +1,12 @@
 // ergocast: the command a person types.
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <functional>
 #include <string_view>
 #include <thread>
 
 #include "cli/commands.h"
+#include "core/read_number.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 #include "scenario/override_options.h"
@@ -50,12 +50,9 @@ void add_url_option(CLI::App& command, MissionOptions& options) {
 /// "A:B" or "A".
 Seeds parse_seeds(const std::string& text) {
   const auto number = [&text](std::string_view part) {
-    std::uint64_t value = 0;
-    const auto read = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (read.ec != std::errc() || read.ptr != part.data() + part.size()) {
-      throw CLI::ValidationError("--seeds", "\"" + text + "\" is neither a number nor FIRST:LAST");
-    }
-    return value;
+    const auto value = read_number<std::uint64_t>(part);
+    if (value) return *value;
+    throw CLI::ValidationError("--seeds", "\"" + text + "\" is neither a number nor FIRST:LAST");
   };
   const std::string_view view = text;
   const std::size_t colon = view.find(':');

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <span>
 
+#include "cli/complain.h"
 #include "logger/report.h"
 #include "logger/run_record.h"
 #include "logger/target_density.h"
@@ -88,7 +89,7 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
   auto loaded = Scenario::load(file, overrides);
   if (auto* scenario = std::get_if<Scenario>(&loaded)) return std::move(*scenario);
   const auto& problems = std::get<std::vector<Problem>>(loaded);
-  for (const Problem& problem : problems) std::fprintf(stderr, "%s\n", to_string(problem).c_str());
+  complain(kExitBadInput, problems);
   std::fprintf(stderr, "%zu problem%s\n", problems.size(), problems.size() == 1 ? "" : "s");
   return std::nullopt;
 }
@@ -97,13 +98,12 @@ std::optional<Scenario> recorded_plan_or_complain(const fs::path& run_dir) {
   std::ifstream file(run_dir / kPlanFile, std::ios::binary);
   const std::string plan((std::istreambuf_iterator<char>(file)), {});
   if (!file.is_open()) {
-    std::fprintf(stderr, "%s: missing or not readable: is this a run directory?\n",
-                 (run_dir / kPlanFile).c_str());
+    complain(kExitBadInput, (run_dir / kPlanFile).string() + ": missing or not readable: is this a run directory?");
     return std::nullopt;
   }
   auto read = Scenario::from_plan(std::as_bytes(std::span(plan)));
   if (auto* scenario = std::get_if<Scenario>(&read)) return std::move(*scenario);
-  std::fprintf(stderr, "%s: %s\n", (run_dir / kPlanFile).c_str(), std::get<std::string>(read).c_str());
+  complain(kExitBadInput, (run_dir / kPlanFile).string() + ": " + std::get<std::string>(read));
   return std::nullopt;
 }
 

@@ -101,13 +101,13 @@ int print_command(const Viewer& viewer) {
 int spy(const SpyOptions& options) {
   Viewer viewer = viewer_for(options);
   if (!viewer.packages.empty()) {
-    return complain(kExitUnavailable, 
+    return complain(kExitUnavailable,
         "lcm-spy needs Debian packages that are not installed. As root:\n"
         "  apt-get install" +
         viewer.packages);
   }
   if (viewer.jar_missing) {
-    return complain(kExitUnavailable, 
+    return complain(kExitUnavailable,
         "ergocast-spy.jar was not built, because a JDK or lcm.jar was missing. As root:\n"
         "  apt-get install default-jdk liblcm-java\n"
         "Then configure and build again: cmake BUILD && cmake --build BUILD --target spy");
@@ -115,7 +115,7 @@ int spy(const SpyOptions& options) {
   if (options.print) return print_command(viewer);
   const char* display = std::getenv("DISPLAY");
   if (display == nullptr || *display == '\0') {
-    return complain(kExitUnavailable, 
+    return complain(kExitUnavailable,
         "lcm-spy draws windows, and there is no screen: DISPLAY is not set. Start it from a "
         "desktop, or log in with ssh -X");
   }

@@ -167,6 +167,7 @@ class Stopping {
   }
 
   int conclude(const RunHeard& team) const {
+    // A team that never began has moved nothing, whoever its world may be.
     if (options_.at_once && !team.world_heard() && team.tick() > 0) {
       return complain(kExitFailed, "nobody is heard any more, but no world or driver was heard "
                                    "before either: whether the vehicles stand still is not known: "

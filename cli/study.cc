@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/progress_line.h"
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
@@ -22,11 +23,6 @@ constexpr std::size_t kMostFailuresNamed = 20;
 
 /// One run: a point and a seed.
 using Run = std::pair<std::size_t, std::uint64_t>;
-
-int complain_of_all(const std::vector<std::string>& problems) {
-  for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
-  return kExitBadInput;
-}
 
 /// Those that are not done, seed by seed: whatever is there when somebody looks can be compared.
 std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds,
@@ -155,18 +151,19 @@ void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
 
 int study(const StudyOptions& options) {
   const auto compiled = study_points(options);
-  if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled))
-    return complain_of_all(*problems);
+  if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) {
+    return complain(kExitBadInput, *problems);
+  }
   const auto& points = std::get<StudyPoints>(compiled);
   const std::size_t count = points.scenarios.size();
   if (options.seeds.count() > kMostStudyRuns / count) {
-    return complain_of_all({"--seeds: " + std::to_string(count) + " points with " +
-                            std::to_string(options.seeds.count()) +
-                            " seeds each are above the limit, " + std::to_string(kMostStudyRuns) +
-                            " runs (give fewer)"});
+    return complain(kExitBadInput, "--seeds: " + std::to_string(count) + " points with " +
+                                       std::to_string(options.seeds.count()) +
+                                       " seeds each are above the limit, " +
+                                       std::to_string(kMostStudyRuns) + " runs (give fewer)");
   }
   auto opened = StudyDirectory::open(options.out, points.identity);
-  if (const auto* problem = std::get_if<std::string>(&opened)) return complain_of_all({*problem});
+  if (const auto* problem = std::get_if<std::string>(&opened)) return complain(kExitBadInput, *problem);
   StudyDirectory& directory = *std::get<0>(opened);
 
   Campaign campaign(points, missing_runs(count, options.seeds, directory.done()), directory);

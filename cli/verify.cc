@@ -1,11 +1,12 @@
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "cli/commands.h"
 #include "cli/run_directory.h"
+#include "core/read_number.h"
 #include "lab/swarm.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
@@ -54,16 +55,17 @@ std::string why_not_repeatable(const nlohmann::ordered_json& summary, std::size_
 
 /// Tick and agent of a row of trajectory.csv, by which its rows ascend; nothing if it has none.
 using RowKey = std::pair<Tick, AgentId>;
-std::optional<RowKey> key_of(const std::string& row) {
-  const std::size_t time = row.find(',') + 1, agent = row.find(',', time) + 1;
-  if (time == 0 || agent == 0) return {};
-  RowKey key;
-  const char* const begin = row.data();
-  const auto tick_read = std::from_chars(begin, begin + time, key.first);
-  const auto agent_read = std::from_chars(begin + agent, begin + row.size(), key.second);
-  const bool whole = *tick_read.ptr == ',' && *agent_read.ptr == ',';
-  return tick_read.ec == std::errc() && agent_read.ec == std::errc() && whole ? std::optional(key)
-                                                                              : std::nullopt;
+std::optional<RowKey> key_of(std::string_view row) {
+  std::string_view cells[3];  // tick, time, agent
+  for (std::string_view& cell : cells) {
+    const std::size_t comma = row.find(',');
+    if (comma == row.npos) return {};
+    cell = row.substr(0, comma);
+    row.remove_prefix(comma + 1);
+  }
+  const auto tick = read_number<Tick>(cells[0]);
+  const auto agent = read_number<AgentId>(cells[2]);
+  return tick && agent ? std::optional(RowKey(*tick, *agent)) : std::nullopt;
 }
 
 /// Compares the recorded trajectory with one that is simulated, row by row and bit by bit. Rows that

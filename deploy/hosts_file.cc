@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
 
 #include "core/ids.h"
+#include "core/read_number.h"
 #include "deploy/deploy.h"
 
 namespace ergocast {
@@ -30,13 +30,6 @@ bool is_address(std::string_view text) {
   const auto at = text.find('@');
   return at == text.npos ? is_plain(text)
                          : is_plain(text.substr(0, at)) && is_plain(text.substr(at + 1));
-}
-
-std::optional<int> number(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 struct Word {
@@ -121,7 +114,7 @@ class HostsReader {
     } else if (word.text == "agent") {
       return read_agents(words, at, host);
     } else if (word.text.starts_with(kCount)) {
-      const auto count = number(word.text.substr(kCount.size()));
+      const auto count = read_number<int>(word.text.substr(kCount.size()));
       if (!count || *count < 1 || *count > kMaxAgents) {
         object(word,
                '"' + std::string(word.text) + "\" has no count from 1 to " +
@@ -140,7 +133,7 @@ class HostsReader {
   std::size_t read_agents(const std::vector<Word>& words, std::size_t at, DeployHost& host) {
     std::size_t next = at + 1;
     for (; next < words.size(); ++next) {
-      const auto id = number(words[next].text);
+      const auto id = read_number<int>(words[next].text);
       if (!id) break;
       if (*id < 0 || *id >= kMaxAgents) {
         object(words[next], "agent " + std::to_string(*id) + " cannot be",

@@ -1,14 +1,14 @@
 #include "doctor/ports.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
 
-#include "runtime/socket_table.h"
+#include "core/read_number.h"
+#include "doctor/socket_table.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -23,11 +23,11 @@ std::string text_of(const fs::path& file) {
 /// "socket:[123]" → 123.
 unsigned long inode_of(const std::string& link) {
   constexpr std::string_view kPrefix = "socket:[";
-  unsigned long inode = 0;
-  if (link.starts_with(kPrefix)) {
-    std::from_chars(link.data() + kPrefix.size(), link.data() + link.size(), inode);
-  }
-  return inode;
+  const std::string_view text = link;
+  if (!text.starts_with(kPrefix) || !text.ends_with(']')) return 0;
+  return read_number<unsigned long>(
+             text.substr(kPrefix.size(), text.size() - kPrefix.size() - 1))
+      .value_or(0);
 }
 
 std::string program_of(const fs::path& process) {
@@ -90,11 +90,8 @@ std::vector<Holder> holders(const fs::path& proc, const LcmUrl& url) {
   std::set<unsigned long> found;
   std::error_code error;
   for (fs::directory_iterator at(proc, error), end; !error && at != end; at.increment(error)) {
-    const std::string name = at->path().filename();
-    long pid = 0;
-    const auto read = std::from_chars(name.data(), name.data() + name.size(), pid);
-    if (read.ec != std::errc() || read.ptr != name.data() + name.size()) continue;
-    look_into(at->path(), pid, wanted, found, all);
+    const auto pid = read_number<long>(at->path().filename().string());
+    if (pid) look_into(at->path(), *pid, wanted, found, all);
   }
   for (const auto& [inode, port] : wanted) {
     if (!found.contains(inode)) all.push_back({port, "", 0});

@@ -1,9 +1,10 @@
 #include "lcmtypes/channels.h"
 
 #include <array>
-#include <charconv>
 #include <utility>
 #include <vector>
+
+#include "core/read_number.h"
 
 namespace ergocast {
 namespace {
@@ -76,12 +77,8 @@ std::optional<AgentId> transmitter_of(const Message& message, std::string_view c
   if (!std::holds_alternative<Contribution>(message) || !channel.starts_with(kContribution)) {
     return std::nullopt;
   }
-  AgentId relayer = kUnassigned;
-  const std::string_view id = channel.substr(kContribution.size());
-  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), relayer);
-  const bool known = error == std::errc() && end == id.data() + id.size() && relayer >= 0 &&
-                     relayer < kMaxAgents;
-  return known ? std::optional(relayer) : std::nullopt;
+  const auto relayer = read_number<AgentId>(channel.substr(kContribution.size()));
+  return relayer >= 0 && relayer < kMaxAgents ? relayer : std::nullopt;
 }
 
 }  // namespace ergocast

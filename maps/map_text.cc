@@ -1,7 +1,8 @@
 #include "maps/map_text.h"
 
-#include <charconv>
 #include <cmath>
+
+#include "core/read_number.h"
 
 namespace ergocast {
 namespace {
@@ -18,10 +19,7 @@ std::string quoted(std::string_view word) {
 
 std::optional<double> number_in(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return {};
-  return value;
+  return read_number<double>(text);
 }
 
 std::optional<MapProblem> check_density(double value, const std::string& where) {

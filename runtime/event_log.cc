@@ -1,7 +1,6 @@
 #include "runtime/event_log.h"
 
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -9,6 +8,8 @@
 #include <map>
 #include <optional>
 #include <string_view>
+
+#include "core/read_number.h"
 
 namespace ergocast {
 namespace {
@@ -26,10 +27,10 @@ std::int64_t wall_clock_us() {
 std::optional<int> segment_number(std::string_view file) {
   constexpr std::string_view kBefore = "events-", kAfter = ".lcm";
   if (!file.starts_with(kBefore) || !file.ends_with(kAfter)) return std::nullopt;
-  const char* const end = file.data() + file.size() - kAfter.size();
-  int number = 0;
-  const auto [rest, error] = std::from_chars(file.data() + kBefore.size(), end, number);
-  return error == std::errc() && rest == end && number >= 0 ? std::optional(number) : std::nullopt;
+  file.remove_prefix(kBefore.size());
+  file.remove_suffix(kAfter.size());
+  const auto number = read_number<int>(file);
+  return number >= 0 ? number : std::nullopt;
 }
 
 /// Sizes of the segments in a folder, by number.

@@ -5,10 +5,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cstring>
 #include <utility>
 
+#include "core/read_number.h"
 #include "runtime/socket.h"
 
 namespace ergocast {
@@ -17,11 +17,8 @@ namespace {
 constexpr std::string_view kExample = "udpm://239.255.76.67:24000?ttl=0";
 
 std::optional<int> number(std::string_view text, int low, int high) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  if (value < low || value > high) return std::nullopt;
-  return value;
+  const auto value = read_number<int>(text);
+  return value >= low && value <= high ? value : std::nullopt;
 }
 
 std::optional<std::string> read_option(std::string_view option, LcmUrl& url) {

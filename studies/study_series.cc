@@ -1,10 +1,11 @@
 #include "studies/study_series.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <utility>
+
+#include "core/read_number.h"
 
 namespace ergocast::studies {
 namespace {
@@ -28,18 +29,11 @@ int main_field(const Study& study) {
   return best;
 }
 
-std::optional<double> number_in(const std::string& text) {
-  double value = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 /// Sorts values that are all numbers.
 void sort_by_number(StudyLayout& layout) {
   std::vector<std::pair<double, std::string>> sorted;
   for (const std::string& value : layout.values) {
-    const std::optional<double> number = number_in(value);
+    const auto number = read_number<double>(value);
     if (!number) return;
     sorted.emplace_back(*number, value);
   }

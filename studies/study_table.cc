@@ -6,6 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "core/read_number.h"
+
 namespace ergocast::studies {
 namespace {
 
@@ -15,18 +17,18 @@ std::string text_of(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
+template <class Number>
+bool read_into(std::string_view cell, Number& value) {
+  const auto number = read_number<Number>(cell);
+  if (number) value = *number;
+  return number.has_value();
+}
+
 /// The cell's number; nan for an empty one.
 bool read(std::string_view cell, double& value) {
   value = std::numeric_limits<double>::quiet_NaN();
   if (cell.empty()) return true;
-  const auto end = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return end.ec == std::errc() && end.ptr == cell.data() + cell.size();
-}
-
-template <class Integer>
-bool read_integer(std::string_view cell, Integer& value) {
-  const auto end = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return end.ec == std::errc() && end.ptr == cell.data() + cell.size();
+  return read_into(cell, value);
 }
 
 std::vector<std::string_view> cells_of(std::string_view line) {
@@ -118,9 +120,9 @@ std::optional<StudyRow> StudyTable::parse(std::string_view line) const {
   StudyRow row{*point, {}};
   StudyFigures& figures = row.figures;
   figures.complete = true;
-  bool good = read_integer(cells[numbers - 3], figures.seed) &&
-              read_integer(cells[numbers - 2], figures.agents) &&
-              read_integer(cells[numbers - 1], figures.messages);
+  bool good = read_into(cells[numbers - 3], figures.seed) &&
+              read_into(cells[numbers - 2], figures.agents) &&
+              read_into(cells[numbers - 1], figures.messages);
   figures.metric_at.fill(std::numeric_limits<double>::quiet_NaN());
   figures.escape_time_s.fill(std::numeric_limits<double>::quiet_NaN());
   auto cell = cells.begin() + static_cast<std::ptrdiff_t>(numbers);

@@ -1,5 +1,5 @@
 // The kernel's table of UDP sockets.
-#include "runtime/socket_table.h"
+#include "doctor/socket_table.h"
 
 #include "tests/fuzz/target.h"
 

@@ -1,4 +1,4 @@
-#include "runtime/socket_table.h"
+#include "doctor/socket_table.h"
 
 #include <gtest/gtest.h>
 
