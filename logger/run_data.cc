@@ -54,9 +54,11 @@ std::optional<std::string> read_table(
   return lines.problem();
 }
 
-bool is_count(double value) {
-  constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers above are not all doubles
-  return value >= 0 && value <= kExact && value == std::floor(value);
+constexpr double kExact = 0x1p53;    // whole numbers above are not all doubles
+constexpr double kMostSaid = 0x1p62;  // more than all agents together can claim to have received
+
+bool is_count(double value, double most = kExact) {
+  return value >= 0 && value <= most && value == std::floor(value);
 }
 
 std::optional<std::string> add_point(RunData& run, const Fields& f) {
@@ -75,6 +77,9 @@ std::optional<std::string> add_point(RunData& run, const Fields& f) {
 
 std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
   if (!is_count(f[0]) || f[1] < 0) return "the tick is not a whole number ≥ 0 at a time ≥ 0";
+  if (!is_count(f[5], kMostSaid) || !is_count(f[6], kMostSaid)) {
+    return "the contributions received and lost are not whole numbers ≥ 0";
+  }
   const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6]};
   if (!run.metrics.empty() &&
       (row.tick <= run.metrics.back().tick || row.t_s <= run.metrics.back().t_s)) {
