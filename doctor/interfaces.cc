@@ -52,11 +52,12 @@ std::vector<Interface> interfaces() {
   std::vector<Interface> found;
   if (socket.fd() < 0 || getifaddrs(&list) != 0) return found;
   const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owned(list, freeifaddrs);
-  // Every interface has an entry of the family AF_PACKET, which come first, and one for each address.
+  // First an entry for every interface, with its hardware's address or, as of a tunnel, none; then
+  // one for every address.
   for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
-    if (one->ifa_addr == nullptr) continue;
-    if (one->ifa_addr->sa_family == AF_PACKET) found.push_back(look_at(socket.fd(), *one));
-    if (one->ifa_addr->sa_family != AF_INET) continue;
+    const int family = one->ifa_addr == nullptr ? AF_PACKET : one->ifa_addr->sa_family;
+    if (family == AF_PACKET) found.push_back(look_at(socket.fd(), *one));
+    if (family != AF_INET) continue;
     const auto its = std::find_if(found.begin(), found.end(),
                                   [&](const Interface& i) { return i.name == one->ifa_name; });
     if (its != found.end() && its->address.empty()) its->address = text_of(*one->ifa_addr);

@@ -1,4 +1,6 @@
 // What `ergocast doctor` says of hosts on one network, and of what goes wrong there.
+#include <unistd.h>
+
 #include <map>
 
 #include "tests/hosts/team_on_hosts.h"
@@ -177,6 +179,16 @@ TEST_F(DoctorOnHosts, ACableThatIsPulledIsNamed) {
   const Answer answer = alone(0, 1);
   EXPECT_EQ(answer.exit_code, 1);
   EXPECT_EQ(answer.of("interface")["found"], "eth0 has no carrier");
+}
+
+TEST_F(DoctorOnHosts, ATunnelIsAnInterfaceToo) {
+  if (access("/dev/net/tun", W_OK) != 0) GTEST_SKIP() << "no /dev/net/tun here";
+  lan_->on_host(0, "ip tuntap add dev tun0 mode tun && ip addr add 10.9.0.1/24 dev tun0 && "
+                   "ip link set tun0 up");
+  lan_->route_multicast(0, "tun0");
+  const Answer answer = alone(0, 1);
+  EXPECT_EQ(answer.exit_code, 1);
+  EXPECT_EQ(answer.of("interface")["found"], "tun0 has no carrier") << "nobody holds its other end";
 }
 
 }  // namespace
