@@ -145,7 +145,7 @@ class Agent {
   AgentId waiting_for_ = kUnassigned;
   Instant world_heard_{}, coordinator_heard_{};  // the latter also through a teammate
   std::optional<Incarnation> world_asks_;  // where we were: it has just started
-  bool halted_ = false;      // its vehicle has yet to be told
+  bool halted_ = false;                    // its vehicle has yet to be told
 
   Instant next_hello_{};
   Deadline next_status_, next_digest_;

@@ -6,7 +6,7 @@
 
 #include "core/read_number.h"
 
-namespace ergocast {
+namespace ergocast::doctor {
 
 std::vector<UdpSocket> parse_socket_table(std::string_view table) {
   constexpr std::size_t kLocal = 1, kInode = 9, kColumns = 13;
@@ -28,4 +28,4 @@ std::vector<UdpSocket> parse_socket_table(std::string_view table) {
   return sockets;
 }
 
-}  // namespace ergocast
+}  // namespace ergocast::doctor

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ergocast {
+namespace ergocast::doctor {
 
 struct UdpSocket {
   int port = 0;
@@ -16,4 +16,4 @@ struct UdpSocket {
 /// The sockets in such a table, as far as it is well formed.
 std::vector<UdpSocket> parse_socket_table(std::string_view table);
 
-}  // namespace ergocast
+}  // namespace ergocast::doctor

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ergocast {
+namespace ergocast::doctor {
 namespace {
 
 // As /proc/net/udp has them; 5DC0 is 24000.
@@ -29,4 +29,4 @@ TEST(SocketTable, WhatIsWellFormedIsRead) {
 }
 
 }  // namespace
-}  // namespace ergocast
+}  // namespace ergocast::doctor

@@ -6,7 +6,7 @@
 namespace ergocast::fuzz {
 
 FUZZ_TARGET(socket_table) {
-  for (const UdpSocket& socket : parse_socket_table(text_of(input))) {
+  for (const doctor::UdpSocket& socket : doctor::parse_socket_table(text_of(input))) {
     ERGOCAST_REQUIRE(socket.port >= 0 && socket.port <= 65535);
   }
 }
