@@ -88,11 +88,11 @@ Mission classical(const InvariantSet& set, Mission mission, std::uint64_t seed) 
   return mission;
 }
 
-NormalResidual normal_residual(const Mission& mission) {
+NormalResidual normal_residual(const Mission& mission, Tick tick) {
   const auto set = lab::manifold_at(mission.starts_m.front(), mission.domain);
   ERGOCAST_REQUIRE(set.has_value());
   lab::IdealTeam team(mission);
-  team.step();
+  while (team.tick() <= tick) team.step();
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   const Eigen::Vector2d across = set->normal.isZero() ? Eigen::Vector2d(1, 1) : set->normal.cwiseAbs();
   const Eigen::Vector2d wave = std::numbers::pi * across.cwiseQuotient(mission.domain.size_m);

@@ -24,13 +24,14 @@ std::span<const InvariantSet> invariant_sets();
 /// `mission` under the classical law (5), without noise or contraction, with a team drawn from `seed`.
 Mission classical(const InvariantSet& set, Mission mission, std::uint64_t seed);
 
-/// |B·n| of the first agent at the first tick (|B| where the set is a point).
+/// |B·n| of the first agent (|B| where the set is a point), n the normal of the set that it starts on.
 struct NormalResidual {
   /// In units of 2⁻⁵³ Σ |λ_k (c_k − μ_k)| (|n_x| mπ/Lx + |n_y| nπ/Ly): roundings of the summands,
   /// each taken as large as it gets.
   double units = 0;
   double share_of_b = 0;  ///< |B·n| / ‖B‖; 0 if B = 0
 };
-NormalResidual normal_residual(const Mission& mission);
+/// @param tick  0: at its start
+NormalResidual normal_residual(const Mission& mission, Tick tick = 0);
 
 }  // namespace ergocast::studies

@@ -4,6 +4,9 @@
 // in floating point; what they then do is what the figure shows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {
@@ -41,6 +44,27 @@ TEST_F(Fig1a, AgentAtTheFarCornerRunsDownTheDiagonalToItsPeak) {
   EXPECT_LT(farthest_off_m, 1e-6);
   team_.run_until(150);
   EXPECT_LT((team_.x_m(3) - Eigen::Vector2d(1450, 1450)).norm(), 200);
+}
+
+// Remark 1 says that such agents end in "only minute oscillations". They keep to their edge for ever,
+// but on it they come to rest only now and then.
+TEST_F(Fig1a, AgentsOnTheEdgesAlternateBetweenChatteringAndRunsOfHundredMetres) {
+  constexpr Tick kWindowTicks = 100;  // 10 s
+  int chattering = 0, running = 0;
+  double low_m = 2000, high_m = 0;
+  team_.run_until(150);
+  team_.run_until(1500, [&] {
+    ASSERT_EQ(team_.x_m(1).y(), 0);
+    low_m = std::min(low_m, team_.x_m(1).x());
+    high_m = std::max(high_m, team_.x_m(1).x());
+    if (team_.tick() % kWindowTicks != 0) return;
+    if (high_m - low_m < 5) ++chattering;
+    if (high_m - low_m > 50) ++running;
+    low_m = 2000, high_m = 0;
+  });
+  // 135 windows; which of them are quiet follows from rounding.
+  EXPECT_GT(chattering, 10);
+  EXPECT_GT(running, 10);
 }
 
 TEST_F(Fig1a, CoverageStaysPoor) {

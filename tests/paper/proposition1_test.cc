@@ -1,7 +1,8 @@
 // Proposition 1: under the classical law (5) corners, axes, midlines and diagonals are invariant.
 //
 // Its premises are more than the target's symmetry: on midlines and diagonals the team has to be
-// symmetric as well, because c_k is the whole team's, and diagonals need a square. On the edges
+// symmetric as well, because c_k is the whole team's; diagonals need a square, and a target with
+// ρ(x, y) = ρ(y, x), which symmetry about the midlines does not give. On the edges
 // x = 0 and y = 0 every sine is exactly 0, so nothing is needed at all. Everywhere else B·n is what
 // rounding leaves of 0, and (5) divides by ‖B‖: in the end rounding drives agents off.
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/target.h"
 #include "lab/manifolds.h"
 #include "studies/theorems/escape.h"
 #include "studies/theorems/invariance.h"
@@ -129,6 +131,21 @@ TEST(Proposition1, OriginIsAnEquilibriumOfAnyTeam) {
     ASSERT_EQ(team.b(0), Eigen::Vector2d(0, 0));
     ASSERT_EQ(team.x_m(0), Eigen::Vector2d(0, 0));
   });
+}
+
+TEST(Proposition1, DiagonalsNeedATargetThatIsTheSameWithXAndYExchanged) {
+  // Two peaks on the midline y = 1000: symmetric about both midlines, but not about a diagonal.
+  Mission mission = classical({{300, 300}});
+  TargetDensity two_peaks;
+  const Eigen::Matrix2d covariance_m2 = 1e4 * Eigen::Matrix2d::Identity();
+  two_peaks.gaussians = {{1, {500, 1000}, covariance_m2}, {1, {1500, 1000}, covariance_m2}};
+  mission.target_coefficients = target_coefficients(two_peaks, mission.domain, mission.basis).values;
+  PaperTeam team(mission);
+  team.step();
+  const Eigen::Vector2d normal = Eigen::Vector2d(1, -1).normalized();
+  EXPECT_GT(std::abs(team.b(0).dot(normal)), 0.01 * team.b(0).norm());
+  team.run_until(60);
+  EXPECT_GT(std::abs((team.x_m(0) - Eigen::Vector2d(300, 300)).dot(normal)), 100);
 }
 
 TEST(Proposition1, DiagonalsNeedASquare) {

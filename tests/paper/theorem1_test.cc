@@ -1,4 +1,7 @@
-// Theorem 1: with noise, an agent leaves every set that holds the classical law, almost surely.
+// Theorem 1: with noise, B·n is not 0 at any time after the start, almost surely.
+//
+// The theorem is about (9), without contraction, and about the set {B·n = 0}. The first test is about
+// that set. The others are about the agent's place, which is what people see, under (10).
 //
 // What many seeds can show, each statement but with probability 1e-9: how probable escape is at least
 // by the time the test says, and that the time is distributed as the linearised recursion predicts
@@ -12,6 +15,7 @@
 #include "lab/manifolds.h"
 #include "studies/theorems/confidence.h"
 #include "studies/theorems/escape.h"
+#include "studies/theorems/invariance.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {
@@ -46,6 +50,23 @@ class FromEverySet : public ::testing::TestWithParam<int> {
  protected:
   const Start& start() const { return studies::starts()[static_cast<std::size_t>(GetParam())]; }
 };
+
+TEST_P(FromEverySet, AfterOneStepTheNormalPartOfBIsNotZero) {
+  // What rounding leaves of 0 is at most 16 units, as for Proposition 1.
+  constexpr double kRoundingUnits = 16;
+  constexpr int kMany = 5000;
+  Mission mission = paper_from(start(), 0);
+  mission.law.contraction_gain_per_s = 0;
+  EXPECT_LE(studies::normal_residual(mission, 1).units, kRoundingUnits) << "without noise";
+  mission.law.noise_intensity = 1e-5;
+  int nonzero = 0;
+  for (int seed = 1; seed <= kMany; ++seed) {
+    mission.seed = static_cast<std::uint64_t>(seed);
+    if (studies::normal_residual(mission, 1).units > kRoundingUnits) ++nonzero;
+  }
+  EXPECT_EQ(nonzero, kMany) << "of " << start().name;
+  EXPECT_GT(studies::least_probability(kMany, kError), 0.99);
+}
 
 TEST_P(FromEverySet, AfterOneStepNoSeedIsOnTheSet) {
   constexpr int kMany = 20000;
