@@ -12,6 +12,11 @@ namespace {
 using lab::Holder;
 using lab::Invariants;
 
+/// The name of what was violated.
+std::string violated_by(const Invariants& team) {
+  return team.violation() ? std::string(name_of(team.violation()->invariant)) : "";
+}
+
 class InvariantsTest : public ::testing::Test {
  protected:
   InvariantsTest() : mission_(mission()), team_(mission_) {
@@ -59,8 +64,7 @@ class InvariantsTest : public ::testing::Test {
     table.average(c);
     return {self, &table, &c, &roster_, 90};
   }
-  /// The name of what was violated.
-  std::string violated() const { return team_.violation() ? team_.violation()->invariant : ""; }
+  std::string violated() const { return violated_by(team_); }
 
   static constexpr Author kOne{0, 11}, kTwo{1, 22}, kLeft{1, 21};
   Mission mission_;
@@ -135,7 +139,7 @@ TEST_F(InvariantsTest, DamagedMessagesAreRefusedAndOthersAreNot) {
   EXPECT_EQ(violated(), "");
   Invariants other(mission_);
   other.decoded(1, RecordAck{}, true);
-  EXPECT_EQ(other.violation()->invariant, "no damaged message is accepted");
+  EXPECT_EQ(violated_by(other), "no damaged message is accepted");
   team_.decoded(1, Refusal::kRange, false);
   EXPECT_EQ(violated(), "no whole message is refused");
 }
@@ -256,7 +260,7 @@ TEST_F(InvariantsTest, TheMissionEndsWell) {
     RunFacts facts;
     facts.ergodic_metric_last = metric;
     team.ended(1, running, failure, facts);
-    return team.violation() ? team.violation()->invariant : "";
+    return violated_by(team);
   };
   EXPECT_EQ(said("", "", 100, 0.1), "");
   EXPECT_EQ(said("agent 1", "", 100, 0.1), "everybody ends");
