@@ -24,8 +24,7 @@ inline double in_seconds(Instant at) {
 
 class Flight {
  public:
-  Flight(const TrialOptions& options, std::uint64_t seed, std::ostream& trajectory,
-         std::ostream& metrics);
+  Flight(const TrialOptions& options, std::ostream& trajectory, std::ostream& metrics);
   TrialResult run();
 
  private:
@@ -93,8 +92,8 @@ class Flight {
   TrialResult result();
 
   const TrialOptions& options_;
-  std::uint64_t seed_;
   Mission mission_;
+  std::uint64_t seed_;
   PlanDecoder decode_plan_;
   RunId run_;
   int agents_count_, seats_;

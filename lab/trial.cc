@@ -97,9 +97,8 @@ TrialResult Flight::result() {
   return result;
 }
 
-TrialResult fly_trial(const TrialOptions& options, std::uint64_t seed, std::ostream& trajectory,
-                      std::ostream& metrics) {
-  return Flight(options, seed, trajectory, metrics).run();
+TrialResult fly_trial(const TrialOptions& options, std::ostream& trajectory, std::ostream& metrics) {
+  return Flight(options, trajectory, metrics).run();
 }
 
 }  // namespace ergocast::lab
