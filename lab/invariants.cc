@@ -43,7 +43,7 @@ const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const Author
 std::string to_string(const Violation& v) {
   char t_text[32];
   std::snprintf(t_text, sizeof t_text, "%.4f", v.t_s);
-  return v.invariant + ": " + v.who + " at t = " + t_text + " s: " + v.numbers;
+  return std::string(name_of(v.invariant)) + ": " + v.who + " at t = " + t_text + " s: " + v.numbers;
 }
 
 double recovery_bound_s(const Mission& mission, const Faults& faults) {
@@ -73,7 +73,7 @@ Invariants::Invariants(const Mission& mission)
       weights_(sobolev_weights(mission.basis, mission.domain)),
       block_count_((mission.basis.mode_count() + kBlockSize - 1) / kBlockSize) {}
 
-void Invariants::violate(double t_s, const char* invariant, const std::string& who,
+void Invariants::violate(double t_s, Invariant invariant, const std::string& who,
                          std::string numbers) {
   if (!violation_) violation_ = {invariant, who, t_s, std::move(numbers)};
 }
@@ -101,7 +101,7 @@ void Invariants::check(double t_s, const WorldState& world) {
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (mission_.domain.contains(vehicle.position_m.head<2>())) continue;
-    violate(t_s, "positions are in the domain", "vehicle " + std::to_string(vehicle.id),
+    violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
   }
 }
@@ -133,7 +133,7 @@ void Invariants::check(double t_s, const Command& command) {
   const double margin_mps =
       8 * 0x1p-53 * (v_mps.norm() + contraction_mps.norm() + noise_mps.norm());
   if (u_mps <= (law.u_max_mps + push_mps) * (1 + 1e-12) + margin_mps) return;
-  violate(t_s, "|u| <= u_max", "agent " + std::to_string(command.header.sender),
+  violate(t_s, Invariant::kInputsBounded, "agent " + std::to_string(command.header.sender),
           text("|u| = ", u_mps, " m/s > ", law.u_max_mps, " m/s at tick ", command.header.tick));
 }
 
@@ -146,14 +146,14 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
   const bool zeroth_is_off =
       block.block == 0 && std::abs(block.sums[0] - covered_s) > covered_s * rounding(block.steps);
   if (!(largest_s <= most_s) || zeroth_is_off) {
-    violate(t_s, "|S_mn| <= S_00 = steps dt", name_of(block.author()),
+    violate(t_s, Invariant::kSumsBounded, name_of(block.author()),
             text("largest |S| = ", largest_s, " s, S_00 = ", block.sums[0], " s, steps dt = ",
                  covered_s, " s, block ", block.block));
   }
   if (relayer == kUnassigned || speaker == nullptr) return;
   ++relayed_;
   if (--relays_allowed_[speaker->self] >= 0) return;
-  violate(t_s, "a relay answers a digest", name_of(speaker->self),
+  violate(t_s, Invariant::kRelaysAnswerDigests, name_of(speaker->self),
           text("has relayed more blocks than the digests it heard could ask for; the last one of ",
                name_of(block.author())));
 }
@@ -163,7 +163,7 @@ void Invariants::check(double t_s, const Digest& digest, const Holder& speaker) 
     const DigestEntry& entry = digest.entries[static_cast<std::size_t>(i)];
     const std::int64_t held = steps_of(*speaker.table, entry.author);
     if (entry.steps == held) continue;
-    violate(t_s, "a digest says what is held", name_of(speaker.self),
+    violate(t_s, Invariant::kDigestsSayWhatIsHeld, name_of(speaker.self),
             text("says ", entry.steps, " steps of ", name_of(entry.author), ", holds ", held));
   }
 }
@@ -175,10 +175,10 @@ void Invariants::heard(const Author& listener, const Digest& digest) {
 void Invariants::decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged) {
   const auto* refusal = std::get_if<Refusal>(&result);
   if (!damaged && refusal != nullptr) {
-    violate(t_s, "no whole message is refused", "the codec", to_string(*refusal));
+    violate(t_s, Invariant::kWholeMessagesAccepted, "the codec", to_string(*refusal));
   }
   if (damaged && refusal == nullptr) {
-    violate(t_s, "no damaged message is accepted", "the codec",
+    violate(t_s, Invariant::kDamagedMessagesRefused, "the codec",
             text("a message of type ", std::get<Message>(result).index()));
   }
 }
@@ -198,7 +198,7 @@ void Invariants::check_steps(double t_s, const Holder& holder) {
     const std::int64_t steps = steps_of(*holder.table, author);
     std::int64_t& before = held_before[author];
     if (steps < before) {
-      violate(t_s, "what is held never shrinks", name_of(holder.self),
+      violate(t_s, Invariant::kHeldNeverShrinks, name_of(holder.self),
               text(before, " steps of ", name_of(author), " became ", steps));
     }
     before = steps;
@@ -208,7 +208,7 @@ void Invariants::check_steps(double t_s, const Holder& holder) {
     // A process that is replaced within a tick may have sampled it, too.
     const std::int64_t most = last_tick_ + 1 + lives_[id] - 1;
     if (steps <= most) continue;
-    violate(t_s, "no step counts twice", name_of(holder.self),
+    violate(t_s, Invariant::kNoStepCountsTwice, name_of(holder.self),
             text("holds ", steps, " steps of agent ", id, " in all, ", most, " are possible"));
   }
 }
@@ -217,19 +217,19 @@ void Invariants::check_average(double t_s, const Holder& holder) {
   const Coefficients expected = average_of(best_of({holder}));
   const double error = (*holder.coverage - expected).cwiseAbs().maxCoeff();
   if (error > rounding(last_tick_ * static_cast<std::int64_t>(authors_.size()))) {
-    violate(t_s, "c_k = sum S / sum elapsed of what is held", name_of(holder.self),
+    violate(t_s, Invariant::kAverageOfWhatIsHeld, name_of(holder.self),
             text("differs by ", error, " at tick ", holder.answered));
   }
   const double c_00 = (*holder.coverage)(0, 0);
   if (std::abs(c_00 - 1) > rounding(last_tick_)) {
-    violate(t_s, "c_00 = 1", name_of(holder.self), text("c_00 = ", c_00));
+    violate(t_s, Invariant::kZerothIsOne, name_of(holder.self), text("c_00 = ", c_00));
   }
 }
 
 void Invariants::refused(double t_s, const Author& who, const RefusalCounts& counts) {
   for (std::size_t kind = 0; kind < counts.size(); ++kind) {
     if (counts[kind] == 0) continue;
-    violate(t_s, "no honest message is refused", name_of(who),
+    violate(t_s, Invariant::kHonestMessagesAccepted, name_of(who),
             text(counts[kind], " refused: ", to_string(static_cast<Refusal>(kind))));
   }
 }
@@ -237,11 +237,11 @@ void Invariants::refused(double t_s, const Author& who, const RefusalCounts& cou
 void Invariants::finished(double t_s, const Author& who, const std::string& reason,
                           bool mission_over) {
   if (mission_over) return;
-  violate(t_s, "no agent ends before the mission", name_of(who), reason);
+  violate(t_s, Invariant::kNoEarlyEnd, name_of(who), reason);
 }
 
 void Invariants::wakeup(double t_s, const std::string& who, bool in_the_past) {
-  if (in_the_past) violate(t_s, "nobody asks to be woken in the past", who, "next_wakeup() <= now");
+  if (in_the_past) violate(t_s, Invariant::kNoWakeupInThePast, who, "next_wakeup() <= now");
 }
 
 // ---- liveness ------------------------------------------------------------------------------------
@@ -286,7 +286,7 @@ Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& r
 void Invariants::recovered(double t_s, const std::vector<Holder>& living) {
   for (const Holder& holder : living) {
     if (holder.table != nullptr && holder.answered >= 0) continue;
-    return violate(t_s, "everybody is back in the mission", name_of(holder.self),
+    return violate(t_s, Invariant::kEverybodyIsBack, name_of(holder.self),
                    holder.table == nullptr ? "is not admitted" : "has seen no tick");
   }
   const auto best = best_of(living);
@@ -327,7 +327,7 @@ void Invariants::check_view(double t_s, const Holder& holder,
   holder.table->average(c);
   const double error = (c - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s || error <= 2 * stale_s / (covered_s - stale_s)) return;
-  violate(t_s, "all agree on c_k within their staleness", name_of(holder.self),
+  violate(t_s, Invariant::kViewsAgree, name_of(holder.self),
           text("|c - c_true| = ", error, " > ", 2 * stale_s / (covered_s - stale_s), " with ", stale_s,
                " s of ", covered_s, " s unknown"));
 }
@@ -346,7 +346,7 @@ void Invariants::check_rows(double t_s, const Holder& holder,
     const std::int64_t tolerated = speaks ? 2 * period + 2 : 0;
     const std::int64_t held = steps_of(*holder.table, author);
     if ((held > 0 || newest == 0) && held + tolerated >= newest) continue;
-    violate(t_s, "everybody learns every row", name_of(holder.self),
+    violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
             text("holds ", held, " of ", newest, " steps of ", name_of(author),
                  speaks ? ", a member" : ", who has left"));
   }
@@ -354,25 +354,30 @@ void Invariants::check_rows(double t_s, const Holder& holder,
 
 void Invariants::check_quiet(double t_s) {
   if (recovered_ && relayed_ > 0 && mission_.radio_range_m <= 0) {
-    violate(t_s, "relays stop once all know all", "the team", text(relayed_, " blocks relayed"));
+    violate(t_s, Invariant::kRelaysStop, "the team", text(relayed_, " blocks relayed"));
   }
   recovered_ = true;
   relayed_ = 0;
 }
 
 void Invariants::ended(double t_s, const std::string& still_running, const std::string& failure,
-                       const RunFacts& facts) {
+                       const RunFacts& facts, Tick excused) {
   if (!still_running.empty()) {
-    violate(t_s, "everybody ends", still_running, text("at tick ", last_tick_));
+    violate(t_s, Invariant::kEverybodyEnds, still_running, text("at tick ", last_tick_));
   }
-  if (!failure.empty()) violate(t_s, "the mission does not fail", "the coordinator", failure);
+  if (!failure.empty()) violate(t_s, Invariant::kMissionDoesNotFail, "the coordinator", failure);
   if (last_tick_ < mission_.timing.tick_count) {
-    violate(t_s, "the mission reaches its last tick", "the world",
+    violate(t_s, Invariant::kLastTickReached, "the world",
             text("tick ", last_tick_, " of ", mission_.timing.tick_count));
+  }
+  if (facts.ticks + excused < mission_.timing.tick_count) {
+    violate(t_s, Invariant::kRecordIsWhole, "the logger",
+            text(facts.ticks, " of ", mission_.timing.tick_count, " ticks, and only ", excused,
+                 " may be missing"));
   }
   const double goal = mission_.goal_ergodic_metric;
   if (goal > 0 && !(facts.ergodic_metric_last <= goal)) {
-    violate(t_s, "the goal is reached", "the team",
+    violate(t_s, Invariant::kGoalReached, "the team",
             text("phi^2 = ", facts.ergodic_metric_last, " > ", goal));
   }
 }

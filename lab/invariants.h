@@ -5,10 +5,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -20,8 +23,74 @@
 
 namespace ergocast::lab {
 
+enum class Invariant : std::uint8_t {
+  // Safety.
+  kPositionsInTheDomain,
+  kInputsBounded,
+  kSumsBounded,
+  kRelaysAnswerDigests,
+  kDigestsSayWhatIsHeld,
+  kWholeMessagesAccepted,
+  kDamagedMessagesRefused,
+  kHeldNeverShrinks,
+  kNoStepCountsTwice,
+  kAverageOfWhatIsHeld,
+  kZerothIsOne,
+  kHonestMessagesAccepted,
+  kNoEarlyEnd,
+  kNoWakeupInThePast,
+  // Liveness.
+  kEverybodyIsBack,
+  kEverybodyLearnsEveryRow,
+  kViewsAgree,
+  kRelaysStop,
+  kEverybodyEnds,
+  kMissionDoesNotFail,
+  kLastTickReached,
+  kRecordIsWhole,
+  kGoalReached,
+  kCount,
+};
+/// All of them, by number, with the names that reports call them by.
+inline constexpr std::array<std::pair<Invariant, std::string_view>,
+                            static_cast<std::size_t>(Invariant::kCount)>
+    kInvariants{{
+        {Invariant::kPositionsInTheDomain, "positions are in the domain"},
+        {Invariant::kInputsBounded, "|u| <= u_max"},
+        {Invariant::kSumsBounded, "|S_mn| <= S_00 = steps dt"},
+        {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
+        {Invariant::kDigestsSayWhatIsHeld, "a digest says what is held"},
+        {Invariant::kWholeMessagesAccepted, "no whole message is refused"},
+        {Invariant::kDamagedMessagesRefused, "no damaged message is accepted"},
+        {Invariant::kHeldNeverShrinks, "what is held never shrinks"},
+        {Invariant::kNoStepCountsTwice, "no step counts twice"},
+        {Invariant::kAverageOfWhatIsHeld, "c_k = sum S / sum elapsed of what is held"},
+        {Invariant::kZerothIsOne, "c_00 = 1"},
+        {Invariant::kHonestMessagesAccepted, "no honest message is refused"},
+        {Invariant::kNoEarlyEnd, "no agent ends before the mission"},
+        {Invariant::kNoWakeupInThePast, "nobody asks to be woken in the past"},
+        {Invariant::kEverybodyIsBack, "everybody is back in the mission"},
+        {Invariant::kEverybodyLearnsEveryRow, "everybody learns every row"},
+        {Invariant::kViewsAgree, "all agree on c_k within their staleness"},
+        {Invariant::kRelaysStop, "relays stop once all know all"},
+        {Invariant::kEverybodyEnds, "everybody ends"},
+        {Invariant::kMissionDoesNotFail, "the mission does not fail"},
+        {Invariant::kLastTickReached, "the mission reaches its last tick"},
+        {Invariant::kRecordIsWhole, "the record has every tick"},
+        {Invariant::kGoalReached, "the goal is reached"},
+    }};
+constexpr std::string_view name_of(Invariant invariant) {
+  return kInvariants[static_cast<std::size_t>(invariant)].second;
+}
+static_assert([] {
+  for (std::size_t i = 0; i < kInvariants.size(); ++i) {
+    if (kInvariants[i].first != static_cast<Invariant>(i) || kInvariants[i].second.empty()) return false;
+  }
+  return true;
+}(), "every invariant has a name, at its place");
+
 struct Violation {
-  std::string invariant;  ///< its name
+  Invariant invariant;
   std::string who;
   double t_s = 0;  ///< virtual, since the mission's begin
   std::string numbers;
@@ -77,8 +146,9 @@ class Invariants {
   /// repeats anything, unless radios are limited.
   void recovered(double t_s, const std::vector<Holder>& living);
   /// Everybody has ended, or the time is up.
+  /// @param excused  ticks whose states may have been kept from the logger
   void ended(double t_s, const std::string& still_running, const std::string& failure,
-             const RunFacts& facts);
+             const RunFacts& facts, Tick excused);
 
   const std::optional<Violation>& violation() const { return violation_; }
   /// Only measures how far the living are from c_true, for largest_view_error().
@@ -94,7 +164,7 @@ class Invariants {
     std::int64_t steps = 0;
     std::array<double, kBlockSize> sums{};
   };
-  void violate(double t_s, const char* invariant, const std::string& who, std::string numbers);
+  void violate(double t_s, Invariant invariant, const std::string& who, std::string numbers);
   void check(double t_s, const WorldState& world);
   void check(double t_s, const Command& command);
   void check(double t_s, const Contribution& block, AgentId relayer, const Holder* speaker);

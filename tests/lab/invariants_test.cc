@@ -12,6 +12,11 @@ namespace {
 using lab::Holder;
 using lab::Invariants;
 
+/// The name of what was violated.
+std::string violated_by(const Invariants& team) {
+  return team.violation() ? std::string(name_of(team.violation()->invariant)) : "";
+}
+
 class InvariantsTest : public ::testing::Test {
  protected:
   InvariantsTest() : mission_(mission()), team_(mission_) {
@@ -59,8 +64,7 @@ class InvariantsTest : public ::testing::Test {
     table.average(c);
     return {self, &table, &c, &roster_, 90};
   }
-  /// The name of what was violated.
-  std::string violated() const { return team_.violation() ? team_.violation()->invariant : ""; }
+  std::string violated() const { return violated_by(team_); }
 
   static constexpr Author kOne{0, 11}, kTwo{1, 22}, kLeft{1, 21};
   Mission mission_;
@@ -135,7 +139,7 @@ TEST_F(InvariantsTest, DamagedMessagesAreRefusedAndOthersAreNot) {
   EXPECT_EQ(violated(), "");
   Invariants other(mission_);
   other.decoded(1, RecordAck{}, true);
-  EXPECT_EQ(other.violation()->invariant, "no damaged message is accepted");
+  EXPECT_EQ(violated_by(other), "no damaged message is accepted");
   team_.decoded(1, Refusal::kRange, false);
   EXPECT_EQ(violated(), "no whole message is refused");
 }
@@ -250,18 +254,23 @@ TEST_F(InvariantsTest, RelaysStopOnceAllKnowAll) {
 TEST_F(InvariantsTest, TheMissionEndsWell) {
   RunFacts good;
   good.ergodic_metric_last = 0.1;
-  const auto said = [&](const std::string& running, const std::string& failure, Tick tick, double metric) {
+  const auto said = [&](const std::string& running, const std::string& failure, Tick tick,
+                        double metric, Tick recorded = 100, Tick excused = 0) {
     Invariants team(mission_);
     team.sent(0, world(tick, {1, 1}), nullptr);
     RunFacts facts;
     facts.ergodic_metric_last = metric;
-    team.ended(1, running, failure, facts);
-    return team.violation() ? team.violation()->invariant : "";
+    facts.ticks = recorded;
+    team.ended(1, running, failure, facts, excused);
+    return violated_by(team);
   };
   EXPECT_EQ(said("", "", 100, 0.1), "");
   EXPECT_EQ(said("agent 1", "", 100, 0.1), "everybody ends");
   EXPECT_EQ(said("", "bad luck", 100, 0.1), "the mission does not fail");
   EXPECT_EQ(said("", "", 99, 0.1), "the mission reaches its last tick");
+  EXPECT_EQ(said("", "", 100, 0.1, 0), "the record has every tick");
+  EXPECT_EQ(said("", "", 100, 0.1, 79, 20), "the record has every tick");
+  EXPECT_EQ(said("", "", 100, 0.1, 80, 20), "");
   EXPECT_EQ(said("", "", 100, 0.2), "the goal is reached");
 }
 
