@@ -297,6 +297,8 @@ void Agent::begin_tick(Instant now, Outbox& out) {
   roster_revision_ = view.roster_revision;
   x_m_ = view.position_m.head<2>();
   basis_at_.emplace(x_m_, mission.domain, mission.basis);
+  // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
+  if (tick_ < active_from_) return;
   table_->add_sample(self_, *basis_at_);
   if (tick_ >= next_broadcast_tick_) broadcast(out);
 }
@@ -304,7 +306,7 @@ void Agent::begin_tick(Instant now, Outbox& out) {
 /// Whether the ticks have stopped coming: then what we have is said now and then without waiting for
 /// more. In lockstep nobody may hear of a tick before the broadcast that was announced.
 bool Agent::stalled(Instant now) const {
-  return follower_.mission()->timing.pace == Pace::kRealtime && tick_ >= 0 &&
+  return follower_.mission()->timing.pace == Pace::kRealtime && tick_ >= active_from_ &&
          now - std::max(tick_begun_, stalled_said_) >= kWorldSilence;
 }
 

@@ -81,6 +81,7 @@ void Coordinator::on(const AgentStatus& status, Instant now) {
   if (member.status && member.status->header.sequence >= status.header.sequence) return;
   member.status = status;
   member.heard = now;
+  team_tick_ = std::max(team_tick_, std::min(status.header.tick, mission_->timing.tick_count));
   RosterEntry* entry = active_entry(status.header.sender);
   const bool leaves = status.phase == AgentPhase::kFinished && state_ == MissionState::kRunning &&
                       status.header.tick < mission_->timing.tick_count;
@@ -151,8 +152,10 @@ void Coordinator::admit(const Author& author, Instant now) {
     return entry.author.agent == author.agent;
   });
   if (roster_.size() >= kMaxRosterEntries || lives >= kMaxIncarnationsPerAgent) return;
-  if (RosterEntry* former = active_entry(author.agent)) former->active_until = tick_;
-  const Tick from = state_ == MissionState::kRunning ? tick_ : 0;
+  // The agents may be further than the last state that we heard of a world that is dead by now.
+  const Tick newest = std::max(tick_, team_tick_);
+  if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
+  const Tick from = state_ == MissionState::kRunning ? newest : 0;
   roster_.push_back({author, from, -1});
   std::sort(roster_.begin(), roster_.end(),
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });

@@ -96,12 +96,13 @@ void Coordinator::take_over(Instant now) {
   roster_ = follower_.roster();
   state_ = follower_.state();
   reason_ = follower_.reason();
-  // The predecessor's, if the world has not spoken meanwhile.
+  // The predecessor's or the agents', if the world has not spoken meanwhile: it may have died, too.
   for (const MissionPart& part : follower_.parts()) tick_ = std::max(tick_, part.header.tick);
+  team_tick_ = std::min(team_tick_, mission_->timing.tick_count);
+  tick_ = std::max(std::min(tick_, mission_->timing.tick_count), team_tick_);
   // Above all that former successors have said, also what only agents know that we do not hear: the
   // later a takeover, the higher its revisions.
-  const Tick now_tick = std::min(std::max(tick_, team_tick_), mission_->timing.tick_count);
-  revision_ = std::max(follower_.revision() + kRevisionLead, (now_tick + 1) * kRevisionLead);
+  revision_ = std::max(follower_.revision() + kRevisionLead, (tick_ + 1) * kRevisionLead);
   if (follower_.over()) ended_ = now;
   tick_since_ = now;
   for (const RosterEntry& entry : roster_) members_[entry.author].heard = now;

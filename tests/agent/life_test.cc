@@ -221,17 +221,46 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   EXPECT_EQ(agent.coverage()->steps_held(former), 2);
 }
 
-TEST(AgentRestarted, DoesNotCoverAgainWhatTheWorldOnlyRepeatsForTheLogger) {
-  const Mission mission = small_mission(1);
+/// Agent 0 in its second life, admitted from tick 7 on by a roster of revision 9.
+Agent successor_from_7(const Mission& mission) {
   Agent agent(identity_of(0), decoder_of(mission));
   std::vector<RosterEntry> roster{{{0, 55}, 0, 7}, {author_of(0), 7, -1}};
   agent.receive(mission_part(9, MissionState::kRunning, roster), at(0s));
-  WorldState repeated = world_state(6, {{100, 500}});
+  agent.receive(blocks_of(mission, {0, 55}, std::vector<Eigen::Vector2d>(7, {900, 900}), 7).front(), at(0s));
+  return agent;
+}
+
+TEST(AgentRestarted, DoesNotCoverAgainWhatTheWorldOnlyRepeatsForTheLogger) {
+  const Mission mission = small_mission(1);
+  Agent agent = successor_from_7(mission);
+  WorldState repeated = world_state(6, {{100, 500}}, 5);
   repeated.roster_revision = 8;
-  EXPECT_TRUE(only<Contribution>(tell(agent, repeated)).empty());
-  // A restarted world may stand there, too; it knows of us and waits for our answer.
-  repeated.roster_revision = 9;
-  EXPECT_EQ(only<Contribution>(tell(agent, repeated)).size(), 1u);
+  EXPECT_TRUE(only<Command>(tell(agent, repeated)).empty());
+  EXPECT_EQ(agent.tick(), -1);
+}
+
+TEST(AgentRestarted, CoversNothingOfATickBeforeItsFirstThatARestartedWorldStandsAt) {
+  const Mission mission = small_mission(1);
+  Agent agent = successor_from_7(mission);
+  WorldState behind = world_state(6, {{100, 500}});
+  behind.roster_revision = 9;
+  const Outbox said = tell(agent, behind);
+  EXPECT_EQ(only<Command>(said).size(), 1u) << "the world waits for it";
+  EXPECT_TRUE(only<Contribution>(said).empty()) << "its predecessor has covered the tick";
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 0);
+  const auto covered = only<Contribution>(tell(agent, world_state(7, {{100, 500}})));
+  ASSERT_EQ(covered.size(), 1u);
+  EXPECT_EQ(covered[0].steps, 1);
+}
+
+TEST(AgentRestarted, SaysNothingOfACoverageThatHasNotBegunWhileTheWorldIsSilent) {
+  Mission mission = small_mission(1);
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = successor_from_7(mission);
+  WorldState behind = world_state(6, {{100, 500}});
+  behind.roster_revision = 9;
+  tell(agent, behind);
+  EXPECT_TRUE(only<Contribution>(advance(agent, at(10s))).empty());
 }
 
 TEST(AgentEnd, AStopAtOnceEndsItAndTheLastStatusSaysSoOnce) {

@@ -99,6 +99,21 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
   EXPECT_EQ(entry(99).active_until, -1);
 }
 
+TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
+  // The world's last state was lost to the coordinator, and the world died with it.
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.receive(world_where(7, {6, 6}), at(1s));
+  AgentStatus status = status_of(1, 1);
+  status.header.tick = 8;
+  coordinator.receive(status, at(1s));
+  coordinator.receive(hello_of(0, 99), at(3s));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  for (const RosterEntry& entry : coordinator.roster()) {
+    if (entry.author == author_of(1)) continue;
+    EXPECT_EQ(entry.author == author_of(0) ? entry.active_until : entry.active_from, 8);
+  }
+}
+
 // A container engine starts a dead agent again within a second, and nobody tells it its number.
 TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));

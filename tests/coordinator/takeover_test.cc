@@ -268,6 +268,30 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
   }
 }
 
+TEST(TookOver, KnowsTheTickThatOnlyTheAgentsHaveSeen) {
+  // World and coordinator died together; the agents were further than the coordinator knew.
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  AgentStatus status = status_of(0, 1);
+  status.header.tick = 12;
+  coordinator.receive(status, at(0s));
+  coordinator.receive(memory_of(3, roster_of(2), 3), at(100ms));
+  advance(coordinator, at(700ms));
+  ASSERT_TRUE(coordinator.took_over());
+  EXPECT_EQ(coordinator.tick(), 12);
+}
+
+TEST(TookOver, BelievesNoTickBeyondTheMissions) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  AgentStatus status = status_of(0, 1);
+  status.header.tick = 1'000'000;
+  coordinator.receive(status, at(0s));
+  coordinator.receive(memory_of(3), at(100ms));
+  advance(coordinator, at(700ms));
+  EXPECT_EQ(coordinator.tick(), 100);
+}
+
 TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
   Coordinator coordinator = taken_over(memory_of(3));
   coordinator.receive(world_where(100, {99, 99}), at(2s));
