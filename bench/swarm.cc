@@ -5,22 +5,14 @@
 #include <benchmark/benchmark.h>
 
 #include <optional>
-#include <ostream>
-#include <streambuf>
 #include <string>
 
 #include "lab/swarm.h"
+#include "logger/nowhere.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::bench {
 namespace {
-
-/// A file on a disk without end and without weight.
-class Nowhere : public std::streambuf {
- protected:
-  std::streamsize xsputn(const char*, std::streamsize count) override { return count; }
-  int_type overflow(int_type c) override { return traits_type::not_eof(c); }
-};
 
 lab::Options options_of(const Scenario& scenario) {
   lab::Options options;
@@ -39,11 +31,10 @@ void Swarm(benchmark::State& state, const std::string& name) {
   if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
 
   Nowhere nowhere;
-  std::ostream trajectory(&nowhere), metrics(&nowhere);
   std::int64_t messages = 0, agent_steps = 0;
   for (auto _ : state) {
     state.PauseTiming();  // reading the plan and integrating the target are no steps
-    std::optional<lab::Swarm> swarm(std::in_place, options_of(*scenario), trajectory, metrics);
+    std::optional<lab::Swarm> swarm(std::in_place, options_of(*scenario), nowhere, nowhere);
     state.ResumeTiming();
     swarm->run();
     state.PauseTiming();

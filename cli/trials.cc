@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
-#include <ostream>
 
 #include "cli/commands.h"
 #include "cli/complain.h"
@@ -11,7 +10,9 @@
 #include "cli/run_directory.h"
 #include "cli/trial_table.h"
 #include "cli/workers.h"
+#include "deploy/script.h"
 #include "lab/trial.h"
+#include "logger/nowhere.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
@@ -55,13 +56,13 @@ TrialReport report_of_death(std::uint64_t seed, const std::string& how) {
 
 /// The command that flies one seed again.
 std::string replay_of(const TrialsOptions& options, std::uint64_t seed) {
-  std::string command = "ergocast simulate " + options.mission.scenario.string();
+  std::string command = "ergocast simulate " + shell_word(options.mission.scenario.string());
   const Overrides& over = options.mission.overrides;
   if (over.duration_s) command += " --duration " + text_of("%.17g", *over.duration_s);
   if (over.agents) command += " --agents " + std::to_string(*over.agents);
   if (over.pace == Pace::kLockstep) command += " --lockstep";
   if (over.realtime_factor) command += " --realtime " + text_of("%.17g", *over.realtime_factor);
-  if (!options.faults.empty()) command += " --faults " + options.faults;
+  if (!options.faults.empty()) command += " --faults " + shell_word(options.faults);
   return command + " --seeds " + std::to_string(seed);
 }
 
@@ -130,14 +131,15 @@ int trials(const TrialsOptions& options) {
   if (!path.empty()) csv.open(path);
   if (!path.empty() && !csv) return complain(kExitBadInput, path.string() + ": cannot be written (--out takes a file here)");
 
-  std::ostream nowhere(nullptr);
+  Nowhere nowhere;
   const auto fly = [&](std::uint64_t job) {
     const std::uint64_t seed = options.seeds.first + job;
-    return report_of(lab::fly_trial({scenario->plan(), decode_plan, (*faults)(seed), version()}, seed,
+    const Scenario mission = scenario->with_seed(seed);
+    return report_of(lab::fly_trial({mission.plan(), decode_plan, (*faults)(seed), version()},
                                     nowhere, nowhere));
   };
   StopSignals signals;
-  Desk desk(options, path.empty() ? nowhere : csv);
+  Desk desk(options, path.empty() ? static_cast<std::ostream&>(nowhere) : csv);
   const auto start = std::chrono::steady_clock::now();
   Jobs jobs = jobs_with_results<TrialReport>(
       fly, [&](std::uint64_t, const TrialReport& report) { desk.take(report); });

@@ -22,24 +22,17 @@ PlanDecoder decoder_of(const Mission& mission, const TrialOptions& options) {
   };
 }
 
-Mission mission_of(const TrialOptions& options, std::uint64_t seed) {
-  auto mission = std::get<Mission>(options.decode_plan(options.plan));
-  mission.seed = seed;
-  return mission;
-}
-
 }  // namespace
 
-Flight::Flight(const TrialOptions& options, std::uint64_t seed, std::ostream& trajectory,
-               std::ostream& metrics)
+Flight::Flight(const TrialOptions& options, std::ostream& trajectory, std::ostream& metrics)
     : options_(options),
-      seed_(seed),
-      mission_(mission_of(options, seed)),
+      mission_(std::get<Mission>(options.decode_plan(options.plan))),
+      seed_(mission_.seed),
       decode_plan_(decoder_of(mission_, options)),
-      run_(random_words(seed, Purpose::kIncarnation, ~0U, 0).first | 1),
+      run_(random_words(seed_, Purpose::kIncarnation, ~0U, 0).first | 1),
       agents_count_(static_cast<int>(mission_.starts_m.size())),
       seats_(agents_count_ + 3),
-      network_(seed, options.faults, seats_),
+      network_(seed_, options.faults, seats_),
       invariants_(mission_),
       processes_(static_cast<std::size_t>(seats_)),
       agents_(static_cast<std::size_t>(agents_count_)),
@@ -48,11 +41,11 @@ Flight::Flight(const TrialOptions& options, std::uint64_t seed, std::ostream& tr
                  mission_.timing.realtime_factor),
       answered_(static_cast<std::size_t>(agents_count_), -1),
       recoveries_(static_cast<std::size_t>(agents_count_)) {
-  figures_.seed = seed;
+  figures_.seed = seed_;
   faulty_s_ = options.faults.lasting_share * planned_s_;
   // To the end means to the end of a mission that began late, too.
   if (options.faults.lasting_share >= 1) faulty_s_ += mission_.timing.admission_timeout_s;
-  incidents_ = incidents(options.faults, seed, agents_count_, faulty_s_);
+  incidents_ = incidents(options.faults, seed_, agents_count_, faulty_s_);
   for (const Seat seat : {world_seat(), recorder_seat()}) {
     hears_bus_[static_cast<std::size_t>(Bus::kCommand)].set(static_cast<std::size_t>(seat));
   }

@@ -24,8 +24,7 @@ inline double in_seconds(Instant at) {
 
 class Flight {
  public:
-  Flight(const TrialOptions& options, std::uint64_t seed, std::ostream& trajectory,
-         std::ostream& metrics);
+  Flight(const TrialOptions& options, std::ostream& trajectory, std::ostream& metrics);
   TrialResult run();
 
  private:
@@ -93,8 +92,8 @@ class Flight {
   TrialResult result();
 
   const TrialOptions& options_;
-  std::uint64_t seed_;
   Mission mission_;
+  std::uint64_t seed_;
   PlanDecoder decode_plan_;
   RunId run_;
   int agents_count_, seats_;
@@ -114,6 +113,7 @@ class Flight {
   std::vector<Ending> endings_;
   double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
   std::optional<Instant> healed_, failed_since_;
+  Tick excused_ = 0;       // ticks whose states may have been kept from the logger
   bool end_said_ = false;  // by a coordinator
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
 

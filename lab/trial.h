@@ -24,7 +24,7 @@
 namespace ergocast::lab {
 
 struct TrialOptions {
-  std::vector<std::byte> plan;  ///< compiled; its seed is replaced by the trial's
+  std::vector<std::byte> plan;  ///< compiled; its seed is the trial's
   PlanDecoder decode_plan;
   Faults faults;
   std::string version;
@@ -53,9 +53,8 @@ struct TrialResult {
   bool timed_out = false;
 };
 
-/// @param trajectory, metrics  what the recorder writes; may be null streams
-/// @pre options.plan decodes.
-TrialResult fly_trial(const TrialOptions& options, std::uint64_t seed, std::ostream& trajectory,
-                      std::ostream& metrics);
+/// @param trajectory, metrics  what the recorder writes
+/// @pre options.plan decodes, and both streams are good.
+TrialResult fly_trial(const TrialOptions& options, std::ostream& trajectory, std::ostream& metrics);
 
 }  // namespace ergocast::lab

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/require.h"
 #include "core/silence.h"
 
 namespace ergocast {
@@ -49,6 +50,7 @@ Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
       follower_(std::move(decode_plan)),
       trajectory_(trajectory),
       metrics_(metrics) {
+  ERGOCAST_REQUIRE(writing());
   trajectory_ << kTrajectoryHeader << '\n';
   metrics_ << kMetricsHeader << '\n';
 }

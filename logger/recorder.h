@@ -44,8 +44,10 @@ class Recorder {
   /// Lives of agents whose last status is kept.
   static constexpr std::size_t kMaxStatuses = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
 
-  /// Writes to streams that outlive it; the caller mends those that are bad and says go_on().
+  /// Writes to streams that outlive it; the caller mends those that become bad and says go_on().
   /// @param run  the run to record; 0: the run of the first mission heard
+  /// @pre both streams are good: one that is bad from the beginning would never be written. Who
+  /// wants no tables gives a Nowhere (logger/nowhere.h).
   Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan, std::ostream& trajectory,
            std::ostream& metrics);
 

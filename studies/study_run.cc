@@ -1,15 +1,15 @@
 #include "studies/study_run.h"
 
 #include <algorithm>
-#include <ostream>
 #include <variant>
 #include <vector>
 
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "lab/ideal_team.h"
-#include "studies/study_measure.h"
 #include "lab/swarm.h"
+#include "logger/nowhere.h"
+#include "studies/study_measure.h"
 
 namespace ergocast::studies {
 namespace {
@@ -112,7 +112,7 @@ StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecode
     if (seat == lab::kLoggerSeat) observer.hear(message);
     return true;
   };
-  std::ostream nowhere(nullptr);
+  Nowhere nowhere;
   lab::Swarm(std::move(options), nowhere, nowhere).run();
   return observer.figures();
 }

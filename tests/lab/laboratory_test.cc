@@ -44,7 +44,8 @@ struct Flight {
 Flight fly(const Faults& faults, std::uint64_t seed, const Scenario& scenario = faulty_team()) {
   std::ostringstream trajectory, metrics;
   Flight flight;
-  flight.result = lab::fly_trial({scenario.plan(), decode_plan, faults, "test"}, seed, trajectory, metrics);
+  flight.result = lab::fly_trial({scenario.with_seed(seed).plan(), decode_plan, faults, "test"},
+                                 trajectory, metrics);
   flight.trajectory = trajectory.str();
   return flight;
 }

@@ -1,4 +1,5 @@
 // A recorder whose streams take nothing for a while, as on a full disk.
+#include "logger/nowhere.h"
 #include "tests/logger/record.h"
 
 namespace ergocast {
@@ -104,6 +105,18 @@ TEST(FullDisk, UntilTheEndOfTheMissionTheRecordIsWhatFitted) {
   EXPECT_TRUE(record.recorder.finished());
   EXPECT_STREQ(record.recorder.result(), "stopped");
   EXPECT_EQ(record.trajectory_rows().size(), 10U);
+}
+
+TEST(FullDisk, NoStreamIsFullFromTheBeginning) {
+  Nowhere nowhere;
+  const auto record_to = [](std::ostream& trajectory, std::ostream& metrics) {
+    Recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
+  };
+  record_to(nowhere, nowhere);
+  EXPECT_TRUE(nowhere << 'x' << "a line\n" << std::flush);
+  std::ostream no_buffer(nullptr);
+  EXPECT_DEATH(record_to(no_buffer, nowhere), "broken precondition: writing");
+  EXPECT_DEATH(record_to(nowhere, no_buffer), "broken precondition: writing");
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+// Where tables go that nobody keeps.
+#pragma once
+
+#include <ostream>
+#include <streambuf>
+
+namespace ergocast {
+
+/// Takes everything and is always good: a file on a disk without end and without weight. A stream
+/// without a buffer is bad from the beginning instead, as on a full disk.
+class Nowhere : public std::ostream {
+ public:
+  Nowhere() : std::ostream(nullptr) { rdbuf(&buffer_); }
+
+ private:
+  struct Buffer : std::streambuf {
+    std::streamsize xsputn(const char*, std::streamsize count) override { return count; }
+    int_type overflow(int_type c) override { return traits_type::not_eof(c); }
+  };
+  Buffer buffer_;
+};
+
+}  // namespace ergocast
