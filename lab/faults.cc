@@ -80,6 +80,13 @@ Faults drawn(std::uint64_t seed) {
   return faults;
 }
 
+bool spares_the_record(const Faults& f) {
+  const bool messages = f.loss > 0 || f.duplication > 0 || f.corruption > 0 || f.delay_mean_s > 0 ||
+                        f.reordering > 0 || f.clogging > 0 || f.replay > 0;
+  return f.partitions_per_s <= 0 && f.world_crashes_per_s <= 0 &&
+         (!messages || f.swarm_bus_only > 0);
+}
+
 std::vector<Incident> incidents(const Faults& faults, std::uint64_t seed, int agents,
                                 double horizon_s) {
   std::vector<Incident> all;

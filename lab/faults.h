@@ -37,6 +37,9 @@ struct Faults {
   double lasting_share = 0.6;
 };
 
+/// Whether nothing happens between the world and the logger, nor to them.
+bool spares_the_record(const Faults& faults);
+
 /// One member of Faults as people write it.
 struct FaultField {
   const char* name;

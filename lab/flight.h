@@ -114,6 +114,7 @@ class Flight {
   std::vector<Ending> endings_;
   double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
   std::optional<Instant> healed_, failed_since_;
+  Tick excused_ = 0;       // ticks whose states may have been kept from the logger
   bool end_said_ = false;  // by a coordinator
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
 

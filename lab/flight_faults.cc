@@ -106,6 +106,7 @@ void Flight::restart_due() {
 
 void Flight::heal() {
   healed_ = now_;
+  if (!spares_the_record(options_.faults)) excused_ = invariants_.last_tick() + 1;
   endings_.clear();
   network_.heal(now_);
   for (Process& process : processes_) {

@@ -34,7 +34,8 @@ void IdealTeam::step() {
   table_.average(coverage_);
   controller_.see(coverage_);
   for (Agent& agent : agents_) {
-    agent.v_mps = controller_.command(agent.author.agent, tick_, agent.x_m, agent.at);
+    agent.v_mps = within_speed_limit(
+        mission_, controller_.command(agent.author.agent, tick_, agent.x_m, agent.at));
     agent.b = controller_.spectral_gradient();
   }
   for (Agent& agent : agents_) {

@@ -1,7 +1,7 @@
 // The method without messages: every agent knows everything at once, as in the paper's equations.
 //
 // What a distributed team in lockstep does that tells everything each tick, bit for bit
-// (tests/paper/same_as_swarm_test.cc), and several times as fast: for statistics over many seeds.
+// (tests/studies/same_as_simulate_test.cc), and several times as fast: for statistics over many seeds.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ class IdealTeam {
   std::size_t size() const { return agents_.size(); }
   /// Where an agent is now.
   const Eigen::Vector2d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
-  /// Its command in the last step.
+  /// Its velocity in the last step: the command, as far as the speed limit allows.
   const Eigen::Vector2d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
   const Eigen::Vector2d& b(std::size_t agent) const { return agents_[agent].b; }

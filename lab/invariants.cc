@@ -361,7 +361,7 @@ void Invariants::check_quiet(double t_s) {
 }
 
 void Invariants::ended(double t_s, const std::string& still_running, const std::string& failure,
-                       const RunFacts& facts) {
+                       const RunFacts& facts, Tick excused) {
   if (!still_running.empty()) {
     violate(t_s, Invariant::kEverybodyEnds, still_running, text("at tick ", last_tick_));
   }
@@ -369,6 +369,11 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
   if (last_tick_ < mission_.timing.tick_count) {
     violate(t_s, Invariant::kLastTickReached, "the world",
             text("tick ", last_tick_, " of ", mission_.timing.tick_count));
+  }
+  if (facts.ticks + excused < mission_.timing.tick_count) {
+    violate(t_s, Invariant::kRecordIsWhole, "the logger",
+            text(facts.ticks, " of ", mission_.timing.tick_count, " ticks, and only ", excused,
+                 " may be missing"));
   }
   const double goal = mission_.goal_ergodic_metric;
   if (goal > 0 && !(facts.ergodic_metric_last <= goal)) {

@@ -47,6 +47,7 @@ enum class Invariant : std::uint8_t {
   kEverybodyEnds,
   kMissionDoesNotFail,
   kLastTickReached,
+  kRecordIsWhole,
   kGoalReached,
   kCount,
 };
@@ -75,6 +76,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kEverybodyEnds, "everybody ends"},
         {Invariant::kMissionDoesNotFail, "the mission does not fail"},
         {Invariant::kLastTickReached, "the mission reaches its last tick"},
+        {Invariant::kRecordIsWhole, "the record has every tick"},
         {Invariant::kGoalReached, "the goal is reached"},
     }};
 constexpr std::string_view name_of(Invariant invariant) {
@@ -144,8 +146,9 @@ class Invariants {
   /// repeats anything, unless radios are limited.
   void recovered(double t_s, const std::vector<Holder>& living);
   /// Everybody has ended, or the time is up.
+  /// @param excused  ticks whose states may have been kept from the logger
   void ended(double t_s, const std::string& still_running, const std::string& failure,
-             const RunFacts& facts);
+             const RunFacts& facts, Tick excused);
 
   const std::optional<Violation>& violation() const { return violation_; }
   /// Only measures how far the living are from c_true, for largest_view_error().

@@ -83,7 +83,7 @@ TrialResult Flight::result() {
   if (!result.timed_out && !invariants_.violation()) {
     const bool healed = options_.faults.lasting_share < 1;
     healed ? invariants_.recovered(t_s, living()) : invariants_.compare_views(living());
-    invariants_.ended(t_s, still_running(), failed() ? coordinator_->reason() : "", recorder_.facts());
+    invariants_.ended(t_s, still_running(), failed() ? coordinator_->reason() : "", recorder_.facts(), excused_);
   }
   result.violation = invariants_.violation();
   figures_.virtual_s = t_s;

@@ -38,7 +38,7 @@ struct StudyFigures {
   /// ‖x − centre of contraction‖², over all agents and ticks.
   double offset2_mean_m2 = 0, offset2_max_m2 = 0;
   double edge_share = 0;      ///< of all agents' ticks
-  double speed_mean_mps = 0;  ///< of the commands, contraction and noise included
+  double speed_mean_mps = 0;  ///< of the vehicles: their commands within the speed limit
   std::int64_t messages = 0;  ///< contributions sent, those repeated for others included
 };
 

@@ -254,18 +254,23 @@ TEST_F(InvariantsTest, RelaysStopOnceAllKnowAll) {
 TEST_F(InvariantsTest, TheMissionEndsWell) {
   RunFacts good;
   good.ergodic_metric_last = 0.1;
-  const auto said = [&](const std::string& running, const std::string& failure, Tick tick, double metric) {
+  const auto said = [&](const std::string& running, const std::string& failure, Tick tick,
+                        double metric, Tick recorded = 100, Tick excused = 0) {
     Invariants team(mission_);
     team.sent(0, world(tick, {1, 1}), nullptr);
     RunFacts facts;
     facts.ergodic_metric_last = metric;
-    team.ended(1, running, failure, facts);
+    facts.ticks = recorded;
+    team.ended(1, running, failure, facts, excused);
     return violated_by(team);
   };
   EXPECT_EQ(said("", "", 100, 0.1), "");
   EXPECT_EQ(said("agent 1", "", 100, 0.1), "everybody ends");
   EXPECT_EQ(said("", "bad luck", 100, 0.1), "the mission does not fail");
   EXPECT_EQ(said("", "", 99, 0.1), "the mission reaches its last tick");
+  EXPECT_EQ(said("", "", 100, 0.1, 0), "the record has every tick");
+  EXPECT_EQ(said("", "", 100, 0.1, 79, 20), "the record has every tick");
+  EXPECT_EQ(said("", "", 100, 0.1, 80, 20), "");
   EXPECT_EQ(said("", "", 100, 0.2), "the goal is reached");
 }
 

@@ -16,6 +16,7 @@ basis { modes_x: 5 modes_y: 5 }
 law { u_max_mps: 5 }
 time { duration_s: 30 }
 agents { starts { x_m: 50 y_m: 20 } random_count: 1 }
+world { speed_limit_mps: 4 }
 )";
 
 class Study : public OwnHost {

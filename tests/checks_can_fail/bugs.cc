@@ -1,0 +1,188 @@
+// The bugs that the laboratory has to see. This file is linked in front of the real program,
+// ergocast-with-bugs, whose calls from one library into another it stands between (--wrap: the names
+// in WRAPPED lines are the linker's, and CMake reads them here). ERGOCAST_BUG chooses the bug;
+// without, every call passes through.
+#include <cstdlib>
+#include <map>
+#include <string_view>
+
+#include "agent/agent.h"
+#include "coordinator/coordinator.h"
+#include "core/control.h"
+#include "core/coverage_table.h"
+#include "core/geometry.h"
+#include "lcmtypes/codec.h"
+#include "sim/world.h"
+
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
+/// `real_x` is the program's own function, and `bug_x` stands in its place.
+#define WRAPPED(result, x, symbol, ...)              \
+  result real_##x(__VA_ARGS__) asm("__real_" symbol); \
+  result bug_##x(__VA_ARGS__) asm("__wrap_" symbol);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
+
+namespace ergocast {
+namespace {
+
+bool bug(std::string_view name) {
+  static const char* const chosen = std::getenv("ERGOCAST_BUG");
+  return chosen != nullptr && name == chosen;
+}
+
+/// Some ticks after the mission's begin, when all know each other.
+constexpr Tick kUnderWay = 100;
+
+}  // namespace
+
+// clang-format off
+WRAPPED(Eigen::Vector2d, command, "_ZN8ergocast10Controller7commandEilRKN5Eigen6MatrixIdLi2ELi1ELi0ELi2ELi1EEERKNS_7BasisAtE", Controller*, AgentId, Tick, const Eigen::Vector2d&, const BasisAt&)
+WRAPPED(Eigen::Vector2d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi2ELi1ELi0ELi2ELi1EEERKNS_9RectangleE", const Eigen::Vector2d&, const Rectangle&)
+WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtE", CoverageTable*, const Author&, const BasisAt&)
+WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
+WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi", const CoverageTable*, const Author&, int)
+WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELin1ELi1ELin1ELin1EEE", const CoverageTable*, Coefficients&)
+WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
+WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
+WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
+WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", World*, Instant, Outbox&)
+WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
+using Decoded = std::variant<Message, Refusal>;
+WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_4SealESt17basic_string_viewIcSt11char_traitsIcEE", std::span<const std::byte>, RunId, const Seal&, std::string_view)
+// clang-format on
+
+// ---- control and world ---------------------------------------------------------------------------
+
+Eigen::Vector2d bug_command(Controller* self, AgentId agent, Tick tick, const Eigen::Vector2d& x_m,
+                            const BasisAt& at) {
+  const Eigen::Vector2d v_mps = real_command(self, agent, tick, x_m, at);
+  return bug("the input is not cut") ? 20 * v_mps : v_mps;
+}
+
+Eigen::Vector2d bug_reflect(const Eigen::Vector2d& x_m, const Rectangle& domain) {
+  const Eigen::Vector2d back_m = real_reflect(x_m, domain);
+  if (!bug("the edges push outwards")) return back_m;
+  return back_m + (back_m - domain.center_m());
+}
+
+// ---- coverage ------------------------------------------------------------------------------------
+
+void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at) {
+  if (bug("a backup is put back")) {
+    static std::map<CoverageTable*, CoverageTable> backup;
+    const auto steps = self->steps_held(author).value_or(0);
+    if (steps == kUnderWay) backup.emplace(self, *self);
+    if (steps == 2 * kUnderWay) *self = backup.at(self);
+  }
+  real_add_sample(self, author, at);
+  if (bug("a sample counts twice")) real_add_sample(self, author, at);
+}
+
+Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t max_steps) {
+  if (bug("an honest block is refused") && theirs.steps > kUnderWay) return Merge::kRefusedRange;
+  if (bug("one agent's rows are dropped") && theirs.author().agent == 0) return Merge::kStale;
+  Contribution changed = theirs;
+  // Still within what a receiver grants to rounding.
+  if (bug("a receiver rounds") && theirs.block == 0) changed.sums[0] *= 1 + 5e-10;
+  if (bug("a receiver mixes up modes")) {
+    for (std::size_t k = 1; k < changed.sums.size(); ++k) changed.sums[k] *= -1;
+  }
+  return real_merge(self, changed, max_steps);
+}
+
+Contribution bug_block(const CoverageTable* self, const Author& author, int block) {
+  Contribution out = real_block(self, author, block);
+  if (bug("a sum runs away")) out.sums[5] += 2 * out.elapsed_s;
+  return out;
+}
+
+void bug_average(const CoverageTable* self, Coefficients& coverage) {
+  real_average(self, coverage);
+  if (bug("the average is off")) coverage(1, 2) += 1e-6;
+}
+
+// ---- agents --------------------------------------------------------------------------------------
+
+namespace {
+
+/// Repeats a block of a teammate's in its own name.
+void relay(const Agent& self, Outbox& out) {
+  const CoverageTable& table = *self.coverage();
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (table.author(row) == self.author() || table.fewest_steps(row) == 0) continue;
+    Contribution block = real_block(&table, table.author(row), 0);
+    block.header.run = self.run();
+    out.push_back({Bus::kSwarm, block, self.author().agent});
+    return;
+  }
+}
+
+bool speaks_digest(const Outgoing& outgoing) {
+  return std::holds_alternative<Digest>(outgoing.message);
+}
+
+}  // namespace
+
+void bug_advance(Agent* self, Instant now, Outbox& out) {
+  if (bug("an agent crashes") && self->tick() == kUnderWay) std::abort();
+  if (bug("an agent gives up") && self->tick() == kUnderWay) self->leave("no more");
+  real_advance(self, now, out);
+  const bool is_one_of_them = self->author().agent == 2;
+  if (bug("a newcomer is mute") && is_one_of_them) {
+    std::erase_if(out, [](const Outgoing& one) { return std::holds_alternative<Hello>(one.message); });
+  }
+  if (self->coverage() == nullptr || self->tick() < kUnderWay) return;
+  if (bug("a digest exaggerates")) {
+    for (Outgoing& one : out) {
+      if (speaks_digest(one)) ++std::get<Digest>(one.message).entries[0].steps;
+    }
+  }
+  if (bug("an agent repeats unasked")) relay(*self, out);
+  // As an answer to what it has heard since its last, though nobody lacked anything.
+  if (bug("an agent repeats what all have") && std::any_of(out.begin(), out.end(), speaks_digest)) {
+    relay(*self, out);
+  }
+}
+
+Instant bug_next_wakeup(const Agent* self) {
+  const bool now = bug("an agent never sleeps") && self->tick() > kUnderWay && !self->finished();
+  return now ? Instant{} : real_next_wakeup(self);
+}
+
+// ---- coordinator and world -----------------------------------------------------------------------
+
+void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
+  const bool due = self->state() == MissionState::kRunning && self->tick() > kUnderWay;
+  if (due && bug("the coordinator panics")) self->end(true, "no reason", now);
+  if (due && bug("the coordinator ends too early")) self->end(false, "enough", now);
+  real_coordinate(self, now, out);
+}
+
+namespace {
+
+bool hangs(const World& world) {
+  const auto& mission = world.follower().mission();
+  return bug("the world hangs") && mission && world.tick() == mission->timing.tick_count - 1;
+}
+
+}  // namespace
+
+void bug_turn_world(World* self, Instant now, Outbox& out) {
+  if (!hangs(*self)) real_turn_world(self, now, out);
+}
+
+Instant bug_next_turn_of_world(const World* self) {
+  return hangs(*self) ? Instant::max() : real_next_turn_of_world(self);
+}
+
+// ---- codec ---------------------------------------------------------------------------------------
+
+Decoded bug_decode(std::span<const std::byte> bytes, RunId run, const Seal& seal,
+                   std::string_view channel) {
+  Decoded result = real_decode(bytes, run, seal, channel);
+  const bool refused = std::holds_alternative<Refusal>(result);
+  if (bug("whole messages are refused") && !refused) return Refusal::kTag;
+  if (bug("damage passes") && refused) return Digest{};
+  return result;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,113 @@
+// Each invariant of the laboratory, and each goal, against a bug that breaks it: the real program
+// flies the same seeds with the bug (bugs.cc) and without.
+#include <cstdio>
+
+#include "lab/invariants.h"
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+using lab::Invariant;
+
+struct Plant {
+  Invariant broken;
+  const char* bug;            ///< "": none but what the options say
+  std::string faults = "";    ///< a fault file's lines
+  std::string scenario = "";  ///< lines added to faulty_team's
+};
+
+const Plant kPlants[] = {
+    {Invariant::kPositionsInTheDomain, "the edges push outwards"},
+    {Invariant::kInputsBounded, "the input is not cut"},
+    {Invariant::kSumsBounded, "a sum runs away"},
+    {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
+    {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},
+    {Invariant::kWholeMessagesAccepted, "whole messages are refused"},
+    {Invariant::kDamagedMessagesRefused, "damage passes", "corruption = 0.01"},
+    {Invariant::kHeldNeverShrinks, "a backup is put back"},
+    {Invariant::kNoStepCountsTwice, "a sample counts twice"},
+    {Invariant::kAverageOfWhatIsHeld, "the average is off"},
+    {Invariant::kZerothIsOne, "a receiver rounds"},
+    {Invariant::kHonestMessagesAccepted, "an honest block is refused"},
+    {Invariant::kNoEarlyEnd, "an agent gives up"},
+    {Invariant::kNoWakeupInThePast, "an agent never sleeps"},
+    {Invariant::kEverybodyIsBack, "a newcomer is mute", "", "agents { quorum: 3 }"},
+    {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped"},
+    {Invariant::kViewsAgree, "a receiver mixes up modes"},
+    {Invariant::kRelaysStop, "an agent repeats what all have"},
+    {Invariant::kEverybodyEnds, "the world hangs"},
+    {Invariant::kMissionDoesNotFail, "the coordinator panics"},
+    {Invariant::kLastTickReached, "the coordinator ends too early"},
+    {Invariant::kGoalReached, "", "", "goal_ergodic_metric: 1e-9"},
+};
+
+class InvariantsCanFail : public OwnHost {
+ protected:
+  /// The exit code of two seeds of the faulty team without faults, but for what the plant says.
+  int fly(const Plant& plant, const char* bug) {
+    std::string text = text_of(scenario_file("faulty_team"));
+    for (std::istringstream lines(plant.scenario); lines;) {
+      std::string line;
+      std::getline(lines, line);
+      put_over(line, text);
+    }
+    const auto scenario = folder_ / "faulty_team.textproto", faults = folder_ / "faults.ini";
+    std::ofstream(scenario) << text;
+    std::ofstream(faults) << plant.faults << '\n';
+    setenv("ERGOCAST_BUG", bug, 1);
+    const int code = run("ergocast-with-bugs", {"simulate", scenario, "--seeds", "1:2", "--jobs", "1",
+                                                "--faults", faults});
+    unsetenv("ERGOCAST_BUG");
+    return code;
+  }
+  bool says(const std::string& part) const { return output().find(part) != std::string::npos; }
+  /// What came first: violations, or that there were none.
+  std::string said() const { return output().substr(0, 1000); }
+
+ private:
+  /// "agents { quorum: 3 }" goes into the block that is there; "name: value" takes its place.
+  static void put_over(const std::string& line, std::string& text) {
+    const auto brace = line.find('{'), colon = line.find(':');
+    if (colon == line.npos) return;
+    if (brace < colon) {
+      const std::string block = line.substr(0, brace + 1);
+      const auto at = text.find("\n" + block);
+      ASSERT_NE(at, text.npos) << block;
+      text.insert(at + 1 + block.size(), line.substr(brace + 1, line.rfind('}') - brace - 1));
+    } else {
+      const auto at = text.find("\n" + line.substr(0, colon + 1));
+      if (at != text.npos) text.erase(at + 1, text.find('\n', at + 1) - at);
+      text += line + '\n';
+    }
+  }
+};
+
+TEST_F(InvariantsCanFail, EachOfThem) {
+  std::set<Invariant> planted;
+  for (const Plant& plant : kPlants) {
+    const std::string name(lab::name_of(plant.broken));
+    planted.insert(plant.broken);
+    if (*plant.bug != '\0') {
+      EXPECT_EQ(fly(plant, ""), 0) << "without the bug: " << said();
+    }
+    EXPECT_EQ(fly(plant, plant.bug), 4) << name << " holds though " << plant.bug << '\n' << said();
+    for (const char* seed : {"seed 1: ", "seed 2: "}) {
+      EXPECT_TRUE(says(seed + name + ": ")) << plant.bug << " is not seen: " << said();
+    }
+    EXPECT_TRUE(says("again: ergocast simulate ")) << said();
+    EXPECT_TRUE(says("--seeds 2")) << said();
+  }
+  for (const auto& [invariant, name] : lab::kInvariants) {
+    EXPECT_TRUE(planted.contains(invariant)) << "nothing is planted against: " << name;
+  }
+}
+
+TEST_F(InvariantsCanFail, AMissionWhoseProcessDiesIsOneThatFailed) {
+  EXPECT_EQ(fly({}, "an agent crashes"), 4);
+  EXPECT_TRUE(says("seed 1: ")) << said();
+  EXPECT_TRUE(says("SIGABRT")) << said();
+}
+
+}  // namespace
+}  // namespace ergocast::test

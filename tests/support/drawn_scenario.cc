@@ -1,0 +1,314 @@
+#include "tests/support/drawn_scenario.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "lab/dice.h"
+#include "tests/support/grey_png.h"
+
+namespace ergocast::test {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using Block = google::protobuf::Message;
+using lab::Dice;
+
+/// How one value of a field is drawn; a repeated one gets one more.
+using Draw = std::function<void(Block&, const FieldDescriptor&, Dice&)>;
+struct Rule {
+  Draw draw;
+  int least, most;  ///< how many; the least is 0 for what may be left out
+};
+
+std::string name_of(const FieldDescriptor& field) {
+  return std::string(field.containing_type()->name()) + '.' + std::string(field.name());
+}
+
+void draw_fields(Block& block, Dice& dice);
+
+// ---- values --------------------------------------------------------------------------------------
+
+void set(Block& block, const FieldDescriptor& field, double value) {
+  const auto& fields = *block.GetReflection();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE: return fields.SetDouble(&block, &field, value);
+    case FieldDescriptor::CPPTYPE_INT32:
+      return fields.SetInt32(&block, &field, static_cast<std::int32_t>(std::lround(value)));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return fields.SetUInt64(&block, &field, static_cast<std::uint64_t>(value));
+    default: throw std::logic_error(name_of(field) + " is no number");
+  }
+}
+
+/// The same density everywhere.
+Draw number(double low, double high) {
+  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
+    set(block, field, low + (high - low) * dice.uniform());
+  };
+}
+/// Each power of ten as likely.
+Draw spread(double low, double high) {
+  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
+    set(block, field, dice.log_uniform(low, high));
+  };
+}
+/// What changes nothing, or something else.
+Draw either(double neutral, Draw other) {
+  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
+    dice.uniform() < 0.8 ? set(block, field, neutral) : other(block, field, dice);
+  };
+}
+/// The field's first value, or any.
+Draw word(double first) {
+  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
+    const auto& type = *field.enum_type();
+    const int any = static_cast<int>(dice.word() % static_cast<std::uint64_t>(type.value_count()));
+    block.GetReflection()->SetEnum(&block, &field, type.value(dice.uniform() < first ? 0 : any));
+  };
+}
+Draw text(std::vector<std::string> choice) {
+  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
+    block.GetReflection()->SetString(&block, &field, choice[dice.word() % choice.size()]);
+  };
+}
+void draw_block(Block& block, const FieldDescriptor& field, Dice& dice) {
+  const auto& fields = *block.GetReflection();
+  draw_fields(*(field.is_repeated() ? fields.AddMessage(&block, &field)
+                                    : fields.MutableMessage(&block, &field)),
+              dice);
+}
+
+Rule may(Draw draw) { return {std::move(draw), 0, 1}; }
+Rule must(Draw draw) { return {std::move(draw), 1, 1}; }
+Rule many(int least, int most) { return {draw_block, least, most}; }
+
+/// Where anything is [m]: inside every domain.
+const Draw kPlace = number(1, 99);
+
+const std::map<std::string, Rule>& rules() {
+  static const std::map<std::string, Rule> rules = {
+      {"Scenario.name", may(text({"drawn", "0", "a.b-c_d"}))},
+      {"Scenario.description", may(text({"", "Drawn by a test."}))},
+      {"Scenario.seed", may(spread(1, 1e19))},
+      {"Scenario.domain", must(draw_block)},
+      {"Scenario.target", must(draw_block)},
+      {"Scenario.basis", may(draw_block)},
+      {"Scenario.law", must(draw_block)},
+      {"Scenario.time", must(draw_block)},
+      {"Scenario.agents", must(draw_block)},
+      {"Scenario.world", may(draw_block)},
+      {"Scenario.goal_ergodic_metric", may(spread(1e-9, 1))},
+
+      {"Domain.origin_x_m", may(number(-20, 0))},
+      {"Domain.origin_y_m", may(number(-20, 0))},
+      {"Domain.size_x_m", must(number(120, 200))},
+      {"Domain.size_y_m", must(number(120, 200))},
+
+      {"Target.gaussians", many(0, 3)},
+      {"Target.uniform_weight", may(number(0.1, 2))},
+      {"Target.maps", many(0, 2)},
+      {"Target.regions", many(0, 2)},
+      {"Target.keep_outs", many(0, 2)},
+      {"Gaussian.weight", may(spread(0.1, 10))},
+      {"Gaussian.mean_x_m", must(kPlace)},
+      {"Gaussian.mean_y_m", must(kPlace)},
+      {"Gaussian.sigma_m", may(spread(3, 50))},
+      {"Gaussian.covariance", may(draw_block)},
+      {"Covariance.xx_m2", must(spread(10, 1000))},
+      {"Covariance.yy_m2", must(spread(10, 1000))},
+      {"Covariance.xy_m2", may(number(-9, 9))},
+      {"Map.file", must(text({"a.png", "a.csv", "a.asc"}))},
+      {"Map.weight", may(spread(0.1, 10))},
+      {"Map.origin_x_m", may(number(-10, 10))},
+      {"Map.origin_y_m", may(number(-10, 10))},
+      {"Map.size_x_m", may(number(20, 100))},
+      {"Map.size_y_m", may(number(20, 100))},
+      {"Map.first_row", may(word(0))},
+      {"Region.weight", may(spread(0.1, 10))},
+      {"Region.polygon", must(draw_block)},
+      {"Polygon.vertices", many(3, 6)},
+      {"Polygon.holes", many(0, 1)},
+      {"Ring.vertices", many(3, 6)},
+      {"Vertex.x_m", must(kPlace)},
+      {"Vertex.y_m", must(kPlace)},
+
+      {"Basis.modes_x", may(number(1, 24))},
+      {"Basis.modes_y", may(number(2, 24))},
+      {"Basis.normalized", may([](Block& block, const FieldDescriptor& field, Dice& dice) {
+         block.GetReflection()->SetBool(&block, &field, dice.coin());
+       })},
+      {"Basis.sobolev_form", may(word(0))},
+      {"Basis.sobolev_exponent", may(number(0.1, 3))},
+
+      {"Law.u_max_mps", must(spread(1, 40))},
+      {"Law.regularization", may(word(0))},
+      {"Law.epsilon", may(spread(1e-3, 1))},
+      {"Law.perturbation", may(word(0))},
+      {"Law.noise_intensity", may(spread(0.01, 2))},
+      {"Law.noise_ceiling", may(spread(2, 20))},
+      {"Law.contraction_gain_per_s", may(spread(1e-5, 1e-2))},
+      {"Law.contraction_center", may(word(0))},
+      {"Law.contraction_x_m", may(kPlace)},
+      {"Law.contraction_y_m", may(kPlace)},
+
+      {"Time.dt_s", may(spread(0.02, 1))},
+      {"Time.duration_s", must(number(0.5, 60))},  // in ticks: see agree()
+      {"Time.broadcast_period_ticks", may(either(1, number(1, 10)))},
+      {"Time.pace", may(word(0.8))},
+      {"Time.realtime_factor", may(spread(0.1, 10))},
+      {"Time.lockstep_timeout_s", may(spread(1e-3, 1e4))},
+      {"Time.on_timeout", may(word(0))},
+      {"Time.command_hold_s", may(spread(1e-3, 10))},
+      {"Time.admission_timeout_s", may(spread(1e-3, 1e4))},
+      {"Time.catch_up_limit_ticks", may(number(0, 20))},
+      {"Time.broadcast_error_budget", may(either(0, spread(1e-3, 1)))},
+      {"Time.broadcast_heartbeat_ticks", may(number(10, 100))},
+
+      {"Agents.starts", many(1, 4)},
+      {"Agents.random_count", may(spread(0.5, 20))},
+      {"Agents.quorum", may(either(100, number(1, 24)))},  // of all at most: see agree()
+      {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
+      {"Start.x_m", must(kPlace)},
+      {"Start.y_m", must(kPlace)},
+
+      {"World.disturbance_intensity", may(spread(0.01, 5))},
+      {"World.radio_range_m", may(either(0, spread(5, 500)))},
+      {"World.speed_limit_mps", may(spread(0.5, 100))},
+  };
+  return rules;
+}
+
+void draw_fields(Block& block, Dice& dice) {
+  for (int i = 0; i < block.GetDescriptor()->field_count(); ++i) {
+    const FieldDescriptor& field = *block.GetDescriptor()->field(i);
+    const auto rule = rules().find(name_of(field));
+    if (rule == rules().end()) {
+      throw std::logic_error("scenario.proto has " + name_of(field) +
+                             ", and tests/support/drawn_scenario.cc does not say how it is drawn");
+    }
+    const auto& [draw, least, most] = rule->second;
+    const auto range = static_cast<std::uint64_t>(most - least + 1);
+    const int count = least + static_cast<int>(dice.word() % range);
+    for (int n = 0; n < count; ++n) draw(block, field, dice);
+  }
+}
+
+// ---- what depends on more than one field ---------------------------------------------------------
+
+/// Around its first vertex.
+template <class Vertices>
+void make_round(Vertices& vertices, double radius_m, const proto::Vertex& center) {
+  for (int i = 0; i < vertices.size(); ++i) {
+    const double angle = 2 * std::numbers::pi * i / vertices.size();
+    vertices[i].set_x_m(center.x_m() + radius_m * std::cos(angle));
+    vertices[i].set_y_m(center.y_m() + radius_m * std::sin(angle));
+  }
+}
+void make_round(proto::Polygon& polygon, double radius_m) {
+  const proto::Vertex center = polygon.vertices(0);
+  make_round(*polygon.mutable_vertices(), radius_m, center);
+  for (auto& hole : *polygon.mutable_holes()) {
+    make_round(*hole.mutable_vertices(), 0.3 * radius_m, center);
+  }
+}
+
+void agree(proto::Target& target) {
+  for (auto& gaussian : *target.mutable_gaussians()) {
+    if (gaussian.has_sigma_m()) gaussian.clear_covariance();
+    if (!gaussian.has_covariance() && !gaussian.has_sigma_m()) gaussian.set_sigma_m(20);
+  }
+  for (auto& map : *target.mutable_maps()) {
+    const bool says_where = map.file().ends_with(".asc");
+    if (says_where || !map.has_origin_x_m()) map.clear_origin_x_m();
+    if (says_where) {
+      map.clear_origin_y_m();
+      map.clear_size_x_m();
+      map.clear_size_y_m();
+      map.clear_first_row();
+      continue;
+    }
+    if (!map.has_origin_x_m()) map.set_origin_x_m(0);
+    if (!map.has_origin_y_m()) map.set_origin_y_m(0);
+    if (!map.has_size_x_m()) map.set_size_x_m(80);
+    if (!map.has_size_y_m()) map.set_size_y_m(80);
+  }
+  for (auto& region : *target.mutable_regions()) make_round(*region.mutable_polygon(), 20);
+  for (auto& keep_out : *target.mutable_keep_outs()) make_round(keep_out, 10);
+}
+
+void agree(proto::Scenario& scenario) {
+  agree(*scenario.mutable_target());
+  proto::Law& law = *scenario.mutable_law();
+  if (law.contraction_center() == proto::Law::POINT) {
+    if (!law.has_contraction_x_m()) law.set_contraction_x_m(50);
+    if (!law.has_contraction_y_m()) law.set_contraction_y_m(50);
+  } else {
+    law.clear_contraction_x_m();
+    law.clear_contraction_y_m();
+  }
+  proto::Time& time = *scenario.mutable_time();
+  time.set_duration_s(time.duration_s() * (time.has_dt_s() ? time.dt_s() : 0.1));
+  proto::Agents& agents = *scenario.mutable_agents();
+  const int team = agents.starts_size() + agents.random_count();
+  if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));
+}
+
+void add_fields(const Descriptor& type, std::set<std::string>& names) {
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    if (names.insert(name_of(field)).second && field.message_type() != nullptr) {
+      add_fields(*field.message_type(), names);
+    }
+  }
+}
+
+}  // namespace
+
+void write_maps(const std::filesystem::path& folder) {
+  std::ofstream(folder / "a.csv") << "0,1,2,9\n3,0,1,4\n";
+  std::ofstream(folder / "a.asc")
+      << "ncols 4\nnrows 2\nxllcorner 5\nyllcorner 5\ncellsize 20\n0 1 2 9\n3 0 1 4\n";
+  write_png(folder / "a.png", 4, 2, {.bits = 16},
+            [](int column, int row, int) { return 1000 * (1 + column + 4 * row); });
+}
+
+proto::Scenario drawn_scenario(std::uint64_t seed) {
+  Dice dice(seed, 0);
+  proto::Scenario scenario;
+  draw_fields(scenario, dice);
+  agree(scenario);
+  return scenario;
+}
+
+std::set<std::string> fields_of(const Block& message) {
+  std::set<std::string> names;
+  std::vector<const FieldDescriptor*> fields;
+  const auto& values = *message.GetReflection();
+  values.ListFields(message, &fields);
+  for (const FieldDescriptor* field : fields) {
+    names.insert(name_of(*field));
+    if (field->message_type() == nullptr) continue;
+    const int count = field->is_repeated() ? values.FieldSize(message, field) : 1;
+    for (int i = 0; i < count; ++i) {
+      names.merge(fields_of(field->is_repeated() ? values.GetRepeatedMessage(message, field, i)
+                                                 : values.GetMessage(message, field)));
+    }
+  }
+  return names;
+}
+
+std::set<std::string> all_fields() {
+  std::set<std::string> names;
+  add_fields(*proto::Scenario::descriptor(), names);
+  return names;
+}
+
+}  // namespace ergocast::test

@@ -1,0 +1,26 @@
+// Random scenarios that use every field of scenario.proto, for tests that must hold for all of them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "scenario/scenario.pb.h"
+
+namespace ergocast::test {
+
+/// Writes the maps that drawn scenarios name.
+void write_maps(const std::filesystem::path& folder);
+
+/// A small mission: up to 24 agents, 24 × 24 modes and 60 ticks, with each field that may be left out
+/// there in every second one. Not all are valid. Throws std::logic_error, which names it, if
+/// scenario.proto has a field that drawn_scenario.cc does not know.
+proto::Scenario drawn_scenario(std::uint64_t seed);
+
+/// "Law.epsilon" of each field that is set in `message`, or in what it holds.
+std::set<std::string> fields_of(const google::protobuf::Message& message);
+/// Of each that a scenario can have.
+std::set<std::string> all_fields();
+
+}  // namespace ergocast::test
