@@ -51,6 +51,7 @@ class Flight {
   Agent& agent(Seat seat) { return *agents_[static_cast<std::size_t>(seat)]; }
   template <class F>
   auto with(Seat seat, F f);
+  const Subscriptions& subscriptions(Seat seat) const;
   std::string name_of(Seat seat) const;
   Incarnation incarnation_of(Seat seat) const;
 
@@ -99,7 +100,7 @@ class Flight {
   int agents_count_, seats_;
   Network network_;
   Invariants invariants_;
-  Seats hears_bus_[kBusCount];
+  Seats on_bus_[kBusCount];  // whoever listens to anything there
 
   std::vector<Process> processes_;
   std::vector<std::unique_ptr<Agent>> agents_;

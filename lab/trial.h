@@ -15,6 +15,7 @@
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
+#include "core/subscriptions.h"
 #include "lab/faults.h"
 #include "lab/invariants.h"
 #include "lab/network.h"
@@ -28,6 +29,7 @@ struct TrialOptions {
   PlanDecoder decode_plan;
   Faults faults;
   std::string version;
+  SubscriptionTable subscriptions = kSubscriptions;  ///< what tests take away is not heard
 };
 
 /// What a trial was like, in numbers only: it passes between processes as it is.

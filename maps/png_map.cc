@@ -27,7 +27,7 @@ class PngMap : public MapFile {
 
   std::optional<MapProblem> open() {
     if (stream_ == nullptr || info_ == nullptr) {
-      return MapProblem{file_.string() + " cannot be read", "check its permissions"};
+      return MapProblem{file_.string() + " cannot be opened any more", "try again"};
     }
     if (!has_signature()) {
       return MapProblem{file_.string() + " is not a PNG",

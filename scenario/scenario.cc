@@ -20,6 +20,8 @@ namespace {
 
 using Problems = std::vector<Problem>;
 
+constexpr const char* kOutOfMemory = "out of memory";
+
 /// The contents of `file`, or why there are none.
 std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
   std::error_code error;
@@ -125,7 +127,7 @@ std::variant<Scenario, std::string> Scenario::from_plan(
   if (!canonical || scenario.state_->text.agents().random_count() != 0) return broken_plan();
   return scenario;
 } catch (...) {
-  return "out of memory";
+  return kOutOfMemory;
 }
 
 std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept try {
@@ -133,7 +135,7 @@ std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) 
   if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
   return std::get<Scenario>(read).mission();
 } catch (...) {
-  return "out of memory";
+  return kOutOfMemory;
 }
 
 Scenario::Scenario(std::shared_ptr<const State> state) : state_(std::move(state)) {}

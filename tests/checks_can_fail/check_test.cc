@@ -1,0 +1,480 @@
+// Each finding of `ergocast check` against a scenario that has it: small edits to a good one, and every
+// field outside its limits, as the program's own table of fields has them.
+#include <google/protobuf/text_format.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+#include <sstream>
+
+#include "scenario/fields.h"
+#include "scenario/scenario.pb.h"
+#include "tests/checks_can_fail/expect_said.h"
+#include "tests/process/programs.h"
+#include "tests/support/grey_png.h"
+
+namespace ergocast::test {
+namespace {
+
+namespace fs = std::filesystem;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+const std::string kGood = R"(domain { size_x_m: 100 size_y_m: 50 }
+target { uniform_weight: 1 }
+law { u_max_mps: 5 }
+time { duration_s: 60 }
+agents { starts { x_m: 10 y_m: 20 } }
+)";
+
+/// One mistake put into kGood, and how what is said of it begins; the line is that of `from`.
+struct Mistake {
+  std::string from, to, said;
+  bool has_line = true;
+};
+
+std::string repeated(int count, const std::string& text) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+std::string polygon(const std::string& corners, const std::string& more = "") {
+  std::istringstream numbers(corners);
+  std::string text = "regions { polygon { ";
+  for (std::string x, y; numbers >> x >> y;) text += "vertices { x_m: " + x + " y_m: " + y + " } ";
+  return text + more + " } } uniform_weight: 1";
+}
+
+std::string hole(const std::string& corners) {
+  const std::string text = polygon(corners);
+  const auto from = text.find("vertices"), to = text.rfind(" } }");
+  return "holes { " + text.substr(from, to - from) + "} ";
+}
+
+std::string map_of(const std::string& file, const std::string& more = "") {
+  const bool extent = more.empty() && !file.ends_with(".asc");
+  return "maps { file: \"" + file + "\" " + more +
+         (extent ? "origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50" : "") + " }";
+}
+
+const std::string kUniform = "uniform_weight: 1", kLaw = "law {", kTime = "duration_s: 60";
+const std::string kSquare = "10 10 40 10 40 40 10 40";
+
+std::vector<Mistake> mistakes_of_the_text() {
+  return {
+      {"size_x_m: 100", "size_x_m: 1,5", "domain.size_x_m: 1,5 has a comma"},
+      {"size_x_m: 100", "size_x_m: ten", "domain.size_x_m: ten is not a number"},
+      {"size_x_m: 100", "size_x_m 100", "domain.size_x_m: Expected \":\""},
+      {"size_x_m: 100", "size_x_m: 100 size_x_m: 1", "domain.size_x_m: is written more than once"},
+      {"size_x_m: 100", "size_x_m: 100 size_z_m: 1", "unknown field \"size_z_m\" in Domain"},
+      {kLaw, "law { modes_x: 5", "unknown field \"modes_x\" in Law"},
+      {kLaw, "law { nonsense: 5", "unknown field \"nonsense\" in Law"},
+      {kLaw, "[other.field]: 5 law {", "unknown extension"},
+      {kLaw, "law { regularization: BOTH", "law.regularization: unknown value \"BOTH\""},
+      {kLaw, "basis { normalized: yes } law {", "basis.normalized: yes is neither true nor false"},
+      {kLaw, "basis { modes_x: 4.5 } law {", "basis.modes_x: 4.5 is not a whole number"},
+      {kLaw, "seed: -1 law {", "seed: -1 is not 0 or above"},
+      {kLaw, "seed: 18446744073709551616 law {", "seed: 18446744073709551616 is out of range"},
+      {kLaw, "name: five law {", "name: five is not a quoted text"},
+      {"} }\n", "}\n", "this block is not closed"},
+      {kLaw, "# \xE9\nlaw {", "this is not UTF-8"},
+      {kLaw, repeated(20, "law {"), "blocks lie deeper than the limit"},
+      {kLaw, repeated(60, "seed: x ") + kLaw, "has more mistakes than these", false},
+      {kLaw, "#" + std::string(1 << 20, ' ') + "\nlaw {", "is longer than the limit", false},
+      {kLaw, "name: \"../x\" law {", "name: cannot name a folder"},
+      {kLaw, "description: \"\\xff\" law {", "description: is not UTF-8"},
+      {kLaw, "description: \"" + std::string(2001, 'x') + "\" law {", "description: 2001 bytes"},
+  };
+}
+
+std::vector<Mistake> mistakes_between_fields() {
+  return {
+      {"size_x_m: 100", "size_x_m: 100 origin_x_m: 10000001", "domain.origin_x_m: "},
+      {"size_x_m: 100", "size_x_m: 100 origin_y_m: 10000001", "domain.origin_y_m: "},
+      {kLaw, "basis { modes_x: 1 modes_y: 1 } law {", "basis: a single mode"},
+      {"u_max_mps: 5", "u_max_mps: 501", "law.u_max_mps: 501 makes u_max_mps"},
+      {kLaw, "law { noise_intensity: 159", "law.noise_intensity: 159 makes"},
+      {kLaw, "law { noise_ceiling: 159", "law.noise_ceiling: 159 makes"},
+      {kLaw, "law { noise_intensity: 3 noise_ceiling: 2", "law.noise_ceiling: 2 is below"},
+      {kLaw, "law { perturbation: CONSTANT noise_ceiling: 2", "law.noise_ceiling: has no effect"},
+      {kLaw, "law { contraction_gain_per_s: 0.1", "law.u_max_mps: 5 is too weak"},
+      {"u_max_mps: 5", "u_max_mps: 500 contraction_gain_per_s: 11",
+       "law.contraction_gain_per_s: 11 makes"},
+      {kLaw, "law { contraction_center: POINT contraction_y_m: 3", "law.contraction_x_m: is missing"},
+      {kLaw, "law { contraction_center: POINT contraction_x_m: 3", "law.contraction_y_m: is missing"},
+      {kLaw, "law { contraction_x_m: 3", "law.contraction_x_m: has no effect"},
+      {kTime, "duration_s: 0.04", "time.duration_s: 0.04 is less than one step"},
+      {kTime, "duration_s: 1001 dt_s: 1e-5", "time.duration_s: 100100000 steps"},
+      {kTime, "duration_s: 60 broadcast_error_budget: 0.1 broadcast_period_ticks: 200",
+       "time.broadcast_heartbeat_ticks: 100 is below"},
+      {kTime, "duration_s: 60 dt_s: 0.001 pace: REALTIME realtime_factor: 20",
+       "time.realtime_factor: 20 makes a step last"},
+      {"starts { x_m: 10 y_m: 20 }", "", "agents: the team is empty"},
+      {"agents {", "agents { random_count: 128", "agents: a team of 129"},
+      {"agents {", "agents { quorum: 2", "agents.quorum: 2 is above"},
+      {"{ x_m: 10", "{ x_m: 101", "agents.starts[0].x_m: 101 is outside"},
+      {"y_m: 20", "y_m: -1", "agents.starts[0].y_m: -1 is outside"},
+      {"agents {", "world { disturbance_intensity: 1000 } agents {", "world.disturbance_intensity: 1000"},
+  };
+}
+
+std::vector<Mistake> mistakes_of_targets() {
+  const std::string bell = "gaussians { mean_x_m: 5 mean_y_m: 5 ";
+  std::string big = polygon(kSquare, hole("20 20 21 20 21 21"));
+  big.insert(big.find("vertices"), repeated(4200, "vertices { x_m: 1 y_m: 1 } "));
+  return {
+      {kUniform, "", "target: there is nothing to cover"},
+      {kUniform, bell + "}", "target.gaussians[0]: has no width"},
+      {kUniform, bell + "sigma_m: 5 covariance { xx_m2: 25 yy_m2: 25 } }",
+       "target.gaussians[0]: has both"},
+      {kUniform, bell + "sigma_m: 0.009 }", "target.gaussians[0].sigma_m: 0.009 is below"},
+      {kUniform, bell + "covariance { xx_m2: 9e-5 yy_m2: 25 } }",
+       "target.gaussians[0].covariance.xx_m2: 9e-05 is below"},
+      {kUniform, bell + "covariance { xx_m2: 25 yy_m2: 9e-5 } }",
+       "target.gaussians[0].covariance.yy_m2: 9e-05 is below"},
+      {kUniform, bell + "covariance { xx_m2: 25 yy_m2: 25 xy_m2: 25 } }",
+       "target.gaussians[0].covariance.xy_m2: 25 leaves too little"},
+      {kUniform, "gaussians { mean_x_m: 500 mean_y_m: 5 sigma_m: 5 }", "target: only 0 of its weight"},
+      {kUniform, "gaussians { mean_x_m: 100.047 mean_y_m: 25 covariance { xx_m2: 1e-4 yy_m2: 1e-4 xy_m2: 8.9999e-5 } }",
+       "target: its coefficients can be off by"},
+      {kUniform, repeated(65, bell + "sigma_m: 5 } "), "target: 65 Gaussians are above the limit"},
+      {kUniform, repeated(17, map_of("even.csv")), "target: 17 maps are above the limit"},
+      {kUniform, repeated(65, "regions { } "), "target: 65 regions are above the limit"},
+      {kUniform, repeated(65, "keep_outs { } "), "target: 65 keep-outs are above the limit"},
+      {kUniform, big, "target: 4207 vertices are above the limit"},
+
+      {kUniform, "regions { polygon { " + repeated(2, "vertices { x_m: 1 y_m: 1 } ") + "} }",
+       "target.regions[0].polygon: 2 vertices enclose nothing"},
+      {kUniform, "uniform_weight: 1 keep_outs { vertices { x_m: 1 y_m: 1 } }",
+       "target.keep_outs[0]: 1 vertices enclose nothing"},
+      {kUniform, polygon("10 10 40 10 40 10 40 40"),
+       "target.regions[0].polygon: vertices[1] and vertices[2] are the same"},
+      {kUniform, polygon(kSquare + " 10 10"),
+       "target.regions[0].polygon: vertices[4] and vertices[0] are the same"},
+      {kUniform, polygon("10 10 40 40 40 10 10 40"), "target.regions[0].polygon: the edges that begin at"},
+      {kUniform, polygon(kSquare, hole("50 10 60 10 60 20")),
+       "target.regions[0].polygon.holes[0]: the hole is outside"},
+      {kUniform, polygon(kSquare, hole("20 20 30 20 30 30 20 30") + hole("24 24 25 24 25 25")),
+       "target.regions[0].polygon.holes[1]: the hole is inside"},
+      {kUniform, polygon("10 10 10.001 10 10.001 10.001"), "target.regions[0].polygon: its area"},
+      {kUniform, polygon("200 10 300 10 300 20"), "target.regions[0]: nothing of it is left"},
+      {kUniform, polygon("10 10 20 10 20 20") +
+                     " keep_outs { vertices { x_m: 5 y_m: 5 } vertices { x_m: 45 y_m: 5 } vertices { x_m: 45 "
+                     "y_m: 45 } vertices { x_m: 5 y_m: 45 } }",
+       "target.regions[0]: nothing of it is left"},
+  };
+}
+
+/// Of maps; `files` are what is written beside the scenario.
+std::vector<Mistake> mistakes_of_maps() {
+  const std::string at = "target.maps[0].file: ";
+  const std::string extent = "origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50";
+  const std::string file = "file: \"even.csv\" ";
+  std::vector<Mistake> all = {
+      {kUniform, "maps { " + extent + " }", at + "is missing"},
+      {kUniform, map_of("even.tif"), at},
+      {kUniform, map_of("good.asc", extent), "target.maps[0].origin_x_m: an ESRI ASCII grid states"},
+      {kUniform, map_of("good.asc", "first_row: SOUTH"), "target.maps[0].first_row: an ESRI ASCII grid"},
+      {kUniform, map_of("even.csv", "origin_x_m: 500 origin_y_m: 0 size_x_m: 1 size_y_m: 1"),
+       "target.maps[0]: nothing of it is left"},
+  };
+  for (const char* name : {"origin_x_m", "origin_y_m", "size_x_m", "size_y_m"}) {
+    std::string others = extent;
+    const auto begin = others.find(name), end = std::min(others.find(' ', others.find(' ', begin) + 1), others.size());
+    others.erase(begin, end - begin);
+    all.push_back({kUniform, map_of("even.csv", others), std::string("target.maps[0].") + name + ": is missing"});
+    all.push_back({kUniform, map_of("good.asc", std::string(name) + ": 1"),
+                   std::string("target.maps[0].") + name + ": an ESRI ASCII grid states"});
+  }
+  for (const char* bad : {"none.csv", "folder.csv", "locked.csv", "empty.csv", "wide.csv", "long.csv", "ragged.csv",
+                          "zero.csv", "words.csv", "negative.csv", "huge.csv", "nan.csv", "key.asc", "twice.asc",
+                          "bare.asc", "lacks.asc", "both.asc", "half.asc", "flat.asc", "short.asc", "more.asc",
+                          "text.png", "cut.png", "palette.png", "colour.png", "bits.png", "laced.png"}) {
+    all.push_back({kUniform, map_of(bad), at});
+  }
+  return all;
+}
+
+class Scenarios : public OwnHost {
+ protected:
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+
+  void write_maps() {
+    const std::string header = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n";
+    write("good.asc", header + "1 2\n");
+    write("even.csv", "1,2\n3,4\n");
+    fs::create_directory(folder_ / "folder.csv");
+    fs::create_symlink(unreadable_file(), folder_ / "locked.csv");
+    write("empty.csv", "");
+    write("wide.csv", repeated(9000, "1,") + "1\n");
+    write("long.csv", std::string(2 << 20, ' ') + "1\n");
+    write("ragged.csv", "1,2\n3\n");
+    write("zero.csv", "0,0\n");
+    write("words.csv", "1,two\n");
+    write("negative.csv", "1,-2\n");
+    write("huge.csv", "1,1e31\n");
+    write("nan.csv", "1,nan\n");
+    write("key.asc", "columns 2\n" + header + "1 2\n");
+    write("twice.asc", "ncols 2\n" + header + "1 2\n");
+    write("bare.asc", "ncols\nnrows\n1 2\n");
+    write("lacks.asc", "ncols 2\nnrows 1\n1 2\n");
+    write("both.asc", "ncols 2\nnrows 1\ncellsize 1\nxllcorner 0\nxllcenter 0\nyllcorner 0\n1 2\n");
+    write("half.asc", "ncols 2.5\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n1 2\n");
+    write("flat.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0\n1 2\n");
+    write("short.asc", header + "1\n");
+    write("more.asc", header + "1 2 3\n");
+    write("text.png", "P5 3 2 255 abcdef");
+    const auto grey = [](int x, int y, int) { return (x + y) % 2; };
+    write_png(folder_ / "cut.png", 20, 20, {}, grey);
+    fs::resize_file(folder_ / "cut.png", 60);
+    write_png(folder_ / "palette.png", 4, 4, {.color = PNG_COLOR_TYPE_PALETTE}, grey);
+    write_png(folder_ / "colour.png", 4, 4, {.color = PNG_COLOR_TYPE_RGB}, grey);
+    write_png(folder_ / "bits.png", 4, 4, {.bits = 1}, grey);
+    write_png(folder_ / "laced.png", 4, 4, {.interlace = PNG_INTERLACE_ADAM7}, grey);
+  }
+
+  /// One that root cannot open for reading either.
+  static fs::path unreadable_file() {
+    for (const auto& bus : fs::directory_iterator("/sys/bus")) {
+      const fs::path file = bus.path() / "drivers_probe";
+      if (fs::exists(file) && !std::ifstream(file).is_open()) return file;
+    }
+    ADD_FAILURE() << "no file on this machine that cannot be read";
+    return "/dev/null";
+  }
+
+  void expect_mistake(const Mistake& mistake) {
+    std::string text = kGood;
+    const std::size_t at = text.find(mistake.from);
+    ASSERT_NE(at, text.npos) << mistake.from;
+    write("s.textproto", text.replace(at, mistake.from.size(), mistake.to));
+    EXPECT_EQ(ergocast({"check", file_}), 2) << mistake.to.substr(0, 200) << output();
+    const std::string begin = file_.string() + ":";
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
+    bool found = false;
+    for (const std::string& said : note(output())) {
+      if (said.find(mistake.said) == said.npos) continue;
+      const bool in_line = said.starts_with(begin + std::to_string(line) + ":");
+      found = found || !mistake.has_line || in_line || mistake.to.find('\n') != mistake.to.npos;
+      EXPECT_TRUE(said.ends_with(")") && !said.ends_with("()")) << said;
+    }
+    EXPECT_TRUE(found) << mistake.said << " is not said of " << mistake.to.substr(0, 200) << ":\n"
+                       << output().substr(0, 2000);
+  }
+
+  /// Keeps what was said, line by line.
+  std::vector<std::string> note(const std::string& text) {
+    std::istringstream lines(text);
+    std::vector<std::string> all;
+    for (std::string line; std::getline(lines, line);) all.push_back(line);
+    said_.insert(said_.end(), all.begin(), all.end());
+    return all;
+  }
+
+  const fs::path file_ = folder_ / "s.textproto";
+  std::vector<std::string> said_, said_of_flags_;
+};
+
+// ---- fields by themselves ------------------------------------------------------------------------
+
+/// Every block and every number that there is.
+constexpr const char* kRich = R"(
+name: "rich" description: "all fields" seed: 1 goal_ergodic_metric: 1
+domain { origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 }
+target {
+  gaussians { weight: 1 mean_x_m: 30 mean_y_m: 20 sigma_m: 5 }
+  gaussians { weight: 1 mean_x_m: 60 mean_y_m: 20 covariance { xx_m2: 25 yy_m2: 25 xy_m2: 1 } }
+  uniform_weight: 1
+  maps { file: "even.csv" weight: 1 origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 first_row: NORTH }
+  regions { weight: 1 polygon { vertices { x_m: 1 y_m: 1 } vertices { x_m: 9 y_m: 1 } vertices { x_m: 9 y_m: 9 } } }
+}
+basis { modes_x: 8 modes_y: 8 normalized: true sobolev_form: NORM sobolev_exponent: 1.5 }
+law {
+  u_max_mps: 5 regularization: RELATIVE epsilon: 0.2 perturbation: ADAPTIVE noise_intensity: 0.1 noise_ceiling: 2
+  contraction_gain_per_s: 0.001 contraction_center: POINT contraction_x_m: 50 contraction_y_m: 25
+}
+time {
+  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 pace: REALTIME realtime_factor: 1 lockstep_timeout_s: 10
+  on_timeout: EVICT command_hold_s: 0.5 admission_timeout_s: 30 catch_up_limit_ticks: 5 broadcast_error_budget: 0.1
+  broadcast_heartbeat_ticks: 100
+}
+agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 forget_silent_after_s: 5 }
+world { disturbance_intensity: 0.1 radio_range_m: 30 speed_limit_mps: 100 }
+)";
+
+/// Calls `visit` for each field that a person can write a number or a word for, with its block.
+void each_field(Message& message, const std::string& path,
+                const std::function<void(Message&, const FieldDescriptor&, const std::string&)>& visit) {
+  const auto* reflection = message.GetReflection();
+  for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+    const FieldDescriptor& field = *message.GetDescriptor()->field(i);
+    const std::string name = path + field.name();
+    if (field.message_type() == nullptr) {
+      if (reflection->HasField(message, &field)) visit(message, field, name);
+    } else if (field.is_repeated()) {
+      for (int j = 0; j < reflection->FieldSize(message, &field); ++j) {
+        each_field(*reflection->MutableRepeatedMessage(&message, &field, j),
+                   name + "[" + std::to_string(j) + "].", visit);
+      }
+    } else if (reflection->HasField(message, &field)) {
+      each_field(*reflection->MutableMessage(&message, &field), name + ".", visit);
+    }
+  }
+}
+
+class CheckCanFail : public Scenarios {
+ protected:
+  /// The program says that of the field at `path`, once `spoil` has been done to it.
+  void expect_said(const std::string& path, const std::string& what,
+                   const std::function<void(Message&, const FieldDescriptor&)>& spoil) {
+    proto::Scenario scenario;
+    ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &scenario));
+    each_field(scenario, "", [&](Message& block, const FieldDescriptor& field, const std::string& at) {
+      if (at == path) spoil(block, field);
+    });
+    std::string text;
+    google::protobuf::TextFormat::PrintToString(scenario, &text);
+    write("s.textproto", text);
+    EXPECT_EQ(ergocast({"check", file_}), 2) << path << what;
+    bool found = false;
+    for (const std::string& line : note(output())) {
+      found = found || (line.starts_with(file_.string() + ":") && line.find(" " + path + ": ") != line.npos &&
+                        line.find(what) != line.npos);
+    }
+    EXPECT_TRUE(found) << path << ": " << what << ":\n" << output();
+  }
+
+  void expect_value_refused(const std::string& path, double value, const std::string& what) {
+    expect_said(path, what, [value](Message& block, const FieldDescriptor& field) {
+      if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+        block.GetReflection()->SetDouble(&block, &field, value);
+      } else {
+        block.GetReflection()->SetInt32(&block, &field, static_cast<std::int32_t>(value));
+      }
+    });
+  }
+
+  void expect_limits(const FieldDescriptor& field, const std::string& path, const FieldRule& rule) {
+    const bool whole = field.cpp_type() != FieldDescriptor::CPPTYPE_DOUBLE;
+    const Range& range = rule.range;
+    expect_value_refused(path, whole ? range.high + 1 : 1.01 * range.high, " is above the limit ");
+    if (range.low_excluded) {
+      expect_value_refused(path, range.low, " is not above ");
+    } else {
+      const double below = range.low - std::abs(range.low) - 1;
+      expect_value_refused(path, whole ? range.low - 1 : below, " is below the limit ");
+    }
+    if (!whole) expect_value_refused(path, std::nan(""), "nan is not a number");
+    if (rule.absence != Absence::kRefused) return;
+    expect_said(path, "is missing", [](Message& block, const FieldDescriptor& one) {
+      block.GetReflection()->ClearField(&block, &one);
+    });
+  }
+
+  /// Each field at its limits, and where it is missing.
+  void plant_in_fields() {
+    write("s.textproto", kRich);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    proto::Scenario rich;
+    ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &rich));
+    std::set<std::string> covered;
+    each_field(rich, "", [&](Message&, const FieldDescriptor& field, const std::string& path) {
+      if (!covered.insert(field.full_name()).second) return;
+      if (const FieldRule* rule = rule_of(field)) expect_limits(field, path, *rule);
+      if (field.enum_type() == nullptr) return;
+      expect_said(path, "has no value 99", [](Message& block, const FieldDescriptor& one) {
+        block.GetReflection()->SetEnumValue(&block, &one, 99);
+      });
+    });
+    const auto* file = proto::Scenario::descriptor()->file();
+    for (int i = 0; i < file->message_type_count(); ++i) {
+      for (int j = 0; j < file->message_type(i)->field_count(); ++j) {
+        const FieldDescriptor& field = *file->message_type(i)->field(j);
+        if (field.message_type() != nullptr) continue;
+        EXPECT_TRUE(covered.contains(field.full_name())) << field.full_name() << ": add it to kRich";
+      }
+    }
+  }
+
+  void plant_in_the_text() {
+    write("s.textproto", kGood);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    for (const auto& mistakes : {mistakes_of_the_text(), mistakes_between_fields(), mistakes_of_targets(),
+                                 mistakes_of_maps()}) {
+      for (const Mistake& mistake : mistakes) expect_mistake(mistake);
+    }
+  }
+
+  void expect_refused(std::vector<std::string> arguments, const std::string& what) {
+    EXPECT_EQ(ergocast(std::move(arguments)), 2) << what << ":\n" << output();
+    note(output());
+    EXPECT_NE(output().find(what), std::string::npos) << what << ":\n" << output();
+  }
+
+  /// Files that are none, and flags.
+  void plant_outside_the_text() {
+    write("s.textproto", kGood);
+    expect_refused({"check", folder_ / "none.textproto"}, "none.textproto: there is no such file");
+    expect_refused({"check", folder_}, ": is a folder, not a file");
+    expect_refused({"check", "/proc/self/mem"}, "/proc/self/mem: cannot be read");
+    expect_refused({"simulate", file_, "--agents", "129", "--out", out()}, "--agents: 129 is outside");
+    const std::pair<const char*, const char*> flags[] = {
+        {"name=a,b", "is a text"},
+        {"law.epsilom=1", "did you mean law.epsilon?"},
+        {"law.zzzzzz=1", "the fields there are"},
+        {"law.epsilon.x=1", "epsilon has no fields of its own"},
+        {"law=1", "is a block"},
+        {"agents.starts.x_m=1", "there may be several starts"},
+        {"law[0].epsilon=1", "there is only one law"},
+        {"agents.starts[1].x_m=1", "the scenario lists 1 starts"},
+        {"target.gaussians[0].sigma_m=1", "the scenario lists 0 gaussians"},
+        {"law.regularization=SOME", "unknown value \"SOME\""},
+        {"law.epsilon=1 2", "--vary law.epsilon=1 2: "},
+    };
+    for (const auto& [flag, what] : flags) {
+      expect_refused({"study", file_, "--vary", flag, "--seeds", "1", "--out", out()}, what);
+      said_of_flags_.push_back(output());
+    }
+  }
+
+  void expect_warning(const std::string& law, const std::string& limit, const std::string& what) {
+    std::string text = kGood + "world { speed_limit_mps: " + limit + " }\n";
+    write("s.textproto", text.insert(text.find("u_max_mps"), law + " "));
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_TRUE(output().starts_with("warning: " + file_.string() + ":6:")) << output();
+    EXPECT_NE(output().find(what), std::string::npos) << what << ":\n" << output();
+  }
+
+  void plant_warnings() {
+    expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");
+    expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
+    expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");
+  }
+};
+
+const std::vector<Unsayable> kUnsayable = {
+    {"maps/csv_map.cc", "changed while it was read", "the map has to change between two reads"},
+    {"maps/png_map.cc", "cannot be opened any more", "it was opened a moment before"},
+    {"scenario/scenario.cc", "out of memory", "of a plan's reader; nothing here is large enough"},
+};
+
+TEST_F(CheckCanFail, InEachOfItsFindings) {
+  write_maps();
+  plant_in_fields();
+  plant_in_the_text();
+  plant_outside_the_text();
+  plant_warnings();
+  // Of override_options.cc the words are those of --help; a plan is read by others.
+  std::vector<std::string> sources = sources_in(
+      "scenario", {"scenario/assign.cc", "scenario/override_options.cc", "scenario/plan.cc"});
+  for (const std::string& file : sources_in("maps")) sources.push_back(file);
+  expect_all_said(sources, said_, kUnsayable);
+  expect_all_said({"scenario/assign.cc"}, said_of_flags_, {});
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,46 @@
+// The register's rule: whatever the sources can say has been said by the program, to a plant.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/checks_can_fail/words.h"
+
+namespace ergocast::test {
+
+/// Words that no plant on a test machine can bring out. Keep them few.
+struct Unsayable {
+  std::string file, words, why;
+};
+
+/// Fails for each saying of `files` that is in none of the texts of `said`, but for the unsayable ones;
+/// for each of those that was said after all; and where two statements use the same words, of which
+/// one plant would then do for both.
+inline void expect_all_said(const std::vector<std::string>& files, const std::vector<std::string>& said,
+                            const std::vector<Unsayable>& unsayable) {
+  const std::vector<Saying> sayings = sayings_of(files);
+  EXPECT_FALSE(sayings.empty());
+  std::set<const Unsayable*> used;
+  for (const std::string& words : never_said(sayings, said)) {
+    const auto reason = std::find_if(unsayable.begin(), unsayable.end(), [&](const Unsayable& one) {
+      return words.starts_with(one.file + ":") && words.find(one.words) != words.npos;
+    });
+    if (reason == unsayable.end()) {
+      ADD_FAILURE() << "nothing planted brings out " << words << "\n(tests/checks_can_fail/README.md)";
+    } else {
+      used.insert(&*reason);
+    }
+  }
+  for (const Unsayable& one : unsayable) {
+    EXPECT_TRUE(used.contains(&one)) << one.file << " says it after all, or no more: " << one.words;
+  }
+  for (const std::string& words : said_twice(sayings)) {
+    ADD_FAILURE() << "two checks in one's words: " << words;
+  }
+}
+
+}  // namespace ergocast::test
