@@ -15,7 +15,7 @@ Socket group_listener(const std::string& group, int port, std::string& error) {
     error = std::string("cannot open the port: ") + std::strerror(errno);
   } else if (setsockopt(socket.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership,
                         sizeof membership) != 0) {
-    error = std::string("cannot join the group: ") + std::strerror(errno);
+    error = std::string("cannot listen to the group: ") + std::strerror(errno);
   }
   return socket;
 }

@@ -75,11 +75,8 @@ Finding route_finding(const LcmUrl& url, const Interface& routed,
 
 Finding interface_finding(const Interface& routed) {
   Finding finding{"interface", Level::kOk, routed.name + " is up", "", ""};
-  if (!routed.up) {
-    finding = {"interface", Level::kProblem, routed.name + " is down",
-               "The route to the group names it, so nothing is sent.",
-               "ip link set " + routed.name + " up"};
-  } else if (!routed.multicast && !routed.loopback) {
+  // That it is down nobody can see here: the kernel then takes its routes away.
+  if (!routed.multicast && !routed.loopback) {
     finding = {"interface", Level::kProblem, routed.name + " is not set to multicast",
                "The route to the group names it, but it does not take part in multicast.",
                "ip link set " + routed.name + " multicast on"};

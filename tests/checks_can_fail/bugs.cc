@@ -168,6 +168,9 @@ bool hangs(const World& world) {
 
 void bug_turn_world(World* self, Instant now, Outbox& out) {
   if (!hangs(*self)) real_turn_world(self, now, out);
+  if (bug("the world keeps a tick to itself") && self->tick() == kUnderWay) {
+    std::erase_if(out, [](const Outgoing& one) { return std::holds_alternative<WorldState>(one.message); });
+  }
 }
 
 Instant bug_next_turn_of_world(const World* self) {

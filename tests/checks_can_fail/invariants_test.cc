@@ -1,8 +1,12 @@
 // Each invariant of the laboratory, and each goal, against a bug that breaks it: the real program
 // flies the same seeds with the bug (bugs.cc) and without.
-#include <cstdio>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
 
 #include "lab/invariants.h"
+#include "tests/checks_can_fail/words.h"
 #include "tests/process/programs.h"
 
 namespace ergocast::test {
@@ -39,6 +43,7 @@ const Plant kPlants[] = {
     {Invariant::kEverybodyEnds, "the world hangs"},
     {Invariant::kMissionDoesNotFail, "the coordinator panics"},
     {Invariant::kLastTickReached, "the coordinator ends too early"},
+    {Invariant::kRecordIsWhole, "the world keeps a tick to itself"},
     {Invariant::kGoalReached, "", "", "goal_ergodic_metric: 1e-9"},
 };
 
@@ -101,6 +106,19 @@ TEST_F(InvariantsCanFail, EachOfThem) {
   for (const auto& [invariant, name] : lab::kInvariants) {
     EXPECT_TRUE(planted.contains(invariant)) << "nothing is planted against: " << name;
   }
+}
+
+/// A plant reaches one place; another that reports under the same name would go without.
+TEST(Invariants, AreEachReportedAtOnePlace) {
+  std::string sources;
+  for (const std::string& file : sources_in("lab")) {
+    sources += text_of(std::filesystem::path(ERGOCAST_SOURCE_DIR) / file);
+  }
+  const std::regex report("violate\\(\\w+, Invariant::(\\w+)");
+  std::map<std::string, int> places;
+  for (std::sregex_iterator at(sources.begin(), sources.end(), report), end; at != end; ++at) ++places[(*at)[1]];
+  EXPECT_EQ(places.size(), lab::kInvariants.size());
+  for (const auto& [invariant, count] : places) EXPECT_EQ(count, 1) << invariant;
 }
 
 TEST_F(InvariantsCanFail, AMissionWhoseProcessDiesIsOneThatFailed) {

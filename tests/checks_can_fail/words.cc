@@ -77,19 +77,28 @@ Tokens tokens_of(const std::string& source) {
   return tokens;
 }
 
+/// With one space where there are several, or a line's end.
+std::string on_one_line(const std::string& text) {
+  static const std::regex kSpaces("\\s+");
+  return std::regex_replace(text, kSpaces, " ");
+}
+
 /// The text between a format's conversions.
 std::vector<std::string> pieces_of(const std::string& text) {
   static const std::regex kConversion("%[-+#0-9.*]*(ll|l|z)?[dufgsxXc%]?|\\{\\}");
   std::vector<std::string> pieces;
   for (std::sregex_token_iterator at(text.begin(), text.end(), kConversion, -1), end; at != end; ++at) {
-    if (at->length() > 0) pieces.push_back(*at);
+    if (at->length() > 0) pieces.push_back(on_one_line(*at));
   }
   return pieces;
 }
 
+/// Whether it has a letter and a space, conversions aside.
 bool is_words(const std::string& text) {
-  static const std::regex kWords("[A-Za-z][^A-Za-z]* |[ \\n][^A-Za-z]*[A-Za-z]");
-  return std::regex_search(text, kWords);
+  static const std::regex kWords("[A-Za-z][^A-Za-z]* | [^A-Za-z]*[A-Za-z]");
+  const std::vector<std::string> pieces = pieces_of(text);
+  return std::any_of(pieces.begin(), pieces.end(),
+                     [](const std::string& piece) { return std::regex_search(piece, kWords); });
 }
 
 /// Where `condition ? one : other` begins and ends; the branches of one within another count as its own.
@@ -241,7 +250,8 @@ std::vector<Saying> sayings_of_calls(const Reader& reader,
     const auto called = words.find(reader.tokens[i].text);
     if (called == words.end() || reader.tokens[i + 1].text != "(" || reader.function[i].empty()) continue;
     const std::vector<std::string> texts = reader.texts_of_call(i + 1);
-    if (texts.empty() || texts.front().size() < 3) continue;
+    const bool is_path = !texts.empty() && texts.front().find('/') != std::string::npos;
+    if (texts.empty() || texts.front().size() < 3 || is_path) continue;
     if (std::any_of(texts.begin(), texts.end(), is_words)) continue;
     sayings.push_back({reader.path + ":" + std::to_string(reader.tokens[i].line), {texts.front()}, {},
                        called->second});
@@ -260,7 +270,7 @@ std::vector<Saying> sayings_of(const std::vector<Reader>& readers) {
   return all;
 }
 
-/// Where `parts` end in `text`, one after the other; npos if they are not there.
+/// Whether `text` has all parts, one after the other.
 bool says_in_order(const std::string& text, const std::vector<std::string>& parts) {
   std::size_t at = 0;
   for (const std::string& part : parts) {
@@ -321,8 +331,8 @@ std::vector<Saying> sayings_in(const std::string& path, const std::string& text)
   return sayings_of(std::vector<Reader>{Reader(path, text)});
 }
 
-std::vector<std::string> never_said(const std::vector<Saying>& sayings,
-                                    const std::vector<std::string>& said) {
+std::vector<std::string> never_said(const std::vector<Saying>& sayings, std::vector<std::string> said) {
+  for (std::string& text : said) text = on_one_line(text);
   std::vector<std::string> missing;
   for (const Saying& saying : sayings) {
     std::vector<const std::string*> texts;

@@ -28,9 +28,9 @@ std::vector<Saying> sayings_of(const std::vector<std::string>& files);
 std::vector<std::string> sources_in(const std::string& folder,
                                     const std::vector<std::string>& without = {});
 
-/// "place: words" of every saying, and of every alternative of one, that is in none of `said`.
-std::vector<std::string> never_said(const std::vector<Saying>& sayings,
-                                    const std::vector<std::string>& said);
+/// "place: words" of every saying, and of every alternative of one, that is in none of `said`; how
+/// texts are broken into lines does not matter.
+std::vector<std::string> never_said(const std::vector<Saying>& sayings, std::vector<std::string> said);
 
 /// "place and place: words" where two statements say the same of two words or more: nobody can tell which of them spoke.
 std::vector<std::string> said_twice(const std::vector<Saying>& sayings);

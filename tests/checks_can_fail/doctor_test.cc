@@ -1,0 +1,346 @@
+// Each finding of `ergocast doctor` on a host that has it: some thirty hosts on one network, each with
+// a fault of its own, are examined at once.
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <deque>
+#include <functional>
+#include <lcm/lcm-cpp.hpp>
+
+#include "doctor/probe.h"
+#include "runtime/key_file.h"
+#include "runtime/node.h"
+#include "runtime/socket.h"
+#include "tests/checks_can_fail/expect_said.h"
+#include "tests/hosts/team_on_hosts.h"
+#include "tests/process/stranger.h"
+
+namespace ergocast::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kGroup = "239.255.76.67";
+
+/// Somebody on another host who says something again and again while the doctor listens.
+using Speaker = std::function<void()>;
+
+/// A host that answers the doctor's probes in its own way.
+class PretendedPeer {
+ public:
+  struct Manners {
+    std::string version = ergocast::version();
+    std::uint64_t key = 0;
+    bool answers = true;
+    std::uint32_t most = doctor::kMaxProbes;                            ///< probes it sends
+    std::function<bool(std::uint32_t)> leaves_out = [](auto) { return false; };  ///< by sequence
+    bool twice = false;
+    bool gossips = false;  ///< of somebody whom the doctor never hears
+  };
+  PretendedPeer(int port, Manners manners)
+      : manners_(std::move(manners)), to_(address_of(kGroup, port)), socket_(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) {
+    const int yes = 1;
+    setsockopt(socket_.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    EXPECT_EQ(bind(socket_.fd(), reinterpret_cast<const sockaddr*>(&to_), sizeof to_), 0);
+    const ip_mreq membership{to_.sin_addr, {htonl(INADDR_ANY)}};
+    EXPECT_EQ(setsockopt(socket_.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership), 0);
+  }
+
+  /// Answers each probe of the doctor's with one of its own.
+  void turn() {
+    std::array<std::byte, 2048> buffer;
+    for (ssize_t size; (size = recv(socket_.fd(), buffer.data(), buffer.size(), 0)) > 0;) {
+      const auto probe = doctor::read(std::span(buffer.data(), static_cast<std::size_t>(size)));
+      if (!probe || probe->nonce == kNonce) continue;
+      doctor::Echo& echo = echo_;
+      if (echo.nonce == 0) echo = {probe->nonce, probe->sequence, probe->sequence, {}, 0};
+      ++(doctor::is_large(probe->sequence) ? echo.heard.large : echo.heard.small);
+      echo.last = probe->sequence;
+      if (sequence_ < manners_.most) speak();
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kNonce = 4711;
+
+  void speak() {
+    doctor::Probe own{kNonce, sequence_++, "stranger", manners_.version, {}, manners_.key};
+    if (manners_.answers) own.echoes.push_back(echo_);
+    if (manners_.gossips) own.echoes.push_back({99, 0, sequence_, {1, 0}, 0});
+    if (manners_.leaves_out(own.sequence)) return;
+    std::vector<std::byte> bytes;
+    doctor::write(own, bytes);
+    for (int i = 0; i < (manners_.twice ? 2 : 1); ++i) {
+      sendto(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
+    }
+  }
+
+  Manners manners_;
+  sockaddr_in to_;
+  Socket socket_;
+  doctor::Echo echo_;
+  std::uint32_t sequence_ = 0;
+};
+
+/// One host and what is wrong with it.
+struct Plant {
+  std::string check = "", found = "";  ///< of the finding
+  std::string level = "";
+  int exit_code = 1;
+  std::string set_up = "";                 ///< a shell's command on the host
+  std::string url_options = "ttl=1";
+  std::vector<std::string> arguments = {};
+  std::string wrapper = "";                ///< a shell's words before the program's
+  std::vector<int> held_ports = {};        ///< by a socket of the test's, after the URL's port
+  bool alone = false;                      ///< which shares them with nobody
+  std::function<Speaker(int port)> speaker = {};  ///< made on another host
+  int agents = 0;                                 ///< of ours at the same ports, that wait for a mission
+  bool as_nobody = false, on_a_terminal = false;
+  int port = 0;                                   ///< if it matters
+};
+
+class DoctorCanFail : public OnHosts {
+ protected:
+  void SetUp() override {
+    if (!is_root()) GTEST_SKIP() << "needs root";
+  }
+
+  std::vector<Plant> plants();
+  std::vector<Plant> plants_of_routes();
+  std::vector<Plant> plants_of_kernels();
+  std::vector<Plant> plants_on_the_bus();
+  std::vector<Plant> plants_of_peers();
+
+
+  std::filesystem::path key_file(const char* name) const { return folder_ / name; }
+  Seal seal(const char* name) const { return Seal(std::get<MissionKey>(read_key_file(key_file(name)))); }
+
+  /// Says `message` for as long as the doctor listens.
+  template <class M>
+  std::function<Speaker(int)> says(M message, const Seal& seal = {}) {
+    return [message, seal](int port) -> Speaker {
+      const auto url = "udpm://" + std::string(kGroup) + ":" + std::to_string(port) + "?ttl=1";
+      return [stranger = std::make_shared<Stranger>(url, seal), message] { stranger->say(Bus::kSwarm, message); };
+    };
+  }
+  static std::function<Speaker(int)> peer(PretendedPeer::Manners manners) {
+    return [manners](int port) -> Speaker {
+      return [one = std::make_shared<PretendedPeer>(port, manners)] { one->turn(); };
+    };
+  }
+
+  void start(std::size_t i, const Plant& plant) {
+    const int host = static_cast<int>(i), port = plant.port > 0 ? plant.port : 24000 + 3 * host;
+    std::string set_up = plant.set_up;
+    if (const auto at = set_up.find("$PORT"); at != set_up.npos) set_up.replace(at, 5, std::to_string(port));
+    if (!set_up.empty()) lan_->on_host(host, set_up);
+    if (plant.speaker) {
+      const auto elsewhere = lan_->visit(lan_->hosts() - 1);
+      speakers_.push_back(plant.speaker(port));
+    }
+    const std::string url = "udpm://" + std::string(kGroup) + ":" + std::to_string(port) + "?" + plant.url_options;
+    const auto there = lan_->visit(host);
+    for (const int offset : plant.held_ports) hold(port + offset, !plant.alone);
+    for (int agent = 0; agent < plant.agents; ++agent) {
+      url_ = url;
+      hand("ergocast-agent");
+    }
+    const auto sockets = [] { return text_of("/proc/thread-self/net/udp"); };
+    EXPECT_TRUE(eventually([&] { return std::ranges::count(sockets(), '\n') > 2 * plant.agents; }));
+    const auto program = plant.as_nobody ? folder_ / "ergocast" : program_folder() / "ergocast";
+    std::string command = plant.wrapper + " " + program.string() + " doctor --lcm-url '" + url + "'";
+    for (const std::string& argument : plant.arguments) command += " " + argument;
+    command = plant.on_a_terminal ? "script -qefc \"" + command + "\" /dev/null" : command + " --json";
+    logs_.push_back(folder_ / ("host-" + std::to_string(i)));
+    doctors_.push_back(std::get<Child>(Child::start({{"/bin/sh", "-c", "exec " + command}, logs_.back(), SIGKILL})));
+  }
+
+  void hold(int port, bool shared) {
+    Socket& socket = held_.emplace_back(AF_INET, SOCK_DGRAM);
+    const int yes = shared;
+    setsockopt(socket.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    const sockaddr_in address = address_of("0.0.0.0", port);
+    EXPECT_EQ(bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+
+  /// Lets the others speak until every doctor has ended.
+  void wait_for_all() {
+    EXPECT_TRUE(eventually([this] {
+      for (const Speaker& speak : speakers_) speak();
+      return std::none_of(doctors_.begin(), doctors_.end(), [](Child& one) { return one.running(); });
+    }));
+  }
+
+  void expect_finding(std::size_t i, const Plant& plant) {
+    const std::string told = text_of(logs_[i]);
+    EXPECT_EQ(doctors_[i].exit_code().value_or(-1), plant.exit_code) << plant.check << ": " << plant.found;
+    said_.push_back(told);
+    const json report = json::parse(told, nullptr, false);
+    if (report.is_discarded()) return;  // for people
+    bool found = false;
+    for (const json& one : report["findings"]) {
+      const std::string check = one["check"], what = one["found"], why = one["why"], remedy = one["remedy"];
+      said_.push_back(check + "\n" + what + "\n" + why + "\n" + remedy);
+      found = found || (check == plant.check && one["level"] == plant.level && what.find(plant.found) != what.npos);
+    }
+    EXPECT_TRUE(found) << plant.level << " " << plant.check << ": " << plant.found << " is not in\n" << told;
+  }
+
+  std::deque<Socket> held_;
+  std::vector<Speaker> speakers_;
+  std::vector<Child> doctors_;
+  std::vector<std::filesystem::path> logs_;
+  std::vector<std::string> said_;
+};
+
+constexpr const char* kAsNobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
+constexpr const char* kSecondInterface =
+    "ip link add br1 type bridge && ip addr add 10.0.9.1/24 dev br1 && ip link set br1 up";
+
+std::vector<Plant> DoctorCanFail::plants_of_routes() {
+  const std::string no_route = "ip route del 224.0.0.0/4";
+  const std::string to_lo = "ip route replace 224.0.0.0/4 dev lo";
+  return {
+      {"route", "no route to", "problem", 3, no_route, "ttl=0"},
+      {"route", "no route to", "problem", 3, std::string(kSecondInterface) + "; " + no_route},
+      {"route", "no route to", "problem", 3, "ip link set eth0 down"},
+      {"route", "goes to lo, yet", "problem", 1, to_lo},
+      {"route", "goes to lo, yet", "problem", 1, "ip link set eth0 down; " + to_lo},
+      {"route", ", and not over br1", "note", 0, kSecondInterface},
+      {"interface", "is not set to multicast", "problem", 1, "ip link set eth0 multicast off"},
+      {"interface", "has no carrier", "problem", 1,
+       "ip link add v0 type veth peer name v1 && ip addr add 10.0.9.1/24 dev v0 && ip link set v0 up && "
+       "ip route replace 224.0.0.0/4 dev v0"},
+      {"MTU", "eth0: 1000 bytes", "warning", 1, "ip link set eth0 mtu 1000"},
+      {"TTL", "never leaves this host", "note", 0, "", "ttl=0"},
+      {"self test", "did not come back", "problem", 3,
+       "nft 'add table inet wall; add chain inet wall in { type filter hook input priority 0; policy drop; }'"},
+      {"firewall", "drops incoming traffic", "note", 0, "", "ttl=1", {},
+       "env PATH=" + (folder_ / "iptables").string() + ":$PATH"},
+  };
+}
+
+std::vector<Plant> DoctorCanFail::plants_of_kernels() {
+  const std::string sysctl = "/proc/sys/net/ipv4/";
+  const std::string drop = "nft 'add table inet t; add chain inet t i { type filter hook input priority 0; }'";
+  return {
+      {"receive buffer", "the kernel grants", "warning", 1, "", "ttl=1&recv_buf_size=1073741823"},
+      {"receive buffer", "holds about", "note", 0, "", "ttl=1&recv_buf_size=65536"},
+      {"fragments", "20000 bytes for fragments", "note", 0,
+       "echo 10000 > " + sysctl + "ipfrag_low_thresh; echo 20000 > " + sysctl + "ipfrag_high_thresh"},
+      {"source check", "rp_filter=1 (strict)", "note", 0,
+       "echo 0 > " + sysctl + "conf/all/rp_filter; echo 1 > " + sysctl + "conf/eth0/rp_filter"},
+      {"bridges", "br1: snooping without a querier", "note", 0, kSecondInterface, "ttl=1", {},
+       "unshare -m sh -c 'mount -t sysfs sysfs /sys && exec \"$@\"' _"},
+      {"LCM fragments", "no rule drops them", "note", 0},
+      {.check = "LCM fragments", .found = "no rule drops them", .level = "note", .exit_code = 0, .port = 30000},
+      {"LCM fragments", "at 1 of our 3 ports", "note", 0,
+       drop + "; nft 'add rule inet t i udp dport $PORT @th,64,32 0x4c433033 drop'"},
+      {"LCM fragments", "only root can tell", "note", 0, "", "ttl=1", {}, kAsNobody, {}, false, {}, 0, true},
+      {"clock", "not synchronised", "note", 0, "", "ttl=1", {},
+       std::string("env LD_PRELOAD=") + ERGOCAST_UNSYNCHRONISED_CLOCK},
+      {"lcm-spy", "missing: java", "note", 0, "", "ttl=1", {}, "env PATH=/nowhere"},
+  };
+}
+
+std::vector<Plant> DoctorCanFail::plants_on_the_bus() {
+  const Hello hello{{77, 3, 5, 0, 0}, 3, "elsewhere", "9.9"};
+  const auto foreign = [](int port) -> Speaker {
+    const auto url = "udpm://" + std::string(kGroup) + ":" + std::to_string(port) + "?ttl=1";
+    return [bus = std::make_shared<lcm::LCM>(url)] { bus->publish("LIDAR", "scan", 4); };
+  };
+  const std::vector<std::string> with_key = {"--key-file", key_file("ours")};
+  return {
+      {"ports", ": hosts_tests (pid ", "warning", 1, "", "ttl=1", {}, "", {0, 1, 2}},
+      {.check = "ports", .found = " and 2 more", .level = "note", .exit_code = 0, .agents = 3},
+      {"ports", "cannot open the port", "problem", 1, "", "ttl=1", {}, "", {0}, true},
+      {"ports", "another user's program", "warning", 1, "", "ttl=1", {}, kAsNobody, {1}, false, {}, 0, true},
+      {"swarm bus", "run 000000000000004d, 1 agent on elsewhere, version 9.9", "note", 0, "", "ttl=1", {}, "", {},
+       false, says(hello)},
+      {"swarm bus", "a team without a mission key", "warning", 1, "", "ttl=1", with_key, "", {}, false, says(hello)},
+      {"swarm bus", "messages that this key does not open", "warning", 1, "", "ttl=1", with_key, "", {}, false,
+       says(hello, seal("other"))},
+      {"swarm bus", "a team with a mission key", "note", 0, "", "ttl=1", {}, "", {}, false, says(hello, seal("ours"))},
+      {"swarm bus", "other LCM traffic: LIDAR", "warning", 1, "", "ttl=1", {}, "", {}, false, foreign},
+      {"mission key", "none: unauthenticated", "note", 0},
+  };
+}
+
+std::vector<Plant> DoctorCanFail::plants_of_peers() {
+  const std::vector<std::string> test = {"--peer", "3"};
+  const std::vector<std::string> keyed = {"--peer", "3", "--key-file", key_file("ours")};
+  const auto plant = [&](const char* check, const char* found, const char* level, PretendedPeer::Manners manners,
+                         const std::vector<std::string>& arguments) {
+    return Plant{check, found, level, std::string(level) == "note" ? 0 : 1, "", "ttl=1", arguments, "", {}, false,
+                 peer(std::move(manners))};
+  };
+  const auto every_fourth = [](std::uint32_t sequence) { return doctor::is_large(sequence); };
+  const auto every_fifth = [](std::uint32_t sequence) { return sequence % 5 == 2; };
+  return {
+      {"peers", "nobody was heard", "problem", 1, "", "ttl=1", test},
+      {"peers", "cannot send: ", "problem", 1,
+       "nft 'add table inet w; add chain inet w o { type filter hook output priority 0; }; "
+       "add rule inet w o udp dport $PORT drop'",
+       "ttl=1", test},
+      {"peers", "not tried: LCM cannot be used", "problem", 3, "ip route del 224.0.0.0/4", "ttl=1", test},
+      {"peers", "not tried: the port is in use", "warning", 1, "", "ttl=1", test, "", {0}},
+      plant("peer stranger", "one-way", "problem", {.answers = false}, test),
+      plant("peer stranger", "heard too briefly", "note", {.answers = false, .most = 3}, test),
+      plant("peer stranger", "only short datagrams arrive", "problem", {.leaves_out = every_fourth}, test),
+      plant("peer stranger", "it has version 9.9", "warning", {.version = "9.9"}, test),
+      plant("peer stranger", "it has a mission key and this host has none", "warning", {.key = 5}, test),
+      plant("peer stranger", "it has another mission key", "warning", {.key = 5}, keyed),
+      plant("peer stranger", "it has no mission key and this host has one", "warning", {}, keyed),
+      plant("peer stranger", ", lost: ", "warning", {.leaves_out = every_fifth}, test),
+      plant("peer stranger", "probes came twice", "note", {.twice = true}, test),
+      plant("peers", "1 more heard by others, but not here", "problem", {.gossips = true}, test),
+      // What is for people, on a terminal.
+      {.arguments = {"--peer", "1"}, .wrapper = "env NO_COLOR=1", .on_a_terminal = true},
+  };
+}
+
+std::vector<Plant> DoctorCanFail::plants() {
+  std::vector<Plant> all;
+  for (const auto& some : {plants_of_routes(), plants_of_kernels(), plants_on_the_bus(), plants_of_peers()}) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+const std::vector<Unsayable> kUnsayable = {
+    {"doctor/group_listener.cc", "cannot listen to the group", "the self test, which joins it first, fails then"},
+    {"doctor/ports.cc", "ss -ulpn", "a thousand ports would have to be taken"},
+};
+
+TEST_F(DoctorCanFail, InEachOfItsFindings) {
+  namespace fs = std::filesystem;
+  for (const char* name : {"ours", "other"}) {
+    ASSERT_EQ(write_key_file(key_file(name), key_text(make_mission_key(), false)), std::nullopt);
+  }
+  // Where nobody but root may look, the build may be, too.
+  fs::permissions(folder_, fs::perms::group_exec | fs::perms::others_exec, fs::perm_options::add);
+  fs::copy_file(program_folder() / "ergocast", folder_ / "ergocast");
+  // A host without nft, whose iptables drops.
+  fs::create_directory(folder_ / "iptables");
+  for (const auto& [tool, does] : {std::pair("nft", "exit 1"), std::pair("iptables", "echo '-P INPUT DROP'")}) {
+    std::ofstream(folder_ / "iptables" / tool) << "#!/bin/sh\n" << does << "\n";
+    fs::permissions(folder_ / "iptables" / tool, fs::perms::owner_all);
+  }
+
+  const std::vector<Plant> all = plants();
+  lan_.emplace(static_cast<int>(all.size()) + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) start(i, all[i]);
+  wait_for_all();
+  for (std::size_t i = 0; i < all.size(); ++i) expect_finding(i, all[i]);
+  EXPECT_EQ(ergocast({"doctor", "--help"}), 0);
+  said_.push_back(output());
+
+  std::vector<std::string> sources =
+      sources_in("doctor", {"doctor/command_output.cc", "doctor/print.cc"});
+  sources.push_back("cli/doctor.cc");
+  expect_all_said(sources, said_, kUnsayable);
+}
+
+}  // namespace
+}  // namespace ergocast::test
