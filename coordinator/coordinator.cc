@@ -56,11 +56,10 @@ void Coordinator::receive(const Message& message, Instant now) {
   const bool flying = status != nullptr && (status->phase == AgentPhase::kWaiting ||
                                             status->phase == AgentPhase::kRunning);
   if (takeover_ != Takeover::kNever && run_ == 0 && flying) run_ = from.run;
+  // While it knows no run, whoever leads one here leads the one that it would disturb.
+  const auto* team = std::get_if<TeamStatus>(&message);
+  if (team != nullptr && (run_ == 0 || from.run == run_)) return on(*team, now);
   if (run_ == 0 || from.run != run_) return;
-  if (std::holds_alternative<TeamStatus>(message) && from.incarnation != incarnation_) {
-    rival_ = from.incarnation;
-    rival_heard_ = now;
-  }
   if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
   if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
   if (takeover_ != Takeover::kNever) {

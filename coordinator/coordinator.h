@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
 #include "core/mission.h"
@@ -21,8 +22,9 @@ namespace ergocast {
 /// What a coordinator does about a mission that is already under way on its buses.
 enum class Takeover {
   kNever,     ///< starts a mission of its own at once
-  kIfFlying,  ///< listens for a moment; takes over what it hears, or starts its own
-  kMust,      ///< takes over, or fails
+  kIfFlying,  ///< listens for a moment; takes over what nobody leads, leaves to a living coordinator
+              ///< what it leads, or starts its own
+  kMust,      ///< takes over, also from a living coordinator, or fails
 };
 
 /// How a member of the roster, present or former, is doing.
@@ -58,6 +60,8 @@ class Coordinator {
   bool looking() const { return takeover_ != Takeover::kNever; }
   /// Whether it took the mission over from a predecessor.
   bool took_over() const { return took_over_; }
+  /// Whether it has finished without a word because the mission is not its to lead; reason() says why.
+  bool left() const { return left_; }
   MissionState state() const { return state_; }
   const std::string& reason() const { return reason_; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
@@ -76,6 +80,7 @@ class Coordinator {
   void on(const AgentStatus& status, Instant now);
   void on(const MissionPart& part, Instant now);
   void on(const WorldState& world, Instant now);
+  void on(const TeamStatus& theirs, Instant now);
   void admit(const Author& author, Instant now);
   bool doubtful(Instant since, Instant now) const;
   std::optional<AgentId> free_id(Incarnation newcomer, Instant now);
@@ -83,9 +88,13 @@ class Coordinator {
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;
   void look_for_mission(Instant now, Outbox& out);
-  std::optional<std::string> not_ours() const;
+  std::optional<std::string> not_ours(Instant now) const;
   void take_over(Instant now);
   Instant next_look() const;
+  bool rival_lives(Instant now) const;
+  bool rival_leads(Instant now) const;
+  std::string led_by_rival() const;
+  void leave(std::string reason, Instant now);
   void begin_own();
   void lead(Instant now, Outbox& out);
   void forget_silent(Instant now);
@@ -106,11 +115,12 @@ class Coordinator {
   std::vector<std::byte> plan_;
   MissionFollower follower_;  // what agents say of a mission under way
   Takeover takeover_;
-  bool took_over_ = false;
+  bool took_over_ = false, left_ = false;
   std::optional<Instant> looking_since_, found_;
   Tick team_tick_ = 0;  // the newest of any agent
-  Incarnation rival_ = 0;  // another coordinator of this run
+  std::optional<TeamStatus> rival_;  // another coordinator's
   Instant rival_heard_{};
+  Freshness freshness_;
   Instant next_question_{};
   Sequencer sequencer_;
 

@@ -65,6 +65,7 @@ class MissionLog {
     if (coordinator.state() == state_) return;
     state_ = coordinator.state();
     const std::string& reason = coordinator.reason();
+    if (coordinator.left()) return spdlog::error("{}", reason);
     spdlog::log(state_ == MissionState::kFailed ? spdlog::level::err : spdlog::level::info,
                 "mission {} at tick {}{}{}", to_string(state_), coordinator.tick(),
                 reason.empty() ? "" : ": ", reason);
@@ -130,9 +131,11 @@ int main(int argc, char** argv) {
           ->type_name("FILE");
   Overrides overrides;
   add_override_options(app, overrides);
-  app.add_flag("--resume", resume, "Take over the mission that the agents are flying, or fail");
+  app.add_flag("--resume", resume,
+               "Take over the mission that the agents are flying, also from a living coordinator, or fail");
   app.footer("Without --run-id and --resume: takes over this scenario's mission if it is under way "
-             "on the URL, else starts a new one.");
+             "on the URL and nobody leads it, else starts a new one. Ends with code 4 if another "
+             "coordinator leads a mission there.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("coordinator", node.log_level);
   if (!node.seal.can_sign()) {

@@ -31,15 +31,41 @@ void Coordinator::on(const MissionPart& part, Instant now) {
   }
   // Of two that took over at once, one stays.
   if (std::pair(part.revision, part.header.incarnation) <= std::pair(revision_, incarnation_)) return;
-  const bool alive = part.header.incarnation == rival_ && now - rival_heard_ < kRivalLife;
-  if (!alive) {
-    // What a dead one said and an agent has repeated: the team has to listen to us again.
-    revision_ = part.revision;
-    change();
-  } else {
-    end(true, "another coordinator has taken the mission over", now);
-    finished_ = true;  // at once, without a word: the mission is not ours to end
+  if (rival_lives(now) && rival_->header.incarnation == part.header.incarnation) {
+    return leave("another coordinator has taken the mission over", now);
   }
+  // What a dead one said and an agent has repeated: the team has to listen to us again.
+  revision_ = part.revision;
+  change();
+}
+
+void Coordinator::on(const TeamStatus& theirs, Instant now) {
+  if (theirs.header.incarnation == incarnation_ || !freshness_.is_news(theirs.header)) return;
+  rival_ = theirs;
+  rival_heard_ = now;
+}
+
+bool Coordinator::rival_lives(Instant now) const {
+  return rival_ && now - rival_heard_ < kRivalLife;
+}
+
+/// Whether a living one leads the mission that we would take over, or, while we know of none, any.
+bool Coordinator::rival_leads(Instant now) const {
+  const auto leads = [](MissionState state) {
+    return state == MissionState::kWaiting || state == MissionState::kRunning;
+  };
+  return rival_lives(now) && leads(rival_->state) && (run_ == 0 || rival_->header.run == run_);
+}
+
+std::string Coordinator::led_by_rival() const {
+  return "run " + to_hex(rival_->header.run) + " is led by the coordinator on " + rival_->host +
+         ": leave it to that one, choose another URL, or take the mission over with --resume";
+}
+
+/// At once, without a word: the mission is not ours to end.
+void Coordinator::leave(std::string reason, Instant now) {
+  end(true, std::move(reason), now);
+  finished_ = left_ = true;
 }
 
 void Coordinator::look_for_mission(Instant now, Outbox& out) {
@@ -50,10 +76,11 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
   if (!looking_since_) looking_since_ = now;
   if (found_ && now - *found_ >= kSecondOpinions) return take_over(now);
   const auto looked = now - *looking_since_;
-  if (takeover_ == Takeover::kIfFlying && run_ == 0 && looked >= kLookAround) return begin_own();
+  if (takeover_ == Takeover::kIfFlying && run_ == 0 && looked >= kLookAround) {
+    return rival_leads(now) ? leave(led_by_rival(), now) : begin_own();
+  }
   if (looked >= kTakeoverPatience) {
-    end(true, "no agent on this URL knows a mission that could be taken over", now);
-    finished_ = true;
+    leave("no agent on this URL knows a mission that could be taken over", now);
   }
   if (now < next_question_) return;
   next_question_ = now + kQuestionPeriod;
@@ -75,22 +102,22 @@ void Coordinator::begin_own() {
 }
 
 /// Why the mission under way cannot be taken over.
-std::optional<std::string> Coordinator::not_ours() const {
+std::optional<std::string> Coordinator::not_ours(Instant now) const {
   const std::string run = "run " + to_hex(run_);
   if (follower_.plan_problem()) return run + ": " + *follower_.plan_problem();
-  if (plan_.empty() || follower_.plan() == plan_) return std::nullopt;
-  return run + " of another plan (" + follower_.mission()->name +
-         ") is flying on this URL: choose another URL, or wait for its end";
+  if (!plan_.empty() && follower_.plan() != plan_) {
+    return run + " of another plan (" + follower_.mission()->name +
+           ") is flying on this URL: choose another URL, or wait for its end";
+  }
+  if (takeover_ == Takeover::kIfFlying && rival_leads(now)) return led_by_rival();
+  return std::nullopt;
 }
 
 void Coordinator::take_over(Instant now) {
+  const auto problem = not_ours(now);
   takeover_ = Takeover::kNever;
+  if (problem) return leave(*problem, now);
   took_over_ = true;
-  if (const auto problem = not_ours()) {
-    end(true, *problem, now);
-    finished_ = true;
-    return;
-  }
   mission_ = follower_.mission();
   plan_ = follower_.plan();
   roster_ = follower_.roster();

@@ -39,6 +39,14 @@ Coordinator taken_over(const MissionPart& memory, Mission mission = small_missio
   return coordinator;
 }
 
+/// What only a living coordinator says.
+TeamStatus alive(Incarnation life, std::int64_t sequence = 1) {
+  TeamStatus status;
+  status.header = {kRun, kCoordinator, life, sequence, 0};
+  status.host = "there";
+  return status;
+}
+
 const MissionPart& said_by(const Outbox& out) {
   for (const Outgoing& outgoing : out) {
     if (const auto* part = std::get_if<MissionPart>(&outgoing.message)) return *part;
@@ -134,6 +142,54 @@ TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
   advance(coordinator, at(30s));
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+}
+
+// ---- a living predecessor -----------------------------------------------------------------------
+
+constexpr const char* kLedByAnother =
+    "run 0000000000001234 is led by the coordinator on there: leave it to that one, choose another URL, "
+    "or take the mission over with --resume";
+
+TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  coordinator.receive(alive(kCoordinatorLife), at(100ms));
+  coordinator.receive(memory_of(3), at(100ms));
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(700ms))).empty()) << "and says nothing to its team";
+  EXPECT_TRUE(coordinator.finished());
+  EXPECT_TRUE(coordinator.left());
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+  EXPECT_EQ(coordinator.reason(), kLedByAnother);
+}
+
+TEST(TakeoverIfFlying, LeavesALeaderAloneThatStillWaitsForItsFirstAgent) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  coordinator.receive(alive(kCoordinatorLife), at(100ms));
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(750ms))).empty());
+  EXPECT_TRUE(coordinator.left());
+  EXPECT_EQ(coordinator.reason(), kLedByAnother);
+}
+
+TEST(TakeoverIfFlying, AfterTheEndOfALeadersMissionStartsItsOwn) {
+  Coordinator coordinator = successor(Takeover::kIfFlying);
+  advance(coordinator, at(0s));
+  TeamStatus farewell = alive(kCoordinatorLife, 2);
+  farewell.state = MissionState::kEnded;
+  coordinator.receive(alive(kCoordinatorLife), at(0s));
+  coordinator.receive(farewell, at(100ms));
+  EXPECT_EQ(said_by(advance(coordinator, at(750ms))).header.run, kSuccessorLife);
+}
+
+TEST(TakeoverMust, TakesOverFromALivingOneToo) {
+  Coordinator coordinator = successor(Takeover::kMust);
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  coordinator.receive(alive(kCoordinatorLife), at(100ms));
+  coordinator.receive(memory_of(3), at(100ms));
+  advance(coordinator, at(700ms));
+  EXPECT_TRUE(coordinator.took_over());
 }
 
 // ---- what it takes over --------------------------------------------------------------------------
@@ -301,13 +357,6 @@ TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
 
 // ---- the one that was taken over -----------------------------------------------------------------
 
-/// What only a living coordinator says.
-TeamStatus alive(Incarnation life) {
-  TeamStatus status;
-  status.header = {kRun, kCoordinator, life, 1, 0};
-  return status;
-}
-
 TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   advance(coordinator, at(1s));
@@ -329,6 +378,16 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
   coordinator.receive(repeated, at(3s));  // by an agent, long after its last word
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
   EXPECT_EQ(said_by(advance(coordinator, at(3s))).revision, 1001) << "or the team would not listen";
+}
+
+TEST(TakenOver, ARecordedSignOfLifeIsNone) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  coordinator.receive(alive(kSuccessorLife, 7), at(1s));
+  coordinator.receive(alive(kSuccessorLife, 7), at(5s));
+  MissionPart repeated = memory_of(1000);
+  repeated.header.incarnation = kSuccessorLife;
+  coordinator.receive(repeated, at(5s));
+  EXPECT_FALSE(coordinator.finished());
 }
 
 TEST(TakenOver, ItsOwnOrOlderWordsComingBackDoNotScareACoordinator) {

@@ -43,10 +43,30 @@ TEST_F(StartedByHand, AnAgentThatIsToldToLeaveIsReportedAndNotWaitedFor) {
       << coordinator.said();
 }
 
-TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOver) {
+TEST_F(StartedByHand, ASecondCoordinatorLeavesTheMissionToTheFirst) {
   const auto file = endless_pair();
   Program& first = begin_mission(file);
   Program& second = hand("ergocast-coordinator", {file});
+  EXPECT_EQ(wait_for(second.child), 4) << second.said();
+  EXPECT_TRUE(second.says("is led by the coordinator on ")) << second.said();
+  EXPECT_TRUE(second.says("take the mission over with --resume")) << second.said();
+  EXPECT_TRUE(moves_on()) << first.said();
+  EXPECT_TRUE(first.child.running()) << first.said();
+}
+
+TEST_F(StartedByHand, ASecondCoordinatorLeavesALeaderAloneThatHasNoAgentsYet) {
+  const auto file = endless_pair();
+  Program& first = hand("ergocast-coordinator", {file});
+  ASSERT_TRUE(first.says("quorum of 2 agents")) << first.said();
+  Program& second = hand("ergocast-coordinator", {file});
+  EXPECT_EQ(wait_for(second.child), 4) << second.said();
+  EXPECT_TRUE(second.says("is led by the coordinator on ")) << second.said();
+}
+
+TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOverWhenItIsToldTo) {
+  const auto file = endless_pair();
+  Program& first = begin_mission(file);
+  Program& second = hand("ergocast-coordinator", {file, "--resume"});
   ASSERT_TRUE(second.says("taken over")) << second.said();
   EXPECT_EQ(wait_for(first.child), 4) << first.said();
   EXPECT_TRUE(first.says("another coordinator has taken the mission over")) << first.said();
