@@ -1,12 +1,11 @@
-# Sourced by every script that builds (bash): installs what is missing of the packages in the lists
-# $packages of this folder (default: packages.txt, what the programs need), and builds $target, if any,
-# of build/release.
+# Sourced by ./run, ./test and others (bash): installs what is missing of the packages in the lists
+# $packages of this folder (default packages.txt), and builds $target, if any, of build/release.
 #   ERGOCAST_NO_INSTALL=1   never install anything
 #   ERGOCAST_CMAKE_ARGS     more arguments for the configuration, separated by spaces
 # All messages go to stderr. Exit code 3: the machine lacks something that only its owner can add.
 # shellcheck shell=bash
 : "${target?what to build, or nothing}"
-[ -n "${packages+given}" ] || packages=(packages.txt)
+[ -n "${packages+set}" ] || packages=(packages.txt)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/release

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "logger/axes.h"
@@ -15,19 +16,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One thing that is varied; FOLDER/<name>-<agents>-<value>.csv has the seeds of one point, and
-/// FOLDER/<reference>-<agents>.csv what it is compared with.
+/// One thing that is varied; FOLDER/<name>-<agents>-<value>.csv has the seeds of one point. They are
+/// compared with the same seeds where every agent knows everything, FOLDER/central-<agents>/study.csv,
+/// and with those of FOLDER/<untroubled>.csv, to tell what is varied from what is old anyway.
 struct Study {
-  std::string name, reference, x_title;
+  std::string name, x_title;
+  std::string untroubled, untroubled_title;  ///< % is the number of agents
   std::vector<std::string> values;
-  double unit;  ///< x is the value times this
+  double unit;       ///< x is the value times this
+  bool by_messages;  ///< drawn against the contributions sent
 };
 
 /// Everything about one team at one value.
 struct Point {
   double x = 0, view_error = 0, metric = 0, contributions = 0;
   std::size_t seeds = 0;
-  Estimate ratio;
+  Estimate ratio, ratio_to_untroubled;
 };
 
 struct Curve {
@@ -36,24 +40,45 @@ struct Curve {
 };
 
 const Study kStudies[] = {
-    {"loss", "central", "messages lost [%]", {"0", "0.01", "0.05", "0.1", "0.3", "0.6", "0.8"}, 100},
-    {"delay", "central", "mean delay [s]", {"0.5", "1", "2", "5"}, 1},
-    {"budget", "every-tick", "error budget [% of the residual]",
-     {"0.02", "0.05", "0.1", "0.2"}, 100},
-    {"period", "every-tick", "broadcast period [ticks]", {"2", "5", "10", "20", "50"}, 1},
+    {"loss", "messages lost [%]", "loss-%-0", "no loss", {"0", "0.01", "0.05", "0.1", "0.3", "0.6", "0.8"}, 100, false},
+    {"delay", "mean delay [s]", "loss-%-0", "no delay", {"0.5", "1", "2", "5"}, 1, false},
+    {"budget", "error budget [% of the residual]", "period-%-1", "every tick",
+     {"0.02", "0.05", "0.1", "0.2"}, 100, true},
+    {"period", "broadcast period [ticks]", "period-%-1", "every tick",
+     {"1", "2", "5", "10", "20", "50"}, 1, true},
 };
-constexpr int kTeams[] = {4, 16, 64};
+constexpr int kTeams[] = {4, 16, 32};
 
-/// The first rows of both, as many as the shorter has: the same seeds.
-Point compare(const Table& table, const Table& reference, double x) {
+/// φ² at the end, by seed.
+using Metrics = std::map<double, double>;
+
+Metrics metrics_of(const Table& table) {
+  Metrics metrics;
+  const auto& seeds = table.at("seed");
+  for (std::size_t i = 0; i < seeds.size(); ++i) metrics[seeds[i]] = table.at("ergodic_metric")[i];
+  return metrics;
+}
+
+/// Of the seeds that both have. Throws std::runtime_error if there is none.
+Estimate compare(const Metrics& ours, const Metrics& theirs) {
+  std::vector<double> numerators, denominators;
+  for (const auto& [seed, metric] : ours) {
+    const auto twin = theirs.find(seed);
+    if (twin == theirs.end()) continue;
+    numerators.push_back(metric);
+    denominators.push_back(twin->second);
+  }
+  if (numerators.empty()) throw std::runtime_error("two points have no seed in common");
+  return ratio_of(numerators, denominators);
+}
+
+Point point_of(const Table& table, double x, const Metrics& central, const Metrics& untroubled) {
   Point point;
-  std::vector<double> ours = table.at("ergodic_metric"), theirs = reference.at("ergodic_metric");
-  point.seeds = std::min(ours.size(), theirs.size());
-  ours.resize(point.seeds);
-  theirs.resize(point.seeds);
+  point.seeds = table.at("seed").size();
   point.x = x;
-  point.ratio = ratio_of(ours, theirs);
-  point.metric = median_of(ours).value;
+  point.ratio = compare(metrics_of(table), central);
+  point.ratio_to_untroubled = compare(metrics_of(table), untroubled);
+  point.metric = median_of(table.at("ergodic_metric")).value;
   point.view_error = median_of(table.at("view_error")).value;
   point.contributions = median_of(table.at("contributions")).value;
   return point;
@@ -62,26 +87,30 @@ Point compare(const Table& table, const Table& reference, double x) {
 Curve curve_of(const Study& study, int agents, const fs::path& folder) {
   Curve curve{agents, {}};
   const std::string team = "-" + std::to_string(agents), name = study.name + team + "-";
-  const fs::path reference_file = folder / (study.reference + team + ".csv");
-  if (!fs::exists(reference_file)) return curve;
-  const Table reference = read_table(reference_file);
+  std::string untroubled = study.untroubled + ".csv";
+  untroubled.replace(untroubled.find('%'), 1, std::to_string(agents));
+  const fs::path central_file = folder / ("central" + team) / "study.csv";
+  if (!fs::exists(central_file) || !fs::exists(folder / untroubled)) return curve;
+  const Metrics central = metrics_of(read_study(central_file).front().columns);
+  const Metrics least = metrics_of(read_table(folder / untroubled));
   for (const std::string& value : study.values) {
     const fs::path file = folder / (name + value + ".csv");
     if (!fs::exists(file)) continue;
-    curve.points.push_back(compare(read_table(file), reference, std::stod(value) * study.unit));
+    curve.points.push_back(point_of(read_table(file), std::stod(value) * study.unit, central, least));
   }
   return curve;
 }
 
 void print(const Study& study, const std::vector<Curve>& curves) {
-  std::printf("| agents | %s | seeds | contributions | φ² (median) | φ² against %s (95 %%) | view error |\n"
-              "|---|---|---|---|---|---|---|\n",
-              study.x_title.c_str(), study.reference.c_str());
+  std::printf("| agents | %s | seeds | contributions | φ² (median) | φ² against central (95 %%) | against %s (95 %%) | view error |\n"
+              "|---|---|---|---|---|---|---|---|\n",
+              study.x_title.c_str(), study.untroubled_title.c_str());
   for (const Curve& curve : curves) {
     for (const Point& p : curve.points) {
-      std::printf("| %d | %g | %zu | %.0f | %.3g | %.3f (%.3f to %.3f) | %.2g |\n", curve.agents, p.x,
-                  p.seeds, p.contributions, p.metric, p.ratio.value, p.ratio.low, p.ratio.high,
-                  p.view_error);
+      const auto [ratio, low, high] = p.ratio_to_untroubled;
+      std::printf("| %d | %g | %zu | %.0f | %.3g | %.2f (%.2f to %.2f) | %.2f (%.2f to %.2f) | %.2g |\n",
+                  curve.agents, p.x, p.seeds, p.contributions, p.metric, p.ratio.value, p.ratio.low,
+                  p.ratio.high, ratio, low, high, p.view_error);
     }
   }
   std::printf("\n");
@@ -131,25 +160,24 @@ struct Extent {
 };
 
 std::string draw(const Study& study, const std::vector<Curve>& curves) {
-  const bool by_messages = study.reference == "every-tick";
   Extent x, ratio, error;
   for (const Curve& curve : curves) {
     for (const Point& p : curve.points) {
-      x.add(by_messages ? p.contributions : p.x);
+      x.add(study.by_messages ? p.contributions : p.x);
       ratio.add(p.ratio.low);
       ratio.add(p.ratio.high);
       error.add(p.view_error);
     }
   }
-  const ValueOf x_of = by_messages ? [](const Point& p) { return p.contributions; }
+  const ValueOf x_of = study.by_messages ? [](const Point& p) { return p.contributions; }
                                    : [](const Point& p) { return p.x; };
   const auto x_axis = [&] {
-    return by_messages ? log_axis("contributions sent", x.low / 1.2, x.high * 1.2)
+    return study.by_messages ? log_axis("contributions sent", x.low / 1.2, x.high * 1.2)
                        : range_axis(study.x_title, "", 0, x.high);
   };
   Svg svg(kWidth, kHeight, study.name, study.x_title);
   draw_key(svg, curves);
-  draw_panel(svg, kLeft, "φ² at the end against " + study.reference, x_axis(),
+  draw_panel(svg, kLeft, "φ² at the end against central", x_axis(),
              log_axis("ratio", std::min(0.9, ratio.low / 1.1), std::max(1.1, ratio.high * 1.1)), curves,
              x_of, [](const Point& p) { return p.ratio.value; }, true);
   draw_panel(svg, kWidth - 18 - kPanelWidth, "What the worst-informed agent's c lacks at the end", x_axis(),
