@@ -67,12 +67,19 @@ install_packages() {
   fi
 }
 
+# What of all that is optional was there when something was configured, in one word.
+optional_packages() {
+  dpkg-query -W -f '${Package} ${db:Status-Status}\n' 2>/dev/null |
+    grep -xF -f <(sed 's/#.*//; /^$/d; s/$/ installed/' "$root/packaging/packages-test.txt") | cksum
+}
+
 build_release() {
   local arguments stamp=$build/configured-with
   read -r -a arguments <<<"${ERGOCAST_CMAKE_ARGS:-}"
-  local wanted="$root ${arguments[*]}"
+  local wanted="$root ${arguments[*]}; $(optional_packages)"
 
-  # Other arguments or a moved checkout: start from an empty cache, so that no old option lingers.
+  # Other arguments, a moved checkout, or packages that came or went: start from an empty cache, so that
+  # no old option lingers, and nothing stays unseen.
   if [ ! -f "$build/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
     say "Configuring $build"
     rm -f "$stamp"
