@@ -23,9 +23,10 @@ std::string name_of(AgentId sender) {
 
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
     const BusOptions& options, std::function<void(const Message&)> hear) {
+  // A replayed event log has the messages of all buses on the first: LCM's player knows one URL.
   return Transport::open(
       options.url, options.run, options.seal,
-      {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
+      {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*|WORLD_STATE|RECORD_ACK"},
        {Bus::kWorld, "WORLD_STATE"},
        {Bus::kCommand, "RECORD_ACK"}},
       {.on_message = [hear = std::move(hear)](const Message& message, AgentId) { hear(message); }});

@@ -127,7 +127,8 @@ std::string difference_of(const TrajectoryComparison& comparison, const fs::path
 
 int report_difference(const fs::path& run_dir, const std::string& difference, const Json& summary,
                       const std::string& where = "") {
-  std::printf("%s differs from its simulation%s\n%s", run_dir.c_str(), where.c_str(), difference.c_str());
+  std::printf("%s differs from its simulation%s\n%s", run_dir.c_str(), where.c_str(),
+              printable(difference).c_str());
   if (summary.value("cpu_fma", Json(cpu_has_fma())) != cpu_has_fma()) {
     std::printf("It was recorded on another kind of processor, whose sine differs.\n");
   }
@@ -143,7 +144,7 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
   }
   std::printf("not compared:\n");
   for (const FileComparison& file : files) {
-    if (!file.left_out.empty()) std::printf("  %-28s %s\n", file.file.c_str(), file.left_out.c_str());
+    if (!file.left_out.empty()) std::printf("  %-28s %s\n", file.file.c_str(), printable(file.left_out).c_str());
   }
   for (const auto& entry : fs::directory_iterator(run_dir)) {
     const std::string name = entry.path().filename().string();
@@ -208,8 +209,8 @@ int verify(const fs::path& run_dir) {
   Json& summary = std::get<Json>(read);
   Simulation simulation(*plan);
   if (!summary.is_object()) {
-    std::fprintf(stderr, "%s: no %s, so nothing is known of restarts; comparing all the same\n",
-                 run_dir.c_str(), kSummaryFile);
+    tell(run_dir.string() + ": no " + kSummaryFile +
+         ", so nothing is known of restarts; comparing all the same");
     summary = Json::object();
   } else if (!is_simulated(summary, simulation.swarm.recorder())) {
     const auto reason = why_not_repeatable(summary, plan->mission());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "logger/run_record.h"
+#include "maps/regular_file.h"
 
 namespace ergocast {
 
@@ -19,6 +20,10 @@ bool TableLines::open_next() {
   file_ = segment_file(run_dir_, table_, opened_++);
   line_ = 0;
   torn_ = false;
+  if (const auto why = why_not_regular(file_)) {
+    problem_ = file_.string() + ": " + *why;
+    return false;
+  }
   in_ = std::ifstream(file_, std::ios::binary);
   if (in_) return true;
   problem_ = file_.string() + ": cannot be opened: give the directory of a run, with trajectory.csv "
