@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/run_directory.h"
 #include "runtime/node.h"
 
@@ -10,7 +11,7 @@ int check(const std::filesystem::path& file, bool print) {
   const auto scenario = load_or_complain(file, {});
   if (!scenario) return kExitBadInput;
   for (const Problem& warning : scenario->warnings()) {
-    std::fprintf(stderr, "%s\n", ("warning: " + to_string(warning)).c_str());
+    tell("warning: " + to_string(warning));
   }
   if (print) {
     std::fputs(scenario->print().c_str(), stdout);

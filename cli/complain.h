@@ -1,29 +1,44 @@
 // How a command that cannot go on says why.
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/printable.h"
 #include "runtime/node.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::cli {
 
+/// What nobody reads to its end is cut, or counted.
+inline constexpr std::size_t kMostLines = 50, kMostBytes = 2000;
+
+/// The one place where the command's words for people leave it: whatever a file or a stranger has
+/// put into them, the terminal obeys none of it.
+inline void tell(const std::string& text) {
+  const std::string shown = printable(std::string_view(text).substr(0, kMostBytes));
+  std::fprintf(stderr, "%s%s\n", shown.c_str(), text.size() > kMostBytes ? "…" : "");
+}
+
 /// One line on standard error; returns the exit code.
 inline int complain(ExitCode code, const std::string& problem) {
-  std::fprintf(stderr, "%s\n", problem.c_str());
+  tell(problem);
   return code;
 }
 
 /// A line for each of several.
 inline int complain(ExitCode code, const std::vector<std::string>& problems) {
-  for (const std::string& problem : problems) complain(code, problem);
+  for (std::size_t i = 0; i < std::min(problems.size(), kMostLines); ++i) tell(problems[i]);
+  if (problems.size() > kMostLines) tell("and " + std::to_string(problems.size() - kMostLines) + " more");
   return code;
 }
 inline int complain(ExitCode code, const std::vector<Problem>& problems) {
-  for (const Problem& problem : problems) complain(code, to_string(problem));
-  return code;
+  std::vector<std::string> lines;
+  for (const Problem& problem : problems) lines.push_back(to_string(problem));
+  return complain(code, lines);
 }
 
 }  // namespace ergocast::cli

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "cli/commands.h"
@@ -12,6 +11,7 @@
 #include "cli/key_pair.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
+#include "maps/regular_file.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 
@@ -19,6 +19,9 @@ namespace ergocast::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A host takes a line of some twenty bytes.
+constexpr std::size_t kMaxHostsBytes = std::size_t{1} << 18;
 
 struct DeployOptions {
   fs::path scenario, hosts, out;
@@ -57,9 +60,18 @@ DeployMission mission_of(const Scenario& scenario, const fs::path& file,
 }
 
 std::variant<std::vector<DeployHost>, std::vector<Problem>> read_hosts(const fs::path& file) {
+  if (const auto why = why_not_regular(file)) {
+    return std::vector<Problem>{{file.string(), *why, "name a file"}};
+  }
   std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in)
+  std::string text(kMaxHostsBytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > kMaxHostsBytes) {
+    return std::vector<Problem>{{file.string(), "is longer than the limit, " +
+                                 std::to_string(kMaxHostsBytes) + " bytes", "is it a list of hosts?"}};
+  }
+  if (!in.is_open() || in.bad())
     return std::vector<Problem>{{file.string(), "cannot be read", "check the name and the folder"}};
   return parse_hosts(text, file.string());
 }

@@ -10,7 +10,7 @@
 
 #include "cli/commands.h"
 #include "doctor/examination.h"
-#include "doctor/peer_test.h"
+#include "doctor/peer_exchange.h"
 #include "doctor/print.h"
 #include "runtime/node.h"
 

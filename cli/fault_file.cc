@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "core/read_number.h"
+#include "maps/regular_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -37,6 +38,7 @@ std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
 
 std::variant<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file) {
   const std::string where = file.string() + ": ";
+  if (const auto why = why_not_regular(file)) return std::vector{where + *why};
   std::ifstream stream(file);
   if (!stream) {
     return std::vector{where + "cannot be read (give the name of a file, or \"swarm\")"};

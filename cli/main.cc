@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "core/read_number.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
@@ -207,7 +208,7 @@ int main(int argc, char** argv) {
   try {
     return ergocast::cli::parse_and_do(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "ergocast: %s\n", error.what());
+    ergocast::cli::tell(std::string("ergocast: ") + error.what());
     return ergocast::kExitFailed;
   }
 }

@@ -13,6 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kBarWidth = 16;
+constexpr double kMemory_s = 5;
 constexpr std::size_t kLongestLine = 200;
 
 std::string describe(const std::vector<std::string>& facts, std::size_t width) {
@@ -60,8 +61,10 @@ double Rate::measure(double count, ProgressLine::Clock::time_point now) {
     return per_s_;
   }
   const double elapsed_s = std::chrono::duration<double>(now - since_).count();
-  if (elapsed_s < 0.5 || count == from_) return per_s_;
-  per_s_ = (count - from_) / elapsed_s;
+  if (elapsed_s < 0.5) return per_s_;
+  const double newest_per_s = (count - from_) / elapsed_s;
+  const double weight = per_s_ == 0 ? 1 : 1 - std::exp(-elapsed_s / kMemory_s);
+  per_s_ += weight * (newest_per_s - per_s_);
   since_ = now;
   from_ = count;
   return per_s_;

@@ -32,7 +32,8 @@ class ProgressLine {
   Clock::time_point next_{};
 };
 
-/// How fast something goes, measured over half a second and more.
+/// How fast something goes: measured over half a second and more, and smoothed over some seconds, so
+/// that what is left to wait does not jump with every breath of the machine.
 class Rate {
  public:
   /// Counts per second; 0 until it is known.

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/run_directory.h"
 #include "runtime/node.h"
 
@@ -12,8 +13,7 @@ int report(const std::filesystem::path& run_dir) {
   const auto scenario = recorded_plan_or_complain(run_dir);
   if (!scenario) return kExitBadInput;
   if (const auto problem = write_report(run_dir, scenario->mission())) {
-    std::fprintf(stderr, "%s\n", problem->c_str());
-    return kExitBadInput;
+    return complain(kExitBadInput, *problem);
   }
   std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());
   return kExitDone;

@@ -12,6 +12,7 @@
 #include "logger/report.h"
 #include "logger/run_record.h"
 #include "logger/target_density.h"
+#include "maps/regular_file.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
@@ -90,11 +91,15 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
   if (auto* scenario = std::get_if<Scenario>(&loaded)) return std::move(*scenario);
   const auto& problems = std::get<std::vector<Problem>>(loaded);
   complain(kExitBadInput, problems);
-  std::fprintf(stderr, "%zu problem%s\n", problems.size(), problems.size() == 1 ? "" : "s");
+  complain(kExitBadInput, std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems"));
   return std::nullopt;
 }
 
 std::optional<Scenario> recorded_plan_or_complain(const fs::path& run_dir) {
+  if (const auto why = why_not_regular(run_dir / kPlanFile)) {
+    complain(kExitBadInput, (run_dir / kPlanFile).string() + ": " + *why);
+    return std::nullopt;
+  }
   std::ifstream file(run_dir / kPlanFile, std::ios::binary);
   const std::string plan((std::istreambuf_iterator<char>(file)), {});
   if (!file.is_open()) {
@@ -135,7 +140,7 @@ void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scen
   std::printf("  record    %s\n", run_dir.c_str());
   if (!problem) std::printf("  report    %s\n", (fs::absolute(run_dir) / "report.html").c_str());
   std::fflush(stdout);
-  if (problem) std::fprintf(stderr, "no report: %s\n", problem->c_str());
+  if (problem) complain(kExitDone, "no report: " + *problem);
 }
 
 }  // namespace ergocast::cli

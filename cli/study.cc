@@ -172,7 +172,7 @@ int study(const StudyOptions& options) {
   if (!problem) problem = directory.sort();
   if (!problem) problem = show_results(points.identity, directory, options);
   if (problem) {
-    std::fprintf(stderr, "%s; the same command goes on\n", problem->c_str());
+    tell(*problem + "; the same command goes on");
     return kExitFailed;
   }
   say_how_it_went(campaign, directory, options);

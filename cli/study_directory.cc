@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "logger/run_record.h"
+#include "maps/regular_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -24,6 +25,7 @@ constexpr const char* kIdentityFile = "study.json";
 constexpr const char* kTableFile = "study.csv";
 
 std::string content_of(const fs::path& file) {
+  if (why_not_regular(file)) return "";
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }

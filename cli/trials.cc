@@ -29,7 +29,7 @@ std::optional<std::function<lab::Faults(std::uint64_t)>> faults_by_seed(const st
   if (source.empty()) return [](std::uint64_t) { return lab::Faults(); };
   const auto read = read_faults(source);
   if (const auto* problems = std::get_if<std::vector<std::string>>(&read)) {
-    for (const std::string& problem : *problems) std::fprintf(stderr, "%s\n", problem.c_str());
+    complain(kExitBadInput, *problems);
     return std::nullopt;
   }
   return [faults = std::get<lab::Faults>(read)](std::uint64_t) { return faults; };

@@ -55,7 +55,8 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);
   hears(Role::kLauncher,    Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, Stop>);
-  hears(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus>);
+  // A replayed event log has the messages of all buses on the first: LCM's player knows one URL.
+  hears(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
   hears(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState>);
   hears(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);
   return table;

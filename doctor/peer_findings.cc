@@ -1,7 +1,7 @@
 // What is said of the hosts that were heard, and of those that were not.
 #include <algorithm>
 
-#include "doctor/peer_test.h"
+#include "doctor/peer_exchange.h"
 #include "doctor/routing.h"
 
 namespace ergocast::doctor {

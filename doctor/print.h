@@ -4,7 +4,7 @@
 #include <string>
 
 #include "doctor/finding.h"
-#include "doctor/peer_test.h"
+#include "doctor/peer_exchange.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {

@@ -1,6 +1,6 @@
 // The inside of a trial: who sits where, what time it is, what is wrong with whom. Its functions are
 // in flight.cc (time and messages), flight_faults.cc (what is done to processes and links) and
-// flight_verdict.cc (what came of it).
+// trial.cc (who is still there, and what came of it).
 #pragma once
 
 #include <memory>

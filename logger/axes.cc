@@ -113,8 +113,8 @@ std::vector<AxisMark> marks(const Axis& axis, int count) {
   std::vector<AxisMark> result = log_marks(axis);
   const auto labelled = std::count_if(result.begin(), result.end(),
                                       [](const AxisMark& mark) { return !mark.label.empty(); });
-  // Over less than about half a decade round steps say more than powers of ten.
-  return labelled >= 3 ? result : linear_marks(axis, count);
+  // Up to a decade, round steps may say more than powers of ten; beyond, they would crowd at its end.
+  return labelled >= 3 || axis.high > 10 * axis.low ? result : linear_marks(axis, count);
 }
 
 Plot::Plot(Svg& svg, const Box& area, Axis x, Axis y)

@@ -7,6 +7,7 @@
 
 #include "logger/run_record.h"
 #include "logger/slope.h"
+#include "maps/regular_file.h"
 
 namespace ergocast {
 namespace {
@@ -145,6 +146,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
 
 std::variant<Json, std::string> read_summary(const std::filesystem::path& run_dir) {
   const auto file = run_dir / kSummaryFile;
+  if (const auto why = why_not_regular(file)) return file.string() + ": " + *why;
   std::ifstream in(file, std::ios::binary);
   if (!in) return Json(nullptr);
   try {

@@ -6,6 +6,7 @@
 #include "maps/ascii_grid.h"
 #include "maps/csv_map.h"
 #include "maps/png_map.h"
+#include "maps/regular_file.h"
 
 namespace ergocast {
 namespace {
@@ -20,8 +21,8 @@ std::optional<MapProblem> check_file(const fs::path& file) {
     return MapProblem{file.string() + ": there is no such file",
                       "check the name; it counts from the scenario file's folder"};
   }
-  if (!fs::is_regular_file(status)) {
-    return MapProblem{file.string() + " is not a file", "name the map itself"};
+  if (const auto why = why_not_regular(file)) {
+    return MapProblem{file.string() + ' ' + *why, "name the map itself"};
   }
   if (!std::ifstream(file).is_open()) {
     return MapProblem{file.string() + " cannot be read", "check its permissions"};

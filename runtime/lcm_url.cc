@@ -119,10 +119,11 @@ std::optional<std::string> why_unreachable(const LcmUrl& url) {
     return url.base() + ": " + what + ": " + std::strerror(errno) + "\n" + remedy;
   };
   const Socket socket(AF_INET, SOCK_DGRAM);
+  if (socket.fd() < 0) return url.base() + ": " + no_socket(errno);
   const sockaddr_in group = address_of(url.group, 0);
   const sockaddr_in any = address_of("0.0.0.0", 0);
   ip_mreq membership{group.sin_addr, any.sin_addr};
-  if (socket.fd() < 0 || bind(socket.fd(), as_sockaddr(any), sizeof any) != 0) {
+  if (bind(socket.fd(), as_sockaddr(any), sizeof any) != 0) {
     return failed("no UDP socket");
   }
   sockaddr_in own{};

@@ -1,5 +1,6 @@
 #include "runtime/logging.h"
 
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/dup_filter_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -13,6 +14,9 @@
 #include <memory>
 #include <mutex>
 #include <sstream>
+#include <utility>
+
+#include "core/printable.h"
 
 namespace ergocast {
 namespace {
@@ -39,10 +43,23 @@ class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
     const std::string lines =
         journal_lines(syslog_priority(event.level),
                       std::string(event.logger_name.data(), event.logger_name.size()),
-                      std::string(event.payload.data(), event.payload.size()));
+                      printable({event.payload.data(), event.payload.size()}));
     std::fwrite(lines.data(), 1, lines.size(), stderr);
   }
   void flush_() override { std::fflush(stderr); }
+};
+
+/// The text of an event as a terminal may have it: files and strangers are quoted in it.
+class PrintableText final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& event, const std::tm&,
+              spdlog::memory_buf_t& line) override {
+    const std::string text = printable({event.payload.data(), event.payload.size()});
+    line.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<PrintableText>();
+  }
 };
 
 std::shared_ptr<spdlog::sinks::sink> stderr_sink() {
@@ -73,7 +90,9 @@ void set_up_logging(const std::string& process_name, const std::string& level) {
   auto once = std::make_shared<spdlog::sinks::dup_filter_sink_mt>(kRepeatedWithin);
   once->add_sink(stderr_sink());
   auto logger = std::make_shared<spdlog::logger>(process_name, once);
-  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %v");
+  auto pattern = std::make_unique<spdlog::pattern_formatter>();
+  pattern->add_flag<PrintableText>('*').set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %n: %*");
+  logger->set_formatter(std::move(pattern));
   logger->set_level(spdlog::level::from_str(level));
   logger->flush_on(spdlog::level::trace);
   spdlog::set_default_logger(logger);

@@ -4,15 +4,22 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <sstream>
 
+#include "core/likeness.h"
+#include "core/printable.h"
 #include "runtime/key_file.h"
 #include "runtime/logging.h"
 
 namespace ergocast {
 namespace {
+
+constexpr const char* kKeyVariable = "ERGOCAST_KEY_FILE";
 
 void read_url(const std::string& text, LcmUrl& url) {
   auto parsed = LcmUrl::parse(text);
@@ -28,6 +35,47 @@ void read_run_id(const std::string& text, RunId& run) {
   }
 }
 
+/// Set to nothing it would be as if it were not set, and the team would fly without a key.
+void refuse_empty_key_variable(const CLI::Option& option) {
+  const char* file = std::getenv(kKeyVariable);
+  if (file == nullptr || *file != '\0' || option.count() > 0) return;
+  throw CLI::ValidationError(kKeyVariable, "is set, and empty; name the key file in it, or unset it to "
+                                           "fly without a key");
+}
+
+/// "did you mean NAME?", or where all names are.
+std::string remedy_for(const std::string& word, const std::vector<std::string>& names) {
+  const std::string meant = nearest(word, names);
+  return meant.empty() ? "--help lists what there is" : "did you mean " + meant + "?";
+}
+
+/// The first word of a command line that is neither a command nor an option, and what it may have
+/// meant; empty if all are known. CLI11 says only that it did not expect it, or blames the next.
+std::string unknown_word(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* command = &app;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i], option = word.substr(0, word.find('='));
+    if (word == "--") break;
+    std::vector<std::string> names;
+    if (option.starts_with("--")) {
+      for (const CLI::Option* one : command->get_options()) {
+        for (const std::string& name : one->get_lnames()) names.push_back("--" + name);
+      }
+      if (std::find(names.begin(), names.end(), option) != names.end()) continue;
+      return command->get_name() + ": there is no option " + option + "; " + remedy_for(option, names);
+    }
+    const auto commands = command->get_subcommands([](const CLI::App*) { return true; });
+    if (commands.empty() || word.starts_with('-')) continue;
+    for (const CLI::App* one : commands) names.push_back(one->get_name());
+    const auto known = std::find(names.begin(), names.end(), word);
+    if (known == names.end()) {
+      return command->get_name() + ": there is no command " + word + "; " + remedy_for(word, names);
+    }
+    command = commands[static_cast<std::size_t>(known - names.begin())];
+  }
+  return "";
+}
+
 }  // namespace
 
 void add_url_option(CLI::App& app, LcmUrl& url) {
@@ -40,12 +88,12 @@ void add_url_option(CLI::App& app, LcmUrl& url) {
 }
 
 void add_key_option(CLI::App& app, Seal& seal, std::string* file) {
-  app.add_option_function<std::string>(
+  const CLI::Option* option = app.add_option_function<std::string>(
          "--key-file",
          [&seal, file](const std::string& name) {
            if (name.empty()) {
-            throw CLI::ValidationError("--key-file", "no name; leave it out to fly without a key");
-          }
+             throw CLI::ValidationError("--key-file", "no name; leave it out to fly without a key");
+           }
            const auto key = read_key_file(name);
            if (const auto* problem = std::get_if<std::string>(&key)) {
              throw CLI::ValidationError("--key-file", *problem);
@@ -55,8 +103,9 @@ void add_key_option(CLI::App& app, Seal& seal, std::string* file) {
          },
          "Mission key of the team, as `ergocast keygen` writes it; without one, anybody on the "
          "network can speak for the team")
-      ->envname("ERGOCAST_KEY_FILE")
+      ->envname(kKeyVariable)
       ->type_name("FILE");
+  app.parse_complete_callback([option] { refuse_empty_key_variable(*option); });
 }
 
 std::string cannot_sign(const std::string& key_file) {
@@ -95,7 +144,17 @@ int parse_command_line(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
     return -1;
   } catch (const CLI::ParseError& stop) {
-    return app.exit(stop) == 0 ? kExitDone : kExitBadInput;
+    if (stop.get_exit_code() == 0) return app.exit(stop);
+    std::string problem = unknown_word(app, argc, argv);
+    if (problem.empty()) {
+      std::ostringstream said;
+      app.exit(stop, said, said);
+      problem = said.str();
+    } else {
+      problem += "\nRun with --help for more information.\n";
+    }
+    std::fputs(printable(problem).c_str(), stderr);
+    return kExitBadInput;
   }
 }
 

@@ -30,7 +30,8 @@ struct BusOptions {
 /// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group).
 void add_url_option(CLI::App& app, LcmUrl& url);
 
-/// --key-file (default: $ERGOCAST_KEY_FILE, or no key). `file` gets its name.
+/// --key-file (default: $ERGOCAST_KEY_FILE, or no key; that variable, empty, is refused). `file` gets
+/// its name. Takes the command's parse-complete callback.
 void add_key_option(CLI::App& app, Seal& seal, std::string* file = nullptr);
 
 /// What to say of a key that only the coordinator's file would do for.
@@ -50,7 +51,7 @@ void add_node_options(CLI::App& app, NodeOptions& options);
 /// --event-log-limit: of those who write one. @param mib  its default
 void add_event_log_option(CLI::App& app, std::int64_t& mib);
 
-/// Parses; the exit code if the program has to end here (0 after --help), −1 if it goes on.
+/// Parses, and says what an unknown word may have meant; the exit code if the program has to end here (0 after --help), −1 if it goes on.
 int parse_command_line(CLI::App& app, int argc, char** argv);
 
 /// --version's text: ours, LCM's and the compiler's.

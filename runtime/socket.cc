@@ -2,6 +2,9 @@
 
 #include <arpa/inet.h>
 
+#include <cerrno>
+#include <cstring>
+
 namespace ergocast {
 namespace {
 
@@ -19,6 +22,12 @@ int bound_port(int fd) {
 }
 
 }  // namespace
+
+std::string no_socket(int error) {
+  const bool too_many = error == EMFILE || error == ENFILE;
+  return std::string("no socket can be opened: ") + std::strerror(error) +
+         (too_many ? "; raise the limit of open files, as with ulimit -n 1024" : "");
+}
 
 sockaddr_in address_of(const std::string& ip, int port) {
   sockaddr_in address{};

@@ -26,6 +26,9 @@ class Socket {
   int fd_;
 };
 
+/// What to say when the kernel refused one with `error`, and what to do about it.
+std::string no_socket(int error);
+
 /// @pre `ip` is an IPv4 address, as LcmUrl has checked its group
 sockaddr_in address_of(const std::string& ip, int port);
 

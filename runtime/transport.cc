@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <lcm/lcm-cpp.hpp>
 
@@ -25,6 +26,18 @@ constexpr int kQueueCapacity = 4096;
 constexpr std::string_view kPrefix = "ERGOCAST_";
 constexpr const char* kFirewall =
     "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
+/// More than LCM opens for three buses and their self tests: pipes, a timer's, sockets.
+constexpr int kDescriptors = 32;
+
+/// What the system says to somebody who asks for that many descriptors; nothing if it gives them. LCM
+/// keeps such errors to itself, and fails its self test for want of a socket.
+std::optional<std::string> why_no_descriptors() {
+  std::vector<Socket> probes;
+  for (int i = 0; i < kDescriptors; ++i) {
+    if (probes.emplace_back(AF_INET, SOCK_DGRAM).fd() < 0) return no_socket(errno);
+  }
+  return std::nullopt;
+}
 
 /// What the kernel dropped at these sockets. /proc/net/udp says it, too, but takes the longer the more
 /// sockets others have.
@@ -95,10 +108,12 @@ class LcmTransport final : public Transport {
 };
 
 std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscriptions& hears) {
+  const auto scarce = why_no_descriptors();
   for (int b = 0; b < kBusCount; ++b) {
     const auto at = static_cast<std::size_t>(b);
     buses_[at] = std::make_unique<lcm::LCM>(url.of(static_cast<Bus>(b)));
-    if (!buses_[at]->good()) return url.of(static_cast<Bus>(b)) + ": LCM cannot use it";
+    if (buses_[at]->good()) continue;
+    return url.of(static_cast<Bus>(b)) + ": " + scarce.value_or("LCM cannot use it");
   }
   for (int b = 0; b < kBusCount; ++b) {
     const auto at = static_cast<std::size_t>(b);
@@ -106,7 +121,9 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscr
     if (hears[at] == 0) continue;
     // LCM tests itself here; a subscription after a failed test would abort the process later.
     const int fd = buses_[at]->getFileno();
-    if (fd < 0) return url.of(bus) + ": LCM's self test failed\n" + kFirewall;
+    if (fd < 0) {
+      return url.of(bus) + ": " + scarce.value_or(std::string("LCM's self test failed\n") + kFirewall);
+    }
     const auto sockets = sockets_at(url.base_port + b, 1);
     filtered_ = filtered_ && !sockets.empty() &&
                 std::all_of(sockets.begin(), sockets.end(), admit_only_our_channels);

@@ -36,14 +36,22 @@ void Checks::missing(const std::string& path, const std::string& what, std::stri
   for (const std::string& lost : findings_.given_up()) {
     if (path.starts_with(lost + ".")) return;
   }
+  for (const std::string& meant : findings_.excused()) {
+    if (path != meant && !path.starts_with(meant + ".")) continue;
+    unsound_.insert(path);
+    return;
+  }
   problem(path, what, std::move(remedy));
 }
 
-bool Checks::in_range(const std::string& path, double value, const Range& range) {
+bool Checks::in_range(const std::string& path, double value, const Range& range,
+                      const std::string& wanted) {
   if (range.contains(value)) return true;
   std::string what = shortest(value);
   if (std::isnan(value)) {
     what = "nan is not a number";
+  } else if (!wanted.empty()) {
+    what += " is far outside the domain";
   } else if (value > range.high) {
     what += " is above the limit " + shortest(range.high);
   } else if (range.low_excluded) {
@@ -51,7 +59,7 @@ bool Checks::in_range(const std::string& path, double value, const Range& range)
   } else {
     what += " is below the limit " + shortest(range.low);
   }
-  problem(path, what, "write a number " + range.text());
+  problem(path, what, "write a number " + (wanted.empty() ? range.text() : wanted));
   return false;
 }
 

@@ -34,7 +34,9 @@ class Checks {
   void missing(const std::string& path, const std::string& what, std::string remedy);
 
   /// Whether `value` is in `range`; if not, that is a problem.
-  bool in_range(const std::string& path, double value, const Range& range);
+  /// @param wanted  what to write instead, where the range is not what matters
+  bool in_range(const std::string& path, double value, const Range& range,
+                const std::string& wanted = "");
 
  private:
   Findings& findings_;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/likeness.h"
 #include "scenario/scenario.pb.h"
 
 namespace ergocast {
@@ -17,21 +17,6 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
-
-/// Changes of one letter that turn `a` into `b` (Levenshtein).
-int edit_distance(std::string_view a, std::string_view b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    int diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const int replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
 
 /// How far `wrong` is from being `name`. A forgotten unit is the likeliest slip.
 int unlikeness(std::string_view wrong, std::string_view name) {
@@ -42,7 +27,7 @@ int unlikeness(std::string_view wrong, std::string_view name) {
 /// The field of `message` that `wrong` was most likely to be, or null.
 const FieldDescriptor* nearest_field(const Descriptor& message, const std::string& wrong) {
   const FieldDescriptor* best = nullptr;
-  int least = std::max(1, static_cast<int>(wrong.size()) / 3) + 1;
+  int least = most_typos_in(wrong) + 1;
   for (int i = 0; i < message.field_count(); ++i) {
     const int distance = unlikeness(wrong, message.field(i)->name());
     if (distance >= least) continue;

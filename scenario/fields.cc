@@ -15,7 +15,7 @@ constexpr Range between(double low, double high) { return {low, high, false}; }
 constexpr Range above(double low, double high) { return {low, high, true}; }
 
 /// Far beyond any domain: keeps sums and squares of coordinates finite and exact enough.
-constexpr Range kCoordinate = between(-1e13, 1e13);
+constexpr Range kCoordinate = {-1e13, 1e13, false, true};
 constexpr Range kModes = between(1, kMaxModesPerAxis);
 constexpr Range kIntensity = between(0, 1e6);
 /// A variance; the limits that matter follow from the domain.

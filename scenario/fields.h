@@ -14,6 +14,7 @@ namespace ergocast {
 struct Range {
   double low, high;
   bool low_excluded = false;
+  bool coordinate = false;  ///< a place: what people should write follows from the domain
 
   bool contains(double value) const;
   /// "0 to 10", or "above 0, at most 10".

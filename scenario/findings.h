@@ -34,6 +34,11 @@ class Findings {
   void give_up(const std::string& path) { given_up_.insert(path); }
   const std::set<std::string>& given_up() const { return given_up_; }
 
+  /// The field or block at `path` may stand in the file under a name that nobody knows, which is a
+  /// problem already: neither it nor what is in it is said to be missing.
+  void excuse(const std::string& path) { excused_.insert(path); }
+  const std::set<std::string>& excused() const { return excused_; }
+
   /// A problem at a place in the text; its `where` is filled in here.
   void add_at(Place place, Problem problem);
 
@@ -59,7 +64,7 @@ class Findings {
   std::string file_;
   std::optional<google::protobuf::TextFormat::ParseInfoTree> locations_;
   std::map<std::string, std::string> flags_;
-  std::set<std::string> given_up_;
+  std::set<std::string> given_up_, excused_;
   std::vector<Found> found_;
 };
 

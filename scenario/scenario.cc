@@ -1,3 +1,4 @@
+#include "maps/regular_file.h"
 #include "scenario/scenario.h"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ std::variant<std::string, Problem> read_file(const std::filesystem::path& file) 
     return Problem{file.string(), "is a folder, not a file",
                    "name a file, such as " + (file / "scenario.textproto").string()};
   }
+  if (const auto why = why_not_regular(file)) return Problem{file.string(), *why, "name a file"};
   std::ifstream stream(file, std::ios::binary);
   std::string text(kMaxScenarioBytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -15,6 +15,8 @@
 namespace ergocast {
 namespace {
 
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::TextFormat;
 
@@ -102,6 +104,30 @@ bool repair(const Complaint& error, std::string& text, Findings& findings) {
   return false;
 }
 
+/// A field under a wrong name is not missing under its right one: one slip, one problem. Where nobody
+/// can tell which field it was to be, none of its block is said to be missing.
+void excuse_what_was_meant(const Complaint& unknown, const std::string& text, Findings& findings) {
+  const auto field = broken_field(text, offset_of(text, unknown.place), unknown.message);
+  if (!field) return;
+  const Descriptor* block = proto::Scenario::descriptor();
+  std::string path;
+  std::string_view rest = field->path;
+  for (auto dot = rest.find('.'); block != nullptr && dot != rest.npos; dot = rest.find('.')) {
+    const std::string step(rest.substr(0, dot));
+    const FieldDescriptor* inner = block->FindFieldByName(step.substr(0, step.find('[')));
+    block = inner == nullptr ? nullptr : inner->message_type();
+    path += (path.empty() ? "" : ".") + step;
+    rest.remove_prefix(dot + 1);
+  }
+  if (block == nullptr) return;
+  const auto meant = field_meant(*block, std::string(rest.substr(0, rest.find('['))));
+  if (meant && meant->block.empty()) {
+    findings.excuse(path + (path.empty() ? "" : ".") + meant->field);
+  } else if (!path.empty()) {
+    findings.excuse(path);
+  }
+}
+
 /// Numbers in the fewest digits, text as it was written.
 class Readable : public TextFormat::FastFieldValuePrinter {
  public:
@@ -150,6 +176,7 @@ bool read_text(std::string_view file, proto::Scenario& scenario, Findings& findi
     if (broken && repair(*collector.error, text, findings)) continue;
     for (const Complaint& warning : collector.warnings) {
       findings.add_at(warning.place, explained(warning.message));
+      excuse_what_was_meant(warning, text, findings);
     }
     if (broken || collector.warnings.size() < Collector::kMaxWarnings) return !broken;
     break;

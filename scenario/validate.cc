@@ -84,9 +84,22 @@ class Validator {
     if (rule == nullptr) return;
     if (!message.GetReflection()->HasField(message, &field)) {
       if (rule->absence != Absence::kRefused) return;
-      return missing(path, "is missing", "add " + field.name() + ", " + rule->range.text());
+      const std::string place = place_wanted(field, *rule);
+      return missing(path, "is missing",
+                     "add " + field.name() + ", " + (place.empty() ? rule->range.text() : place));
     }
-    in_range(path, number_in(message, field), rule->range);
+    in_range(path, number_in(message, field), rule->range, place_wanted(field, *rule));
+  }
+
+  /// "in the domain, 0 to 2000", as far as the domain is known; empty for what is no place in it.
+  std::string place_wanted(const FieldDescriptor& field, const FieldRule& rule) const {
+    const proto::Domain& domain = scenario_.domain();
+    if (!rule.range.coordinate || rule.message == domain.GetDescriptor()->name()) return "";
+    const bool is_x = field.name().ends_with("x_m");
+    const double low_m = is_x ? domain.origin_x_m() : domain.origin_y_m();
+    const double size_m = is_x ? domain.size_x_m() : domain.size_y_m();
+    if (!rule.range.contains(low_m) || !(size_m > 0) || !rule.range.contains(size_m)) return "in the domain";
+    return "in the domain, " + shortest(low_m) + " to " + shortest(low_m + size_m);
   }
 
   void enumeration(const Message& message, const FieldDescriptor& field, const std::string& path) {

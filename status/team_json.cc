@@ -59,8 +59,9 @@ std::string team_json(const TeamPicture& at) {
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {
     json["processes"][row.name] = {{"state", row.trouble ? "silent"
-                                             : row.heard ? "alive"
-                                                         : "not heard"},
+                                             : !row.heard ? "not heard"
+                                             : at.over    ? "ended"
+                                                          : "alive"},
                                    {"silent_s", row.silent_s},
                                    {"incarnation", or_null(row.heard, to_hex(row.incarnation))},
                                    {"host", or_null(!row.host.empty(), row.host)},

@@ -141,8 +141,9 @@ std::string headline(const TeamPicture& at) {
 }
 
 std::string second_line(const TeamPicture& at) {
-  std::string text = std::to_string(at.agents_alive) + " of " + std::to_string(at.agents_expected) +
-                     " agents alive";
+  std::string text = at.over ? "the mission is over"
+                             : std::to_string(at.agents_alive) + " of " +
+                                   std::to_string(at.agents_expected) + " agents alive";
   if (at.ergodic_metric) text += number(", phi^2 %.4g (median)", *at.ergodic_metric);
   if (at.missed_deadlines > 0)
     text += ", " + std::to_string(at.missed_deadlines) + " commands late";
@@ -153,11 +154,11 @@ std::string second_line(const TeamPicture& at) {
   return text;
 }
 
-std::string process_line(const ProcessRow& row, bool colour) {
-  std::string state = row.heard ? "alive" : "not heard";
+std::string process_line(const ProcessRow& row, bool over, bool colour) {
+  std::string state = !row.heard ? "not heard" : over ? "ended" : "alive";
   if (row.trouble) state = number("silent %.0f s", row.silent_s);
   if (row.trouble && !row.heard) state = "not heard";
-  const Tint tint = row.trouble ? Tint::kBad : row.heard ? Tint::kGood : Tint::kFaint;
+  const Tint tint = row.trouble ? Tint::kBad : row.heard && !over ? Tint::kGood : Tint::kFaint;
   std::string line = row.name + std::string(13 - std::min<std::size_t>(12, row.name.size()), ' ');
   line += tinted(state, tint, colour);
   if (row.heard) line += "  life " + to_hex(row.incarnation).substr(0, kLifeDigits);
@@ -202,7 +203,7 @@ std::string team_table(const TeamPicture& picture, bool colour) {
   std::vector<std::vector<Cell>> rows;
   for (const AgentRow& row : picture.agents) rows.push_back(cells_of(row));
   text += '\n';
-  for (const ProcessRow& row : picture.processes) text += process_line(row, colour);
+  for (const ProcessRow& row : picture.processes) text += process_line(row, picture.over, colour);
   if (!rows.empty()) text += '\n' + aligned(kColumns, rows, colour);
   return text;
 }

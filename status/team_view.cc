@@ -206,6 +206,7 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.skipped_ticks = skipped_ticks_;
   picture.clamped_commands = clamped_commands_;
   picture.trouble = picture.state == MissionState::kFailed || follower_.plan_problem().has_value();
+  picture.over = over();
   add_agents(picture, now);
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) add_process(picture, sender, now);
   const bool under_way = picture.state == MissionState::kRunning && !over();

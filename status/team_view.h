@@ -58,6 +58,7 @@ struct TeamPicture {
   std::vector<AgentRow> agents;  ///< worst first, then by number
   std::vector<ProcessRow> processes;
   bool trouble = false;
+  bool over = false;  ///< the mission has ended: whoever was heard is leaving, or has left
 };
 
 class TeamView {

@@ -60,7 +60,7 @@ const std::vector<Rule> kRules = {
     {"deploy", {"core", "scenario", "runtime", "deploy"}, {kFiles}},
     {"status", {"core", "status"}, {kJson}},
     {"cli",
-     {"core", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "deploy", "doctor",
+     {"core", "maps", "scenario", "lcmtypes", "logger", "lab", "runtime", "studies", "deploy", "doctor",
       "status", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     // What a user copies: a process like the four, with its main beside it.

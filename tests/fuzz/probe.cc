@@ -3,7 +3,7 @@
 // Input: a length of 2 bytes, high one first, then a datagram, and so on.
 #include "doctor/probe.h"
 
-#include "doctor/peer_test.h"
+#include "doctor/peer_exchange.h"
 #include "doctor/print.h"
 #include "tests/fuzz/target.h"
 

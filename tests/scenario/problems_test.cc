@@ -44,7 +44,7 @@ agents {
       "with a letter, a digit or '_')\n"
       "f:2:46: unknown field \"origin\" in Domain (did you mean origin_x_m?)\n"
       "f:4:39: target.gaussians[0].mean_y_m: abc is not a number (write a number such as 0.5)\n"
-      "f:5:15: target.gaussians[1].mean_x_m: nan is not a number (write a number -1e+13 to 1e+13)\n"
+      "f:5:15: target.gaussians[1].mean_x_m: nan is not a number (write a number in the domain, 0 to 2000)\n"
       "f:7:9: basis.modes_x: 65 is above the limit 64 (write a number 1 to 64)\n"
       "f:9:3: law.u_max_mps: 1 is too weak for contraction_gain_per_s 0.001 at the farthest "
       "corner, "

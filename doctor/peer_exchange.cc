@@ -1,4 +1,4 @@
-#include "doctor/peer_test.h"
+#include "doctor/peer_exchange.h"
 
 #include <arpa/inet.h>
 #include <poll.h>
