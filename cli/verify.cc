@@ -1,32 +1,82 @@
+// Simulates the mission of a record again and holds every file against it that the simulation
+// determines: first what the plan is made of, then the trajectory, then what follows from both.
 #include <cstdio>
-#include <optional>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/complain.h"
+#include "cli/record_comparison.h"
 #include "cli/run_directory.h"
-#include "core/read_number.h"
+#include "cli/trajectory_comparison.h"
+#include "core/ids.h"
 #include "lab/swarm.h"
 #include "logger/recorder.h"
+#include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
-#include "logger/table_lines.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 constexpr int kTurnsBetweenComparisons = 256;
 
-/// Why a run has more in it than a simulation of its plan could know; empty if it has not.
-std::string what_cannot_be_repeated(const nlohmann::ordered_json& summary, std::size_t agents) {
-  if (summary.value("mode", "") == "realtime") {
+/// The simulation of a plan, as the recorder in it writes it.
+struct Simulation {
+  explicit Simulation(const Scenario& scenario)
+      : swarm(options_of(scenario), trajectory, metrics) {}
+
+  static lab::Options options_of(const Scenario& scenario) {
+    lab::Options options;
+    options.plan = scenario.plan();
+    options.decode_plan = decode_plan;
+    options.agents = static_cast<int>(scenario.mission().starts_m.size());
+    options.version = version();
+    return options;
+  }
+
+  /// Until something differs or one of the two ends.
+  void run(TrajectoryComparison& comparison) {
+    bool more = true;
+    for (bool going_on = true; more && going_on;) {
+      for (int i = 0; i < kTurnsBetweenComparisons && more; ++i) more = swarm.step();
+      std::istringstream rows(std::exchange(trajectory, std::ostringstream()).str());
+      going_on = comparison.compare(rows);
+    }
+  }
+
+  std::ostringstream trajectory, metrics;
+  lab::Swarm swarm;
+};
+
+/// A recorder that has seen nothing but the recorded rows, and what it makes of them.
+struct Observer {
+  Observer(RunData rows, const MissionFollower& heard)
+      : recorder(0, 1, decode_plan, trajectory, metrics) {
+    recorder.resume(std::move(rows));
+    for (const MissionPart& part : heard.parts()) recorder.receive(part, Instant{});
+  }
+
+  std::ostringstream trajectory, metrics;
+  Recorder recorder;
+};
+
+/// Whether `summary` is that of a simulation, whose run id comes from the seed.
+bool is_simulated(const Json& summary, const Recorder& simulated) {
+  return summary.value("run_id", Json()) == to_hex(simulated.run());
+}
+
+/// Why a run over LCM has more in it than a simulation of its plan could know; empty if it has not.
+std::string what_cannot_be_repeated(const Json& summary, const Mission& mission) {
+  if (mission.timing.pace == Pace::kRealtime) {
     return "it ran in real time, where what an agent knew depended on the network";
   }
-  const auto roster = summary.value("agents", nlohmann::ordered_json());
+  const auto roster = summary.value("agents", Json());
+  const std::size_t agents = mission.starts_m.size();
   if (!roster.is_array()) return "its summary names no agents";
   if (roster.size() != agents) {
     return "its roster has " + std::to_string(roster.size()) + " entries for " +
@@ -45,188 +95,148 @@ std::string what_cannot_be_repeated(const nlohmann::ordered_json& summary, std::
 }
 
 /// The same for any JSON, whoever wrote it.
-std::string why_not_repeatable(const nlohmann::ordered_json& summary, std::size_t agents) {
+std::string why_not_repeatable(const Json& summary, const Mission& mission) {
   try {
-    return what_cannot_be_repeated(summary, agents);
-  } catch (const nlohmann::json::exception& error) {
+    return what_cannot_be_repeated(summary, mission);
+  } catch (const Json::exception& error) {
     return std::string(kSummaryFile) + " is not one that ergocast wrote: " + error.what();
   }
 }
 
-/// Tick and agent of a row of trajectory.csv, by which its rows ascend; nothing if it has none.
-using RowKey = std::pair<Tick, AgentId>;
-std::optional<RowKey> key_of(std::string_view row) {
-  std::string_view cells[3];  // tick, time, agent
-  for (std::string_view& cell : cells) {
-    const std::size_t comma = row.find(',');
-    if (comma == row.npos) return {};
-    cell = row.substr(0, comma);
-    row.remove_prefix(comma + 1);
-  }
-  const auto tick = read_number<Tick>(cells[0]);
-  const auto agent = read_number<AgentId>(cells[2]);
-  return tick && agent ? std::optional(RowKey(*tick, *agent)) : std::nullopt;
-}
-
-/// Compares the recorded trajectory with one that is simulated, row by row and bit by bit. Rows that
-/// the record lacks are counted.
-class Comparison {
- public:
-  explicit Comparison(const fs::path& run_dir)
-      : lines_(run_dir, kTrajectoryFile, kTrajectoryHeader) {
-    read_next();
-  }
-
-  /// The run was stopped at once: in its last tick the vehicles stand still, which no simulation
-  /// does.
-  void expect_halt() { halted_ = true; }
-  /// Why the record cannot be read, if so.
-  const std::optional<std::string>& problem() const { return lines_.problem(); }
-  /// Compares as many whole lines as there are; false at the first difference.
-  bool compare(std::istream& simulated) {
-    for (std::string line; same_ && !recorded_over_ && std::getline(simulated, line);) {
-      if (line != kTrajectoryHeader) compare_row(line);
-    }
-    return same_ && !recorded_over_;
-  }
-  bool same() const { return same_; }
-  /// Whether the record ended before the simulation did.
-  bool recorded_over() const { return recorded_over_; }
-  /// Whether the record goes on after the simulation's end.
-  bool has_more() const { return recorded_.has_value(); }
-  /// "tick 12, agent 3" of the first line that differs.
-  std::string place() const {
-    const RowKey key = key_of(first_).value_or(RowKey{});
-    return "tick " + std::to_string(key.first) + ", agent " + std::to_string(key.second);
-  }
-  const std::string& difference() const { return difference_; }
-  std::string last_tick() const { return last_.substr(0, last_.find(',')); }
-  /// Ticks up to the last compared row that lack rows.
-  Tick missing() const { return missing_; }
-
- private:
-  void read_next() {
-    std::string line;
-    recorded_ = lines_.next(line) ? std::optional(line) : std::nullopt;
-  }
-
-  void compare_row(const std::string& simulated) {
-    recorded_over_ = !recorded_;
-    if (recorded_over_) return;
-    if (*recorded_ == simulated) {
-      last_ = simulated;
-      return read_next();
-    }
-    const auto key = key_of(simulated), recorded_key = key_of(*recorded_);
-    if (recorded_key > key) {
-      if (key->first != last_missing_) ++missing_;
-      last_missing_ = key->first;
-      return;
-    }
-    recorded_over_ = halted_ && stands_where(simulated);
-    if (recorded_over_) return;
-    same_ = false;
-    difference_ = "recorded:  " + *recorded_ + "\nsimulated: " + simulated + '\n';
-    first_ = simulated;
-  }
-
-  /// Whether the recorded row is the simulated one but for a velocity of zero.
-  bool stands_where(const std::string& simulated) const {
-    const auto vx = simulated.rfind(',', simulated.rfind(',') - 1);
-    return *recorded_ == simulated.substr(0, vx) + ",0,0";
-  }
-
-  TableLines lines_;
-  bool halted_ = false;
-  std::optional<std::string> recorded_;  // the row to be compared next
-  bool same_ = true, recorded_over_ = false;
-  std::string last_, first_, difference_;
-  Tick missing_ = 0, last_missing_ = -1;
-};
-
-/// Simulates `scenario` until something differs or one of the two ends.
-void simulate_and_compare(const Scenario& scenario, Comparison& comparison) {
-  lab::Options options;
-  options.plan = scenario.plan();
-  options.decode_plan = decode_plan;
-  options.agents = static_cast<int>(scenario.mission().starts_m.size());
-  options.version = version();
-  std::ostringstream trajectory, metrics;
-  lab::Swarm swarm(std::move(options), trajectory, metrics);
-  bool more = true;
-  for (bool going_on = true; more && going_on;) {
-    for (int i = 0; i < kTurnsBetweenComparisons && more; ++i) more = swarm.step();
-    std::istringstream simulated(std::exchange(trajectory, std::ostringstream()).str());
-    metrics.str("");
-    going_on = comparison.compare(simulated);
-  }
-}
-
-/// Says how the comparison went.
-int verdict(const fs::path& run_dir, Comparison& comparison,
-            const nlohmann::ordered_json& summary) {
-  const bool complete = summary.value("result", "") == "done";
-  if (!comparison.same()) {
-    std::printf("%s differs from its simulation, first at %s\n%s", run_dir.c_str(),
-                comparison.place().c_str(), comparison.difference().c_str());
-    if (summary.value("cpu_fma", cpu_has_fma()) != cpu_has_fma()) {
-      std::printf("It was recorded on another kind of processor, whose sine differs.\n");
-    }
-    return kExitDiffers;
-  }
+/// What is wrong with the trajectory as a whole; empty if nothing is.
+std::string difference_of(const TrajectoryComparison& comparison, const fs::path& run_dir, const Json& summary) {
+  const std::string file = (run_dir / kTrajectoryFile).string();
+  const bool complete = summary.value("result", Json()) == "done";
+  if (!comparison.same()) return comparison.difference();
   if (comparison.recorded_over() && complete) {
-    std::printf("%s says it is done, but ends after tick %s\n", run_dir.c_str(),
-                comparison.last_tick().c_str());
-    return kExitDiffers;
+    return file + ": its run is done, says the summary, but it ends after tick " + comparison.last_tick() + '\n';
   }
-  if (!comparison.recorded_over() && comparison.has_more()) {
-    std::printf("%s goes on after the plan's last tick\n", run_dir.c_str());
-    return kExitDiffers;
+  if (comparison.has_more()) return file + ": goes on after the plan's last tick, or after all stood still\n";
+  const Json gaps = summary.value("gaps", Json()), segments = summary.value("segments", Json());
+  const bool tells_of_gaps = gaps.is_number_integer() && segments.is_number_integer();
+  // Where a segment begins, a logger was killed, maybe amid the rows of a tick.
+  if (tells_of_gaps && comparison.missing() > gaps.get<Tick>() + segments.get<Tick>() - 1) {
+    return file + ": lacks rows, first those of " + comparison.first_missing() + "; " +
+           std::to_string(comparison.missing()) + " ticks do, of " + gaps.dump() + " that the summary tells of\n";
   }
+  if (comparison.torn() && !summary.empty()) {
+    return file + ": ends amid tick " + comparison.last_tick() + ", and yet its logger ended in order\n";
+  }
+  return "";
+}
+
+int report_difference(const fs::path& run_dir, const std::string& difference, const Json& summary,
+                      const std::string& where = "") {
+  std::printf("%s differs from its simulation%s\n%s", run_dir.c_str(), where.c_str(), difference.c_str());
+  if (summary.value("cpu_fma", Json(cpu_has_fma())) != cpu_has_fma()) {
+    std::printf("It was recorded on another kind of processor, whose sine differs.\n");
+  }
+  return kExitDiffers;
+}
+
+/// Which files were compared, and which were not.
+void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
+  std::printf("compared:\n");
+  for (const FileComparison& file : files) {
+    if (file.compared.empty()) continue;
+    std::printf("  %-28s %s\n", file.file.c_str(), file.compared.c_str());
+  }
+  std::printf("not compared:\n");
+  for (const FileComparison& file : files) {
+    if (!file.left_out.empty()) std::printf("  %-28s %s\n", file.file.c_str(), file.left_out.c_str());
+  }
+  for (const auto& entry : fs::directory_iterator(run_dir)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.ends_with(".lcm") && name != "log") continue;
+    std::printf("  %-28s what was said, and when\n", name.c_str());
+  }
+}
+
+/// Everything else that follows from the trajectory that was compared.
+std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Scenario& plan, RunData rows,
+                                             const Simulation& simulation,
+                                             const TrajectoryComparison& comparison, const Json& summary) {
+  const Recorder& simulated = simulation.swarm.recorder();
+  const bool complete = !comparison.recorded_over();
+  const bool whole = complete && comparison.missing() == 0 && is_simulated(summary, simulated);
+  const Observer observer(std::move(rows), simulated.follower());
+  const Expectation expectation{
+      .recorder = whole ? simulated : observer.recorder,
+      .metrics = (whole ? simulation.metrics : observer.metrics).str(),
+      .simulation = is_simulated(summary, simulated),
+      .whole = whole,
+      .complete = complete,
+      .closed = !summary.empty(),
+      .clamped_commands = simulated.facts().clamped_commands};
+  std::vector<FileComparison> files{compare_metrics(run_dir, expectation)};
+  if (!files.back().difference.empty()) return files;
+  files.push_back(summary.empty() ? FileComparison{kSummaryFile, "", "is not there", ""}
+                                  : compare_summary(run_dir, plan, summary, expectation));
+  if (!files.back().difference.empty()) return files;
+  for (FileComparison& file : compare_report(run_dir, plan.mission())) files.push_back(std::move(file));
+  return files;
+}
+
+/// Says how it went, and exits.
+int conclude_verification(const fs::path& run_dir, const TrajectoryComparison& comparison,
+                          const Json& summary, std::vector<FileComparison> files) {
+  for (const FileComparison& file : files) {
+    if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
+  }
+  const bool complete = summary.value("result", Json()) == "done";
   std::printf("%s: identical to its simulation, byte for byte, up to tick %s%s\n", run_dir.c_str(),
               comparison.last_tick().c_str(), complete ? "" : ", where the record ends");
   if (const Tick missing = comparison.missing(); missing > 0) {
     std::printf("%lld ticks before that are missing in the record\n", static_cast<long long>(missing));
   }
+  list(run_dir, files);
   return kExitDone;
 }
 
 }  // namespace
 
 int verify(const fs::path& run_dir) {
-  const auto scenario = recorded_plan_or_complain(run_dir);
-  if (!scenario) return kExitBadInput;
-  Comparison comparison(run_dir);
-  if (comparison.problem()) {
-    std::fprintf(stderr, "%s: missing, damaged, or written by another version than %s\n",
-                 (run_dir / kTrajectoryFile).c_str(), version().c_str());
-    return kExitBadInput;
+  const auto plan = recorded_plan_or_complain(run_dir);
+  if (!plan) return kExitBadInput;
+  TrajectoryComparison comparison(run_dir);
+  const TableLines metrics(run_dir, kMetricsFile, kMetricsHeader);
+  for (const auto& problem : {comparison.problem(), metrics.problem()}) {
+    if (problem) return complain(kExitBadInput, *problem);
   }
   auto read = read_summary(run_dir);
-  if (const auto* problem = std::get_if<std::string>(&read)) {
-    std::fprintf(stderr, "%s\n", problem->c_str());
-    return kExitBadInput;
-  }
-  auto& summary = std::get<nlohmann::ordered_json>(read);
-  if (summary.is_object()) {
-    const auto reason = why_not_repeatable(summary, scenario->mission().starts_m.size());
-    if (!reason.empty()) {
-      std::fprintf(stderr, "%s cannot be verified: %s\n", run_dir.c_str(), reason.c_str());
-      return kExitBadInput;
-    }
-  } else {
+  if (const auto* problem = std::get_if<std::string>(&read)) return complain(kExitBadInput, *problem);
+  Json& summary = std::get<Json>(read);
+  Simulation simulation(*plan);
+  if (!summary.is_object()) {
     std::fprintf(stderr, "%s: no %s, so nothing is known of restarts; comparing all the same\n",
                  run_dir.c_str(), kSummaryFile);
-    summary = nlohmann::ordered_json::object();
+    summary = Json::object();
+  } else if (!is_simulated(summary, simulation.swarm.recorder())) {
+    const auto reason = why_not_repeatable(summary, plan->mission());
+    if (!reason.empty()) return complain(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
   }
 
-  if (summary.value("emergency_stop", false)) comparison.expect_halt();
-  simulate_and_compare(*scenario, comparison);
-  if (const auto& problem = comparison.problem()) {
-    std::fprintf(stderr, "%s\n", problem->c_str());
-    return kExitBadInput;
+  std::vector<FileComparison> files = compare_sources(run_dir, *plan, summary);
+  for (const FileComparison& file : files) {
+    if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
   }
-  return verdict(run_dir, comparison, summary);
+  if (summary.value("emergency_stop", Json()) == true) comparison.expect_halt();
+  simulation.run(comparison);
+  if (const auto& problem = comparison.problem()) return complain(kExitBadInput, *problem);
+  if (const auto difference = difference_of(comparison, run_dir, summary); !difference.empty()) {
+    const std::string where = comparison.same() ? "" : ", first at " + comparison.place();
+    return report_difference(run_dir, difference, summary, where);
+  }
+  files.push_back({kTrajectoryFile, std::to_string(comparison.rows()) + " rows", "", ""});
+  auto rows = read_tracks(run_dir);
+  if (const auto* problem = std::get_if<std::string>(&rows)) {
+    return report_difference(run_dir, *problem + '\n', summary);
+  }
+  for (FileComparison& file : compare_the_rest(run_dir, *plan, std::get<RunData>(std::move(rows)),
+                                               simulation, comparison, summary)) {
+    files.push_back(std::move(file));
+  }
+  return conclude_verification(run_dir, comparison, summary, std::move(files));
 }
 
 }  // namespace ergocast::cli

@@ -1,7 +1,5 @@
 #include "logger/report.h"
 
-#include <variant>
-
 #include "logger/figures.h"
 #include "logger/page.h"
 #include "logger/run_data.h"
@@ -11,36 +9,38 @@
 
 namespace ergocast {
 namespace {
-
 namespace fs = std::filesystem;
-
-std::optional<std::string> write_figures(const fs::path& directory,
-                                         const std::vector<Figure>& figures) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) return directory.string() + ": " + error.message();
-  for (const Figure& figure : figures) {
-    const auto problem = write_file(directory / (figure.name + ".svg"), figure.svg);
-    if (problem) return problem;
-  }
-  return {};
 }
-
-}  // namespace
-
-std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission) {
-  const auto run = read_run(run_dir);
-  if (const auto* problem = std::get_if<std::string>(&run)) return *problem;
-  const auto summary = read_summary(run_dir);
-  if (const auto* problem = std::get_if<std::string>(&summary)) return *problem;
-  const auto target = read_target_density(run_dir / kTargetDensityFile);
-  if (const auto* problem = std::get_if<std::string>(&target)) return *problem;
+std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& run_dir,
+                                                               const Mission& mission) {
+  auto run = read_run(run_dir);
+  if (auto* problem = std::get_if<std::string>(&run)) return std::move(*problem);
+  auto summary = read_summary(run_dir);
+  if (auto* problem = std::get_if<std::string>(&summary)) return std::move(*problem);
+  auto target = read_target_density(run_dir / kTargetDensityFile);
+  if (auto* problem = std::get_if<std::string>(&target)) return std::move(*problem);
 
   const auto& data = std::get<RunData>(run);
   const std::vector<Figure> figures = draw_figures(data, mission, std::get<Field>(target));
-  if (auto problem = write_figures(run_dir / "figures", figures)) return problem;
-  return write_file(run_dir / "report.html",
-                    report_page(data, mission, std::get<nlohmann::ordered_json>(summary), figures));
+  std::vector<ReportFile> files;
+  for (const Figure& figure : figures) {
+    files.push_back({fs::path("figures") / (figure.name + ".svg"), figure.svg});
+  }
+  files.push_back({kReportFile, report_page(data, mission, std::get<nlohmann::ordered_json>(summary),
+                                            figures)});
+  return files;
+}
+
+std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission) {
+  const auto drawn = draw_report(run_dir, mission);
+  if (const auto* problem = std::get_if<std::string>(&drawn)) return *problem;
+  std::error_code error;
+  fs::create_directories(run_dir / "figures", error);
+  if (error) return (run_dir / "figures").string() + ": " + error.message();
+  for (const ReportFile& file : std::get<std::vector<ReportFile>>(drawn)) {
+    if (auto problem = write_file(run_dir / file.path, file.text)) return problem;
+  }
+  return {};
 }
 
 }  // namespace ergocast

@@ -97,16 +97,22 @@ double RunData::end_s() const {
   return end_s;
 }
 
-std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
+std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir) {
   RunData run;
   auto problem = read_table({run_dir, kTrajectoryFile, kTrajectoryHeader},
                             [&run](const Fields& fields) { return add_point(run, fields); });
-  if (!problem) {
-    problem = read_table({run_dir, kMetricsFile, kMetricsHeader},
-                         [&run](const Fields& fields) { return add_metrics(run, fields); });
-  }
   if (problem) return *problem;
   return run;
+}
+
+std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
+  auto read = read_tracks(run_dir);
+  if (std::holds_alternative<std::string>(read)) return read;
+  auto& run = std::get<RunData>(read);
+  auto problem = read_table({run_dir, kMetricsFile, kMetricsHeader},
+                            [&run](const Fields& fields) { return add_metrics(run, fields); });
+  if (problem) return *problem;
+  return read;
 }
 
 void for_each_row(const RunData& run,

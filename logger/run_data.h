@@ -49,6 +49,9 @@ struct RunData {
 /// is not counted.
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir);
 
+/// The same of trajectory.csv alone.
+std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir);
+
 /// Visits trajectory.csv's rows in their order: ascending by tick, then by agent.
 void for_each_row(const RunData& run,
                   const std::function<void(AgentId, const TrackPoint&)>& visit);

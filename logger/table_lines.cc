@@ -18,6 +18,7 @@ bool TableLines::open_next() {
   if (problem_ || opened_ == segments_) return false;
   file_ = segment_file(run_dir_, table_, opened_++);
   line_ = 0;
+  torn_ = false;
   in_ = std::ifstream(file_, std::ios::binary);
   if (in_) return true;
   problem_ = file_.string() + ": cannot be opened: give the directory of a run, with trajectory.csv "
@@ -27,13 +28,15 @@ bool TableLines::open_next() {
 
 bool TableLines::next(std::string& line) {
   while (!problem_) {
-    if (std::getline(in_, line) && !in_.eof()) {
+    const bool some = static_cast<bool>(std::getline(in_, line));
+    if (some && !in_.eof()) {
       if (++line_ > 1) return true;
       if (line == header_) continue;
       problem_ = place() + "the header is " + in_quotes(line) + ", not \"" + header_ +
                  "\": use the version of ergocast that recorded the run";
-    } else if (!open_next()) {
-      return false;
+    } else {
+      if (some) torn_ = true;
+      if (!open_next()) return false;
     }
   }
   return false;

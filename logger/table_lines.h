@@ -18,6 +18,8 @@ class TableLines {
   bool next(std::string& line);
   /// Where next()'s last line stands: "run/trajectory.csv:17: ".
   std::string place() const;
+  /// Whether the segment that was read last ends with such a line. @pre next() said false
+  bool torn() const { return torn_; }
   /// Which file cannot be opened or has a foreign header, and what to do about it.
   const std::optional<std::string>& problem() const { return problem_; }
 
@@ -30,6 +32,7 @@ class TableLines {
   std::filesystem::path file_;
   std::ifstream in_;
   std::int64_t line_ = 0;
+  bool torn_ = false;
   std::optional<std::string> problem_;
 };
 

@@ -14,9 +14,11 @@ std::string text_of(const MapProblem& problem) {
 
 }  // namespace
 
+std::string target_density_text(const Field& density) { return csv_text(density); }
+
 std::optional<std::string> write_target_density(const std::filesystem::path& file,
                                                 const Field& density) {
-  return write_file(file, csv_text(density));
+  return write_file(file, target_density_text(density));
 }
 
 std::variant<Field, std::string> read_target_density(const std::filesystem::path& file) {

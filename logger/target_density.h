@@ -13,6 +13,9 @@ namespace ergocast {
 /// What is to be covered, in multiples of the uniform density: a table with the north-west first.
 inline constexpr const char* kTargetDensityFile = "target_density.csv";
 
+/// The table as it stands in the file.
+std::string target_density_text(const Field& density);
+
 /// Nothing on success, otherwise the error.
 std::optional<std::string> write_target_density(const std::filesystem::path& file,
                                                 const Field& density);

@@ -1,0 +1,113 @@
+#include "cli/trajectory_comparison.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "core/read_number.h"
+#include "logger/recorder.h"
+#include "logger/run_record.h"
+
+namespace ergocast::cli {
+namespace {
+
+/// Tick and agent of a row of trajectory.csv, by which its rows ascend; nothing if it has none.
+using RowKey = std::pair<Tick, AgentId>;
+std::optional<RowKey> key_of(std::string_view row) {
+  std::string_view cells[3];  // tick, time, agent
+  for (std::string_view& cell : cells) {
+    const std::size_t comma = row.find(',');
+    if (comma == row.npos) return {};
+    cell = row.substr(0, comma);
+    row.remove_prefix(comma + 1);
+  }
+  const auto tick = read_number<Tick>(cells[0]);
+  const auto agent = read_number<AgentId>(cells[2]);
+  return tick && agent ? std::optional(RowKey(*tick, *agent)) : std::nullopt;
+}
+
+std::string place_of(const RowKey& key) {
+  return "tick " + std::to_string(key.first) + ", agent " + std::to_string(key.second);
+}
+
+/// Takes the first cell off a row.
+std::string_view take_cell(std::string_view& row) {
+  const std::size_t comma = std::min(row.find(','), row.size());
+  const std::string_view cell = row.substr(0, comma);
+  row.remove_prefix(std::min(comma + 1, row.size()));
+  return cell;
+}
+
+}  // namespace
+
+std::string first_difference(std::string place, const std::string& header, const std::string& recorded,
+                             const std::string& simulated) {
+  place.resize(place.find_last_not_of(": ") + 1);
+  std::string_view names = header, left = recorded, right = simulated;
+  while (!names.empty()) {
+    const std::string_view name = take_cell(names);
+    if (take_cell(left) == take_cell(right)) continue;
+    place += ", column " + std::string(name);
+    break;
+  }
+  return place + "\nrecorded:  " + recorded + "\nsimulated: " + simulated + '\n';
+}
+
+TrajectoryComparison::TrajectoryComparison(const std::filesystem::path& run_dir)
+    : lines_(run_dir, kTrajectoryFile, kTrajectoryHeader) {
+  read_next();
+}
+
+bool TrajectoryComparison::compare(std::istream& simulated) {
+  for (std::string line; same_ && !recorded_over_ && std::getline(simulated, line);) {
+    if (line != kTrajectoryHeader) compare_row(line);
+  }
+  return same_ && !recorded_over_;
+}
+
+std::string TrajectoryComparison::place() const {
+  return place_of(key_of(first_).value_or(RowKey{}));
+}
+
+void TrajectoryComparison::read_next() {
+  std::string line;
+  recorded_ = lines_.next(line) ? std::optional(line) : std::nullopt;
+  if (recorded_) recorded_place_ = lines_.place();
+}
+
+void TrajectoryComparison::compare_row(const std::string& simulated) {
+  const auto key = key_of(simulated), last = key_of(last_);
+  const bool same_tick = last && last->first == key->first;
+  if (!recorded_ || (halted_ && !same_tick)) {
+    recorded_over_ = true;
+    amid_tick_ = same_tick;
+    return;
+  }
+  const bool stands = halt_expected_ && *recorded_ != simulated && stands_where(simulated);
+  if (*recorded_ == simulated || stands) {
+    halted_ = halted_ || stands;
+    last_ = simulated;
+    ++rows_;
+    return read_next();
+  }
+  if (key_of(*recorded_) > key) return miss(simulated);
+  same_ = false;
+  difference_ = first_difference(recorded_place_, kTrajectoryHeader, *recorded_, simulated);
+  first_ = simulated;
+}
+
+void TrajectoryComparison::miss(const std::string& simulated) {
+  const RowKey key = *key_of(simulated);
+  const Tick tick = key.first;
+  if (missing_ == 0) first_missing_ = place_of(key);
+  if (tick != last_missing_) ++missing_;
+  last_missing_ = tick;
+}
+
+/// Whether the recorded row is the simulated one but for a velocity of zero.
+bool TrajectoryComparison::stands_where(const std::string& simulated) const {
+  const auto vx = simulated.rfind(',', simulated.rfind(',') - 1);
+  return *recorded_ == simulated.substr(0, vx) + ",0,0";
+}
+
+}  // namespace ergocast::cli
