@@ -1,0 +1,148 @@
+// Each reason for which a message is refused: somebody says such a message to a team that flies, whose
+// agents count it by name, in their log and in what `ergocast status` shows.
+#include <lcm/lcm-cpp.hpp>
+#include <map>
+
+#include "core/mission_follower.h"
+#include "runtime/key_file.h"
+#include "scenario/scenario.h"
+#include "tests/process/mission.h"
+#include "tests/process/stranger.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+class RefusalsCanBeSeen : public FlyingMission {
+ protected:
+  RefusalsCanBeSeen() {
+    const MissionKey key = make_mission_key();
+    write(coordinator_, key, true);
+    write(team_, key, false);
+    write(other_, make_mission_key(), false);
+  }
+  static void write(const std::filesystem::path& file, const MissionKey& key, bool for_coordinator) {
+    EXPECT_EQ(write_key_file(file, key_text(key, for_coordinator)), std::nullopt);
+  }
+  static Seal seal(const std::filesystem::path& file) {
+    return Seal(std::get<MissionKey>(read_key_file(file)));
+  }
+
+  /// Hears the mission's parts, which say its run, too.
+  void learn_mission() {
+    const auto ear = std::get<0>(Transport::open(
+        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, seal(team_), {{Bus::kSwarm, "MISSION"}},
+        {.on_message = [this](const Message& message, AgentId) {
+          if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
+        }}));
+    ASSERT_TRUE(eventually([&] {
+      ear->deliver_until(now() + std::chrono::milliseconds(5), -1);
+      return follower_.revision() >= 0;
+    }));
+  }
+  RunId run() const { return follower_.parts().front().header.run; }
+  Header from(AgentId sender, RunId run) const { return {run, sender, 4711, 0, 0}; }
+  Hello hello(RunId run) const { return {from(kUnassigned, run), kUnassigned, "stranger", "9.9"}; }
+
+  WorldState world_of(AgentId sender) const {
+    WorldState state;
+    state.header = from(sender, run());
+    return state;
+  }
+
+  void say_raw(std::size_t bytes) {
+    Stranger(kUrl).say(Bus::kSwarm, "ERGOCAST_HELLO", std::vector<std::byte>(bytes));
+  }
+  void say(const Seal& seal, const Message& message, Bus bus = Bus::kSwarm) {
+    Stranger(kUrl, seal).say(bus, message);
+  }
+
+  void babble() {
+    AgentStatus status;
+    status.header = from(3, run());
+    status.host = "stranger";
+    for (int i = 0; i < 1000; ++i) babbler_->say(Bus::kSwarm, status);
+  }
+
+  /// More former lives of one agent than a table has rows for, and a word of each. Whoever has the
+  /// coordinator's key can say that.
+  void crowd() {
+    constexpr int kLives = kMaxIncarnationsPerAgent + 1;
+    constexpr AgentId kMany = 99;
+    Stranger usurper(kUrl, seal(coordinator_));
+    int life = 0;
+    for (MissionPart part : follower_.parts()) {
+      part.revision += 1000;
+      for (; life < kLives && part.roster.size() < kMaxRosterEntriesPerMessage; ++life) {
+        part.roster.push_back({{kMany, static_cast<Incarnation>(1000 + life)}, 0, 1});
+      }
+      usurper.say(Bus::kSwarm, part);
+    }
+    ASSERT_EQ(life, kLives) << "the plan has too few parts";
+    for (int i = 0; i < kLives; ++i) {
+      Contribution block;
+      block.header = from(kMany, run());
+      block.header.incarnation = static_cast<Incarnation>(1000 + i);
+      block.steps = block.next_broadcast_tick = 1;
+      block.elapsed_s = block.sums[0] = follower_.mission()->timing.dt_s;
+      block.mode_count = follower_.mission()->basis.mode_count();
+      usurper.say(Bus::kSwarm, block);
+    }
+  }
+
+  /// How many agent 0 has refused so, as `ergocast status` tells.
+  std::int64_t refused(const std::string& reason) {
+    ergocast({"status", "--json", "--lcm-url", kUrl, "--key-file", team_});
+    const auto told = nlohmann::json::parse(output(), nullptr, false);
+    for (const auto& agent : told.is_object() ? told["agents"] : nlohmann::json::array()) {
+      if (agent["id"] == 0) return agent["refused"].value(reason, std::int64_t{0});
+    }
+    return 0;
+  }
+
+  const std::filesystem::path coordinator_ = folder_ / "c.key", team_ = folder_ / "t.key", other_ = folder_ / "o.key";
+  MissionFollower follower_{&decode_plan};
+  std::unique_ptr<Stranger> babbler_;
+};
+
+TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
+  Child mission = launch_endless(scenario(), {"--realtime=1", "--key-file", coordinator_, "--lcm-url", kUrl});
+  learn_mission();
+  babbler_ = std::make_unique<Stranger>(kUrl, seal(team_));
+  const std::map<Refusal, std::function<void()>> plants = {
+      // Longer than any message; the kernel keeps what is much shorter or longer to itself.
+      {Refusal::kSize, [this] { say_raw(1230); }},
+      {Refusal::kType, [this] { say_raw(200); }},
+      {Refusal::kTag, [this] { say(seal(other_), hello(run())); }},
+      {Refusal::kUnkeyed, [this] { say({}, hello(run())); }},
+      {Refusal::kUnsigned, [this] { say(seal(team_), Stop{from(kOperator, run()), false, "no key"}); }},
+      {Refusal::kRun, [this] { say(seal(team_), hello(run() + 1)); }},
+      // An agent that says where all vehicles are.
+      {Refusal::kRange, [this] { say(seal(team_), world_of(3), Bus::kWorld); }},
+      {Refusal::kRate, [this] { babble(); }},
+      {Refusal::kLimit, [this] { crowd(); }},
+  };
+  // By the program's own list; the last one changes the roster, and so comes last.
+  std::vector<Refusal> order;
+  for (int i = 0; i < kRefusalKinds; ++i) order.push_back(static_cast<Refusal>(i));
+  std::ranges::stable_partition(order, [](Refusal one) { return one != Refusal::kLimit; });
+  for (const Refusal reason : order) {
+    const std::string name = to_string(reason);
+    const auto plant = plants.find(reason);
+    if (plant == plants.end()) {
+      ADD_FAILURE() << "nobody says what is refused as: " << name;
+      continue;
+    }
+    EXPECT_EQ(refused(name), 0) << name;
+    EXPECT_TRUE(eventually([&] {
+      plant->second();
+      return refused(name) > 0;
+    })) << name << ":\n" << output();
+    EXPECT_TRUE(logs("agent-0", " " + name + "=")) << name << ":\n" << log_of("agent-0");
+  }
+  mission.send(SIGTERM);
+  wait_for(mission);
+}
+
+}  // namespace
+}  // namespace ergocast::test
