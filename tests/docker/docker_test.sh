@@ -58,32 +58,33 @@ too_few_agents_end_with_a_sentence() {
   ERGOCAST_SCENARIO=patient
 }
 
-# In lockstep nothing goes on without a member, so that what befalls it befalls it in mid-mission.
+# What befalls a member befalls it in mid-mission: these last until the test ends them.
+endless=(--duration 10000000)
 a_killed_agent_comes_back_under_its_number() {
-  fly killed 4 --duration 1000
+  fly killed 4 "${endless[@]}"
   becomes recorded 10000
   local agent
   agent=$(one agent)
   kill -KILL "$(state "$agent" .State.Pid)"
   becomes is "$agent" .RestartCount 1
   becomes says coordinator 'agent [0-3] .* is gone at tick'
-  expect_complete
+  expect_end_when_told
   ! says coordinator 'agent 4 ' || complain 'it came back under another number'
   land
 }
 
 an_agent_container_that_is_removed_is_replaced() {
-  fly removed 4 --duration 1000
+  fly removed 4 "${endless[@]}"
   becomes recorded 10000
   docker rm --force "$(one agent)" >/dev/null
   compose up --detach --scale agent=4 agent
   becomes says coordinator 'agent [0-3] .* is gone at tick'
-  expect_complete
+  expect_end_when_told
   land
 }
 
 an_agent_cut_off_from_the_network_is_unhealthy_and_agrees_again() {
-  fly cut_off 4 --duration 1000
+  fly cut_off 4 "${endless[@]}"
   becomes recorded 10000
   local agent
   agent=$(one agent)
@@ -93,22 +94,22 @@ an_agent_cut_off_from_the_network_is_unhealthy_and_agrees_again() {
   docker network connect team_default "$agent"
   becomes says agent 'listening on another network interface'
   becomes says coordinator 'agent [0-3] .* is alive at tick [1-9]'
-  expect_complete
+  expect_end_when_told
   land
 }
 
 a_logger_that_dies_goes_on_with_its_record() {
-  fly logger 4 --duration 1000
+  fly logger 4 "${endless[@]}"
   becomes recorded 10000
   kill -KILL "$(pgrep -x ergocast-logger)"
   becomes is "$(one logger)" .RestartCount 1
-  expect_complete
+  expect_end_when_told
   expect test -d "$ERGOCAST_RUNS"/*  # one folder
   land
 }
 
 in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order() {
-  fly real_time 4 --realtime --duration 100000
+  fly real_time 4 --realtime "${endless[@]}"
   becomes recorded 1000
   becomes all_healthy
   local process
@@ -136,7 +137,7 @@ hosts_without_bridges_fly_too() {
 a_team_with_keys_flies_and_who_has_none_is_told() {
   make_keys "$ERGOCAST_KEYS"
   over='-f compose.keys.yaml'
-  fly keyed 4 --duration 100000
+  fly keyed 4 "${endless[@]}"
   becomes recorded 10000
   expect docker exec "$(one coordinator)" ergocast status
   ! docker run --rm --network team_default ergocast status >"$work/keyless" 2>&1 ||

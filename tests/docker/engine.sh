@@ -7,7 +7,7 @@ export DOCKER_HOST=unix://$work/engine.sock
 
 # Waits until a command succeeds. How long that may take decides no success.
 eventually() {
-  local deadline=$((SECONDS + ${PATIENCE_S:-120}))
+  local deadline=$((SECONDS + ${PATIENCE_S:-300}))
   until "$@" >/dev/null 2>&1; do
     [ "$SECONDS" -lt "$deadline" ] || return 1
     sleep 0.2

@@ -10,8 +10,9 @@ export ERGOCAST_AGENTS ERGOCAST_OPTIONS ERGOCAST_RUNS ERGOCAST_KEYS=$work/team
 make_person() {
   mkdir "$ERGOCAST_SCENARIOS"
   local file=$source/scenarios/quadrimodal_corners.textproto
-  sed 's/pace: .*/& lockstep_timeout_s: 600/' "$file" >"$ERGOCAST_SCENARIOS/patient.textproto"
-  sed 's/pace: .*/& admission_timeout_s: 5/' "$file" >"$ERGOCAST_SCENARIOS/impatient.textproto"
+  sed 's/pace: .*/& lockstep_timeout_s: 600 admission_timeout_s: 600 broadcast_period_ticks: 20/' "$file" \
+    >"$ERGOCAST_SCENARIOS/patient.textproto"
+  sed 's/pace: .*/& admission_timeout_s: 20/' "$file" >"$ERGOCAST_SCENARIOS/impatient.textproto"
   chown -R $person "$ERGOCAST_SCENARIOS"
 }
 
@@ -52,6 +53,7 @@ fly() {
 land() {
   expect compose down
   [ -z "$(docker ps -aq)" ] || fail "docker-compose down leaves $(docker ps -a)"
+  rm -f "$ERGOCAST_RUNS"/*/events-*.lcm  # the test's disk lies in memory
 }
 
 one() { containers "$1" | head -n 1; }
@@ -66,10 +68,18 @@ all_healthy() {
 # The test's process namespace is around those of the containers.
 pids_of_programs() { grep -ls '^ergocast-' /proc/[0-9]*/comm | cut -d/ -f3; }
 
-recorded() { [ "$(cat "$ERGOCAST_RUNS"/*/trajectory*.csv | wc -c)" -gt "$1" ]; }
-expect_complete() {
+bytes_recorded() { cat "$ERGOCAST_RUNS"/*/trajectory*.csv | wc -c; }
+recorded() { [ "$(bytes_recorded)" -gt "$1" ]; }
+expect_end() {
   becomes all_ended
   local container
   for container in $(docker ps -aq); do expect is "$container" .State.ExitCode 0; done
-  expect grep -q '"result": "done"' "$ERGOCAST_RUNS"/*/summary.json
+  expect grep -q "\"result\": \"$1\"" "$ERGOCAST_RUNS"/*/summary.json
+}
+expect_complete() { expect_end 'done'; }
+# A mission that goes on for ever: it does, and all end in order when the coordinator is told to.
+expect_end_when_told() {
+  becomes recorded $(($(bytes_recorded) + 30000))
+  expect compose stop coordinator
+  expect_end stopped
 }

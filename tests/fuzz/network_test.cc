@@ -97,8 +97,8 @@ class HostileNetwork : public FlyingMission {
     const std::vector<pid_t> before = crew();
     ASSERT_EQ(before.size(), 7U);
     const long memory_kb = largest_kb(before);
+    ASSERT_TRUE(eventually([&] { return vandal.listen(), vandal.heard() > 100; }));
     const Stretch quiet = spend(vandal, std::max(time / 4, std::chrono::duration<double>(3)), 0);
-    ASSERT_GT(vandal.heard(), 100U);
     const Stretch stormy = spend(vandal, time, strikes);
     ASSERT_TRUE(moves_on()) << said();
     EXPECT_EQ(crew(), before) << said();

@@ -50,7 +50,7 @@ END
 chmod +x "$work/bin/ssh"
 export PATH="$work/bin:$PATH"
 
-patience_s=120
+patience_s=300
 eventually() {
   local deadline=$((SECONDS + patience_s))
   until "$@"; do
@@ -93,7 +93,7 @@ done
 
 # With keys.
 (cd "$work" && "$bin/ergocast" keygen "our team's" >/dev/null)
-use_scenario 100000 "$2" --keys "$work/our team's"
+use_scenario 10000000 "$2" --keys "$work/our team's"
 "$script" start
 eventually recorded 1000
 eventually all_running

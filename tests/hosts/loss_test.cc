@@ -33,7 +33,7 @@ TEST_F(Loss, InRealTimeLeavesNobodyBehindByMoreThanTheAnnouncedPeriods) {
   constexpr int kPeriodTicks = 5;
   // What a digest says may be a mission second old; its author speaks in between.
   constexpr std::int64_t kTolerated = 2 * kPeriodTicks + 10 + kPeriodTicks;
-  start(mission("100000", std::string(kRealtime) + " broadcast_period_ticks: 5"));
+  start(mission(kEndless, std::string(kRealtime) + " broadcast_period_ticks: 5"));
   Witness witness = witness_on(1);
   lan_->lose(30, {1});
   const auto up_to_date = [&](AgentId who, AgentId whose) {

@@ -49,12 +49,7 @@ class TeamOnHosts : public OnHosts {
   /// The default scenario, lasting that long, with more fields in its `time`.
   std::filesystem::path mission(const std::string& duration_s, const std::string& time = "",
                                 const std::string& agents = "") {
-    const auto file = scenario(time, agents);
-    std::string text = text_of(file);
-    text.replace(text.find("duration_s: 600"), 15, "duration_s: " + duration_s);
-    if (time.find("pace:") != time.npos) text.erase(text.find("pace: LOCKSTEP"), 14);
-    std::ofstream(file) << text;
-    return file;
+    return scenario("duration_s: " + duration_s + ' ' + time, agents);
   }
 
   void start_all_but_agents(const std::filesystem::path& scenario, int coordinators_host = 0) {
@@ -76,6 +71,15 @@ class TeamOnHosts : public OnHosts {
 
   /// Tells the coordinator to end the mission.
   void end_mission() { coordinator_->child.send(SIGINT); }
+
+  /// It goes on, until it is told to end, and the record is what the simulation gives.
+  void expect_all_to_go_on_and_end_when_told() {
+    EXPECT_TRUE(moves_on()) << coordinator_->said();
+    end_mission();
+    expect_all_to_end();
+    EXPECT_EQ(summary()["result"], "stopped") << summary()["reason"];
+    EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  }
 
   /// Everybody ends by itself, in order.
   void expect_all_to_end() {

@@ -8,12 +8,12 @@ class WrongNetwork : public TeamOnHosts {
  protected:
   /// Starts a team whose agent 2 is alone on host 2 and is given `url`.
   void start_team(const std::string& time, std::string url) {
-    start_all_but_agents(mission("20", time));
     for (const AgentId id : {0, 1, 3}) agents_.push_back(&agent_on(id % 2, id));
     std::swap(url_, url);
     agents_.push_back(&agent_on(2, 2));
     std::swap(url_, url);
-    EXPECT_TRUE(agents_.back()->says("joining on")) << agents_.back()->said();
+    for (Program* agent : agents_) EXPECT_TRUE(agent->says("joining on")) << agent->said();
+    start_all_but_agents(mission("20", time));
   }
   void expect_agent_2_to_be_missing() {
     EXPECT_EQ(wait_for(coordinator_->child), 4) << coordinator_->said();
@@ -34,7 +34,7 @@ class WrongNetwork : public TeamOnHosts {
 TEST_F(WrongNetwork, AnAgentWhoseMulticastRouteLeadsElsewhereIsMissed) {
   lan_->add_interface(2);
   lan_->route_multicast(2, "eth1");
-  start_team("admission_timeout_s: 3", url_);
+  start_team("admission_timeout_s: 10", url_);
   expect_agent_2_to_be_missing();
 }
 
@@ -50,7 +50,7 @@ TEST_F(WrongNetwork, AnAgentWhoseMulticastStayedOnItsHostJoinsOnceTheRouteIsMend
 }
 
 TEST_F(WrongNetwork, AnAgentWithATtlOfZeroIsMissed) {
-  start_team("admission_timeout_s: 3", kUrl);
+  start_team("admission_timeout_s: 10", kUrl);
   expect_agent_2_to_be_missing();
 }
 

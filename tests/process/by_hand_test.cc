@@ -16,11 +16,10 @@ class StartedByHand : public ByHand {
   }
   /// A scenario of two agents that goes on for as long as the test needs.
   std::filesystem::path endless_pair() {
-    std::string text = text_of(scenario());
+    std::string text = text_of(scenario(std::string("duration_s: ") + kEndless));
     for (const char* start : {"starts { x_m: 0     y_m: 2000 }", "starts { x_m: 2000  y_m: 2000 }"}) {
       text.erase(text.find(start), std::string(start).size());
     }
-    text.replace(text.find("duration_s: 600"), 15, "duration_s: 100000");
     const auto file = folder_ / "pair.textproto";
     std::ofstream(file) << text;
     return file;
@@ -74,11 +73,10 @@ TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOverWhenItIsToldTo) {
 }
 
 TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
-  Child mission = launch(scenario(), {"--lcm-url", kUrl});
-  signal_to(agent(0), SIGSTOP);  // holds the mission
+  Child mission = launch_held(scenario(), {"--lcm-url", kUrl});
   hand("ergocast-coordinator", {"--resume"});
   ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
-  signal_to(agent(0), SIGCONT);
+  release();
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_TRUE(said("another coordinator has taken the mission over")) << said();
   EXPECT_EQ(summary()["reason"], "mission complete; coordinator exited with code 4");

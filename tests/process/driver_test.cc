@@ -7,14 +7,9 @@ namespace {
 
 class DrivenRobots : public ByHand {
  protected:
-  /// The default mission by the clock, ten times as fast, for 30 s.
-  std::filesystem::path realtime_scenario() {
-    std::string text = text_of(scenario("realtime_factor: 10"));
-    text.replace(text.find("duration_s: 600"), 15, "duration_s: 30");
-    text.replace(text.find("LOCKSTEP"), 8, "REALTIME");
-    const auto file = folder_ / "robots.textproto";
-    std::ofstream(file) << text;
-    return file;
+  /// The default mission by the clock, ten times as fast.
+  std::filesystem::path realtime_scenario(const std::string& duration_s) {
+    return scenario("pace: REALTIME realtime_factor: 10 duration_s: " + duration_s);
   }
 };
 
@@ -23,7 +18,7 @@ TEST_F(DrivenRobots, FlyAWholeMissionWhoseRecordIsComplete) {
   Program& logger = hand("ergocast-logger", {"--out", out()});
   Program& driver = hand("ergocast-example-driver");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
-  Program& coordinator = hand("ergocast-coordinator", {realtime_scenario()});
+  Program& coordinator = hand("ergocast-coordinator", {realtime_scenario("30")});
   EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
   EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
   EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
@@ -37,10 +32,7 @@ TEST_F(DrivenRobots, StandStillAtOnceWhenTheyAreToldToStop) {
   Program& logger = hand("ergocast-logger", {"--out", out()});
   Program& driver = hand("ergocast-example-driver");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
-  std::string text = text_of(realtime_scenario());
-  text.replace(text.find("duration_s: 30"), 14, "duration_s: 100000");
-  std::ofstream(folder_ / "robots.textproto") << text;
-  hand("ergocast-coordinator", {folder_ / "robots.textproto"});
+  hand("ergocast-coordinator", {realtime_scenario(kEndless)});
   ASSERT_TRUE(recorded(30000)) << driver.said();
   ASSERT_EQ(ergocast({"stop", "--now", "--lcm-url", kUrl}), 0) << output();
   EXPECT_EQ(wait_for(driver.child), 0) << driver.said();

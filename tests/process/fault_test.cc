@@ -31,11 +31,9 @@ TEST_F(Fault, KilledLauncherLeavesNoProcessAndAReadableRecord) {
 }
 
 TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
-  Child mission = start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--duration",
-                                     "400", "--out", out()});
-  mission_log_ = log_;
-  ASSERT_TRUE(recorded(100000)) << said();
+  Child mission = launch_held(scenario());
   mission.send(SIGSTOP);
+  release();
   ASSERT_TRUE(eventually([] { return processes_on_own_host().size() == 1; }));
   mission.send(SIGCONT);
   EXPECT_EQ(wait_for(mission), 0) << said();
@@ -44,8 +42,9 @@ TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
 }
 
 TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
-  Child mission = launch(scenario("lockstep_timeout_s: 1"), {"--duration", "1000"});
+  Child mission = launch_held(scenario("lockstep_timeout_s: 10"));
   signal_to({"ergocast-logger"}, SIGSTOP);
+  release();
   // The world goes on without it when its patience is over, to the end.
   ASSERT_TRUE(logs("coordinator", "mission ended")) << said();
   EXPECT_NE(log_of("sim").find("going on without"), std::string::npos);

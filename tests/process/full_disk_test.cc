@@ -1,8 +1,9 @@
 // The disk of a run directory is full for a while: the team goes on, and later so does the record.
-#include <fcntl.h>
 #include <sys/mount.h>
+#include <sys/statvfs.h>
 
 #include "tests/process/mission.h"
+#include "tests/process/record.h"
 #include "tests/process/witness.h"
 
 namespace ergocast::test {
@@ -10,7 +11,7 @@ namespace {
 
 class FullDisk : public FlyingMission {
  protected:
-  /// Mounts a small disk as the run directory. False where that is not possible.
+  /// Mounts a disk as the run directory. False where that is not possible.
   bool mount_disk(const char* size) {
     if (!may_mount()) return false;
     std::filesystem::create_directory(out());
@@ -20,22 +21,22 @@ class FullDisk : public FlyingMission {
     if (mounted_) umount2(out().c_str(), MNT_DETACH);
   }
 
-  /// Takes all the space that is left.
-  void fill_disk() const {
-    std::ofstream file(ballast());
-    const std::string piece(4096, 'x');
-    while (file << piece << std::flush) {
-    }
+  bool resize_disk(const std::string& size) const {
+    return mount("none", out().c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()) == 0;
   }
-  void empty_disk() const { std::filesystem::remove(ballast()); }
+  /// Makes it as small as what is on it, which grows meanwhile.
+  bool fill_disk() const {
+    return eventually([this] {
+      struct statvfs disk {};
+      return statvfs(out().c_str(), &disk) == 0 &&
+             resize_disk(std::to_string((disk.f_blocks - disk.f_bfree) * disk.f_frsize));
+    });
+  }
 
   bool mounted_ = false;
-
- private:
-  std::filesystem::path ballast() const { return out() / "ballast"; }
 };
 
-/// A logger that cannot write is given up after 2 s.
+/// A logger that cannot write is given up after 5 s.
 class FullDiskInEitherPace : public FullDisk, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, FullDiskInEitherPace,
                          ::testing::Values("--lockstep", "--realtime=40"), [](const auto& pace) {
@@ -43,19 +44,21 @@ INSTANTIATE_TEST_SUITE_P(Paces, FullDiskInEitherPace,
                          });
 
 TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
-  if (!mount_disk("size=96m")) GTEST_SKIP() << "the small disk this needs cannot be mounted here";
-  Child mission = launch_endless(scenario("lockstep_timeout_s: 4 broadcast_period_ticks: 20"),
+  // More than any machine writes before it is full, or afterwards.
+  constexpr const char* kRoomy = "4g";
+  if (!mount_disk("size=4g")) GTEST_SKIP() << "the disk this needs cannot be mounted here";
+  Child mission = launch_endless(scenario("lockstep_timeout_s: 10 broadcast_period_ticks: 20"),
                                  {GetParam(), "--lcm-url", kUrl});
-  Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
-  fill_disk();
+  ASSERT_TRUE(fill_disk());
   const auto bytes = recorded_bytes();
+  const Tick full_at = recorded_rows(out()).rbegin()->first;
   // Twice as many ticks as a recorder keeps for later: once those that it had not yet tried to write.
+  Witness witness(kUrl);
   ASSERT_TRUE(witness.hears([&] {
-    return witness.answered(witness.member(0)) > witness.recorded() + 2200;
+    return witness.answered(witness.member(0)) > full_at + 2200;
   })) << said();
   EXPECT_LT(recorded_bytes(), bytes + 200000);
-  empty_disk();
+  ASSERT_TRUE(resize_disk(kRoomy));
   ASSERT_TRUE(recorded(recorded_bytes() + 300000)) << log_of("logger");
   mission.send(SIGTERM);
   EXPECT_EQ(wait_for(mission), 0) << said();
@@ -71,7 +74,7 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
 TEST_F(FullDisk, ThatStaysFullFailsTheRunAtItsEndAndIsNamed) {
   if (!mount_disk("size=2m")) GTEST_SKIP() << "the small disk this needs cannot be mounted here";
   EXPECT_EQ(
-      ergocast({"run", scenario("lockstep_timeout_s: 4"), "--out", out(), "--duration", "200"}), 4);
+      ergocast({"run", scenario("lockstep_timeout_s: 10"), "--out", out(), "--duration", "200"}), 4);
   EXPECT_NE(output().find("No space left"), std::string::npos) << output();
 }
 

@@ -1,9 +1,16 @@
 // A mission of real processes that a test disturbs.
+//
+// Machines differ tenfold in speed, both ways, so no test may need a fast or a slow one: a mission
+// that is disturbed either lasts until the test ends it (launch_endless()), or stands still at a tick
+// while the test acts (launch_held()); a test waits for what it can see, and never sleeps instead.
+// tests/at_speed tries that: with ERGOCAST_TEST_SPEED=fast, which is read here, missions fly several
+// times as fast and the default one is over after a tenth of its ticks.
 #pragma once
 
 #include <algorithm>
 #include <deque>
 
+#include "core/ids.h"
 #include "tests/process/programs.h"
 
 namespace ergocast::test {
@@ -12,13 +19,13 @@ namespace ergocast::test {
 inline std::vector<pid_t> pids(const std::vector<std::string>& words) {
   std::vector<pid_t> found;
   for (const std::string& process : processes_on_own_host()) {
-    const std::string pid = process.substr(process.find("pid ") + 4);
-    std::string command = text_of("/proc/" + pid.substr(0, pid.size() - 1) + "/cmdline");
+    const pid_t pid = pid_of(process);
+    std::string command = text_of("/proc/" + std::to_string(pid) + "/cmdline");
     std::replace(command.begin(), command.end(), '\0', ' ');
     if (std::all_of(words.begin(), words.end(), [&command](const std::string& word) {
           return command.find(word) != command.npos;
         })) {
-      found.push_back(std::stoi(pid));
+      found.push_back(pid);
     }
   }
   return found;
@@ -33,12 +40,28 @@ class FlyingMission : public OwnHost {
   /// For missions whose buses the test uses itself.
   static constexpr const char* kUrl = "udpm://239.255.76.67:24700?ttl=0";
 
-  /// The default scenario with more fields in its `time` and `agents`. A tick may stay unanswered
-  /// for longer than any test takes, unless the time-out itself is what is tested.
+  /// Mission time [s] that no test outlives: the limit, 10⁸ ticks.
+  static constexpr const char* kEndless = "10000000";
+  /// Where a held mission stands.
+  static constexpr int kHeldTick = 50;
+
+  /// The default scenario with other or more fields in its `time` and `agents`. A tick may stay
+  /// unanswered, and the team gather, for longer than any test takes, unless a test says otherwise.
   std::filesystem::path scenario(std::string time = "", const std::string& agents = "") {
-    if (time.find("lockstep_timeout_s") == time.npos) time += " lockstep_timeout_s: 600";
     std::string text = text_of(scenario_file("quadrimodal_corners"));
-    text.replace(text.find("pace:"), 0, time + "  ");
+    std::vector<std::string> others{"dt_s: 0.1", "duration_s: 600", "pace: LOCKSTEP",
+                                    "lockstep_timeout_s: 600", "admission_timeout_s: 600"};
+    if (const char* speed = std::getenv("ERGOCAST_TEST_SPEED"); speed != nullptr) {
+      EXPECT_STREQ(speed, "fast");
+      for (const char* axis : {"modes_x: ", "modes_y: "}) text.replace(text.find(axis) + 9, 2, "2");
+      others[1] = "duration_s: 60";
+      others.push_back("broadcast_period_ticks: 20");
+    }
+    for (const std::string& field : others) {
+      if (time.find(field.substr(0, field.find(':'))) == time.npos) time += ' ' + field;
+    }
+    const auto begin = text.find("time {");
+    text.replace(begin, text.find('}', begin) - begin, "time { " + time + ' ');
     text.replace(text.find("starts {"), 0, agents + "  ");
     const auto file = folder_ / "quadrimodal_corners.textproto";
     std::ofstream(file) << text;
@@ -47,17 +70,50 @@ class FlyingMission : public OwnHost {
 
   /// Starts `ergocast run` and waits until the mission is well under way.
   Child launch(const std::filesystem::path& scenario, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"run", scenario, "--out", out()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    Child mission = start("ergocast", arguments);
-    mission_log_ = log_;
+    Child mission = start_mission(scenario, more);
     EXPECT_TRUE(recorded(30000)) << said();
     return mission;
   }
-  /// One that does not end by itself.
+  /// One that does not end by itself, and does not fill a disk.
   Child launch_endless(const std::filesystem::path& scenario, std::vector<std::string> more = {}) {
-    more.insert(more.end(), {"--duration", "100000"});
+    more.insert(more.end(), {"--duration", kEndless});
+    if (std::find(more.begin(), more.end(), "--event-log-limit") == more.end()) {
+      more.insert(more.end(), {"--event-log-limit", "128"});
+    }
     return launch(scenario, more);
+  }
+  /// One in lockstep that stands still in mid-flight, since agent 0 is stopped as it is about to
+  /// answer tick kHeldTick, until release().
+  Child launch_held(const std::filesystem::path& scenario,
+                    const std::vector<std::string>& more = {}) {
+    hold_next("ERGOCAST_COMMAND_0", kHeldTick);
+    Child mission = start_mission(scenario, more);
+    EXPECT_TRUE(eventually([] { return stopped(pids(agent(0))); })) << said();
+    hold_none();
+    return mission;
+  }
+  static void release() { signal_to(agent(0), SIGCONT); }
+
+  /// Of the programs that are started from now on, the first that is about to say something on that
+  /// channel at that tick, or later, is stopped.
+  void hold_next(const std::string& channel, Tick tick) const {
+    const auto once = folder_ / "hold";
+    std::ofstream(once).close();
+    setenv("ERGOCAST_HOLD", (channel + ' ' + std::to_string(tick) + ' ' + once.string()).c_str(), 1);
+    setenv("LD_PRELOAD", ERGOCAST_HOLD_AT, 1);
+    // With AddressSanitizer: a preloaded library is fine.
+    const char* others = std::getenv("ASAN_OPTIONS");
+    const std::string options = others != nullptr ? others : "";
+    setenv("ASAN_OPTIONS", (options + ":verify_asan_link_order=0").c_str(), 1);
+  }
+  static void hold_none() {
+    for (const char* name : {"ERGOCAST_HOLD", "LD_PRELOAD"}) unsetenv(name);
+  }
+  /// Whether it is one process, and stopped.
+  static bool stopped(const std::vector<pid_t>& processes) {
+    if (processes.size() != 1) return false;
+    const std::string stat = text_of("/proc/" + std::to_string(processes[0]) + "/stat");
+    return stat.substr(stat.rfind(')') + 1).starts_with(" T");
   }
 
   /// What `ergocast run` has said, and what one of its processes.
@@ -100,6 +156,14 @@ class FlyingMission : public OwnHost {
     signal_to(words, SIGCONT);
   }
 
+  Child start_mission(const std::filesystem::path& scenario, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", scenario, "--out", out()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    Child mission = start("ergocast", arguments);
+    mission_log_ = log_;
+    return mission;
+  }
+
   std::filesystem::path mission_log_;
 };
 
@@ -117,6 +181,9 @@ class ByHand : public FlyingMission {
 
   Program& hand(const std::string& program, std::vector<std::string> arguments = {}) {
     arguments.insert(arguments.end(), {"--lcm-url", url_});
+    if (program == "ergocast-logger") {
+      arguments.insert(arguments.end(), {"--event-log-limit", "128"});  // fills no disk
+    }
     Child child = start(program, arguments);
     return programs_.emplace_back(Program{child, log_});
   }

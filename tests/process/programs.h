@@ -6,23 +6,27 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "runtime/child.h"
+#include "tests/process/logs.h"
 #include "tests/support/own_host.h"
 
 namespace ergocast::test {
 
-/// How long something that must happen may take before a test gives up: decides no success.
-inline constexpr auto kPatience = std::chrono::seconds(120);
+/// How long something that must happen may take before a test gives up: decides no success, also on a
+/// machine of a tenth of the speed that is busy with other things.
+inline constexpr auto kPatience = std::chrono::seconds(300);
 
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -49,6 +53,11 @@ inline std::filesystem::path program_folder() {
   return others != nullptr ? others : ERGOCAST_BIN_DIR;
 }
 
+/// Of what processes_on_own_host() says.
+inline pid_t pid_of(const std::string& process) {
+  return std::stoi(process.substr(process.find("pid ") + 4));
+}
+
 /// A folder that is gone after the test, and the programs' network.
 class OwnHost : public ::testing::Test {
  protected:
@@ -60,15 +69,24 @@ class OwnHost : public ::testing::Test {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
+  /// A test that has failed may have left its mission flying: what the processes say then is all
+  /// there is to know of them, and they are ended here.
   void TearDown() override {
+    if (HasFailure()) {
+      tell_logs();
+      eventually([] { return kill_all(), processes_on_own_host().empty(); });
+      return;
+    }
     EXPECT_TRUE(eventually([] { return processes_on_own_host().empty(); }))
         << "left behind: " << ::testing::PrintToString(processes_on_own_host());
+    if (HasFailure()) tell_logs();
   }
 
-  /// Starts one of our programs; its output goes to `log`.
+  /// Starts one of our programs; its output goes to `log_`.
   Child start(const std::string& program, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), (program_folder() / program).string());
     log_ = folder_ / ("output-" + std::to_string(++started_));
+    note_command(program, arguments);
+    arguments.insert(arguments.begin(), (program_folder() / program).string());
     return std::get<Child>(Child::start({arguments, log_, SIGKILL}));
   }
   /// Its exit code, or −signal.
@@ -107,7 +125,25 @@ class OwnHost : public ::testing::Test {
   std::filesystem::path folder_, log_;
 
  private:
+  /// Of questions that a test asks again and again, the last answer is enough.
+  void note_command(const std::string& program, const std::vector<std::string>& arguments) {
+    std::string command = program;
+    for (const std::string& argument : arguments) command += ' ' + argument;
+    if (program == "ergocast") {
+      std::erase_if(commands_, [&](const auto& one) { return one.second == command; });
+    }
+    commands_[log_.filename()] = command;
+  }
+  void tell_logs() const {
+    std::printf("%s", ends_of_logs(folder_, commands_).c_str());
+    std::fflush(stdout);
+  }
+  static void kill_all() {
+    for (const std::string& process : processes_on_own_host()) kill(pid_of(process), SIGKILL);
+  }
+
   int started_ = 0;
+  std::map<std::string, std::string> commands_;  // by the name of the log
 };
 
 }  // namespace ergocast::test

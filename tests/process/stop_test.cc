@@ -1,6 +1,5 @@
 // `ergocast stop`: a mission of real processes is ended from outside, in order and at once.
 #include <set>
-#include <utility>
 
 #include "runtime/clock.h"
 #include "runtime/node.h"
@@ -25,20 +24,21 @@ class StopCommand : public ByHand {
   }
 
   std::filesystem::path endless(bool realtime) {
-    std::string text = text_of(scenario());
-    text.replace(text.find("duration_s: 600"), 15, "duration_s: 100000 realtime_factor: 10");
-    if (realtime) text.replace(text.find("pace: LOCKSTEP"), 14, "pace: REALTIME");
-    const auto file = folder_ / "endless.textproto";
-    std::ofstream(file) << text;
-    return file;
+    return scenario(std::string("duration_s: ") + kEndless + " realtime_factor: 10 pace: " +
+                    (realtime ? "REALTIME" : "LOCKSTEP"));
   }
-  /// All processes, started by hand and under way.
-  std::vector<Program*> fly(const std::filesystem::path& scenario) {
+  /// All processes, started by hand.
+  std::vector<Program*> start_all(const std::filesystem::path& scenario) {
     std::filesystem::create_directory(out());
     std::vector<Program*> all{&hand("ergocast-logger", {"--out", out()}), &hand("ergocast-sim"),
                               &hand("ergocast-coordinator", {scenario})};
     for (const char* id : {"0", "1", "2", "3"})
       all.push_back(&hand("ergocast-agent", {"--id", id}));
+    return all;
+  }
+  /// And under way.
+  std::vector<Program*> fly(const std::filesystem::path& scenario) {
+    const auto all = start_all(scenario);
     EXPECT_TRUE(recorded(30000)) << all[2]->said();
     return all;
   }
@@ -98,23 +98,19 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   expect_halt();
 }
 
-// The tick at which STOP was said is known when the team waits for one of its agents.
+// The tick at which STOP is said is known when the team waits for one of its agents.
 TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
-  const auto all = fly(endless(false));
-  signal_to(agent(2), SIGSTOP);
-  std::uintmax_t before = 0;
-  ASSERT_TRUE(eventually([&] {  // until the record stands still: the world waits for agent 2
-    const auto size = recorded_bytes();
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    return std::exchange(before, size) == size;
-  }));
-  const Tick waited_for = recorded_rows(out()).rbegin()->first + 1;
+  constexpr Tick kWaitedFor = 100;
+  hold_next("ERGOCAST_COMMAND_2", kWaitedFor);
+  const auto all = start_all(endless(false));
+  ASSERT_TRUE(eventually([] { return stopped(pids(agent(2))); })) << all[2]->said();
+  hold_none();
   ASSERT_EQ(stop({"--now"}), 0) << output();
   EXPECT_TRUE(answered("agent 2 did not say so")) << output();
   signal_to(agent(2), SIGCONT);
   EXPECT_EQ(wait_for(all[0]->child), 0);
   expect_halt();
-  EXPECT_EQ(recorded_rows(out()).rbegin()->first, waited_for)
+  EXPECT_EQ(recorded_rows(out()).rbegin()->first, kWaitedFor)
       << "the tick nobody had answered in full";
 }
 

@@ -151,12 +151,12 @@ TEST_F(Study, DrawsAFinishedStudyAgain) {
 
 TEST_F(Study, AWorkerThatDiesCostsItsRun) {
   auto words = arguments("1", out());
-  words.insert(words.end(), {"--duration", "1000000"});
+  words.insert(words.end(), {"--duration", "10000000"});
   Child child = start("ergocast", words);
   std::vector<std::string> running;
   ASSERT_TRUE(eventually([&] { return (running = processes_on_own_host()).size() == 3; }));
   for (const std::string& process : running) {
-    const pid_t pid = std::stoi(process.substr(process.find("pid ") + 4));
+    const pid_t pid = pid_of(process);
     if (pid != child.pid()) kill(pid, SIGKILL);
   }
   EXPECT_EQ(wait_for(child), 4);

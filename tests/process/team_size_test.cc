@@ -8,7 +8,9 @@ namespace {
 using TeamSize = FlyingMission;
 
 TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
-  ASSERT_EQ(ergocast({"run", scenario(), "--agents", "2", "--duration", "100", "--out", out()}), 0)
+  ASSERT_EQ(ergocast({"run", scenario("broadcast_period_ticks: 1"), "--agents", "2", "--duration",
+                      "100", "--out", out()}),
+            0)
       << output();
   ASSERT_EQ(summary()["agents"].size(), 2U);
   const double observed = summary()["ergodic_metric"]["last"];
@@ -56,7 +58,7 @@ class LateAgent : public ByHand {
 };
 
 TEST_F(LateAgent, TakesTheFreePlaceInATeamThatBeganWithAQuorum) {
-  const auto file = scenario("", "quorum: 2");
+  const auto file = scenario(std::string("duration_s: ") + kEndless, "quorum: 2");
   std::filesystem::create_directory(out());
   hand("ergocast-logger", {"--out", out()});
   hand("ergocast-sim");

@@ -1,0 +1,39 @@
+// A test of processes that fails prints what they logged, and ends them.
+#include "tests/process/mission.h"
+
+namespace ergocast::test {
+namespace {
+
+/// Set where the failure is planted.
+constexpr const char* kPlanted = "ERGOCAST_PLANTED_FAILURE";
+
+using FailedTest = ByHand;
+
+TEST_F(FailedTest, PrintsTheLogsOfItsProcessesAndEndsThem) {
+  if (std::getenv(kPlanted) != nullptr) {
+    hand("ergocast-agent", {"--id", "7"});
+    Child mission = launch_endless(scenario());
+    FAIL() << "planted";
+  }
+  setenv(kPlanted, "1", 1);
+  const auto log = folder_ / "planted";
+  Child planted = std::get<Child>(Child::start(
+      {{"/proc/self/exe", "--gtest_filter=FailedTest.PrintsTheLogsOfItsProcessesAndEndsThem"},
+       log,
+       SIGKILL}));
+  unsetenv(kPlanted);
+  EXPECT_EQ(wait_for(planted), 1);
+  const std::string said = text_of(log);
+  for (const char* part :
+       {"---- the end of output-1 (ergocast-agent --id 7 --lcm-url ", "agent-7: joining on ",
+        "---- the end of output-2 (ergocast run ", "---- the end of run/log/agent-0.log:\n",
+        "agent-3: agent 3 of run ", "coordinator: mission running", "sim: moving from tick 0 on",
+        "---- the end of run/log/logger.log:\n"}) {
+    EXPECT_NE(said.find(part), said.npos) << part;
+  }
+  EXPECT_EQ(said.find("left behind"), said.npos);
+  if (HasFailure()) std::printf("%s", said.c_str());
+}
+
+}  // namespace
+}  // namespace ergocast::test
