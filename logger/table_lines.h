@@ -16,6 +16,8 @@ class TableLines {
   /// The next line after a header; false at the end, and from the first problem on. A last line
   /// without its line break is what a killed process leaves: it is not counted.
   bool next(std::string& line);
+  /// Goes on with the next segment, whatever is wrong with this one; false if there is none.
+  bool skip_segment();
   /// Where next()'s last line stands: "run/trajectory.csv:17: ".
   std::string place() const;
   /// Which file cannot be opened or has a foreign header, and what to do about it.
