@@ -17,14 +17,18 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kMaxRestarts = 3;
-constexpr auto kFirstBackOff = 500ms;
+constexpr auto kFirstBackOff = 500ms, kLongestBackOff = 4000ms;
+/// How long the machine may refuse to start a program, before that is as good as its death.
+constexpr auto kLaunchPatience = 30s;
 /// How long processes may take to end by themselves, and then after SIGTERM.
 constexpr auto kEndPatience = 6s;
 constexpr auto kPoliteness = 2s;
 constexpr int kLinesOfExplanation = 5;
 
-/// 0.5, 1 and 2 s.
-std::chrono::nanoseconds back_off(int restarts) { return kFirstBackOff * (1 << restarts); }
+/// 0.5, 1, 2, 4, 4 … s.
+std::chrono::nanoseconds back_off(int failures) {
+  return failures < 3 ? kFirstBackOff * (1 << failures) : kLongestBackOff;
+}
 
 }  // namespace
 
@@ -84,7 +88,7 @@ void Launcher::attend(Instant now, Stage stage) {
     }
     if (process.restart_at && now >= *process.restart_at) {
       process.restart_at.reset();
-      if (!end_expected_) restart(process, stage);
+      if (!end_expected_) restart(process, now, stage);
     }
   }
   if (!end_expected_) return;
@@ -97,13 +101,16 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   const auto code = process.child->exit_code();
   if (tells_the_end(process)) expect_end(now);
   if (ended_as_expected(process)) return;
+  const bool refused = code == kExitUnavailable || !process.child->executed();
   // One that ends in order may have heard of the mission's end before us.
-  if (code != kExitDone) explain(process);
-  // A record that cannot be written ends a run that exists for its record.
-  const bool cannot_record = process.role == Role::kLogger && code && code != kExitDone;
-  if (cannot_record) fail("the record cannot be written; see log/logger.log");
-  if (process.role == Role::kLogger && (cannot_record || end_expected_)) record_broken_ = true;
+  if (code != kExitDone && !(refused && process.refusals > 0)) explain(process);
+  if (end_expected_ && process.role == Role::kLogger && code && code != kExitDone) {
+    fail("the record cannot be written; see log/logger.log");
+  }
   if (end_expected_ || failure_) return;
+  if (refused) return try_again(process, now, stage, process.child->executed());
+  process.refusals = 0;
+  process.without_program_since.reset();
   // A coordinator gives way to another, or has found no mission to take over.
   const bool gave_way = process.role == Role::kCoordinator && code == kExitFailed;
   const bool too_often = code != kExitDone && process.restarts >= kMaxRestarts;
@@ -124,23 +131,39 @@ bool Launcher::ended_as_expected(const Process& process) const {
   return code == kExitDone || (code == kExitFailed && knows_failure);
 }
 
-void Launcher::restart(Process& process, Stage stage) {
-  if (process.child->exit_code() == kExitDone) explain(process);
-  if (process.restarts >= kMaxRestarts) return give_up(process, stage);
-  ++process.restarts;
-  display_.say(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
-               std::to_string(kMaxRestarts) + ")");
+void Launcher::restart(Process& process, Instant now, Stage stage) {
+  if (process.refusals == 0) {
+    if (process.child->exit_code() == kExitDone) explain(process);
+    if (process.restarts >= kMaxRestarts) return give_up(process, stage);
+    ++process.restarts;
+    display_.say(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
+                 std::to_string(kMaxRestarts) + ")");
+  }
   // A mission that no agent knows has to be begun by the new coordinator, too.
   const bool resume = process.role == Role::kLogger ||
                       (process.role == Role::kCoordinator && stage != Stage::kGathering);
-  if (const auto problem = launch(process, resume)) fail(*problem);
+  const auto problem = launch(process, resume);
+  if (!problem) return;
+  if (process.refusals == 0) display_.say(*problem);
+  try_again(process, now, stage, false);
+}
+
+/// What the machine refuses is no death: there was no life. Without LCM no team flies here, so
+/// that is waited for; a program may be gone for good.
+void Launcher::try_again(Process& process, Instant now, Stage stage, bool executed) {
+  if (executed) process.without_program_since.reset();
+  if (!executed && !process.without_program_since) process.without_program_since = now;
+  if (process.without_program_since && now - *process.without_program_since >= kLaunchPatience) {
+    return give_up(process, stage);
+  }
+  if (process.refusals == 0) display_.say(process.name + ": is started as soon as that is possible");
+  process.restart_at = now + back_off(process.restarts + process.refusals++);
 }
 
 void Launcher::give_up(Process& process, Stage stage) {
   process.given_up = true;
   const std::string loss = loss_of(process);
   if (process.role == Role::kLogger) {
-    record_broken_ = true;
     display_.say(loss + ": the team goes on without a record");
   } else if (process.role == Role::kCoordinator && stage == Stage::kFlying) {
     display_.say(loss + ": the team goes on to the plan's last tick");
@@ -150,6 +173,7 @@ void Launcher::give_up(Process& process, Stage stage) {
 }
 
 std::string Launcher::loss_of(const Process& process) {
+  if (process.without_program_since) return process.name + " could not be started again";
   const std::string loss = process.name + " " + process.child->fate();
   if (process.restarts < kMaxRestarts) return loss;
   return loss + " after " + std::to_string(kMaxRestarts) + " restarts";
@@ -190,6 +214,13 @@ void Launcher::press(int how_hard) {
 bool Launcher::runs(Role role) {
   return std::any_of(processes_.begin(), processes_.end(), [role](Process& process) {
     return process.role == role && process.child && process.child->running();
+  });
+}
+
+bool Launcher::record_broken() const {
+  return std::any_of(processes_.begin(), processes_.end(), [](const Process& process) {
+    return process.role == Role::kLogger && process.end_noted &&
+           process.child->exit_code() != kExitDone;
   });
 }
 

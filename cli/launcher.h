@@ -53,8 +53,8 @@ class Launcher {
   /// Makes the mission a failure; the first reason counts.
   void fail(std::string reason);
   const std::optional<std::string>& failure() const { return failure_; }
-  /// Whether the record was left unfinished for good.
-  bool record_broken() const { return record_broken_; }
+  /// Whether the logger has ended, and not in order.
+  bool record_broken() const;
   /// Whether the coordinator has died once too often, or given way to another.
   bool leaderless() const;
   /// Whether a coordinator's process lives.
@@ -76,8 +76,10 @@ class Launcher {
     Child::Program program;
     std::optional<Child> child;
     bool end_noted = false, given_up = false;
-    int restarts = 0;
+    int restarts = 0;  // after deaths
     std::optional<Instant> restart_at;
+    int refusals = 0;  // by the machine, in a row: there was no program, or no LCM for it
+    std::optional<Instant> without_program_since;
   };
 
   void plan(Role role, std::string name, const std::string& program,
@@ -87,7 +89,8 @@ class Launcher {
   void take_note(Process& process, Instant now, Stage stage);
   bool tells_the_end(const Process& process);
   bool ended_as_expected(const Process& process) const;
-  void restart(Process& process, Stage stage);
+  void restart(Process& process, Instant now, Stage stage);
+  void try_again(Process& process, Instant now, Stage stage, bool executed);
   void give_up(Process& process, Stage stage);
   void explain(const Process& process);
   static std::string loss_of(const Process& process);
@@ -96,7 +99,6 @@ class Launcher {
   ProgressDisplay& display_;
   std::vector<Process> processes_;
   std::optional<std::string> failure_;
-  bool record_broken_ = false;
   std::optional<Instant> end_expected_;
   int pressed_ = 0;
 };

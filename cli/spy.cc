@@ -20,6 +20,7 @@
 #include "deploy/script.h"
 #include "runtime/lcm_url.h"
 #include "runtime/node.h"
+#include "runtime/shipped_folder.h"
 
 namespace ergocast::cli {
 namespace {
@@ -71,14 +72,12 @@ Viewer viewer_for(const SpyOptions& options) {
   };
   auto java = java_on_path();
   if (java && is_headless(*java)) java.reset();
-  const fs::path programs = fs::read_symlink("/proc/self/exe").parent_path();
-  const auto ours = first_of(
-      {programs / "../spy/ergocast-spy.jar", programs / "../share/ergocast/java/ergocast-spy.jar"});
-  viewer.jar_missing = !ours;
+  const fs::path ours = spy_jar();
+  viewer.jar_missing = ours.empty();
   const std::string program = need(java, "default-jre");
   const std::string jars = need(first_of({"/usr/share/java/lcm.jar"}), "liblcm-java") + ":" +
                            need(first_of({"/usr/share/java/jchart2d.jar"}), "libjchart2d-java") +
-                           ":" + ours.value_or("").string();
+                           ":" + ours.string();
   viewer.command = {program,
                     "-Djava.net.preferIPv4Stack=true",
                     "-Xmx256m",

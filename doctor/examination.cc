@@ -77,7 +77,7 @@ Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts) {
   findings.push_back(fragment_rule_finding(url, nft_ruleset(), rules));
   findings.push_back(clock_finding(clock_is_synchronised()));
   const char* path = std::getenv("PATH");
-  findings.push_back(spy_finding("/", path == nullptr ? "" : path));
+  findings.push_back(spy_finding("/", path == nullptr ? "" : path, !spy_jar().empty()));
   return all;
 }
 

@@ -27,7 +27,7 @@ bool on_path(const fs::path& root, std::string_view path, const char* program) {
 
 }  // namespace
 
-Finding spy_finding(const fs::path& root, std::string_view path) {
+Finding spy_finding(const fs::path& root, std::string_view path, bool jar_built) {
   std::vector<std::string> missing, packages;
   const auto need = [&](bool there, const char* what, const char* package) {
     if (there) return;
@@ -37,10 +37,16 @@ Finding spy_finding(const fs::path& root, std::string_view path) {
   need(on_path(root, path, "java"), "java", "default-jre");
   need(is_there(root / "usr/share/java/lcm.jar"), "lcm.jar", "liblcm-java");
   need(is_there(root / "usr/share/java/jchart2d.jar"), "jchart2d.jar", "libjchart2d-java");
+  if (!jar_built) need(on_path(root, path, "javac"), "javac", "default-jdk");
+  std::string remedy = packages.empty() ? "" : "apt-get install " + joined(packages, " ");
+  if (!jar_built) {
+    missing.emplace_back("ergocast-spy.jar");
+    remedy += (remedy.empty() ? "" : "\n") +
+              std::string("cmake build/release && cmake --build build/release --target spy");
+  }
   if (missing.empty()) return {"lcm-spy", Level::kOk, "Java and its jars are there", "", ""};
   return {"lcm-spy", Level::kNote, "missing: " + joined(missing),
-          "Only for watching messages with lcm-spy; teams need no Java.",
-          "apt-get install " + joined(packages, " ")};
+          "Only for watching messages with lcm-spy; teams need no Java.", remedy};
 }
 
 std::optional<bool> clock_is_synchronised() {

@@ -11,8 +11,9 @@
 namespace ergocast::doctor {
 
 /// @param root  /, or a folder like it
-/// @param path  $PATH
-Finding spy_finding(const std::filesystem::path& root, std::string_view path);
+/// @param path       $PATH
+/// @param jar_built  whether our jar is there
+Finding spy_finding(const std::filesystem::path& root, std::string_view path, bool jar_built);
 
 /// Whether the kernel believes its clock to be synchronised; nothing if it does not say.
 std::optional<bool> clock_is_synchronised();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <span>
 
 #include "logger/recorder.h"
 #include "logger/run_data.h"
@@ -32,14 +33,20 @@ struct Past {
   std::string plan;  ///< empty: not known
 };
 
+/// Its rows as far as they can be read. An error where nobody can tell which mission's they are.
 std::variant<Past, std::string> read_past(const fs::path& folder) {
   Past past;
   if (segment_count(folder) == 0) return past;
-  auto rows = read_run(folder);
-  if (auto* problem = std::get_if<std::string>(&rows)) return std::move(*problem);
-  past.rows = std::get<RunData>(std::move(rows));
+  const auto damage = read_up_to_damage(folder, past.rows);
   std::ifstream plan(folder / kPlanFile, std::ios::binary);
   past.plan.assign(std::istreambuf_iterator<char>(plan), {});
+  const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
+  const bool known = std::holds_alternative<Mission>(decode_plan(std::as_bytes(std::span(past.plan))));
+  if (!known && (begun || !past.plan.empty())) {
+    return (folder / kPlanFile).string() + ": missing or not readable, so nobody can tell which mission's "
+                                           "record this is; copy it back, or choose another folder with --out";
+  }
+  if (damage) spdlog::warn("{}; the record goes on in a fresh segment, with what stands before", *damage);
   return past;
 }
 

@@ -38,20 +38,24 @@ std::optional<Fields> parse_fields(std::string_view line) {
   return fields;
 }
 
-/// Hands each row to `accept`, which says what is wrong with it or nothing.
+/// Hands each row to `accept`, which says what is wrong with it or nothing. Of a segment with a row
+/// that is wrong it takes no more.
 std::optional<std::string> read_table(
     TableLines lines, const std::function<std::optional<std::string>(const Fields&)>& accept) {
-  for (std::string line; lines.next(line);) {
-    const std::optional<Fields> fields = parse_fields(line);
-    const std::optional<std::string> wrong =
-        fields ? accept(*fields)
-               : "expected 7 numbers separated by commas, found " + in_quotes(line);
-    if (wrong) {
-      return lines.place() + *wrong + ": copy the file again from where it was recorded, or cut it "
-                                      "off before this line";
+  std::optional<std::string> damage;
+  do {
+    std::optional<std::string> wrong;
+    for (std::string line; !wrong && lines.next(line);) {
+      const std::optional<Fields> fields = parse_fields(line);
+      wrong = fields ? accept(*fields)
+                     : "expected 7 numbers separated by commas, found " + in_quotes(line);
     }
-  }
-  return lines.problem();
+    if (damage) continue;
+    damage = wrong ? lines.place() + *wrong + ": copy the file again from where it was recorded, or "
+                                              "cut it off before this line"
+                   : lines.problem();
+  } while (lines.skip_segment());
+  return damage;
 }
 
 constexpr double kExact = 0x1p53;    // whole numbers above are not all doubles
@@ -66,12 +70,14 @@ std::optional<std::string> add_point(RunData& run, const Fields& f) {
   if (!is_count(f[2]) || f[2] >= kMaxAgents) {
     return "the agent is not a whole number below " + std::to_string(kMaxAgents);
   }
-  Track& track = run.tracks[static_cast<AgentId>(f[2])];
+  const auto agent = static_cast<AgentId>(f[2]);
   const TrackPoint point{static_cast<Tick>(f[0]), f[1], {f[3], f[4]}, {f[5], f[6]}};
-  if (!track.empty() && (point.tick <= track.back().tick || point.t_s <= track.back().t_s)) {
+  const auto track = run.tracks.find(agent);
+  if (track != run.tracks.end() &&
+      (point.tick <= track->second.back().tick || point.t_s <= track->second.back().t_s)) {
     return "the tick or its time does not follow the agent's previous row";
   }
-  track.push_back(point);
+  run.tracks[agent].push_back(point);
   return {};
 }
 
@@ -105,14 +111,18 @@ std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_
   return run;
 }
 
+std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run) {
+  const auto trajectory = read_table({run_dir, kTrajectoryFile, kTrajectoryHeader},
+                                     [&run](const Fields& fields) { return add_point(run, fields); });
+  const auto metrics = read_table({run_dir, kMetricsFile, kMetricsHeader},
+                                  [&run](const Fields& fields) { return add_metrics(run, fields); });
+  return trajectory ? trajectory : metrics;
+}
+
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
-  auto read = read_tracks(run_dir);
-  if (std::holds_alternative<std::string>(read)) return read;
-  auto& run = std::get<RunData>(read);
-  auto problem = read_table({run_dir, kMetricsFile, kMetricsHeader},
-                            [&run](const Fields& fields) { return add_metrics(run, fields); });
-  if (problem) return *problem;
-  return read;
+  RunData run;
+  if (auto problem = read_up_to_damage(run_dir, run)) return *problem;
+  return run;
 }
 
 void for_each_row(const RunData& run,

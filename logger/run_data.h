@@ -52,6 +52,10 @@ std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir
 /// The same of trajectory.csv alone.
 std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir);
 
+/// The same into `run`, of each file what stands before the first line that is wrong. The first such
+/// line of all, or nothing if all is well.
+std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run);
+
 /// Visits trajectory.csv's rows in their order: ascending by tick, then by agent.
 void for_each_row(const RunData& run,
                   const std::function<void(AgentId, const TrackPoint&)>& visit);

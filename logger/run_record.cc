@@ -26,12 +26,18 @@ fs::path segment_file(const fs::path& folder, const std::string& table, int segm
 }
 
 int segment_count(const fs::path& folder) {
-  const auto exists = [&folder](const char* table, int segment) {
-    std::error_code ignored;
-    return fs::exists(segment_file(folder, table, segment), ignored);
+  const auto bytes = [&folder](const char* table, int segment) {
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(segment_file(folder, table, segment), error);
+    return error ? std::optional<std::uintmax_t>() : size;
+  };
+  // Whoever was killed while it began a segment has left one empty table, which is taken again.
+  const auto exists = [&bytes](int segment) {
+    const auto rows = bytes(kTrajectoryFile, segment), values = bytes(kMetricsFile, segment);
+    return (rows && values) || rows.value_or(0) + values.value_or(0) > 0;
   };
   int count = 0;
-  while (exists(kTrajectoryFile, count) && exists(kMetricsFile, count)) ++count;
+  while (exists(count)) ++count;
   return count;
 }
 
@@ -44,8 +50,7 @@ RunRecord::Created RunRecord::create(const fs::path& folder) {
 }
 
 RunRecord::Created RunRecord::go_on(const fs::path& folder) {
-  return begin(folder, segment_count(folder),
-               "stands without the other table of its segment; copy that one back");
+  return begin(folder, segment_count(folder), "");
 }
 
 RunRecord::Created RunRecord::begin(const fs::path& folder, int segment, const char* if_taken) {

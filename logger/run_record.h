@@ -23,7 +23,8 @@ inline constexpr const char* kPlanFile = "plan.binpb";
 /// File `segment` of a table: trajectory.csv, trajectory-001.csv, trajectory-002.csv …
 std::filesystem::path segment_file(const std::filesystem::path& folder, const std::string& table,
                                    int segment);
-/// Segments of the record in `folder`, each of both tables; 0 if there is none.
+/// Segments of the record in `folder`; 0 if there is none. One with rows counts also if a table of
+/// it is missing.
 int segment_count(const std::filesystem::path& folder);
 
 class RunRecord {
@@ -33,7 +34,8 @@ class RunRecord {
   /// Begins trajectory.csv and metrics.csv in an existing folder. An error names the file; a record
   /// that is already there is left alone.
   static Created create(const std::filesystem::path& folder);
-  /// The same for the next segment of the record in `folder`, the first if there is none.
+  /// The same for the next segment of the record in `folder`, the first if there is none. What is
+  /// there, damaged or not, is left alone.
   static Created go_on(const std::filesystem::path& folder);
 
   /// Number of the segment, from 0.

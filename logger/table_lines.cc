@@ -47,6 +47,13 @@ bool TableLines::next(std::string& line) {
   return false;
 }
 
+bool TableLines::skip_segment() {
+  if (opened_ == segments_) return false;
+  problem_.reset();
+  open_next();
+  return true;
+}
+
 std::string TableLines::place() const {
   return file_.string() + ':' + std::to_string(line_) + ": ";
 }

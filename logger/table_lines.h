@@ -16,6 +16,8 @@ class TableLines {
   /// The next line after a header; false at the end, and from the first problem on. A last line
   /// without its line break is what a killed process leaves: it is not counted.
   bool next(std::string& line);
+  /// Goes on with the next segment, whatever is wrong with this one; false if there is none.
+  bool skip_segment();
   /// Where next()'s last line stands: "run/trajectory.csv:17: ".
   std::string place() const;
   /// Whether the segment that was read last ends with such a line. @pre next() said false

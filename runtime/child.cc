@@ -16,23 +16,39 @@
 namespace ergocast {
 namespace {
 
+/// What a shell says, too; none of our programs does.
 constexpr int kCannotExecute = 127;
 
-/// Between fork and exec only calls that are safe there, hence the message made beforehand.
-[[noreturn]] void become(char* const* arguments, const std::string& complaint, int log,
-                         int signal_if_orphaned, pid_t parent) {
+/// Without standard streams a program's first sockets would take their place.
+void take_streams(const char* log) {
+  const int nothing = open("/dev/null", O_RDWR);
+  const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
+  if (nothing < 0) _exit(kCannotExecute);
+  dup2(nothing, STDIN_FILENO);
+  dup2(output < 0 ? nothing : output, STDOUT_FILENO);
+  dup2(output < 0 ? nothing : output, STDERR_FILENO);
+  close_range(STDERR_FILENO + 1, ~0U, 0);
+}
+
+void say(const char* text) {
+  if (write(STDERR_FILENO, text, std::strlen(text)) < 0) _exit(kCannotExecute);
+}
+
+/// Between fork and exec only calls that are safe there.
+[[noreturn]] void become(char* const* arguments, const char* log, int signal_if_orphaned,
+                         pid_t parent) {
   setpgid(0, 0);
-  // LCM's sockets are inherited otherwise, and their drops counted as the child's.
-  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+  // LCM's sockets are inherited otherwise, and their drops counted as the child's. Besides, there
+  // is room for the log then, also if the parent has none left.
+  close_range(STDERR_FILENO + 1, ~0U, 0);
   prctl(PR_SET_PDEATHSIG, signal_if_orphaned);
   if (getppid() != parent) _exit(kCannotExecute);  // it was gone before we asked to be told
-  const int nothing = open("/dev/null", O_RDONLY);
-  dup2(nothing, STDIN_FILENO);
-  dup2(log, STDOUT_FILENO);
-  dup2(log, STDERR_FILENO);
+  take_streams(log);
   StopSignals::restore_in_child();
   execv(arguments[0], arguments);
-  if (write(STDERR_FILENO, complaint.data(), complaint.size()) < 0) _exit(kCannotExecute);
+  const char* reason = strerrordesc_np(errno);
+  const char* const complaint[]{arguments[0], ": cannot be executed: ", reason, "\n"};
+  for (const char* part : complaint) say(part);
   _exit(kCannotExecute);
 }
 
@@ -44,15 +60,10 @@ std::variant<Child, std::string> Child::start(const Program& program) {
   for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 
-  const int log = open(program.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (log < 0) return program.log.string() + ": " + std::strerror(errno);
-  const std::string complaint = command.front() + ": cannot be executed\n";
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(arguments.data(), complaint, log, program.signal_if_orphaned, parent);
-  const int error = errno;
-  close(log);
-  if (pid < 0) return command.front() + ": " + std::strerror(error);
+  if (pid == 0) become(arguments.data(), program.log.c_str(), program.signal_if_orphaned, parent);
+  if (pid < 0) return command.front() + ": " + std::strerror(errno);
   return Child(pid);
 }
 
@@ -74,8 +85,11 @@ std::optional<int> Child::exit_code() const {
   return WEXITSTATUS(*status_);
 }
 
+bool Child::executed() const { return exit_code() != kCannotExecute; }
+
 std::string Child::fate() const {
   if (!status_) return "is running";
+  if (!executed()) return "could not be executed";
   if (WIFEXITED(*status_)) return "exited with code " + std::to_string(WEXITSTATUS(*status_));
   return std::string("was killed by SIG") + signal_name(WTERMSIG(*status_));
 }

@@ -15,11 +15,12 @@ class Child {
  public:
   struct Program {
     std::vector<std::string> command;  ///< path and arguments
-    std::filesystem::path log;         ///< both output streams are appended to it
+    std::filesystem::path log;         ///< gets both output streams; lost where it cannot be opened
     int signal_if_orphaned;            ///< what the kernel sends it when this process is gone
   };
 
-  /// Starts it in a process group of its own, so that Ctrl-C reaches only whoever watches it.
+  /// Starts it in a process group of its own, so that Ctrl-C reaches only whoever watches it. An
+  /// error if the system has no place for a process; whether it executes the program shows later.
   static std::variant<Child, std::string> start(const Program& program);
 
   pid_t pid() const { return pid_; }
@@ -30,7 +31,9 @@ class Child {
 
   /// After its end: the exit code, or nothing if a signal ended it.
   std::optional<int> exit_code() const;
-  /// "exited with code 3" or "was killed by SIGSEGV".
+  /// After its end: whether there ever was a program, or the system would not execute it.
+  bool executed() const;
+  /// "exited with code 3", "was killed by SIGSEGV" or "could not be executed".
   std::string fate() const;
 
  private:

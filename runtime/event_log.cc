@@ -16,6 +16,8 @@ namespace {
 
 /// What LCM writes around a message: its number, time and lengths.
 constexpr std::int64_t kEventHeaderBytes = 28;
+/// Numbers of our segments are below: what a stranger calls higher leaves us numbers enough.
+constexpr int kFirstForeignNumber = 1'000'000'000;
 /// More than the C library keeps to itself before it writes.
 constexpr std::int64_t kUnwrittenBytes = 1 << 17;
 
@@ -30,7 +32,7 @@ std::optional<int> segment_number(std::string_view file) {
   file.remove_prefix(kBefore.size());
   file.remove_suffix(kAfter.size());
   const auto number = read_number<int>(file);
-  return number >= 0 ? number : std::nullopt;
+  return number >= 0 && number < kFirstForeignNumber ? number : std::nullopt;
 }
 
 /// Sizes of the segments in a folder, by number.
@@ -52,6 +54,8 @@ EventLog::EventLog(std::filesystem::path folder, EventLogLimits limits)
     : folder_(std::move(folder)), limits_(limits) {
   const auto there = segments_in(folder_);
   if (!there.empty()) first_segment_ = there.rbegin()->first + 1;
+  std::error_code ignored;
+  while (std::filesystem::exists(segment_file(first_segment_), ignored)) ++first_segment_;
   segment_ = first_segment_;
   open_next();
 }

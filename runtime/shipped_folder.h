@@ -10,4 +10,7 @@ namespace ergocast {
 /// build/*/bin. Empty: nowhere.
 std::filesystem::path shipped_folder(const std::string& name, const std::string& in_tree);
 
+/// ergocast-spy.jar of an installation, or of this build. Empty: it was not built, for want of a JDK.
+std::filesystem::path spy_jar();
+
 }  // namespace ergocast

@@ -10,13 +10,26 @@ class Programs : public Folder {};
 TEST_F(Programs, WhatLcmSpyLacksIsNamedWithItsPackages) {
   write("opt/bin/java", "");
   write("usr/share/java/lcm.jar", "");
-  const Finding jar = spy_finding(root_, "/bin:/opt/bin");
+  const Finding jar = spy_finding(root_, "/bin:/opt/bin", true);
   EXPECT_EQ(jar.level, Level::kNote);
   EXPECT_EQ(jar.found, "missing: jchart2d.jar");
   EXPECT_EQ(jar.remedy, "apt-get install libjchart2d-java");
-  EXPECT_EQ(spy_finding(root_, "/bin").remedy, "apt-get install default-jre libjchart2d-java");
+  EXPECT_EQ(spy_finding(root_, "/bin", true).remedy, "apt-get install default-jre libjchart2d-java");
   write("usr/share/java/jchart2d.jar", "");
-  EXPECT_EQ(spy_finding(root_, "/bin:/opt/bin").level, Level::kOk);
+  EXPECT_EQ(spy_finding(root_, "/bin:/opt/bin", true).level, Level::kOk);
+}
+
+TEST_F(Programs, AJarThatWasNotBuiltIsMissingThoughJavaIsThere) {
+  for (const char* file : {"bin/java", "usr/share/java/lcm.jar", "usr/share/java/jchart2d.jar"}) {
+    write(file, "");
+  }
+  const Finding no_compiler = spy_finding(root_, "/bin", false);
+  EXPECT_EQ(no_compiler.level, Level::kNote);
+  EXPECT_EQ(no_compiler.found, "missing: javac, ergocast-spy.jar");
+  write("bin/javac", "");
+  const Finding not_built = spy_finding(root_, "/bin", false);
+  EXPECT_EQ(not_built.found, "missing: ergocast-spy.jar");
+  EXPECT_EQ(not_built.remedy, "cmake build/release && cmake --build build/release --target spy");
 }
 
 TEST(Clock, IsANoteAtMost) {

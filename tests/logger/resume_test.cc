@@ -345,10 +345,35 @@ TEST_F(Resume, AKillBetweenTheTwoFilesOfASegmentCostsNothing) {
   EXPECT_EQ(segment_count(dir), 1);
 }
 
-TEST_F(Resume, ATableThatLacksItsOtherIsNotOverwritten) {
+TEST_F(Resume, ATableThatLacksItsOtherIsASegmentThatIsNotOverwritten) {
   write("trajectory.csv", "precious");
-  EXPECT_TRUE(std::holds_alternative<std::string>(RunRecord::go_on(dir)));
+  const auto record = std::get<0>(RunRecord::go_on(dir));
+  EXPECT_EQ(record->segment(), 1);
   EXPECT_EQ(read("trajectory.csv"), "precious");
+  EXPECT_EQ(segment_count(dir), 2);
+  const auto table = read_run(dir);
+  ASSERT_TRUE(std::holds_alternative<std::string>(table));
+  EXPECT_NE(std::get<std::string>(table).find("metrics.csv: cannot be opened"), std::string::npos)
+      << std::get<std::string>(table);
+}
+
+TEST_F(Resume, OfEachDamagedFileTheRowsBeforeTheDamageCount) {
+  const std::string header = std::string(kTrajectoryHeader) + '\n', values = std::string(kMetricsHeader) + '\n';
+  write("trajectory.csv", header + "0,0,0,1,1,0,0\n1,0.1,0,2,2,0,0\n2,0.2,5,garbage\n3,0.3,0,9,9,0,0\n");
+  write("metrics.csv", "another header\n");
+  write("trajectory-001.csv", header + "7,0.7,0,3,3,0,0\n");
+  write("metrics-001.csv", values + "7,0.7,0.5,0,0,0,0\n");
+  write("trajectory-002.csv", header + "9,0.9,0,4,4,0,0\n");
+  RunData run;
+  const auto damage = read_up_to_damage(dir, run);
+  ASSERT_TRUE(damage);
+  EXPECT_NE(damage->find("trajectory.csv:4: "), std::string::npos) << *damage;
+  ASSERT_EQ(run.tracks.size(), 1u) << "an agent of whom no row can be read has none";
+  std::vector<Tick> ticks;
+  for (const TrackPoint& row : run.tracks.at(0)) ticks.push_back(row.tick);
+  EXPECT_EQ(ticks, (std::vector<Tick>{0, 1, 7, 9}));
+  ASSERT_EQ(run.metrics.size(), 1u);
+  EXPECT_EQ(run.metrics.front().tick, 7);
 }
 
 TEST_F(Resume, ADiscardedSegmentLeavesNoTrace) {

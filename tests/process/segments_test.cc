@@ -96,6 +96,19 @@ TEST_F(Segments, ALoggerThatHearsOfNoMissionLeavesTheRecordAsItWas) {
   EXPECT_FALSE(std::filesystem::exists(out() / "trajectory-002.csv"));
 }
 
+TEST_F(Segments, ALoggerRefusesToGoOnWithARecordWhosePlanCannotBeRead) {
+  split("40,", "40,");
+  for (const bool damaged : {false, true}) {
+    std::filesystem::remove(out() / "plan.binpb");
+    if (damaged) write("plan.binpb", "no plan");
+    EXPECT_EQ(run("ergocast-logger",
+                  {"--out", out(), "--resume", "--lcm-url", "udpm://239.255.76.67:24800?ttl=0"}), 2);
+    EXPECT_TRUE(said("plan.binpb: missing or not readable")) << output();
+    EXPECT_FALSE(std::filesystem::exists(out() / "trajectory-002.csv"));
+    EXPECT_FALSE(std::filesystem::exists(out() / "events-000.lcm"));
+  }
+}
+
 TEST_F(Segments, ALoggerRefusesToGoOnWithTheRecordOfAnotherMission) {
   split("40,", "40,");
   const std::string url = "udpm://239.255.76.67:24800?ttl=0";

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <lcm/lcm-cpp.hpp>
 #include <set>
 #include <vector>
@@ -47,6 +48,25 @@ class EventLogTest : public ::testing::Test {
 
   fs::path folder_;
 };
+
+TEST_F(EventLogTest, ANumberThatASegmentOfOursCannotHaveIsNoNumber) {
+  const std::set<std::string> foreign{"events-2147483647.lcm", "events-1000000000.lcm",
+                                      "events-99999999999999999999.lcm", "events--1.lcm"};
+  for (const std::string& name : foreign) std::ofstream(folder_ / name) << "a stranger's";
+  const auto begin = [this] {
+    EventLog log(folder_);
+    log.write("NAME", kEvent);
+    EXPECT_EQ(log.flush(), std::nullopt);
+  };
+  begin();
+  EXPECT_EQ(events("events-000.lcm"), 1);
+  // The last that can be ours, and then what no file has.
+  std::ofstream(folder_ / "events-999999999.lcm") << "ours";
+  begin();
+  EXPECT_EQ(events("events-1000000001.lcm"), 1);
+  EXPECT_EQ(fs::file_size(folder_ / "events-1000000000.lcm"), 12U);
+  EXPECT_EQ(files().size(), 7U);
+}
 
 TEST_F(EventLogTest, HoldsNoMoreThanItsLimitAndLosesItsOldestSegmentsFirst) {
   EventLog log(folder_, {.segment_bytes = 10000, .total_bytes = 40000});

@@ -1,0 +1,175 @@
+// `ergocast run` on a machine that cannot start again at once what has died: the mission goes on.
+#include <sys/resource.h>
+
+#include "tests/process/mission.h"
+#include "tests/process/witness.h"
+
+namespace ergocast::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kLoggerProcess{"ergocast-logger"};
+
+/// In lockstep: what moves on has everybody back.
+class Launch : public FlyingMission {
+ protected:
+  void TearDown() override {
+    for (const char* name : {"ERGOCAST_BIN_DIR", "LD_PRELOAD", "ERGOCAST_TEST_NO_MORE_PROCESSES"}) {
+      unsetenv(name);
+    }
+    FlyingMission::TearDown();
+  }
+  bool comes_to_say(const std::string& part) const {
+    return eventually([&] { return said(part); });
+  }
+  void end(Child& mission, int restarts) {
+    mission.send(SIGINT);
+    EXPECT_EQ(wait_for(mission), 0) << said();
+    EXPECT_EQ(summary()["restarts"], restarts) << said();
+    EXPECT_EQ(summary()["record_complete"], true) << said();
+  }
+};
+
+TEST_F(Launch, WithoutTheFolderOfLogsADeadAgentComesBackAndLogsNowhere) {
+  Child mission = launch_endless(scenario());
+  fs::remove_all(out() / "log");
+  kill_next(agent(2));
+  ASSERT_TRUE(comes_to_say("agent-2: restarted (1 of 3)")) << said();
+  EXPECT_TRUE(moves_on()) << said();
+  end(mission, 1);
+  EXPECT_FALSE(fs::exists(out() / "log"));
+}
+
+TEST_F(Launch, WithoutARoomForOneMoreFileADeadAgentComesBackOnceThereIs) {
+  Child mission = launch_endless(scenario());
+  rlimit former{};
+  ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, nullptr, &former), 0);
+  const rlimit none{3, former.rlim_max};
+  ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &none, nullptr), 0);
+  kill_next(agent(2));
+  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << said();
+  EXPECT_TRUE(said("could not be executed")) << said();
+  ASSERT_EQ(prlimit(mission.pid(), RLIMIT_NOFILE, &former, nullptr), 0);
+  EXPECT_TRUE(moves_on()) << said();
+  end(mission, 1);
+}
+
+TEST_F(Launch, WithoutRoomForOneMoreProcessADeadAgentComesBackOnceThereIs) {
+  const fs::path full = folder_ / "full";
+  setenv("LD_PRELOAD", ERGOCAST_NO_MORE_PROCESSES, 1);
+  setenv("ERGOCAST_TEST_NO_MORE_PROCESSES", full.c_str(), 1);
+  Child mission = launch_endless(scenario());
+  std::ofstream(full).close();
+  kill_next(agent(2));
+  ASSERT_TRUE(comes_to_say("Resource temporarily unavailable")) << said();
+  fs::remove(full);
+  EXPECT_TRUE(moves_on()) << said();
+  end(mission, 1);
+}
+
+/// Programs of the test's own, which it can take away.
+class OwnPrograms : public Launch {
+ protected:
+  void SetUp() override {
+    fs::create_directory(programs());
+    fs::copy_file(program_folder() / "ergocast", programs() / "ergocast");
+    for (const char* name : {"ergocast-agent", "ergocast-coordinator", "ergocast-logger", "ergocast-sim"}) {
+      fs::create_symlink(program_folder() / name, programs() / name);
+    }
+    setenv("ERGOCAST_BIN_DIR", programs().c_str(), 1);
+  }
+  fs::path programs() const { return folder_ / "programs"; }
+  fs::path agent_program() const { return programs() / "ergocast-agent"; }
+};
+
+TEST_F(OwnPrograms, AreReplacedWhileAnAgentDiesAndItComesBackWithTheNewOne) {
+  Child mission = launch_endless(scenario());
+  const fs::path real = fs::read_symlink(agent_program());
+  fs::remove(agent_program());
+  std::ofstream(agent_program()) << "half of a program";
+  kill_next(agent(2));
+  ASSERT_TRUE(comes_to_say("agent-2: is started as soon as that is possible")) << said();
+  ASSERT_TRUE(logs("agent-2", "cannot be executed: Permission denied", 2)) << said();
+  fs::remove(agent_program());
+  fs::create_symlink(real, agent_program());
+  EXPECT_TRUE(moves_on()) << said();
+  end(mission, 1);
+}
+
+TEST_F(OwnPrograms, ThatAreGoneForGoodFailTheMission) {
+  Child mission = launch_endless(scenario());
+  fs::remove(agent_program());
+  kill_next(agent(2));
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(summary()["reason"], "agent-2 could not be started again") << said();
+}
+
+TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
+  Child mission = launch_endless(scenario());
+  ASSERT_EQ(std::system("ip route del 224.0.0.0/4 dev lo"), 0);
+  kill_next(agent(1));
+  kill_next({"ergocast-coordinator"});
+  kill_next({"ergocast-sim"});
+  kill_next(kLoggerProcess);
+  // More often than what dies is started again.
+  for (const char* name : {"agent-1", "coordinator", "sim", "logger"}) {
+    EXPECT_TRUE(logs(name, "LCM needs a multicast route", 4)) << said();
+  }
+  ASSERT_EQ(std::system("ip route add 224.0.0.0/4 dev lo"), 0);
+  EXPECT_TRUE(moves_on()) << said();
+  end(mission, 4);
+}
+
+/// Something befalls the record before the logger's successor reads it.
+class DamagedRecord : public Launch {
+ protected:
+  template <class Damage>
+  void while_the_logger_is_dead(Child& mission, Damage damage) {
+    mission.send(SIGSTOP);
+    kill_next(kLoggerProcess);
+    damage();
+    mission.send(SIGCONT);
+  }
+  void write(const char* file, const std::string& text) const {
+    std::ofstream(out() / file, std::ios::binary) << text;
+  }
+};
+
+TEST_F(DamagedRecord, GoesOnInAFreshSegmentWithoutWhatCannotBeRead) {
+  Child mission = launch_endless(scenario());
+  while_the_logger_is_dead(mission, [this] {
+    std::string rows = text_of(out() / "trajectory.csv");
+    rows.replace(rows.find('\n', 10000) + 1, 200, 200, '\1');
+    write("trajectory.csv", rows);
+  });
+  ASSERT_TRUE(moves_on()) << said();
+  EXPECT_TRUE(logs("logger", "goes on in a fresh segment")) << log_of("logger");
+  while_the_logger_is_dead(mission, [this] { write("trajectory-001.csv", ""); });
+  ASSERT_TRUE(moves_on()) << said();
+  while_the_logger_is_dead(mission, [this] { fs::remove(out() / "metrics-002.csv"); });
+  ASSERT_TRUE(moves_on()) << said();
+  end(mission, 3);
+  EXPECT_EQ(summary()["segments"], 4) << said();
+  EXPECT_GT(summary()["gaps"], 0) << said();
+  EXPECT_GT(fs::file_size(out() / "trajectory-003.csv"), 1000U);
+  EXPECT_TRUE(said("no report: ")) << said();
+}
+
+TEST_F(DamagedRecord, WithoutAReadablePlanIsNobodysAndTheTeamGoesOnWithoutOne) {
+  Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
+  while_the_logger_is_dead(mission, [this] { write("plan.binpb", "no plan"); });
+  ASSERT_TRUE(comes_to_say("logger exited with code 2 after 3 restarts: the team goes on without a record"))
+      << said();
+  EXPECT_TRUE(logs("logger", "plan.binpb", 3)) << log_of("logger");
+  Witness witness(kUrl);
+  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
+  const Tick tick = witness.answered(witness.member(0));
+  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > tick + 20; }));
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(summary()["record_complete"], false);
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,19 @@
+// Preloaded into a program, makes its system one that has no room for another process while the file
+// $ERGOCAST_TEST_NO_MORE_PROCESSES is there.
+#include <sys/types.h>
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+
+extern "C" pid_t fork() noexcept {
+  const char* file = std::getenv("ERGOCAST_TEST_NO_MORE_PROCESSES");
+  if (file != nullptr && access(file, F_OK) == 0) {
+    errno = EAGAIN;
+    return -1;
+  }
+  using Fork = pid_t (*)();
+  return reinterpret_cast<Fork>(dlsym(RTLD_NEXT, "fork"))();
+}
