@@ -7,7 +7,7 @@
 
 namespace ergocast {
 
-/// Changes of one letter that turn `a` into `b` (Levenshtein).
+/// Changes of one letter, and swaps of two neighbours, that turn `a` into `b`.
 int edit_distance(std::string_view a, std::string_view b);
 
 /// How many changes a word may be away from what it was meant to be.

@@ -55,8 +55,9 @@ class Validator {
   void missing(const std::string& path, const std::string& what, std::string remedy) {
     checks_.missing(path, what, std::move(remedy));
   }
-  bool in_range(const std::string& path, double value, const Range& range) {
-    return checks_.in_range(path, value, range);
+  bool in_range(const std::string& path, double value, const Range& range,
+                const std::string& wanted = "") {
+    return checks_.in_range(path, value, range, wanted);
   }
 
   // Each field by itself.

@@ -21,6 +21,7 @@ TEST(Likeness, OfAWordIsTheNearestNameOrNone) {
   EXPECT_EQ(nearest("--dura", names), "--duration");
   EXPECT_EQ(nearest("--colour", names), "");
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+  EXPECT_EQ(edit_distance("lwa", "law"), 1);
 }
 
 }  // namespace

@@ -47,9 +47,9 @@ TEST_F(Typing, OneSlipInAScenarioIsOneProblem) {
     std::string right, wrong;
   };
   for (const auto& [right, wrong] : {Slip{"size_x_m", "size_xm"}, Slip{"size_x_m", "width"},
-                                     Slip{"domain", "domian"}, Slip{"u_max_mps", "umax_mps"},
+                                     Slip{"domain {", "domian {"}, Slip{"u_max_mps", "umax_mps"},
                                      Slip{"duration_s", "duration"}, Slip{"mean_x_m", "x"},
-                                     Slip{"law", "lwa"}}) {
+                                     Slip{"law {", "lwa {"}}) {
     std::string text = good;
     const auto at = text.find(right);
     ASSERT_NE(at, std::string::npos) << right;
