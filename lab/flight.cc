@@ -100,6 +100,8 @@ void Flight::start(Seat seat) {
         first ? Takeover::kNever : Takeover::kMust);
   } else if (seat == world_seat()) {
     world_ = std::make_unique<World>(run_, incarnation, decode_plan_);
+    acknowledged_.reset();
+    logger_lost_ = false;
   }
   process.up = true;
   process.restart = Instant::max();
@@ -143,6 +145,7 @@ TrialResult Flight::run() {
       if (progress_s() >= faulty_s_ || mission_over()) heal();
     }
     restart_due();
+    note_hindrance();
     deliver_due();
     advance_due();
     supervise_coordinator();
@@ -167,6 +170,10 @@ void Flight::hear(Seat seat, const Delivery& delivery) {
   Process& process = at(seat);
   const Instant local = process.clock.local(now_);
   const Message& message = *delivery.message;
+  const auto* ack = std::get_if<RecordAck>(&message);
+  if (ack != nullptr && seat == world_seat()) {
+    acknowledged_ = std::max(acknowledged_.value_or(-1), ack->header.tick);
+  }
   // Everything on a bus arrives; what no subscription names goes no further.
   if (!hears(subscriptions(seat), delivery.bus, message)) return;
   process.heard = true;
@@ -194,6 +201,7 @@ void Flight::advance(Seat seat) {
   invariants_.wakeup(in_seconds(now_), name_of(seat), next <= local);
   process.wakeup = process.clock.when(next);
   if (seat < agents_count_) after_agent(seat);
+  if (seat == world_seat()) after_world();
 }
 
 void Flight::publish(Seat seat) {
@@ -233,7 +241,16 @@ void Flight::after_agent(Seat seat) {
   Agent& one = agent(seat);
   invariants_.refused(t_s, one.author(), one.refused());
   look_for_recovery(seat);
-  if (one.finished()) invariants_.finished(t_s, one.author(), one.reason(), mission_over());
+  if (one.finished()) {
+    invariants_.finished(t_s, one.author(), one.reason(), mission_over() || evicted(seat));
+  }
+}
+
+void Flight::after_world() {
+  if (world_->logger_lost() && !logger_lost_) {
+    invariants_.gave_up_logger(in_seconds(now_), acknowledged_, world_->tick());
+  }
+  logger_lost_ = world_->logger_lost();
 }
 
 /// Once for each tick that an agent answers.

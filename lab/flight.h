@@ -79,13 +79,18 @@ class Flight {
   void publish(Seat seat);
   void after_agent(Seat seat);
   void look_for_recovery(Seat seat);
+  void after_world();
 
   Holder holder_of(Seat seat);
   std::vector<Holder> living();
   void note_answer(Seat seat, const Message& message, const Holder& holder);
   void supervise_coordinator();
   std::string still_running();
+  void note_hindrance();
+  bool our_doing(Instant at) const;
   bool timed_out() const;
+  bool evicted(Seat seat);
+  bool struck(Seat seat);  // from the roster
   bool failed() const;
   bool mission_over() const;
   bool everybody_finished();
@@ -114,6 +119,7 @@ class Flight {
   std::vector<Ending> endings_;
   double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
   std::optional<Instant> healed_, failed_since_;
+  std::optional<Instant> hindered_;  // the last moment at which somebody was away
   Tick excused_ = 0;       // ticks whose states may have been kept from the logger
   bool end_said_ = false;  // by a coordinator
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
@@ -121,6 +127,8 @@ class Flight {
   Outbox outbox_;
   std::vector<std::byte> bytes_, damaged_;
   std::vector<Tick> answered_;  // by agent
+  std::optional<Tick> acknowledged_;  // by the logger, as far as it has reached the world that lives
+  bool logger_lost_ = false;          // says that world
   std::vector<std::optional<Recovery>> recoveries_;
   double recovery_sum_s_ = 0;
   TrialFigures figures_;

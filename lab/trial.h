@@ -42,6 +42,7 @@ struct TrialFigures {
   MessageFaults faults;
   std::int64_t splits = 0, one_way_cuts = 0;
   std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
+  std::int64_t evictions = 0;
   /// From the restart of an agent until it holds again all that its predecessors had told anybody.
   double recovery_mean_s = 0, recovery_max_s = 0;
   std::int64_t recoveries = 0;
