@@ -1,0 +1,215 @@
+// Each thing that `ergocast verify` can say, by a record that has been falsified so.
+#include <functional>
+#include <sstream>
+
+#include "scenario/plan.pb.h"
+#include "scenario/scenario.h"
+#include "tests/checks_can_fail/expect_said.h"
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Lines = std::vector<std::string>;
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+void edit(const fs::path& file, const std::function<void(std::string&)>& change) {
+  std::string text = text_of(file);
+  change(text);
+  write(file, text);
+}
+
+void edit_lines(const fs::path& file, const std::function<void(Lines&)>& change) {
+  std::istringstream in(text_of(file));
+  Lines lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  change(lines);
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  write(file, text);
+}
+
+void edit_summary(const fs::path& run, const std::function<void(Json&)>& change) {
+  Json summary = Json::parse(text_of(run / "summary.json"));
+  change(summary);
+  write(run / "summary.json", summary.dump(2));
+}
+
+/// As if it had not been simulated: what a run over LCM may not have is looked for then.
+void call_it_a_run(const fs::path& run, const std::function<void(Json&)>& change = [](Json&) {}) {
+  edit_summary(run, [&](Json& summary) {
+    summary["run_id"] = "0123456789abcdef";
+    change(summary);
+  });
+}
+
+void change_a_cell(const fs::path& table) {
+  edit_lines(table, [](Lines& lines) { lines.at(3).back() = lines.at(3).back() == '9' ? '8' : '9'; });
+}
+
+struct Lie {
+  std::string said;
+  int exit_code;
+  std::function<void(const fs::path& run)> tell;
+};
+
+/// Of the summary and of what makes a run unrepeatable.
+std::vector<Lie> lies_of_the_summary() {
+  const auto agent = [](const char* key, const Json& value) {
+    return [key, value](Json& summary) { summary["agents"][0][key] = value; };
+  };
+  return {
+      {"its summary names no agents", 2,
+       [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s.erase("agents"); }); }},
+      {"its roster has 5 entries", 2,
+       [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s["agents"].push_back(s["agents"][0]); }); }},
+      {"left or was evicted at tick 5", 2,
+       [=](const fs::path& run) { call_it_a_run(run, agent("active_until", 5)); }},
+      {"joined at tick 3", 2, [=](const fs::path& run) { call_it_a_run(run, agent("active_from", 3)); }},
+      {"is not one that ergocast wrote", 2,
+       [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s["agents"][0].erase("id"); }); }},
+      {"summary.json, /ticks", 1,
+       [](const fs::path& run) { edit_summary(run, [](Json& s) { s["ticks"] = 49; }); }},
+      {"summary.json, /scenario_hash", 1,
+       [](const fs::path& run) { edit_summary(run, [](Json& s) { s["scenario_hash"] = "0"; }); }},
+      {"so nothing is known of restarts", 0, [](const fs::path& run) { fs::remove(run / "summary.json"); }},
+      {"another kind of processor", 1,
+       [](const fs::path& run) {
+         edit_summary(run, [](Json& s) { s["cpu_fma"] = !s["cpu_fma"].get<bool>(); });
+         change_a_cell(run / "trajectory.csv");
+       }},
+  };
+}
+
+std::vector<Lie> lies_of_the_tables() {
+  const auto keep = [](const fs::path& run, const char* table, int ticks, int without = -1) {
+    edit_lines(run / table, [=](Lines& lines) {
+      std::erase_if(lines, [=](const std::string& row) {
+        const int tick = std::isdigit(row[0]) != 0 ? std::stoi(row) : -1;
+        return tick > ticks || (tick >= 0 && tick == without);
+      });
+    });
+  };
+  return {
+      {", first at tick 0, agent ", 1, [](const fs::path& run) { change_a_cell(run / "trajectory.csv"); }},
+      {"but it ends after tick 30", 1, [=](const fs::path& run) { keep(run, "trajectory.csv", 30); }},
+      {"goes on after the plan's last tick", 1,
+       [](const fs::path& run) { edit_lines(run / "trajectory.csv", [](Lines& l) { l.push_back("999" + l.back()); }); }},
+      {"lacks rows, first those of tick 20", 1, [=](const fs::path& run) { keep(run, "trajectory.csv", 1000, 20); }},
+      {"ends amid tick", 1,
+       [](const fs::path& run) {
+         edit_summary(run, [](Json& s) { s["result"] = "stopped"; });
+         edit_lines(run / "trajectory.csv", [](Lines& lines) { lines.resize(lines.size() - 2); });
+       }},
+      // As a logger leaves it that was killed, with a gap after its last metrics.
+      {"1 ticks before that are missing", 0,
+       [=](const fs::path& run) {
+         fs::remove(run / "summary.json");
+         keep(run, "trajectory.csv", 48, 45);
+         keep(run, "metrics.csv", 40);
+       }},
+      {"metrics.csv:4, column", 1, [](const fs::path& run) { change_a_cell(run / "metrics.csv"); }},
+      {"goes on after the trajectory's end", 1,
+       [](const fs::path& run) { edit_lines(run / "metrics.csv", [](Lines& l) { l.push_back("999" + l.back()); }); }},
+      {"ends before the trajectory does", 1,
+       [](const fs::path& run) { edit_lines(run / "metrics.csv", [](Lines& lines) { lines.pop_back(); }); }},
+      {"the header is", 1,
+       [](const fs::path& run) { edit_lines(run / "metrics.csv", [](Lines& lines) { lines[0] = "time"; }); }},
+      {"cannot be opened", 2, [](const fs::path& run) { fs::remove(run / "trajectory.csv"); }},
+  };
+}
+
+void edit_plan(const fs::path& run, const std::function<void(proto::MissionPlan&)>& change) {
+  proto::MissionPlan plan;
+  ASSERT_TRUE(plan.ParseFromString(text_of(run / "plan.binpb")));
+  change(plan);
+  write(run / "plan.binpb", plan.SerializeAsString());
+}
+
+std::vector<Lie> lies_of_the_sources() {
+  return {
+      {"damaged or of a much newer version", 2, [](const fs::path& run) { write(run / "plan.binpb", "rubbish"); }},
+      {"is of version 9.9.9, this program is", 2,
+       [](const fs::path& run) { edit_plan(run, [](auto& plan) { plan.set_version("9.9.9"); }); }},
+      {"but breaks that version's rules", 2,
+       [](const fs::path& run) {
+         edit_plan(run, [](auto& plan) { plan.mutable_scenario()->mutable_basis()->set_modes_x(1000); });
+       }},
+      {"not what scenario.textproto compiles to", 1,
+       [](const fs::path& run) {
+         edit(run / "scenario.textproto", [](std::string& text) { text.insert(text.find("seed: ") + 6, "1"); });
+       }},
+      {"scenario.textproto:", 1,
+       [](const fs::path& run) { edit(run / "scenario.textproto", [](std::string& text) { text += "# more\n"; }); }},
+      {"(the file has ended)", 1,
+       [](const fs::path& run) { edit_lines(run / "target_density.csv", [](Lines& lines) { lines.pop_back(); }); }},
+      {"report.html:", 1, [](const fs::path& run) { edit(run / "report.html", [](std::string& text) { text += "!"; }); }},
+      {"scenario.textproto           is not there", 0,
+       [](const fs::path& run) { fs::remove(run / "scenario.textproto"); }},
+      // As a logger by hand leaves it, which has heard the plan and no more.
+      {"all but the target, which it lacks", 0,
+       [](const fs::path& run) {
+         const std::string plan = text_of(run / "plan.binpb");
+         const auto scenario = Scenario::from_plan(std::as_bytes(std::span(plan)));
+         write(run / "scenario.textproto", std::get<Scenario>(scenario).print());
+         fs::remove(run / "target_density.csv");
+         edit(run / "report.html", [](std::string& text) { text += "!"; });
+       }},
+  };
+}
+
+class VerifyCanFail : public OwnHost {
+ protected:
+  void record(std::vector<std::string> arguments, const fs::path& run) {
+    arguments.insert(arguments.end(), {"--duration", "5", "--out", run});
+    ASSERT_EQ(ergocast(arguments), 0) << output();
+  }
+  void expect(const fs::path& run, int exit_code, const std::string& said) {
+    EXPECT_EQ(ergocast({"verify", run}), exit_code) << said << ":\n" << output();
+    EXPECT_NE(output().find(said), std::string::npos) << said << ":\n" << output();
+    said_.push_back(output());
+  }
+  void expect_seen(const Lie& lie) {
+    const fs::path run = folder_ / "falsified";
+    fs::remove_all(run);
+    fs::copy(out(), run, fs::copy_options::recursive);
+    lie.tell(run);
+    expect(run, lie.exit_code, lie.said);
+  }
+
+  std::vector<std::string> said_;
+};
+
+TEST_F(VerifyCanFail, InEachOfItsFindings) {
+  const auto scenario = scenario_file("quadrimodal_corners");
+  record({"simulate", scenario}, out());
+  expect(out(), 0, "identical to its simulation");
+  for (const auto& lies : {lies_of_the_summary(), lies_of_the_tables(), lies_of_the_sources()}) {
+    for (const Lie& lie : lies) expect_seen(lie);
+  }
+
+  const fs::path over_lcm = folder_ / "over_lcm", in_real_time = folder_ / "in_real_time", with_map = folder_ / "with_map";
+  record({"run", scenario}, over_lcm);
+  expect(over_lcm, 0, ", the machine and the network");
+  record({"simulate", scenario, "--realtime"}, in_real_time);
+  call_it_a_run(in_real_time);
+  expect(in_real_time, 2, "it ran in real time");
+  write(folder_ / "even.csv", "1,2\n");
+  std::string text = text_of(scenario);
+  text.replace(text.find("gaussians"), 0,
+               "maps { file: \"even.csv\" origin_x_m: 0 origin_y_m: 0 size_x_m: 2000 size_y_m: 2000 }\n");
+  write(folder_ / "with_map.textproto", text);
+  record({"simulate", folder_ / "with_map.textproto"}, with_map);
+  fs::remove(folder_ / "even.csv");
+  expect(with_map, 0, "its maps are gone");
+
+  expect_all_said({"cli/verify.cc", "cli/record_comparison.cc", "cli/trajectory_comparison.cc",
+                   "logger/table_lines.cc", "scenario/plan.cc"},
+                  said_, {}, Words::kMayBeShared);
+}
+
+}  // namespace
+}  // namespace ergocast::test
