@@ -135,6 +135,7 @@ void draw_panel(Svg& svg, double left, const std::string& title, Axis x, Axis y,
     Polyline line;
     for (const Point& p : curves[i].points) {
       line.push_back({x_of(p), y_of(p)});
+      svg.circle(plot.at(x_of(p), y_of(p)), 2, color);  // of one point there is no line
       if (!intervals) continue;
       svg.line(plot.at(x_of(p), p.ratio.low), plot.at(x_of(p), p.ratio.high), color + " stroke-width=\"2\"");
     }
