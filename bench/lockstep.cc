@@ -1,5 +1,6 @@
-// A whole team as processes over LCM, beside its floor: a ping-pong of messages of the same number
-// and size between as many processes, without our codec and without mathematics.
+// A whole team as processes over LCM, beside a ping-pong of datagrams of the same number and size
+// between as many processes, without our codec and without mathematics: straight over UDP, which is the
+// floor, and over LCM.
 //
 // The real programs are started as a user starts them; how fast they were is read from the record.
 #include <benchmark/benchmark.h>
@@ -74,24 +75,29 @@ void Lockstep(benchmark::State& state) {
   if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
   const Traffic traffic = traffic_of(scenario->mission());
 
-  double ticks_per_s = 0, floor_ticks_per_s = 0;
+  const Tick ticks = scenario->mission().timing.tick_count;
+  double ticks_per_s = 0, floor_ticks_per_s = 0, lcm_ticks_per_s = 0;
   for (auto _ : state) {
     const auto mission = run_mission();
     if (const auto* why = std::get_if<std::string>(&mission)) {
       return state.SkipWithError(why->c_str());
     }
-    const auto floor = ping_pong(traffic, scenario->mission().timing.tick_count);
-    if (!floor) return state.SkipWithError("LCM cannot be used on this machine");
+    const auto floor = ping_pong(Carrier::kUdp, traffic, ticks);
+    const auto lcm = ping_pong(Carrier::kLcm, traffic, ticks);
+    if (!floor || !lcm) return state.SkipWithError("LCM cannot be used on this machine");
     ticks_per_s = std::get<double>(mission);
     floor_ticks_per_s = *floor;
+    lcm_ticks_per_s = *lcm;
     state.SetIterationTime(1 / ticks_per_s);
   }
   state.counters["ticks_per_s"] = ticks_per_s;
   state.counters["floor_ticks_per_s"] = floor_ticks_per_s;
   state.counters["of_floor"] = ticks_per_s / floor_ticks_per_s;
+  state.counters["lcm_ticks_per_s"] = lcm_ticks_per_s;
+  state.counters["of_lcm"] = ticks_per_s / lcm_ticks_per_s;
 }
 
-// Each mission shows its two figures; the time is that of one tick.
+// Each mission shows its figures; the time is that of one tick.
 BENCHMARK(Lockstep)->UseManualTime()->Iterations(1)->Repetitions(3)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

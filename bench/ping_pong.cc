@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/forked.h"
-#include "bench/raw_buses.h"
 #include "core/coverage_table.h"
 #include "lcmtypes/codec.h"
 #include "runtime/node.h"
@@ -30,18 +30,18 @@ std::size_t size_of(const Message& message) {
 
 class RawAgent {
  public:
-  RawAgent(AgentId id, const Traffic& traffic, const LcmUrl& url)
+  RawAgent(Carrier carrier, AgentId id, const Traffic& traffic, const LcmUrl& url)
       : id_(id),
         traffic_(traffic),
         held_(static_cast<std::size_t>(traffic.agents * traffic.blocks), -1),
         contribution_("CONTRIBUTION_" + std::to_string(id)),
         command_("COMMAND_" + std::to_string(id)),
-        buses_(url, {{Bus::kSwarm, "CONTRIBUTION_.*"}, {Bus::kWorld, "WORLD_STATE"}},
-               [this](Bus bus, const Stamp& stamp) { take(bus, stamp); }) {}
+        buses_(RawBuses::open(carrier, url, {Bus::kSwarm, Bus::kWorld},
+                              [this](Bus bus, const Stamp& stamp) { take(bus, stamp); })) {}
 
   [[noreturn]] void live() {
     while (true) {
-      buses_.wait(1000);
+      buses_->wait(1000);
       if (!answered_ && hears_everybody()) answer();
     }
   }
@@ -57,18 +57,18 @@ class RawAgent {
     if (stamp.tick < tick_) return;
     tick_ = stamp.tick;
     for (int block = 0; block < traffic_.blocks; ++block) {
-      buses_.publish(Bus::kSwarm, contribution_, {tick_, id_, block}, traffic_.block_bytes);
+      buses_->publish(Bus::kSwarm, contribution_, {tick_, id_, block}, traffic_.block_bytes);
     }
     if (!repeated) answered_ = false;
     if (repeated && answered_) answer();
   }
-  /// LCM hands us our own blocks too.
+  /// Our own blocks come back to us, too.
   bool hears_everybody() const {
     return std::all_of(held_.begin(), held_.end(), [this](Tick tick) { return tick >= tick_; });
   }
   void answer() {
     answered_ = true;
-    buses_.publish(Bus::kCommand, command_, {tick_, id_, 0}, traffic_.command_bytes);
+    buses_->publish(Bus::kCommand, command_, {tick_, id_, 0}, traffic_.command_bytes);
   }
 
   AgentId id_;
@@ -77,38 +77,39 @@ class RawAgent {
   Tick tick_ = -1;
   bool answered_ = true;
   std::string contribution_, command_;
-  RawBuses buses_;
+  std::unique_ptr<RawBuses> buses_;
 };
 
-[[noreturn]] void live_as_logger(const Traffic& traffic, const LcmUrl& url) {
+[[noreturn]] void live_as_logger(Carrier carrier, const Traffic& traffic, const LcmUrl& url) {
   Tick newest = -1, acked = -1;
-  RawBuses buses(url, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
-                 [&](Bus bus, const Stamp& stamp) {
-                   if (bus == Bus::kWorld) newest = std::max(newest, stamp.tick);
-                 });
+  const auto buses =
+      RawBuses::open(carrier, url, {Bus::kSwarm, Bus::kWorld, Bus::kCommand},
+                     [&](Bus bus, const Stamp& stamp) {
+                       if (bus == Bus::kWorld) newest = std::max(newest, stamp.tick);
+                     });
   while (true) {
-    const bool heard = buses.wait(kRepeatAck_ms);
+    const bool heard = buses->wait(kRepeatAck_ms);
     if (heard && newest < acked + kAckEveryTicks) continue;
     acked = newest;
-    buses.publish(Bus::kCommand, "RECORD_ACK", {acked, kLogger, 0}, traffic.ack_bytes);
+    buses->publish(Bus::kCommand, "RECORD_ACK", {acked, kLogger, 0}, traffic.ack_bytes);
   }
 }
 
 class RawWorld {
  public:
-  RawWorld(const Traffic& traffic, const LcmUrl& url)
+  RawWorld(Carrier carrier, const Traffic& traffic, const LcmUrl& url)
       : traffic_(traffic),
         answered_(static_cast<std::size_t>(traffic.agents), -1),
-        buses_(url, {{Bus::kCommand, "COMMAND_.*|RECORD_ACK"}},
-               [this](Bus, const Stamp& stamp) { take(stamp); }) {}
+        buses_(RawBuses::open(carrier, url, {Bus::kCommand},
+                              [this](Bus, const Stamp& stamp) { take(stamp); })) {}
 
   void play(Tick tick) {
     while (tick - recorded_ > kRecordWindowTicks && tick > kRecordWindowTicks) {
-      buses_.wait(kRepeat_ms);
+      buses_->wait(kRepeat_ms);
     }
     do {
-      buses_.publish(Bus::kWorld, "WORLD_STATE", {tick, kWorld, 0}, traffic_.state_bytes);
-      while (!everyone_answered(tick) && buses_.wait(kRepeat_ms)) {
+      buses_->publish(Bus::kWorld, "WORLD_STATE", {tick, kWorld, 0}, traffic_.state_bytes);
+      while (!everyone_answered(tick) && buses_->wait(kRepeat_ms)) {
       }
     } while (!everyone_answered(tick));
   }
@@ -126,7 +127,7 @@ class RawWorld {
   Traffic traffic_;
   std::vector<Tick> answered_;
   Tick recorded_ = -1;
-  RawBuses buses_;
+  std::unique_ptr<RawBuses> buses_;
 };
 
 }  // namespace
@@ -142,7 +143,7 @@ Traffic traffic_of(const Mission& mission) {
           .ack_bytes = size_of(RecordAck{})};
 }
 
-std::optional<double> ping_pong(const Traffic& traffic, Tick ticks) {
+std::optional<double> ping_pong(Carrier carrier, const Traffic& traffic, Tick ticks) {
   using Clock = std::chrono::steady_clock;
   const auto ports = PortReservation::take(random_identity());
   if (!ports) return std::nullopt;
@@ -152,11 +153,11 @@ std::optional<double> ping_pong(const Traffic& traffic, Tick ticks) {
 
   // Before this process has threads of LCM's.
   std::vector<Forked> others;
-  others.emplace_back([&] { live_as_logger(traffic, url); });
+  others.emplace_back([&] { live_as_logger(carrier, traffic, url); });
   for (AgentId id = 0; id < traffic.agents; ++id) {
-    others.emplace_back([&, id] { RawAgent(id, traffic, url).live(); });
+    others.emplace_back([&, id] { RawAgent(carrier, id, traffic, url).live(); });
   }
-  RawWorld world(traffic, url);
+  RawWorld world(carrier, traffic, url);
   for (Tick tick = 0; tick < kWarmUpTicks; ++tick) world.play(tick);
   const auto start = Clock::now();
   for (Tick tick = kWarmUpTicks; tick < kWarmUpTicks + ticks; ++tick) world.play(tick);

@@ -1,9 +1,10 @@
-// The floor of lockstep over LCM: processes that only pass the same messages around.
+// The floor of lockstep, and beside it what LCM alone costs: processes that only pass the same messages around.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 
+#include "bench/raw_buses.h"
 #include "core/ids.h"
 #include "core/mission.h"
 
@@ -18,10 +19,9 @@ struct Traffic {
 };
 Traffic traffic_of(const Mission& mission);
 
-/// Forks every agent and the logger, is the world itself, and plays `ticks` ticks over LCM: the
-/// messages have the right size, number, order and recipients, but nothing in them. Nothing is
+/// Forks every agent and the logger, is the world itself, and plays `ticks` ticks: the messages have the right size, number, order and recipients, but nothing in them. Nothing is
 /// encoded, checked or computed. Every process has ended when it returns.
 /// @return ticks per second, the start left out; nothing if LCM cannot be used
-std::optional<double> ping_pong(const Traffic& traffic, Tick ticks);
+std::optional<double> ping_pong(Carrier carrier, const Traffic& traffic, Tick ticks);
 
 }  // namespace ergocast::bench

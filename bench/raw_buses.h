@@ -1,19 +1,15 @@
-// The three buses without our transport: LCM, and bytes that mean nothing.
+// The three buses without our transport, with bytes that mean nothing: over LCM, or straight over
+// UDP.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/ids.h"
 #include "core/messages.h"
 #include "runtime/lcm_url.h"
-
-namespace lcm {
-class LCM;
-}
 
 namespace ergocast::bench {
 
@@ -24,24 +20,26 @@ struct Stamp {
   std::int32_t block;
 };
 
+enum class Carrier {
+  kLcm,  ///< liblcm, as any program uses it
+  kUdp,  ///< one multicast socket a bus, read many datagrams at a time: no thread, no queue, no
+         ///< names
+};
+
 class RawBuses {
  public:
   using Handler = std::function<void(Bus, const Stamp&)>;
 
-  /// @param listening  buses to hear, and which of their channels
-  RawBuses(const LcmUrl& url, const std::vector<std::pair<Bus, std::string>>& listening,
-           Handler handler);
-  ~RawBuses();
+  /// @param listening  buses to hear
+  static std::unique_ptr<RawBuses> open(Carrier carrier, const LcmUrl& url,
+                                        const std::vector<Bus>& listening, Handler handler);
+  virtual ~RawBuses() = default;
 
-  void publish(Bus bus, const std::string& channel, const Stamp& stamp, std::size_t bytes);
+  /// Datagrams of one size, whoever carries them: a name and `bytes` bytes.
+  virtual void publish(Bus bus, const std::string& channel, const Stamp& stamp,
+                       std::size_t bytes) = 0;
   /// Handles all that is there, once something is. False if nothing came for so long.
-  bool wait(int timeout_ms);
-
- private:
-  struct Line;
-  Handler handler_;
-  std::vector<std::unique_ptr<lcm::LCM>> buses_;
-  std::vector<std::unique_ptr<Line>> lines_;  // the buses we listen to
+  virtual bool wait(int timeout_ms) = 0;
 };
 
 }  // namespace ergocast::bench

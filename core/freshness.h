@@ -27,6 +27,12 @@ class Freshness {
     return true;
   }
 
+  /// The last sequence that was news of `life`; −1 if nothing was.
+  std::int64_t newest(const Author& life) const {
+    const auto at = newest_.find(life);
+    return at == newest_.end() ? -1 : at->second;
+  }
+
   /// Twice as many as a roster has room for: coordinators, worlds and loggers live more than once.
   static constexpr std::size_t kMostLives = 2 * kMaxRosterEntries;
 

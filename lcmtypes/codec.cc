@@ -186,14 +186,14 @@ void encode(const Message& message, std::vector<std::byte>& out, const Seal& sea
 }
 
 std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run, const Seal& seal,
-                                      std::string_view channel) noexcept {
+                                      std::string_view channel, KnownSignatures* known) noexcept {
   if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return Refusal::kSize;
   const Decoder* decoder = decoder_for(read64(bytes.data()));
   if (decoder == nullptr) return Refusal::kType;
   if (const auto refusal = seal.check_tag(bytes, channel)) return *refusal;
   if (run != 0 && read64(bytes.data() + 8) != run) return Refusal::kRun;
   try {
-    if (decoder->is_signed && !seal.signature_holds(bytes)) return Refusal::kUnsigned;
+    if (decoder->is_signed && !seal.signature_holds(bytes, known)) return Refusal::kUnsigned;
     return decoder->decode(bytes);
   } catch (...) {  // only memory can run out here
     return Refusal::kLimit;

@@ -25,7 +25,9 @@ void encode(const Message& message, std::vector<std::byte>& out, const Seal& sea
 /// The message in `bytes`, or why it is refused. Never throws, whatever the bytes are.
 /// @param run  the only run accepted; 0 accepts any (who only watches, or has yet to join)
 /// @param channel  that it came by; only a keyed seal asks
-std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run,
-                                      const Seal& seal = {}, std::string_view channel = {}) noexcept;
+/// @param known  signatures that need not be checked again; may be null
+std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run, const Seal& seal = {},
+                                      std::string_view channel = {},
+                                      KnownSignatures* known = nullptr) noexcept;
 
 }  // namespace ergocast

@@ -105,12 +105,38 @@ std::optional<Refusal> Seal::check_tag(std::span<const std::byte> bytes,
   return keyed() && fits(hash_of(message)) ? Refusal::kUnkeyed : Refusal::kTag;
 }
 
-bool Seal::signature_holds(std::span<const std::byte> bytes) const {
+bool Seal::signature_holds(std::span<const std::byte> bytes, KnownSignatures* known) const {
   if (!keyed()) return true;
   if (bytes.size() < kHeaderEnd + sizeof(Signature)) return false;
+  if (known != nullptr && known->contains(bytes)) return true;
   const Blanked message(bytes, kUnsignedBytes);
-  return crypto_sign_verify_detached(raw(bytes) + kHeaderEnd, message.data(), message.size(),
-                                     raw(key_->coordinator)) == 0;
+  const bool holds = crypto_sign_verify_detached(raw(bytes) + kHeaderEnd, message.data(), message.size(),
+                                                 raw(key_->coordinator)) == 0;
+  if (holds && known != nullptr) known->add(bytes);
+  return holds;
+}
+
+KnownSignatures::Tag KnownSignatures::tag_of(std::span<const std::byte> message) {
+  Tag tag;
+  std::copy_n(message.begin() + kTagOffset, kTagBytes, tag.begin());
+  return tag;
+}
+
+std::size_t KnownSignatures::place_of(const Tag& tag) {
+  std::size_t place;
+  std::memcpy(&place, tag.data(), sizeof place);
+  return place % kCapacity;
+}
+
+bool KnownSignatures::contains(std::span<const std::byte> message) const {
+  const Tag tag = tag_of(message);
+  return !tags_.empty() && tags_[place_of(tag)] == tag;
+}
+
+void KnownSignatures::add(std::span<const std::byte> message) {
+  tags_.resize(kCapacity);
+  const Tag tag = tag_of(message);
+  tags_[place_of(tag)] = tag;
 }
 
 }  // namespace ergocast

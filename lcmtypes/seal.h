@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/messages.h"
 
@@ -29,6 +30,23 @@ struct MissionKey {
   Secret shared{};                    ///< whoever has it can speak for any agent, world or logger
   Secret coordinator{};               ///< Ed25519 public key: whom to obey
   std::optional<SigningKey> signing;  ///< its secret half: only to coordinators and operators
+};
+
+/// Signed messages whose signature has held, by their keyed tags, so that a repeat costs a look and no
+/// signature. Only what was verified gets in; a tag that fits binds every byte, signature included.
+class KnownSignatures {
+ public:
+  bool contains(std::span<const std::byte> message) const;
+  void add(std::span<const std::byte> message);
+
+  /// Each tag has one place, where a later one replaces it: then that message is checked again.
+  static constexpr std::size_t kCapacity = 4096;
+
+ private:
+  using Tag = std::array<std::byte, kTagBytes>;
+  static Tag tag_of(std::span<const std::byte> message);
+  static std::size_t place_of(const Tag& tag);
+  std::vector<Tag> tags_;
 };
 
 /// Closes datagrams that are sent and looks at those that arrive. Cheap to copy.
@@ -57,7 +75,9 @@ class Seal {
   /// @pre kHeaderEnd to kMaxDatagramBytes bytes
   std::optional<Refusal> check_tag(std::span<const std::byte> bytes, std::string_view channel) const;
   /// Whether who may begin and end missions has signed it; true without a key.
-  bool signature_holds(std::span<const std::byte> bytes) const;
+  /// @param known  spares checking again what has held before, and learns; may be null
+  /// @pre check_tag() found nothing wrong
+  bool signature_holds(std::span<const std::byte> bytes, KnownSignatures* known = nullptr) const;
 
  private:
   void sign(std::span<std::byte> bytes) const;

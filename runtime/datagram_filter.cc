@@ -3,6 +3,7 @@
 #include <linux/filter.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -22,13 +23,15 @@ constexpr std::uint32_t kKeepAll = 0xffff;
 constexpr std::uint32_t kKeepTooLittle = kUdpHeaderBytes + 4;
 /// No message of ours is shorter, and no name or number is looked for beyond it.
 constexpr std::uint32_t kShortest = kNameAt + 60;
+/// In a message.
+constexpr std::uint32_t kLifeAt = 20, kSequenceAt = 28;
 /// LCM allows names of 63 characters; what is longer than any message of ours only fills its queue.
 constexpr std::uint32_t kLongest = kNameAt + 64 + static_cast<std::uint32_t>(kMaxDatagramBytes);
 
 /// A program for the kernel, whose jumps go forward only and whose conditional ones not far.
 class Filter {
  public:
-  Filter() {
+  explicit Filter(std::span<const Repeated> flooded) : to_repeats_(!flooded.empty()) {
     load(BPF_LD | BPF_W | BPF_LEN, 0);
     pass_if(BPF_JGE, kShortest);
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kLongest, 0, 1));
@@ -37,6 +40,7 @@ class Filter {
     pass_if(BPF_JEQ, kUnfragmented);
     for (const ChannelName& name : channel_names()) accept(name);
     end(kKeepTooLittle);
+    if (to_repeats_) drop_repeats(flooded);
   }
 
   bool attach(int socket) {
@@ -49,6 +53,13 @@ class Filter {
     code_.push_back(BPF_STMT(static_cast<std::uint16_t>(what), from));
   }
   void end(std::uint32_t keep) { load(BPF_RET | BPF_K, keep); }
+  /// A datagram of ours whose message begins there: kept, unless repeats are to be looked for.
+  void keep(std::uint32_t message_at) {
+    if (!to_repeats_) return end(kKeepAll);
+    load(BPF_LDX | BPF_IMM, message_at);
+    keeps_.push_back(code_.size());
+    load(BPF_JMP | BPF_JA, 0);
+  }
   /// Goes on if what was loaded compares so with `value`, and else ends with kKeepTooLittle.
   void pass_if(int compare, std::uint32_t value) {
     code_.push_back(BPF_JUMP(static_cast<std::uint16_t>(BPF_JMP | compare | BPF_K), value, 1, 0));
@@ -72,7 +83,7 @@ class Filter {
       at += static_cast<std::uint32_t>(bytes);
     }
     if (name.per_agent) accept_number(at);
-    if (!name.per_agent) end(kKeepAll);
+    if (!name.per_agent) keep(at);
     for (const std::size_t miss : misses) {
       code_[miss].jf = static_cast<std::uint8_t>(code_.size() - miss - 1);
     }
@@ -81,25 +92,65 @@ class Filter {
   /// "NEW" or one to three digits, and the name's end.
   void accept_number(std::uint32_t at) {
     load(BPF_LD | BPF_W | BPF_ABS, at);
-    code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0x4e455700, 0, 1));
-    end(kKeepAll);
+    skip_unless(0x4e455700, [&] { keep(at + 4); });
     for (std::uint32_t digit = 0; digit < 3; ++digit) {
       load(BPF_LD | BPF_B | BPF_ABS, at + digit);
       pass_if(BPF_JGE, '0');
       code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, '9', 0, 1));
       end(kKeepTooLittle);
       load(BPF_LD | BPF_B | BPF_ABS, at + digit + 1);
-      code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, 1));
-      end(kKeepAll);
+      skip_unless(0, [&] { keep(at + digit + 2); });
     }
     end(kKeepTooLittle);
   }
+  /// Does `then` if what was loaded is `value`.
+  template <class Then>
+  void skip_unless(std::uint32_t value, const Then& then) {
+    const std::size_t jump = code_.size();
+    code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, 0));
+    then();
+    code_[jump].jf = static_cast<std::uint8_t>(code_.size() - jump - 1);
+  }
+
+  /// All that is kept comes here, with the place of the message in X.
+  void drop_repeats(std::span<const Repeated> flooded) {
+    for (const std::size_t from : keeps_) code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
+    load(BPF_LD | BPF_W | BPF_IND, kSequenceAt);
+    code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0));
+    end(kKeepAll);  // nobody has said so much
+    load(BPF_LD | BPF_W | BPF_IND, kSequenceAt + 4);
+    load(BPF_ST, 0);
+    load(BPF_LD | BPF_W | BPF_IND, kLifeAt + 4);
+    std::vector<std::size_t> repeats;
+    for (const Repeated& one : flooded) {
+      skip_unless(static_cast<std::uint32_t>(one.life), [&] {
+        load(BPF_LD | BPF_MEM, 0);
+        code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, sequence_of(one), 0, 1));
+        end(kKeepAll);
+        repeats.push_back(code_.size());
+        load(BPF_JMP | BPF_JA, 0);
+      });
+    }
+    end(kKeepAll);
+    for (const std::size_t from : repeats) code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
+    load(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_RANDOM));
+    code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, UINT32_MAX / kShareThatPasses, 0, 1));
+    end(0);
+    end(kKeepAll);
+  }
+  static std::uint32_t sequence_of(const Repeated& one) {
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(one.newest, 0, UINT32_MAX));
+  }
 
   std::vector<sock_filter> code_;
+  const bool to_repeats_;
+  std::vector<std::size_t> keeps_;  // jumps to where repeats are looked for
 };
 
 }  // namespace
 
-bool admit_only_our_channels(int socket) { return Filter().attach(socket); }
+bool admit_only_our_channels(int socket, std::span<const Repeated> flooded) {
+  return Filter(flooded).attach(socket);
+}
 
 }  // namespace ergocast

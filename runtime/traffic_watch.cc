@@ -64,7 +64,7 @@ bool TrafficWatch::look(Instant now) {
                  transport_.babbler());
   }
   if (repeated != logged_repeats_) {
-    spdlog::warn("somebody repeats what agents have said, far more often than they would, and the rest "
+    spdlog::warn("somebody repeats what the team has said, far more often than it would, and the rest "
                  "is refused: look for who records on this network");
   }
   logged_babble_ = transport_.babbled();

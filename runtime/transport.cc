@@ -9,12 +9,12 @@
 #include <chrono>
 #include <lcm/lcm-cpp.hpp>
 
-#include "core/freshness.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
 #include "runtime/clock.h"
 #include "runtime/datagram_filter.h"
 #include "runtime/group_membership.h"
+#include "runtime/repeat_guard.h"
 #include "runtime/socket.h"
 
 namespace ergocast {
@@ -23,6 +23,9 @@ namespace {
 constexpr int kMaxDatagramsPerTurn = 256;
 /// Messages that may wait for us on a bus, 5 MB of them: a flood costs messages, not memory.
 constexpr int kQueueCapacity = 4096;
+/// Of each socket, unless the URL says otherwise or the machine allows less: what arrives while this process
+/// waits for a processor, among it the beginning of a flood.
+constexpr int kReceiveBufferBytes = 1 << 20;
 constexpr std::string_view kPrefix = "ERGOCAST_";
 constexpr const char* kFirewall =
     "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
@@ -66,15 +69,20 @@ class LcmTransport final : public Transport {
   Instant deliver_until(Instant deadline, int wake_fd) override;
   bool keyed() const override { return seal_.keyed(); }
   bool filtered() const override { return filtered_; }
-  std::int64_t kernel_drops() const override { return drops_of(sockets_); }
+  std::int64_t kernel_drops() const override;
   bool renew_membership() override { return membership_->renew(); }
 
  private:
+  /// A bus that we listen to.
   struct Line {
-    LcmTransport* transport;
-    Bus bus;
+    LcmTransport* transport = nullptr;
+    Bus bus{};
+    std::vector<int> sockets;
+    RepeatGuard guard;
+    bool is_cut = false;             // the kernel drops repeats,
+    std::int64_t drops_counted = 0;  // and of its drops so many have been told apart
     void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
-      transport->take(bus, buffer, channel);
+      transport->take(*this, buffer, channel);
     }
   };
 
@@ -90,19 +98,21 @@ class LcmTransport final : public Transport {
     });
     unknown_format_.channel = plain ? channel : std::string(kPrefix) + "…";
   }
-  void take(Bus bus, const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
+  void take(Line& line, const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
+  void cut_repeats(Line& line);
+  void count_cut(Line& line) noexcept;
 
   RunId run_;
   Seal seal_;
   Handlers handlers_;
   RateLimit rates_;
   bool filtered_ = true;
-  std::array<Freshness, kBusCount> freshness_;
+  std::int64_t cut_ = 0;  // repeats that the kernel has dropped for us
+  KnownSignatures signatures_;
   std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
   std::array<Line, kBusCount> lines_{};
   std::vector<pollfd> ready_;             // of the buses we listen to, then the caller's
   std::vector<lcm::LCM*> listened_;
-  std::vector<int> sockets_;  // that we listen to
   std::optional<GroupMembership> membership_;
   std::vector<std::byte> bytes_;
 };
@@ -125,10 +135,16 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscr
       return url.of(bus) + ": " + scarce.value_or(std::string("LCM's self test failed\n") + kFirewall);
     }
     const auto sockets = sockets_at(url.base_port + b, 1);
+    for (const int socket : sockets) {
+      if (url.receive_buffer_bytes > 0) break;
+      setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
+    }
     filtered_ = filtered_ && !sockets.empty() &&
-                std::all_of(sockets.begin(), sockets.end(), admit_only_our_channels);
-    sockets_.insert(sockets_.end(), sockets.begin(), sockets.end());
-    lines_[at] = {this, bus};
+                std::all_of(sockets.begin(), sockets.end(),
+                            [](int socket) { return admit_only_our_channels(socket); });
+    lines_[at].transport = this;
+    lines_[at].bus = bus;
+    lines_[at].sockets = sockets;
     buses_[at]
         ->subscribe(channels_of(hears[at]), &Line::on_datagram, &lines_[at])
         ->setQueueCapacity(kQueueCapacity);
@@ -147,12 +163,44 @@ void LcmTransport::publish(const Outgoing& outgoing) {
                                                           static_cast<unsigned>(bytes_.size()));
 }
 
-void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
+/// What the filters of a flood drop is counted as refused, and not as lost for want of buffer space.
+std::int64_t LcmTransport::kernel_drops() const {
+  std::int64_t drops = -cut_;
+  for (const Line& line : lines_) {
+    drops += line.is_cut ? line.drops_counted : drops_of(line.sockets);
+  }
+  return drops;
+}
+
+void LcmTransport::count_cut(Line& line) noexcept {
+  const std::int64_t drops = drops_of(line.sockets);
+  cut_ += drops - line.drops_counted;
+  for (; line.drops_counted < drops; ++line.drops_counted) refuse(Refusal::kRate);
+}
+
+/// Gives the kernel what the guard now says, or as much of it as there is room for.
+void LcmTransport::cut_repeats(Line& line) {
+  if (line.is_cut) {
+    count_cut(line);
+  } else {
+    line.drops_counted = drops_of(line.sockets);
+  }
+  for (const int socket : line.sockets) {
+    std::span<const Repeated> flooded = line.guard.flooded();
+    while (!admit_only_our_channels(socket, flooded) && !flooded.empty()) {
+      flooded = flooded.first(flooded.size() / 2);
+    }
+  }
+  if (line.is_cut) count_cut(line);
+  line.is_cut = !line.guard.flooded().empty();
+}
+
+void LcmTransport::take(Line& line, const lcm::ReceiveBuffer* buffer,
                         const std::string& channel) noexcept {
   const std::span<const std::byte> bytes(static_cast<const std::byte*>(buffer->data),
                                          buffer->data_size);
   try {
-    const auto decoded = decode(bytes, run_, seal_, channel);
+    const auto decoded = decode(bytes, run_, seal_, channel, &signatures_);
     if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
       if (*refusal == Refusal::kType) note_unknown_format(channel);
       return refuse(*refusal);
@@ -160,12 +208,14 @@ void LcmTransport::take(Bus bus, const lcm::ReceiveBuffer* buffer,
     const Message& message = std::get<Message>(decoded);
     const auto transmitter = transmitter_of(message, channel);
     if (!transmitter) return refuse(Refusal::kType);
-    const bool is_news = freshness_[static_cast<std::size_t>(bus)].is_news(header_of(message));
-    if (!rates_.admit(*transmitter, is_news, now())) {
+    const Instant heard = now();
+    const bool is_news = line.guard.is_news(header_of(message));
+    if (line.guard.count(header_of(message), is_news, heard)) cut_repeats(line);
+    if (!rates_.admit(*transmitter, is_news, heard)) {
       if (is_news) babbler_ = *transmitter, ++babbled_;
       return refuse(Refusal::kRate);
     }
-    if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);
+    if (handlers_.on_accepted) handlers_.on_accepted(line.bus, channel, bytes);
     handlers_.on_message(message, *transmitter);
   } catch (...) {  // an exception that passes through LCM's C frames would abort the next call
     refuse(Refusal::kLimit);
@@ -187,6 +237,9 @@ Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
     if ((ready_[i].revents & POLLIN) == 0) continue;
     for (int n = 0; n < kMaxDatagramsPerTurn && listened_[i]->handleTimeout(0) > 0; ++n) {
     }
+  }
+  for (Line& line : lines_) {
+    if (line.is_cut) count_cut(line);
   }
   return woke;
 }

@@ -128,6 +128,67 @@ TEST(Seal, ASignatureIsOfOneMessageOfOneRun) {
             "unsigned");
 }
 
+/// The same team, but it obeys somebody else: no signature of the first one's holds for it.
+Seal obeying_another() {
+  MissionKey key = member_of(key_of(1));
+  key.coordinator = key_of(2).coordinator;
+  return Seal(key);
+}
+
+TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
+  const Message said = unsigned_copy(mission_part());
+  const Bytes bytes = sealed(said, kCoordinatorSeal);
+  const std::string& channel = channel_of(said);
+  KnownSignatures known;
+  EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "unsigned");
+  EXPECT_EQ(verdict(decode(bytes, kRun, kMemberSeal, channel, &known)), "accepted");
+  // Were it checked, it would be refused as before.
+  EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "accepted");
+}
+
+TEST(KnownSignatures, WhatIsRefusedIsNotRemembered) {
+  const Message said = unsigned_copy(mission_part());
+  const std::string& channel = channel_of(said);
+  const Bytes forged = sealed(said, kMemberSeal);
+  KnownSignatures known;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(verdict(decode(forged, kRun, kMemberSeal, channel, &known)), "unsigned");
+  }
+  const Bytes good = sealed(said, kCoordinatorSeal);
+  EXPECT_EQ(verdict(decode(good, kRun, kMemberSeal, channel, &known)), "accepted");
+}
+
+TEST(KnownSignatures, AKnownTagMakesNoOtherBytesAcceptable) {
+  const Message said = unsigned_copy(mission_part());
+  const std::string& channel = channel_of(said);
+  const Bytes good = sealed(said, kCoordinatorSeal);
+  KnownSignatures known;
+  ASSERT_EQ(verdict(decode(good, kRun, kMemberSeal, channel, &known)), "accepted");
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    Bytes bad = good;
+    bad[at] ^= std::byte{1};
+    EXPECT_NE(verdict(decode(bad, kRun, kMemberSeal, channel, &known)), "accepted") << at;
+  }
+  // Of a former run it is still none of ours.
+  EXPECT_EQ(verdict(decode(good, kRun + 1, kMemberSeal, channel, &known)), "run");
+}
+
+TEST(KnownSignatures, HaveRoomForSoManyAndCheckTheOthersAgain) {
+  KnownSignatures known;
+  const int many = 2 * static_cast<int>(KnownSignatures::kCapacity);
+  std::vector<Bytes> all;
+  int checked_again = 0;
+  for (int i = 0; i < many; ++i) {
+    Bytes bytes(kSignatureEnd);
+    for (std::size_t b = 0; b < 16; ++b) bytes[44 + b] = static_cast<std::byte>(i * 2654435761U >> (b % 4 * 8));
+    known.add(bytes);
+    EXPECT_TRUE(known.contains(bytes)) << "the newest";
+    all.push_back(bytes);
+  }
+  for (const Bytes& bytes : all) checked_again += known.contains(bytes) ? 0 : 1;
+  EXPECT_GE(checked_again, many - static_cast<int>(KnownSignatures::kCapacity));
+}
+
 TEST(Seal, ShortMessagesWithoutRoomForASignatureAreRefused) {
   Bytes bytes = sealed(stop(), kCoordinatorSeal);
   bytes.resize(kHeaderBytes + 63);

@@ -4,8 +4,10 @@
 
 #include "core/messages.h"
 #include "lcmtypes/codec.h"
+#include "runtime/key_file.h"
 #include "runtime/socket.h"
 #include "tests/process/mission.h"
+#include "tests/process/replayer.h"
 #include "tests/process/witness.h"
 
 namespace ergocast::test {
@@ -155,6 +157,60 @@ TEST_F(Babble, WhatOthersRepeatOfAnAgentIsLimitedAndNotItsFault) {
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_EQ(log_of("coordinator").find("silent"), std::string::npos) << log_of("coordinator");
 }
+
+/// A team with a key, and somebody without it who says again what he has heard.
+class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const char*> {
+ protected:
+  FloodOfRepeats() {
+    const MissionKey key = make_mission_key();
+    EXPECT_EQ(write_key_file(key_file_, key_text(key, true)), std::nullopt);
+  }
+  /// What the processes that hear the flood have refused as `rate`: agents, as they say themselves.
+  std::int64_t refused_by_agents() {
+    ergocast({"status", "--json", "--lcm-url", kUrl, "--key-file", key_file_});
+    std::int64_t refused = 0;
+    const auto team = nlohmann::json::parse(output());
+    for (const auto& agent : team["agents"]) {
+      refused += agent["refused"]["rate"].get<std::int64_t>();
+    }
+    return refused;
+  }
+  const std::filesystem::path key_file_ = folder_ / "c.key";
+};
+
+/// Without recognising them every one would be taken in: neither the world nor the coordinator has a
+/// budget. How fast the machine is decides how long it takes, and nothing else.
+TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
+  constexpr std::int64_t kEnough = 50000;
+  constexpr std::size_t kAtOnce = 200;  // every 5 ms at the most: 40 000 a second
+  Child mission = launch_endless(scenario(), {"--realtime=5", "--key-file", key_file_, "--lcm-url", kUrl});
+  Replayer replayer(std::get<LcmUrl>(LcmUrl::parse(kUrl)), GetParam());
+  ASSERT_TRUE(eventually([&] { return replayer.listen(), replayer.kept() >= 4; }));
+  std::int64_t refused = 0;
+  ASSERT_TRUE(eventually([&] {
+    replayer.replay(2 * kEnough);
+    return (refused = refused_by_agents()) >= kEnough;
+  })) << refused << " refused\n" << log_of("agent-0");
+  ASSERT_TRUE(eventually([&, from = recorded_bytes()] {
+    replayer.replay(kAtOnce);
+    return recorded_bytes() > from + 30000;
+  })) << "stands still\n" << said();
+  // A new coordinator asks the agents for the mission, whose words are repeats, too.
+  const pid_t first = pids({"ergocast-coordinator"}).front();
+  kill(first, SIGKILL);
+  EXPECT_TRUE(eventually([&] {
+    replayer.replay(kAtOnce);
+    return log_of("coordinator").find("taken over") != std::string::npos;
+  })) << log_of("coordinator");
+  EXPECT_TRUE(moves_on()) << said();
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["restarts"], 1) << "the test's own";
+  EXPECT_EQ(summary()["messages"]["refused"]["range"], 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, FloodOfRepeats, ::testing::Values("MISSION", "WORLD_STATE"),
+                         [](const auto& of) { return std::string(of.param); });
 
 /// Resident memory after a while and much later. ERGOCAST_LONG_TICKS makes it a longer flight.
 TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {

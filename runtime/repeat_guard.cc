@@ -1,0 +1,30 @@
+#include "runtime/repeat_guard.h"
+
+namespace ergocast {
+
+bool RepeatGuard::count(const Header& from, bool is_news, Instant now) {
+  if (!is_news) {
+    ++repeats_;
+    if (lives_.size() < kMostLives) lives_.insert({from.sender, from.incarnation});
+  }
+  const bool was_flooded = !flooded_.empty();
+  const bool lapsed = now - window_began_ >= kWindow * (was_flooded ? kCalmWindows : 1);
+  if (repeats_ < kMostRepeats && !lapsed) return false;
+  // While the kernel drops some, those that pass stand for many.
+  const bool goes_on =
+      was_flooded && repeats_ * static_cast<int>(kShareThatPasses) >= kMostRepeats * kCalmWindows;
+  const bool flooded = repeats_ >= kMostRepeats || goes_on;
+  window_began_ = now;
+  repeats_ = 0;
+  flooded_.clear();
+  if (!flooded) {
+    lives_.clear();
+    return was_flooded;
+  }
+  for (const Author& life : lives_) {
+    flooded_.push_back({life.incarnation, freshness_.newest(life)});
+  }
+  return true;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,110 @@
+// What the kernel passes on to a socket of ours, with real sockets: our messages always, a share of
+// what is said again while there is a flood, nothing else.
+#include "runtime/datagram_filter.h"
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/codec.h"
+#include "runtime/socket.h"
+#include "tests/lcmtypes/sample_messages.h"
+
+namespace ergocast::test {
+namespace {
+
+class DatagramFilter : public ::testing::Test {
+ protected:
+  DatagramFilter() {
+    const sockaddr_in here = address_of("127.0.0.1", kPort);
+    EXPECT_EQ(bind(ear_.fd(), reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
+  }
+
+  /// Sends a message by LCM's format; whether more than a stump of it arrives.
+  bool passes(const Message& message, const std::string& channel) {
+    encode(message, bytes_);
+    std::string datagram = std::string("LC02\0\0\0\1", 8) + channel + '\0';
+    datagram.append(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+    const sockaddr_in to = address_of("127.0.0.1", kPort);
+    sendto(mouth_.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+           sizeof to);
+    std::array<char, 2048> space;
+    const ssize_t size = recv(ear_.fd(), space.data(), space.size(), MSG_DONTWAIT);
+    return size == static_cast<ssize_t>(datagram.size());
+  }
+  bool passes(const Message& message) { return passes(message, channel_of(message)); }
+
+  static Message said(Message message, Incarnation life, std::int64_t sequence) {
+    std::visit([&](auto& m) { m.header.incarnation = life, m.header.sequence = sequence; },
+               message);
+    return message;
+  }
+
+  static constexpr int kPort = 24700;
+  const Socket ear_{AF_INET, SOCK_DGRAM}, mouth_{AF_INET, SOCK_DGRAM};
+  std::vector<std::byte> bytes_;
+};
+
+TEST_F(DatagramFilter, PassesOnOurMessagesUnderOurNamesOnly) {
+  ASSERT_TRUE(admit_only_our_channels(ear_.fd()));
+  for (const Message& message : every_message()) {
+    EXPECT_TRUE(passes(message)) << channel_of(message);
+    EXPECT_FALSE(passes(message, channel_of(message) + "X")) << channel_of(message);
+  }
+  for (const char* number : {"0", "17", "127", "999", "NEW"}) {
+    EXPECT_TRUE(passes(command(), std::string("ERGOCAST_COMMAND_") + number));
+  }
+  for (const char* number : {"", "X", "1000", "1X", "NE", "NEWS"}) {
+    EXPECT_FALSE(passes(command(), std::string("ERGOCAST_COMMAND_") + number)) << number;
+  }
+}
+
+TEST_F(DatagramFilter, InAFloodPassesOnAllThatIsNew) {
+  const std::vector<Repeated> flooded = {{0x700000001, 100}, {2, 0}, {3, 5000000000}};
+  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded));
+  for (const Message& message : every_message()) {
+    for (std::int64_t later = 1; later < 50; ++later) {
+      EXPECT_TRUE(passes(said(message, 0x700000001, 100 + later))) << channel_of(message);
+      EXPECT_TRUE(passes(said(message, 2, later))) << channel_of(message);
+      EXPECT_TRUE(passes(said(message, 4, later))) << "a life that nobody repeats";
+      EXPECT_TRUE(passes(said(message, 3, 5000000000 + later)));
+    }
+  }
+}
+
+TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
+  const std::vector<Repeated> flooded = {{0x700000001, 100}, {2, 100}};
+  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded));
+  for (const Message& message : every_message()) {
+    int passed = 0;
+    constexpr int kSent = 3200;
+    for (int i = 0; i < kSent; ++i) passed += passes(said(message, 0x700000001, i % 101)) ? 1 : 0;
+    // 100 are expected: six standard deviations to either side.
+    EXPECT_GT(passed, 40) << channel_of(message);
+    EXPECT_LT(passed, 160) << channel_of(message);
+  }
+  // And for numbers of one, two and three digits.
+  for (const char* number : {"7", "42", "127", "NEW"}) {
+    int passed = 0;
+    for (int i = 0; i < 3200; ++i) {
+      passed += passes(said(command(), 2, 100), std::string("ERGOCAST_COMMAND_") + number) ? 1 : 0;
+    }
+    EXPECT_LT(passed, 160) << number;
+  }
+  ASSERT_TRUE(admit_only_our_channels(ear_.fd()));
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(passes(said(command(), 2, 100))) << "after the flood";
+}
+
+TEST_F(DatagramFilter, HasRoomForAsManyLivesAsATeamHas) {
+  std::vector<Repeated> flooded;
+  for (Incarnation life = 1; life <= 144; ++life) flooded.push_back({life, 100});
+  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded));
+  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded)) << "in place of another";
+  int passed = 0;
+  for (int i = 0; i < 1440; ++i) {
+    const auto life = static_cast<Incarnation>(1 + i % 144);
+    passed += passes(said(command(), life, 100)) ? 1 : 0;
+    EXPECT_TRUE(passes(said(command(), life, 101)));
+  }
+  EXPECT_LT(passed, 144);
+}
+
+}  // namespace
+}  // namespace ergocast::test
