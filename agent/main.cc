@@ -34,8 +34,7 @@ int run(const NodeOptions& node, AgentId requested_id) {
   StopSignals signals;
   Agent agent({node.run, requested_id, random_identity(), host_name(), version()}, decode_plan);
   auto opened = Transport::open(
-      node.url, node.run, node.seal,
-      {{Bus::kSwarm, "MISSION|STOP|CONTRIBUTION_.*|DIGEST_.*|AGENT_STATUS_.*|HELLO"}, {Bus::kWorld, "WORLD_STATE|HELLO"}},
+      node.url, node.run, node.seal, subscriptions_of(Role::kAgent),
       {.on_message = [&agent](const Message& message, AgentId transmitter) {
          agent.receive(message, now(), transmitter);
        },

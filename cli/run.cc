@@ -108,8 +108,7 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal
         StopSignals& signals) {
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display);
-  auto opened = Transport::open(setup.url, setup.run, seal,
-                                {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*|STOP"}},
+  auto opened = Transport::open(setup.url, setup.run, seal, subscriptions_of(Role::kLauncher),
                                 {.on_message = [&mission](const Message& message, AgentId) {
                                   mission.receive(message, now());
                                 }});

@@ -24,10 +24,7 @@ std::string name_of(AgentId sender) {
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
     const BusOptions& options, std::function<void(const Message&)> hear) {
   return Transport::open(
-      options.url, options.run, options.seal,
-      {{Bus::kSwarm, "TEAM_STATUS|MISSION|AGENT_STATUS_.*"},
-       {Bus::kWorld, "WORLD_STATE"},
-       {Bus::kCommand, "RECORD_ACK"}},
+      options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
       {.on_message = [hear = std::move(hear)](const Message& message, AgentId) { hear(message); }});
 }
 

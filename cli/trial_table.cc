@@ -33,6 +33,7 @@ constexpr Count kCounts[] = {
     {"clogs", "links clogged", [](TrialFigures& f) -> std::int64_t& { return f.faults.clogs; }},
     {"splits", "partitions", [](TrialFigures& f) -> std::int64_t& { return f.splits; }},
     {"one_way_cuts", "one-way cuts", [](TrialFigures& f) -> std::int64_t& { return f.one_way_cuts; }},
+    {"evictions", "agents evicted", [](TrialFigures& f) -> std::int64_t& { return f.evictions; }},
     {"agent_crashes", "agents crashed", [](TrialFigures& f) -> std::int64_t& { return f.agent_crashes; }},
     {"coordinator_crashes", "coordinators crashed",
      [](TrialFigures& f) -> std::int64_t& { return f.coordinator_crashes; }},

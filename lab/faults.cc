@@ -87,6 +87,15 @@ bool spares_the_record(const Faults& f) {
          (!messages || f.swarm_bus_only > 0);
 }
 
+bool hinders(const Faults& f, double patience_s) {
+  // Whoever is waited for may lack four messages in a row, each said again once a second.
+  constexpr int kInARow = 4;
+  constexpr double kNever = 1e-6;
+  const double arrives = std::pow(std::max(0.0, 1 - f.loss - f.corruption), kInARow);
+  const double latest_s = kInARow * (f.delay_max_s + f.reordering_max_s + f.clog_max_s);
+  return std::pow(1 - arrives, patience_s / 2) > kNever || latest_s > patience_s / 2;
+}
+
 std::vector<Incident> incidents(const Faults& faults, std::uint64_t seed, int agents,
                                 double horizon_s) {
   std::vector<Incident> all;

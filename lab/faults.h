@@ -40,6 +40,9 @@ struct Faults {
 /// Whether nothing happens between the world and the logger, nor to them.
 bool spares_the_record(const Faults& faults);
 
+/// Whether faults of messages alone may keep an answer away for as long as `patience_s`.
+bool hinders(const Faults& faults, double patience_s);
+
 /// One member of Faults as people write it.
 struct FaultField {
   const char* name;

@@ -46,16 +46,21 @@ Flight::Flight(const TrialOptions& options, std::ostream& trajectory, std::ostre
   // To the end means to the end of a mission that began late, too.
   if (options.faults.lasting_share >= 1) faulty_s_ += mission_.timing.admission_timeout_s;
   incidents_ = incidents(options.faults, seed_, agents_count_, faulty_s_);
-  for (const Seat seat : {world_seat(), recorder_seat()}) {
-    hears_bus_[static_cast<std::size_t>(Bus::kCommand)].set(static_cast<std::size_t>(seat));
-  }
-  for (const Bus bus : {Bus::kSwarm, Bus::kWorld}) {
-    for (Seat seat = 0; seat < seats_; ++seat) {
-      if (seat != world_seat()) hears_bus_[static_cast<std::size_t>(bus)].set(static_cast<std::size_t>(seat));
+  for (Seat seat = 0; seat < seats_; ++seat) {
+    for (std::size_t bus = 0; bus < kBusCount; ++bus) {
+      on_bus_[bus].set(static_cast<std::size_t>(seat), subscriptions(seat)[bus] != 0);
     }
   }
   set_clocks();
   for (Seat seat = 0; seat < seats_; ++seat) start(seat);
+}
+
+const Subscriptions& Flight::subscriptions(Seat seat) const {
+  const Role role = seat < agents_count_          ? Role::kAgent
+                    : seat == coordinator_seat() ? Role::kCoordinator
+                    : seat == world_seat()       ? Role::kWorld
+                                                 : Role::kLogger;
+  return subscriptions_of(role, options_.subscriptions);
 }
 
 std::string Flight::name_of(Seat seat) const {
@@ -95,6 +100,8 @@ void Flight::start(Seat seat) {
         first ? Takeover::kNever : Takeover::kMust);
   } else if (seat == world_seat()) {
     world_ = std::make_unique<World>(run_, incarnation, decode_plan_);
+    acknowledged_.reset();
+    logger_lost_ = false;
   }
   process.up = true;
   process.restart = Instant::max();
@@ -138,6 +145,7 @@ TrialResult Flight::run() {
       if (progress_s() >= faulty_s_ || mission_over()) heal();
     }
     restart_due();
+    note_hindrance();
     deliver_due();
     advance_due();
     supervise_coordinator();
@@ -162,6 +170,12 @@ void Flight::hear(Seat seat, const Delivery& delivery) {
   Process& process = at(seat);
   const Instant local = process.clock.local(now_);
   const Message& message = *delivery.message;
+  const auto* ack = std::get_if<RecordAck>(&message);
+  if (ack != nullptr && seat == world_seat()) {
+    acknowledged_ = std::max(acknowledged_.value_or(-1), ack->header.tick);
+  }
+  // Everything on a bus arrives; what no subscription names goes no further.
+  if (!hears(subscriptions(seat), delivery.bus, message)) return;
   process.heard = true;
   if (seat >= agents_count_) {
     if (seat == coordinator_seat()) return coordinator_->receive(message, local);
@@ -187,6 +201,7 @@ void Flight::advance(Seat seat) {
   invariants_.wakeup(in_seconds(now_), name_of(seat), next <= local);
   process.wakeup = process.clock.when(next);
   if (seat < agents_count_) after_agent(seat);
+  if (seat == world_seat()) after_world();
 }
 
 void Flight::publish(Seat seat) {
@@ -209,7 +224,7 @@ void Flight::publish(Seat seat) {
     figures_.relayed += outgoing.relayer != kUnassigned;
     const AgentId sender = header_of(outgoing.message).sender;
     const int corrupted = network_.send(
-        now_, seat, hears_bus_[static_cast<std::size_t>(outgoing.bus)], outgoing.bus,
+        now_, seat, on_bus_[static_cast<std::size_t>(outgoing.bus)], outgoing.bus,
         outgoing.relayer != kUnassigned ? outgoing.relayer : sender,
         std::make_shared<const Message>(std::get<Message>(std::move(decoded))));
     for (int i = 0; i < corrupted; ++i) {
@@ -226,7 +241,16 @@ void Flight::after_agent(Seat seat) {
   Agent& one = agent(seat);
   invariants_.refused(t_s, one.author(), one.refused());
   look_for_recovery(seat);
-  if (one.finished()) invariants_.finished(t_s, one.author(), one.reason(), mission_over());
+  if (one.finished()) {
+    invariants_.finished(t_s, one.author(), one.reason(), mission_over() || evicted(seat));
+  }
+}
+
+void Flight::after_world() {
+  if (world_->logger_lost() && !logger_lost_) {
+    invariants_.gave_up_logger(in_seconds(now_), acknowledged_, world_->tick());
+  }
+  logger_lost_ = world_->logger_lost();
 }
 
 /// Once for each tick that an agent answers.

@@ -51,6 +51,7 @@ class Flight {
   Agent& agent(Seat seat) { return *agents_[static_cast<std::size_t>(seat)]; }
   template <class F>
   auto with(Seat seat, F f);
+  const Subscriptions& subscriptions(Seat seat) const;
   std::string name_of(Seat seat) const;
   Incarnation incarnation_of(Seat seat) const;
 
@@ -78,13 +79,18 @@ class Flight {
   void publish(Seat seat);
   void after_agent(Seat seat);
   void look_for_recovery(Seat seat);
+  void after_world();
 
   Holder holder_of(Seat seat);
   std::vector<Holder> living();
   void note_answer(Seat seat, const Message& message, const Holder& holder);
   void supervise_coordinator();
   std::string still_running();
+  void note_hindrance();
+  bool our_doing(Instant at) const;
   bool timed_out() const;
+  bool evicted(Seat seat);
+  bool struck(Seat seat);  // from the roster
   bool failed() const;
   bool mission_over() const;
   bool everybody_finished();
@@ -99,7 +105,7 @@ class Flight {
   int agents_count_, seats_;
   Network network_;
   Invariants invariants_;
-  Seats hears_bus_[kBusCount];
+  Seats on_bus_[kBusCount];  // whoever listens to anything there
 
   std::vector<Process> processes_;
   std::vector<std::unique_ptr<Agent>> agents_;
@@ -113,6 +119,7 @@ class Flight {
   std::vector<Ending> endings_;
   double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
   std::optional<Instant> healed_, failed_since_;
+  std::optional<Instant> hindered_;  // the last moment at which somebody was away
   Tick excused_ = 0;       // ticks whose states may have been kept from the logger
   bool end_said_ = false;  // by a coordinator
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
@@ -120,6 +127,8 @@ class Flight {
   Outbox outbox_;
   std::vector<std::byte> bytes_, damaged_;
   std::vector<Tick> answered_;  // by agent
+  std::optional<Tick> acknowledged_;  // by the logger, as far as it has reached the world that lives
+  bool logger_lost_ = false;          // says that world
   std::vector<std::optional<Recovery>> recoveries_;
   double recovery_sum_s_ = 0;
   TrialFigures figures_;

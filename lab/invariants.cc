@@ -7,11 +7,16 @@
 
 #include "core/noise.h"
 #include "core/perturbation.h"
+#include "sim/world.h"
 
 namespace ergocast::lab {
 namespace {
 
 constexpr Tick kTicksBetweenAverages = 10;
+/// Two digests, 1 s apart, the first up to 1 s after the admission; the answer waits up to 0.25 s.
+constexpr double kDigests_s = 2.25;
+/// Whoever learns a row late passes it on late: one more round.
+constexpr int kRounds = 2;
 
 /// How far a sum of so many terms ≤ dt may be from the exact one, relative.
 double rounding(std::int64_t steps) { return 1e-12 + static_cast<double>(steps) * 0x1p-53; }
@@ -38,6 +43,8 @@ const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const Author
   return at == roster.end() ? nullptr : &*at;
 }
 
+bool is_forgotten(const RosterEntry& entry, const Holder& by) { return entry.forgotten_at(by.answered); }
+
 }  // namespace
 
 std::string to_string(const Violation& v) {
@@ -54,10 +61,6 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
   // hello (0.25 s) and hears MISSION (0.1 s). A restarted world needs as long: it waits 1.5 s and
   // 0.55 s for the mission and 2 s for commands.
   constexpr double kAdmission_s = 4.05;
-  // Two digests, 1 s apart, the first up to 1 s after the admission; the answer waits up to 0.25 s.
-  constexpr double kDigests_s = 2.25;
-  // Whoever learns a row late passes it on late: one more round.
-  constexpr int kRounds = 2;
   const Timing& timing = mission.timing;
   const double period_s = std::max<double>(timing.broadcast_period_ticks,
                                            timing.broadcast_error_budget > 0
@@ -97,12 +100,26 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const Holder* speake
 }
 
 void Invariants::check(double t_s, const WorldState& world) {
+  if (mission_.radio_range_m > 0 && world.header.tick >= last_tick_) note_positions(t_s, world);
   last_tick_ = std::max(last_tick_, world.header.tick);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (mission_.domain.contains(vehicle.position_m.head<2>())) continue;
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
+  }
+}
+
+void Invariants::note_positions(double t_s, const WorldState& world) {
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    positions_m_[vehicle.id] = vehicle.position_m.head<2>();
+  }
+  for (auto a = positions_m_.begin(); a != positions_m_.end(); ++a) {
+    for (auto b = std::next(a); b != positions_m_.end(); ++b) {
+      if ((a->second - b->second).norm() <= mission_.radio_range_m) continue;
+      last_apart_t_s_[{a->first, b->first}] = t_s;
+    }
   }
 }
 
@@ -244,6 +261,13 @@ void Invariants::wakeup(double t_s, const std::string& who, bool in_the_past) {
   if (in_the_past) violate(t_s, Invariant::kNoWakeupInThePast, who, "next_wakeup() <= now");
 }
 
+void Invariants::gave_up_logger(double t_s, std::optional<Tick> acknowledged, Tick tick) {
+  if (!acknowledged || tick - *acknowledged > kRecordWindowTicks) return;
+  violate(t_s, Invariant::kHeardLoggerIsKept, "the world",
+          text("gives up at tick ", tick, " a logger whose word of tick ", *acknowledged,
+               " has reached it"));
+}
+
 // ---- liveness ------------------------------------------------------------------------------------
 
 /// The newest of each author's blocks that anybody holds. Forgotten rows do not count any more.
@@ -255,7 +279,7 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
     for (const Author& author : authors_) {
       if (!holder.table->steps_held(author)) continue;
       const RosterEntry* entry = entry_of(*holder.roster, author);
-      if (entry != nullptr && entry->forgotten_at(holder.answered)) continue;
+      if (entry != nullptr && is_forgotten(*entry, holder)) continue;
       auto& blocks = best.try_emplace(author, static_cast<std::size_t>(block_count_)).first->second;
       for (int b = 0; b < block_count_; ++b) {
         const Contribution held = holder.table->block(author, b);
@@ -289,14 +313,36 @@ void Invariants::recovered(double t_s, const std::vector<Holder>& living) {
     return violate(t_s, Invariant::kEverybodyIsBack, name_of(holder.self),
                    holder.table == nullptr ? "is not admitted" : "has seen no tick");
   }
+  for (const Holder& holder : living) check_counted(t_s, holder, living);
   const auto best = best_of(living);
   const Coefficients c_true = average_of(best);
   compare_views(living);
   for (const Holder& holder : living) {
-    check_rows(t_s, holder, best);
+    if (mission_.radio_range_m <= 0) check_rows(t_s, holder, best);
     check_view(t_s, holder, best, c_true);
   }
+  if (mission_.radio_range_m > 0) check_neighbours(t_s, living);
   check_quiet(t_s);
+}
+
+void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant now,
+                             const std::vector<Holder>& living) {
+  for (const Holder& holder : living) {
+    const RosterEntry* entry = entry_of(coordinator.roster(), holder.self);
+    const char* taken_for = entry == nullptr ? "nobody" : to_string(coordinator.presence(*entry, now));
+    if (entry != nullptr && coordinator.presence(*entry, now) == Presence::kAlive) continue;
+    violate(t_s, Invariant::kTheLivingAreKnown, "the coordinator",
+            text("takes ", name_of(holder.self), " for ", taken_for));
+  }
+}
+
+void Invariants::check_counted(double t_s, const Holder& holder, const std::vector<Holder>& living) {
+  for (const Holder& other : living) {
+    const RosterEntry* entry = entry_of(*holder.roster, other.self);
+    if (entry == nullptr || !is_forgotten(*entry, holder)) continue;
+    violate(t_s, Invariant::kTheLivingCount, name_of(holder.self),
+            text("leaves out what ", name_of(other.self), " covers at tick ", holder.answered));
+  }
 }
 
 void Invariants::compare_views(const std::vector<Holder>& living) {
@@ -317,6 +363,11 @@ void Invariants::check_view(double t_s, const Holder& holder,
   for (const auto& [author, blocks] : best) {
     covered_s += static_cast<double>(blocks.front().steps) * mission_.timing.dt_s;
     const RosterEntry* entry = entry_of(*holder.roster, author);
+    if (mission_.radio_range_m > 0) {
+      const std::int64_t lacks = blocks.front().steps - steps_of(*holder.table, author);
+      stale_s += static_cast<double>(std::max<std::int64_t>(lacks, 0)) * mission_.timing.dt_s;
+      continue;
+    }
     if (entry == nullptr || entry->active_until >= 0) continue;
     // Two periods until a digest complains, two ticks on the way.
     const Tick period = holder.table->announced_period(author);
@@ -349,6 +400,60 @@ void Invariants::check_rows(double t_s, const Holder& holder,
     violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
             text("holds ", held, " of ", newest, " steps of ", name_of(author),
                  speaks ? ", a member" : ", who has left"));
+  }
+}
+
+/// What an agent held is known to others after a round of digests for each hop between them.
+void Invariants::check_neighbours(double t_s, const std::vector<Holder>& living) {
+  Memory& present = memories_.emplace_back(t_s);
+  for (const Holder& holder : living) {
+    for (const Author& author : authors_) present.held[holder.self][author] = steps_of(*holder.table, author);
+  }
+  for (int hops = 1; hops < static_cast<int>(living.size()); ++hops) {
+    const double takes_s = hops * kRounds * kDigests_s;
+    const auto past = std::find_if(memories_.rbegin(), memories_.rend(), [&](const Memory& memory) {
+      return memory.t_s <= t_s - takes_s;
+    });
+    if (past == memories_.rend()) return;
+    for (const Holder& holder : living) {
+      for (const Author& other : within(hops, holder.self, t_s - past->t_s, t_s, living)) {
+        check_learned(t_s, holder, other, past->held[other], hops);
+      }
+    }
+  }
+}
+
+/// Whom `self` has heard for so long without a break, through at most so many others less one.
+std::set<Author> Invariants::within(int hops, const Author& self, double heard_for_s, double t_s,
+                                    const std::vector<Holder>& living) const {
+  const auto hears = [&](const Author& a, const Author& b) {
+    const auto apart = last_apart_t_s_.find(std::minmax(a.agent, b.agent));
+    return apart == last_apart_t_s_.end() || t_s - apart->second > heard_for_s;
+  };
+  std::set<Author> reached{self};
+  for (int hop = 0; hop < hops; ++hop) {
+    const std::set<Author> inner = reached;
+    for (const Holder& holder : living) {
+      const auto heard = [&](const Author& one) { return hears(one, holder.self); };
+      if (std::any_of(inner.begin(), inner.end(), heard)) reached.insert(holder.self);
+    }
+  }
+  return reached;
+}
+
+void Invariants::check_learned(double t_s, const Holder& holder, const Author& other,
+                               const std::map<Author, std::int64_t>& held_then, int hops) {
+  for (const auto& [author, then] : held_then) {
+    const RosterEntry* entry = entry_of(*holder.roster, author);
+    if (entry == nullptr || author == holder.self) continue;
+    // Nobody repeats what an author that speaks will soon say itself: a slack for each on the way.
+    const Tick period = holder.table->announced_period(author);
+    const std::int64_t tolerated = entry->active_until < 0 ? hops * (2 * period + 2) : 0;
+    const std::int64_t held = steps_of(*holder.table, author);
+    if (held + tolerated >= then) continue;
+    violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
+            text("holds ", held, " steps of ", name_of(author), ", of whom ", name_of(other), ", ", hops,
+                 " hops away, has long held ", then));
   }
 }
 

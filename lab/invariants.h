@@ -9,12 +9,14 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "coordinator/coordinator.h"
 #include "core/coverage_table.h"
 #include "core/mission.h"
 #include "core/mission_follower.h"
@@ -39,8 +41,11 @@ enum class Invariant : std::uint8_t {
   kHonestMessagesAccepted,
   kNoEarlyEnd,
   kNoWakeupInThePast,
+  kHeardLoggerIsKept,
   // Liveness.
   kEverybodyIsBack,
+  kTheLivingAreKnown,
+  kTheLivingCount,
   kEverybodyLearnsEveryRow,
   kViewsAgree,
   kRelaysStop,
@@ -69,7 +74,10 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kHonestMessagesAccepted, "no honest message is refused"},
         {Invariant::kNoEarlyEnd, "no agent ends before the mission"},
         {Invariant::kNoWakeupInThePast, "nobody asks to be woken in the past"},
+        {Invariant::kHeardLoggerIsKept, "a logger that is heard is not given up"},
         {Invariant::kEverybodyIsBack, "everybody is back in the mission"},
+        {Invariant::kTheLivingAreKnown, "who lives is taken for living"},
+        {Invariant::kTheLivingCount, "who lives is not forgotten"},
         {Invariant::kEverybodyLearnsEveryRow, "everybody learns every row"},
         {Invariant::kViewsAgree, "all agree on c_k within their staleness"},
         {Invariant::kRelaysStop, "relays stop once all know all"},
@@ -137,14 +145,24 @@ class Invariants {
   void finished(double t_s, const Author& who, const std::string& reason, bool mission_over);
   /// A process wants to be woken at a time that has passed: it would run at full load.
   void wakeup(double t_s, const std::string& who, bool in_the_past);
+  /// The world goes on at `tick` without the logger.
+  /// @param acknowledged  the newest tick of which an acknowledgement has reached it
+  void gave_up_logger(double t_s, std::optional<Tick> acknowledged, Tick tick);
 
   // ---- liveness ----
 
   /// To be called from recovery_bound_s() after healing on. Every living agent holds the rows that
   /// any holds, of authors that have left the newest; |c − c_true|_∞ ≤ 2 δ / (T − δ), where δ sums
   /// what the authors that still speak may not have said or delivered yet. Between two calls nobody
-  /// repeats anything, unless radios are limited.
+  /// repeats anything.
+  ///
+  /// With a radio range an agent learns what another has, through others too, only where each on the
+  /// way has heard the next for long enough: then it holds what the other held that long ago. δ is
+  /// what it lacks, and repeats may go on.
   void recovered(double t_s, const std::vector<Holder>& living);
+  /// To be called with it: what the coordinator thinks of everybody who lives.
+  void coordinated(double t_s, const Coordinator& coordinator, Instant now,
+                   const std::vector<Holder>& living);
   /// Everybody has ended, or the time is up.
   /// @param excused  ticks whose states may have been kept from the logger
   void ended(double t_s, const std::string& still_running, const std::string& failure,
@@ -178,6 +196,13 @@ class Invariants {
   void check_view(double t_s, const Holder& holder,
                   const std::map<Author, std::vector<Best>>& best, const Coefficients& c_true);
   void check_quiet(double t_s);
+  void note_positions(double t_s, const WorldState& world);
+  void check_counted(double t_s, const Holder& holder, const std::vector<Holder>& living);
+  void check_neighbours(double t_s, const std::vector<Holder>& living);
+  std::set<Author> within(int hops, const Author& self, double heard_for_s, double t_s,
+                          const std::vector<Holder>& living) const;
+  void check_learned(double t_s, const Holder& holder, const Author& other,
+                     const std::map<Author, std::int64_t>& held_then, int hops);
 
   Mission mission_;
   Coefficients weights_;
@@ -187,6 +212,13 @@ class Invariants {
   std::map<AgentId, int> lives_;
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, std::int64_t> relays_allowed_;
+  std::map<AgentId, Eigen::Vector2d> positions_m_;                // with a radio range only, as what follows
+  std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first
+  struct Memory {
+    double t_s;
+    std::map<Author, std::map<Author, std::int64_t>> held;  // as held_
+  };
+  std::vector<Memory> memories_;  // of each call of recovered()
   std::int64_t relayed_ = 0;  // since the last recovered()
   bool recovered_ = false;
   Tick last_tick_ = -1;

@@ -47,11 +47,11 @@ int Network::send(Instant now, Seat from, const Seats& to, Bus bus, AgentId tran
       if (*arrival == now + kLatency && !at_once.test(bit)) {
         at_once.set(bit);
       } else {
-        push(*arrival, transmitter, Seats().set(bit), message);
+        push(*arrival, bus, transmitter, Seats().set(bit), message);
       }
     }
   }
-  if (at_once.any()) push(now + kLatency, transmitter, at_once, message);
+  if (at_once.any()) push(now + kLatency, bus, transmitter, at_once, message);
   return corrupted;
 }
 
@@ -116,9 +116,9 @@ Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, doub
   return link.last_arrival = std::max(at, link.last_arrival);
 }
 
-void Network::push(Instant at, AgentId transmitter, const Seats& to,
+void Network::push(Instant at, Bus bus, AgentId transmitter, const Seats& to,
                    const std::shared_ptr<const Message>& message) {
-  queue_.push({at, pushed_++, transmitter, to, message});
+  queue_.push({at, pushed_++, bus, transmitter, to, message});
 }
 
 Delivery Network::pop() {

@@ -36,6 +36,7 @@ struct MessageFaults {
 struct Delivery {
   Instant at;
   std::uint64_t order;  ///< of insertion
+  Bus bus;
   AgentId transmitter;
   Seats to;
   std::shared_ptr<const Message> message;
@@ -84,7 +85,7 @@ class Network {
   }
   Fate fate_of(Instant now, std::size_t pair, Bus bus);
   Instant arrival(Instant now, Link& link, std::uint32_t link_index, double reorders, double clogs);
-  void push(Instant at, AgentId transmitter, const Seats& to,
+  void push(Instant at, Bus bus, AgentId transmitter, const Seats& to,
             const std::shared_ptr<const Message>& message);
 
   std::uint64_t seed_;

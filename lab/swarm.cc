@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/noise.h"
+#include "core/subscriptions.h"
 #include "lcmtypes/codec.h"
 
 namespace ergocast::lab {
@@ -98,15 +99,15 @@ void Swarm::deliver(const Datagram& datagram) {
   const auto decoded = decode(datagram.bytes, run_);
   const Message* message = std::get_if<Message>(&decoded);
   if (message == nullptr) return;
-  if (datagram.bus != Bus::kCommand) {
+  const auto heard_by = [&](Role role) { return hears(subscriptions_of(role), datagram.bus, *message); };
+  if (heard_by(Role::kAgent)) {
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       if (reaches(*message, static_cast<int>(i))) agents_[i]->receive(*message, now_, datagram.transmitter);
     }
-    if (reaches(*message, kCoordinatorSeat)) coordinator_.receive(*message, now_);
-  } else if (reaches(*message, kWorldSeat)) {
-    world_.receive(*message, now_);
   }
-  if (reaches(*message, kLoggerSeat)) recorder_.receive(*message, now_);
+  if (heard_by(Role::kCoordinator) && reaches(*message, kCoordinatorSeat)) coordinator_.receive(*message, now_);
+  if (heard_by(Role::kWorld) && reaches(*message, kWorldSeat)) world_.receive(*message, now_);
+  if (heard_by(Role::kLogger) && reaches(*message, kLoggerSeat)) recorder_.receive(*message, now_);
 }
 
 bool Swarm::everybody_finished() const {

@@ -20,7 +20,7 @@ Holder Flight::holder_of(Seat seat) {
 std::vector<Holder> Flight::living() {
   std::vector<Holder> living;
   for (Seat seat = 0; seat < agents_count_; ++seat) {
-    if (at(seat).up) living.push_back(holder_of(seat));
+    if (at(seat).up && !agent(seat).finished()) living.push_back(holder_of(seat));
   }
   return living;
 }
@@ -52,7 +52,9 @@ void Flight::check_recovered() {
   if (now_ < next_check_) return;
   next_check_ = now_ + kCheckPeriod;
   if (mission_over() || options_.faults.lasting_share >= 1) return;
-  invariants_.recovered(in_seconds(now_), living());
+  const double t_s = in_seconds(now_);
+  invariants_.recovered(t_s, living());
+  invariants_.coordinated(t_s, *coordinator_, at(coordinator_seat()).clock.local(now_), living());
 }
 
 std::string Flight::still_running() {
@@ -64,11 +66,31 @@ std::string Flight::still_running() {
   return names;
 }
 
-/// Whether a lockstep mission was given up because of what we did to it.
-bool Flight::timed_out() const {
-  const auto patience = seconds(mission_.timing.lockstep_timeout_s + kFarewell_s);
-  return failed_since_ && mission_.timing.pace == Pace::kLockstep &&
-         (!healed_ || *failed_since_ < *healed_ + patience);
+/// Somebody is down or cut off, or messages are so late or so few that nobody can tell.
+void Flight::note_hindrance() {
+  const bool away = std::any_of(processes_.begin(), processes_.end(),
+                                [](const Process& process) { return !process.up; });
+  const bool poor = !healed_ && hinders(options_.faults, mission_.timing.lockstep_timeout_s);
+  if (away || poor || !endings_.empty()) hindered_ = now_;
+}
+
+/// Whether what went wrong then may be due to what we have done: after each hindrance everybody has
+/// the time to recover.
+bool Flight::our_doing(Instant at) const {
+  return hindered_ && at < *hindered_ + seconds(recovery_bound_s(mission_, options_.faults));
+}
+
+/// Whether a mission was given up because of what we did to it.
+bool Flight::timed_out() const { return failed_since_ && our_doing(*failed_since_); }
+
+/// Whether it has left the team as the scenario says, after it could not answer in time.
+bool Flight::evicted(Seat seat) {
+  return mission_.timing.on_timeout == OnTimeout::kEvict && struck(seat) && our_doing(now_);
+}
+
+bool Flight::struck(Seat seat) {
+  const RosterEntry* entry = agent(seat).follower().entry_of(agent(seat).author().incarnation);
+  return entry != nullptr && entry->active_until >= 0;
 }
 
 /// A coordinator that came back when all was over has no mission that could fail.
@@ -90,6 +112,7 @@ TrialResult Flight::result() {
   figures_.ergodic_metric = recorder_.facts().ergodic_metric_last;
   figures_.view_error = invariants_.largest_view_error();
   figures_.faults = network_.counted();
+  for (Seat seat = 0; seat < agents_count_; ++seat) figures_.evictions += agent(seat).finished() && struck(seat);
   if (figures_.recoveries > 0) {
     figures_.recovery_mean_s = recovery_sum_s_ / static_cast<double>(figures_.recoveries);
   }

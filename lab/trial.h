@@ -15,6 +15,7 @@
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
+#include "core/subscriptions.h"
 #include "lab/faults.h"
 #include "lab/invariants.h"
 #include "lab/network.h"
@@ -28,6 +29,7 @@ struct TrialOptions {
   PlanDecoder decode_plan;
   Faults faults;
   std::string version;
+  SubscriptionTable subscriptions = kSubscriptions;  ///< what tests take away is not heard
 };
 
 /// What a trial was like, in numbers only: it passes between processes as it is.
@@ -40,6 +42,7 @@ struct TrialFigures {
   MessageFaults faults;
   std::int64_t splits = 0, one_way_cuts = 0;
   std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
+  std::int64_t evictions = 0;
   /// From the restart of an agent until it holds again all that its predecessors had told anybody.
   double recovery_mean_s = 0, recovery_max_s = 0;
   std::int64_t recoveries = 0;

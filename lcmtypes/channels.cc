@@ -70,6 +70,16 @@ std::span<const ChannelName> channel_names() {
   return names;
 }
 
+std::string channels_of(MessageTypes types) {
+  std::string names;
+  for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
+    if ((types >> kind & 1) == 0) continue;
+    const ChannelName& name = channel_names()[kind];
+    names += (names.empty() ? "" : "|") + std::string(name.text) + (name.per_agent ? ".*" : "");
+  }
+  return "(" + names + ")";
+}
+
 std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel) {
   const AgentId sender = header_of(message).sender;
   if (channel == channel_of(message)) return sender;

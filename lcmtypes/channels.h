@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/messages.h"
+#include "core/subscriptions.h"
 
 namespace ergocast {
 
@@ -23,6 +24,9 @@ struct ChannelName {
 };
 /// One for each kind of message. Whatever arrives under another name is nobody's.
 std::span<const ChannelName> channel_names();
+
+/// A regular expression that fits the whole names of the channels of these messages, and no other.
+std::string channels_of(MessageTypes types);
 
 /// Who transmitted what arrived under `channel`: the sender, or for contributions the agent whose
 /// channel it is. Nothing if `message` has no business there.

@@ -198,7 +198,7 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLi
   RunLogger logger(node.run, *std::get<0>(created), std::move(past), limits);
   Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
-      node.url, node.run, node.seal, {{Bus::kSwarm, ".*"}, {Bus::kWorld, ".*"}, {Bus::kCommand, ".*"}},
+      node.url, node.run, node.seal, subscriptions_of(Role::kLogger),
       {.on_message = [&](const Message& message, AgentId) { recorder.receive(message, now()); },
        .on_accepted = [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
          logger.keep_event(bus, channel, bytes);

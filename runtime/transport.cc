@@ -45,7 +45,7 @@ class LcmTransport final : public Transport {
   LcmTransport(RunId run, const Seal& seal, Handlers handlers)
       : run_(run), seal_(seal), handlers_(std::move(handlers)) {}
 
-  std::optional<std::string> connect(const LcmUrl& url, const std::vector<Listening>& listening);
+  std::optional<std::string> connect(const LcmUrl& url, const Subscriptions& hears);
 
   void set_run(RunId run) override { run_ = run; }
   void publish(const Outgoing& outgoing) override;
@@ -94,25 +94,26 @@ class LcmTransport final : public Transport {
   std::vector<std::byte> bytes_;
 };
 
-std::optional<std::string> LcmTransport::connect(const LcmUrl& url,
-                                                 const std::vector<Listening>& listening) {
+std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscriptions& hears) {
   for (int b = 0; b < kBusCount; ++b) {
     const auto at = static_cast<std::size_t>(b);
     buses_[at] = std::make_unique<lcm::LCM>(url.of(static_cast<Bus>(b)));
     if (!buses_[at]->good()) return url.of(static_cast<Bus>(b)) + ": LCM cannot use it";
   }
-  for (const Listening& one : listening) {
-    const auto at = static_cast<std::size_t>(one.bus);
+  for (int b = 0; b < kBusCount; ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    const Bus bus = static_cast<Bus>(b);
+    if (hears[at] == 0) continue;
     // LCM tests itself here; a subscription after a failed test would abort the process later.
     const int fd = buses_[at]->getFileno();
-    if (fd < 0) return url.of(one.bus) + ": LCM's self test failed\n" + kFirewall;
-    const auto sockets = sockets_at(url.base_port + static_cast<int>(one.bus), 1);
+    if (fd < 0) return url.of(bus) + ": LCM's self test failed\n" + kFirewall;
+    const auto sockets = sockets_at(url.base_port + b, 1);
     filtered_ = filtered_ && !sockets.empty() &&
                 std::all_of(sockets.begin(), sockets.end(), admit_only_our_channels);
     sockets_.insert(sockets_.end(), sockets.begin(), sockets.end());
-    lines_[at] = {this, one.bus};
+    lines_[at] = {this, bus};
     buses_[at]
-        ->subscribe(std::string(kPrefix) + "(" + one.channels + ")", &Line::on_datagram, &lines_[at])
+        ->subscribe(channels_of(hears[at]), &Line::on_datagram, &lines_[at])
         ->setQueueCapacity(kQueueCapacity);
     ready_.push_back({fd, POLLIN, 0});
     listened_.push_back(buses_[at].get());
@@ -176,11 +177,11 @@ Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
-    const LcmUrl& url, RunId run, const Seal& seal, const std::vector<Listening>& listening,
+    const LcmUrl& url, RunId run, const Seal& seal, const Subscriptions& hears,
     Handlers handlers) {
   if (const auto problem = why_unreachable(url)) return *problem;
   auto transport = std::make_unique<LcmTransport>(run, seal, std::move(handlers));
-  if (const auto problem = transport->connect(url, listening)) return *problem;
+  if (const auto problem = transport->connect(url, hears)) return *problem;
   return std::unique_ptr<Transport>(std::move(transport));
 }
 

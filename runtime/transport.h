@@ -10,21 +10,15 @@
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "core/ids.h"
 #include "core/messages.h"
+#include "core/subscriptions.h"
 #include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
 #include "runtime/rate_limit.h"
 
 namespace ergocast {
-
-/// A bus to listen to, and which of its channels (a regular expression over whole names).
-struct Listening {
-  Bus bus;
-  std::string channels;
-};
 
 /// A process looks around at least this often, whatever it waits for.
 inline constexpr std::chrono::nanoseconds kLongestWait = std::chrono::seconds(1);
@@ -39,11 +33,12 @@ class Transport {
     std::function<void(Bus, std::string_view channel, std::span<const std::byte>)> on_accepted = {};
   };
 
-  /// Opens every bus, to publish on; listens to some. An error says what would mend it.
+  /// Opens every bus, to publish on; listens where `hears` has a message. An error says what would
+  /// mend it.
   /// @param run  the only run accepted; 0 accepts any until set_run()
   /// @param seal  closes what is published, and what it does not open is refused
   static std::variant<std::unique_ptr<Transport>, std::string> open(
-      const LcmUrl& url, RunId run, const Seal& seal, const std::vector<Listening>& listening,
+      const LcmUrl& url, RunId run, const Seal& seal, const Subscriptions& hears,
       Handlers handlers);
   virtual ~Transport() = default;
 

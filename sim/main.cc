@@ -15,7 +15,7 @@ int run(const NodeOptions& node) {
   StopSignals signals;
   World world(node.run, random_identity(), decode_plan);
   auto opened = Transport::open(
-      node.url, node.run, node.seal, {{Bus::kCommand, "COMMAND_.*|MISSION|STOP|RECORD_ACK"}},
+      node.url, node.run, node.seal, subscriptions_of(Role::kWorld),
       {.on_message = [&](const Message& message, AgentId) { world.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);

@@ -14,7 +14,7 @@ int run(const NodeOptions& node, double speed_limit_mps) {
   StopSignals signals;
   Driver driver(node.run, random_identity(), speed_limit_mps, decode_plan);
   auto opened = Transport::open(
-      node.url, node.run, node.seal, {{Bus::kCommand, "COMMAND_.*|MISSION|STOP"}},
+      node.url, node.run, node.seal, subscriptions_of(Role::kDriver),
       {.on_message = [&](const Message& message, AgentId) { driver.receive(message, now()); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);

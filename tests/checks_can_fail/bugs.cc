@@ -46,6 +46,8 @@ WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*
 WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
 WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", World*, Instant, Outbox&)
 WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
+WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Instant)
+WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Instant)
 using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_4SealESt17basic_string_viewIcSt11char_traitsIcEE", std::span<const std::byte>, RunId, const Seal&, std::string_view)
 // clang-format on
@@ -155,6 +157,17 @@ void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
   if (due && bug("the coordinator panics")) self->end(true, "no reason", now);
   if (due && bug("the coordinator ends too early")) self->end(false, "enough", now);
   real_coordinate(self, now, out);
+}
+
+void bug_tell_coordinator(Coordinator* self, const Message& message, Instant now) {
+  const auto* status = std::get_if<AgentStatus>(&message);
+  if (bug("the coordinator does not hear an agent") && status != nullptr && status->header.sender == 2) return;
+  real_tell_coordinator(self, message, now);
+}
+
+void bug_tell_world(World* self, const Message& message, Instant now) {
+  if (bug("the world does not hear the logger") && std::holds_alternative<RecordAck>(message)) return;
+  real_tell_world(self, message, now);
 }
 
 namespace {

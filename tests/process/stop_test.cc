@@ -210,7 +210,7 @@ TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
 TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
   std::set<RunId> told;
   const auto listener = std::get<0>(Transport::open(
-      std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {{Bus::kSwarm, "STOP"}},
+      std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
       {.on_message = [&](const Message& stop, AgentId) { told.insert(header_of(stop).run); }}));
   Stranger stranger(kUrl);
   Program& decided = hand("ergocast", {"stop", "--now"});

@@ -21,8 +21,7 @@ class Witness {
   explicit Witness(const std::string& url, const Seal& seal = {}) {
     transport_ = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(url)), 0, seal,
-        {{Bus::kSwarm, "MISSION|CONTRIBUTION_.*|DIGEST_.*|AGENT_STATUS_.*"},
-         {Bus::kCommand, "COMMAND_.*|RECORD_ACK"}},
+        {kTypes<MissionPart, Contribution, Digest, AgentStatus>, 0, kTypes<Command, RecordAck>},
         {.on_message = [this](const Message& message, AgentId) { hear(message); }}));
   }
 

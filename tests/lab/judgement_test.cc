@@ -1,0 +1,184 @@
+// What the laboratory blames a mission for: what its faults can have caused is forgiven, and what they
+// cannot have caused is not; and a message that somebody does not subscribe to is missed.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lab/trial.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::test {
+namespace {
+
+using lab::Faults;
+using lab::Invariant;
+using lab::TrialResult;
+
+/// The faulty team, with something else in its scenario's text.
+Scenario team(Pace pace, const std::string& from = "", const std::string& to = "") {
+  std::ifstream file(ERGOCAST_SCENARIO_DIR "/faulty_team.textproto");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto at = text.find(from);
+  if (at == text.npos) throw std::logic_error(from);
+  text.replace(at, from.size(), to);
+  Overrides overrides;
+  overrides.pace = pace;
+  return std::get<Scenario>(Scenario::parse(text, "faulty_team", overrides));
+}
+
+TrialResult fly(const Scenario& scenario, std::uint64_t seed, const Faults& faults,
+                const SubscriptionTable& subscriptions = kSubscriptions) {
+  std::ostringstream trajectory, metrics;
+  return lab::fly_trial({scenario.with_seed(seed).plan(), decode_plan, faults, "test", subscriptions},
+                        trajectory, metrics);
+}
+
+std::optional<Invariant> broken(const TrialResult& result) {
+  return result.violation ? std::optional(result.violation->invariant) : std::nullopt;
+}
+std::string problem(const TrialResult& result) {
+  return result.violation ? to_string(*result.violation) : "";
+}
+
+/// One kind of message that somebody hears on a bus.
+struct Heard {
+  Role role;
+  Bus bus;
+  std::size_t type;
+};
+
+std::vector<Heard> heard_in_the_laboratory() {
+  std::vector<Heard> all;
+  for (const Role role : {Role::kAgent, Role::kCoordinator, Role::kWorld, Role::kLogger}) {
+    for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
+      for (std::size_t type = 0; type < kMessageTypeCount; ++type) {
+        const MessageTypes types = subscriptions_of(role)[static_cast<std::size_t>(bus)];
+        if ((types >> type & 1) != 0) all.push_back({role, bus, type});
+      }
+    }
+  }
+  return all;
+}
+
+SubscriptionTable without(const Heard& heard) {
+  SubscriptionTable table = kSubscriptions;
+  table[static_cast<std::size_t>(heard.role)][static_cast<std::size_t>(heard.bus)] &=
+      ~(MessageTypes{1} << heard.type);
+  return table;
+}
+
+/// What the laboratory has no occasion to miss, for each a reason.
+bool never_missed(const Heard& heard) {
+  const MessageTypes type = MessageTypes{1} << heard.type;
+  // No operator says STOP here, and nobody starts a second agent of a number or a second coordinator;
+  // the tests of real processes do.
+  if (type == kTypes<Stop>) return true;
+  if (heard.role == Role::kAgent) return type == kTypes<AgentStatus>;
+  if (heard.role == Role::kCoordinator) return type == kTypes<TeamStatus>;
+  // The logger keeps everything for who looks at the event log later; its tables need this only.
+  return heard.role == Role::kLogger && !(type == kTypes<WorldState> && heard.bus == Bus::kWorld);
+}
+
+TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
+  const Scenario real_time = team(Pace::kRealtime);
+  for (const Heard& heard : heard_in_the_laboratory()) {
+    bool missed = false;
+    for (std::uint64_t seed = 1; seed <= (never_missed(heard) ? 1 : 10) && !missed; ++seed) {
+      missed = fly(real_time, seed, lab::drawn(seed), without(heard)).violation.has_value();
+    }
+    EXPECT_EQ(missed, !never_missed(heard))
+        << "role " << static_cast<int>(heard.role) << ", bus " << static_cast<int>(heard.bus)
+        << ", message kind " << heard.type;
+  }
+}
+
+// ---- radio range ---------------------------------------------------------------------------------
+
+TEST(RadioRange, IsNoFault) {
+  for (const char* range : {"30", "50", "80"}) {
+    for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
+      const Scenario limited =
+          team(pace, "\nlaw {", "\nworld { radio_range_m: " + std::string(range) + " }\nlaw {");
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        // Whether the goal is reached with such a radio is the scenario's affair.
+        for (const TrialResult& result : {fly(limited, seed, {}), fly(limited, seed, lab::drawn(seed))}) {
+          if (broken(result) != Invariant::kGoalReached) {
+            EXPECT_EQ(problem(result), "") << range << " m, seed " << seed;
+          }
+        }
+      }
+    }
+  }
+}
+
+// A chain of four that hardly move, in which nobody hears the next but one.
+TEST(RadioRange, ExcusesNobodyFromPassingOnWhatItHears) {
+  const auto chain = std::get<Scenario>(Scenario::parse(R"(
+    domain { size_x_m: 100 size_y_m: 100 }
+    target { uniform_weight: 1 }
+    basis { modes_x: 4 modes_y: 4 }
+    law { u_max_mps: 1 }
+    world { radio_range_m: 40 speed_limit_mps: 0.01 }
+    time { duration_s: 60 broadcast_period_ticks: 5 pace: REALTIME }
+    agents { starts { x_m: 5 y_m: 50 } starts { x_m: 35 y_m: 50 } starts { x_m: 65 y_m: 50 } starts { x_m: 95 y_m: 50 } }
+  )", "chain"));
+  EXPECT_EQ(problem(fly(chain, 1, {})), "");
+  const Heard digests{Role::kAgent, Bus::kSwarm, Message(Digest()).index()};
+  EXPECT_EQ(broken(fly(chain, 1, {}, without(digests))), Invariant::kEverybodyLearnsEveryRow);
+}
+
+// ---- time-outs and evictions ---------------------------------------------------------------------
+
+Scenario evicting() {
+  return team(Pace::kLockstep, "admission_timeout_s: 3600",
+              "admission_timeout_s: 3600 lockstep_timeout_s: 3 on_timeout: EVICT");
+}
+
+TEST(Eviction, OfWhoWasAwayIsNoFault) {
+  int evicted = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Faults faults;
+    faults.loss = 0.9;
+    faults.swarm_bus_only = 1;
+    const TrialResult result = fly(evicting(), seed, faults);
+    EXPECT_EQ(problem(result), "") << seed;
+    evicted += result.figures.evictions > 0;
+  }
+  EXPECT_GE(evicted, 3);
+}
+
+TEST(Eviction, OfWhoWasThereIs) {
+  const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
+  EXPECT_EQ(broken(fly(evicting(), 1, {}, without(states))), Invariant::kNoEarlyEnd);
+}
+
+TEST(TimeOut, OfAnAdmissionIsAFaultUnlessSomebodyWasAway) {
+  const Heard hellos{Role::kCoordinator, Bus::kSwarm, Message(Hello()).index()};
+  Faults deaf;
+  deaf.loss = 1;
+  for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
+    const Scenario scenario = team(pace, "admission_timeout_s: 3600", "admission_timeout_s: 5");
+    EXPECT_EQ(broken(fly(scenario, 1, {}, without(hellos))), Invariant::kMissionDoesNotFail);
+    const TrialResult excused = fly(scenario, 1, deaf);
+    EXPECT_EQ(problem(excused), "");
+    EXPECT_TRUE(excused.timed_out);
+  }
+}
+
+TEST(TimeOut, OfATickIsAFaultIfNobodyWasAway) {
+  const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
+  Faults harmless;  // nothing that could hold up a tick for ten seconds
+  harmless.duplication = 0.3;
+  harmless.delay_mean_s = 0.01;
+  harmless.delay_max_s = 0.05;
+  EXPECT_EQ(broken(fly(team(Pace::kLockstep), 1, harmless, without(states))), Invariant::kMissionDoesNotFail);
+}
+
+}  // namespace
+}  // namespace ergocast::test
