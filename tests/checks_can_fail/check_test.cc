@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
+using Block = google::protobuf::Message;
 
 const std::string kGood = R"(domain { size_x_m: 100 size_y_m: 50 }
 target { uniform_weight: 1 }
@@ -306,8 +306,8 @@ world { disturbance_intensity: 0.1 radio_range_m: 30 speed_limit_mps: 100 }
 )";
 
 /// Calls `visit` for each field that a person can write a number or a word for, with its block.
-void each_field(Message& message, const std::string& path,
-                const std::function<void(Message&, const FieldDescriptor&, const std::string&)>& visit) {
+void each_field(Block& message, const std::string& path,
+                const std::function<void(Block&, const FieldDescriptor&, const std::string&)>& visit) {
   const auto* reflection = message.GetReflection();
   for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor& field = *message.GetDescriptor()->field(i);
@@ -329,10 +329,10 @@ class CheckCanFail : public Scenarios {
  protected:
   /// The program says that of the field at `path`, once `spoil` has been done to it.
   void expect_said(const std::string& path, const std::string& what,
-                   const std::function<void(Message&, const FieldDescriptor&)>& spoil) {
+                   const std::function<void(Block&, const FieldDescriptor&)>& spoil) {
     proto::Scenario scenario;
     ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &scenario));
-    each_field(scenario, "", [&](Message& block, const FieldDescriptor& field, const std::string& at) {
+    each_field(scenario, "", [&](Block& block, const FieldDescriptor& field, const std::string& at) {
       if (at == path) spoil(block, field);
     });
     std::string text;
@@ -348,7 +348,7 @@ class CheckCanFail : public Scenarios {
   }
 
   void expect_value_refused(const std::string& path, double value, const std::string& what) {
-    expect_said(path, what, [value](Message& block, const FieldDescriptor& field) {
+    expect_said(path, what, [value](Block& block, const FieldDescriptor& field) {
       if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
         block.GetReflection()->SetDouble(&block, &field, value);
       } else {
@@ -369,7 +369,7 @@ class CheckCanFail : public Scenarios {
     }
     if (!whole) expect_value_refused(path, std::nan(""), "nan is not a number");
     if (rule.absence != Absence::kRefused) return;
-    expect_said(path, "is missing", [](Message& block, const FieldDescriptor& one) {
+    expect_said(path, "is missing", [](Block& block, const FieldDescriptor& one) {
       block.GetReflection()->ClearField(&block, &one);
     });
   }
@@ -381,11 +381,11 @@ class CheckCanFail : public Scenarios {
     proto::Scenario rich;
     ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &rich));
     std::set<std::string> covered;
-    each_field(rich, "", [&](Message&, const FieldDescriptor& field, const std::string& path) {
+    each_field(rich, "", [&](Block&, const FieldDescriptor& field, const std::string& path) {
       if (!covered.insert(field.full_name()).second) return;
       if (const FieldRule* rule = rule_of(field)) expect_limits(field, path, *rule);
       if (field.enum_type() == nullptr) return;
-      expect_said(path, "has no value 99", [](Message& block, const FieldDescriptor& one) {
+      expect_said(path, "has no value 99", [](Block& block, const FieldDescriptor& one) {
         block.GetReflection()->SetEnumValue(&block, &one, 99);
       });
     });

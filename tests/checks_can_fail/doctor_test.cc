@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kGroup = "239.255.76.67";
+constexpr const char* kTeamsGroup = "239.255.76.67";
 
 /// Somebody on another host who says something again and again while the doctor listens.
 using Speaker = std::function<void()>;
@@ -39,7 +39,7 @@ class PretendedPeer {
     bool gossips = false;  ///< of somebody whom the doctor never hears
   };
   PretendedPeer(int port, Manners manners)
-      : manners_(std::move(manners)), to_(address_of(kGroup, port)), socket_(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) {
+      : manners_(std::move(manners)), to_(address_of(kTeamsGroup, port)), socket_(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) {
     const int yes = 1;
     setsockopt(socket_.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     EXPECT_EQ(bind(socket_.fd(), reinterpret_cast<const sockaddr*>(&to_), sizeof to_), 0);
@@ -120,7 +120,7 @@ class DoctorCanFail : public OnHosts {
   template <class M>
   std::function<Speaker(int)> says(M message, const Seal& seal = {}) {
     return [message, seal](int port) -> Speaker {
-      const auto url = "udpm://" + std::string(kGroup) + ":" + std::to_string(port) + "?ttl=1";
+      const auto url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?ttl=1";
       return [stranger = std::make_shared<Stranger>(url, seal), message] { stranger->say(Bus::kSwarm, message); };
     };
   }
@@ -139,7 +139,7 @@ class DoctorCanFail : public OnHosts {
       const auto elsewhere = lan_->visit(lan_->hosts() - 1);
       speakers_.push_back(plant.speaker(port));
     }
-    const std::string url = "udpm://" + std::string(kGroup) + ":" + std::to_string(port) + "?" + plant.url_options;
+    const std::string url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?" + plant.url_options;
     const auto there = lan_->visit(host);
     for (const int offset : plant.held_ports) hold(port + offset, !plant.alone);
     for (int agent = 0; agent < plant.agents; ++agent) {
@@ -247,7 +247,7 @@ std::vector<Plant> DoctorCanFail::plants_of_kernels() {
 std::vector<Plant> DoctorCanFail::plants_on_the_bus() {
   const Hello hello{{77, 3, 5, 0, 0}, 3, "elsewhere", "9.9"};
   const auto foreign = [](int port) -> Speaker {
-    const auto url = "udpm://" + std::string(kGroup) + ":" + std::to_string(port) + "?ttl=1";
+    const auto url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?ttl=1";
     return [bus = std::make_shared<lcm::LCM>(url)] { bus->publish("LIDAR", "scan", 4); };
   };
   const std::vector<std::string> with_key = {"--key-file", key_file("ours")};

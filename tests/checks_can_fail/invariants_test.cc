@@ -1,6 +1,6 @@
 // Each invariant of the laboratory, and each goal, against a bug that breaks it: the real program
 // flies the same seeds with the bug (bugs.cc) and without.
-#include <map>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -19,6 +19,7 @@ struct Plant {
   const char* bug;            ///< "": none but what the options say
   std::string faults = "";    ///< a fault file's lines
   std::string scenario = "";  ///< lines added to faulty_team's
+  std::string says = "";      ///< which of several reports under that name
 };
 
 const Plant kPlants[] = {
@@ -40,7 +41,9 @@ const Plant kPlants[] = {
     {Invariant::kEverybodyIsBack, "a newcomer is mute", "", "agents { quorum: 3 }"},
     {Invariant::kTheLivingAreKnown, "the coordinator does not hear an agent"},
     {Invariant::kTheLivingCount, "the coordinator does not hear an agent", "", "agents { forget_silent_after_s: 1 }"},
-    {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped"},
+    {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped", "", "", ", a member"},
+    {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped", "", "world { radio_range_m: 200 }",
+     "hops away, has long held"},
     {Invariant::kViewsAgree, "a receiver mixes up modes"},
     {Invariant::kRelaysStop, "an agent repeats what all have"},
     {Invariant::kEverybodyEnds, "the world hangs"},
@@ -74,14 +77,17 @@ class InvariantsCanFail : public OwnHost {
   std::string said() const { return output().substr(0, 1000); }
 
  private:
-  /// "agents { quorum: 3 }" goes into the block that is there; "name: value" takes its place.
+  /// "agents { quorum: 3 }" goes into the block, if there is one; "name: value" takes its place.
   static void put_over(const std::string& line, std::string& text) {
     const auto brace = line.find('{'), colon = line.find(':');
     if (colon == line.npos) return;
     if (brace < colon) {
       const std::string block = line.substr(0, brace + 1);
       const auto at = text.find("\n" + block);
-      ASSERT_NE(at, text.npos) << block;
+      if (at == text.npos) {
+        text += line + '\n';
+        return;
+      }
       text.insert(at + 1 + block.size(), line.substr(brace + 1, line.rfind('}') - brace - 1));
     } else {
       const auto at = text.find("\n" + line.substr(0, colon + 1));
@@ -103,6 +109,7 @@ TEST_F(InvariantsCanFail, EachOfThem) {
     for (const char* seed : {"seed 1: ", "seed 2: "}) {
       EXPECT_TRUE(says(seed + name + ": ")) << plant.bug << " is not seen: " << said();
     }
+    EXPECT_TRUE(says(plant.says)) << plant.says << " is not said: " << said();
     EXPECT_TRUE(says("again: ergocast simulate ")) << said();
     EXPECT_TRUE(says("--seeds 2")) << said();
   }
@@ -111,17 +118,15 @@ TEST_F(InvariantsCanFail, EachOfThem) {
   }
 }
 
-/// A plant reaches one place; another that reports under the same name would go without.
-TEST(Invariants, AreEachReportedAtOnePlace) {
+/// A plant reaches one place; another that reports under the same name needs one of its own.
+TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   std::string sources;
   for (const std::string& file : sources_in("lab")) {
     sources += text_of(std::filesystem::path(ERGOCAST_SOURCE_DIR) / file);
   }
-  const std::regex report("violate\\(\\w+, Invariant::(\\w+)");
-  std::map<std::string, int> places;
-  for (std::sregex_iterator at(sources.begin(), sources.end(), report), end; at != end; ++at) ++places[(*at)[1]];
-  EXPECT_EQ(places.size(), lab::kInvariants.size());
-  for (const auto& [invariant, count] : places) EXPECT_EQ(count, 1) << invariant;
+  const std::regex report("violate\\(\\w+, Invariant::\\w+");
+  const auto places = std::distance(std::sregex_iterator(sources.begin(), sources.end(), report), {});
+  EXPECT_EQ(places, std::ssize(kPlants));
 }
 
 TEST_F(InvariantsCanFail, AMissionWhoseProcessDiesIsOneThatFailed) {
