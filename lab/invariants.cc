@@ -58,13 +58,15 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
   constexpr double kDigests_s = 2.25;
   // Whoever learns a row late passes it on late: one more round.
   constexpr int kRounds = 2;
+  // Who was forgotten, it may be a moment before, is remembered with as much notice in real time.
+  const double notices_s = mission.forget_silent_after_s > 0 ? 4 : 0;
   const Timing& timing = mission.timing;
   const double period_s = std::max<double>(timing.broadcast_period_ticks,
                                            timing.broadcast_error_budget > 0
                                                ? timing.broadcast_heartbeat_ticks
                                                : 0) *
                           timing.dt_s / timing.realtime_factor;
-  return (kTakeover_s + kAdmission_s + kRounds * kDigests_s + 2 * period_s) /
+  return (kTakeover_s + kAdmission_s + kRounds * kDigests_s + notices_s + 2 * period_s) /
          (1 - faults.clock_rate_error);
 }
 
@@ -255,7 +257,8 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
     for (const Author& author : authors_) {
       if (!holder.table->steps_held(author)) continue;
       const RosterEntry* entry = entry_of(*holder.roster, author);
-      if (entry != nullptr && entry->forgotten_at(holder.answered)) continue;
+      const bool own = author == holder.self;  // which it counts whatever others have heard of it
+      if (!own && entry != nullptr && entry->forgotten_at(holder.answered, holder.roster_revision)) continue;
       auto& blocks = best.try_emplace(author, static_cast<std::size_t>(block_count_)).first->second;
       for (int b = 0; b < block_count_; ++b) {
         const Contribution held = holder.table->block(author, b);
