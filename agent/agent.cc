@@ -15,6 +15,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kHelloPeriod = 250ms;
+/// At once when it hears of a newer roster, which it must name, but not more often.
+constexpr auto kHelloGap = 10ms;
 /// This often in mission time too, so that a fast lockstep run is not left alone.
 constexpr double kStatusMissionPeriod_s = 1.0;
 constexpr auto kDigestPeriod = 1s;
@@ -68,7 +70,11 @@ void Agent::on(const MissionPart& part, Instant now) {
   }
   if (part.revision < follower_.revision()) plan_mission_repeat(now, kCorrectionGap);
   const std::int64_t foreign_plans = follower_.foreign_plans();
+  const std::int64_t heard_before = follower_.newest_heard();
   const bool news = follower_.receive(part);
+  if (follower_.newest_heard() > heard_before) {
+    next_hello_ = std::min(next_hello_, std::max(now, last_hello_ + kHelloGap));
+  }
   if (follower_.foreign_plans() != foreign_plans) count_refused(Refusal::kRange);
   if (!news) return;
   if (follower_.plan_problem()) return finish(true, *follower_.plan_problem());
@@ -106,7 +112,6 @@ void Agent::join() {
   table_->add_row(self_);  // before any other incarnation could take its place
   published_.resize(static_cast<std::size_t>(table_->block_count()));
   active_from_ = follower_.entry_of(identity_.incarnation)->active_from;
-  joined_revision_ = follower_.revision();
   phase_ = AgentPhase::kWaiting;
 }
 
@@ -186,14 +191,14 @@ void Agent::on(const AgentStatus& status, Instant now) {
 
 void Agent::on(const WorldState& world, Instant now) {
   if (!follower_.mission() || phase_ == AgentPhase::kJoining) return;
-  // From before we were admitted, repeated for the logger: our predecessor has covered it.
-  if (world.header.tick < active_from_ && world.roster_revision < joined_revision_) return;
   const bool is_news = freshness_.is_news(world.header);
   if (is_news) world_heard_ = now;
   radio_.on(world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (vehicle.id != self_.agent) continue;
+    // From before we were admitted, repeated for the logger: our predecessor drove then.
+    if (world.header.tick < active_from_ && vehicle.answered_tick > answered_tick_) return;
     if (!follower_.mission()->domain.contains(vehicle.position_m.head<2>())) {
       return count_refused(Refusal::kRange);
     }
@@ -217,8 +222,10 @@ void Agent::advance(Instant now, Outbox& out) {
   // A coordinator that was restarted may not know of us any more: then we ask again.
   const bool may_ask = !finished() && identity_.run != 0 && !admitted();
   if (may_ask && now >= next_hello_) {
+    last_hello_ = now;
     next_hello_ = now + kHelloPeriod;
-    publish(Bus::kSwarm, Hello{{}, self_.agent, identity_.host, identity_.version}, 0, out);
+    const Hello hello{{}, self_.agent, identity_.host, identity_.version, follower_.newest_heard()};
+    publish(Bus::kSwarm, hello, 0, out);
   }
   if (phase_ == AgentPhase::kRunning) {
     if (pending_) begin_tick(now, out);
@@ -361,7 +368,9 @@ bool Agent::may_answer() {
 void Agent::answer(Outbox& out) {
   // By the roster that the tick may have waited for.
   for (const RosterEntry& entry : follower_.roster()) {
-    if (entry.forgotten_at(tick_)) table_->forget(entry.author);
+    // What we cover ourselves counts: we live, whatever the coordinator has heard.
+    const bool forgotten = entry.author != self_ && entry.forgotten_at(tick_, roster_revision_);
+    forgotten ? table_->forget(entry.author) : table_->remember(entry.author);
   }
   table_->average(team_coverage_);
   controller_->see(team_coverage_);

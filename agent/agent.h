@@ -68,6 +68,8 @@ class Agent {
   /// c_k as of the last answered tick.
   const Coefficients& team_coverage() const { return team_coverage_; }
   const MissionFollower& follower() const { return follower_; }
+  /// Of the roster that the world flies tick() by.
+  std::int64_t roster_revision() const { return roster_revision_; }
   const RefusalCounts& refused() const { return refused_; }
 
   /// What the transport counted; shown in the status.
@@ -136,7 +138,6 @@ class Agent {
   bool repeat_wanted_ = false;
   std::int64_t roster_revision_ = 0;  // of the world, at tick_
   Tick active_from_ = 0;  // as the roster says
-  std::int64_t joined_revision_ = 0;
   Tick tick_ = -1, answered_tick_ = -1, next_broadcast_tick_ = 0;
   Instant tick_begun_{}, stalled_said_{};
   Eigen::Vector2d x_m_{0, 0};
@@ -147,7 +148,7 @@ class Agent {
   std::optional<Incarnation> world_asks_;  // where we were: it has just started
   bool halted_ = false;                    // its vehicle has yet to be told
 
-  Instant next_hello_{};
+  Instant next_hello_{}, last_hello_{};
   Deadline next_status_, next_digest_;
   std::optional<Instant> mission_repeat_;  // somebody has asked for the mission
   std::optional<Instant> mission_repeated_;

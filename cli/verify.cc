@@ -90,6 +90,11 @@ std::string what_cannot_be_repeated(const Json& summary, const Mission& mission)
     if (agent.at("active_from") != 0) {
       return who + " joined at tick " + agent.at("active_from").dump();
     }
+    const auto switched = agent.value("coverage_switched_at", nlohmann::ordered_json());
+    if (!switched.is_null()) {
+      return "what " + who + " covered did not count for a while: it was last forgotten or remembered at tick " +
+             switched.dump();
+    }
   }
   return "";
 }

@@ -138,6 +138,12 @@ void Coordinator::on(const Hello& hello, Instant now) {
     next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
     return;
   }
+  note_silences(now);
+  if (hello.revision < admits_from_) {
+    // Said before the newest was: by somebody who has yet to hear of it, or a recording.
+    next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
+    return;
+  }
   std::optional<AgentId> id = hello.requested_id;
   if (*id == kUnassigned) id = free_id(nonce, now);
   if (!id) return;  // not yet, or the team is full
@@ -160,7 +166,7 @@ void Coordinator::admit(const Author& author, Instant now) {
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   members_[author].heard = now;
   asked_.erase(author.incarnation);
-  change();
+  announce();
 }
 
 void Coordinator::on(const WorldState& world, Instant now) {
@@ -168,6 +174,7 @@ void Coordinator::on(const WorldState& world, Instant now) {
   if (world.header.tick < tick_) return;
   if (world.header.tick > tick_) tick_since_ = now;
   tick_ = world.header.tick;
+  world_revision_ = world.roster_revision;
   missed_deadlines_ = std::max(missed_deadlines_, world.missed_deadlines);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
@@ -257,20 +264,54 @@ void Coordinator::check_tick(Instant now) {
   change();
 }
 
-void Coordinator::forget_silent(Instant now) {
-  if (mission_->forget_silent_after_s <= 0) return;
-  const auto patience = seconds(mission_->forget_silent_after_s);
-  const Timing& timing = mission_->timing;
-  const Tick notice = timing.pace == Pace::kLockstep
-                          ? 0
-                          : static_cast<Tick>(kNotice_s * timing.realtime_factor / timing.dt_s) + 1;
-  for (RosterEntry& entry : roster_) {
-    if (entry.forgotten_from >= 0 || now - members_[entry.author].heard < patience) continue;
-    const RosterEntry* holder = active_entry(entry.author.agent);
-    if (holder != nullptr && alive(*holder, now)) continue;
-    entry.forgotten_from = tick_ + notice;
-    change();
+/// Whoever falls silent is news: its number may go to a newcomer that knows of the silence.
+void Coordinator::note_silences(Instant now) {
+  for (const RosterEntry& entry : roster_) {
+    if (entry.active_until >= 0) continue;
+    Member& member = members_[entry.author];
+    const bool silent = !alive(entry, now);
+    if (silent && !member.silence_said) change();
+    member.silence_said = silent;
   }
+}
+
+/// What was covered under a number stops counting once nobody was heard under it for as long as the
+/// plan says, and counts again once somebody is.
+void Coordinator::review_coverage(Instant now) {
+  if (mission_->forget_silent_after_s <= 0) return;
+  // Who hears nobody is deaf itself, and learns nothing of others' silence.
+  if (alive_count(now) == 0) deaf_until_ = now;
+  const auto patience = std::max<PacingClock::duration>(seconds(mission_->forget_silent_after_s), kSilence);
+  struct Number {
+    Instant heard{};
+    bool speaks = false;
+  };
+  std::map<AgentId, Number> numbers;
+  for (const auto& [author, member] : members_) {
+    Number& number = numbers[author.agent];
+    number.heard = std::max(number.heard, member.heard);
+    number.speaks |= member.status && now - member.heard < kSilence;
+  }
+  for (RosterEntry& entry : roster_) {
+    const Number& number = numbers[entry.author.agent];
+    const bool silent = now - std::max(number.heard, deaf_until_) >= patience;
+    const bool other = entry.forgotten ? number.speaks : silent;
+    if (other && may_switch(entry)) switch_coverage(entry, !entry.forgotten);
+  }
+}
+
+/// Not before the last switch has happened: an entry has room for one.
+bool Coordinator::may_switch(const RosterEntry& entry) const {
+  return tick_ >= entry.since_tick && world_revision_ >= entry.since_revision;
+}
+
+void Coordinator::switch_coverage(RosterEntry& entry, bool forgotten) {
+  const Timing& timing = mission_->timing;
+  const double notice_s = timing.pace == Pace::kLockstep ? 0 : kNotice_s;
+  change();
+  entry.forgotten = forgotten;
+  entry.since_tick = tick_ + 1 + static_cast<Tick>(notice_s * timing.realtime_factor / timing.dt_s);
+  entry.since_revision = revision_;
 }
 
 void Coordinator::advance(Instant now, Outbox& out) {
@@ -281,7 +322,8 @@ void Coordinator::advance(Instant now, Outbox& out) {
 
 void Coordinator::lead(Instant now, Outbox& out) {
   if (!started_) started_ = now;
-  if (state_ == MissionState::kRunning) forget_silent(now);
+  note_silences(now);
+  if (state_ == MissionState::kRunning) review_coverage(now);
   if (state_ == MissionState::kWaiting) check_admission(now);
   if (state_ == MissionState::kRunning && mission_->timing.pace == Pace::kLockstep) check_tick(now);
   if (state_ == MissionState::kWaiting && alive_count(now) >= mission_->quorum) {
@@ -303,6 +345,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
 }
 
 void Coordinator::publish_mission(Outbox& out) {
+  admits_from_ = revision_;
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
   const std::size_t parts =
       std::max({std::size_t{1}, ceil_div(plan_.size(), kMaxPlanBytesPerMessage),

@@ -74,6 +74,7 @@ class Coordinator {
   struct Member {
     std::optional<AgentStatus> status;
     Instant heard{};
+    bool silence_said = false;
   };
 
   void on(const Hello& hello, Instant now);
@@ -97,12 +98,17 @@ class Coordinator {
   void leave(std::string reason, Instant now);
   void begin_own();
   void lead(Instant now, Outbox& out);
-  void forget_silent(Instant now);
+  void note_silences(Instant now);
+  void review_coverage(Instant now);
+  bool may_switch(const RosterEntry& entry) const;
+  void switch_coverage(RosterEntry& entry, bool forgotten);
   void check_admission(Instant now);
   void check_tick(Instant now);
   AgentId waits_for(const RosterEntry& entry) const;
   RosterEntry* culprit(Instant now);
-  void change() { ++revision_, next_mission_ = Instant{}; }
+  void announce() { ++revision_, next_mission_ = Instant{}; }
+  /// Anything but an admission: newcomers have to know of it, so that no recording of one gets in.
+  void change() { announce(), admits_from_ = revision_; }
   void publish_mission(Outbox& out);
   void publish_team_status(Instant now, Outbox& out);
   Header header(Bus bus);
@@ -127,6 +133,7 @@ class Coordinator {
   MissionState state_ = MissionState::kWaiting;
   std::string reason_;
   std::int64_t revision_ = 0;
+  std::int64_t admits_from_ = -1;  // what a HELLO must know of
   std::vector<RosterEntry> roster_;
   std::map<Author, Member> members_;
   std::map<Incarnation, Instant> asked_;  // newcomers without a number: since when
@@ -134,6 +141,8 @@ class Coordinator {
 
   bool world_heard_ = false;
   Tick tick_ = 0;
+  std::int64_t world_revision_ = 0;  // of the roster that tick_ is flown by
+  Instant deaf_until_{};             // it heard nobody
   std::int64_t missed_deadlines_ = 0;
   std::optional<Instant> started_, ended_;
   Instant tick_since_{};

@@ -17,11 +17,12 @@
 namespace ergocast {
 namespace {
 
-/// One line for everybody who comes, falls silent, speaks again or goes.
+/// One line for everybody who comes, falls silent, speaks again or goes, is forgotten or remembered.
 class RosterLog {
  public:
   void look(const Coordinator& coordinator, Instant now) {
     for (const RosterEntry& entry : coordinator.roster()) {
+      look_at_coverage(entry);
       const Presence presence = coordinator.presence(entry, now);
       const auto [known, is_new] = seen_.try_emplace(entry.author, presence);
       if (!is_new && known->second == presence) continue;
@@ -33,7 +34,16 @@ class RosterLog {
   }
 
  private:
+  void look_at_coverage(const RosterEntry& entry) {
+    if (forgotten_.contains(entry.author) == entry.forgotten) return;
+    entry.forgotten ? void(forgotten_.insert(entry.author)) : void(forgotten_.erase(entry.author));
+    spdlog::warn("what agent {} ({}) covered {} from tick {} on", entry.author.agent,
+                 to_hex(entry.author.incarnation),
+                 entry.forgotten ? "is forgotten" : "counts again", entry.since_tick);
+  }
+
   std::map<Author, Presence> seen_;
+  std::set<Author> forgotten_;
 };
 
 /// One line for each host and version whose agents are not admitted.

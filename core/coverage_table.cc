@@ -105,6 +105,11 @@ void CoverageTable::forget(const Author& author) {
   if (Row* row = find_or_add(author)) row->counts = false;
 }
 
+void CoverageTable::remember(const Author& author) {
+  // Who is unknown counts when it comes.
+  if (find(author) != nullptr) find_or_add(author)->counts = true;
+}
+
 ERGOCAST_VECTORIZED
 void CoverageTable::average(Coefficients& coverage) const {
   for (int b = 0; b < block_count_; ++b) {

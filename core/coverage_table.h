@@ -42,6 +42,8 @@ class CoverageTable {
 
   /// From now on the row of `author` does not count, whenever it comes; it is kept and passed on.
   void forget(const Author& author);
+  /// From now on it counts again, with all that came meanwhile.
+  void remember(const Author& author);
 
   /// c_k = Σ_j S_j / Σ_j elapsed_j per block, (4) weighted by the time each row covers.
   /// Entries of blocks that nobody has covered are 0. Does not allocate.

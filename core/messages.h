@@ -18,7 +18,7 @@ namespace ergocast {
 /// Doubles in one block of a contribution; the last block of a mission is padded with zeros.
 inline constexpr int kBlockSize = 128;
 inline constexpr int kMaxVehiclesPerState = 16;
-inline constexpr int kMaxRosterEntriesPerMessage = 10;
+inline constexpr int kMaxRosterEntriesPerMessage = 8;
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 128;
@@ -62,17 +62,26 @@ struct Hello {
   AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one
   std::string host;
   std::string version;
+  /// The newest of MISSION of which an agent has heard any part; −1: none. It shows when this was
+  /// said: one from before the newest admits nobody, as it may be a recording.
+  std::int64_t revision = -1;
 };
 
 struct RosterEntry {
   Author author;
   Tick active_from = 0;
   Tick active_until = -1;  ///< first tick without it; −1 while it is a member
-  Tick forgotten_from = -1;  ///< first tick at which its coverage no longer counts; −1: it does
+  bool forgotten = false;           ///< whether its coverage stops counting, or counts again, …
+  Tick since_tick = 0;              ///< … from this tick on, …
+  std::int64_t since_revision = 0;  ///< … once the world flies by this revision or a later one
   bool active_at(Tick tick) const {
     return tick >= active_from && (active_until < 0 || tick < active_until);
   }
-  bool forgotten_at(Tick tick) const { return forgotten_from >= 0 && tick >= forgotten_from; }
+  /// Whether its coverage does not count at a tick that the world flies by roster `revision`. All
+  /// who hear the world agree on that, whoever has heard more of the roster.
+  bool forgotten_at(Tick tick, std::int64_t revision) const {
+    return forgotten == (tick >= since_tick && revision >= since_revision);
+  }
 };
 
 enum class MissionState { kWaiting, kRunning, kEnded, kFailed };
@@ -168,7 +177,7 @@ struct Vehicle {
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.
 struct WorldState {
   Header header;
-  std::int64_t roster_revision = 0;
+  std::int64_t roster_revision = 0;   ///< that it knew when it first said this tick
   std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
   std::int64_t skipped_ticks = 0;     ///< real time: ticks given up because the world was held up
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower

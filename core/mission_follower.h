@@ -2,6 +2,7 @@
 // roster and of the mission's state.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -36,6 +37,10 @@ class MissionFollower {
   std::int64_t foreign_plans() const { return foreign_plans_; }
 
   std::int64_t revision() const { return revision_; }
+  /// The newest revision of which any part has come; −1: none.
+  std::int64_t newest_heard() const {
+    return collected_.empty() ? revision_ : std::max(revision_, collected_.rbegin()->first);
+  }
   MissionState state() const { return state_; }
   bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
   const std::string& reason() const { return reason_; }

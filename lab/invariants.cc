@@ -43,7 +43,10 @@ const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const Author
   return at == roster.end() ? nullptr : &*at;
 }
 
-bool is_forgotten(const RosterEntry& entry, const Holder& by) { return entry.forgotten_at(by.answered); }
+/// Its own row an agent counts whatever others have heard of it.
+bool is_forgotten(const RosterEntry& entry, const Holder& by) {
+  return entry.author != by.self && entry.forgotten_at(by.answered, by.roster_revision);
+}
 
 }  // namespace
 
@@ -61,13 +64,15 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
   // hello (0.25 s) and hears MISSION (0.1 s). A restarted world needs as long: it waits 1.5 s and
   // 0.55 s for the mission and 2 s for commands.
   constexpr double kAdmission_s = 4.05;
+  // Who was forgotten, it may be a moment before, is remembered with as much notice in real time.
+  const double notices_s = mission.forget_silent_after_s > 0 ? 4 : 0;
   const Timing& timing = mission.timing;
   const double period_s = std::max<double>(timing.broadcast_period_ticks,
                                            timing.broadcast_error_budget > 0
                                                ? timing.broadcast_heartbeat_ticks
                                                : 0) *
                           timing.dt_s / timing.realtime_factor;
-  return (kTakeover_s + kAdmission_s + kRounds * kDigests_s + 2 * period_s) /
+  return (kTakeover_s + kAdmission_s + kRounds * kDigests_s + notices_s + 2 * period_s) /
          (1 - faults.clock_rate_error);
 }
 

@@ -113,6 +113,7 @@ struct Holder {
   const Coefficients* coverage = nullptr;  ///< its c_k, as of `answered`
   const std::vector<RosterEntry>* roster = nullptr;
   Tick answered = -1;
+  std::int64_t roster_revision = 0;  ///< that the world flies this tick by
 };
 
 /// Virtual time after healing by which every living agent is back in the mission and knows what

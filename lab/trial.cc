@@ -14,7 +14,8 @@ constexpr auto kCheckPeriod = std::chrono::seconds(1);
 
 Holder Flight::holder_of(Seat seat) {
   const Agent& one = agent(seat);
-  return {one.author(), one.coverage(), &one.team_coverage(), &one.follower().roster(), one.tick()};
+  return {one.author(), one.coverage(), &one.team_coverage(), &one.follower().roster(), one.tick(),
+          one.roster_revision()};
 }
 
 std::vector<Holder> Flight::living() {

@@ -10,7 +10,7 @@ namespace ergocast {
 namespace {
 
 constexpr std::size_t kSignatureEnd = kHeaderEnd + sizeof(Signature);
-constexpr std::size_t kRosterEntryBytes = 36;
+constexpr std::size_t kRosterEntryBytes = 45;
 constexpr std::size_t kVehicleBytes = 60;
 constexpr std::size_t kDigestEntryBytes = 28;
 
@@ -63,7 +63,7 @@ bool count_at(std::span<const std::byte> bytes, std::size_t offset, int limit, s
 
 bool sizes_match(const hello_t*, std::span<const std::byte> bytes) {
   Tail tail(bytes, kHeaderEnd);
-  return tail.skip(4) && tail.string(kMaxHostLength) && tail.string(kMaxVersionLength) &&
+  return tail.skip(4 + 8) && tail.string(kMaxHostLength) && tail.string(kMaxVersionLength) &&
          tail.ended();
 }
 

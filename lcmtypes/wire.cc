@@ -30,6 +30,8 @@ constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
 bool plausible_count(std::int64_t count) { return count >= 0 && count <= kMostEver; }
 /// A tick, or −1: none.
 bool plausible_tick(Tick tick) { return tick == -1 || plausible_count(tick); }
+/// The same of revisions.
+bool plausible_revision(std::int64_t revision) { return revision == -1 || plausible_count(revision); }
 
 bool plausible_quantity(double value) { return std::isfinite(value) && value >= 0; }
 bool plausible_sender(std::int32_t id) { return id >= kOperator && id < kMaxAgents; }
@@ -70,16 +72,17 @@ hello_t to_wire(const Hello& m) {
   hello_t w;
   w.header = to_wire(m.header);
   w.requested_id = m.requested_id;
+  w.known_revision = m.revision;
   w.host = bounded(m.host, kMaxHostLength);
   w.version = bounded(m.version, kMaxVersionLength);
   return w;
 }
 bool from_wire(const hello_t& w, Hello& m) {
-  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents || !plausible_text(w.host) ||
-      !plausible_text(w.version)) {
+  if (w.requested_id < kUnassigned || w.requested_id >= kMaxAgents ||
+      !plausible_revision(w.known_revision) || !plausible_text(w.host) || !plausible_text(w.version)) {
     return false;
   }
-  m = {from_wire(w.header), w.requested_id, w.host, w.version};
+  m = {from_wire(w.header), w.requested_id, w.host, w.version, w.known_revision};
   return true;
 }
 
@@ -101,7 +104,9 @@ mission_t to_wire(const MissionPart& m) {
     e.nonce = static_cast<std::int64_t>(entry.author.incarnation);
     e.active_from = entry.active_from;
     e.active_until = entry.active_until;
-    e.forgotten_from = entry.forgotten_from;
+    e.forgotten = entry.forgotten ? 1 : 0;
+    e.since_tick = entry.since_tick;
+    e.since_revision = entry.since_revision;
     w.roster.push_back(e);
   }
   w.plan.resize(m.plan.size());
@@ -122,11 +127,12 @@ bool from_wire(const mission_t& w, MissionPart& m) {
   m.parts = w.parts;
   for (const roster_entry_t& e : w.roster) {
     if (e.id < 0 || e.id >= kMaxAgents || !plausible_count(e.active_from) ||
-        !plausible_tick(e.active_until) || !plausible_tick(e.forgotten_from)) {
+        !plausible_tick(e.active_until) || !plausible_count(e.since_tick) ||
+        !plausible_count(e.since_revision)) {
       return false;
     }
     m.roster.push_back({{e.id, static_cast<Incarnation>(e.nonce)}, e.active_from, e.active_until,
-                        e.forgotten_from});
+                        e.forgotten != 0, e.since_tick, e.since_revision});
   }
   m.plan.resize(w.plan.size());
   if (!w.plan.empty()) std::memcpy(m.plan.data(), w.plan.data(), w.plan.size());

@@ -26,7 +26,9 @@ Json agents(const Recorder& recorder) {
     Json agent{{"id", entry.author.agent},
                {"incarnation", to_hex(entry.author.incarnation)},
                {"active_from", entry.active_from},
-               {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)}};
+               {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)},
+               {"forgotten", entry.forgotten},
+               {"coverage_switched_at", entry.since_tick > 0 ? Json(entry.since_tick) : Json(nullptr)}};
     const auto known = recorder.statuses().find(entry.author);
     if (known != recorder.statuses().end()) {
       const AgentStatus& status = known->second;

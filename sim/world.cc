@@ -347,8 +347,11 @@ void World::repeat(Instant now, Outbox& out) {
   repeat_period_ = std::min(2 * repeat_period_, kLongestRepeatPeriod);
   next_publish_ = now + repeat_period_;
   if (published_) {
-    // The same state, but who has answered, and who has joined, is news.
+    // The same state, but who has answered, and who has joined, is news. Not so the roster that the
+    // tick is flown by: that must be one for all agents, whichever repeat they hear.
+    const std::int64_t flown_by = history_.back().front().roster_revision;
     history_.back() = snapshot();
+    for (WorldState& part : history_.back()) part.roster_revision = flown_by;
     publish(history_.back(), out);
   } else if (!history_.empty()) {
     // The bodies have moved on already.
@@ -357,7 +360,6 @@ void World::repeat(Instant now, Outbox& out) {
         Vehicle& vehicle = part.vehicles[static_cast<std::size_t>(i)];
         vehicle.answered_tick = bodies_.at(vehicle.id).answered();
       }
-      part.roster_revision = follower_.revision();
     }
     publish(history_.back(), out);
   }

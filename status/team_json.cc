@@ -54,7 +54,8 @@ std::string team_json(const TeamPicture& at) {
       {"agents_expected", at.agents_expected},
       {"missed_deadlines", at.missed_deadlines},
       {"skipped_ticks", at.skipped_ticks},
-      {"clamped_commands", at.clamped_commands}};
+      {"clamped_commands", at.clamped_commands},
+      {"forgotten", at.forgotten}};
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

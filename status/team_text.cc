@@ -150,6 +150,9 @@ std::string second_line(const TeamPicture& at) {
   if (at.skipped_ticks > 0) text += ", " + std::to_string(at.skipped_ticks) + " ticks skipped";
   if (at.clamped_commands > 0)
     text += ", " + std::to_string(at.clamped_commands) + " commands cut to the speed limit";
+  for (std::size_t i = 0; i < at.forgotten.size(); ++i) {
+    text += (i == 0 ? ", forgotten: coverage of " : ", ") + std::to_string(at.forgotten[i]);
+  }
   text += at.authenticated ? ", authenticated" : ", unauthenticated";
   return text;
 }

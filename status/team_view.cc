@@ -158,6 +158,17 @@ void TeamView::add_agents(TeamPicture& picture, Instant now) const {
                   [](const AgentRow& row) { return row.condition < Condition::kUnheard; });
 }
 
+/// A member that is forgotten is dead or unheard by the coordinator.
+void TeamView::add_forgotten(TeamPicture& picture) const {
+  for (const RosterEntry& entry : follower_.roster()) {
+    if (!entry.forgotten) continue;
+    picture.trouble |= entry.active_until < 0;
+    if (picture.forgotten.empty() || picture.forgotten.back() != entry.author.agent) {
+      picture.forgotten.push_back(entry.author.agent);
+    }
+  }
+}
+
 /// Whether a process of that kind has something to say at this stage of the mission.
 bool TeamView::should_speak(AgentId sender) const {
   if (over() || !follower_.mission()) return sender == kCoordinator && !over();
@@ -208,6 +219,7 @@ TeamPicture TeamView::picture(Instant now) const {
   picture.trouble = picture.state == MissionState::kFailed || follower_.plan_problem().has_value();
   picture.over = over();
   add_agents(picture, now);
+  add_forgotten(picture);
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) add_process(picture, sender, now);
   const bool under_way = picture.state == MissionState::kRunning && !over();
   picture.trouble |= under_way && picture.agents_alive < picture.agents_expected;

@@ -56,6 +56,8 @@ struct TeamPicture {
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
+  /// In ascending order: whose coverage counts no longer, or will soon not; see RosterEntry.
+  std::vector<AgentId> forgotten;
   std::vector<ProcessRow> processes;
   bool trouble = false;
   bool over = false;  ///< the mission has ended: whoever was heard is leaving, or has left
@@ -93,6 +95,7 @@ class TeamView {
   Condition condition_of(const Seen& seen, Instant now) const;
   std::map<AgentId, std::pair<Author, bool>> newest_lives() const;
   void add_agents(TeamPicture& picture, Instant now) const;
+  void add_forgotten(TeamPicture& picture) const;
   void add_process(TeamPicture& picture, AgentId sender, Instant now) const;
   bool should_speak(AgentId sender) const;
   PacingClock::duration patience_with(AgentId sender) const;

@@ -13,7 +13,7 @@ const std::vector<Eigen::Vector2d> kGone{{900, 900}, {910, 900}};
 /// The plan's roster of two, where 1 has left at tick 2 and is forgotten from `tick` on.
 MissionPart forgetting_from(Tick tick, std::int64_t revision = 1) {
   return mission_part(revision, MissionState::kRunning,
-                      {{author_of(0), 0, -1}, {author_of(1), 0, 2, tick}});
+                      {{author_of(0), 0, -1}, {author_of(1), 0, 2, true, tick}});
 }
 
 WorldState world_at(Tick tick, std::int64_t revision = 0) {
@@ -64,6 +64,43 @@ TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
   EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 1))).empty()) << "the world knows more";
   EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0))).size(), 1u);
   EXPECT_TRUE(steered_alone(agent, mission, 1));
+}
+
+TEST(AgentForgets, NotBeforeTheWorldFliesByTheRosterThatSaysSo) {
+  // Agents that have heard more of the roster than others must not differ from them.
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  MissionPart news = forgetting_from(0, 8);
+  news.roster[1].since_revision = 8;
+  agent.receive(news, at(0s));
+  for (Tick tick = 0; tick < 6; ++tick) {
+    EXPECT_EQ(only<Command>(tell(agent, world_at(tick, tick < 3 ? 7 : 8))).size(), 1u);
+    EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 3) << tick;
+  }
+}
+
+TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  agent.receive(forgetting_from(1), at(0s));
+  MissionPart again = forgetting_from(4, 2);
+  again.roster[1].forgotten = false;
+  for (Tick tick = 0; tick < 7; ++tick) {
+    if (tick == 3) agent.receive(again, at(0s));
+    EXPECT_EQ(only<Command>(tell(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);
+    EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 1 && tick < 4) << tick;
+  }
+}
+
+TEST(AgentForgets, NeverItself) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  agent.receive(mission_part(1, MissionState::kRunning,
+                             {{author_of(0), 0, -1, true, 0}, {author_of(1), 0, 0}}), at(0s));
+  EXPECT_EQ(only<Command>(tell(agent, world_at(0))).size(), 1u);
+  EXPECT_EQ(agent.team_coverage()(0, 0), 1) << "it lives, whatever the coordinator has heard";
 }
 
 TEST(AgentForgets, ButPassesItOn) {

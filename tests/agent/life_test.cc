@@ -221,6 +221,27 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   EXPECT_EQ(agent.coverage()->steps_held(former), 2);
 }
 
+TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
+  Agent agent(identity_of(0), decoder_of(small_mission(2)));
+  const auto named = [&](Instant now) {
+    const auto hellos = only<Hello>(advance(agent, now));
+    return hellos.size() == 1 ? std::optional(hellos[0].revision) : std::nullopt;
+  };
+  EXPECT_EQ(named(at(0s)), -1) << "it knows no mission yet";
+  MissionPart part = mission_part(5, MissionState::kWaiting, {});
+  part.parts = 2;
+  agent.receive(part, at(50ms));
+  EXPECT_EQ(named(at(50ms)), 5) << "the other part may be lost";
+  agent.receive(mission_part(4, MissionState::kWaiting, {}), at(55ms));
+  EXPECT_EQ(named(at(100ms)), std::nullopt) << "an old one is no news";
+  for (std::int64_t revision = 6; revision < 100; ++revision) {
+    agent.receive(mission_part(revision, MissionState::kWaiting, {}), at(101ms));
+    advance(agent, at(101ms));
+  }
+  EXPECT_LE(agent.next_wakeup(), at(111ms)) << "but many are no reason to flood a bus";
+  EXPECT_EQ(named(at(111ms)), 99);
+}
+
 /// Agent 0 in its second life, admitted from tick 7 on by a roster of revision 9.
 Agent successor_from_7(const Mission& mission) {
   Agent agent(identity_of(0), decoder_of(mission));

@@ -149,6 +149,63 @@ TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
   EXPECT_EQ(coordinator.roster().size(), 2u);
 }
 
+// ---- what a newcomer knows ----
+
+/// The newest revision that it says until `now`.
+std::int64_t newest_said(Coordinator& coordinator, Instant now) {
+  for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) return part.revision;
+  ADD_FAILURE() << "it says no MISSION";
+  return -1;
+}
+
+TEST(CoordinatorAdmits, NobodyWhoDoesNotKnowTheNewestMissionAndSaysItSoon) {
+  Coordinator coordinator = coordinator_of(small_mission(2));
+  EXPECT_EQ(newest_said(coordinator, at(0s)), 0);
+  coordinator.receive(hello_of(0, 71, -1), at(10ms));
+  EXPECT_TRUE(coordinator.roster().empty());
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(99ms))).empty()) << "hellos flood no bus";
+  EXPECT_EQ(newest_said(coordinator, at(100ms)), 0);
+  coordinator.receive(hello_of(0, 71, 0), at(110ms));
+  EXPECT_EQ(coordinator.roster().size(), 1u);
+}
+
+TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
+  Coordinator coordinator = coordinator_of(small_mission(20));
+  const std::int64_t known = newest_said(coordinator, at(0s));
+  for (AgentId id = 0; id < 20; ++id) coordinator.receive(hello_of(id, life_of(id), known), at(1ms));
+  EXPECT_EQ(coordinator.roster().size(), 20u);
+}
+
+// Somebody waited under the number of a living agent and gave up; his words were recorded.
+TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  const std::int64_t known = newest_said(coordinator, at(1s));
+  coordinator.receive(hello_of(0, 99, known), at(1s));
+  advance(coordinator, at(2500ms));
+  coordinator.receive(hello_of(0, 99, known), at(3400ms));
+  EXPECT_EQ(coordinator.roster().size(), 2u) << "and not before it has noticed the silence either";
+  const std::int64_t newer = newest_said(coordinator, at(3400ms));
+  EXPECT_GT(newer, known) << "a silence is news";
+  coordinator.receive(hello_of(0, 99, known), at(3500ms));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+  coordinator.receive(hello_of(0, 99, newer), at(3500ms));
+  EXPECT_EQ(coordinator.roster().size(), 3u) << "who waits there still";
+}
+
+TEST(CoordinatorAdmits, NobodyBySomethingSaidToItsPredecessor) {
+  Coordinator coordinator({0, 0xc1, "here", kVersion}, decoder_of(small_mission(2)), kPlan, Takeover::kMust);
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  MissionPart memory = mission_part(7, MissionState::kRunning, roster_of(2));
+  memory.plan = kPlan;
+  coordinator.receive(memory, at(0s));
+  const std::int64_t newest = newest_said(coordinator, at(1s));
+  coordinator.receive(hello_of(5, 99, 8), at(1s));
+  EXPECT_EQ(coordinator.roster().size(), 2u);
+  coordinator.receive(hello_of(5, 99, newest), at(1s));
+  EXPECT_EQ(coordinator.roster().size(), 3u);
+}
+
 TEST(CoordinatorAdmits, NobodyOnceTheMissionIsOver) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   coordinator.end(false, "enough", at(1s));

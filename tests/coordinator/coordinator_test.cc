@@ -50,7 +50,7 @@ TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogethe
   Coordinator coordinator({kRun, kCoordinatorLife, "here", kVersion}, decoder_of(mission), plan);
   admit_all(coordinator, 30, at(0s));
   const auto parts = only<MissionPart>(advance(coordinator, at(0s)));
-  ASSERT_EQ(parts.size(), 2u * 3u) << "three parts on two buses";
+  ASSERT_EQ(parts.size(), 2u * 4u) << "four parts on two buses";
   std::vector<std::byte> decoded;
   MissionFollower follower([&](std::span<const std::byte> bytes) {
     decoded.assign(bytes.begin(), bytes.end());

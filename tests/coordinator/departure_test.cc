@@ -79,9 +79,29 @@ Mission forgetful(Pace pace = Pace::kRealtime) {
   return mission;
 }
 
-/// Agent 0 is heard at `now`; agent 1 is not.
-void only_0_speaks(Coordinator& coordinator, Instant now) {
-  coordinator.receive(status_of(0, now.time_since_epoch().count() + 1), now);
+/// One agent is heard at `now`; nobody else is.
+void speaks(Coordinator& coordinator, const Author& author, Instant now) {
+  AgentStatus status = status_of(author.agent, now.time_since_epoch().count() + 1);
+  status.header.incarnation = author.incarnation;
+  coordinator.receive(status, now);
+}
+void only_0_speaks(Coordinator& coordinator, Instant now) { speaks(coordinator, author_of(0), now); }
+
+/// The world at `tick`, which it flies by roster `revision`.
+WorldState flown_by(std::int64_t revision, Tick tick) {
+  WorldState world = world_where(tick, {tick - 1, tick - 1});
+  world.roster_revision = revision;
+  return world;
+}
+
+/// A coordinator whose agent 1 has been silent for 20 s at tick 50; the newest revision is said.
+Coordinator with_1_forgotten(Pace pace = Pace::kRealtime) {
+  Coordinator coordinator = running_coordinator(forgetful(pace));
+  coordinator.receive(flown_by(1, 50), at(1s));
+  only_0_speaks(coordinator, at(19s));
+  advance(coordinator, at(20s));
+  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten);
+  return coordinator;
 }
 
 TEST(Forgetting, ASilentAgentsCoverageStopsCountingAfterItsTimeFromANamedTickOn) {
@@ -89,60 +109,121 @@ TEST(Forgetting, ASilentAgentsCoverageStopsCountingAfterItsTimeFromANamedTickOn)
   coordinator.receive(world_where(50, {49, 49}), at(1s));
   only_0_speaks(coordinator, at(19s));
   const auto before = said_revision(coordinator, at(19999ms));
-  EXPECT_EQ(entry_of(coordinator, author_of(1)).forgotten_from, -1);
+  EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
   const auto after = said_revision(coordinator, at(20s));
   ASSERT_TRUE(before);
   ASSERT_TRUE(after);
   EXPECT_GT(*after, *before);
   const RosterEntry gone = entry_of(coordinator, author_of(1));
   // In real time the team gets two seconds of notice; 20 ticks and the one that has begun.
-  EXPECT_EQ(gone.forgotten_from, 50 + 21);
-  EXPECT_FALSE(gone.forgotten_at(70));
-  EXPECT_TRUE(gone.forgotten_at(71));
-  EXPECT_EQ(entry_of(coordinator, author_of(0)).forgotten_from, -1);
+  EXPECT_EQ(gone.since_tick, 50 + 21);
+  EXPECT_FALSE(gone.forgotten_at(70, *after));
+  EXPECT_TRUE(gone.forgotten_at(71, *after));
+  EXPECT_FALSE(gone.forgotten_at(71, *before)) << "the world has not heard of it";
+  EXPECT_FALSE(entry_of(coordinator, author_of(0)).forgotten);
 }
 
-TEST(Forgetting, InLockstepActsAtTheTickThatWaits) {
-  Coordinator coordinator = running_coordinator(forgetful(Pace::kLockstep));
-  coordinator.receive(world_where(15, {15, 14}), at(1s));
-  only_0_speaks(coordinator, at(19s));
-  advance(coordinator, at(20s));
-  EXPECT_EQ(entry_of(coordinator, author_of(1)).forgotten_from, 15);
+TEST(Forgetting, InLockstepActsAtTheNextTick) {
+  EXPECT_EQ(entry_of(with_1_forgotten(Pace::kLockstep), author_of(1)).since_tick, 51);
 }
 
 TEST(Forgetting, IsDecidedOnce) {
-  Coordinator coordinator = running_coordinator(forgetful());
-  only_0_speaks(coordinator, at(19s));
-  advance(coordinator, at(20s));
-  const Tick from = entry_of(coordinator, author_of(1)).forgotten_from;
-  coordinator.receive(world_where(90, {89, 0}), at(21s));
-  only_0_speaks(coordinator, at(21s));
+  Coordinator coordinator = with_1_forgotten();
+  const Tick from = entry_of(coordinator, author_of(1)).since_tick;
+  coordinator.receive(flown_by(1000, 90), at(21s));
+  only_0_speaks(coordinator, at(39s));
   advance(coordinator, at(40s));
-  EXPECT_EQ(entry_of(coordinator, author_of(1)).forgotten_from, from);
+  EXPECT_EQ(entry_of(coordinator, author_of(1)).since_tick, from);
+}
+
+TEST(Forgetting, IsRevokedFromANamedTickOnWhenTheAgentIsHeardAgain) {
+  for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
+    Coordinator coordinator = with_1_forgotten(pace);
+    const RosterEntry gone = entry_of(coordinator, author_of(1));
+    coordinator.receive(flown_by(gone.since_revision, 90), at(21s));
+    speaks(coordinator, author_of(1), at(21s));
+    const auto said = said_revision(coordinator, at(21s));
+    ASSERT_TRUE(said) << "at once";
+    const RosterEntry back = entry_of(coordinator, author_of(1));
+    EXPECT_FALSE(back.forgotten);
+    EXPECT_EQ(back.since_tick, pace == Pace::kLockstep ? 91 : 90 + 21);
+    EXPECT_EQ(back.since_revision, *said);
+    EXPECT_TRUE(back.forgotten_at(back.since_tick - 1, *said));
+    EXPECT_TRUE(back.forgotten_at(back.since_tick, *said - 1));
+    EXPECT_FALSE(back.forgotten_at(back.since_tick, *said));
+  }
+}
+
+TEST(Forgetting, IsNotRevokedBeforeItHasHappenedForAll) {
+  Coordinator coordinator = with_1_forgotten();
+  const RosterEntry gone = entry_of(coordinator, author_of(1));
+  speaks(coordinator, author_of(1), at(20500ms));
+  advance(coordinator, at(20500ms));
+  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "some agents would never do it";
+  coordinator.receive(flown_by(gone.since_revision, gone.since_tick), at(22s));
+  advance(coordinator, at(22s));
+  EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
+}
+
+TEST(Forgetting, IsNotRevokedByATakeover) {
+  Mission mission = forgetful();
+  Coordinator coordinator({0, 0xc1, "here", kVersion}, decoder_of(mission), kPlan, Takeover::kMust);
+  MissionPart memory = mission_part(7, MissionState::kRunning, {{author_of(0), 0, -1}, {author_of(1), 0, -1, true, 5, 3}});
+  memory.plan = kPlan;
+  advance(coordinator, at(0s));
+  coordinator.receive(status_of(0, 1), at(0s));
+  coordinator.receive(memory, at(0s));
+  advance(coordinator, at(1s));
+  coordinator.receive(flown_by(2000, 9), at(1s));
+  only_0_speaks(coordinator, at(2s));
+  advance(coordinator, at(2s));
+  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "nothing was heard of it";
+  speaks(coordinator, author_of(1), at(3s));
+  advance(coordinator, at(3s));
+  EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
+}
+
+TEST(Forgetting, NobodyByACoordinatorThatHearsNobody) {
+  Coordinator coordinator = running_coordinator(forgetful());
+  for (int s = 1; s < 60; ++s) advance(coordinator, at(s * 1s));
+  for (const AgentId id : {0, 1}) EXPECT_FALSE(entry_of(coordinator, author_of(id)).forgotten) << id;
+  only_0_speaks(coordinator, at(60s));
+  advance(coordinator, at(60s));
+  EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten) << "its cable was pulled, not theirs";
+  for (int s = 61; s <= 80; ++s) {
+    only_0_speaks(coordinator, at(s * 1s));
+    advance(coordinator, at(s * 1s));
+  }
+  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten);
 }
 
 TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
   // The successor has its predecessor's place and goes on with its work.
   Coordinator coordinator = running_coordinator(forgetful());
+  advance(coordinator, at(3s));
   coordinator.receive(hello_of(1, 99), at(3s));
-  AgentStatus successors = status_of(1, 1);
-  successors.header.incarnation = 99;
-  coordinator.receive(successors, at(39s));
+  speaks(coordinator, {1, 99}, at(39s));
   only_0_speaks(coordinator, at(39s));
   advance(coordinator, at(40s));
-  EXPECT_EQ(entry_of(coordinator, author_of(1)).forgotten_from, -1);
+  EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
   only_0_speaks(coordinator, at(58s));
   advance(coordinator, at(59s));
-  EXPECT_GE(entry_of(coordinator, author_of(1)).forgotten_from, 0) << "now both are gone";
-  EXPECT_GE(entry_of(coordinator, {1, 99}).forgotten_from, 0);
+  EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "now both are gone";
+  EXPECT_TRUE(entry_of(coordinator, {1, 99}).forgotten);
+  coordinator.receive(flown_by(1000, 90), at(60s));
+  speaks(coordinator, {1, 99}, at(60s));
+  advance(coordinator, at(60s));
+  EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten) << "and both are back";
+  EXPECT_FALSE(entry_of(coordinator, {1, 99}).forgotten);
 }
 
 TEST(Forgetting, IsNotDoneUnlessThePlanSaysSo) {
   Mission mission = forgetful();
   mission.forget_silent_after_s = 0;
   Coordinator coordinator = running_coordinator(mission);
+  only_0_speaks(coordinator, at(3599s));
   advance(coordinator, at(1h));
-  EXPECT_EQ(entry_of(coordinator, author_of(1)).forgotten_from, -1);
+  EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
 }
 
 }  // namespace

@@ -18,8 +18,11 @@ inline Coordinator coordinator_of(const Mission& mission) {
   return {{kRun, kCoordinatorLife, "here", kVersion}, decoder_of(mission), kPlan};
 }
 
-inline Hello hello_of(AgentId id, Incarnation incarnation) {
-  return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", kVersion};
+/// Of somebody who has heard of every revision there can be.
+inline constexpr std::int64_t kEveryRevision = std::int64_t{1} << 40;
+
+inline Hello hello_of(AgentId id, Incarnation incarnation, std::int64_t revision = kEveryRevision) {
+  return {{kRun, kUnassigned, incarnation, 1, 0}, id, "somewhere", kVersion, revision};
 }
 inline Hello hello_of(AgentId id) { return hello_of(id, life_of(id)); }
 

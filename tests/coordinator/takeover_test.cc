@@ -197,7 +197,9 @@ TEST(TakeoverMust, TakesOverFromALivingOneToo) {
 TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   auto roster = roster_of(3);
   roster[0].active_until = 6;
-  roster[0].forgotten_from = 9;
+  roster[0].forgotten = true;
+  roster[0].since_tick = 9;
+  roster[0].since_revision = 2;
   Coordinator coordinator = successor(Takeover::kIfFlying);
   advance(coordinator, at(0s));
   coordinator.receive(status_of(0, 1), at(0s));
@@ -218,7 +220,9 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
     EXPECT_EQ(said.roster[i].author, roster[i].author);
     EXPECT_EQ(said.roster[i].active_from, roster[i].active_from);
     EXPECT_EQ(said.roster[i].active_until, roster[i].active_until);
-    EXPECT_EQ(said.roster[i].forgotten_from, roster[i].forgotten_from);
+    EXPECT_EQ(said.roster[i].forgotten, roster[i].forgotten);
+    EXPECT_EQ(said.roster[i].since_tick, roster[i].since_tick);
+    EXPECT_EQ(said.roster[i].since_revision, roster[i].since_revision);
   }
 }
 
@@ -377,7 +381,7 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
   coordinator.receive(alive(kSuccessorLife), at(1s));
   coordinator.receive(repeated, at(3s));  // by an agent, long after its last word
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  EXPECT_EQ(said_by(advance(coordinator, at(3s))).revision, 1001) << "or the team would not listen";
+  EXPECT_GT(said_by(advance(coordinator, at(3s))).revision, 1000) << "or the team would not listen";
 }
 
 TEST(TakenOver, ARecordedSignOfLifeIsNone) {

@@ -1,5 +1,5 @@
-# Flies `SEEDS` fixed seeds of the faulty team, and 200 more that each commit draws anew:
-#   cmake -DERGOCAST=<program> -DSOURCE_DIR=<tree> -DSEEDS=1:2000 -DPACE=--realtime -P trials.cmake
+# Flies `SEEDS` fixed seeds of a faulty team, and 200 more that each commit draws anew:
+#   cmake -DERGOCAST=<program> -DSOURCE_DIR=<tree> -DSCENARIO=<file> -DSEEDS=1:2000 -DPACE=--realtime -P trials.cmake
 # The second range is printed with the failures, so that it can be flown again.
 execute_process(COMMAND git -C ${SOURCE_DIR} rev-parse HEAD
   OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
@@ -11,7 +11,7 @@ math(EXPR first "0x${digits} + 1000000")
 math(EXPR last "${first} + 199")
 foreach(seeds ${SEEDS} ${first}:${last})
   execute_process(
-    COMMAND ${ERGOCAST} simulate ${SOURCE_DIR}/scenarios/faulty_team.textproto
+    COMMAND ${ERGOCAST} simulate ${SOURCE_DIR}/${SCENARIO}
       ${PACE} --faults swarm --seeds ${seeds} --jobs 2
     RESULT_VARIABLE code)
   if(NOT code EQUAL 0)

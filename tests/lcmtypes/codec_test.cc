@@ -114,9 +114,11 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(part_wire.roster[0].active_until, -1);
   EXPECT_EQ(part_wire.roster[1].id, 127);
   EXPECT_EQ(part_wire.roster[1].active_from, 100);
-  EXPECT_EQ(part_wire.roster[0].forgotten_from, -1);
+  EXPECT_FALSE(part_wire.roster[0].forgotten);
   EXPECT_EQ(part_wire.roster[1].active_until, 200);
-  EXPECT_EQ(part_wire.roster[1].forgotten_from, 300);
+  EXPECT_TRUE(part_wire.roster[1].forgotten);
+  EXPECT_EQ(part_wire.roster[1].since_tick, 300);
+  EXPECT_EQ(part_wire.roster[1].since_revision, 11);
   ASSERT_EQ(part_wire.plan_size, 300);
   EXPECT_EQ(std::memcmp(part_wire.plan.data(), part.plan.data(), 300), 0);
   EXPECT_EQ(std::memcmp(part_wire.mission_signature, a_signature().data(), 64), 0);

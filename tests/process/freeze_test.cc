@@ -49,6 +49,28 @@ TEST_F(Freeze, InRealTimeTheTeamGoesOnWithoutAnAgentThatThenAgreesAgain) {
   EXPECT_EQ(summary()["agents"].size(), 4U) << "it is still the same member";
 }
 
+struct FreezeInEitherPace : Freeze, ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Paces, FreezeInEitherPace, ::testing::Values("--lockstep", "--realtime=5"),
+                         [](const auto& pace) { return pace.index == 0 ? "Lockstep" : "Realtime"; });
+
+TEST_P(FreezeInEitherPace, AnAgentThatIsForgottenMeanwhileCountsAgainAfterwards) {
+  Child mission = launch_endless(scenario("", "forget_silent_after_s: 3"),
+                                 {GetParam(), "--lcm-url", kUrl});
+  signal_to(agent(1), SIGSTOP);
+  ASSERT_TRUE(logs("coordinator", "covered is forgotten from tick")) << said();
+  EXPECT_EQ(ergocast({"status", "--lcm-url", kUrl}), 1) << output();
+  EXPECT_NE(output().find("forgotten: coverage of 1,"), std::string::npos) << output();
+  signal_to(agent(1), SIGCONT);
+  ASSERT_TRUE(logs("coordinator", "covered counts again from tick")) << said();
+  EXPECT_TRUE(eventually([&] { return ergocast({"status", "--lcm-url", kUrl}) == 0; })) << output();
+  EXPECT_EQ(output().find("forgotten"), std::string::npos) << output();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["agents"][1]["forgotten"], false);
+  EXPECT_GT(summary()["agents"][1]["coverage_switched_at"], 0);
+  EXPECT_EQ(ergocast({"verify", out()}), 2) << "no simulation knows of that: " << output();
+}
+
 TEST_F(Freeze, InRealTimeAWorldThatStoodStillSkipsAndGoesOn) {
   Child mission = launch_endless(scenario(), {"--realtime=5"});
   signal_to({"ergocast-sim"}, SIGSTOP);

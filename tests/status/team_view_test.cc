@@ -71,6 +71,19 @@ struct TeamViewRealtime : TeamViewTest {
   TeamViewRealtime() : TeamViewTest(mission()) {}
 };
 
+TEST_F(TeamViewTest, NamesWhoseCoverageIsForgottenAndCallsThatTrouble) {
+  auto roster = roster_of(4);
+  roster[2].forgotten = true;
+  hear_mission(at(0s), roster);
+  hear_all(at(100ms));
+  EXPECT_EQ(view_.picture(at(100ms)).forgotten, std::vector<AgentId>{2});
+  EXPECT_TRUE(view_.picture(at(100ms)).trouble);
+  roster[2].forgotten = false;
+  hear_mission(at(200ms), roster, 1);
+  EXPECT_TRUE(view_.picture(at(200ms)).forgotten.empty());
+  EXPECT_FALSE(view_.picture(at(200ms)).trouble);
+}
+
 TEST_F(TeamViewTest, OfATeamThatIsWellHasNoTrouble) {
   hear_mission(at(0s));
   hear_all(at(100ms), 40);
