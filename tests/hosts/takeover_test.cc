@@ -7,7 +7,7 @@ namespace {
 using Takeover = TeamOnHosts;
 
 TEST_F(Takeover, ACoordinatorOnAnotherHostTakesTheMissionOver) {
-  const auto file = scenario();
+  const auto file = mission("20");
   hold_next("ERGOCAST_COMMAND_3", kHeldTick);
   start(file);
   hold_none();

@@ -73,7 +73,7 @@ TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOverWhenItIsToldTo) {
 }
 
 TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
-  Child mission = launch_held(scenario(), {"--lcm-url", kUrl});
+  Child mission = launch_held(scenario("duration_s: 20"), {"--lcm-url", kUrl});
   hand("ergocast-coordinator", {"--resume"});
   ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
   release();

@@ -131,8 +131,9 @@ TEST_F(Doctor, ARunIsOverheardAndLeftInPeace) {
 
 TEST_F(Doctor, TwoOnOneHostHearEachOther) {
   Child other = start("ergocast", {"doctor", "--peer", "600", "--lcm-url", kUrl});
-  ASSERT_TRUE(eventually([] { return text_of("/proc/net/udp").find(":5DC0 ") != std::string::npos; }))
-      << "nobody listens to port 24000";
+  ASSERT_TRUE(eventually([] {
+    return text_of("/proc/net/udp").find(":5DC0 ") != std::string::npos;
+  })) << "nobody listens to port 24000";
   doctor({"--peer", "3"});
   ASSERT_EQ(told_["peers"].size(), 1u) << output();
   EXPECT_EQ(told_["peers"][0]["hears_this_host"], true);

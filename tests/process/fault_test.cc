@@ -31,7 +31,7 @@ TEST_F(Fault, KilledLauncherLeavesNoProcessAndAReadableRecord) {
 }
 
 TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
-  Child mission = launch_held(scenario());
+  Child mission = launch_held(scenario("duration_s: 20"));
   mission.send(SIGSTOP);
   release();
   ASSERT_TRUE(eventually([] { return processes_on_own_host().size() == 1; }));
@@ -42,7 +42,7 @@ TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
 }
 
 TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
-  Child mission = launch_held(scenario("lockstep_timeout_s: 10"));
+  Child mission = launch_held(scenario("duration_s: 20 lockstep_timeout_s: 10"));
   signal_to({"ergocast-logger"}, SIGSTOP);
   release();
   // The world goes on without it when its patience is over, to the end.

@@ -54,9 +54,8 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
   const Tick full_at = recorded_rows(out()).rbegin()->first;
   // Twice as many ticks as a recorder keeps for later: once those that it had not yet tried to write.
   Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] {
-    return witness.answered(witness.member(0)) > full_at + 2200;
-  })) << said();
+  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > full_at + 2200; }))
+      << said();
   EXPECT_LT(recorded_bytes(), bytes + 200000);
   ASSERT_TRUE(resize_disk(kRoomy));
   ASSERT_TRUE(recorded(recorded_bytes() + 300000)) << log_of("logger");
@@ -72,9 +71,10 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
 }
 
 TEST_F(FullDisk, ThatStaysFullFailsTheRunAtItsEndAndIsNamed) {
-  if (!mount_disk("size=2m")) GTEST_SKIP() << "the small disk this needs cannot be mounted here";
+  if (!mount_disk("size=512k")) GTEST_SKIP() << "the small disk this needs cannot be mounted here";
   EXPECT_EQ(
-      ergocast({"run", scenario("lockstep_timeout_s: 10"), "--out", out(), "--duration", "200"}), 4);
+      ergocast({"run", scenario("lockstep_timeout_s: 10"), "--out", out(), "--duration", "60"}),
+      4);
   EXPECT_NE(output().find("No space left"), std::string::npos) << output();
 }
 

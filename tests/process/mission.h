@@ -1,10 +1,10 @@
 // A mission of real processes that a test disturbs.
 //
 // Machines differ tenfold in speed, both ways, so no test may need a fast or a slow one: a mission
-// that is disturbed either lasts until the test ends it (launch_endless()), or stands still at a tick
-// while the test acts (launch_held()); a test waits for what it can see, and never sleeps instead.
-// tests/at_speed tries that: with ERGOCAST_TEST_SPEED=fast, which is read here, missions fly several
-// times as fast and the default one is over after a tenth of its ticks.
+// that is disturbed either lasts until the test ends it (launch_endless()), or stands still at a
+// tick while the test acts (launch_held()); a test waits for what it can see, and never sleeps
+// instead. tests/at_speed tries that: with ERGOCAST_TEST_SPEED=fast, which is read here, missions
+// fly several times as fast and the default one is over after a tenth of its ticks.
 #pragma once
 
 #include <algorithm>
@@ -99,7 +99,8 @@ class FlyingMission : public OwnHost {
   void hold_next(const std::string& channel, Tick tick) const {
     const auto once = folder_ / "hold";
     std::ofstream(once).close();
-    setenv("ERGOCAST_HOLD", (channel + ' ' + std::to_string(tick) + ' ' + once.string()).c_str(), 1);
+    setenv("ERGOCAST_HOLD", (channel + ' ' + std::to_string(tick) + ' ' + once.string()).c_str(),
+           1);
     setenv("LD_PRELOAD", ERGOCAST_HOLD_AT, 1);
     // With AddressSanitizer: a preloaded library is fine.
     const char* others = std::getenv("ASAN_OPTIONS");

@@ -24,8 +24,8 @@
 
 namespace ergocast::test {
 
-/// How long something that must happen may take before a test gives up: decides no success, also on a
-/// machine of a tenth of the speed that is busy with other things.
+/// How long something that must happen may take before a test gives up: decides no success, also on
+/// a machine of a tenth of the speed that is busy with other things.
 inline constexpr auto kPatience = std::chrono::seconds(300);
 
 inline std::string text_of(const std::filesystem::path& file) {

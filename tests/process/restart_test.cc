@@ -109,7 +109,7 @@ TEST_F(Restart, KilledWorldGoesOnWhereTheAgentsWere) {
 }
 
 TEST_F(Restart, KilledCoordinatorTakesTheMissionOver) {
-  Child mission = launch_held(scenario());
+  Child mission = launch_held(scenario("duration_s: 20"));
   kill_next(kCoordinatorProcess);
   ASSERT_TRUE(logs("coordinator", "taken over")) << said();
   release();
@@ -159,7 +159,7 @@ TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
 }
 
 TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
-  Child mission = launch_held(scenario());
+  Child mission = launch_held(scenario("duration_s: 20"));
   kill_for_good(kCoordinatorProcess);
   ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
   release();

@@ -128,9 +128,9 @@ TEST_F(MissionRun, AnAgentNeedsNoMoreThanThirtyMegabytes) {
   if (std::getenv("ERGOCAST_BIN_DIR") != nullptr) {
     GTEST_SKIP() << "the programs are of another build, whose memory is not ours to judge";
   }
-  Child mission = start("ergocast", {"run", scenario_file("quadrimodal_corners").string(),
-                                     "--duration", "10000000", "--event-log-limit", "128",
-                                     "--out", out()});
+  Child mission =
+      start("ergocast", {"run", scenario_file("quadrimodal_corners").string(), "--duration",
+                         "10000000", "--event-log-limit", "128", "--out", out()});
   ASSERT_TRUE(recorded(100000)) << output();
   int agents = 0;
   for (const auto& process : std::filesystem::directory_iterator("/proc")) {

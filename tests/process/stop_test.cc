@@ -24,8 +24,8 @@ class StopCommand : public ByHand {
   }
 
   std::filesystem::path endless(bool realtime) {
-    return scenario(std::string("duration_s: ") + kEndless + " realtime_factor: 10 pace: " +
-                    (realtime ? "REALTIME" : "LOCKSTEP"));
+    return scenario(std::string("duration_s: ") + kEndless +
+                    " realtime_factor: 10 pace: " + (realtime ? "REALTIME" : "LOCKSTEP"));
   }
   /// All processes, started by hand.
   std::vector<Program*> start_all(const std::filesystem::path& scenario) {

@@ -58,9 +58,10 @@ class Witness {
     const auto block = blocks_.find({author, at});
     return block == blocks_.end() ? Contribution{} : block->second;
   }
-  /// Steps of the oldest of its two blocks: what a digest calls held.
+  /// Steps of the oldest of its blocks, one or two: what a digest calls held.
   std::int64_t said(const Author& author) const {
-    return std::min(block(author, 0).steps, block(author, 1).steps);
+    const std::int64_t first = block(author, 0).steps;
+    return blocks_.contains({author, 1}) ? std::min(first, block(author, 1).steps) : first;
   }
   /// The last tick that `author` has answered; −1 if it has not been heard.
   Tick answered(const Author& author) const {

@@ -16,9 +16,7 @@ constexpr int kContributionRow = 4, kTeamStatusRow = 13;
 
 class Spy : public Desk {
  protected:
-  Child fly() {
-    return launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
-  }
+  Child fly() { return launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl}); }
   static void end(Child& child, int expected) {
     child.send(SIGINT);
     EXPECT_EQ(wait_for(child), expected);

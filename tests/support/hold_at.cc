@@ -1,6 +1,6 @@
-// Preloaded into programs, stops one of them as SIGSTOP from outside would, but at the very message a
-// test names, however fast the machine is: the first program that is about to say on a channel what
-// has that tick or a later one in its header.
+// Preloaded into programs, stops one of them as SIGSTOP from outside would, but at the very message
+// a test names, however fast the machine is: the first program that is about to say on a channel
+// what has that tick or a later one in its header.
 //   ERGOCAST_HOLD="CHANNEL TICK FILE"   whoever can remove FILE is stopped, so it happens once
 #include <sys/socket.h>
 #include <sys/syscall.h>
