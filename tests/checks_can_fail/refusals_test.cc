@@ -31,7 +31,7 @@ class RefusalsCanBeSeen : public FlyingMission {
   /// Hears the mission's parts, which say its run, too.
   void learn_mission() {
     const auto ear = std::get<0>(Transport::open(
-        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, seal(team_), {{Bus::kSwarm, "MISSION"}},
+        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, seal(team_), {kTypes<MissionPart>, 0, 0},
         {.on_message = [this](const Message& message, AgentId) {
           if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
         }}));
@@ -77,6 +77,7 @@ class RefusalsCanBeSeen : public FlyingMission {
     int life = 0;
     for (MissionPart part : follower_.parts()) {
       part.revision += 1000;
+      part.signature = {};  // which is of the part as it was
       for (; life < kLives && part.roster.size() < kMaxRosterEntriesPerMessage; ++life) {
         part.roster.push_back({{kMany, static_cast<Incarnation>(1000 + life)}, 0, 1});
       }
