@@ -102,16 +102,16 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
 }
 
 TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
-  // 36 bytes less of roster and 36 more of plan: the whole adds up, so only its meaning changes.
+  // 45 bytes less of roster and 45 more of plan: the whole adds up, so only its meaning changes.
   Bytes shifted = encoded(mission_part());
   put32(shifted, kSignatureEnd + 17, 1);
-  put32(shifted, kSignatureEnd + 21, 336);
+  put32(shifted, kSignatureEnd + 21, 345);
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
-  EXPECT_EQ(part.plan.size(), 336u);
+  EXPECT_EQ(part.plan.size(), 345u);
   // Beyond a limit, it does not help that the sum is right.
-  put32(shifted, kSignatureEnd + 17, 11);
-  put32(shifted, kSignatureEnd + 21, 300 - 9 * 36);
+  put32(shifted, kSignatureEnd + 17, 9);
+  put32(shifted, kSignatureEnd + 21, 300 - 7 * 45);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
 }
 
@@ -120,8 +120,8 @@ TEST(Codec, HostileStringLengthsAreRefused) {
     Message message;
     std::size_t offset;
     std::int32_t length;  // with the final NUL
-  } strings[] = {{hello(), kHeaderBytes + 4, 13},
-                 {hello(), kHeaderBytes + 4 + 4 + 13, 6},
+  } strings[] = {{hello(), kHeaderBytes + 12, 13},
+                 {hello(), kHeaderBytes + 12 + 4 + 13, 6},
                  {stop(), kSignatureEnd + 2, 7},
                  {agent_status(), encoded(agent_status()).size() - 17, 13},
                  {team_status(), encoded(team_status()).size() - 17, 13},
@@ -150,7 +150,7 @@ TEST(Codec, TextsThatMeanSomethingToATerminalAreRefused) {
     }
   }
   Bytes host = encoded(hello());
-  host[kHeaderBytes + 8] = std::byte{0x1b};
+  host[kHeaderBytes + 16] = std::byte{0x1b};
   EXPECT_EQ(verdict(retagged(host)), "range");
 }
 
