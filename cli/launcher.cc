@@ -115,6 +115,8 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   const bool gave_way = process.role == Role::kCoordinator && code == kExitFailed;
   const bool too_often = code != kExitDone && process.restarts >= kMaxRestarts;
   if (gave_way || too_often) return give_up(process, stage);
+  // It has reached the last tick, or left: without a coordinator nobody would admit a successor.
+  if (process.role == Role::kAgent && code == kExitDone && leaderless()) return;
   process.restart_at = now + back_off(process.restarts);
 }
 

@@ -198,6 +198,9 @@ struct Command {
 struct RecordAck {
   Header header;
 };
+/// Lockstep: how many ticks the world may be ahead of what the logger has acknowledged, unless it has
+/// given that logger up.
+inline constexpr Tick kRecordWindowTicks = 64;
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
                              WorldState, Command, RecordAck, Digest>;

@@ -189,6 +189,7 @@ void Recorder::meet(const Header& world, Instant now) {
 void Recorder::advance(Instant now, Outbox& out) {
   if (finished_) return;
   if (follower_.mission()) {
+    if (given_up(now)) go_on(now);
     write_rows(now);
     if (next_row_ >= follower_.mission()->timing.tick_count && !over_since_) {
       over_since_ = now;
@@ -249,6 +250,7 @@ void Recorder::close() {
   if (finished_) return;
   finished_ = true;
   // What stands behind a gap is written now or never.
+  lost_before_ = std::max(lost_before_, newest_);
   while (writing() && gap_ahead()) {
     skip_gap();
     while (write_next_row()) {
@@ -288,6 +290,14 @@ bool Recorder::gap_ahead() const {
 
 bool Recorder::gap_is_final(Instant now) const {
   return is_lockstep() ? now - progress_ >= kRepeatPatience : states_.size() >= kGiveUpAfterStates;
+}
+
+/// Whether the world goes on without us, as it does in lockstep when it has not heard of a row for half
+/// of the time-out: we were cut off, and what was said meanwhile nobody repeats.
+bool Recorder::given_up(Instant now) const {
+  const Tick expected = std::max(next_row_, lost_before_) + kRecordWindowTicks;
+  return is_lockstep() && writing() && newest_ > expected &&
+         now - progress_ > seconds(follower_.mission()->timing.lockstep_timeout_s / 2);
 }
 
 void Recorder::skip_gap() {

@@ -8,7 +8,7 @@
 //
 // In lockstep a row is left out only where nobody is left who could repeat its states: for ticks
 // before the first state that a resumed recorder heard, or that was heard of a new world, or that
-// came while nothing could be written.
+// came while nothing could be written, or after the world had given up a recorder that was cut off.
 #pragma once
 
 #include <map>
@@ -100,6 +100,7 @@ class Recorder {
   bool holds(Tick tick) const;
   bool gap_ahead() const;
   bool gap_is_final(Instant now) const;
+  bool given_up(Instant now) const;
   void skip_gap();
   void fail(std::string reason);
   bool abandoned(Instant now) const;

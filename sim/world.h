@@ -20,9 +20,6 @@
 
 namespace ergocast {
 
-/// Lockstep: how many ticks the world may be ahead of what the logger has acknowledged.
-inline constexpr Tick kRecordWindowTicks = 64;
-
 class World {
  public:
   World(RunId run, Incarnation incarnation, PlanDecoder decode_plan);

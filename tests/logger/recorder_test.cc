@@ -149,6 +149,33 @@ TEST(Gap, InLockstepTheRecordWaitsForTheMissingStateBecauseItIsRepeated) {
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }
 
+TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItLacks) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 10000;
+  Record record(mission);
+  const auto patience = seconds(mission.timing.lockstep_timeout_s / 2);
+  for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
+  // The world has gone on meanwhile, further than it would with a logger.
+  record.tell(state_of(500), at(1s));
+  EXPECT_EQ(record.recorder.next_row(), 10) << "it may still be waiting for us";
+  const Instant back = at(0s) + patience + 1s;
+  const Outbox said = record.tell(state_of(501), back);
+  ASSERT_EQ(acks(said).size(), 1U);
+  EXPECT_NE(header_of(said.front().message).incarnation, kLoggerLife) << "as somebody whom it takes back";
+  record.tell(state_of(502), back + 1s);
+  record.tell(state_of(503), back + 2s);
+  EXPECT_EQ(number(record.trajectory_rows().back(), 0), 502);
+  EXPECT_EQ(record.recorder.facts().gaps, 490);
+}
+
+TEST(Gap, InLockstepWhatStandsBehindAGapIsWrittenAtTheEnd) {
+  Record record(small_mission(1));
+  for (const Tick tick : {0, 1, 2, 20, 21, 22}) record.tell(state_of(tick));
+  record.recorder.stop("told to");
+  EXPECT_EQ(number(record.trajectory_rows().back(), 0), 21);
+  EXPECT_EQ(record.recorder.facts().gaps, 18);
+}
+
 TEST(Gap, InRealTimeTheRecordGoesOnAndCountsTheRowsItLacks) {
   Record record(realtime_mission());
   for (Tick tick = 0; tick <= 60; ++tick) {

@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kLoggerProcess{"ergocast-logger"};
+const std::vector<std::string> kLoggerProgram{"ergocast-logger"};
 
 /// In lockstep: what moves on has everybody back.
 class Launch : public FlyingMission {
@@ -111,7 +111,7 @@ TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
   kill_next(agent(1));
   kill_next({"ergocast-coordinator"});
   kill_next({"ergocast-sim"});
-  kill_next(kLoggerProcess);
+  kill_next(kLoggerProgram);
   // More often than what dies is started again.
   for (const char* name : {"agent-1", "coordinator", "sim", "logger"}) {
     EXPECT_TRUE(logs(name, "LCM needs a multicast route", 4)) << said();
@@ -127,7 +127,7 @@ class DamagedRecord : public Launch {
   template <class Damage>
   void while_the_logger_is_dead(Child& mission, Damage damage) {
     mission.send(SIGSTOP);
-    kill_next(kLoggerProcess);
+    kill_next(kLoggerProgram);
     damage();
     mission.send(SIGCONT);
   }

@@ -12,7 +12,8 @@ using FailedTest = ByHand;
 TEST_F(FailedTest, PrintsTheLogsOfItsProcessesAndEndsThem) {
   if (std::getenv(kPlanted) != nullptr) {
     hand("ergocast-agent", {"--id", "7"});
-    Child mission = launch_endless(scenario());
+    const Child mission = launch_endless(scenario());
+    EXPECT_GT(mission.pid(), 0);
     FAIL() << "planted";
   }
   setenv(kPlanted, "1", 1);

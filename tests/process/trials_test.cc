@@ -9,7 +9,7 @@
 namespace ergocast::test {
 namespace {
 
-constexpr const char* kMission = R"(
+constexpr const char* kSwiftMission = R"(
 domain { size_x_m: 100 size_y_m: 100 }
 target { gaussians { mean_x_m: 30 mean_y_m: 60 sigma_m: 12 } }
 basis { modes_x: 5 modes_y: 5 }
@@ -20,7 +20,7 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 2 }
 
 class Trials : public OwnHost {
  protected:
-  Trials() { write("mission.textproto", kMission); }
+  Trials() { write("mission.textproto", kSwiftMission); }
 
   std::filesystem::path write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
@@ -68,7 +68,7 @@ class Trials : public OwnHost {
 
 TEST_F(Trials, AGoalOutOfReachFailsEverySeedWithTheMetricThatSimulateRecords) {
   const auto mission =
-      write("impossible.textproto", std::string(kMission) + "goal_ergodic_metric: 1e-9\n");
+      write("impossible.textproto", std::string(kSwiftMission) + "goal_ergodic_metric: 1e-9\n");
   EXPECT_EQ(ergocast({"simulate", mission, "--seeds", "1:20"}), 4);
   EXPECT_EQ(told("failures")[0].substr(told("failures")[0].rfind(' ')), " 20") << output();
   std::vector<double> reached;
@@ -102,7 +102,7 @@ TEST_F(Trials, EachSeedDrawsItsStartsAsSimulateDoes) {
 }
 
 TEST_F(Trials, ThePrintedCommandFliesTheSameMissionAgain) {
-  const auto mission = write("it's a goal.textproto", std::string(kMission) + "goal_ergodic_metric: 1e-9\n");
+  const auto mission = write("it's a goal.textproto", std::string(kSwiftMission) + "goal_ergodic_metric: 1e-9\n");
   const auto faults = write("some faults.ini", "loss = 0.2\nagent_crashes_per_s = 0.1\n");
   for (const auto& pace : {std::vector<std::string>{"--realtime=2"}, {"--realtime"}, {"--lockstep"}}) {
     std::vector<std::string> words = {"simulate", mission,    "--seeds", "7340000:7340002", "--agents",
