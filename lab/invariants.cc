@@ -242,6 +242,9 @@ void Invariants::check_average(double t_s, const Holder& holder) {
     violate(t_s, Invariant::kAverageOfWhatIsHeld, name_of(holder.self),
             text("differs by ", error, " at tick ", holder.answered));
   }
+  // Before its own first tick, where a restarted world may stand, a newcomer covers nothing itself.
+  const RosterEntry* own = entry_of(*holder.roster, holder.self);
+  if (own != nullptr && holder.answered < own->active_from) return;
   const double c_00 = (*holder.coverage)(0, 0);
   if (std::abs(c_00 - 1) > rounding(last_tick_)) {
     violate(t_s, Invariant::kZerothIsOne, name_of(holder.self), text("c_00 = ", c_00));
