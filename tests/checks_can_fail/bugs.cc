@@ -49,7 +49,7 @@ WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const
 WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Instant)
 WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Instant)
 using Decoded = std::variant<Message, Refusal>;
-WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_4SealESt17basic_string_viewIcSt11char_traitsIcEE", std::span<const std::byte>, RunId, const Seal&, std::string_view)
+WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_4SealESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const Seal&, std::string_view, KnownSignatures*)
 // clang-format on
 
 // ---- control and world ---------------------------------------------------------------------------
@@ -193,8 +193,8 @@ Instant bug_next_turn_of_world(const World* self) {
 // ---- codec ---------------------------------------------------------------------------------------
 
 Decoded bug_decode(std::span<const std::byte> bytes, RunId run, const Seal& seal,
-                   std::string_view channel) {
-  Decoded result = real_decode(bytes, run, seal, channel);
+                   std::string_view channel, KnownSignatures* known) {
+  Decoded result = real_decode(bytes, run, seal, channel, known);
   const bool refused = std::holds_alternative<Refusal>(result);
   if (bug("whole messages are refused") && !refused) return Refusal::kTag;
   if (bug("damage passes") && refused) return Digest{};
