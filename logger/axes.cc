@@ -64,6 +64,16 @@ std::vector<AxisMark> log_marks(const Axis& axis) {
   return result;
 }
 
+/// Round steps; of very small or large values each label says its power of ten.
+std::vector<AxisMark> marks_within_a_decade(Axis axis, int count) {
+  const int decade = static_cast<int>(std::floor(std::log10(axis.low)));
+  if (decade >= -3 && decade < 6) return linear_marks(axis, count);
+  axis.label_unit = std::pow(10, decade);
+  std::vector<AxisMark> result = linear_marks(axis, count);
+  for (AxisMark& mark : result) mark.label += " × " + power_of_ten(decade, false);
+  return result;
+}
+
 std::vector<AxisMark> named_marks(const Axis& axis) {
   std::vector<AxisMark> result;
   for (const std::string& name : axis.names) {
@@ -114,7 +124,7 @@ std::vector<AxisMark> marks(const Axis& axis, int count) {
   const auto labelled = std::count_if(result.begin(), result.end(),
                                       [](const AxisMark& mark) { return !mark.label.empty(); });
   // Up to a decade, round steps may say more than powers of ten; beyond, they would crowd at its end.
-  return labelled >= 3 || axis.high > 10 * axis.low ? result : linear_marks(axis, count);
+  return labelled >= 3 || axis.high > 10 * axis.low ? result : marks_within_a_decade(axis, count);
 }
 
 Plot::Plot(Svg& svg, const Box& area, Axis x, Axis y)

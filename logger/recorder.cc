@@ -251,7 +251,7 @@ void Recorder::close() {
   finished_ = true;
   // What stands behind a gap is written now or never.
   lost_before_ = std::max(lost_before_, newest_);
-  while (writing() && gap_ahead()) {
+  while (writing() && gap_ahead() && next_pair() != states_.end()) {
     skip_gap();
     while (write_next_row()) {
     }
@@ -300,11 +300,15 @@ bool Recorder::given_up(Instant now) const {
          now - progress_ > seconds(follower_.mission()->timing.lockstep_timeout_s / 2);
 }
 
-void Recorder::skip_gap() {
-  // The first pair of successive states is where the record can go on.
-  const auto pair = std::adjacent_find(states_.begin(), states_.end(), [](const auto& a, const auto& b) {
+/// The first two successive states, with which the record can go on behind a gap.
+std::map<Tick, Recorder::State>::const_iterator Recorder::next_pair() const {
+  return std::adjacent_find(states_.begin(), states_.end(), [](const auto& a, const auto& b) {
     return b.first == a.first + 1 && a.second.complete() && b.second.complete();
   });
+}
+
+void Recorder::skip_gap() {
+  const auto pair = next_pair();
   Tick resume = pair == states_.end() ? std::prev(states_.end())->first : pair->first;
   if (is_lockstep()) resume = std::min(resume, lost_before_);
   facts_.gaps += resume - std::max(next_row_, former_end_.first + 1);

@@ -101,6 +101,7 @@ class Recorder {
   bool gap_ahead() const;
   bool gap_is_final(Instant now) const;
   bool given_up(Instant now) const;
+  std::map<Tick, State>::const_iterator next_pair() const;
   void skip_gap();
   void fail(std::string reason);
   bool abandoned(Instant now) const;

@@ -32,7 +32,7 @@ struct Complaint {
 /// One reading of the text: the first error, and the warnings.
 class Collector : public google::protobuf::io::ErrorCollector {
  public:
-  static constexpr std::size_t kMaxWarnings = 200;
+  static constexpr std::size_t kMaxWarnings = 40;
 
   void AddError(int line, int column, const std::string& message) override {
     if (!error) error.emplace(line, column, message);
@@ -164,7 +164,7 @@ class OneLine : public TextFormat::FastFieldValuePrinter {
 }  // namespace
 
 bool read_text(std::string_view file, proto::Scenario& scenario, Findings& findings) {
-  constexpr int kMaxErrors = 50;
+  constexpr int kMaxErrors = 40;  // fewer than the commands print, so that what follows them is seen
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (file.starts_with(kByteOrderMark)) file.remove_prefix(kByteOrderMark.size());
   if (!fit_to_parse(file, findings)) return false;

@@ -360,12 +360,16 @@ class CheckCanFail : public Scenarios {
   void expect_limits(const FieldDescriptor& field, const std::string& path, const FieldRule& rule) {
     const bool whole = field.cpp_type() != FieldDescriptor::CPPTYPE_DOUBLE;
     const Range& range = rule.range;
-    expect_value_refused(path, whole ? range.high + 1 : 1.01 * range.high, " is above the limit ");
+    // Where the domain begins is no place in it.
+    const bool in_domain = range.coordinate && !path.starts_with("domain.");
+    const std::string above = in_domain ? " is far outside the domain" : " is above the limit ";
+    const std::string too_low = in_domain ? above : " is below the limit ";
+    expect_value_refused(path, whole ? range.high + 1 : 1.01 * range.high, above);
     if (range.low_excluded) {
       expect_value_refused(path, range.low, " is not above ");
     } else {
       const double below = range.low - std::abs(range.low) - 1;
-      expect_value_refused(path, whole ? range.low - 1 : below, " is below the limit ");
+      expect_value_refused(path, whole ? range.low - 1 : below, too_low);
     }
     if (!whole) expect_value_refused(path, std::nan(""), "nan is not a number");
     if (rule.absence != Absence::kRefused) return;
@@ -419,6 +423,7 @@ class CheckCanFail : public Scenarios {
     write("s.textproto", kGood);
     expect_refused({"check", folder_ / "none.textproto"}, "none.textproto: there is no such file");
     expect_refused({"check", folder_}, ": is a folder, not a file");
+    expect_refused({"check", "/dev/zero"}, "/dev/zero: is not a regular file");
     expect_refused({"check", "/proc/self/mem"}, "/proc/self/mem: cannot be read");
     expect_refused({"simulate", file_, "--agents", "129", "--out", out()}, "--agents: 129 is outside");
     const std::pair<const char*, const char*> flags[] = {

@@ -68,6 +68,8 @@ std::vector<Lie> lies_of_the_summary() {
        [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s["agents"].push_back(s["agents"][0]); }); }},
       {"left or was evicted at tick 5", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("active_until", 5)); }},
+      {"covered did not count for a while", 2,
+       [=](const fs::path& run) { call_it_a_run(run, agent("coverage_switched_at", 7)); }},
       {"joined at tick 3", 2, [=](const fs::path& run) { call_it_a_run(run, agent("active_from", 3)); }},
       {"is not one that ergocast wrote", 2,
        [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s["agents"][0].erase("id"); }); }},

@@ -142,7 +142,7 @@ Scenario evicting() {
 
 TEST(Eviction, OfWhoWasAwayIsNoFault) {
   int evicted = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 80; ++seed) {
     Faults faults;
     faults.loss = 0.9;
     faults.swarm_bus_only = 1;

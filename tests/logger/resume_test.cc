@@ -263,7 +263,7 @@ TEST_F(Resume, ANewWorldMayLeaveAGapBeforeItsFirstState) {
   }
   advance(record.recorder, at(10499ms));
   EXPECT_EQ(record.recorder.next_row(), 10);
-  advance(record.recorder, at(1h));
+  advance(record.recorder, at(14s));
   EXPECT_EQ(record.recorder.next_row(), 15) << "16 is repeated by the world that said 17";
   EXPECT_EQ(record.recorder.facts().gaps, 4);
 }

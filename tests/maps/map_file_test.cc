@@ -225,7 +225,7 @@ TEST_F(Maps, AsciiGridThatIsNoneIsRefused) {
 TEST_F(Maps, ThatAreNoFilesAreNamed) {
   expect_said(folder_ / "none.csv", ": there is no such file");
   fs::create_directories(folder_ / "folder.png");
-  expect_said(folder_ / "folder.png", " is not a file");
+  expect_said(folder_ / "folder.png", " is a folder, not a file");
   for (const char* name : {"a.png", "a.asc"}) expect_said(written(name, ""), " is empty");
   EXPECT_EQ(map_kind("a.Asc"), MapKind::kAsciiGrid);
   EXPECT_FALSE(map_kind("a.tif"));

@@ -71,6 +71,7 @@ restarted() { [ "$(property "$1" NRestarts)" -ge "$2" ] && is "$1" active; }
 count_records() { there sh -c "ls $records | grep -c '^2'"; }
 # Rows of the record that is being written, all its segments.
 rows() { there sh -c "cat $records/current/trajectory*.csv 2>/dev/null | wc -l"; }
+took_over() { there journalctl -o cat -u ergocast-coordinator | grep -q ', taken over'; }
 recorded() { [ "$(rows)" -ge "$1" ]; }
 kill_one() { there systemctl kill --kill-whom=main --signal=KILL "$1"; }
 
@@ -111,6 +112,8 @@ check_mission_with_crashes() {
   before=$(rows)
   there systemctl kill --signal=CONT ergocast-sim
   eventually recorded $((before + 2000))
+  # One that still looks for the mission could not end it.
+  eventually took_over
   there systemctl stop ergocast-coordinator
   eventually all_are inactive "$all"
   [ "$(count_records)" = 1 ] || fail 'the logger did not go on in its record'

@@ -42,7 +42,9 @@ TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
 }
 
 TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
-  Child mission = launch_held(scenario("duration_s: 20 lockstep_timeout_s: 10"));
+  // A buffer that cannot hold what is said while it is stopped.
+  Child mission = launch_held(scenario("duration_s: 20 lockstep_timeout_s: 10"),
+                              {"--lcm-url", "udpm://239.255.76.67:24699?ttl=0&recv_buf_size=20000"});
   signal_to({"ergocast-logger"}, SIGSTOP);
   release();
   // The world goes on without it when its patience is over, to the end.

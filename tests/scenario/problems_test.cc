@@ -347,7 +347,11 @@ TEST_F(File, ThatIsMissingOrAFolderIsNamed) {
 }
 
 TEST_F(File, ThatHasNoEndIsRefused) {
-  EXPECT_TRUE(has(said_of("/dev/zero"), "longer than the limit"));
+  EXPECT_TRUE(has(said_of("/dev/zero"), "is not a regular file"));
+  const std::filesystem::path long_file = folder_ / "long.textproto";
+  std::ofstream(long_file) << "#";
+  std::filesystem::resize_file(long_file, kMaxScenarioBytes + 1);
+  EXPECT_TRUE(has(said_of(long_file), "longer than the limit"));
 }
 
 TEST_F(File, ThatCannotBeReadIsNamed) {

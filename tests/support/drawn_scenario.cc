@@ -167,7 +167,8 @@ const std::map<std::string, Rule>& rules() {
       {"Time.lockstep_timeout_s", may(spread(1e-3, 1e4))},
       {"Time.on_timeout", may(word(0))},
       {"Time.command_hold_s", may(spread(1e-3, 10))},
-      {"Time.admission_timeout_s", may(spread(1e-3, 1e4))},
+      // An admission takes a question and its answer.
+      {"Time.admission_timeout_s", may(spread(1, 1e4))},
       {"Time.catch_up_limit_ticks", may(number(0, 20))},
       {"Time.broadcast_error_budget", may(either(0, spread(1e-3, 1)))},
       {"Time.broadcast_heartbeat_ticks", may(number(10, 100))},
