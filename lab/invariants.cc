@@ -413,7 +413,7 @@ void Invariants::check_rows(double t_s, const Holder& holder,
 
 /// What an agent held is known to others after a round of digests for each hop between them.
 void Invariants::check_neighbours(double t_s, const std::vector<Holder>& living) {
-  Memory& present = memories_.emplace_back(t_s);
+  Memory& present = memories_.emplace_back(Memory{t_s, {}});
   for (const Holder& holder : living) {
     for (const Author& author : authors_) present.held[holder.self][author] = steps_of(*holder.table, author);
   }
