@@ -238,10 +238,9 @@ int verify(const fs::path& run_dir) {
   if (const auto* problem = std::get_if<std::string>(&rows)) {
     return report_difference(run_dir, *problem + '\n', summary);
   }
-  for (FileComparison& file : compare_the_rest(run_dir, *plan, std::get<RunData>(std::move(rows)),
-                                               simulation, comparison, summary)) {
-    files.push_back(std::move(file));
-  }
+  auto rest = compare_the_rest(run_dir, *plan, std::get<RunData>(std::move(rows)), simulation, comparison,
+                               summary);
+  for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, std::move(files));
 }
 

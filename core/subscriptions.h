@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 #include "core/messages.h"
@@ -27,14 +26,24 @@ inline constexpr int kRoleCount = 7;
 using MessageTypes = std::uint32_t;
 inline constexpr std::size_t kMessageTypeCount = std::variant_size_v<Message>;
 
+/// Which alternative of Message M is.
+template <class M, std::size_t kFrom = 0>
+constexpr std::size_t type_index() {
+  if constexpr (std::is_same_v<M, std::variant_alternative_t<kFrom, Message>>) {
+    return kFrom;
+  } else {
+    return type_index<M, kFrom + 1>();
+  }
+}
 /// What Ms are, as a set.
 template <class... Ms>
-inline constexpr MessageTypes kTypes = []<std::size_t... I>(std::index_sequence<I...>) {
-  const auto one_of = [](auto i) {
-    return (std::is_same_v<Ms, std::variant_alternative_t<i(), Message>> || ...);
-  };
-  return ((one_of(std::integral_constant<std::size_t, I>()) ? MessageTypes{1} << I : 0) | ...);
-}(std::make_index_sequence<kMessageTypeCount>());
+constexpr MessageTypes types_of() {
+  MessageTypes types = 0;
+  for (const std::size_t type : {type_index<Ms>()...}) types |= MessageTypes{1} << type;
+  return types;
+}
+template <class... Ms>
+inline constexpr MessageTypes kTypes = types_of<Ms...>();
 inline constexpr MessageTypes kEveryType = (MessageTypes{1} << kMessageTypeCount) - 1;
 
 /// What somebody hears, by bus.

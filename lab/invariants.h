@@ -90,12 +90,13 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
 constexpr std::string_view name_of(Invariant invariant) {
   return kInvariants[static_cast<std::size_t>(invariant)].second;
 }
-static_assert([] {
+constexpr bool all_are_named() {
   for (std::size_t i = 0; i < kInvariants.size(); ++i) {
     if (kInvariants[i].first != static_cast<Invariant>(i) || kInvariants[i].second.empty()) return false;
   }
   return true;
-}(), "every invariant has a name, at its place");
+}
+static_assert(all_are_named(), "every invariant has a name, at its place");
 
 struct Violation {
   Invariant invariant;

@@ -76,7 +76,8 @@ optional_packages() {
 build_release() {
   local arguments stamp=$build/configured-with
   read -r -a arguments <<<"${ERGOCAST_CMAKE_ARGS:-}"
-  local wanted="$root ${arguments[*]}; $(optional_packages)"
+  local wanted
+  wanted="$root ${arguments[*]}; $(optional_packages)"
 
   # Other arguments, a moved checkout, or packages that came or went: start from an empty cache, so that
   # no old option lingers, and nothing stays unseen.

@@ -158,12 +158,12 @@ TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItL
   // The world has gone on meanwhile, further than it would with a logger.
   record.tell(state_of(500), at(1s));
   EXPECT_EQ(record.recorder.next_row(), 10) << "it may still be waiting for us";
-  const Instant back = at(0s) + patience + 1s;
+  const Instant back = at(seconds(1)) + patience;
   const Outbox said = record.tell(state_of(501), back);
   ASSERT_EQ(acks(said).size(), 1U);
   EXPECT_NE(header_of(said.front().message).incarnation, kLoggerLife) << "as somebody whom it takes back";
-  record.tell(state_of(502), back + 1s);
-  record.tell(state_of(503), back + 2s);
+  record.tell(state_of(502), back + seconds(1));
+  record.tell(state_of(503), back + seconds(2));
   EXPECT_EQ(number(record.trajectory_rows().back(), 0), 502);
   EXPECT_EQ(record.recorder.facts().gaps, 490);
 }

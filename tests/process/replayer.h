@@ -18,8 +18,7 @@ namespace ergocast::test {
 class Replayer {
  public:
   /// @param stem  how the channels begin whose datagrams it keeps, without ERGOCAST_
-  Replayer(const LcmUrl& url, std::string_view stem) : mouth_(AF_INET, SOCK_DGRAM), url_(url) {
-    name_ = "ERGOCAST_" + std::string(stem);
+  Replayer(const LcmUrl& url, std::string_view stem) : mouth_(AF_INET, SOCK_DGRAM), url_(url), name_("ERGOCAST_" + std::string(stem)) {
     for (int bus = 0; bus < kBusCount; ++bus) {
       ears_.push_back(doctor::group_listener(url.group, url.base_port + bus, error_));
     }
@@ -59,10 +58,10 @@ class Replayer {
     int bus;
     std::string bytes;
   };
-  std::string error_, name_;
-  std::vector<Socket> ears_;
   Socket mouth_;
   LcmUrl url_;
+  std::string name_, error_;
+  std::vector<Socket> ears_;
   std::vector<Datagram> kept_;
   std::size_t next_ = 0;
 };
