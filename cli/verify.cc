@@ -185,7 +185,7 @@ std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Scen
 
 /// Says how it went, and exits.
 int conclude_verification(const fs::path& run_dir, const TrajectoryComparison& comparison,
-                          const Json& summary, std::vector<FileComparison> files) {
+                          const Json& summary, const std::vector<FileComparison>& files) {
   for (const FileComparison& file : files) {
     if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
   }
@@ -241,7 +241,7 @@ int verify(const fs::path& run_dir) {
   auto rest = compare_the_rest(run_dir, *plan, std::get<RunData>(std::move(rows)), simulation, comparison,
                                summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
-  return conclude_verification(run_dir, comparison, summary, std::move(files));
+  return conclude_verification(run_dir, comparison, summary, files);
 }
 
 }  // namespace ergocast::cli
