@@ -72,7 +72,7 @@ class KeyedTeam {
     std::map<AgentId, AgentStatus> agents;
     const auto ear = std::get<0>(
         Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, Seal(key_),
-                        {{Bus::kSwarm, "AGENT_STATUS_.*"}, {Bus::kWorld, "WORLD_STATE"}},
+                        subscriptions_of(Role::kMonitor),
                         {.on_message = [&](const Message& message, AgentId) {
                           if (const auto* state = std::get_if<WorldState>(&message)) {
                             says.tick = state->header.tick;
