@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -103,15 +104,15 @@ bool Agent::evicted(Tick tick) {
 
 void Agent::join() {
   const Mission& mission = *follower_.mission();
-  table_.emplace(mission.basis, mission.timing.dt_s);
+  active_from_ = follower_.entry_of(identity_.incarnation)->active_from;
+  table_.emplace(mission.basis, mission.timing.dt_s, active_from_);
   controller_.emplace(mission);
-  schedule_.emplace(mission, self_);
+  if (mission.law.anticipation > 0) forecast_.emplace(mission, self_);
   anti_entropy_.emplace(self_, mission.seed, mission.timing.dt_s);
   radio_ = RadioRange(mission.radio_range_m);
-  team_coverage_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  team_coverage_ = foreseen_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
   table_->add_row(self_);  // before any other incarnation could take its place
   published_.resize(static_cast<std::size_t>(table_->block_count()));
-  active_from_ = follower_.entry_of(identity_.incarnation)->active_from;
   phase_ = AgentPhase::kWaiting;
 }
 
@@ -194,6 +195,7 @@ void Agent::on(const WorldState& world, Instant now) {
   const bool is_news = freshness_.is_news(world.header);
   if (is_news) world_heard_ = now;
   radio_.on(world);
+  if (forecast_ && world.header.tick >= active_from_) note_places(world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (vehicle.id != self_.agent) continue;
@@ -209,6 +211,28 @@ void Agent::on(const WorldState& world, Instant now) {
       return;
     }
     pending_ = WorldView{world.header.tick, world.roster_revision, vehicle.position_m};
+  }
+}
+
+/// Where the others are, as far as they are heard. Nobody drives a vehicle whose answers have stopped
+/// for as long as the world goes on with an old one; in lockstep the world waits for them.
+void Agent::note_places(const WorldState& world) {
+  const Timing& timing = follower_.mission()->timing;
+  const Tick tick = world.header.tick;
+  if (tick > places_tick_) {
+    places_tick_ = tick;
+    places_parts_.reset();
+  }
+  if (tick == places_tick_ && static_cast<std::size_t>(world.part) < places_parts_.size()) {
+    places_parts_.set(static_cast<std::size_t>(world.part));
+    places_wanted_ = static_cast<std::size_t>(world.parts);
+  }
+  const auto hold = static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    if (!radio_.hears(self_.agent, vehicle.id)) continue;
+    if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
+    forecast_->see(vehicle.id, tick, vehicle.position_m.head<2>());
   }
 }
 
@@ -322,19 +346,12 @@ bool Agent::abandoned(Instant now) const {
                       now - std::max(world_heard_, coordinator_heard_));
 }
 
-/// At least us: a roster may already say that all have left.
-int Agent::members() const {
-  const auto active = std::count_if(
-      follower_.roster().begin(), follower_.roster().end(),
-      [this](const RosterEntry& entry) { return entry.active_at(tick_); });
-  return std::max(1, static_cast<int>(active));
-}
-
 void Agent::broadcast(Outbox& out) {
-  next_broadcast_tick_ = schedule_->next_after(tick_, *table_, team_coverage_, members());
+  next_broadcast_tick_ = next_broadcast(*follower_.mission(), self_.agent, tick_);
   for (int b = 0; b < table_->block_count(); ++b) {
     Contribution& block = published_[static_cast<std::size_t>(b)];
     block = table_->block(self_, b);
+    block.header.tick = tick_;  // a repeat says it, too: forecasts count a block's age from it
     block.next_broadcast_tick = next_broadcast_tick_;
     publish(Bus::kSwarm, block, tick_, out);
   }
@@ -344,14 +361,25 @@ void Agent::repeat(Outbox& out) {
   repeat_wanted_ = false;
   // The blocks as they were broadcast: newer sums would make a tick depend on what was lost.
   for (const Contribution& block : published_) {
-    if (block.steps > 0) publish(Bus::kSwarm, block, tick_, out);
+    if (block.steps > 0) publish(Bus::kSwarm, block, block.header.tick, out);
   }
   if (answered_tick_ == tick_) publish(Bus::kCommand, last_command_, tick_, out);
+}
+
+/// Whether all parts of the tick's WORLD_STATE are there: what a command depends on is the same for
+/// whoever hears them in another order.
+bool Agent::knows_places() const {
+  if (!forecast_ || !follower_.mission()->dead_reckoning || tick_ < active_from_) return true;
+  return places_tick_ > tick_ || places_parts_.count() >= places_wanted_;
 }
 
 bool Agent::may_answer() {
   waiting_for_ = kUnassigned;
   if (follower_.mission()->timing.pace == Pace::kRealtime) return true;
+  if (!knows_places()) {
+    waiting_for_ = kWorld;
+    return false;
+  }
   // Who takes part in a tick is what the world says, not who has heard of it first.
   if (follower_.revision() < roster_revision_) return false;
   for (const RosterEntry& entry : follower_.roster()) {
@@ -372,8 +400,12 @@ void Agent::answer(Outbox& out) {
     const bool forgotten = entry.author != self_ && entry.forgotten_at(tick_, roster_revision_);
     forgotten ? table_->forget(entry.author) : table_->remember(entry.author);
   }
-  table_->average(team_coverage_);
-  controller_->see(team_coverage_);
+  if (forecast_) {
+    forecast_->look_ahead(*table_, follower_.roster(), tick_, foreseen_);
+  } else {
+    table_->average(foreseen_);
+  }
+  controller_->see(foreseen_);
   const Eigen::Vector2d velocity =
       controller_->command(self_.agent, tick_, x_m_, *basis_at_);
   command_before_ = last_command_;
@@ -384,10 +416,15 @@ void Agent::answer(Outbox& out) {
   publish(Bus::kCommand, last_command_, tick_, out);
 }
 
+const Coefficients& Agent::team_coverage() const {
+  if (table_) table_->average(team_coverage_);
+  return team_coverage_;
+}
+
 void Agent::publish_status(Instant now, Outbox& out) {
   AgentStatus status;
   status.phase = phase_;
-  if (tick_ >= 0) status.ergodic_metric = controller_->metric(team_coverage_);
+  if (tick_ >= 0) status.ergodic_metric = controller_->metric(team_coverage());
   const double dt_s = follower_.mission()->timing.dt_s;
   if (tick_ >= 0) {
     status.max_staleness_s =

@@ -6,16 +6,17 @@
 #pragma once
 
 #include <algorithm>
+#include <bitset>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "agent/anti_entropy.h"
-#include "agent/broadcast_schedule.h"
 #include "agent/hearing.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/deadline.h"
+#include "core/forecast.h"
 #include "core/freshness.h"
 #include "core/ids.h"
 #include "core/messages.h"
@@ -65,8 +66,10 @@ class Agent {
   AgentPhase phase() const { return phase_; }
   Tick tick() const { return tick_; }
   const CoverageTable* coverage() const { return table_ ? &*table_ : nullptr; }
-  /// c_k as of the last answered tick.
-  const Coefficients& team_coverage() const { return team_coverage_; }
+  /// c_k of the rows that it holds, added up when it is asked for: a law that looks ahead needs ĉ_k.
+  const Coefficients& team_coverage() const;
+  /// What its last command answers to: ĉ_k if the law looks ahead, else c_k.
+  const Coefficients& foreseen_coverage() const { return foreseen_; }
   const MissionFollower& follower() const { return follower_; }
   /// Of the roster that the world flies tick() by.
   std::int64_t roster_revision() const { return roster_revision_; }
@@ -94,6 +97,7 @@ class Agent {
   void on(const Hello& hello, Instant now);
   void on(const Stop& stop);
 
+  void note_places(const WorldState& world);
   void join();
   bool admitted() const { return follower_.entry_of(identity_.incarnation) != nullptr; }
   const RosterEntry* member(const Header& from) const;
@@ -104,6 +108,7 @@ class Agent {
   bool abandoned(Instant now) const;
   void broadcast(Outbox& out);
   void repeat(Outbox& out);
+  bool knows_places() const;
   bool may_answer();
   void answer(Outbox& out);
   void help_others(Instant now, Outbox& out);
@@ -116,7 +121,6 @@ class Agent {
   Header header(Bus bus, Tick tick);
   template <class M>
   void publish(Bus bus, const M& message, Tick tick, Outbox& out);
-  int members() const;
 
   AgentIdentity identity_;
   MissionFollower follower_;
@@ -127,14 +131,18 @@ class Agent {
 
   std::optional<CoverageTable> table_;
   std::optional<Controller> controller_;
-  std::optional<BroadcastSchedule> schedule_;
+  std::optional<Forecast> forecast_;  // if the law looks ahead
   std::optional<AntiEntropy> anti_entropy_;
   RadioRange radio_;
   Hearing hearing_;
-  Coefficients team_coverage_;
+  Coefficients foreseen_;
+  mutable Coefficients team_coverage_;  // of when it was asked for last
   std::vector<Contribution> published_;  // own blocks as last broadcast: what a repeat repeats
 
   std::optional<WorldView> pending_;
+  Tick places_tick_ = -1;  // of the newest WORLD_STATE, …
+  std::bitset<kMaxAgents / kMaxVehiclesPerState> places_parts_;  // … its parts that were heard, …
+  std::size_t places_wanted_ = 0;                                // … and how many there are
   bool repeat_wanted_ = false;
   std::int64_t roster_revision_ = 0;  // of the world, at tick_
   Tick active_from_ = 0;  // as the roster says

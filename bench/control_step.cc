@@ -1,10 +1,11 @@
 // One agent's control step beside its floor, and what it costs to take in the teammates' news.
 //
-// Every timed step stands directly after the merges that made all teammates' blocks new, as in a
+// Every timed step stands directly after the merges of what teammates say in that tick, as in a
 // lockstep mission. Pausing the benchmark's timer there would cost as much as the step itself, so
 // each step is timed between two readings of the clock. An iteration is a round of many ticks, and
 // its time is their median less that of an empty interval: whatever else the machine does meanwhile
-// hits few of them.
+// hits few of them. Teammates take turns within ten ticks at most, so it is the mean of ten
+// medians, one for each tick of the turn.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kTicksPerRound = 1000;
 constexpr int kRounds = 50;
+constexpr std::size_t kTurn = 10;
 
 /// Durations of one kind of work over a round.
 class Timings {
@@ -30,26 +32,33 @@ class Timings {
   void add(const Action& action) {
     const auto start = Clock::now();
     action();
-    seconds_.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    seconds_[next_++ % kTurn].push_back(
+        std::chrono::duration<double>(Clock::now() - start).count());
   }
   double take_median() {
-    const auto middle = seconds_.begin() + static_cast<std::ptrdiff_t>(seconds_.size() / 2);
-    std::nth_element(seconds_.begin(), middle, seconds_.end());
-    const double median = *middle;
-    seconds_.clear();
-    return median;
+    double sum = 0;
+    for (std::vector<double>& seconds : seconds_) {
+      const std::size_t middle = seconds.size() / 2;
+      std::nth_element(seconds.begin(), std::next(seconds.begin(), static_cast<std::ptrdiff_t>(middle)),
+                       seconds.end());
+      sum += seconds.at(middle);
+      seconds.clear();
+    }
+    return sum / kTurn;
   }
 
  private:
-  std::vector<double> seconds_;
+  std::array<std::vector<double>, kTurn> seconds_;
+  std::size_t next_ = 0;
 };
+static_assert(kTicksPerRound % kTurn == 0);
 
-StepTeam team_of(const benchmark::State& state) {
-  return {static_cast<int>(state.range(0)), static_cast<int>(state.range(1))};
+StepTeam team_of(const benchmark::State& state, Sight sight) {
+  return {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), sight};
 }
 
-void ControlStep(benchmark::State& state) {
-  StepTeam team = team_of(state);
+void ControlStep(benchmark::State& state, Sight sight) {
+  StepTeam team = team_of(state, sight);
   StepFloor floor(team.mission(), static_cast<int>(state.range(1)));
   Timings step, floor_step, nothing;
   double floor_s = 0, step_s = 0, furthest_mps = 0;
@@ -60,7 +69,7 @@ void ControlStep(benchmark::State& state) {
       floor.take(team.news());
       Eigen::Vector2d ours, theirs;
       step.add([&] { ours = team.step(); });
-      floor_step.add([&] { theirs = floor.step(team.tick(), team.x_m()); });
+      floor_step.add([&] { theirs = floor.step(team.tick(), team.places_m()); });
       nothing.add([] {});
       furthest_mps = std::max(furthest_mps, (ours - theirs).norm());
     }
@@ -77,7 +86,7 @@ void ControlStep(benchmark::State& state) {
 
 /// All blocks of all teammates, each one new.
 void MergeNews(benchmark::State& state) {
-  StepTeam team = team_of(state);
+  StepTeam team = team_of(state, Sight::kToldEachTick);
   Timings merge, nothing;
   for (auto _ : state) {
     for (int i = 0; i < kTicksPerRound; ++i) {
@@ -90,7 +99,7 @@ void MergeNews(benchmark::State& state) {
   state.counters["blocks"] = static_cast<double>(team.news().size());
 }
 
-constexpr std::array kModesPerAxis = {10, 15, 20, 32};
+constexpr std::array kModesPerAxis = {10, 16, 20, 32};
 
 void each_size(benchmark::internal::Benchmark* benchmark, std::initializer_list<int> team_sizes) {
   benchmark->ArgNames({"modes_per_axis", "agents"})->UseManualTime()->Iterations(kRounds);
@@ -99,7 +108,19 @@ void each_size(benchmark::internal::Benchmark* benchmark, std::initializer_list<
   }
 }
 
-BENCHMARK(ControlStep)->Apply([](auto* benchmark) { each_size(benchmark, {1, 4}); });
+BENCHMARK_CAPTURE(ControlStep, known, Sight::kKnown)->Apply([](auto* benchmark) {
+  each_size(benchmark, {1, 4, 16});
+});
+BENCHMARK_CAPTURE(ControlStep, told_each_tick, Sight::kToldEachTick)->Apply([](auto* benchmark) {
+  each_size(benchmark, {4, 16});
+});
+BENCHMARK_CAPTURE(ControlStep, told_each_10_ticks, Sight::kToldEach10Ticks)
+    ->Apply([](auto* benchmark) {
+      each_size(benchmark, {4, 16});
+    });
+BENCHMARK_CAPTURE(ControlStep, reckoned, Sight::kReckoned)->Apply([](auto* benchmark) {
+  each_size(benchmark, {4, 16});
+});
 BENCHMARK(MergeNews)->Apply([](auto* benchmark) { each_size(benchmark, {4}); });
 
 }  // namespace

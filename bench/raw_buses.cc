@@ -54,7 +54,8 @@ class LcmBuses final : public RawBuses {
     Bus bus;
     lcm::LCM* lcm;
     const Handler* handler;
-    void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string&) {
+    void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      if (channel == "LCM_SELF_TEST") return;  // every liblcm that starts says it to all
       Stamp stamp;
       std::memcpy(&stamp, buffer->data, sizeof stamp);
       (*handler)(bus, stamp);

@@ -14,6 +14,8 @@
 namespace ergocast::bench {
 namespace {
 
+using Ahead = StepFloor::Ahead;
+using Mate = StepFloor::Mate;
 using Tables = StepFloor::Tables;
 using Totals = StepFloor::Totals;
 using Waves = StepFloor::Waves;
@@ -36,6 +38,18 @@ void waves_anywhere(double x_m, double wave_number, int modes, Waves& out) {
   }
 }
 
+/// A teammate's sums, and its share of what it is about to add.
+template <Ahead kAhead>
+double foreseen_anywhere(const Tables& tables, int mate, int m, int n) {
+  const int at = (mate * tables.modes + m) * tables.stride + n;
+  const Mate& one = tables.mates[mate];
+  if (kAhead == Ahead::kNothing) return tables.sums[at];
+  if (kAhead == Ahead::kGains) return tables.sums[at] + one.share * tables.gains[at];
+  const double wave = one.along_x.value[m] * one.along_y.value[n];
+  return (tables.sums[at] += one.step_s * wave) + one.share * wave;
+}
+
+template <Ahead kAhead>
 Totals pass_anywhere(const Tables& tables, const Waves& along_x, const Waves& along_y, double dt_s,
                      double per_second) {
   Waves::Table over_value{}, over_slope{}, over_bend{}, power{};
@@ -45,7 +59,7 @@ Totals pass_anywhere(const Tables& tables, const Waves& along_x, const Waves& al
       double* own = tables.sums + row + n;
       double team = *own += along_x.value[m] * dt_s * along_y.value[n];
       for (int mate = 1; mate < tables.agents; ++mate)
-        team += own[mate * tables.modes * tables.stride];
+        team += foreseen_anywhere<kAhead>(tables, mate, m, n);
       const double residual = tables.weight[row + n] * (team * per_second - tables.target[row + n]);
       power[n] += residual * residual * tables.energy[row + n];
       over_value[n] += along_x.value[m] * residual;
@@ -95,8 +109,28 @@ struct Lanes {
   __m256d power, x, y, xx, xy, yy;
 };
 
+/// `team` and a teammate's sums, and its share of what it is about to add, at four modes of row
+/// `m`.
+template <Ahead kAhead>
+ERGOCAST_AVX2 inline __m256d add_mate(__m256d team, const Tables& tables, int mate, int m,
+                                      int column) {
+  const int at = (mate * tables.modes + m) * tables.stride + column;
+  __m256d sums = _mm256_loadu_pd(tables.sums + at);
+  if (kAhead == Ahead::kNothing) return _mm256_add_pd(team, sums);
+  const Mate& one = tables.mates[mate];
+  const __m256d share = _mm256_set1_pd(one.share);
+  if (kAhead == Ahead::kGains) {
+    return _mm256_fmadd_pd(share, _mm256_loadu_pd(tables.gains + at), _mm256_add_pd(team, sums));
+  }
+  const __m256d wave = _mm256_mul_pd(_mm256_broadcast_sd(&one.along_x.value[m]),
+                                     _mm256_load_pd(&one.along_y.value[column]));
+  sums = _mm256_fmadd_pd(_mm256_set1_pd(one.step_s), wave, sums);
+  _mm256_storeu_pd(tables.sums + at, sums);
+  return _mm256_fmadd_pd(share, wave, _mm256_add_pd(team, sums));
+}
+
 /// So many vectors of columns at once, over all rows: what is summed stays in registers.
-template <int kVectors>
+template <Ahead kAhead, int kVectors>
 ERGOCAST_AVX2 inline void add_columns(const Tables& tables, const Waves& along_x,
                                       const Waves& along_y, double dt_s, double per_second,
                                       int first, Lanes& lanes) {
@@ -116,7 +150,7 @@ ERGOCAST_AVX2 inline void add_columns(const Tables& tables, const Waves& along_x
       __m256d team = _mm256_fmadd_pd(value, sample[v], _mm256_loadu_pd(own));
       _mm256_storeu_pd(own, team);
       for (int mate = 1; mate < tables.agents; ++mate) {
-        team = _mm256_add_pd(team, _mm256_loadu_pd(own + mate * tables.modes * tables.stride));
+        team = add_mate<kAhead>(team, tables, mate, m, first + v * kLanes);
       }
       const __m256d residual =
           _mm256_mul_pd(_mm256_loadu_pd(tables.weight + at),
@@ -145,16 +179,17 @@ ERGOCAST_AVX2 double sum_of(__m256d lanes) {
   return _mm_cvtsd_f64(_mm_add_sd(pair, _mm_unpackhi_pd(pair, pair)));
 }
 
+template <Ahead kAhead>
 ERGOCAST_AVX2 Totals pass_avx2(const Tables& tables, const Waves& along_x, const Waves& along_y,
                                double dt_s, double per_second) {
   const __m256d zero = _mm256_setzero_pd();
   Lanes lanes{zero, zero, zero, zero, zero, zero};
   int first = 0;
   for (; first + 2 * kLanes <= tables.stride; first += 2 * kLanes) {
-    add_columns<2>(tables, along_x, along_y, dt_s, per_second, first, lanes);
+    add_columns<kAhead, 2>(tables, along_x, along_y, dt_s, per_second, first, lanes);
   }
   if (first < tables.stride)
-    add_columns<1>(tables, along_x, along_y, dt_s, per_second, first, lanes);
+    add_columns<kAhead, 1>(tables, along_x, along_y, dt_s, per_second, first, lanes);
   return {sum_of(lanes.power), sum_of(lanes.x),  sum_of(lanes.y),
           sum_of(lanes.xx),    sum_of(lanes.xy), sum_of(lanes.yy)};
 }
@@ -163,17 +198,32 @@ const bool kHasAvx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("
 #else
 constexpr bool kHasAvx2 = false;
 constexpr auto waves_avx2 = waves_anywhere;
-constexpr auto pass_avx2 = pass_anywhere;
+template <Ahead kAhead>
+constexpr auto pass_avx2 = pass_anywhere<kAhead>;
 #endif
+
+const auto waves = kHasAvx2 ? waves_avx2 : waves_anywhere;
+
+template <Ahead kAhead>
+const auto pass = kHasAvx2 ? pass_avx2<kAhead> : pass_anywhere<kAhead>;
+
+Ahead ahead_of(const Mission& mission, int agents) {
+  if (mission.law.anticipation == 0 || agents == 1) return Ahead::kNothing;
+  return mission.dead_reckoning ? Ahead::kPlaces : Ahead::kGains;
+}
 
 }  // namespace
 
 StepFloor::StepFloor(const Mission& mission, int agents)
     : mission_(mission),
+      look_ahead_(mission),
+      ahead_(ahead_of(mission, agents)),
       agents_(agents),
       modes_(mission.basis.modes_x),
       stride_((modes_ + kLanes - 1) / kLanes * kLanes),
       sums_(static_cast<std::size_t>(agents * modes_ * stride_)),
+      gains_(sums_),
+      mates_(static_cast<std::size_t>(agents)),
       push_ticks_(push_ticks(mission.law, mission.timing.dt_s)) {
   const auto padded = [this](const Coefficients& table) {
     std::vector<double> all(static_cast<std::size_t>(modes_ * stride_));
@@ -188,26 +238,76 @@ StepFloor::StepFloor(const Mission& mission, int agents)
 
 void StepFloor::take(const std::vector<Contribution>& news) {
   for (const Contribution& block : news) {
-    double* theirs = sums_.data() + block.header.sender * modes_ * stride_;
+    Mate& mate = mates_[static_cast<std::size_t>(block.header.sender)];
+    if (block.block == 0) {
+      mate.gained_steps = block.steps - mate.steps;
+      mate.steps = block.steps;
+      mate.tick = block.header.tick;
+      mate.period = block.next_broadcast_tick - block.header.tick;
+    }
+    const int table = block.header.sender * modes_ * stride_;
     const int first = block.block * kBlockSize, end = std::min(first + kBlockSize, modes_ * modes_);
-    for (int k = first; k < end; ++k)
-      theirs[k / modes_ * stride_ + k % modes_] = block.sums[static_cast<std::size_t>(k - first)];
+    for (int k = first; k < end; ++k) {
+      const auto at = static_cast<std::size_t>(table + k / modes_ * stride_ + k % modes_);
+      const double sum = block.sums[static_cast<std::size_t>(k - first)];
+      gains_[at] = sum - sums_[at];
+      sums_[at] = sum;
+    }
   }
 }
 
-Eigen::Vector2d StepFloor::step(Tick tick, const Eigen::Vector2d& x_m) {
-  const double dt_s = mission_.timing.dt_s;
+/// Where teammates are in this tick.
+void StepFloor::see(Tick tick, const std::vector<Eigen::Vector2d>& places_m) {
   const Eigen::Vector2d wave_numbers = std::numbers::pi * mission_.domain.size_m.cwiseInverse();
-  const double per_second = 1 / (static_cast<double>(++steps_ * agents_) * dt_s);
-  const Tables tables{agents_,        modes_,         stride_,       sums_.data(),
-                      target_.data(), weight_.data(), energy_.data()};
-  const auto waves = kHasAvx2 ? waves_avx2 : waves_anywhere;
-  const auto pass = kHasAvx2 ? pass_avx2 : pass_anywhere;
+  for (std::size_t i = 1; i < mates_.size(); ++i) {
+    Mate& mate = mates_[i];
+    waves(places_m[i].x(), wave_numbers.x(), stride_, mate.along_x);
+    waves(places_m[i].y(), wave_numbers.y(), stride_, mate.along_y);
+    const bool is_news = tick > mate.tick;
+    mate.step_s = is_news ? mission_.timing.dt_s : 0;
+    mate.steps += is_news;
+    mate.gained_steps = 1;
+    mate.tick = tick;
+  }
+}
+
+/// The denominator of ĉ, and teammates' shares.
+double StepFloor::per_second(Tick tick) {
+  const double dt_s = mission_.timing.dt_s, horizon_s = look_ahead_.horizon_s(agents_, tick);
+  ++mates_[0].steps;
+  double covered_s = 0;
+  for (Mate& mate : mates_) {
+    covered_s += static_cast<double>(mate.steps) * dt_s;
+    if (&mate == &mates_[0] || ahead_ == Ahead::kNothing) continue;
+    const double weight_s =
+        look_ahead_.weight_s(horizon_s, mate.gained_steps, tick - mate.tick, mate.period);
+    covered_s += weight_s;
+    mate.share = ahead_ == Ahead::kPlaces
+                     ? weight_s
+                     : weight_s / (static_cast<double>(mate.gained_steps) * dt_s);
+  }
+  return 1 / covered_s;
+}
+
+/// The pass over the modes at agent 0's place.
+Totals StepFloor::totals(const Eigen::Vector2d& x_m, double per_second) {
+  const Eigen::Vector2d wave_numbers = std::numbers::pi * mission_.domain.size_m.cwiseInverse();
+  const Tables tables{agents_,        modes_,         stride_,        sums_.data(), gains_.data(),
+                      target_.data(), weight_.data(), energy_.data(), mates_.data()};
   // Also behind the last mode, where the weights are zero and nothing counts.
   Waves along_x, along_y;
   waves(x_m.x(), wave_numbers.x(), stride_, along_x);
   waves(x_m.y(), wave_numbers.y(), stride_, along_y);
-  const Totals totals = pass(tables, along_x, along_y, dt_s, per_second);
+  const auto over = ahead_ == Ahead::kNothing ? pass<Ahead::kNothing>
+                    : ahead_ == Ahead::kGains ? pass<Ahead::kGains>
+                                              : pass<Ahead::kPlaces>;
+  return over(tables, along_x, along_y, mission_.timing.dt_s, per_second);
+}
+
+Eigen::Vector2d StepFloor::step(Tick tick, const std::vector<Eigen::Vector2d>& places_m) {
+  if (ahead_ == Ahead::kPlaces) see(tick, places_m);
+  const Eigen::Vector2d& x_m = places_m.front();
+  const Totals totals = this->totals(x_m, per_second(tick));
 
   const ControlLaw& law = mission_.law;
   FieldAt field;
@@ -223,7 +323,7 @@ Eigen::Vector2d StepFloor::step(Tick tick, const Eigen::Vector2d& x_m) {
   }
   return -law.u_max_mps / length * field.gradient -
          law.contraction_gain_per_s * (x_m - law.contraction_center_m) +
-         perturbation(law, dt_s, epsilon, field, xi, eta_);
+         perturbation(law, mission_.timing.dt_s, epsilon, field, xi, eta_);
 }
 
 }  // namespace ergocast::bench

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "core/look_ahead.h"
 #include "core/messages.h"
 #include "core/mission.h"
 #include "core/perturbation.h"
@@ -16,22 +17,35 @@ class StepFloor {
  public:
   StepFloor(const Mission& mission, int agents);
 
-  /// The teammates' sums: all their blocks, agent after agent.
+  /// What teammates say: all blocks of some of them, agent after agent.
   void take(const std::vector<Contribution>& news);
 
-  /// Agent 0's command at `x_m`; the same as Controller's but for rounding.
-  Eigen::Vector2d step(Tick tick, const Eigen::Vector2d& x_m);
+  /// Agent 0's command, everybody's places [m] known if the mission says so; the same as Agent's
+  /// but for rounding.
+  Eigen::Vector2d step(Tick tick, const std::vector<Eigen::Vector2d>& places_m);
 
   /// One axis: cos(m·k·x) for every mode m, its first derivative and its second.
   struct Waves {
     using Table = std::array<double, kMaxModesPerAxis>;
     alignas(32) Table value, slope, bend;
   };
+  /// What teammates are about to add to their sums.
+  enum class Ahead { kNothing, kGains, kPlaces };
+  /// One agent of the team.
+  struct Mate {
+    Waves along_x, along_y;  ///< where it is, if places are known
+    double step_s = 0;       ///< what its sums gain there
+    double share = 0;        ///< of what it is about to add
+    std::int64_t steps = 0, gained_steps = 0;
+    Tick tick = -1, period = 1;
+  };
   /// The modes' tables. Rows are padded with zeros to whole vectors.
   struct Tables {
     int agents, modes, stride;
-    double* sums;  ///< one table an agent, the own one first
+    double* sums;         ///< one table an agent, the own one first
+    const double* gains;  ///< likewise
     const double *target, *weight, *energy;
+    const Mate* mates;  ///< the own one first
   };
   /// What one pass over the modes yields: Σ of the residual over the modes with its derivatives.
   struct Totals {
@@ -39,10 +53,16 @@ class StepFloor {
   };
 
  private:
+  double per_second(Tick tick);
+  void see(Tick tick, const std::vector<Eigen::Vector2d>& places_m);
+  Totals totals(const Eigen::Vector2d& x_m, double per_second);
+
   Mission mission_;
+  LookAhead look_ahead_;
+  Ahead ahead_;
   int agents_, modes_, stride_;  // modes per axis
-  std::vector<double> sums_, target_, weight_, energy_;
-  std::int64_t steps_ = 0;
+  std::vector<double> sums_, gains_, target_, weight_, energy_;
+  std::vector<Mate> mates_;
   Tick push_ticks_, push_ = -1;
   Eigen::Vector2d eta_{0, 0};
 };

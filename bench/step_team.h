@@ -5,24 +5,33 @@
 
 #include "core/control.h"
 #include "core/coverage_table.h"
+#include "core/forecast.h"
 #include "core/mission.h"
 
 namespace ergocast::bench {
 
+/// What agent 0 answers to, and from what it knows it.
+enum class Sight {
+  kKnown,            ///< c, of rows told each tick
+  kToldEachTick,     ///< ĉ, of rows told each tick
+  kToldEach10Ticks,  ///< ĉ, of rows told every ten ticks, in turns
+  kReckoned,         ///< likewise, and of where teammates are
+};
+
 class StepTeam {
  public:
-  StepTeam(int modes_per_axis, int agents);
+  StepTeam(int modes_per_axis, int agents, Sight sight);
 
   const Mission& mission() const { return mission_; }
   Tick tick() const { return tick_; }
-  /// Where agent 0 is at tick().
-  const Eigen::Vector2d& x_m() const { return x_m_; }
-  /// Every block of every teammate at tick().
+  /// Where everybody is at tick(), agent 0 first.
+  const std::vector<Eigen::Vector2d>& places_m() const { return places_m_; }
+  /// Every block that teammates say at tick().
   const std::vector<Contribution>& news() const { return news_; }
 
   /// The next tick: everybody moves; the teammates add their samples and make the news.
   void teammates_step();
-  /// Agent 0 takes in the news.
+  /// Agent 0 takes in the news, and where everybody is.
   void merge_news();
   /// What agent 0 does between knowing where it is and saying how it moves.
   Eigen::Vector2d step();
@@ -31,10 +40,12 @@ class StepTeam {
   Mission mission_;
   CoverageTable own_;
   Controller controller_;
+  Forecast forecast_;
   Coefficients coverage_;
+  std::vector<RosterEntry> roster_;
   std::vector<CoverageTable> teammates_;
   std::vector<Contribution> news_;
-  Eigen::Vector2d x_m_{0, 0};
+  std::vector<Eigen::Vector2d> places_m_;
   Tick tick_ = -1;
 };
 

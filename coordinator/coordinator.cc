@@ -147,8 +147,15 @@ void Coordinator::on(const Hello& hello, Instant now) {
   std::optional<AgentId> id = hello.requested_id;
   if (*id == kUnassigned) id = free_id(nonce, now);
   if (!id) return;  // not yet, or the team is full
-  const RosterEntry* holder = active_entry(*id);
-  if (holder != nullptr && alive(*holder, now)) return;  // the younger has to give way
+  if (const RosterEntry* holder = active_entry(*id)) {
+    if (alive(*holder, now)) return;  // the younger has to give way
+    // The silence of one concerns only who would take its number: where messages are late, members fall
+    // silent all the time, and nobody else's HELLO would ever be new enough.
+    if (hello.revision < members_[holder->author].silence_revision) {
+      next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
+      return;
+    }
+  }
   admit({*id, nonce}, now);
 }
 
@@ -270,7 +277,10 @@ void Coordinator::note_silences(Instant now) {
     if (entry.active_until >= 0) continue;
     Member& member = members_[entry.author];
     const bool silent = !alive(entry, now);
-    if (silent && !member.silence_said) change();
+    if (silent && !member.silence_said) {
+      say_anew();
+      member.silence_revision = revision_;
+    }
     member.silence_said = silent;
   }
 }
@@ -345,7 +355,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
 }
 
 void Coordinator::publish_mission(Outbox& out) {
-  admits_from_ = revision_;
+  admits_from_ = who_may_join_;
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
   const std::size_t parts =
       std::max({std::size_t{1}, ceil_div(plan_.size(), kMaxPlanBytesPerMessage),

@@ -75,6 +75,7 @@ class Coordinator {
     std::optional<AgentStatus> status;
     Instant heard{};
     bool silence_said = false;
+    std::int64_t silence_revision = -1;  // that tells of its last silence
   };
 
   void on(const Hello& hello, Instant now);
@@ -106,7 +107,8 @@ class Coordinator {
   void check_tick(Instant now);
   AgentId waits_for(const RosterEntry& entry) const;
   RosterEntry* culprit(Instant now);
-  void announce() { ++revision_, next_mission_ = Instant{}; }
+  void announce() { say_anew(), who_may_join_ = revision_; }
+  void say_anew() { ++revision_, next_mission_ = Instant{}; }
   /// Anything but an admission: newcomers have to know of it, so that no recording of one gets in.
   void change() { announce(), admits_from_ = revision_; }
   void publish_mission(Outbox& out);
@@ -133,7 +135,8 @@ class Coordinator {
   MissionState state_ = MissionState::kWaiting;
   std::string reason_;
   std::int64_t revision_ = 0;
-  std::int64_t admits_from_ = -1;  // what a HELLO must know of
+  std::int64_t who_may_join_ = 0;  // the newest revision that bears on all newcomers, …
+  std::int64_t admits_from_ = -1;  // … and what a HELLO must know of, once it was said
   std::vector<RosterEntry> roster_;
   std::map<Author, Member> members_;
   std::map<Incarnation, Instant> asked_;  // newcomers without a number: since when

@@ -130,6 +130,7 @@ void Coordinator::take_over(Instant now) {
   // Above all that former successors have said, also what only agents know that we do not hear: the
   // later a takeover, the higher its revisions.
   revision_ = std::max(follower_.revision() + kRevisionLead, (tick_ + 1) * kRevisionLead);
+  who_may_join_ = revision_;
   if (follower_.over()) ended_ = now;
   tick_since_ = now;
   for (const RosterEntry& entry : roster_) members_[entry.author].heard = now;

@@ -1,5 +1,6 @@
 #include "core/basis.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,21 +10,6 @@
 namespace ergocast {
 namespace {
 
-void fill_axis(double x_m, double length_m, int modes, BasisAt::Table& cosine,
-               BasisAt::Table& slope) {
-  const double wave_number = std::numbers::pi / length_m;
-  const double first_cos = std::cos(wave_number * x_m);
-  const double first_sin = std::sin(wave_number * x_m);
-  double c = 1, s = 0;
-  for (int m = 0; m < modes; ++m) {
-    cosine[m] = c;
-    slope[m] = -m * wave_number * s;
-    const double next_c = c * first_cos - s * first_sin;
-    s = s * first_cos + c * first_sin;
-    c = next_c;
-  }
-}
-
 double half_unless_zero(int mode) { return mode == 0 ? 1.0 : 0.5; }
 
 }  // namespace
@@ -31,14 +17,41 @@ double half_unless_zero(int mode) { return mode == 0 ? 1.0 : 0.5; }
 BasisAt::BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
   ERGOCAST_REQUIRE(x_m.allFinite());
   ERGOCAST_REQUIRE(basis.modes_x <= kMaxModesPerAxis && basis.modes_y <= kMaxModesPerAxis);
-  fill_axis(x_m.x() - domain.origin_m.x(), domain.size_m.x(), basis.modes_x, cos_x, slope_x);
-  fill_axis(x_m.y() - domain.origin_m.y(), domain.size_m.y(), basis.modes_y, cos_y, slope_y);
+  const double wave_x = std::numbers::pi / domain.size_m.x();
+  const double wave_y = std::numbers::pi / domain.size_m.y();
+  const double angle_x = wave_x * (x_m.x() - domain.origin_m.x());
+  const double angle_y = wave_y * (x_m.y() - domain.origin_m.y());
+  const double first_cx = std::cos(angle_x), first_sx = std::sin(angle_x);
+  const double first_cy = std::cos(angle_y), first_sy = std::sin(angle_y);
+  double cx = 1, sx = 0, cy = 1, sy = 0;
+  // Both axes in one loop, for neither waits for the other; the shorter one's tables have room.
+  for (int m = 0, end = std::max(basis.modes_x, basis.modes_y); m < end; ++m) {
+    cos_x[m] = cx;
+    cos_y[m] = cy;
+    slope_x[m] = -m * wave_x * sx;
+    slope_y[m] = -m * wave_y * sy;
+    const double next_x = cx * first_cx - sx * first_sx;
+    const double next_y = cy * first_cy - sy * first_sy;
+    sx = sx * first_cx + cx * first_sx;
+    sy = sy * first_cy + cy * first_sy;
+    cx = next_x;
+    cy = next_y;
+  }
 }
 
 Coefficients basis_values(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
   Coefficients values = Coefficients::Zero(basis.modes_x, basis.modes_y);
   accumulate_basis(BasisAt(x_m, domain, basis), basis, 1.0, values.data());
   return values;
+}
+
+ERGOCAST_VECTORIZED
+void set_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums) {
+  for (int m = 0; m < basis.modes_x; ++m) {
+    const double along_x = at.cos_x[m] * dt_s;
+    double* row = sums + m * basis.modes_y;
+    for (int n = 0; n < basis.modes_y; ++n) row[n] = along_x * at.cos_y[n];
+  }
 }
 
 ERGOCAST_VECTORIZED

@@ -48,6 +48,9 @@ struct BasisAt {
 /// f_mn(x) of every mode, (2): not divided by h_k.
 Coefficients basis_values(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
 
+/// sums(m,n) = f_mn · dt_s. `sums` points to mode_count() doubles.
+void set_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums);
+
 /// sums(m,n) += f_mn · dt_s, for the running sums of (4). `sums` points to mode_count() doubles.
 void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums);
 

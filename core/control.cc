@@ -77,12 +77,18 @@ Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vecto
     const Eigen::Vector2d xi =
         normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
                     static_cast<std::uint64_t>(tick));
-    const Eigen::Vector2d eta =
-        normal_pair(seed_, Purpose::kPush, static_cast<std::uint32_t>(agent),
-                    static_cast<std::uint64_t>(tick / push_ticks_));
+    const Eigen::Vector2d eta = push(agent, tick / push_ticks_);
     velocity += perturbation(law_, dt_s_, epsilon_, field, xi, eta);
   }
   return velocity;
+}
+
+/// η of one stretch of push_ticks_ ticks.
+Eigen::Vector2d Controller::push(AgentId agent, Tick stretch) const {
+  const AgentId drawn = law_.paired_pushes ? agent - agent % 2 : agent;
+  const Eigen::Vector2d eta = normal_pair(seed_, Purpose::kPush, static_cast<std::uint32_t>(drawn),
+                                          static_cast<std::uint64_t>(stretch));
+  return drawn == agent ? eta : Eigen::Vector2d(-eta);
 }
 
 double Controller::metric(const Coefficients& coverage) const {

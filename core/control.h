@@ -20,8 +20,8 @@ class Controller {
  public:
   explicit Controller(const Mission& mission);
 
-  /// Takes in the team's c_k as the agent knows it, mode_count() entries: what all later commands
-  /// answer to.
+  /// Takes in the team's c_k as the agent knows or foresees it, mode_count() entries: what all later
+  /// commands answer to.
   void see(const Coefficients& coverage);
 
   /// The velocity command of (10) at position `x_m`:
@@ -38,6 +38,7 @@ class Controller {
   double metric(const Coefficients& coverage) const;
 
  private:
+  Eigen::Vector2d push(AgentId agent, Tick stretch) const;
   /// The RMS over the domain of ‖Σ λ (c − μ) ∇f‖ [1/m].
   double residual_gradient() const;
 

@@ -14,9 +14,20 @@ namespace {
 /// cosines by recurrence, which exceed 1 by about 3e-15.
 double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(steps) * 0x1p-53; }
 
-/// Divides kBlockSize, so that reading so many never leaves a row.
-constexpr int kModesPerStride = 8;
-static_assert(kBlockSize % kModesPerStride == 0);
+static_assert(kBlockSize % kModesPerStride == 0, "reading so many never leaves a row");
+
+/// Whether none of a block's |values| exceeds `limit`, and none is NaN.
+ERGOCAST_VECTORIZED
+bool all_within(const double* values, double limit) {
+  std::int64_t beyond = 0;  // counted, because a loop with a way out is not vectorised
+  for (std::size_t k = 0; k < kBlockSize; ++k) beyond += !(std::abs(values[k]) <= limit);
+  return beyond == 0;
+}
+
+ERGOCAST_VECTORIZED
+void subtract(const double* a, const double* b, double* difference) {
+  for (std::size_t k = 0; k < kBlockSize; ++k) difference[k] = a[k] - b[k];
+}
 
 bool in_range(const Contribution& c, double dt_s) {
   const double expected_s = static_cast<double>(c.steps) * dt_s;
@@ -24,17 +35,15 @@ bool in_range(const Contribution& c, double dt_s) {
   if (!(std::abs(c.elapsed_s - expected_s) <= margin_s)) return false;
   // f_00 = 1, so S_00 is the time covered.
   if (c.block == 0 && !(std::abs(c.sums[0] - expected_s) <= margin_s)) return false;
-  const double limit = expected_s + margin_s;
-  // The negation refuses NaN too.
-  return std::all_of(c.sums.begin(), c.sums.end(),
-                     [limit](double sum) { return std::abs(sum) <= limit; });
+  return all_within(c.sums.data(), expected_s + margin_s);
 }
 
 }  // namespace
 
-CoverageTable::CoverageTable(const Basis& basis, double dt_s)
+CoverageTable::CoverageTable(const Basis& basis, double dt_s, Tick joined)
     : basis_(basis),
       dt_s_(dt_s),
+      joined_(joined),
       block_count_((basis.mode_count() + kBlockSize - 1) / kBlockSize) {}
 
 const CoverageTable::Row* CoverageTable::find(const Author& author) const {
@@ -54,6 +63,7 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
   if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
   const auto blocks = static_cast<std::size_t>(block_count_);
   return &*rows_.insert(at, Row{author, true, std::vector<Block>(blocks),
+                                std::vector<double>(blocks * kBlockSize),
                                 std::vector<double>(blocks * kBlockSize)});
 }
 
@@ -78,9 +88,47 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (row == nullptr) return Merge::kRefusedLimit;
   Block& block = row->blocks[static_cast<std::size_t>(theirs.block)];
   if (theirs.steps <= block.steps) return Merge::kStale;
-  block = {theirs.steps, theirs.next_broadcast_tick, theirs.header.sequence, theirs.header.tick};
+  const std::int64_t gained_steps = take_gains(theirs, block, *row);
+  block = {theirs.steps, theirs.next_broadcast_tick, theirs.header.sequence, theirs.header.tick,
+           gained_steps};
   std::copy(theirs.sums.begin(), theirs.sums.end(), row->sums.begin() + theirs.block * kBlockSize);
   return Merge::kNewer;
+}
+
+/// Writes what `theirs` adds to the block held before; returns over how many steps, 0 if no agent can
+/// have gained that in them.
+std::int64_t CoverageTable::take_gains(const Contribution& theirs, const Block& before, Row& row) const {
+  const bool comparable = before.tick >= joined_;
+  const std::int64_t steps = theirs.steps - (comparable ? before.steps : 0);
+  const double margin_s = static_cast<double>(theirs.steps) * dt_s_ * rounding_margin(theirs.steps);
+  const double most_s = static_cast<double>(steps) * dt_s_ + 2 * margin_s;
+  const std::ptrdiff_t first = std::ptrdiff_t{theirs.block} * kBlockSize;
+  double* gains = row.gains.data() + first;
+  if (comparable) {
+    subtract(theirs.sums.data(), row.sums.data() + first, gains);
+  } else {
+    std::copy(theirs.sums.begin(), theirs.sums.end(), gains);
+  }
+  return all_within(gains, most_s) ? steps : 0;
+}
+
+CoverageTable::BlockView CoverageTable::view(std::size_t row, int block) const {
+  const Row& one = rows_[row];
+  const Block& held = one.blocks[static_cast<std::size_t>(block)];
+  const std::ptrdiff_t first = std::ptrdiff_t{block} * kBlockSize;
+  return {one.sums.data() + first, one.gains.data() + first, held.steps, held.gained_steps, held.tick,
+          held.next_broadcast_tick - held.tick};
+}
+
+bool CoverageTable::Block::looks_like(const Block& other) const {
+  return steps == other.steps && gained_steps == other.gained_steps && tick == other.tick &&
+         next_broadcast_tick == other.next_broadcast_tick;
+}
+
+bool CoverageTable::blocks_alike(std::size_t row) const {
+  const auto& blocks = rows_[row].blocks;
+  return std::all_of(blocks.begin() + 1, blocks.end(),
+                     [&](const Block& block) { return block.looks_like(blocks.front()); });
 }
 
 Contribution CoverageTable::block(const Author& author, int block) const {
@@ -119,7 +167,6 @@ void CoverageTable::average(Coefficients& coverage) const {
     }
     const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
     const int end = std::min((b + 1) * kBlockSize, basis_.mode_count());
-    // A few modes at a time over all rows: their sums stay in registers.
     for (int first = b * kBlockSize; first < end; first += kModesPerStride) {
       std::array<double, kModesPerStride> team{};
       for (const Row& row : rows_) {

@@ -20,7 +20,9 @@ enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit };
 
 class CoverageTable {
  public:
-  CoverageTable(const Basis& basis, double dt_s);
+  /// @param joined  the tick from which its holder takes part. What a row held before may be this or
+  ///                that, so nothing is compared with a block said before it.
+  CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
   int block_count() const { return block_count_; }
 
@@ -66,9 +68,24 @@ class CoverageTable {
   /// Row `i` of row_count(), in ascending order of authors.
   Holding holding(std::size_t i) const;
   const Author& author(std::size_t i) const { return rows_[i].author; }
+  bool counts(std::size_t i) const { return rows_[i].counts; }
   std::int64_t fewest_steps(std::size_t i) const { return rows_[i].fewest_steps(); }
   /// The row of `author`; all 0 if it is unknown.
   Holding holding(const Author& author) const;
+
+  /// One block of a row, and what it has gained.
+  struct BlockView {
+    const double* sums;         ///< kBlockSize of them [s]
+    const double* gains;        ///< sums less those of the block held before [s]
+    std::int64_t steps;
+    std::int64_t gained_steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their time
+    Tick tick;                  ///< when it was said
+    Tick period;                ///< until its author speaks again, as announced
+  };
+  BlockView view(std::size_t row, int block) const;
+  /// Whether the views of all blocks of a row are alike but for their numbers, which then follow each
+  /// other.
+  bool blocks_alike(std::size_t row) const;
 
   /// The sums of a row [s], mode_count() of them and then zeros; null if it is unknown.
   const double* sums_of(const Author& author) const;
@@ -87,12 +104,15 @@ class CoverageTable {
     Tick next_broadcast_tick = 0;
     std::int64_t sequence = 0;  // of the message that brought it, for who repeats it
     Tick tick = 0;
+    std::int64_t gained_steps = 0;
+    bool looks_like(const Block& other) const;
   };
   struct Row {
     Author author;
     bool counts = true;
     std::vector<Block> blocks;
-    std::vector<double> sums;  // block_count · kBlockSize, zero beyond the last mode
+    std::vector<double> sums;   // block_count · kBlockSize, zero beyond the last mode
+    std::vector<double> gains;  // likewise
     std::int64_t fewest_steps() const;
     std::int64_t most_steps() const;
     std::uint64_t mark() const;
@@ -103,8 +123,11 @@ class CoverageTable {
   const Row* find(const Author& author) const;
   Row* find_or_add(const Author& author);
 
+  std::int64_t take_gains(const Contribution& theirs, const Block& before, Row& row) const;
+
   Basis basis_;
   double dt_s_;
+  Tick joined_;
   int block_count_;
   std::vector<Row> rows_;  // ascending by author
 };

@@ -1,5 +1,6 @@
 #include "core/mission.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/noise.h"
@@ -27,6 +28,13 @@ Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen
                           static_cast<std::uint64_t>(tick));
   }
   return next_m;
+}
+
+Tick next_broadcast(const Mission& mission, AgentId id, Tick tick) {
+  const Tick period = mission.timing.broadcast_period_ticks;
+  const Tick team = std::max<Tick>(1, static_cast<Tick>(mission.starts_m.size()));
+  const Tick turn = id * period / team % period;
+  return tick + period - (tick - turn + period) % period;
 }
 
 Eigen::Vector2d start_of(const Mission& mission, AgentId id) {

@@ -31,6 +31,9 @@ struct ControlLaw {
   double noise_ceiling = 0;                   ///< adaptive: its greatest value [m/√s]
   double contraction_gain_per_s = 0;          ///< k
   Eigen::Vector2d contraction_center_m{0, 0};
+  double anticipation = 0;     ///< a of core/look_ahead.h; 0: agents answer to what they know, c
+  bool ends_with_plan = false; ///< nobody looks beyond the mission's end
+  bool paired_pushes = false;  ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
 
   /// What σ never exceeds [m/√s].
   double greatest_noise() const {
@@ -44,9 +47,7 @@ enum class OnTimeout { kEndMission, kEvict };
 struct Timing {
   double dt_s = 0.1;
   Tick tick_count = 0;  ///< the mission has ticks 0 … tick_count − 1
-  int broadcast_period_ticks = 1;      ///< the shortest, if periods adapt
-  double broadcast_error_budget = 0;   ///< share of φ that all silences together may cost; 0: fixed
-  int broadcast_heartbeat_ticks = 100; ///< the longest period, if periods adapt
+  int broadcast_period_ticks = 1;  ///< an agent tells what it covered every so many ticks
   Pace pace = Pace::kLockstep;
   double realtime_factor = 1;         ///< mission seconds per wall second
   double lockstep_timeout_s = 10;     ///< wall time a tick may stay unanswered
@@ -71,6 +72,7 @@ struct Mission {
   double disturbance_intensity = 0;       ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;               ///< how far agents hear each other; 0: everywhere
   double speed_limit_mps = 0;             ///< what no vehicle exceeds; 0: no limit
+  bool dead_reckoning = false;            ///< whether forecasts use where teammates are, core/forecast.h
   bool wait_for_logger = true;            ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
 
@@ -83,6 +85,10 @@ Eigen::Vector2d within_speed_limit(const Mission& mission, const Eigen::Vector2d
 /// considered: x + v dt + disturbance_intensity √dt ξ.
 Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector2d& x_m,
                       const Eigen::Vector2d& v_mps);
+
+/// When agent `id` tells what it covered for the first time after `tick`: the planned agents take
+/// turns within the period.
+Tick next_broadcast(const Mission& mission, AgentId id, Tick tick);
 
 /// Where agent `id` begins: as planned, or for those beyond the plan drawn from the seed.
 Eigen::Vector2d start_of(const Mission& mission, AgentId id);

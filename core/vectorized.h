@@ -11,3 +11,10 @@
 #else
 #define ERGOCAST_VECTORIZED
 #endif
+
+namespace ergocast {
+
+/// So many modes at a time are added up over many rows: their sums stay in registers.
+inline constexpr int kModesPerStride = 8;
+
+}  // namespace ergocast

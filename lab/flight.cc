@@ -182,7 +182,9 @@ void Flight::hear(Seat seat, const Delivery& delivery) {
     return seat == world_seat() ? world_->receive(message, local) : recorder_.receive(message, local);
   }
   if (const auto* digest = std::get_if<Digest>(&message)) invariants_.heard(agent(seat).author(), *digest);
-  agent(seat).receive(message, local, delivery.transmitter);
+  Agent& one = agent(seat);
+  one.receive(message, local, delivery.transmitter);
+  invariants_.received({one.author(), one.coverage(), nullptr, &one.follower().roster()}, message);
 }
 
 void Flight::advance_due() {
@@ -205,6 +207,7 @@ void Flight::advance(Seat seat) {
 }
 
 void Flight::publish(Seat seat) {
+  if (outbox_.empty()) return;  // most often, and c_k is added up for who holds it
   const bool is_agent = seat < agents_count_;
   const Holder speaker = is_agent ? holder_of(seat) : Holder();
   for (const Outgoing& outgoing : outbox_) {

@@ -83,6 +83,7 @@ class Flight {
 
   Holder holder_of(Seat seat);
   std::vector<Holder> living();
+  std::vector<Holder> present();
   void note_answer(Seat seat, const Message& message, const Holder& holder);
   void supervise_coordinator();
   std::string still_running();

@@ -1,54 +1,15 @@
+// What is said and done: messages, refusals, ends.
 #include "lab/invariants.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include "core/noise.h"
 #include "core/perturbation.h"
 #include "sim/world.h"
 
 namespace ergocast::lab {
-namespace {
-
-constexpr Tick kTicksBetweenAverages = 10;
-/// Two digests, 1 s apart, the first up to 1 s after the admission; the answer waits up to 0.25 s.
-constexpr double kDigests_s = 2.25;
-/// Whoever learns a row late passes it on late: one more round.
-constexpr int kRounds = 2;
-
-/// How far a sum of so many terms ≤ dt may be from the exact one, relative.
-double rounding(std::int64_t steps) { return 1e-12 + static_cast<double>(steps) * 0x1p-53; }
-
-std::string name_of(const Author& author) {
-  return "agent " + std::to_string(author.agent) + " (" + to_hex(author.incarnation) + ")";
-}
-
-template <class... Parts>
-std::string text(const Parts&... parts) {
-  std::ostringstream out;
-  out.precision(17);
-  (out << ... << parts);
-  return out.str();
-}
-
-std::int64_t steps_of(const CoverageTable& table, const Author& author) {
-  return table.steps_held(author).value_or(0);
-}
-
-const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const Author& author) {
-  const auto at = std::find_if(roster.begin(), roster.end(),
-                               [&](const RosterEntry& entry) { return entry.author == author; });
-  return at == roster.end() ? nullptr : &*at;
-}
-
-/// Its own row an agent counts whatever others have heard of it.
-bool is_forgotten(const RosterEntry& entry, const Holder& by) {
-  return entry.author != by.self && entry.forgotten_at(by.answered, by.roster_revision);
-}
-
-}  // namespace
 
 std::string to_string(const Violation& v) {
   char t_text[32];
@@ -67,12 +28,8 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
   // Who was forgotten, it may be a moment before, is remembered with as much notice in real time.
   const double notices_s = mission.forget_silent_after_s > 0 ? 4 : 0;
   const Timing& timing = mission.timing;
-  const double period_s = std::max<double>(timing.broadcast_period_ticks,
-                                           timing.broadcast_error_budget > 0
-                                               ? timing.broadcast_heartbeat_ticks
-                                               : 0) *
-                          timing.dt_s / timing.realtime_factor;
-  return (kTakeover_s + kAdmission_s + kRounds * kDigests_s + notices_s + 2 * period_s) /
+  const double period_s = timing.broadcast_period_ticks * timing.dt_s / timing.realtime_factor;
+  return (kTakeover_s + kAdmission_s + kHop_s + notices_s + 2 * period_s) /
          (1 - faults.clock_rate_error);
 }
 
@@ -135,8 +92,8 @@ void Invariants::check(double t_s, const Command& command) {
       law.contraction_gain_per_s *
       (command.position_m.head<2>() - law.contraction_center_m);
   const double root_dt = std::sqrt(mission_.timing.dt_s);
-  const Eigen::Vector2d xi = normal_pair(mission_.seed, Purpose::kPerturbation,
-                                         static_cast<std::uint32_t>(command.header.sender),
+  const auto sender = static_cast<std::uint32_t>(command.header.sender);
+  const Eigen::Vector2d xi = normal_pair(mission_.seed, Purpose::kPerturbation, sender,
                                          static_cast<std::uint64_t>(command.header.tick));
   const Eigen::Vector2d noise_mps = law.noise_intensity / root_dt * xi;
   // What an adaptive law may add to that, in a direction that only the agent knows.
@@ -144,8 +101,7 @@ void Invariants::check(double t_s, const Command& command) {
   if (law.perturbation == Perturbation::kAdaptive) {
     const double dt_s = mission_.timing.dt_s;
     push_mps = greatest_push_mps(law, dt_s) *
-               normal_pair(mission_.seed, Purpose::kPush,
-                           static_cast<std::uint32_t>(command.header.sender),
+               normal_pair(mission_.seed, Purpose::kPush, law.paired_pushes ? sender & ~1U : sender,
                            static_cast<std::uint64_t>(command.header.tick / push_ticks(law, dt_s)))
                    .norm();
   }
@@ -205,52 +161,6 @@ void Invariants::decoded(double t_s, const std::variant<Message, Refusal>& resul
   }
 }
 
-// ---- safety: what is known -----------------------------------------------------------------------
-
-void Invariants::answered(double t_s, const Holder& holder) {
-  check_steps(t_s, holder);
-  // Costs as much as the control step itself: now and then is enough to find what is wrong for good.
-  if (holder.answered % kTicksBetweenAverages == 0) check_average(t_s, holder);
-}
-
-void Invariants::check_steps(double t_s, const Holder& holder) {
-  auto& held_before = held_[holder.self];
-  std::map<AgentId, std::int64_t> steps_of_id;
-  for (const Author& author : authors_) {
-    const std::int64_t steps = steps_of(*holder.table, author);
-    std::int64_t& before = held_before[author];
-    if (steps < before) {
-      violate(t_s, Invariant::kHeldNeverShrinks, name_of(holder.self),
-              text(before, " steps of ", name_of(author), " became ", steps));
-    }
-    before = steps;
-    steps_of_id[author.agent] += steps;
-  }
-  for (const auto& [id, steps] : steps_of_id) {
-    // A process that is replaced within a tick may have sampled it, too.
-    const std::int64_t most = last_tick_ + 1 + lives_[id] - 1;
-    if (steps <= most) continue;
-    violate(t_s, Invariant::kNoStepCountsTwice, name_of(holder.self),
-            text("holds ", steps, " steps of agent ", id, " in all, ", most, " are possible"));
-  }
-}
-
-void Invariants::check_average(double t_s, const Holder& holder) {
-  const Coefficients expected = average_of(best_of({holder}));
-  const double error = (*holder.coverage - expected).cwiseAbs().maxCoeff();
-  if (error > rounding(last_tick_ * static_cast<std::int64_t>(authors_.size()))) {
-    violate(t_s, Invariant::kAverageOfWhatIsHeld, name_of(holder.self),
-            text("differs by ", error, " at tick ", holder.answered));
-  }
-  // Before its own first tick, where a restarted world may stand, a newcomer covers nothing itself.
-  const RosterEntry* own = entry_of(*holder.roster, holder.self);
-  if (own != nullptr && holder.answered < own->active_from) return;
-  const double c_00 = (*holder.coverage)(0, 0);
-  if (std::abs(c_00 - 1) > rounding(last_tick_)) {
-    violate(t_s, Invariant::kZerothIsOne, name_of(holder.self), text("c_00 = ", c_00));
-  }
-}
-
 void Invariants::refused(double t_s, const Author& who, const RefusalCounts& counts) {
   for (std::size_t kind = 0; kind < counts.size(); ++kind) {
     if (counts[kind] == 0) continue;
@@ -278,61 +188,6 @@ void Invariants::gave_up_logger(double t_s, std::optional<Tick> acknowledged, Ti
 
 // ---- liveness ------------------------------------------------------------------------------------
 
-/// The newest of each author's blocks that anybody holds. Forgotten rows do not count any more.
-std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
-    const std::vector<Holder>& living) const {
-  std::map<Author, std::vector<Best>> best;
-  for (const Holder& holder : living) {
-    if (holder.table == nullptr) continue;
-    for (const Author& author : authors_) {
-      if (!holder.table->steps_held(author)) continue;
-      const RosterEntry* entry = entry_of(*holder.roster, author);
-      if (entry != nullptr && is_forgotten(*entry, holder)) continue;
-      auto& blocks = best.try_emplace(author, static_cast<std::size_t>(block_count_)).first->second;
-      for (int b = 0; b < block_count_; ++b) {
-        const Contribution held = holder.table->block(author, b);
-        Best& known = blocks[static_cast<std::size_t>(b)];
-        if (held.steps > known.steps) known = {held.steps, held.sums};
-      }
-    }
-  }
-  return best;
-}
-
-/// (4) from the blocks alone, weighted by the time each covers.
-Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& rows) const {
-  Coefficients c = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
-  for (int k = 0; k < mission_.basis.mode_count(); ++k) {
-    double sum_s = 0;
-    std::int64_t steps = 0;
-    for (const auto& [author, blocks] : rows) {
-      const Best& block = blocks[static_cast<std::size_t>(k / kBlockSize)];
-      sum_s += block.sums[static_cast<std::size_t>(k % kBlockSize)];
-      steps += block.steps;
-    }
-    if (steps > 0) c.data()[k] = sum_s / (static_cast<double>(steps) * mission_.timing.dt_s);
-  }
-  return c;
-}
-
-void Invariants::recovered(double t_s, const std::vector<Holder>& living) {
-  for (const Holder& holder : living) {
-    if (holder.table != nullptr && holder.answered >= 0) continue;
-    return violate(t_s, Invariant::kEverybodyIsBack, name_of(holder.self),
-                   holder.table == nullptr ? "is not admitted" : "has seen no tick");
-  }
-  for (const Holder& holder : living) check_counted(t_s, holder, living);
-  const auto best = best_of(living);
-  const Coefficients c_true = average_of(best);
-  compare_views(living);
-  for (const Holder& holder : living) {
-    if (mission_.radio_range_m <= 0) check_rows(t_s, holder, best);
-    check_view(t_s, holder, best, c_true);
-  }
-  if (mission_.radio_range_m > 0) check_neighbours(t_s, living);
-  check_quiet(t_s);
-}
-
 void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant now,
                              const std::vector<Holder>& living) {
   for (const Holder& holder : living) {
@@ -341,127 +196,6 @@ void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant
     if (entry != nullptr && coordinator.presence(*entry, now) == Presence::kAlive) continue;
     violate(t_s, Invariant::kTheLivingAreKnown, "the coordinator",
             text("takes ", name_of(holder.self), " for ", taken_for));
-  }
-}
-
-void Invariants::check_counted(double t_s, const Holder& holder, const std::vector<Holder>& living) {
-  for (const Holder& other : living) {
-    const RosterEntry* entry = entry_of(*holder.roster, other.self);
-    if (entry == nullptr || !is_forgotten(*entry, holder)) continue;
-    violate(t_s, Invariant::kTheLivingCount, name_of(holder.self),
-            text("leaves out what ", name_of(other.self), " covers at tick ", holder.answered));
-  }
-}
-
-void Invariants::compare_views(const std::vector<Holder>& living) {
-  const Coefficients c_true = average_of(best_of(living));
-  largest_view_error_ = 0;
-  for (const Holder& holder : living) {
-    if (holder.coverage == nullptr || holder.answered < 0) continue;
-    const Coefficients difference = *holder.coverage - c_true;
-    largest_view_error_ = std::max(
-        largest_view_error_, std::sqrt((weights_.array() * difference.array().square()).sum()));
-  }
-}
-
-void Invariants::check_view(double t_s, const Holder& holder,
-                            const std::map<Author, std::vector<Best>>& best,
-                            const Coefficients& c_true) {
-  double stale_s = 0, covered_s = 0;
-  for (const auto& [author, blocks] : best) {
-    covered_s += static_cast<double>(blocks.front().steps) * mission_.timing.dt_s;
-    const RosterEntry* entry = entry_of(*holder.roster, author);
-    if (mission_.radio_range_m > 0) {
-      const std::int64_t lacks = blocks.front().steps - steps_of(*holder.table, author);
-      stale_s += static_cast<double>(std::max<std::int64_t>(lacks, 0)) * mission_.timing.dt_s;
-      continue;
-    }
-    if (entry == nullptr || entry->active_until >= 0) continue;
-    // Two periods until a digest complains, two ticks on the way.
-    const Tick period = holder.table->announced_period(author);
-    stale_s += static_cast<double>(2 * period + 2) * mission_.timing.dt_s;
-  }
-  // Of what it holds now: an agent whose ticks do not come computes no c_k.
-  Coefficients c = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
-  holder.table->average(c);
-  const double error = (c - c_true).cwiseAbs().maxCoeff();
-  if (covered_s <= stale_s || error <= 2 * stale_s / (covered_s - stale_s)) return;
-  violate(t_s, Invariant::kViewsAgree, name_of(holder.self),
-          text("|c - c_true| = ", error, " > ", 2 * stale_s / (covered_s - stale_s), " with ", stale_s,
-               " s of ", covered_s, " s unknown"));
-}
-
-void Invariants::check_rows(double t_s, const Holder& holder,
-                            const std::map<Author, std::vector<Best>>& best) {
-  for (const auto& [author, blocks] : best) {
-    const auto newest = std::min_element(blocks.begin(), blocks.end(), [](const Best& a, const Best& b) {
-                          return a.steps < b.steps;
-                        })->steps;
-    const RosterEntry* entry = entry_of(*holder.roster, author);
-    // Whoever a coordinator admitted that died before it told anybody else is nobody to the team.
-    if (entry == nullptr) continue;
-    const bool speaks = entry->active_until < 0;
-    const Tick period = holder.table->announced_period(author);
-    const std::int64_t tolerated = speaks ? 2 * period + 2 : 0;
-    const std::int64_t held = steps_of(*holder.table, author);
-    if ((held > 0 || newest == 0) && held + tolerated >= newest) continue;
-    violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
-            text("holds ", held, " of ", newest, " steps of ", name_of(author),
-                 speaks ? ", a member" : ", who has left"));
-  }
-}
-
-/// What an agent held is known to others after a round of digests for each hop between them.
-void Invariants::check_neighbours(double t_s, const std::vector<Holder>& living) {
-  Memory& present = memories_.emplace_back(Memory{t_s, {}});
-  for (const Holder& holder : living) {
-    for (const Author& author : authors_) present.held[holder.self][author] = steps_of(*holder.table, author);
-  }
-  for (int hops = 1; hops < static_cast<int>(living.size()); ++hops) {
-    const double takes_s = hops * kRounds * kDigests_s;
-    const auto past = std::find_if(memories_.rbegin(), memories_.rend(), [&](const Memory& memory) {
-      return memory.t_s <= t_s - takes_s;
-    });
-    if (past == memories_.rend()) return;
-    for (const Holder& holder : living) {
-      for (const Author& other : within(hops, holder.self, t_s - past->t_s, t_s, living)) {
-        check_learned(t_s, holder, other, past->held[other], hops);
-      }
-    }
-  }
-}
-
-/// Whom `self` has heard for so long without a break, through at most so many others less one.
-std::set<Author> Invariants::within(int hops, const Author& self, double heard_for_s, double t_s,
-                                    const std::vector<Holder>& living) const {
-  const auto hears = [&](const Author& a, const Author& b) {
-    const auto apart = last_apart_t_s_.find(std::minmax(a.agent, b.agent));
-    return apart == last_apart_t_s_.end() || t_s - apart->second > heard_for_s;
-  };
-  std::set<Author> reached{self};
-  for (int hop = 0; hop < hops; ++hop) {
-    const std::set<Author> inner = reached;
-    for (const Holder& holder : living) {
-      const auto heard = [&](const Author& one) { return hears(one, holder.self); };
-      if (std::any_of(inner.begin(), inner.end(), heard)) reached.insert(holder.self);
-    }
-  }
-  return reached;
-}
-
-void Invariants::check_learned(double t_s, const Holder& holder, const Author& other,
-                               const std::map<Author, std::int64_t>& held_then, int hops) {
-  for (const auto& [author, then] : held_then) {
-    const RosterEntry* entry = entry_of(*holder.roster, author);
-    if (entry == nullptr || author == holder.self) continue;
-    // Nobody repeats what an author that speaks will soon say itself: a slack for each on the way.
-    const Tick period = holder.table->announced_period(author);
-    const std::int64_t tolerated = entry->active_until < 0 ? hops * (2 * period + 2) : 0;
-    const std::int64_t held = steps_of(*holder.table, author);
-    if (held + tolerated >= then) continue;
-    violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
-            text("holds ", held, " steps of ", name_of(author), ", of whom ", name_of(other), ", ", hops,
-                 " hops away, has long held ", then));
   }
 }
 

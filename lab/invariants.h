@@ -17,10 +17,11 @@
 #include <vector>
 
 #include "coordinator/coordinator.h"
-#include "core/coverage_table.h"
 #include "core/mission.h"
 #include "core/mission_follower.h"
 #include "lab/faults.h"
+#include "lab/holder.h"
+#include "lab/shadow.h"
 #include "logger/recorder.h"
 
 namespace ergocast::lab {
@@ -37,6 +38,7 @@ enum class Invariant : std::uint8_t {
   kHeldNeverShrinks,
   kNoStepCountsTwice,
   kAverageOfWhatIsHeld,
+  kForecastOfWhatIsKnown,
   kZerothIsOne,
   kHonestMessagesAccepted,
   kNoEarlyEnd,
@@ -70,6 +72,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kHeldNeverShrinks, "what is held never shrinks"},
         {Invariant::kNoStepCountsTwice, "no step counts twice"},
         {Invariant::kAverageOfWhatIsHeld, "c_k = sum S / sum elapsed of what is held"},
+        {Invariant::kForecastOfWhatIsKnown, "forecast of what is known"},
         {Invariant::kZerothIsOne, "c_00 = 1"},
         {Invariant::kHonestMessagesAccepted, "no honest message is refused"},
         {Invariant::kNoEarlyEnd, "no agent ends before the mission"},
@@ -107,15 +110,9 @@ struct Violation {
 /// "<invariant>: <who> at t = <t_s> s: <numbers>".
 std::string to_string(const Violation& violation);
 
-/// What one agent knows, as seen from outside.
-struct Holder {
-  Author self;
-  const CoverageTable* table = nullptr;
-  const Coefficients* coverage = nullptr;  ///< its c_k, as of `answered`
-  const std::vector<RosterEntry>* roster = nullptr;
-  Tick answered = -1;
-  std::int64_t roster_revision = 0;  ///< that the world flies this tick by
-};
+/// Until a row is known a hop further: two digests, 1 s apart, the first up to 1 s after an admission;
+/// the answer waits up to 0.25 s. Whoever learns a row late passes it on late: one more round.
+inline constexpr double kHop_s = 2 * 2.25;
 
 /// Virtual time after healing by which every living agent is back in the mission and knows what
 /// the others know.
@@ -138,8 +135,11 @@ class Invariants {
   void heard(const Author& listener, const Digest& digest);
   /// Bytes were read: whole ones are accepted, damaged ones refused.
   void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
+  /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for.
+  void received(const Holder& listener, const Message& message);
   /// An agent has answered a tick: what it holds never shrinks, nobody's steps exceed the ticks
-  /// there were, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1.
+  /// there were, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1, and ĉ_k, where its law looks
+  /// ahead, follows by the equation of core/forecast.h from what has reached it (lab/shadow.h).
   void answered(double t_s, const Holder& holder);
   /// An agent's core has refused so many messages, of which none was damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);
@@ -171,7 +171,7 @@ class Invariants {
              const RunFacts& facts, Tick excused);
 
   const std::optional<Violation>& violation() const { return violation_; }
-  /// Only measures how far the living are from c_true, for largest_view_error().
+  /// Only measures how far these are from c_true, for largest_view_error().
   void compare_views(const std::vector<Holder>& living);
   /// max_a √(Σ λ (c_a − c_true)²) of the last recovered() or compare_views().
   double largest_view_error() const { return largest_view_error_; }
@@ -191,6 +191,7 @@ class Invariants {
   void check(double t_s, const Digest& digest, const Holder& speaker);
   void check_steps(double t_s, const Holder& holder);
   void check_average(double t_s, const Holder& holder);
+  void check_forecast(double t_s, const Holder& holder);
   std::map<Author, std::vector<Best>> best_of(const std::vector<Holder>& living) const;
   Coefficients average_of(const std::map<Author, std::vector<Best>>& rows) const;
   void check_rows(double t_s, const Holder& holder,
@@ -213,6 +214,7 @@ class Invariants {
   std::vector<Author> authors_;
   std::map<AgentId, int> lives_;
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
+  std::map<Author, Shadow> shadows_;  // of each life of an agent
   std::map<Author, std::int64_t> relays_allowed_;
   std::map<AgentId, Eigen::Vector2d> positions_m_;                // with a radio range only, as what follows
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first

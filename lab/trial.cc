@@ -15,7 +15,7 @@ constexpr auto kCheckPeriod = std::chrono::seconds(1);
 Holder Flight::holder_of(Seat seat) {
   const Agent& one = agent(seat);
   return {one.author(), one.coverage(), &one.team_coverage(), &one.follower().roster(), one.tick(),
-          one.roster_revision()};
+          one.roster_revision(), &one.foreseen_coverage()};
 }
 
 std::vector<Holder> Flight::living() {
@@ -24,6 +24,15 @@ std::vector<Holder> Flight::living() {
     if (at(seat).up && !agent(seat).finished()) living.push_back(holder_of(seat));
   }
   return living;
+}
+
+/// Also who has reached the plan's end, as all have when their views are measured.
+std::vector<Holder> Flight::present() {
+  std::vector<Holder> present;
+  for (Seat seat = 0; seat < agents_count_; ++seat) {
+    if (at(seat).up) present.push_back(holder_of(seat));
+  }
+  return present;
 }
 
 bool Flight::mission_over() const {
@@ -104,8 +113,8 @@ TrialResult Flight::result() {
   result.timed_out = timed_out();
   const double t_s = in_seconds(now_);
   if (!result.timed_out && !invariants_.violation()) {
-    const bool healed = options_.faults.lasting_share < 1;
-    healed ? invariants_.recovered(t_s, living()) : invariants_.compare_views(living());
+    if (options_.faults.lasting_share < 1) invariants_.recovered(t_s, living());
+    invariants_.compare_views(present());
     invariants_.ended(t_s, still_running(), failed() ? coordinator_->reason() : "", recorder_.facts(), excused_);
   }
   result.violation = invariants_.violation();

@@ -85,15 +85,16 @@ ControlLaw law_of(const proto::Law& law, const Rectangle& domain) {
           .noise_intensity = law.noise_intensity(),
           .noise_ceiling = law.noise_ceiling(),
           .contraction_gain_per_s = law.contraction_gain_per_s(),
-          .contraction_center_m = contraction_center_of(law, domain)};
+          .contraction_center_m = contraction_center_of(law, domain),
+          .anticipation = law.anticipation(),
+          .ends_with_plan = law.ends_with_plan(),
+          .paired_pushes = law.paired_pushes()};
 }
 
 Timing timing_of(const proto::Time& time) {
   return {.dt_s = time.dt_s(),
           .tick_count = std::llround(time.duration_s() / time.dt_s()),
           .broadcast_period_ticks = time.broadcast_period_ticks(),
-          .broadcast_error_budget = time.broadcast_error_budget(),
-          .broadcast_heartbeat_ticks = time.broadcast_heartbeat_ticks(),
           .pace = time.pace() == proto::Time::REALTIME ? Pace::kRealtime : Pace::kLockstep,
           .realtime_factor = time.realtime_factor(),
           .lockstep_timeout_s = time.lockstep_timeout_s(),
@@ -117,6 +118,7 @@ Mission mission_of(const proto::Scenario& scenario) {
   }
   mission.quorum = scenario.agents().quorum();
   mission.forget_silent_after_s = scenario.agents().forget_silent_after_s();
+  mission.dead_reckoning = scenario.agents().dead_reckoning();
   mission.goal_ergodic_metric = scenario.goal_ergodic_metric();
   mission.radio_range_m = scenario.world().radio_range_m();
   mission.disturbance_intensity = scenario.world().disturbance_intensity();

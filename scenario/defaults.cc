@@ -63,11 +63,33 @@ constexpr double kContractionShare = 0.01;
 constexpr double kFloorOfCeiling = 0.05;
 constexpr double kMostIntensity = 1e6;
 
+constexpr double kAnticipation = 2;
+constexpr double kEpsilon = 0.05;
+constexpr double kEpsilonWithoutAnticipation = 0.2;
+/// Between two broadcasts, where teammates reckon what has not been said yet: docs/network.md.
+constexpr int kReckonedPeriodTicks = 10;
+
+/// How far ahead agents look, where the law is ours and not the paper's, and how much they must say.
+void fill_foresight(proto::Scenario& scenario) {
+  proto::Law& law = *scenario.mutable_law();
+  const bool is_ours = law.regularization() == proto::Law::RELATIVE &&
+                       law.perturbation() == proto::Law::ADAPTIVE;
+  if (!law.has_anticipation()) law.set_anticipation(is_ours ? kAnticipation : 0);
+  const bool looks_ahead = is_ours && law.anticipation() > 0;
+  if (!law.has_ends_with_plan()) law.set_ends_with_plan(looks_ahead);
+  if (!law.has_paired_pushes()) law.set_paired_pushes(looks_ahead);
+  if (!scenario.agents().has_dead_reckoning()) scenario.mutable_agents()->set_dead_reckoning(true);
+  if (scenario.time().has_broadcast_period_ticks()) return;
+  const bool reckons = law.anticipation() > 0 && scenario.agents().dead_reckoning();
+  scenario.mutable_time()->set_broadcast_period_ticks(reckons ? kReckonedPeriodTicks : 1);
+}
+
 /// Defaults that follow from speed and domain, so that a law scales with them. What is itself
 /// outside its limits gives no default: validate() names it.
 void fill_law(const Rectangle& domain, proto::Law& law) {
   if (!law.has_epsilon()) {
-    law.set_epsilon(law.regularization() == proto::Law::RELATIVE ? 0.2 : 0);
+    const double relative = law.anticipation() > 0 ? kEpsilon : kEpsilonWithoutAnticipation;
+    law.set_epsilon(law.regularization() == proto::Law::RELATIVE ? relative : 0);
   }
   const double side_m = domain.size_m.minCoeff();
   if (!(law.u_max_mps() > 0) || !(side_m > 0) || !domain.size_m.allFinite()) return;
@@ -138,6 +160,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   }
   if (!scenario.has_description()) scenario.set_description("");
   if (!scenario.has_seed()) scenario.set_seed(kDefaultSeed);
+  fill_foresight(scenario);
   fill_constants(scenario);
   make_absolute(file, *scenario.mutable_target());
   fill_law(domain_of(scenario.domain()), *scenario.mutable_law());

@@ -229,17 +229,6 @@ class Validator {
   void time() {
     duration();
     wall_time_of_a_step();
-    heartbeat();
-  }
-
-  void heartbeat() {
-    const proto::Time& time = scenario_.time();
-    if (!sound("time.broadcast") || time.broadcast_error_budget() <= 0) return;
-    if (time.broadcast_heartbeat_ticks() >= time.broadcast_period_ticks()) return;
-    problem("time.broadcast_heartbeat_ticks",
-            std::to_string(time.broadcast_heartbeat_ticks()) +
-                " is below broadcast_period_ticks, " + std::to_string(time.broadcast_period_ticks()),
-            "write at least that");
   }
 
   void wall_time_of_a_step() {

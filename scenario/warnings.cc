@@ -11,6 +11,9 @@ namespace {
 /// A normal vector in the plane is longer than this many deviations once in 65 million steps.
 constexpr double kDeviations = 6;
 
+/// Agents that look ahead want steps of at most this share of the shorter side: docs/law.md.
+constexpr double kLongestStep = 0.05;
+
 /// What the law's noise is, in the scenario's own words.
 std::string noise_text(const ControlLaw& law, double dt_s) {
   const std::string own = "noise_intensity / sqrt(dt_s)";
@@ -44,8 +47,25 @@ void warn_of_speed_limit(const Mission& mission, Findings& findings) {
                          ", less noise or a greater dt_s, or accept it: the cuts are counted");
 }
 
+/// What a teammate did in the last step says little of the next if it crosses the domain in a few.
+void warn_of_coarse_steps(const Mission& mission, Findings& findings) {
+  const double longest_s = kLongestStep * mission.domain.size_m.minCoeff() / mission.law.u_max_mps;
+  if (mission.law.anticipation <= 0 || mission.timing.dt_s <= longest_s) return;
+  findings.add(
+      "time.dt_s",
+      shortest(mission.timing.dt_s) +
+          " is coarse for agents that look ahead: one step at u_max_mps is longer than 5 % of the "
+          "shorter side, and in the long run a uniform target may be covered worse than without "
+          "looking "
+          "ahead",
+      "write at most " + shortest(rounded_down(longest_s)) + ", or law.anticipation: 0");
+}
+
 }  // namespace
 
-void warn(const Mission& mission, Findings& findings) { warn_of_speed_limit(mission, findings); }
+void warn(const Mission& mission, Findings& findings) {
+  warn_of_speed_limit(mission, findings);
+  warn_of_coarse_steps(mission, findings);
+}
 
 }  // namespace ergocast

@@ -14,6 +14,15 @@
 namespace ergocast::studies {
 namespace {
 
+/// Of the whole team: each agent tells what it covered at its first tick, and in its turns.
+std::int64_t broadcasts_of(const Mission& mission) {
+  std::int64_t count = 0;
+  for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
+    for (Tick at = 0; at < mission.timing.tick_count; at = next_broadcast(mission, id, at)) ++count;
+  }
+  return count;
+}
+
 int blocks_of(const Basis& basis) { return (basis.mode_count() + kBlockSize - 1) / kBlockSize; }
 
 /// Sees a swarm as its logger does, and adds up coverage as an ideal team does.
@@ -97,7 +106,7 @@ StudyFigures fly_without_messages(const Mission& mission) {
     if (measure.wants_metric(tick)) measure.metric(tick, team.metric());
   }
   StudyFigures figures = measure.figures();
-  figures.messages = mission.timing.tick_count * figures.agents * blocks_of(mission.basis);
+  figures.messages = broadcasts_of(mission) * blocks_of(mission.basis);
   return figures;
 }
 

@@ -1,4 +1,4 @@
-// Tables and the figure of docs/law.md, from the studies that studies/law/run has flown.
+// Tables and figures of docs/law.md, from the studies that studies/law/run has flown.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,13 +19,27 @@ using Points = std::vector<StudyRuns>;
 constexpr const char* kMetric = "ergodic_metric";
 constexpr double kSoon_s = 15;
 
-const StudyRuns& named(const Points& points, const std::string& scenario,
-                       const std::string& value = "") {
+/// The folders of a group end in these; what the tables and the figure call them.
+struct Law {
+  const char *folder, *name;
+};
+constexpr Law kLaws[] = {{"default", "the default"},
+                         {"old", "version 0.1.0"},
+                         {"classical", "classical"},
+                         {"paper", "the paper's constants"}};
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+/// The point whose names begin with `names`: what a law is made of stands behind them.
+const StudyRuns& named(const Points& points, const std::vector<std::string>& names) {
   for (const StudyRuns& runs : points) {
-    const bool this_value = value.empty() || std::stod(runs.names.at(1)) == std::stod(value);
-    if (runs.names.front() == scenario && this_value) return runs;
+    if (std::equal(names.begin(), names.end(), runs.names.begin())) return runs;
   }
-  throw std::runtime_error("no runs of " + scenario + " " + value);
+  throw std::runtime_error("no runs of " + joined(names));
 }
 
 /// Geometric mean of φ² against another's, seed by seed as far as both go.
@@ -54,153 +68,192 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// ---- the laws ----
-
-void print_laws(const Points& ours, const Points& papers, const StudyRuns& classical) {
-  std::printf(
-      "| four agents start | runs | φ²(2000 s), default | against classical from random starts "
-      "| φ²(2000 s), the paper's constants | the paper's against the default |\n"
-      "|---|---|---|---|---|---|\n");
-  for (const StudyRuns& runs : ours) {
-    const std::string& start = runs.names.front();
-    std::printf("| %s | %zu | %.3g | %s |", start.c_str(), runs.of(kMetric).size(),
-                median_of(runs.of(kMetric)).value, text(against(runs, classical)).c_str());
-    if (start == "random") {
-      std::printf(" | |\n");
-      continue;
-    }
-    const StudyRuns& theirs = named(papers, start);
-    std::printf(" %.3g | %s |\n", median_of(theirs.of(kMetric)).value,
-                text(against(theirs, runs)).c_str());
-  }
-  std::printf("\nclassical from random starts: median %.3g\n\n",
-              median_of(classical.of(kMetric)).value);
+double geometric_mean(std::vector<double> values) {
+  for (double& value : values) value = std::log(value);
+  return std::exp(mean(values));
 }
 
-void print_escapes(const Points& ours, const Points& papers) {
+// ---- the laws ----
+
+/// The geometric mean, what one run in ten exceeds, and the worst: on targets that can be divided
+/// among the team in a wrong way, the first alone would hide what the others say.
+std::string spread(const StudyRuns& runs) {
+  std::vector<double> sorted = runs.of(kMetric);
+  std::sort(sorted.begin(), sorted.end());
+  char line[80];
+  std::snprintf(line, sizeof line, "%.2e · %.1e · %.1e", geometric_mean(sorted),
+                quantile(sorted, 0.9), sorted.back());
+  return line;
+}
+
+/// Studies of one kind, and what stands behind each name of their points.
+struct Group {
+  const char* study;
+  std::vector<std::string> units;
+};
+
+std::string label(const Group& group, const StudyRuns& runs) {
+  std::vector<std::string> names = runs.names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] += group.units.at(i);
+  return joined(names);
+}
+
+void print_rows(const fs::path& folder, const Group& group) {
+  std::vector<Points> laws;
+  for (const Law& law : kLaws) {
+    laws.push_back(
+        read_study(folder / (std::string(group.study) + "-" + law.folder) / "study.csv"));
+  }
+  for (const StudyRuns& ours : laws[0]) {
+    std::printf("| %s | %zu, %zu", label(group, ours).c_str(), ours.of(kMetric).size(),
+                named(laws[1], ours.names).of(kMetric).size());
+    for (const int law : {0, 1, 2})
+      std::printf(" | %s", spread(named(laws[law], ours.names)).c_str());
+    std::printf(" | %.1e", geometric_mean(named(laws[3], ours.names).of(kMetric)));
+    for (const int law : {1, 2})
+      std::printf(" | %s", text(against(ours, named(laws[law], ours.names))).c_str());
+    std::printf(" |\n");
+  }
+}
+
+void print_laws(const fs::path& folder, const std::vector<Group>& groups) {
+  std::printf(
+      "| | runs: default, others | the default | version 0.1.0 | classical | the paper's | default "
+      "against 0.1.0 "
+      "| default against classical |\n|---|---|---|---|---|---|---|---|\n");
+  for (const Group& group : groups) print_rows(folder, group);
+  std::printf("\n");
+}
+
+void print_escapes(const Points& ours, const Points& old, const Points& papers) {
   std::printf(
       "| start | agents | within 15 s | median [s] | 99 %% within [s] | last [s] "
-      "| the paper's constants: within 15 s | median [s] |\n|---|---|---|---|---|---|---|---|\n");
-  for (const StudyRuns& theirs : papers) {
-    const std::string& start = theirs.names.front();
-    const std::vector<double> fast = named(ours, start).escape_times_s(),
-                              slow = theirs.escape_times_s();
-    std::printf("| %s | %zu | %.2f %% | %.1f | %.1f | %.1f | %.1f %% | %.1f |\n", start.c_str(),
-                fast.size(), 100 * share_within(fast, kSoon_s), quantile(fast, 0.5),
-                quantile(fast, 0.99), fast.back(), 100 * share_within(slow, kSoon_s),
-                quantile(slow, 0.5));
+      "| version 0.1.0: within 15 s | the paper's constants: within 15 s "
+      "|\n|---|---|---|---|---|---|---|---|\n");
+  for (const StudyRuns& runs : ours) {
+    const std::vector<double> times_s = runs.escape_times_s();
+    const auto soon = [&](const Points& points) {
+      return 100 * share_within(named(points, runs.names).escape_times_s(), kSoon_s);
+    };
+    std::printf("| %s | %zu | %.2f %% | %.1f | %.1f | %.1f | %.2f %% | %.1f %% |\n",
+                runs.names.front().c_str(), times_s.size(), soon(ours), quantile(times_s, 0.5),
+                quantile(times_s, 0.99), times_s.back(), soon(old), soon(papers));
   }
   std::printf("\n");
 }
 
+/// φ² over time, by the columns ergodic_metric_at_T_s.
+void draw_decay(const fs::path& folder, const std::string& group, const fs::path& images) {
+  Panel panel{
+      "φ², geometric mean", log_axis("time [s]", 10, 20000), log_axis("φ²", 5e-8, 0.4), {}, {}};
+  std::vector<KeyEntry> key;
+  for (std::size_t i = 0; i < std::size(kLaws); ++i) {
+    Curve curve{agent_color(static_cast<AgentId>(i)), {}};
+    const StudyRuns runs =
+        read_study(folder / (group + "-" + kLaws[i].folder) / "study.csv").front();
+    for (const auto& [column, values] : runs.columns) {
+      const std::string begin = std::string(kMetric) + "_at_";
+      if (!column.starts_with(begin)) continue;
+      const double t_s = std::stod(column.substr(begin.size()));
+      if (t_s >= 10) curve.points.push_back({t_s, geometric_mean(values)});
+    }
+    curve.points.push_back({std::stod(runs.names.at(1)), geometric_mean(runs.of(kMetric))});
+    std::sort(curve.points.begin(), curve.points.end(),
+              [](const auto& a, const auto& b) { return a.x() < b.x(); });
+    panel.curves.push_back(curve);
+    key.push_back({kLaws[i].name, curve.color});
+  }
+  write_figure(images / "law_decay.svg",
+               figure("law_decay", "φ² over time under four laws", key, {panel}));
+}
+
 // ---- one constant varied ----
 
-/// A constant, the default it is compared with, and where.
+/// A constant, and the default that it is compared with.
 struct Ladder {
-  std::string study, title, usual;
-  std::vector<std::string> starts;
+  const char *study, *title, *usual;
+};
+constexpr Ladder kLadders[] = {
+    {"anticipation", "anticipation", "2"}, {"epsilon", "ε [of the residual]", "0.05"},
+    {"ceiling", "σ_max [m/√s]", "20"},     {"floor", "σ [m/√s]", "1"},
+    {"contraction", "k [1/s]", "1e-4"},
 };
 
-const Ladder kLadders[] = {
-    {"ceiling", "σ_max [m/√s]", "20", {"midline", "diagonal", "random"}},
-    {"floor", "σ [m/√s]", "1", {"corners", "random"}},
-    {"epsilon", "ε [of the residual]", "0.2", {"corners", "random"}},
-    {"contraction", "k [1/s]", "1e-4", {"corners", "random"}},
-};
+/// The same scenario and duration at the default.
+const StudyRuns& usual(const Ladder& ladder, const Points& points, const StudyRuns& runs) {
+  std::vector<std::string> names = runs.names;
+  names.at(1) = ladder.usual;
+  return named(points, names);
+}
 
 void print_ladder(const Ladder& ladder, const Points& points) {
   std::printf(
-      "| %s | start | φ² against its value at %s | left within 15 s | mean speed [m/s] "
-      "| share of time at the edge |\n|---|---|---|---|---|---|\n",
-      ladder.title.c_str(), ladder.usual.c_str());
+      "| %s | start, time [s] | runs | φ² | against its value at %s | left within 15 s | mean "
+      "speed [m/s] "
+      "|\n|---|---|---|---|---|---|---|\n",
+      ladder.title, ladder.usual);
   for (const StudyRuns& runs : points) {
     const std::vector<double> times_s = runs.escape_times_s();
     char left[32] = "";
     if (!times_s.empty()) {
       std::snprintf(left, sizeof left, "%.1f %%", 100 * share_within(times_s, kSoon_s));
     }
-    std::printf("| %s | %s | %s | %s | %.1f | %.2g %% |\n", runs.names.at(1).c_str(),
-                runs.names.front().c_str(),
-                text(against(runs, named(points, runs.names.front(), ladder.usual))).c_str(), left,
-                mean(runs.of("speed_mean_mps")), 100 * mean(runs.of("edge_share")));
+    std::printf("| %s | %s, %s | %zu | %.2e | %s | %s | %.1f |\n", runs.names.at(1).c_str(),
+                runs.names.front().c_str(), runs.names.at(2).c_str(), runs.of(kMetric).size(),
+                geometric_mean(runs.of(kMetric)),
+                text(against(runs, usual(ladder, points, runs))).c_str(), left,
+                mean(runs.of("speed_mean_mps")));
   }
   std::printf("\n");
 }
 
-Panel panel_of(const Ladder& ladder, const Points& points) {
-  Panel panel{"φ²(2000 s) against its value at " + ladder.usual,
+/// One curve for each scenario and duration.
+void draw_ladder(const Ladder& ladder, const Points& points, const fs::path& images) {
+  Panel panel{"φ² against its value at " + std::string(ladder.usual),
               range_axis("", "", 0, 1),
-              log_axis("ratio", 0.7, 1.6),
+              range_axis("", "", 0, 1),
               {},
               {}};
-  double low = 1e300, high = 0;
-  for (std::size_t i = 0; i < ladder.starts.size(); ++i) {
-    Curve curve{agent_color(static_cast<AgentId>(i)), {}};
-    for (const StudyRuns& runs : points) {
-      const double x = std::stod(runs.names.at(1));
-      if (runs.names.front() != ladder.starts[i] || x <= 0) continue;
-      const Estimate ratio = against(runs, named(points, ladder.starts[i], ladder.usual));
-      curve.points.push_back({x, ratio.value});
-      panel.intervals.push_back({curve.color, x, ratio.low, ratio.value, ratio.high});
-      low = std::min(low, x);
-      high = std::max(high, x);
+  std::vector<std::string> lines;
+  double low = 1e300, high = 0, least = 0.7, most = 1.6;
+  for (const StudyRuns& runs : points) {
+    const std::string line = runs.names.front() + ", " + runs.names.at(2) + " s";
+    const auto place = std::find(lines.begin(), lines.end(), line) - lines.begin();
+    if (place == std::ssize(lines)) {
+      lines.push_back(line);
+      panel.curves.push_back({agent_color(static_cast<AgentId>(place)), {}});
     }
-    panel.curves.push_back(std::move(curve));
+    const double x = std::stod(runs.names.at(1));
+    if (x <= 0) continue;
+    const Estimate ratio = against(runs, usual(ladder, points, runs));
+    Curve& curve = panel.curves.at(static_cast<std::size_t>(place));
+    curve.points.push_back({x, ratio.value});
+    panel.intervals.push_back({curve.color, x, ratio.low, ratio.value, ratio.high});
+    low = std::min(low, x);
+    high = std::max(high, x);
+    least = std::min(least, ratio.low / 1.1);
+    most = std::max(most, ratio.high * 1.1);
   }
+  panel.y = log_axis("ratio", least, most);
   panel.x = log_axis(ladder.title, low / 1.3, high * 1.3);
-  return panel;
-}
-
-void draw_ladder(const Ladder& ladder, const Points& points, const fs::path& images) {
   std::vector<KeyEntry> key;
-  for (std::size_t i = 0; i < ladder.starts.size(); ++i) {
-    key.push_back({ladder.starts[i], agent_color(static_cast<AgentId>(i)), "none", true});
-  }
-  write_figure(images / ("law_" + ladder.study + ".svg"),
-               figure("law_" + ladder.study, ladder.title, key, {panel_of(ladder, points)}));
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    key.push_back({lines[i], panel.curves[i].color, "none", true});
+  const std::string name = std::string("law_") + ladder.study;
+  write_figure(images / (name + ".svg"), figure(name, ladder.title, key, {panel}));
 }
 
-// ---- other targets ----
-
-/// The geometric mean, what one run in ten exceeds, and the worst: on targets that can be divided among
-/// the team in a wrong way, the first alone would hide what the others say.
-std::string spread(const StudyRuns& runs) {
-  std::vector<double> sorted = runs.of(kMetric);
-  std::sort(sorted.begin(), sorted.end());
-  double sum = 0;
-  for (const double value : sorted) sum += std::log(value);
-  char line[80];
-  std::snprintf(line, sizeof line, "%.2e | %.2e | %.2e", std::exp(sum / static_cast<double>(sorted.size())),
-                quantile(sorted, 0.9), sorted.back());
-  return line;
-}
-
-void print_targets(const Points& ours, const Points& classical) {
-  std::printf(
-      "| target and start | runs | default, mean | 9 of 10 below | worst | classical, mean | 9 of 10 below "
-      "| worst | default against classical |\n|---|---|---|---|---|---|---|---|---|\n");
-  for (const StudyRuns& runs : ours) {
-    const StudyRuns& theirs = named(classical, runs.names.front());
-    std::printf("| %s | %zu | %s | %s | %s |\n", runs.names.front().c_str(), runs.of(kMetric).size(),
-                spread(runs).c_str(), spread(theirs).c_str(), text(against(runs, theirs)).c_str());
-  }
-  std::printf("\n");
-}
-
-// ---- teams of other sizes, and the uniform target ----
-
-void print_sizes(const fs::path& folder) {
-  std::printf(
-      "| agents | φ²(2000 s), default | against constant noise | against classical |\n"
-      "|---|---|---|---|\n");
-  for (const char* size : {"1", "2", "8", "16"}) {
-    const auto runs = [&](const std::string& law) {
-      return read_study(folder / ("size-" + law + "-" + size) / "study.csv").front();
-    };
-    const StudyRuns ours = runs("default");
-    std::printf("| %s | %.3g | %s | %s |\n", size, median_of(ours.of(kMetric)).value,
-                text(against(ours, runs("constant"))).c_str(),
-                text(against(ours, runs("classical"))).c_str());
+/// What is off or on.
+void print_choice(const std::string& choice, const Points& points) {
+  std::printf("| %s | runs | off | on | on against off |\n|---|---|---|---|---|\n", choice.c_str());
+  for (const StudyRuns& off : points) {
+    if (off.names.at(1) != "false") continue;
+    std::vector<std::string> names = off.names;
+    names[1] = "true";
+    const StudyRuns& on = named(points, names);
+    names.erase(names.begin() + 1);
+    std::printf("| %s | %zu | %s | %s | %s |\n", joined(names).c_str(), on.of(kMetric).size(),
+                spread(off).c_str(), spread(on).c_str(), text(against(on, off)).c_str());
   }
   std::printf("\n");
 }
@@ -213,22 +266,36 @@ void print_uniform(const Points& points) {
                 runs.of(kMetric).size(), median_of(runs.of(kMetric)).value, slope.value, slope.low,
                 slope.high);
   }
+  std::printf("\n");
 }
 
 void run(const fs::path& folder, const fs::path& images) {
   const auto study = [&](const std::string& name) {
     return read_study(folder / name / "study.csv");
   };
-  const Points ours = study("default"), papers = study("paper");
-  print_laws(ours, papers, study("classical").front());
-  print_escapes(ours, papers);
+  const std::vector<std::string> timed{"", " s"}, sized{"", " s", " agents"},
+      stepped{"", " s", " s a step"};
+  print_laws(folder, {{"promised", timed},
+                      {"short", timed},
+                      {"later", timed},
+                      {"long", timed},
+                      {"sixteen", sized}});
+  print_laws(folder, {{"sizes", sized}, {"large", sized}, {"starts", timed}});
+  print_laws(
+      folder,
+      {{"targets", timed}, {"far", timed}, {"modes", {"", " s", " modes along x", " along y"}}});
+  print_laws(folder, {{"steps", stepped},
+                      {"steps-16", stepped},
+                      {"steps-48", {"", " s", " s a step", " modes along x", " along y"}}});
+  draw_decay(folder, "long", images);
+  print_escapes(study("escape-default"), study("escape-old"), study("escape-paper"));
   for (const Ladder& ladder : kLadders) {
     const Points points = study(ladder.study);
     print_ladder(ladder, points);
-    draw_ladder(ladder, points, images);
+    if (&ladder == kLadders) draw_ladder(ladder, points, images);
   }
-  print_targets(study("targets-default"), study("targets-classical"));
-  print_sizes(folder);
+  print_choice("`paired_pushes`; start, T [s]", study("pairs"));
+  print_choice("`ends_with_plan`; start, T [s]", study("ends"));
   print_uniform(study("uniform"));
 }
 

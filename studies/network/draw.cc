@@ -1,4 +1,5 @@
 // Tables and figures of the network studies, from what studies/network/run has simulated.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -16,38 +17,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One thing that is varied; FOLDER/<name>-<agents>-<value>.csv has the seeds of one point. They are
-/// compared with the same seeds where every agent knows everything, FOLDER/central-<agents>/study.csv,
-/// and with those of FOLDER/<untroubled>.csv, to tell what is varied from what is old anyway.
+/// One thing that is varied; FOLDER/<name>-<source>-<agents>-<value>.csv has the seeds of one point. They
+/// are compared with the same seeds where every agent knows everything, FOLDER/central-<agents>/study.csv.
 struct Study {
   std::string name, x_title;
-  std::string untroubled, untroubled_title;  ///< % is the number of agents
   std::vector<std::string> values;
-  double unit;       ///< x is the value times this
-  bool by_messages;  ///< drawn against the contributions sent
+  double unit;  ///< x is the value times this
+  bool log_x = false;
+};
+
+/// What agents know of each other from.
+struct Source {
+  std::string name, dashes;
 };
 
 /// Everything about one team at one value.
 struct Point {
-  double x = 0, view_error = 0, metric = 0, contributions = 0;
+  double x = 0, metric = 0, contributions = 0;
   std::size_t seeds = 0;
-  Estimate ratio, ratio_to_untroubled;
+  Estimate ratio;
 };
 
 struct Curve {
   int agents;
+  Source source;
+  std::string color;
   std::vector<Point> points;
 };
 
 const Study kStudies[] = {
-    {"loss", "messages lost [%]", "loss-%-0", "no loss", {"0", "0.01", "0.05", "0.1", "0.3", "0.6", "0.8"}, 100, false},
-    {"delay", "mean delay [s]", "loss-%-0", "no delay", {"0.5", "1", "2", "5"}, 1, false},
-    {"budget", "error budget [% of the residual]", "period-%-1", "every tick",
-     {"0.02", "0.05", "0.1", "0.2"}, 100, true},
-    {"period", "broadcast period [ticks]", "period-%-1", "every tick",
-     {"1", "2", "5", "10", "20", "50"}, 1, true},
+    {"period", "broadcast period [s]", {"1", "4", "10", "16", "50"}, 0.5, true},
+    {"period30", "broadcast period [s], 30 % lost", {"1", "4", "10", "16", "50"}, 0.5, true},
+    {"loss", "broadcasts lost [%]", {"0", "0.01", "0.05", "0.1", "0.3", "0.6", "0.8"}, 100},
+    {"everywhere", "messages lost on all buses [%]", {"0.01", "0.05", "0.1", "0.3"}, 100},
+    {"delay", "mean delay [s]", {"0.2", "0.5", "1"}, 1},
+    {"crashes", "agents killed in 100 s", {"0.002", "0.01", "0.05"}, 100},
 };
-constexpr int kTeams[] = {4, 16, 32};
+constexpr int kTeams[] = {4, 16, 32, 64};
+const Source kSources[] = {{"places", "none"}, {"broadcasts", "5 4"}};
 
 /// φ² at the end, by seed.
 using Metrics = std::map<double, double>;
@@ -72,45 +79,40 @@ Estimate compare(const Metrics& ours, const Metrics& theirs) {
   return ratio_of(numerators, denominators);
 }
 
-Point point_of(const Table& table, double x, const Metrics& central, const Metrics& untroubled) {
+Point point_of(const Table& table, double x, const Metrics& central) {
   Point point;
   point.seeds = table.at("seed").size();
   point.x = x;
   point.ratio = compare(metrics_of(table), central);
-  point.ratio_to_untroubled = compare(metrics_of(table), untroubled);
   point.metric = median_of(table.at("ergodic_metric")).value;
-  point.view_error = median_of(table.at("view_error")).value;
   point.contributions = median_of(table.at("contributions")).value;
   return point;
 }
 
-Curve curve_of(const Study& study, int agents, const fs::path& folder) {
-  Curve curve{agents, {}};
-  const std::string team = "-" + std::to_string(agents), name = study.name + team + "-";
-  std::string untroubled = study.untroubled + ".csv";
-  untroubled.replace(untroubled.find('%'), 1, std::to_string(agents));
+Curve curve_of(const Study& study, int agents, const Source& source, const fs::path& folder) {
+  const auto color = agent_color(static_cast<AgentId>(std::find(kTeams, std::end(kTeams), agents) - kTeams));
+  Curve curve{agents, source, color, {}};
+  const std::string team = "-" + std::to_string(agents);
   const fs::path central_file = folder / ("central" + team) / "study.csv";
-  if (!fs::exists(central_file) || !fs::exists(folder / untroubled)) return curve;
+  if (!fs::exists(central_file)) return curve;
   const Metrics central = metrics_of(read_study(central_file).front().columns);
-  const Metrics least = metrics_of(read_table(folder / untroubled));
   for (const std::string& value : study.values) {
-    const fs::path file = folder / (name + value + ".csv");
+    const fs::path file = folder / (study.name + '-' + source.name + team + '-' + value + ".csv");
     if (!fs::exists(file)) continue;
-    curve.points.push_back(point_of(read_table(file), std::stod(value) * study.unit, central, least));
+    curve.points.push_back(point_of(read_table(file), std::stod(value) * study.unit, central));
   }
   return curve;
 }
 
 void print(const Study& study, const std::vector<Curve>& curves) {
-  std::printf("| agents | %s | seeds | contributions | φ² (median) | φ² against central (95 %%) | against %s (95 %%) | view error |\n"
-              "|---|---|---|---|---|---|---|---|\n",
-              study.x_title.c_str(), study.untroubled_title.c_str());
+  std::printf("| agents | known from | %s | seeds | contributions | φ² (median) | φ² against central (95 %%) |\n"
+              "|---|---|---|---|---|---|---|\n",
+              study.x_title.c_str());
   for (const Curve& curve : curves) {
     for (const Point& p : curve.points) {
-      const auto [ratio, low, high] = p.ratio_to_untroubled;
-      std::printf("| %d | %g | %zu | %.0f | %.3g | %.2f (%.2f to %.2f) | %.2f (%.2f to %.2f) | %.2g |\n",
-                  curve.agents, p.x, p.seeds, p.contributions, p.metric, p.ratio.value, p.ratio.low,
-                  p.ratio.high, ratio, low, high, p.view_error);
+      std::printf("| %d | %s | %g | %zu | %.0f | %.3g | %.2f (%.2f to %.2f) |\n", curve.agents,
+                  curve.source.name.c_str(), p.x, p.seeds, p.contributions, p.metric, p.ratio.value,
+                  p.ratio.low, p.ratio.high);
     }
   }
   std::printf("\n");
@@ -118,38 +120,38 @@ void print(const Study& study, const std::vector<Curve>& curves) {
 
 // ---- figures -------------------------------------------------------------------------------------
 
-constexpr double kWidth = 1130, kHeight = 360, kPanelWidth = 470, kPanelHeight = 250;
-constexpr double kTop = 56, kLeft = 66;
+constexpr double kWidth = 760, kHeight = 360, kPanelWidth = 530, kPanelHeight = 270;
+constexpr double kTop = 36, kLeft = 66;
 
-using ValueOf = double (*)(const Point&);
+std::string stroke(const Curve& curve) {
+  return "stroke=\"" + curve.color + "\" stroke-width=\"1.8\" stroke-dasharray=\"" + curve.source.dashes + '"';
+}
 
-/// One line a team, with its confidence interval where there is one.
-void draw_panel(Svg& svg, double left, const std::string& title, Axis x, Axis y,
-                const std::vector<Curve>& curves, ValueOf x_of, ValueOf y_of, bool intervals) {
-  const Box area{left, kTop, kPanelWidth, kPanelHeight};
-  svg.text({left, kTop - 12}, "class=\"head\"", title);
-  Plot plot(svg, area, std::move(x), std::move(y));
+/// One line a team and source, with its confidence intervals.
+void draw_ratios(Svg& svg, Axis x, Axis y, const std::vector<Curve>& curves) {
+  svg.text({kLeft, kTop - 12}, "class=\"head\"", "φ² at the end against central");
+  Plot plot(svg, {kLeft, kTop, kPanelWidth, kPanelHeight}, std::move(x), std::move(y));
   plot.grid();
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    const std::string color = "stroke=\"" + agent_color(static_cast<AgentId>(i)) + '"';
+  for (const Curve& curve : curves) {
+    const std::string color = "stroke=\"" + curve.color + '"';
     Polyline line;
-    for (const Point& p : curves[i].points) {
-      line.push_back({x_of(p), y_of(p)});
-      svg.circle(plot.at(x_of(p), y_of(p)), 2, color);  // of one point there is no line
-      if (!intervals) continue;
-      svg.line(plot.at(x_of(p), p.ratio.low), plot.at(x_of(p), p.ratio.high), color + " stroke-width=\"2\"");
+    for (const Point& p : curve.points) {
+      line.push_back({p.x, p.ratio.value});
+      svg.circle(plot.at(p.x, p.ratio.value), 2, color);  // of one point there is no line
+      svg.line(plot.at(p.x, p.ratio.low), plot.at(p.x, p.ratio.high), color);
     }
-    plot.curve(line, "class=\"curve\" stroke-width=\"1.6\" " + color);
+    plot.curve(line, "class=\"curve\" " + stroke(curve));
   }
   plot.frame();
 }
 
 void draw_key(Svg& svg, const std::vector<Curve>& curves) {
-  double left = kLeft;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    svg.line({left, 14}, {left + 24, 14}, "stroke-width=\"2\" stroke=\"" + agent_color(static_cast<AgentId>(i)) + '"');
-    svg.text({left + 30, 18}, "", std::to_string(curves[i].agents) + " agents");
-    left += 120;
+  const double left = kLeft + kPanelWidth + 18;
+  double y = kTop + 8;
+  for (const Curve& curve : curves) {
+    svg.line({left, y}, {left + 30, y}, stroke(curve));
+    svg.text({left + 36, y + 4}, "", std::to_string(curve.agents) + ", " + curve.source.name);
+    y += 20;
   }
 }
 
@@ -161,29 +163,20 @@ struct Extent {
 };
 
 std::string draw(const Study& study, const std::vector<Curve>& curves) {
-  Extent x, ratio, error;
+  Extent x, ratio;
   for (const Curve& curve : curves) {
     for (const Point& p : curve.points) {
-      x.add(study.by_messages ? p.contributions : p.x);
+      x.add(p.x);
       ratio.add(p.ratio.low);
       ratio.add(p.ratio.high);
-      error.add(p.view_error);
     }
   }
-  const ValueOf x_of = study.by_messages ? [](const Point& p) { return p.contributions; }
-                                   : [](const Point& p) { return p.x; };
-  const auto x_axis = [&] {
-    return study.by_messages ? log_axis("contributions sent", x.low / 1.2, x.high * 1.2)
-                       : range_axis(study.x_title, "", 0, x.high);
-  };
   Svg svg(kWidth, kHeight, study.name, study.x_title);
   draw_key(svg, curves);
-  draw_panel(svg, kLeft, "φ² at the end against central", x_axis(),
-             log_axis("ratio", std::min(0.9, ratio.low / 1.1), std::max(1.1, ratio.high * 1.1)), curves,
-             x_of, [](const Point& p) { return p.ratio.value; }, true);
-  draw_panel(svg, kWidth - 18 - kPanelWidth, "What the worst-informed agent's c lacks at the end", x_axis(),
-             log_axis("√Σ λ (c_a − c)²", error.low / 1.5, error.high * 1.5), curves, x_of,
-             [](const Point& p) { return p.view_error; }, false);
+  draw_ratios(svg,
+              study.log_x ? log_axis(study.x_title, x.low / 1.2, x.high * 1.2)
+                          : range_axis(study.x_title, "", 0, x.high),
+              log_axis("ratio", std::min(0.9, ratio.low / 1.1), std::max(1.1, ratio.high * 1.1)), curves);
   return svg.str();
 }
 
@@ -191,8 +184,10 @@ int run(const fs::path& folder, const fs::path& images) {
   for (const Study& study : kStudies) {
     std::vector<Curve> curves;
     for (const int agents : kTeams) {
-      Curve curve = curve_of(study, agents, folder);
-      if (!curve.points.empty()) curves.push_back(std::move(curve));
+      for (const Source& source : kSources) {
+        Curve curve = curve_of(study, agents, source, folder);
+        if (!curve.points.empty()) curves.push_back(std::move(curve));
+      }
     }
     if (curves.empty()) continue;
     print(study, curves);

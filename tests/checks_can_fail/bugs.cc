@@ -2,6 +2,7 @@
 // ergocast-with-bugs, whose calls from one library into another it stands between (--wrap: the names
 // in WRAPPED lines are the linker's, and CMake reads them here). ERGOCAST_BUG chooses the bug;
 // without, every call passes through.
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "coordinator/coordinator.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
+#include "core/forecast.h"
 #include "core/geometry.h"
 #include "lcmtypes/codec.h"
 #include "sim/world.h"
@@ -37,10 +39,14 @@ constexpr Tick kUnderWay = 100;
 // clang-format off
 WRAPPED(Eigen::Vector2d, command, "_ZN8ergocast10Controller7commandEilRKN5Eigen6MatrixIdLi2ELi1ELi0ELi2ELi1EEERKNS_7BasisAtE", Controller*, AgentId, Tick, const Eigen::Vector2d&, const BasisAt&)
 WRAPPED(Eigen::Vector2d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi2ELi1ELi0ELi2ELi1EEERKNS_9RectangleE", const Eigen::Vector2d&, const Rectangle&)
+WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
 WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtE", CoverageTable*, const Author&, const BasisAt&)
 WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
 WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi", const CoverageTable*, const Author&, int)
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELin1ELi1ELin1ELin1EEE", const CoverageTable*, Coefficients&)
+WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
+WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELin1ELi1ELin1ELin1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
+WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEEi", Agent*, const Message&, Instant, AgentId)
 WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
 WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
 WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
@@ -79,6 +85,45 @@ void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at
   if (bug("a sample counts twice")) real_add_sample(self, author, at);
 }
 
+namespace {
+
+/// Who hears a message now, and whether a teammate repeats it.
+const Agent* listener;
+bool is_relayed;
+
+/// What a table was made of, for a forecast that mistakes it.
+struct Told {
+  Basis basis;
+  double dt_s;
+  Tick joined;
+  struct Blocks {
+    Contribution before, held;
+  };
+  std::map<std::pair<Author, int>, Blocks> blocks;
+};
+std::map<const CoverageTable*, Told> told_to;
+
+void note(const CoverageTable* table, const Contribution& theirs, Merge merged) {
+  Told::Blocks& blocks = told_to.at(table).blocks[{theirs.author(), theirs.block}];
+  if (merged == Merge::kNewer) blocks = {blocks.held, theirs};
+  const bool is_old = merged == Merge::kStale && theirs.steps < blocks.held.steps;
+  if (is_old && bug("a late block becomes the one before")) blocks.before = theirs;
+  if (is_old && is_relayed && bug("a relayed block becomes the one before")) blocks.before = theirs;
+}
+
+}  // namespace
+
+void bug_make_table(CoverageTable* self, const Basis& basis, double dt_s, Tick joined) {
+  real_make_table(self, basis, dt_s, joined);
+  told_to[self] = {basis, dt_s, joined, {}};
+}
+
+void bug_hear(Agent* self, const Message& message, Instant now, AgentId transmitter) {
+  listener = self;
+  is_relayed = transmitter != header_of(message).sender;
+  real_hear(self, message, now, transmitter);
+}
+
 Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t max_steps) {
   if (bug("an honest block is refused") && theirs.steps > kUnderWay) return Merge::kRefusedRange;
   if (bug("one agent's rows are dropped") && theirs.author().agent == 0) return Merge::kStale;
@@ -88,7 +133,12 @@ Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t ma
   if (bug("a receiver mixes up modes")) {
     for (std::size_t k = 1; k < changed.sums.size(); ++k) changed.sums[k] *= -1;
   }
-  return real_merge(self, changed, max_steps);
+  if (bug("a block's age counts from its arrival")) {
+    changed.header.tick = std::max(changed.header.tick, listener->tick());
+  }
+  const Merge merged = real_merge(self, changed, max_steps);
+  note(self, theirs, merged);
+  return merged;
 }
 
 Contribution bug_block(const CoverageTable* self, const Author& author, int block) {
@@ -100,6 +150,60 @@ Contribution bug_block(const CoverageTable* self, const Author& author, int bloc
 void bug_average(const CoverageTable* self, Coefficients& coverage) {
   real_average(self, coverage);
   if (bug("the average is off")) coverage(1, 2) += 1e-6;
+}
+
+// ---- forecasts -----------------------------------------------------------------------------------
+
+namespace {
+
+/// Longer than any mission of the test.
+constexpr Tick kForEver = 10000;
+
+bool the_dead_are_foreseen() { return bug("the dead are foreseen for ever"); }
+bool foresees_itself() { return bug("an agent foresees itself"); }
+
+/// The table as it would be if it had been told otherwise.
+CoverageTable mistaken(const CoverageTable& table, Tick tick) {
+  const Told& told = told_to.at(&table);
+  CoverageTable other(told.basis, told.dt_s, told.joined);
+  const auto merge = [&](Contribution block) {
+    if (the_dead_are_foreseen()) block.next_broadcast_tick += kForEver;
+    real_merge(&other, block, kForEver);
+  };
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const Author& author = table.author(row);
+    other.add_row(author);
+    for (int b = 0; b < table.block_count(); ++b) {
+      const auto heard = told.blocks.find({author, b});
+      Contribution own = real_block(&table, author, b);
+      own.header.tick = tick;
+      if (heard == told.blocks.end()) {
+        merge(own);
+      } else {
+        merge(heard->second.before);
+        merge(heard->second.held);
+      }
+    }
+    if (!table.counts(row)) other.forget(author);
+  }
+  return other;
+}
+
+}  // namespace
+
+void bug_make_forecast(Forecast* self, const Mission& mission, const Author& author) {
+  Mission changed = mission;
+  if (the_dead_are_foreseen()) changed.timing.broadcast_period_ticks = kForEver;
+  real_make_forecast(self, changed, foresees_itself() ? Author{} : author);
+}
+
+void bug_look_ahead(Forecast* self, const CoverageTable& table, const std::vector<RosterEntry>& roster,
+                    Tick tick, Coefficients& coverage) {
+  const bool mistakes_it = the_dead_are_foreseen() || foresees_itself() ||
+                           bug("a late block becomes the one before") ||
+                           bug("a relayed block becomes the one before");
+  if (!mistakes_it) return real_look_ahead(self, table, roster, tick, coverage);
+  real_look_ahead(self, mistaken(table, tick), roster, tick, coverage);
 }
 
 // ---- agents --------------------------------------------------------------------------------------

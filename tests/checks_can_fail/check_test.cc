@@ -106,8 +106,6 @@ std::vector<Mistake> mistakes_between_fields() {
       {kLaw, "law { contraction_x_m: 3", "law.contraction_x_m: has no effect"},
       {kTime, "duration_s: 0.04", "time.duration_s: 0.04 is less than one step"},
       {kTime, "duration_s: 1001 dt_s: 1e-5", "time.duration_s: 100100000 steps"},
-      {kTime, "duration_s: 60 broadcast_error_budget: 0.1 broadcast_period_ticks: 200",
-       "time.broadcast_heartbeat_ticks: 100 is below"},
       {kTime, "duration_s: 60 dt_s: 0.001 pace: REALTIME realtime_factor: 20",
        "time.realtime_factor: 20 makes a step last"},
       {"starts { x_m: 10 y_m: 20 }", "", "agents: the team is empty"},
@@ -295,13 +293,13 @@ basis { modes_x: 8 modes_y: 8 normalized: true sobolev_form: NORM sobolev_expone
 law {
   u_max_mps: 5 regularization: RELATIVE epsilon: 0.2 perturbation: ADAPTIVE noise_intensity: 0.1 noise_ceiling: 2
   contraction_gain_per_s: 0.001 contraction_center: POINT contraction_x_m: 50 contraction_y_m: 25
+  anticipation: 2 ends_with_plan: false paired_pushes: false
 }
 time {
   dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 pace: REALTIME realtime_factor: 1 lockstep_timeout_s: 10
-  on_timeout: EVICT command_hold_s: 0.5 admission_timeout_s: 30 catch_up_limit_ticks: 5 broadcast_error_budget: 0.1
-  broadcast_heartbeat_ticks: 100
+  on_timeout: EVICT command_hold_s: 0.5 admission_timeout_s: 30 catch_up_limit_ticks: 5
 }
-agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 forget_silent_after_s: 5 }
+agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 forget_silent_after_s: 5 dead_reckoning: true }
 world { disturbance_intensity: 0.1 radio_range_m: 30 speed_limit_mps: 100 }
 )";
 
@@ -454,10 +452,20 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find(what), std::string::npos) << what << ":\n" << output();
   }
 
+  void expect_warning_of_coarse_steps() {
+    std::string text = kGood;
+    write("s.textproto", text.insert(text.find(kTime), "dt_s: 0.6 "));
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_TRUE(output().starts_with("warning: " + file_.string() + ":4:")) << output();
+    EXPECT_NE(output().find("time.dt_s: 0.6 is coarse"), std::string::npos) << output();
+  }
+
   void plant_warnings() {
     expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");
     expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
     expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");
+    expect_warning_of_coarse_steps();
   }
 };
 

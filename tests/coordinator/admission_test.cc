@@ -192,6 +192,15 @@ TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
   EXPECT_EQ(coordinator.roster().size(), 3u) << "who waits there still";
 }
 
+// Where messages are late, members fall silent and speak again faster than anybody's words get through.
+TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheySpoke) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  const std::int64_t known = newest_said(coordinator, at(1s));
+  EXPECT_GT(newest_said(coordinator, at(3400ms)), known) << "a silence is news";
+  coordinator.receive(hello_of(5, 99, known), at(3500ms));
+  EXPECT_EQ(coordinator.roster().size(), 3u);
+}
+
 TEST(CoordinatorAdmits, NobodyBySomethingSaidToItsPredecessor) {
   Coordinator coordinator({0, 0xc1, "here", kVersion}, decoder_of(small_mission(2)), kPlan, Takeover::kMust);
   advance(coordinator, at(0s));

@@ -12,6 +12,7 @@
 
 #include "core/control.h"
 #include "core/coverage_table.h"
+#include "core/forecast.h"
 #include "tests/support/team.h"
 
 namespace {
@@ -136,6 +137,44 @@ TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
     };
     EXPECT_GT(allocations_in([&] { step(0); }), 0u) << "the first one makes the rows";
     for (Tick tick = 1; tick < 20; ++tick) {
+      EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
+    }
+  }
+}
+
+TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
+  for (const bool dead_reckoning : {false, true}) {
+    Mission mission = full_mission(Regularization::kRelative, Perturbation::kAdaptive);
+    mission.law.anticipation = 2;
+    mission.dead_reckoning = dead_reckoning;
+    mission.timing.broadcast_period_ticks = 5;
+    const std::vector<RosterEntry> roster = test::roster_of(4);
+    Forecast forecast(mission, test::author_of(0));
+    CoverageTable own(mission.basis, mission.timing.dt_s);
+    Coefficients foreseen = Coefficients::Zero(20, 20);
+    std::vector<CoverageTable> teammates(3, CoverageTable(mission.basis, mission.timing.dt_s));
+    const auto step = [&](Tick tick) {
+      for (AgentId id = 0; id < 4; ++id) {
+        const Eigen::Vector2d x_m(100 + 30 * id + static_cast<double>(tick), 500);
+        const BasisAt at(x_m, mission.domain, mission.basis);
+        forecast.see(id, tick, x_m);
+        CoverageTable& theirs = id == 0 ? own : teammates[static_cast<std::size_t>(id - 1)];
+        theirs.add_sample(test::author_of(id), at);
+        // One of them is not heard at every broadcast, and one each tick.
+        if (id == 0 || (tick % 5 != 0 && id != 3) || (tick % 10 == 5 && id == 1)) continue;
+        for (int b = 0; b < own.block_count(); ++b) {
+          Contribution said = theirs.block(test::author_of(id), b);
+          said.header.tick = tick;
+          said.next_broadcast_tick = tick + 5;
+          ASSERT_EQ(own.merge(said, tick + 1), Merge::kNewer);
+        }
+      }
+      forecast.look_ahead(own, roster, tick, foreseen);
+      ASSERT_NEAR(foreseen(0, 0), 1, 1e-12);
+    };
+    EXPECT_GT(allocations_in([&] { step(0); }), 0u) << "the first one makes the rows";
+    // For longer than places are kept.
+    for (Tick tick = 1; tick < 200; ++tick) {
       EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
     }
   }

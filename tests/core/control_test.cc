@@ -359,6 +359,29 @@ TEST(Command, AddsTheNoiseOfItsAgentAndTickAsAVelocity) {
   }
 }
 
+TEST(Command, PushesTwoOfAPairInOppositeWays) {
+  Mission mission = uneven_mission();
+  mission.law.regularization = Regularization::kRelative;
+  mission.law.epsilon = 0.05;
+  mission.law.perturbation = Perturbation::kAdaptive;
+  mission.law.noise_ceiling = 10;
+  const Coefficients coverage = coverage_of(mission, 50);
+  const Eigen::Vector2d x_m = mission.domain.origin_m;  // a corner, where B vanishes
+  const auto pushed = [&](AgentId agent, Tick tick, bool paired) {
+    mission.law.paired_pushes = paired;
+    Controller controller(mission);
+    return command_at(controller, mission, x_m, coverage, agent, tick);
+  };
+  for (Tick tick = 0; tick < 100; tick += 10) {
+    ASSERT_GT(pushed(0, tick, true).norm(), 0);
+    EXPECT_EQ(pushed(1, tick, true), -pushed(0, tick, true));
+    EXPECT_EQ(pushed(3, tick, true), -pushed(2, tick, true));
+    EXPECT_NE(pushed(2, tick, true), pushed(0, tick, true));
+    EXPECT_NE(pushed(1, tick, false), -pushed(0, tick, false));
+    EXPECT_EQ(pushed(2, tick, true), pushed(2, tick, false)) << "the first of a pair is nobody's mirror";
+  }
+}
+
 TEST(Command, PullsTowardsTheCentreOfContraction) {
   Mission mission = uneven_mission();
   mission.law.contraction_gain_per_s = 0.5;

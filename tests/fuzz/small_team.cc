@@ -27,7 +27,11 @@ Mission mission_with(std::uint8_t features) {
   mission.timing.tick_count = 40;
   mission.timing.dt_s = 0.1;
   if (features & kRealtimePace) mission.timing.pace = Pace::kRealtime;
-  if (features & kAdaptiveBroadcast) mission.timing.broadcast_error_budget = 0.5;
+  if (features & kLooksAhead) {
+    mission.law.anticipation = 2;
+    mission.dead_reckoning = true;
+    mission.timing.broadcast_period_ticks = 4;
+  }
   if (features & kRadioRange) mission.radio_range_m = 150;
   if (features & kForgetting) mission.forget_silent_after_s = 4;
   if (features & kEviction) mission.timing.on_timeout = OnTimeout::kEvict;

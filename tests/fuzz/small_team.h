@@ -18,7 +18,7 @@ namespace ergocast::fuzz {
 /// Which kind of mission is flown; every bit a feature.
 enum Features : std::uint8_t {
   kRealtimePace = 1,
-  kAdaptiveBroadcast = 2,
+  kLooksAhead = 2,
   kRadioRange = 4,
   kForgetting = 8,
   kEviction = 16,

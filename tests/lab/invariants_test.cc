@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "core/forecast.h"
 #include "lab/invariants.h"
 
 namespace ergocast::test {
@@ -62,9 +63,46 @@ class InvariantsTest : public ::testing::Test {
   Holder holder(const CoverageTable& table, Coefficients& c, const Author& self = kOne) {
     c = Coefficients::Zero(12, 12);
     table.average(c);
-    return {self, &table, &c, &roster_, 90};
+    return {self, &table, &c, &roster_, 88};
   }
   std::string violated() const { return violated_by(team_); }
+  /// What is violated by a ĉ that is off by so much, after a teammate was heard twice and then seen.
+  std::string violated_by_forecast(double off) {
+    Invariants team(mission_);
+    team.born(kOne);
+    team.born(kTwo);
+    team.sent(0, world(99, {5, 5}), nullptr);
+    CoverageTable table(mission_.basis, 0.1), other(mission_.basis, 0.1);
+    Forecast forecast(mission_, kOne);
+    Holder one = holder(table, c_one_);
+    const auto hear = [&](Tick tick, std::int64_t steps) {
+      cover(other, kTwo, 1, static_cast<double>(steps) / 10);
+      for (const int b : {1, 0}) {
+        Contribution block = other.block(kTwo, b);
+        block.header.tick = tick;
+        block.next_broadcast_tick = tick + 1;
+        table.merge(block, 100);
+        team.received(one, block);
+      }
+    };
+    cover(table, kOne, 80);
+    cover(other, kTwo, 50);
+    hear(83, 51);
+    cover(other, kTwo, 3, 9);
+    hear(86, 55);
+    const Outgoing seen = world(88, {7, 3});
+    WorldState state = std::get<WorldState>(seen.message);
+    state.vehicles[0].id = kTwo.agent;
+    team.received(one, state);
+    forecast.see(kTwo.agent, 88, {7, 3});
+    one = holder(table, c_one_);
+    c_two_ = Coefficients::Zero(12, 12);
+    forecast.look_ahead(table, roster_, one.answered, c_two_);
+    c_two_(3, 11) += off;
+    one.foreseen = &c_two_;
+    team.answered(1, one);
+    return violated_by(team);
+  }
 
   static constexpr Author kOne{0, 11}, kTwo{1, 22}, kLeft{1, 21};
   Mission mission_;
@@ -178,6 +216,18 @@ TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {
   c_one_ = (a + b) / 2;
   team_.answered(2, right);
   EXPECT_EQ(violated(), "c_k = sum S / sum elapsed of what is held");
+}
+
+TEST_F(InvariantsTest, WhatIsForeseenFollowsFromWhatIsKnown) {
+  mission_.target_coefficients(0, 0) = 1;
+  for (const bool reckons : {false, true}) {
+    mission_.dead_reckoning = reckons;
+    mission_.law.anticipation = 2;
+    EXPECT_EQ(violated_by_forecast(0), "") << reckons;
+    EXPECT_EQ(violated_by_forecast(1e-9), "forecast of what is known") << reckons;
+    mission_.law.anticipation = 0;
+    EXPECT_EQ(violated_by_forecast(1e-9), "") << reckons << ": this law foresees nothing";
+  }
 }
 
 TEST_F(InvariantsTest, HonestMessagesAreNotRefused) {

@@ -65,6 +65,18 @@ TEST(Laboratory, TheSameSeedGivesTheSameMission) {
   EXPECT_NE(fly(lab::drawn(1), 1).trajectory, fly(lab::drawn(2), 2).trajectory);
 }
 
+TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
+  Faults faults;
+  faults.loss = 0.3;
+  for (const double share : {0.6, 1.0}) {
+    faults.lasting_share = share;
+    const TrialResult result = fly(faults, 1).result;
+    EXPECT_EQ(problem(result), "");
+    EXPECT_GT(result.figures.view_error, 0) << "what was said last, at different ticks, is not all";
+    EXPECT_LT(result.figures.view_error, 0.1);
+  }
+}
+
 TEST(Laboratory, WithoutFaultsNothingIsDone) {
   const TrialResult result = fly({}, 1).result;
   EXPECT_EQ(problem(result), "");
@@ -153,6 +165,16 @@ TEST_P(EachFault, HappensAndIsSurvived) {
 
 INSTANTIATE_TEST_SUITE_P(Laboratory, EachFault, ::testing::ValuesIn(kKinds),
                          [](const auto& kind) { return std::string(kind.param.name); });
+
+TEST(Laboratory, TheLawsOptionsBreakNoInvariant) {
+  Overrides overrides;
+  for (const char* option : {"law.ends_with_plan", "law.paired_pushes"}) {
+    overrides.fields.push_back({option, "true", option});
+  }
+  const auto scenario =
+      std::get<Scenario>(Scenario::load(ERGOCAST_SCENARIO_DIR "/faulty_team.textproto", overrides));
+  EXPECT_EQ(problem(fly(lab::drawn(7), 7, scenario).result), "");
+}
 
 TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {
   for (const lab::FaultField& field : lab::fault_fields()) {

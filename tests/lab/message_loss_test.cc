@@ -1,5 +1,6 @@
 // Lockstep waits for nothing that is not repeated: whatever kind of message is lost, the mission
-// ends, and its trajectory is the one without losses, bit for bit.
+// ends, and its trajectory is the one without losses, bit for bit. Where agents reckon, it is the same
+// however seldom they broadcast, too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ Outcome fly(const Delivers& delivers, const std::string& text = kScenario) {
   lab::Options options;
   options.plan = scenario.plan();
   options.decode_plan = decode_plan;
-  options.agents = 3;
+  options.agents = static_cast<int>(scenario.mission().starts_m.size());
   options.delivers = delivers;
   lab::Swarm swarm(std::move(options), trajectory, metrics);
   constexpr auto kLimit = std::chrono::minutes(30);
@@ -140,13 +141,77 @@ TEST(MessageLoss, ALoggerThatIsNeverHeardHoldsUpNobody) {
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
 }
 
-TEST(MessageLoss, SlowBroadcastsLoseNothingEither) {
-  const std::string slow = with(kScenario, "lockstep_timeout_s: 10",
-                                "lockstep_timeout_s: 10 broadcast_period_ticks: 7");
-  const Outcome clean = fly({}, slow);
-  EXPECT_NE(clean.trajectory, lossless());
-  EXPECT_EQ(fly(dropping(2, 33), slow).trajectory, clean.trajectory);
+std::string each(int period, const std::string& text = kScenario) {
+  return with(text, "time {", "time { broadcast_period_ticks: " + std::to_string(period));
 }
+
+constexpr std::size_t kContribution = 2, kWorldState = 6;
+
+TEST(MessageLoss, HowOftenAgentsBroadcastDoesNotShowWhereTheyReckon) {
+  for (const int period : {1, 2, 7, 40, 1000}) {
+    EXPECT_EQ(fly({}, each(period)).trajectory, lossless()) << period;
+    EXPECT_EQ(fly(dropping(kContribution, 33), each(period)).trajectory, lossless()) << period;
+    EXPECT_EQ(fly(dropping(kWorldState, 33), each(period)).trajectory, lossless()) << period;
+  }
+}
+
+TEST(MessageLoss, NorInATeamWhoseWorldSpeaksInParts) {
+  std::string large = with(kScenario, "agents {", "agents { random_count: 15");
+  large = with(with(large, "x: 12 modes_y: 12", "x: 4 modes_y: 4"), "duration_s: 20", "duration_s: 5");
+  const std::string trajectory = fly({}, each(1, large)).trajectory;
+  EXPECT_EQ(lines(trajectory), 1U + 18 * 50);
+  for (const int period : {2, 13}) {
+    EXPECT_EQ(fly({}, each(period, large)).trajectory, trajectory) << period;
+    // Parts come in any order, or not at all for a while.
+    EXPECT_EQ(fly(dropping(kWorldState, 50), each(period, large)).trajectory, trajectory) << period;
+  }
+}
+
+TEST(MessageLoss, SlowBroadcastsShowWhereTheyDoNotReckonAndLoseNothingEither) {
+  const std::string rows = with(kScenario, "agents {", "agents { dead_reckoning: false");
+  const Outcome clean = fly({}, each(7, rows));
+  EXPECT_NE(clean.trajectory, fly({}, each(1, rows)).trajectory);
+  EXPECT_EQ(fly(dropping(kContribution, 33), each(7, rows)).trajectory, clean.trajectory);
+}
+
+/// What a lockstep team may know of its teammates' plans: all laws, told each tick or seldom.
+struct Knowing {
+  const char* name;
+  const char* law;
+  bool dead_reckoning;
+  int period;
+};
+std::string scenario_of(const Knowing& knowing) {
+  std::string text = with(kScenario, "u_max_mps: 5", std::string("u_max_mps: 5 ") + knowing.law);
+  text = with(text, "agents {", knowing.dead_reckoning ? "agents { dead_reckoning: true"
+                                                       : "agents { dead_reckoning: false");
+  return each(knowing.period, text);
+}
+
+class EachLaw : public ::testing::TestWithParam<Knowing> {};
+
+TEST_P(EachLaw, LossesChangeNoTrajectory) {
+  const std::string text = scenario_of(GetParam());
+  const Outcome clean = fly({}, text);
+  EXPECT_EQ(clean.state, MissionState::kEnded) << clean.reason;
+  for (const std::size_t kind : {kContribution, kWorldState}) {
+    EXPECT_TRUE(fly(dropping(kind, 33), text).trajectory == clean.trajectory) << kKinds[kind];
+  }
+  const auto anything = [count = std::uint64_t{0}](const Message&, int) mutable {
+    return random_words(6, Purpose::kFault, 0, ++count).first % 100 >= 10;
+  };
+  EXPECT_TRUE(fly(anything, text).trajectory == clean.trajectory);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    MessageLoss, EachLaw,
+    ::testing::Values(Knowing{"Classical", "anticipation: 0", false, 1},
+                      Knowing{"ClassicalSeldom", "anticipation: 0", false, 7},
+                      Knowing{"FromRows", "anticipation: 2", false, 1},
+                      Knowing{"FromRowsSeldom", "anticipation: 2", false, 7},
+                      Knowing{"Reckoning", "anticipation: 2", true, 1},
+                      Knowing{"ReckoningSeldom", "anticipation: 2 ends_with_plan: true", true, 7}),
+    [](const auto& knowing) { return std::string(knowing.param.name); });
 
 bool is_command_of(const Message& message, AgentId agent) {
   const auto* command = std::get_if<Command>(&message);

@@ -11,6 +11,7 @@ std::vector<double> metrics_at(double t_s, const std::function<void(Mission&)>& 
   for (std::uint64_t seed = 1; seed <= 11; ++seed) {
     Overrides overrides;
     overrides.seed = seed;
+    overrides.duration_s = t_s;
     Mission mission = shipped_mission("quadrimodal_corners", overrides);
     change(mission);
     PaperTeam team(mission);
@@ -22,12 +23,12 @@ std::vector<double> metrics_at(double t_s, const std::function<void(Mission&)>& 
 
 TEST(QuadrimodalCorners, CoversTheTargetWithinTenMinutes) {
   const auto metrics = metrics_at(600, [](Mission&) {});
-  EXPECT_LT(median(metrics), 2e-3);
-  EXPECT_LT(*std::max_element(metrics.begin(), metrics.end()), 1e-2);
+  EXPECT_LT(median(metrics), 2e-4);
+  EXPECT_LT(*std::max_element(metrics.begin(), metrics.end()), 1e-3);
 }
 
 TEST(QuadrimodalCorners, GoesOnImprovingForHalfAnHour) {
-  EXPECT_LT(median(metrics_at(2000, [](Mission&) {})), 8e-4);
+  EXPECT_LT(median(metrics_at(2000, [](Mission&) {})), 2e-5);
 }
 
 // ε has the unit of B, and with these weights |B| is 1e-4 to 1e-3.

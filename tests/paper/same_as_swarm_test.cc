@@ -30,8 +30,7 @@ std::vector<std::vector<Eigen::Vector2d>> positions(const std::string& table) {
   return found;
 }
 
-void expect_same(const std::string& name) {
-  Overrides overrides;
+void expect_same(const std::string& name, Overrides overrides = {}) {
   overrides.duration_s = 60;
   const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
   const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
@@ -56,6 +55,12 @@ void expect_same(const std::string& name) {
 TEST(SameAsSwarm, ClassicalLaw) { expect_same("paper_fig1b"); }
 TEST(SameAsSwarm, PapersLaw) { expect_same("paper_fig2a"); }
 TEST(SameAsSwarm, RecommendedLaw) { expect_same("quadrimodal_corners"); }
+// Their world's state comes in two parts.
+TEST(SameAsSwarm, RecommendedLawOfTwentyAgents) {
+  Overrides overrides;
+  overrides.agents = 20;
+  expect_same("quadrimodal_corners", overrides);
+}
 
 }  // namespace
 }  // namespace ergocast::test

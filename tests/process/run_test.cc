@@ -72,6 +72,29 @@ TEST_F(MissionRun, SeventeenAgentsFillTwoWorldStatesATick) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
+// Told each tick or seldom, reckoned or not: eighteen agents, whose places come in two parts.
+TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
+  std::vector<std::string> trajectories;
+  for (const std::string telling : {"agents { dead_reckoning: true", "agents { dead_reckoning: false"}) {
+    for (const std::string period : {"1", "7"}) {
+      std::string text = text_of(scenario_file("quadrimodal_corners"));
+      text.replace(text.find("time {"), 6, "time { broadcast_period_ticks: " + period);
+      text.replace(text.find("agents {"), 8, telling);
+      const auto folder = folder_ / std::to_string(trajectories.size());
+      std::filesystem::create_directories(folder);
+      std::ofstream(folder / "telling.textproto") << text;
+      ASSERT_EQ(ergocast({"run", folder / "telling.textproto", "--duration", "5", "--agents", "18",
+                          "--out", folder / "run"}), 0) << output();
+      trajectories.push_back(text_of(folder / "run" / "trajectory.csv"));
+      EXPECT_EQ(lines(trajectories.back()), 1U + 18 * 50);
+      EXPECT_EQ(ergocast({"verify", folder / "run"}), 0) << output();
+      EXPECT_NE(output().find("identical"), std::string::npos) << output();
+    }
+  }
+  EXPECT_TRUE(trajectories[0] == trajectories[1]) << "what is reckoned needs no telling";
+  EXPECT_FALSE(trajectories[2] == trajectories[3]);
+}
+
 TEST_F(MissionRun, VerifyNamesTheFirstTickAndAgentThatDiffer) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners").string(), "--duration", "10",
                       "--out", out()}), 0) << output();

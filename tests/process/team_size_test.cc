@@ -35,6 +35,15 @@ TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
   EXPECT_EQ(wait_for(mission), 0) << said();
 }
 
+TEST_F(TeamSize, HowOftenSeventeenBroadcastDoesNotShowInWhatTheyFly) {
+  ASSERT_EQ(ergocast({"run", scenario("broadcast_period_ticks: 23"), "--agents", "17", "--duration", "5",
+                      "--out", out()}), 0) << output();
+  const auto each_tick = folder_ / "each_tick";
+  ASSERT_EQ(ergocast({"simulate", scenario("broadcast_period_ticks: 1"), "--agents", "17", "--duration",
+                      "5", "--out", each_tick}), 0) << output();
+  EXPECT_TRUE(text_of(out() / "trajectory.csv") == text_of(each_tick / "trajectory.csv"));
+}
+
 TEST_F(TeamSize, OneNeedsNobody) {
   ASSERT_EQ(ergocast({"run", scenario(), "--agents", "1", "--duration", "100", "--out", out()}), 0)
       << output();

@@ -30,15 +30,19 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_FALSE(mission.basis.normalized);
   EXPECT_EQ(mission.law.u_max_mps, 5);
   EXPECT_EQ(mission.law.regularization, Regularization::kRelative);
-  EXPECT_EQ(mission.law.epsilon, 0.2);
+  EXPECT_EQ(mission.law.epsilon, 0.05);
   EXPECT_EQ(mission.law.perturbation, Perturbation::kAdaptive);
+  EXPECT_EQ(mission.law.anticipation, 2);
+  EXPECT_TRUE(mission.law.paired_pushes);
+  EXPECT_TRUE(mission.law.ends_with_plan);
+  EXPECT_TRUE(mission.dead_reckoning);
   EXPECT_DOUBLE_EQ(mission.law.noise_ceiling, std::sqrt(5 * 0.5));
   EXPECT_DOUBLE_EQ(mission.law.noise_intensity, 0.05 * std::sqrt(5 * 0.5));
   EXPECT_DOUBLE_EQ(mission.law.contraction_gain_per_s, 0.05 / std::hypot(50, 25));
   EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(50, 25));
   EXPECT_EQ(mission.timing.dt_s, 0.1);
   EXPECT_EQ(mission.timing.tick_count, 600);
-  EXPECT_EQ(mission.timing.broadcast_period_ticks, 1);
+  EXPECT_EQ(mission.timing.broadcast_period_ticks, 10);
   EXPECT_EQ(mission.timing.pace, Pace::kLockstep);
   EXPECT_EQ(mission.timing.realtime_factor, 1);
   EXPECT_EQ(mission.timing.lockstep_timeout_s, 10);
@@ -49,8 +53,6 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_EQ(mission.starts_m, std::vector<Eigen::Vector2d>{Eigen::Vector2d(10, 20)});
   EXPECT_EQ(mission.quorum, 1);
   EXPECT_EQ(mission.disturbance_intensity, 0);
-  EXPECT_EQ(mission.timing.broadcast_error_budget, 0);
-  EXPECT_EQ(mission.timing.broadcast_heartbeat_ticks, 100);
   EXPECT_EQ(mission.forget_silent_after_s, 0);
   EXPECT_EQ(mission.radio_range_m, 0);
   EXPECT_EQ(mission.speed_limit_mps, 0) << "none";
@@ -63,6 +65,21 @@ TEST(Defaults, OfNoiseRiseWithTheFloorThatIsGiven) {
   EXPECT_EQ(law.noise_ceiling, 7);
 }
 
+/// A law that does not look ahead is that of version 0.1.0, the paper's or the classical one: whole.
+TEST(Defaults, OfALawThatDoesNotLookAheadStayWhatTheyWere) {
+  for (const auto& [law, epsilon] :
+       {std::pair{"anticipation: 0", 0.2}, std::pair{"perturbation: CONSTANT", 0.2},
+        std::pair{"regularization: ABSOLUTE", 0.0}}) {
+    SCOPED_TRACE(law);
+    const ControlLaw got =
+        good(small_with("law { u_max_mps: 5 }", std::string("law { u_max_mps: 5 ") + law + " }")).mission().law;
+    EXPECT_EQ(got.anticipation, 0);
+    EXPECT_EQ(got.epsilon, epsilon);
+    EXPECT_FALSE(got.paired_pushes);
+    EXPECT_FALSE(got.ends_with_plan);
+  }
+}
+
 TEST(Defaults, ConstantNoiseHasNoCeiling) {
   const Scenario scenario = good(small_with("law {", "law { perturbation: CONSTANT"));
   EXPECT_EQ(scenario.mission().law.perturbation, Perturbation::kConstant);
@@ -72,6 +89,26 @@ TEST(Defaults, ConstantNoiseHasNoCeiling) {
 
 TEST(Defaults, AbsoluteRegularizationIsClassicalUnlessEpsilonIsGiven) {
   EXPECT_EQ(good(small_with("law {", "law { regularization: ABSOLUTE")).mission().law.epsilon, 0);
+}
+
+TEST(Defaults, OnlyTheRecommendedLawLooksAhead) {
+  for (const char* other : {"law { regularization: ABSOLUTE", "law { perturbation: CONSTANT"}) {
+    EXPECT_EQ(good(small_with("law {", other)).mission().law.anticipation, 0) << other;
+  }
+  const ControlLaw law = good(small_with("law {", "law { anticipation: 0")).mission().law;
+  EXPECT_EQ(law.epsilon, 0.2) << "a relative one, where nobody looks ahead";
+}
+
+TEST(Defaults, WhoIsNotReckonedTellsEachTickWhatItCovered) {
+  for (const char* fields : {"law { anticipation: 0", "agents { dead_reckoning: false",
+                             "law { perturbation: CONSTANT", "law { regularization: ABSOLUTE"}) {
+    const std::string block(fields, std::string_view(fields).find('{') + 1);
+    EXPECT_EQ(good(small_with(block, fields)).mission().timing.broadcast_period_ticks, 1) << fields;
+  }
+  EXPECT_EQ(good(small_with("law {", "law { perturbation: CONSTANT anticipation: 1"))
+                .mission()
+                .timing.broadcast_period_ticks,
+            10);
 }
 
 TEST(Defaults, NameComesFromTheFileAndAlwaysNamesAFolder) {
@@ -95,10 +132,7 @@ TEST(Reading, TakesEverySpellingOfEveryField) {
     }
     basis { modes_x: 3 modes_y: 4 normalized: true sobolev_form: NORM sobolev_exponent: 2 }
     law { u_max_mps: 5 contraction_center: POINT contraction_x_m: 1 contraction_y_m: 6 }
-    time {
-      duration_s: 1 pace: REALTIME on_timeout: EVICT
-      broadcast_error_budget: 0.1 broadcast_heartbeat_ticks: 50
-    }
+    time { duration_s: 1 pace: REALTIME on_timeout: EVICT }
     agents {
       starts: [ { x_m: -10 y_m: 5 }, { x_m: 90, y_m: 55 } ] random_count: 1 quorum: 2
       forget_silent_after_s: 60
@@ -118,8 +152,6 @@ TEST(Reading, TakesEverySpellingOfEveryField) {
   EXPECT_EQ(mission.starts_m.size(), 3u);
   EXPECT_EQ(mission.quorum, 2);
   EXPECT_EQ(mission.disturbance_intensity, 0.25);
-  EXPECT_EQ(mission.timing.broadcast_error_budget, 0.1);
-  EXPECT_EQ(mission.timing.broadcast_heartbeat_ticks, 50);
   EXPECT_EQ(mission.forget_silent_after_s, 60);
   EXPECT_EQ(mission.radio_range_m, 40);
   EXPECT_EQ(mission.speed_limit_mps, 60);
@@ -239,7 +271,9 @@ TEST(Print, ShowsEveryFieldInTheFewestDigits) {
                            "normalized: false",
                            "sobolev_form: SQUARED_NORM",
                            "regularization: RELATIVE",
-                           "epsilon: 0.2\n",
+                           "epsilon: 0.05\n",
+                           "anticipation: 2\n",
+                           "dead_reckoning: true",
                            "perturbation: ADAPTIVE",
                            "noise_ceiling: ",
                            "contraction_gain_per_s: ",
@@ -315,7 +349,8 @@ TEST(ShippedValues, QuadrimodalCornersIsTheRecommendedLawFromTheWorstStarts) {
   const Mission mission = good(Scenario::load(shipped("quadrimodal_corners"))).mission();
   EXPECT_EQ(mission.starts_m, kCorners);
   EXPECT_EQ(mission.law.regularization, Regularization::kRelative);
-  EXPECT_EQ(mission.law.epsilon, 0.2);
+  EXPECT_EQ(mission.law.epsilon, 0.05);
+  EXPECT_EQ(mission.law.anticipation, 2);
   EXPECT_EQ(mission.law.perturbation, Perturbation::kAdaptive);
   EXPECT_EQ(mission.law.noise_intensity, 1);
   EXPECT_EQ(mission.law.noise_ceiling, 20);

@@ -1,4 +1,5 @@
-// What a scenario is warned of: the bound on what the law commands, in the scenario's numbers.
+// What a scenario is warned of, in its own numbers: a speed limit below what the law commands, and
+// steps too coarse for agents that look ahead.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/scenarios.h"
@@ -55,6 +56,21 @@ TEST(Warnings, OfTheAdaptiveLawCountTheHeldPushAndNotTheCeilingInAStep) {
   EXPECT_TRUE(has(warning, "commands up to 33.47 m/s"));
   EXPECT_TRUE(has(warning, "a push of 4.473 m/s held for 3 steps"));
   EXPECT_EQ(warnings_of(limited(law, "33.5")), "");
+}
+
+TEST(Warnings, OfCoarseStepsForAgentsThatLookAhead) {
+  // 5 m/s · 0.5 s = 2.5 m, 5 % of the shorter side of 50 m.
+  const auto stepping = [](const std::string& dt_s, const std::string& law) {
+    std::string text = small_with("law { u_max_mps: 5 }", "law { u_max_mps: 5 " + law + " }");
+    return text.replace(text.find("duration_s"), 0, "dt_s: " + dt_s + " ");
+  };
+  EXPECT_EQ(warnings_of(stepping("0.5", "")), "");
+  EXPECT_EQ(warnings_of(stepping("0.51", "anticipation: 0")), "");
+  EXPECT_EQ(warnings_of(stepping("0.51", "perturbation: CONSTANT")), "") << "it does not look ahead";
+  EXPECT_EQ(warnings_of(stepping("0.51", "")),
+            "small.textproto:5:8: time.dt_s: 0.51 is coarse for agents that look ahead: one step at "
+            "u_max_mps is longer than 5 % of the shorter side, and in the long run a uniform target may be "
+            "covered worse than without looking ahead (write at most 0.5, or law.anticipation: 0)\n");
 }
 
 TEST(Warnings, AreOfNoWeightForAPlan) {

@@ -90,6 +90,9 @@ Rule may(Draw draw) { return {std::move(draw), 0, 1}; }
 Rule must(Draw draw) { return {std::move(draw), 1, 1}; }
 Rule many(int least, int most) { return {draw_block, least, most}; }
 
+const Draw kCoin = [](Block& block, const FieldDescriptor& field, Dice& dice) {
+  block.GetReflection()->SetBool(&block, &field, dice.coin());
+};
 /// Where anything is [m]: inside every domain.
 const Draw kPlace = number(1, 99);
 
@@ -142,9 +145,7 @@ const std::map<std::string, Rule>& rules() {
 
       {"Basis.modes_x", may(number(1, 24))},
       {"Basis.modes_y", may(number(2, 24))},
-      {"Basis.normalized", may([](Block& block, const FieldDescriptor& field, Dice& dice) {
-         block.GetReflection()->SetBool(&block, &field, dice.coin());
-       })},
+      {"Basis.normalized", may(kCoin)},
       {"Basis.sobolev_form", may(word(0))},
       {"Basis.sobolev_exponent", may(number(0.1, 3))},
 
@@ -158,6 +159,9 @@ const std::map<std::string, Rule>& rules() {
       {"Law.contraction_center", may(word(0))},
       {"Law.contraction_x_m", may(kPlace)},
       {"Law.contraction_y_m", may(kPlace)},
+      {"Law.anticipation", may(either(0, spread(0.01, 10)))},
+      {"Law.ends_with_plan", may(kCoin)},
+      {"Law.paired_pushes", may(kCoin)},
 
       {"Time.dt_s", may(spread(0.02, 1))},
       {"Time.duration_s", must(number(0.5, 60))},  // in ticks: see agree()
@@ -170,13 +174,12 @@ const std::map<std::string, Rule>& rules() {
       // An admission takes a question and its answer.
       {"Time.admission_timeout_s", may(spread(1, 1e4))},
       {"Time.catch_up_limit_ticks", may(number(0, 20))},
-      {"Time.broadcast_error_budget", may(either(0, spread(1e-3, 1)))},
-      {"Time.broadcast_heartbeat_ticks", may(number(10, 100))},
 
       {"Agents.starts", many(1, 4)},
       {"Agents.random_count", may(spread(0.5, 20))},
       {"Agents.quorum", may(either(100, number(1, 24)))},  // of all at most: see agree()
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
+      {"Agents.dead_reckoning", may(kCoin)},
       {"Start.x_m", must(kPlace)},
       {"Start.y_m", must(kPlace)},
 

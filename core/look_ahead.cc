@@ -1,0 +1,56 @@
+#include "core/look_ahead.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace ergocast {
+namespace {
+
+/// So many announced periods a teammate may be silent before nobody counts on it any more.
+constexpr Tick kPeriods = 8;
+
+/// Variance along one axis of length 1; `mu(m)` is the coefficient of cos(mπx).
+template <class Mu>
+double unit_variance(int modes, const Mu& mu) {
+  double mean = 0.5, square = 1.0 / 3;
+  for (int m = 1; m < modes; ++m) {
+    const double share = 4 * mu(m) / std::pow(std::numbers::pi * m, 2);
+    if (m % 2 == 1) mean -= share;
+    square += m % 2 == 1 ? -share : share;
+  }
+  return std::max(0.0, square - mean * mean);
+}
+
+}  // namespace
+
+double target_spread_m(const Coefficients& target, const Rectangle& domain) {
+  const double along_x = unit_variance(static_cast<int>(target.rows()), [&](int m) { return target(m, 0); });
+  const double along_y = unit_variance(static_cast<int>(target.cols()), [&](int n) { return target(0, n); });
+  return std::hypot(domain.size_m.x() * std::sqrt(along_x), domain.size_m.y() * std::sqrt(along_y));
+}
+
+LookAhead::LookAhead(const Mission& mission)
+    : dt_s_(mission.timing.dt_s),
+      alone_s_(mission.law.anticipation *
+               target_spread_m(mission.target_coefficients, mission.domain) / mission.law.u_max_mps),
+      end_tick_(mission.law.ends_with_plan ? mission.timing.tick_count
+                                           : std::numeric_limits<Tick>::max()),
+      longest_period_(mission.timing.broadcast_period_ticks) {}
+
+double LookAhead::horizon_s(int n, Tick tick) const {
+  const double left_s = static_cast<double>(std::max<Tick>(0, end_tick_ - tick)) * dt_s_;
+  return std::min(alone_s_ / std::sqrt(static_cast<double>(n)), left_s);
+}
+
+double LookAhead::weight_s(double horizon_s, Tick span, Tick age, Tick period) const {
+  // What is announced may be anything, also the past.
+  const Tick believed = std::clamp<Tick>(period, 0, longest_period_);
+  const double cap_s = static_cast<double>(kPeriods * believed) * dt_s_;
+  const double age_s = static_cast<double>(age) * dt_s_;
+  if (age_s > std::max(horizon_s, cap_s)) return 0;
+  return horizon_s + std::min(static_cast<double>(span) * dt_s_, cap_s) + age_s;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,58 @@
+// What one agent knows, as seen from outside, and how a violation speaks of it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/basis.h"
+#include "core/coverage_table.h"
+#include "core/ids.h"
+#include "core/messages.h"
+
+namespace ergocast::lab {
+
+struct Holder {
+  Author self;
+  const CoverageTable* table = nullptr;    ///< null: it is not admitted
+  const Coefficients* coverage = nullptr;  ///< its c_k, as of `answered`
+  const std::vector<RosterEntry>* roster = nullptr;
+  Tick answered = -1;
+  std::int64_t roster_revision = 0;        ///< that the world flies this tick by
+  const Coefficients* foreseen = nullptr;  ///< its ĉ_k, as of `answered`, where its law looks ahead
+};
+
+/// How far a sum of so many terms ≤ dt may be from the exact one, relative.
+inline double rounding(std::int64_t steps) { return 1e-12 + static_cast<double>(steps) * 0x1p-53; }
+
+inline std::int64_t steps_of(const CoverageTable& table, const Author& author) {
+  return table.steps_held(author).value_or(0);
+}
+
+/// Null if it is nobody to this roster.
+inline const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const Author& author) {
+  const auto at = std::find_if(roster.begin(), roster.end(),
+                               [&](const RosterEntry& entry) { return entry.author == author; });
+  return at == roster.end() ? nullptr : &*at;
+}
+
+/// Its own row an agent counts whatever others have heard of it.
+inline bool is_forgotten(const RosterEntry& entry, const Holder& by) {
+  return entry.author != by.self && entry.forgotten_at(by.answered, by.roster_revision);
+}
+
+inline std::string name_of(const Author& author) {
+  return "agent " + std::to_string(author.agent) + " (" + to_hex(author.incarnation) + ")";
+}
+
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream out;
+  out.precision(17);
+  (out << ... << parts);
+  return out.str();
+}
+
+}  // namespace ergocast::lab

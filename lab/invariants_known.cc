@@ -1,0 +1,258 @@
+// What is known: what agents hold, compute from it and learn from each other.
+#include <algorithm>
+#include <cmath>
+
+#include "lab/invariants.h"
+
+namespace ergocast::lab {
+namespace {
+
+/// No multiple of a usual period, so that blocks of every age are met.
+constexpr Tick kTicksBetweenAverages = 11;
+
+}  // namespace
+
+// ---- safety: what is known -----------------------------------------------------------------------
+
+void Invariants::received(const Holder& listener, const Message& message) {
+  if (mission_.law.anticipation <= 0) return;
+  const bool is_block = std::holds_alternative<Contribution>(message);
+  if (!is_block && !std::holds_alternative<WorldState>(message)) return;
+  shadows_[listener.self].hear(mission_, listener, message);
+}
+
+void Invariants::answered(double t_s, const Holder& holder) {
+  check_steps(t_s, holder);
+  const bool looks_ahead = mission_.law.anticipation > 0 && holder.foreseen != nullptr;
+  if (looks_ahead) shadows_[holder.self].answer(mission_, holder);
+  // Costs as much as the control step itself: now and then is enough to find what is wrong for good.
+  if (holder.answered % kTicksBetweenAverages != 0) return;
+  check_average(t_s, holder);
+  if (looks_ahead) check_forecast(t_s, holder);
+}
+
+void Invariants::check_steps(double t_s, const Holder& holder) {
+  auto& held_before = held_[holder.self];
+  std::map<AgentId, std::int64_t> steps_of_id;
+  for (const Author& author : authors_) {
+    const std::int64_t steps = steps_of(*holder.table, author);
+    std::int64_t& before = held_before[author];
+    if (steps < before) {
+      violate(t_s, Invariant::kHeldNeverShrinks, name_of(holder.self),
+              text(before, " steps of ", name_of(author), " became ", steps));
+    }
+    before = steps;
+    steps_of_id[author.agent] += steps;
+  }
+  for (const auto& [id, steps] : steps_of_id) {
+    // A process that is replaced within a tick may have sampled it, too.
+    const std::int64_t most = last_tick_ + 1 + lives_[id] - 1;
+    if (steps <= most) continue;
+    violate(t_s, Invariant::kNoStepCountsTwice, name_of(holder.self),
+            text("holds ", steps, " steps of agent ", id, " in all, ", most, " are possible"));
+  }
+}
+
+void Invariants::check_average(double t_s, const Holder& holder) {
+  const Coefficients expected = average_of(best_of({holder}));
+  const double error = (*holder.coverage - expected).cwiseAbs().maxCoeff();
+  if (error > rounding(last_tick_ * static_cast<std::int64_t>(authors_.size()))) {
+    violate(t_s, Invariant::kAverageOfWhatIsHeld, name_of(holder.self),
+            text("differs by ", error, " at tick ", holder.answered));
+  }
+  // Before its own first tick, where a restarted world may stand, a newcomer covers nothing itself.
+  const RosterEntry* own = entry_of(*holder.roster, holder.self);
+  if (own != nullptr && holder.answered < own->active_from) return;
+  const double c_00 = (*holder.coverage)(0, 0);
+  if (std::abs(c_00 - 1) > rounding(last_tick_)) {
+    violate(t_s, Invariant::kZerothIsOne, name_of(holder.self), text("c_00 = ", c_00));
+  }
+}
+
+void Invariants::check_forecast(double t_s, const Holder& holder) {
+  const Coefficients expected = shadows_[holder.self].foreseen(mission_, holder);
+  const double error = (*holder.foreseen - expected).cwiseAbs().maxCoeff();
+  if (error <= rounding(last_tick_ * static_cast<std::int64_t>(authors_.size()))) return;
+  violate(t_s, Invariant::kForecastOfWhatIsKnown, name_of(holder.self),
+          text("differs by ", error, " at tick ", holder.answered));
+}
+
+// ---- liveness ------------------------------------------------------------------------------------
+
+/// The newest of each author's blocks that anybody holds. Forgotten rows do not count any more.
+std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
+    const std::vector<Holder>& living) const {
+  std::map<Author, std::vector<Best>> best;
+  for (const Holder& holder : living) {
+    if (holder.table == nullptr) continue;
+    for (const Author& author : authors_) {
+      if (!holder.table->steps_held(author)) continue;
+      const RosterEntry* entry = entry_of(*holder.roster, author);
+      if (entry != nullptr && is_forgotten(*entry, holder)) continue;
+      auto& blocks = best.try_emplace(author, static_cast<std::size_t>(block_count_)).first->second;
+      for (int b = 0; b < block_count_; ++b) {
+        const Contribution held = holder.table->block(author, b);
+        Best& known = blocks[static_cast<std::size_t>(b)];
+        if (held.steps > known.steps) known = {held.steps, held.sums};
+      }
+    }
+  }
+  return best;
+}
+
+/// (4) from the blocks alone, weighted by the time each covers.
+Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& rows) const {
+  Coefficients c = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+  for (int k = 0; k < mission_.basis.mode_count(); ++k) {
+    double sum_s = 0;
+    std::int64_t steps = 0;
+    for (const auto& [author, blocks] : rows) {
+      const Best& block = blocks[static_cast<std::size_t>(k / kBlockSize)];
+      sum_s += block.sums[static_cast<std::size_t>(k % kBlockSize)];
+      steps += block.steps;
+    }
+    if (steps > 0) c.data()[k] = sum_s / (static_cast<double>(steps) * mission_.timing.dt_s);
+  }
+  return c;
+}
+
+void Invariants::recovered(double t_s, const std::vector<Holder>& living) {
+  for (const Holder& holder : living) {
+    if (holder.table != nullptr && holder.answered >= 0) continue;
+    return violate(t_s, Invariant::kEverybodyIsBack, name_of(holder.self),
+                   holder.table == nullptr ? "is not admitted" : "has seen no tick");
+  }
+  for (const Holder& holder : living) check_counted(t_s, holder, living);
+  const auto best = best_of(living);
+  const Coefficients c_true = average_of(best);
+  compare_views(living);
+  for (const Holder& holder : living) {
+    if (mission_.radio_range_m <= 0) check_rows(t_s, holder, best);
+    check_view(t_s, holder, best, c_true);
+  }
+  if (mission_.radio_range_m > 0) check_neighbours(t_s, living);
+  check_quiet(t_s);
+}
+
+void Invariants::check_counted(double t_s, const Holder& holder, const std::vector<Holder>& living) {
+  for (const Holder& other : living) {
+    const RosterEntry* entry = entry_of(*holder.roster, other.self);
+    if (entry == nullptr || !is_forgotten(*entry, holder)) continue;
+    violate(t_s, Invariant::kTheLivingCount, name_of(holder.self),
+            text("leaves out what ", name_of(other.self), " covers at tick ", holder.answered));
+  }
+}
+
+void Invariants::compare_views(const std::vector<Holder>& living) {
+  const Coefficients c_true = average_of(best_of(living));
+  largest_view_error_ = 0;
+  for (const Holder& holder : living) {
+    if (holder.coverage == nullptr || holder.answered < 0) continue;
+    const Coefficients difference = *holder.coverage - c_true;
+    largest_view_error_ = std::max(
+        largest_view_error_, std::sqrt((weights_.array() * difference.array().square()).sum()));
+  }
+}
+
+void Invariants::check_view(double t_s, const Holder& holder,
+                            const std::map<Author, std::vector<Best>>& best,
+                            const Coefficients& c_true) {
+  double stale_s = 0, covered_s = 0;
+  for (const auto& [author, blocks] : best) {
+    covered_s += static_cast<double>(blocks.front().steps) * mission_.timing.dt_s;
+    const RosterEntry* entry = entry_of(*holder.roster, author);
+    if (mission_.radio_range_m > 0) {
+      const std::int64_t lacks = blocks.front().steps - steps_of(*holder.table, author);
+      stale_s += static_cast<double>(std::max<std::int64_t>(lacks, 0)) * mission_.timing.dt_s;
+      continue;
+    }
+    if (entry == nullptr || entry->active_until >= 0) continue;
+    // Two periods until a digest complains, two ticks on the way.
+    const Tick period = holder.table->announced_period(author);
+    stale_s += static_cast<double>(2 * period + 2) * mission_.timing.dt_s;
+  }
+  // Of what it holds now: an agent whose ticks do not come computes no c_k.
+  Coefficients c = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+  holder.table->average(c);
+  const double error = (c - c_true).cwiseAbs().maxCoeff();
+  if (covered_s <= stale_s || error <= 2 * stale_s / (covered_s - stale_s)) return;
+  violate(t_s, Invariant::kViewsAgree, name_of(holder.self),
+          text("|c - c_true| = ", error, " > ", 2 * stale_s / (covered_s - stale_s), " with ", stale_s,
+               " s of ", covered_s, " s unknown"));
+}
+
+void Invariants::check_rows(double t_s, const Holder& holder,
+                            const std::map<Author, std::vector<Best>>& best) {
+  for (const auto& [author, blocks] : best) {
+    const auto newest = std::min_element(blocks.begin(), blocks.end(), [](const Best& a, const Best& b) {
+                          return a.steps < b.steps;
+                        })->steps;
+    const RosterEntry* entry = entry_of(*holder.roster, author);
+    // Whoever a coordinator admitted that died before it told anybody else is nobody to the team.
+    if (entry == nullptr) continue;
+    const bool speaks = entry->active_until < 0;
+    const Tick period = holder.table->announced_period(author);
+    const std::int64_t tolerated = speaks ? 2 * period + 2 : 0;
+    const std::int64_t held = steps_of(*holder.table, author);
+    if ((held > 0 || newest == 0) && held + tolerated >= newest) continue;
+    violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
+            text("holds ", held, " of ", newest, " steps of ", name_of(author),
+                 speaks ? ", a member" : ", who has left"));
+  }
+}
+
+/// What an agent held is known to others after a round of digests for each hop between them.
+void Invariants::check_neighbours(double t_s, const std::vector<Holder>& living) {
+  Memory& present = memories_.emplace_back(Memory{t_s, {}});
+  for (const Holder& holder : living) {
+    for (const Author& author : authors_) present.held[holder.self][author] = steps_of(*holder.table, author);
+  }
+  for (int hops = 1; hops < static_cast<int>(living.size()); ++hops) {
+    const double takes_s = hops * kHop_s;
+    const auto past = std::find_if(memories_.rbegin(), memories_.rend(), [&](const Memory& memory) {
+      return memory.t_s <= t_s - takes_s;
+    });
+    if (past == memories_.rend()) return;
+    for (const Holder& holder : living) {
+      for (const Author& other : within(hops, holder.self, t_s - past->t_s, t_s, living)) {
+        check_learned(t_s, holder, other, past->held[other], hops);
+      }
+    }
+  }
+}
+
+/// Whom `self` has heard for so long without a break, through at most so many others less one.
+std::set<Author> Invariants::within(int hops, const Author& self, double heard_for_s, double t_s,
+                                    const std::vector<Holder>& living) const {
+  const auto hears = [&](const Author& a, const Author& b) {
+    const auto apart = last_apart_t_s_.find(std::minmax(a.agent, b.agent));
+    return apart == last_apart_t_s_.end() || t_s - apart->second > heard_for_s;
+  };
+  std::set<Author> reached{self};
+  for (int hop = 0; hop < hops; ++hop) {
+    const std::set<Author> inner = reached;
+    for (const Holder& holder : living) {
+      const auto heard = [&](const Author& one) { return hears(one, holder.self); };
+      if (std::any_of(inner.begin(), inner.end(), heard)) reached.insert(holder.self);
+    }
+  }
+  return reached;
+}
+
+void Invariants::check_learned(double t_s, const Holder& holder, const Author& other,
+                               const std::map<Author, std::int64_t>& held_then, int hops) {
+  for (const auto& [author, then] : held_then) {
+    const RosterEntry* entry = entry_of(*holder.roster, author);
+    if (entry == nullptr || author == holder.self) continue;
+    // Nobody repeats what an author that speaks will soon say itself: a slack for each on the way.
+    const Tick period = holder.table->announced_period(author);
+    const std::int64_t tolerated = entry->active_until < 0 ? hops * (2 * period + 2) : 0;
+    const std::int64_t held = steps_of(*holder.table, author);
+    if (held + tolerated >= then) continue;
+    violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
+            text("holds ", held, " steps of ", name_of(author), ", of whom ", name_of(other), ", ", hops,
+                 " hops away, has long held ", then));
+  }
+}
+
+}  // namespace ergocast::lab

@@ -1,0 +1,259 @@
+#include "lab/shadow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "core/forecast.h"
+
+namespace ergocast::lab {
+namespace {
+
+/// So many announced periods a teammate may be silent before nobody counts on it any more.
+constexpr Tick kPeriodsUntilDead = 8;
+
+/// The second moment about the mean of  (1 + 2 Σ_m μ_m cos(mπx/L)) / L  over [0, L], which is the
+/// target's marginal: the integrals of x cos and x² cos over it are known.
+template <class Mu>
+double marginal_variance(double length_m, int modes, const Mu& mu) {
+  double mean_m = length_m / 2, square_m2 = length_m * length_m / 3;
+  for (int m = 1; m < modes; ++m) {
+    const double sign = m % 2 == 0 ? 1 : -1, k_per_m = m * std::numbers::pi / length_m;
+    mean_m += 2 * mu(m) * (sign - 1) / (k_per_m * k_per_m * length_m);
+    square_m2 += 4 * mu(m) * sign / (k_per_m * k_per_m);
+  }
+  return std::max(0.0, square_m2 - mean_m * mean_m);
+}
+
+/// h for a team of n: a s / (u_max √n), and at most what is left where the plan says so.
+double horizon_s(const Mission& mission, int n, Tick tick) {
+  const Coefficients& mu = mission.target_coefficients;
+  const Eigen::Vector2d size_m = mission.domain.size_m;
+  const double spread_m = std::sqrt(
+      marginal_variance(size_m.x(), mission.basis.modes_x, [&](int m) { return mu(m, 0); }) +
+      marginal_variance(size_m.y(), mission.basis.modes_y, [&](int m) { return mu(0, m); }));
+  const double h_s = mission.law.anticipation * spread_m / mission.law.u_max_mps / std::sqrt(n);
+  if (!mission.law.ends_with_plan) return h_s;
+  const Tick left = std::max<Tick>(0, mission.timing.tick_count - tick);
+  return std::min(h_s, static_cast<double>(left) * mission.timing.dt_s);
+}
+
+/// w = h + min(span, cap) + age, or 0 for who has been silent for longer than h and the cap.
+double weight_s(const Mission& mission, double h_s, Tick span, Tick age, Tick period) {
+  const Tick cap =
+      kPeriodsUntilDead * std::min<Tick>(period, mission.timing.broadcast_period_ticks);
+  const double dt_s = mission.timing.dt_s, cap_s = static_cast<double>(cap) * dt_s;
+  const double age_s = static_cast<double>(age) * dt_s;
+  if (age_s > h_s && age_s > cap_s) return 0;
+  return h_s + std::min(static_cast<double>(span) * dt_s, cap_s) + age_s;
+}
+
+/// f(x) dt of every mode, straight from (2).
+Coefficients gain_at(const Mission& mission, const Eigen::Vector2d& x_m) {
+  const Eigen::Array2d phase =
+      std::numbers::pi * (x_m - mission.domain.origin_m).array() / mission.domain.size_m.array();
+  const auto cosines = [](int modes, double angle) {
+    Eigen::VectorXd values(modes);
+    for (int m = 0; m < modes; ++m) values[m] = std::cos(m * angle);
+    return values;
+  };
+  return mission.timing.dt_s * cosines(mission.basis.modes_x, phase.x()) *
+         cosines(mission.basis.modes_y, phase.y()).transpose();
+}
+
+/// One block of `all`, and zeros beyond the last mode.
+std::array<double, kBlockSize> block_of(const Coefficients& all, int block) {
+  std::array<double, kBlockSize> sums{};
+  const auto first = Eigen::Index{block} * kBlockSize;
+  std::copy_n(all.data() + first, std::min<Eigen::Index>(kBlockSize, all.size() - first),
+              sums.begin());
+  return sums;
+}
+
+/// Whether it takes part in the tick and is the newest life of its number.
+bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, Tick tick) {
+  return one.active_at(tick) &&
+         std::none_of(roster.begin(), roster.end(), [&](const RosterEntry& other) {
+           return other.author.agent == one.author.agent && other.active_from > one.active_from &&
+                  other.active_from <= tick;
+         });
+}
+
+bool flies(const Holder& agent, const RosterEntry& entry) {
+  return entry.author != agent.self && !is_forgotten(entry, agent) &&
+         is_newest(*agent.roster, entry, agent.answered);
+}
+
+}  // namespace
+
+// ---- what was heard -----------------------------------------------------------------------------
+
+void Shadow::hear(const Mission& mission, const Holder& agent, const Message& message) {
+  if (agent.table == nullptr) return;
+  if (!active_from_) {
+    const RosterEntry* own = entry_of(*agent.roster, agent.self);
+    if (own != nullptr) active_from_ = own->active_from;
+  }
+  if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
+  if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
+}
+
+/// What a block says is taken from the message itself; from the table, only whether it is held now.
+void Shadow::take(const Holder& agent, const Contribution& theirs) {
+  if (theirs.author() == agent.self) return;
+  Row& row = rows_[theirs.author()];
+  row.blocks.resize(static_cast<std::size_t>(agent.table->block_count()));
+  Block& block = row.blocks[static_cast<std::size_t>(theirs.block)];
+  if (theirs.steps <= block.held.steps) return;
+  if (agent.table->block(theirs.author(), theirs.block).steps != theirs.steps) return;
+  block.before = block.held;
+  block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick, theirs.sums};
+}
+
+void Shadow::note_places(const Mission& mission, const Holder& agent, const WorldState& world) {
+  const Tick tick = world.header.tick;
+  for (int i = 0; i < world.vehicle_count && tick >= positions_tick_; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    positions_m_[vehicle.id] = vehicle.position_m.head<2>();
+  }
+  positions_tick_ = std::max(positions_tick_, tick);
+  if (!active_from_ || tick < *active_from_) return;
+  const Timing& timing = mission.timing;
+  const auto hold =
+      static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
+  const auto most =
+      static_cast<std::size_t>(timing.broadcast_period_ticks + Forecast::kPlacesBeyondPeriod);
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    const bool driven = timing.pace == Pace::kLockstep || vehicle.answered_tick >= tick - hold;
+    if (!driven || vehicle.id == agent.self.agent) continue;
+    if (!in_range(mission, agent.self.agent, vehicle.id)) continue;
+    std::deque<Place>& places = places_[vehicle.id];
+    if (!places.empty() && tick <= places.back().tick) continue;
+    places.push_back({tick, vehicle.position_m.head<2>()});
+    if (places.size() > most) places.pop_front();
+  }
+}
+
+bool Shadow::in_range(const Mission& mission, AgentId one, AgentId other) const {
+  if (mission.radio_range_m <= 0) return true;
+  const auto here = positions_m_.find(one), there = positions_m_.find(other);
+  if (here == positions_m_.end() || there == positions_m_.end()) return true;
+  return (here->second - there->second).norm() <= mission.radio_range_m;
+}
+
+// ---- where teammates have been ------------------------------------------------------------------
+
+void Shadow::answer(const Mission& mission, const Holder& agent) {
+  if (!mission.dead_reckoning) return;
+  for (auto& [author, row] : rows_) {
+    const RosterEntry* entry = entry_of(*agent.roster, author);
+    if (entry != nullptr && flies(agent, *entry)) reckon(*entry, row);
+  }
+}
+
+/// Each block gets the places after it that are of its author's life; the next block replaces them.
+void Shadow::reckon(const RosterEntry& entry, Row& row) const {
+  const auto found = places_.find(entry.author.agent);
+  if (found == places_.end()) return;
+  const std::deque<Place>& places = found->second;
+  for (Block& block : row.blocks) {
+    if (block.reckoned_steps != block.held.steps) block.since.clear();
+    block.reckoned_steps = block.held.steps;
+    if (block.held.steps == 0) continue;
+    const Tick until = block.since.empty() ? block.held.tick : block.since.back().tick;
+    const auto later =
+        std::upper_bound(places.begin(), places.end(), until,
+                         [](Tick tick, const Place& place) { return tick < place.tick; });
+    std::copy_if(later, places.end(), std::back_inserter(block.since),
+                 [&](const Place& place) { return entry.active_at(place.tick); });
+  }
+  if (entry.active_at(places.back().tick)) row.newest = places.back();
+}
+
+// ---- the equation -------------------------------------------------------------------------------
+
+/// By its blocks alone.
+Shadow::Part Shadow::said(const Block& block) const {
+  const Said& held = block.held;
+  // What was said before an agent's own time may be this or that, whichever way it came to know it.
+  const Said before = block.before.tick >= active_from_.value_or(0) ? block.before : Said{};
+  Part part{
+      held.sums, {}, held.steps, held.steps - before.steps, held.tick, held.next_tick - held.tick};
+  for (std::size_t k = 0; k < kBlockSize; ++k) part.gains[k] = held.sums[k] - before.sums[k];
+  return part;
+}
+
+/// What each block of a row adds to ĉ.
+std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& row,
+                                           bool flies) const {
+  std::map<Tick, Coefficients> gains;
+  const auto gain = [&](const Place& place, int b) {
+    auto found = gains.find(place.tick);
+    if (found == gains.end()) found = gains.emplace(place.tick, gain_at(mission, place.x_m)).first;
+    return block_of(found->second, b);
+  };
+  std::vector<Part> parts;
+  for (int b = 0; b < static_cast<int>(row.blocks.size()); ++b) {
+    const Block& block = row.blocks[static_cast<std::size_t>(b)];
+    Part& part = parts.emplace_back(said(block));
+    if (!flies) part.gained_steps = 0;
+    if (part.gained_steps == 0 || !row.newest || row.newest->tick < block.held.tick) continue;
+    for (const Place& place : block.since) {
+      const auto more = gain(place, b);
+      for (std::size_t k = 0; k < kBlockSize; ++k) part.sums[k] += more[k];
+    }
+    part.steps += std::ssize(block.since);
+    part.gains = gain(*row.newest, b);
+    part.gained_steps = 1;
+    part.tick = row.newest->tick;
+  }
+  return parts;
+}
+
+std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
+                                                    const Holder& agent) const {
+  std::vector<std::vector<Part>> team(1);
+  for (int b = 0; b < agent.table->block_count(); ++b) {
+    const Contribution own = agent.table->block(agent.self, b);
+    team[0].push_back({own.sums, {}, own.steps});
+  }
+  for (const auto& [author, row] : rows_) {
+    const RosterEntry* entry = entry_of(*agent.roster, author);
+    if (entry != nullptr && is_forgotten(*entry, agent)) continue;
+    team.push_back(parts_of(mission, row, entry != nullptr && flies(agent, *entry)));
+  }
+  return team;
+}
+
+Coefficients Shadow::foreseen(const Mission& mission, const Holder& agent) const {
+  const double dt_s = mission.timing.dt_s;
+  Coefficients c = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  const auto team = this->team(mission, agent);
+  for (int b = 0; b < agent.table->block_count(); ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    const auto fly = std::count_if(team.begin(), team.end(),
+                                   [at](const auto& parts) { return parts[at].gained_steps > 0; });
+    const double h_s = horizon_s(mission, 1 + static_cast<int>(fly), agent.answered);
+    double time_s = 0;
+    std::array<double, kBlockSize> sums{};
+    for (const auto& parts : team) {
+      const Part& part = parts[at];
+      const double gained_s = static_cast<double>(part.gained_steps) * dt_s;
+      const Tick age = std::max<Tick>(0, agent.answered - part.tick);
+      const double w_s =
+          gained_s > 0 ? weight_s(mission, h_s, part.gained_steps, age, part.period) : 0;
+      const double share = w_s > 0 ? w_s / gained_s : 0;
+      time_s += static_cast<double>(part.steps) * dt_s + w_s;
+      for (std::size_t k = 0; k < kBlockSize; ++k) sums[k] += part.sums[k] + share * part.gains[k];
+    }
+    const int first = b * kBlockSize,
+              count = std::min(kBlockSize, mission.basis.mode_count() - first);
+    for (int k = 0; k < count && time_s > 0; ++k)
+      c.data()[first + k] = sums[static_cast<std::size_t>(k)] / time_s;
+  }
+  return c;
+}
+
+}  // namespace ergocast::lab

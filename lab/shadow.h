@@ -1,0 +1,75 @@
+// What one agent has to foresee: ĉ of core/forecast.h again, by its equation, from what reached it.
+//
+// A shadow keeps the blocks and the places that its agent heard. It uses nothing of the forecast,
+// of its weights or of the gains in the agent's table, so that no fault of theirs is a fault here,
+// too.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/basis.h"
+#include "core/ids.h"
+#include "core/messages.h"
+#include "core/mission.h"
+#include "lab/holder.h"
+
+namespace ergocast::lab {
+
+class Shadow {
+ public:
+  /// A message has reached the agent, which now is as `agent` says.
+  void hear(const Mission& mission, const Holder& agent, const Message& message);
+
+  /// The agent has answered a tick. To be called for each, as each adds places to the rows.
+  void answer(const Mission& mission, const Holder& agent);
+
+  /// ĉ at the tick that the agent has answered.
+  Coefficients foreseen(const Mission& mission, const Holder& agent) const;
+
+ private:
+  struct Place {
+    Tick tick;
+    Eigen::Vector2d x_m;
+  };
+  struct Said {
+    std::int64_t steps = 0;
+    Tick tick = 0, next_tick = 0;
+    std::array<double, kBlockSize> sums{};
+  };
+  struct Block {
+    Said held, before;                ///< the latter by steps, whenever older ones came
+    std::vector<Place> since;         ///< where its author was after `held`, as it was known
+    std::int64_t reckoned_steps = 0;  ///< of the block that `since` goes on from
+  };
+  struct Row {
+    std::vector<Block> blocks;
+    std::optional<Place> newest;  ///< where its author was last
+  };
+  /// What one row adds to one block of ĉ.
+  struct Part {
+    std::array<double, kBlockSize> sums{}, gains{};
+    std::int64_t steps = 0, gained_steps = 0;  ///< the latter 0: it has no forecast
+    Tick tick = 0, period = 0;
+  };
+
+  void take(const Holder& agent, const Contribution& theirs);
+  void note_places(const Mission& mission, const Holder& agent, const WorldState& world);
+  bool in_range(const Mission& mission, AgentId one, AgentId other) const;
+  void reckon(const RosterEntry& entry, Row& row) const;
+  Part said(const Block& block) const;
+  std::vector<Part> parts_of(const Mission& mission, const Row& row, bool flies) const;
+  std::vector<std::vector<Part>> team(const Mission& mission, const Holder& agent) const;
+
+  std::optional<Tick> active_from_;
+  std::map<Author, Row> rows_;
+  std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest go
+  std::map<AgentId, Eigen::Vector2d> positions_m_;  // for the radio range, of the newest …
+  Tick positions_tick_ = -1;                        // … world state
+};
+
+}  // namespace ergocast::lab

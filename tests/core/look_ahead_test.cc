@@ -1,0 +1,220 @@
+// How far ahead an agent looks: the target's spread, the horizon and the weights of gains.
+#include "core/look_ahead.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/target.h"
+
+namespace ergocast {
+namespace {
+
+Mission mission_of(const TargetDensity& target, const Rectangle& domain, int modes = 16) {
+  Mission mission;
+  mission.domain = domain;
+  mission.basis.modes_x = mission.basis.modes_y = modes;
+  mission.target_coefficients = target_coefficients(target, domain, mission.basis).values;
+  mission.law.u_max_mps = 20;
+  mission.law.anticipation = 2;
+  mission.timing.dt_s = 0.1;
+  mission.timing.tick_count = 6000;
+  return mission;
+}
+
+TargetDensity bells(const std::vector<Gaussian>& gaussians, double uniform_weight = 0) {
+  TargetDensity target;
+  target.gaussians = gaussians;
+  target.uniform_weight = uniform_weight;
+  return target;
+}
+
+Eigen::Matrix2d round(double sigma_m) { return sigma_m * sigma_m * Eigen::Matrix2d::Identity(); }
+
+/// From the definition: the density on a grid of 1000 × 1000 midpoints.
+double integrated_spread_m(const TargetDensity& target, const Rectangle& domain) {
+  constexpr int kCells = 1000;
+  double mass = 0, square_m2 = 0;
+  Eigen::Vector2d first_m = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const Eigen::Vector2d at_m =
+          Eigen::Vector2d(i + 0.5, j + 0.5).cwiseProduct(domain.size_m) / kCells;
+      const double here = density_unscaled(target, domain, domain.origin_m + at_m);
+      mass += here;
+      first_m += here * at_m;
+      square_m2 += here * at_m.squaredNorm();
+    }
+  }
+  return std::sqrt(square_m2 / mass - (first_m / mass).squaredNorm());
+}
+
+// ---- s -----------------------------------------------------------------------------------------
+
+struct Case {
+  const char* name;
+  TargetDensity target;
+  Rectangle domain;
+};
+
+std::vector<Case> smooth_targets() {
+  const Rectangle square{{0, 0}, {2000, 2000}}, slab{{-300, 70}, {4000, 500}};
+  const Eigen::Matrix2d oblique = (Eigen::Matrix2d() << 9e4, 3e4, 3e4, 4e4).finished();
+  return {
+      {"uniform", bells({}, 1), square},
+      {"uniform slab", bells({}, 1), slab},
+      {"one Gaussian", bells({{1, {1000, 1000}, round(200)}}), square},
+      {"off the centre, cut off", bells({{1, {300, 1800}, round(250)}}), square},
+      {"oblique", bells({{1, {800, 1100}, oblique}}), square},
+      {"two, unequal", bells({{3, {400, 500}, round(200)}, {1, {1600, 1500}, round(150)}}), square},
+      {"four",
+       bells({{1, {500, 500}, round(150)},
+              {1, {500, 1500}, round(150)},
+              {1, {1500, 500}, round(150)},
+              {1, {1500, 1500}, round(150)}}),
+       square},
+      {"a Gaussian on a slab", bells({{2, {500, 250}, round(300)}}, 1), slab},
+  };
+}
+
+TEST(TargetSpread, IsTheRmsDistanceFromTheMean) {
+  for (const auto& [name, target, domain] : smooth_targets()) {
+    const Mission mission = mission_of(target, domain, 24);
+    const double expected_m = integrated_spread_m(target, domain);
+    EXPECT_NEAR(target_spread_m(mission.target_coefficients, domain), expected_m, 1e-3 * expected_m)
+        << name;
+  }
+}
+
+TEST(TargetSpread, OfAUniformTargetIsTheRectangles) {
+  const Rectangle slab{{5, 5}, {4000, 500}};
+  const Mission mission = mission_of(bells({}, 1), slab, 3);
+  EXPECT_NEAR(target_spread_m(mission.target_coefficients, slab),
+              std::hypot(4000, 500) / std::sqrt(12), 1e-9);
+}
+
+// A place so small that all modes see it as a point: what the modes leave out is all there is.
+TEST(TargetSpread, IsOffByWhatTheModesLeaveOutAndNoMore) {
+  const Rectangle square{{0, 0}, {2000, 2000}};
+  for (const int modes : {2, 4, 16, 64}) {
+    for (const Eigen::Vector2d& at_m :
+         {Eigen::Vector2d(3, 5), Eigen::Vector2d(700, 1311), Eigen::Vector2d(1000, 1000)}) {
+      const Mission mission = mission_of(bells({{1, at_m, round(1)}}), square, modes);
+      const double spread_m = target_spread_m(mission.target_coefficients, square);
+      ASSERT_TRUE(std::isfinite(spread_m));
+      // Of the mean square once, of the squared mean at most 2 + tail times.
+      const double tail = 4 / (std::numbers::pi * std::numbers::pi * (modes - 0.5));
+      EXPECT_LE(spread_m * spread_m, 2 * 2000 * 2000 * tail * (3 + tail) + 2) << modes << " modes";
+    }
+  }
+}
+
+TEST(TargetSpread, OfOneModeIsTheUniformTargets) {
+  const Rectangle square{{0, 0}, {2000, 2000}};
+  const Mission mission = mission_of(bells({{1, {300, 400}, round(100)}}), square, 1);
+  EXPECT_NEAR(target_spread_m(mission.target_coefficients, square), 2000 / std::sqrt(6), 1e-9);
+}
+
+// ---- h -----------------------------------------------------------------------------------------
+
+const Rectangle kSquare{{0, 0}, {2000, 2000}};
+/// s / u_max of a uniform target on kSquare at 20 m/s.
+const double kCrossing_s = 2000 / std::sqrt(6) / 20;
+
+Mission uniform() { return mission_of(bells({}, 1), kSquare); }
+
+TEST(Horizon, IsAnticipationTimesSOverSpeedAndRootOfN) {
+  Mission mission = uniform();
+  for (const double anticipation : {0.5, 2.0, 7.0}) {
+    mission.law.anticipation = anticipation;
+    const LookAhead look_ahead(mission);
+    EXPECT_TRUE(look_ahead.any());
+    for (const int n : {1, 2, 4, 64}) {
+      EXPECT_NEAR(look_ahead.horizon_s(n, 123), anticipation * kCrossing_s / std::sqrt(n), 1e-9);
+    }
+  }
+}
+
+TEST(Horizon, IsNoneWithoutAnticipation) {
+  Mission mission = uniform();
+  mission.law.anticipation = 0;
+  EXPECT_FALSE(LookAhead(mission).any());
+  EXPECT_EQ(LookAhead(mission).horizon_s(4, 0), 0);
+}
+
+TEST(Horizon, EndsWithThePlanOnlyIfTheScenarioSaysSo) {
+  Mission mission = uniform();
+  const double full_s = LookAhead(mission).horizon_s(4, 0);
+  EXPECT_EQ(LookAhead(mission).horizon_s(4, 5999), full_s);
+  mission.law.ends_with_plan = true;
+  const LookAhead look_ahead(mission);
+  EXPECT_EQ(look_ahead.horizon_s(4, 0), full_s);
+  EXPECT_EQ(look_ahead.horizon_s(4, 5000), full_s) << "100 s are left, more than it looks ahead";
+  EXPECT_NEAR(look_ahead.horizon_s(4, 5900), 10, 1e-9);
+  EXPECT_NEAR(look_ahead.horizon_s(4, 5999), 0.1, 1e-9);
+  EXPECT_EQ(look_ahead.horizon_s(4, 7000), 0) << "after the end";
+}
+
+// ---- w -----------------------------------------------------------------------------------------
+
+/// The longest period that the plan allows; eight of them are 4 s.
+constexpr Tick kPeriod = 5;
+
+LookAhead telling_each(Tick period) {
+  Mission mission = uniform();
+  mission.timing.broadcast_period_ticks = static_cast<int>(period);
+  return LookAhead(mission);
+}
+
+TEST(Weight, IsTheHorizonAndTheSpanAndTheAge) {
+  const LookAhead look_ahead = telling_each(kPeriod);
+  EXPECT_EQ(look_ahead.longest_period(), kPeriod);
+  EXPECT_NEAR(look_ahead.weight_s(30, 5, 0, kPeriod), 30.5, 1e-12);
+  EXPECT_NEAR(look_ahead.weight_s(30, 5, 7, kPeriod), 31.2, 1e-12);
+  EXPECT_NEAR(look_ahead.weight_s(30, 1, 0, 1), 30.1, 1e-12);
+}
+
+TEST(Weight, CountsOfTheSpanNoMoreThanEightPeriods) {
+  const LookAhead look_ahead = telling_each(kPeriod);
+  EXPECT_NEAR(look_ahead.weight_s(30, 40, 0, kPeriod), 34, 1e-12);
+  EXPECT_NEAR(look_ahead.weight_s(30, 41, 0, kPeriod), 34, 1e-12);
+  EXPECT_NEAR(look_ahead.weight_s(30, 5000, 0, kPeriod), 34, 1e-12) << "a first block";
+  EXPECT_NEAR(look_ahead.weight_s(30, 5000, 0, 2), 31.6, 1e-12)
+      << "who speaks more often than it must";
+}
+
+TEST(Weight, OfWhoHasBeenSilentForLongIsNone) {
+  const LookAhead look_ahead = telling_each(kPeriod);
+  // The horizon is the longer: 30 s.
+  EXPECT_NEAR(look_ahead.weight_s(30, 5, 300, kPeriod), 60.5, 1e-12);
+  EXPECT_EQ(look_ahead.weight_s(30, 5, 301, kPeriod), 0);
+  // Eight periods are: 4 s.
+  EXPECT_NEAR(look_ahead.weight_s(1, 5, 40, kPeriod), 5.5, 1e-12);
+  EXPECT_EQ(look_ahead.weight_s(1, 5, 41, kPeriod), 0);
+  EXPECT_EQ(look_ahead.weight_s(1, 5, 41, 2), 0);
+}
+
+TEST(Weight, APeriodThatThePlanDoesNotAllowBuysNothing) {
+  const LookAhead look_ahead = telling_each(kPeriod);
+  for (const Tick age : {0, 39, 41, 299, 301}) {
+    for (const Tick span : {1, 39, 41, 100000}) {
+      const double honest_s = look_ahead.weight_s(1, span, age, kPeriod);
+      EXPECT_EQ(look_ahead.weight_s(1, span, age, 1000), honest_s) << span << ' ' << age;
+      EXPECT_EQ(look_ahead.weight_s(1, span, age, Tick{1} << 48), honest_s) << span << ' ' << age;
+    }
+  }
+}
+
+// A block says when it was said and when its author speaks again, both as it likes.
+TEST(Weight, AnAnnouncementOfThePastIsNone) {
+  const LookAhead look_ahead = telling_each(kPeriod);
+  for (const Tick period : {Tick{0}, Tick{-1}, -(Tick{1} << 48)}) {
+    EXPECT_NEAR(look_ahead.weight_s(30, 5, 0, period), 30, 1e-12) << period;
+    EXPECT_NEAR(look_ahead.weight_s(30, 5, 300, period), 60, 1e-12) << period;
+    EXPECT_EQ(look_ahead.weight_s(30, 5, 301, period), 0) << period;
+  }
+}
+
+}  // namespace
+}  // namespace ergocast
