@@ -7,6 +7,7 @@
 
 #include "core/geometry.h"
 #include "core/noise.h"
+#include "core/silence.h"
 
 namespace ergocast {
 namespace {
@@ -37,6 +38,7 @@ void World::receive(const Message& message, Instant now) {
   if (finished_) return;
   const Header& from = header_of(message);
   if (run_ != 0 && from.run != run_) return;
+  note_heard(message, now);
   if (const auto* command = std::get_if<Command>(&message)) return on(*command);
   if (const auto* part = std::get_if<MissionPart>(&message)) {
     if (run_ == 0) run_ = from.run;
@@ -63,6 +65,12 @@ void World::receive(const Message& message, Instant now) {
   if (const auto* stop = std::get_if<Stop>(&message); stop && run_ != 0) on(*stop);
 }
 
+void World::note_heard(const Message& message, Instant now) {
+  const bool team =
+      std::holds_alternative<Command>(message) || std::holds_alternative<MissionPart>(message);
+  if (team && freshness_.is_news(header_of(message))) heard_ = now;
+}
+
 void World::on(const Stop& stop) {
   if (!stop.now || halted_ || over_since_) return;  // in order, the coordinator ends the mission
   if (!begun_at_) return finish(stop.reason);
@@ -73,6 +81,7 @@ void World::on(const Stop& stop) {
 
 void World::start(Instant now) {
   started_ = true;
+  heard_ = now;
   asking_since_ = now;
   next_question_ = now;
   take_roster();
@@ -220,6 +229,9 @@ void World::advance(Instant now, Outbox& out) {
   }
   if (finished_) return;
   if (!started_) return ask_for_mission(now, out);
+  if (!over_since_ && must_be_over(follower_.mission()->timing, tick_, now - heard_)) {
+    return finish("the mission must be over: no agent and no coordinator is heard");
+  }
   if (asking_since_) ask_team(now, out);
   if (asking_since_) return;
   if (halted_ && !over_since_) return stand_still(now, out);

@@ -62,6 +62,7 @@ class World {
   };
 
   void on(const Command& command);
+  void note_heard(const Message& message, Instant now);
   void take_roster();
   void start(Instant now);
   void ask_for_mission(Instant now, Outbox& out);
@@ -113,6 +114,7 @@ class World {
   Instant record_progress_{};
   bool logger_lost_ = false;
   Freshness freshness_;
+  Instant heard_{};  // when an agent or the coordinator last said something new
   std::deque<std::vector<WorldState>> history_;  // states of the last ticks, for the logger
 
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, refused_ = 0;

@@ -198,8 +198,10 @@ class ByHand : public FlyingMission {
 
   void TearDown() override {
     for (Program& program : programs_) {
+      // It may have been stopped. Not after SIGTERM: SIGCONT cancels the SIGSTOP by which the leak
+      // sanitizer holds the threads of a process that ends, which then waits for ever.
+      program.child.send(SIGCONT);
       program.child.send(SIGTERM);
-      program.child.send(SIGCONT);  // it may have been stopped
     }
     for (Program& program : programs_) wait_for(program.child);
     OwnHost::TearDown();

@@ -266,5 +266,32 @@ TEST(WorldEnd, APlanItCannotReadEndsIt) {
   EXPECT_EQ(world.reason(), "install another version");
 }
 
+TEST(WorldEnd, ByItselfOnceNeitherAgentNorCoordinatorCanStillCome) {
+  Mission mission = small_mission(1);
+  mission.timing.lockstep_timeout_s = 10;
+  World world = running_world(mission);
+  advance(world, at(0s));
+  const Command answer = command_of(0, 0, {1, 0});
+  world.receive(answer, at(5s));
+  advance(world, at(5s));
+  world.receive(answer, at(30s));  // a recording of it is nobody's word
+  advance(world, at(45s));
+  EXPECT_FALSE(world.finished()) << "10 s for a tick, and 30 s more";
+  advance(world, at(45001ms));
+  EXPECT_TRUE(world.finished());
+  EXPECT_NE(world.reason().find("no agent and no coordinator"), std::string::npos);
+}
+
+TEST(WorldEnd, ByItselfAlsoIfNobodyHasAnsweredWhereTheTeamIs) {
+  Mission mission = small_mission(1);
+  mission.timing.lockstep_timeout_s = 10;
+  World world = world_of(mission);
+  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  advance(world, at(40s));
+  EXPECT_FALSE(world.finished());
+  advance(world, at(40001ms));
+  EXPECT_TRUE(world.finished());
+}
+
 }  // namespace
 }  // namespace ergocast
