@@ -178,6 +178,12 @@ void Coordinator::admit(const Author& author, Instant now) {
 
 void Coordinator::on(const WorldState& world, Instant now) {
   world_heard_ = true;
+  if (world.roster_revision > revision_) {
+    // A predecessor said it, and of all who live the world alone has heard it: the team waits for
+    // that roster, or for a newer one.
+    revision_ = world.roster_revision;
+    change();
+  }
   if (world.header.tick < tick_) return;
   if (world.header.tick > tick_) tick_since_ = now;
   tick_ = world.header.tick;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/silence.h"
 #include "lab/flight.h"
 
 namespace ergocast::lab {
@@ -114,8 +115,10 @@ void Flight::heal() {
   }
   const double bound_s = recovery_bound_s(mission_, options_.faults);
   next_check_ = now_ + seconds(bound_s);
-  deadline_ = next_check_ +
-              seconds((planned_s_ + kFarewell_s) / (1 - options_.faults.clock_rate_error));
+  // Without coordinator and agents the world ends by itself, and only then the logger.
+  const double cut_off_s = 2 * (mission_.timing.lockstep_timeout_s + kFarewellPatience_s);
+  deadline_ = next_check_ + seconds((planned_s_ + cut_off_s + kFarewell_s) /
+                                    (1 - options_.faults.clock_rate_error));
 }
 
 }  // namespace ergocast::lab

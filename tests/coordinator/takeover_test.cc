@@ -384,6 +384,17 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
   EXPECT_GT(said_by(advance(coordinator, at(3s))).revision, 1000) << "or the team would not listen";
 }
 
+TEST(TakenOver, ACoordinatorSpeaksLouderThanWhatTheWorldAloneHasHeardOfTheDead) {
+  Coordinator coordinator = taken_over(memory_of(3));
+  const std::int64_t before = said_by(advance(coordinator, at(2s))).revision;
+  WorldState world = world_where(0, {0, 0});
+  world.roster_revision = before + 8;
+  coordinator.receive(world, at(2s));
+  EXPECT_GT(said_by(advance(coordinator, at(2s))).revision, before + 8);
+  coordinator.receive(world, at(2100ms));
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(2100ms))).empty()) << "once is enough";
+}
+
 TEST(TakenOver, ARecordedSignOfLifeIsNone) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   coordinator.receive(alive(kSuccessorLife, 7), at(1s));
