@@ -8,7 +8,7 @@
 
 #include "core/noise.h"
 #include "core/require.h"
-#include "core/silence.h"
+#include "team/silence.h"
 
 namespace ergocast {
 namespace {

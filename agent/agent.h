@@ -15,13 +15,13 @@
 #include "agent/hearing.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
-#include "core/deadline.h"
+#include "team/deadline.h"
 #include "core/forecast.h"
-#include "core/freshness.h"
+#include "team/freshness.h"
 #include "core/ids.h"
-#include "core/messages.h"
-#include "core/mission_follower.h"
-#include "core/radio_range.h"
+#include "team/messages.h"
+#include "team/mission_follower.h"
+#include "team/radio_range.h"
 
 namespace ergocast {
 

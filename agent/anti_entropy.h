@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/coverage_table.h"
-#include "core/deadline.h"
+#include "team/deadline.h"
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

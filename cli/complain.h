@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/printable.h"
+#include "text/printable.h"
 #include "runtime/node.h"
 #include "scenario/scenario.h"
 

@@ -1,4 +1,4 @@
-#include "deploy/deploy.h"
+#include "ops/deploy/deploy.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,7 +11,7 @@
 #include "cli/key_pair.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
-#include "maps/regular_file.h"
+#include "text/regular_file.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 

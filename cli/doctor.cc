@@ -9,9 +9,9 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "doctor/examination.h"
-#include "doctor/peer_exchange.h"
-#include "doctor/print.h"
+#include "ops/doctor/examination.h"
+#include "ops/doctor/peer_exchange.h"
+#include "ops/doctor/print.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 
-#include "core/read_number.h"
-#include "maps/regular_file.h"
+#include "text/read_number.h"
+#include "text/regular_file.h"
 
 namespace ergocast::cli {
 namespace {

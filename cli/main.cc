@@ -7,7 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "core/read_number.h"
+#include "text/read_number.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 #include "scenario/override_options.h"

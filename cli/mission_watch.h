@@ -6,9 +6,9 @@
 
 #include "cli/progress.h"
 #include "cli/stop_word.h"
-#include "core/freshness.h"
+#include "team/freshness.h"
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "core/mission.h"
 #include "runtime/transport.h"
 

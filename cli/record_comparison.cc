@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "cli/trajectory_comparison.h"
-#include "logger/report.h"
+#include "report/report.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
-#include "logger/target_density.h"
-#include "maps/regular_file.h"
+#include "report/target_density.h"
+#include "text/regular_file.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {

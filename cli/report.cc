@@ -1,4 +1,4 @@
-#include "logger/report.h"
+#include "report/report.h"
 
 #include <cstdio>
 

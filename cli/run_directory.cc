@@ -9,10 +9,10 @@
 #include <span>
 
 #include "cli/complain.h"
-#include "logger/report.h"
+#include "report/report.h"
 #include "logger/run_record.h"
-#include "logger/target_density.h"
-#include "maps/regular_file.h"
+#include "report/target_density.h"
+#include "text/regular_file.h"
 #include "runtime/node.h"
 
 namespace ergocast::cli {

@@ -17,7 +17,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
-#include "deploy/script.h"
+#include "ops/deploy/script.h"
 #include "runtime/lcm_url.h"
 #include "runtime/node.h"
 #include "runtime/shipped_folder.h"

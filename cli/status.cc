@@ -17,7 +17,7 @@
 #include "runtime/signals.h"
 #include "runtime/transport.h"
 #include "scenario/scenario.h"
-#include "status/team_view.h"
+#include "cli/team_view.h"
 
 namespace ergocast::cli {
 namespace {

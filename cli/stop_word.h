@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "runtime/transport.h"
 
 namespace ergocast::cli {

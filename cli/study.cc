@@ -10,8 +10,8 @@
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
 #include "cli/workers.h"
-#include "studies/study_page.h"
-#include "studies/study_run.h"
+#include "lab/studies/study_page.h"
+#include "lab/studies/study_run.h"
 #include "logger/run_record.h"
 #include "runtime/node.h"
 

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "logger/run_record.h"
-#include "maps/regular_file.h"
+#include "text/regular_file.h"
 
 namespace ergocast::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "studies/study_table.h"
+#include "lab/studies/study_table.h"
 
 namespace ergocast::cli {
 

@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/freshness.h"
+#include "team/freshness.h"
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "runtime/node.h"
 #include "runtime/transport.h"
 

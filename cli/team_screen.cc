@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "status/team_text.h"
+#include "cli/team_text.h"
 
 namespace ergocast::cli {
 namespace {

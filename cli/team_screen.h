@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "status/team_view.h"
+#include "cli/team_view.h"
 
 namespace ergocast::cli {
 

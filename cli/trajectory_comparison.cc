@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/read_number.h"
+#include "text/read_number.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
 

@@ -10,7 +10,7 @@
 #include "cli/run_directory.h"
 #include "cli/trial_table.h"
 #include "cli/workers.h"
-#include "deploy/script.h"
+#include "ops/deploy/script.h"
 #include "lab/trial.h"
 #include "logger/nowhere.h"
 #include "runtime/node.h"

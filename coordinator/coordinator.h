@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/freshness.h"
+#include "team/freshness.h"
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "core/mission.h"
-#include "core/mission_follower.h"
+#include "team/mission_follower.h"
 
 namespace ergocast {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/contribution.h"
 #include "core/ids.h"
-#include "core/messages.h"
 
 namespace ergocast {
 

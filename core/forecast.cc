@@ -199,7 +199,7 @@ inline void Forecast::add_terms(const Term* terms, int first, double* __restrict
   }
 }
 
-/// The terms of `count` modes, from both ends of the team up to the own row: lab/ideal_team.cc
+/// The terms of `count` modes, from both ends of the team up to the own row: core/ideal_team.cc
 /// makes all its agents' sums in this order, with few more additions than one agent's take.
 ERGOCAST_VECTORIZED
 void Forecast::add_up(double per_second, int count, double* coverage) const {

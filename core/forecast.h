@@ -23,8 +23,8 @@
 #include "core/coverage_table.h"
 #include "core/ids.h"
 #include "core/look_ahead.h"
-#include "core/messages.h"
 #include "core/mission.h"
+#include "core/roster.h"
 
 namespace ergocast {
 

@@ -43,6 +43,15 @@ struct Author {
   auto operator<=>(const Author&) const = default;
 };
 
+/// Who says something, and as which of its messages.
+struct Header {
+  RunId run = 0;
+  AgentId sender = kUnassigned;
+  Incarnation incarnation = 0;
+  std::int64_t sequence = 0;  ///< grows by one with each message of this sender on one bus
+  Tick tick = 0;              ///< the sender's tick when it spoke
+};
+
 /// The clock that paces repeats and time-outs. It has no now(): only a main() or the laboratory
 /// can tell the time, so logic that reads a clock does not compile.
 struct PacingClock {

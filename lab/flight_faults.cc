@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/silence.h"
+#include "team/silence.h"
 #include "lab/flight.h"
 
 namespace ergocast::lab {

@@ -10,7 +10,7 @@
 #include "core/basis.h"
 #include "core/coverage_table.h"
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast::lab {
 

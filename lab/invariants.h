@@ -18,7 +18,7 @@
 
 #include "coordinator/coordinator.h"
 #include "core/mission.h"
-#include "core/mission_follower.h"
+#include "team/mission_follower.h"
 #include "lab/faults.h"
 #include "lab/holder.h"
 #include "lab/shadow.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "lab/faults.h"
 
 namespace ergocast::lab {

@@ -14,7 +14,7 @@
 
 #include "core/basis.h"
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "core/mission.h"
 #include "lab/holder.h"
 

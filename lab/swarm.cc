@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "core/noise.h"
-#include "core/subscriptions.h"
+#include "team/subscriptions.h"
 #include "lcmtypes/codec.h"
 
 namespace ergocast::lab {

@@ -13,8 +13,8 @@
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
-#include "core/messages.h"
-#include "core/mission_follower.h"
+#include "team/messages.h"
+#include "team/mission_follower.h"
 #include "logger/recorder.h"
 #include "sim/world.h"
 

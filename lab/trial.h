@@ -15,7 +15,7 @@
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
-#include "core/subscriptions.h"
+#include "team/subscriptions.h"
 #include "lab/faults.h"
 #include "lab/invariants.h"
 #include "lab/network.h"

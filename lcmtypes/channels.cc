@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/read_number.h"
+#include "text/read_number.h"
 
 namespace ergocast {
 namespace {

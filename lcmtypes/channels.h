@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/messages.h"
-#include "core/subscriptions.h"
+#include "team/messages.h"
+#include "team/subscriptions.h"
 
 namespace ergocast {
 

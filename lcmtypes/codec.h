@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "lcmtypes/seal.h"
 
 namespace ergocast {

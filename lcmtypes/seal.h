@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

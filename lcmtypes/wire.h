@@ -13,7 +13,7 @@
 #include <ergocast/team_status_t.hpp>
 #include <ergocast/world_state_t.hpp>
 
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

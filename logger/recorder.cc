@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/require.h"
-#include "core/silence.h"
+#include "team/silence.h"
 
 namespace ergocast {
 namespace {

@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "core/basis.h"
-#include "core/freshness.h"
+#include "team/freshness.h"
 #include "core/ids.h"
-#include "core/messages.h"
-#include "core/mission_follower.h"
+#include "team/messages.h"
+#include "team/mission_follower.h"
 #include "logger/run_data.h"
 
 namespace ergocast {

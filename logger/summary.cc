@@ -7,7 +7,7 @@
 
 #include "logger/run_record.h"
 #include "logger/slope.h"
-#include "maps/regular_file.h"
+#include "text/regular_file.h"
 
 namespace ergocast {
 namespace {

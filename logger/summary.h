@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "logger/recorder.h"
 
 namespace ergocast {

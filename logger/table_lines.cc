@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "logger/run_record.h"
-#include "maps/regular_file.h"
+#include "text/regular_file.h"
 
 namespace ergocast {
 

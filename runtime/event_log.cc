@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/read_number.h"
+#include "text/read_number.h"
 
 namespace ergocast {
 namespace {

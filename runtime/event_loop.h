@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "runtime/clock.h"
 #include "runtime/loop_lag.h"
 #include "runtime/signals.h"

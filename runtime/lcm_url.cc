@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/read_number.h"
+#include "text/read_number.h"
 #include "runtime/socket.h"
 
 namespace ergocast {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

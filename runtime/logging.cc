@@ -16,7 +16,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/printable.h"
+#include "text/printable.h"
 
 namespace ergocast {
 namespace {

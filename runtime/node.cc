@@ -11,8 +11,8 @@
 #include <ctime>
 #include <sstream>
 
-#include "core/likeness.h"
-#include "core/printable.h"
+#include "text/likeness.h"
+#include "text/printable.h"
 #include "runtime/key_file.h"
 #include "runtime/logging.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast {
 namespace {

@@ -14,9 +14,9 @@
 #include <span>
 #include <vector>
 
-#include "core/freshness.h"
+#include "team/freshness.h"
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "runtime/datagram_filter.h"
 
 namespace ergocast {
@@ -33,7 +33,7 @@ class RepeatGuard {
   /// As many as a team has at a time, and some.
   static constexpr std::size_t kMostLives = 144;
 
-  /// Whether its sender has said nothing later yet, nor this, in this life (core/freshness.h).
+  /// Whether its sender has said nothing later yet, nor this, in this life (team/freshness.h).
   /// @pre the message is believed
   bool is_news(const Header& from) { return freshness_.is_news(from); }
 

@@ -17,7 +17,7 @@ fs::path shipped_folder(const std::string& name, const std::string& in_tree) {
 fs::path spy_jar() {
   std::error_code error;
   const fs::path programs = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const char* folder : {"../spy", "../share/ergocast/java"}) {
+  for (const char* folder : {"../ops/spy", "../share/ergocast/java"}) {
     const fs::path jar = (programs / folder / "ergocast-spy.jar").lexically_normal();
     if (fs::exists(jar, error)) return jar;
   }

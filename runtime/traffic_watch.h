@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/ids.h"
-#include "core/messages.h"
+#include "team/messages.h"
 #include "runtime/transport.h"
 
 namespace ergocast {

@@ -12,8 +12,8 @@
 #include <variant>
 
 #include "core/ids.h"
-#include "core/messages.h"
-#include "core/subscriptions.h"
+#include "team/messages.h"
+#include "team/subscriptions.h"
 #include "lcmtypes/seal.h"
 #include "runtime/lcm_url.h"
 #include "runtime/rate_limit.h"

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/raster_integral.h"
-#include "maps/map_file.h"
+#include "target/raster_integral.h"
+#include "target/map_file.h"
 #include "scenario/convert.h"
 
 namespace ergocast {

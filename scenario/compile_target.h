@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/density_picture.h"
+#include "target/density_picture.h"
 #include "scenario/checks.h"
 #include "scenario/scenario.pb.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/mission.h"
-#include "core/target.h"
+#include "target/target.h"
 #include "scenario/scenario.pb.h"
 
 namespace ergocast {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/likeness.h"
+#include "text/likeness.h"
 #include "scenario/scenario.pb.h"
 
 namespace ergocast {

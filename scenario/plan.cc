@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "core/require.h"
 #include "scenario/plan.pb.h"
 #include "scenario/scenario.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/polygon.h"
+#include "target/polygon.h"
 
 namespace ergocast {
 

@@ -1,4 +1,4 @@
-#include "maps/regular_file.h"
+#include "text/regular_file.h"
 #include "scenario/scenario.h"
 
 #include <algorithm>

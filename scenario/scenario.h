@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/density_picture.h"
+#include "target/density_picture.h"
 #include "core/mission.h"
 
 namespace ergocast {

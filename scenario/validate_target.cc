@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maps/map_file.h"
+#include "target/map_file.h"
 #include "scenario/convert.h"
 #include "scenario/polygon_flaw.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/geometry.h"
 #include "core/noise.h"
-#include "core/silence.h"
+#include "team/silence.h"
 
 namespace ergocast {
 namespace {

@@ -13,10 +13,10 @@
 #include <optional>
 #include <string>
 
-#include "core/freshness.h"
+#include "team/freshness.h"
 #include "core/ids.h"
-#include "core/messages.h"
-#include "core/mission_follower.h"
+#include "team/messages.h"
+#include "team/mission_follower.h"
 
 namespace ergocast {
 

@@ -13,8 +13,8 @@
 #include <string>
 
 #include "core/ids.h"
-#include "core/messages.h"
-#include "core/mission_follower.h"
+#include "team/messages.h"
+#include "team/mission_follower.h"
 #include "examples/driver/robot.h"
 
 namespace ergocast::example {

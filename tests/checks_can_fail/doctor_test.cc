@@ -8,7 +8,7 @@
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
 
-#include "doctor/probe.h"
+#include "ops/doctor/probe.h"
 #include "runtime/key_file.h"
 #include "runtime/node.h"
 #include "runtime/socket.h"
@@ -309,8 +309,8 @@ std::vector<Plant> DoctorCanFail::plants() {
 }
 
 const std::vector<Unsayable> kUnsayable = {
-    {"doctor/group_listener.cc", "cannot listen to the group", "the self test, which joins it first, fails then"},
-    {"doctor/ports.cc", "ss -ulpn", "a thousand ports would have to be taken"},
+    {"ops/doctor/group_listener.cc", "cannot listen to the group", "the self test, which joins it first, fails then"},
+    {"ops/doctor/ports.cc", "ss -ulpn", "a thousand ports would have to be taken"},
 };
 
 TEST_F(DoctorCanFail, InEachOfItsFindings) {
@@ -337,7 +337,7 @@ TEST_F(DoctorCanFail, InEachOfItsFindings) {
   said_.push_back(output());
 
   std::vector<std::string> sources =
-      sources_in("doctor", {"doctor/command_output.cc", "doctor/print.cc"});
+      sources_in("ops/doctor", {"ops/doctor/command_output.cc", "ops/doctor/print.cc"});
   sources.push_back("cli/doctor.cc");
   expect_all_said(sources, said_, kUnsayable);
 }

@@ -3,7 +3,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
-#include "core/mission_follower.h"
+#include "team/mission_follower.h"
 #include "runtime/key_file.h"
 #include "scenario/scenario.h"
 #include "tests/process/mission.h"

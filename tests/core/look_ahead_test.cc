@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/target.h"
+#include "target/target.h"
 
 namespace ergocast {
 namespace {

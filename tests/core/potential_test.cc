@@ -11,7 +11,7 @@
 #include "core/control.h"
 #include "core/forecast.h"
 #include "core/noise.h"
-#include "core/target.h"
+#include "target/target.h"
 
 namespace ergocast {
 namespace {

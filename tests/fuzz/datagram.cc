@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/coverage_table.h"
-#include "doctor/bus_listener.h"
+#include "ops/doctor/bus_listener.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
 #include "tests/fuzz/datagrams.h"

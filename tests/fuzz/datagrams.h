@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/messages.h"
+#include "team/messages.h"
 
 namespace ergocast::fuzz {
 

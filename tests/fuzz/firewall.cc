@@ -1,5 +1,5 @@
 // What nft and iptables say.
-#include "doctor/programs.h"
+#include "ops/doctor/programs.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

@@ -1,5 +1,5 @@
 // A hosts file: refused with problems, or hosts from which every kind of deployment is written.
-#include "deploy/deploy.h"
+#include "ops/deploy/deploy.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

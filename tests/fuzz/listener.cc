@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "lcmtypes/codec.h"
-#include "status/team_text.h"
+#include "cli/team_text.h"
 #include "tests/fuzz/small_team.h"
 #include "tests/fuzz/target.h"
 #include "tests/fuzz/turns.h"

@@ -1,5 +1,5 @@
 // An ESRI ASCII grid.
-#include "maps/ascii_grid.h"
+#include "target/ascii_grid.h"
 #include "tests/fuzz/map_target.h"
 
 namespace ergocast::fuzz {

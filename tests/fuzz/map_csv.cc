@@ -1,5 +1,5 @@
 // A table of numbers as a map.
-#include "maps/csv_map.h"
+#include "target/csv_map.h"
 #include "tests/fuzz/map_target.h"
 
 namespace ergocast::fuzz {

@@ -2,7 +2,7 @@
 // right.
 #include <zlib.h>
 
-#include "maps/png_map.h"
+#include "target/png_map.h"
 #include "tests/fuzz/datagrams.h"
 #include "tests/fuzz/map_target.h"
 

@@ -1,10 +1,10 @@
 // What the targets of all map formats do: read every row, and check the promises of
-// maps/map_file.h.
+// target/map_file.h.
 #pragma once
 
 #include <vector>
 
-#include "maps/map_file.h"
+#include "target/map_file.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/target.h"
 

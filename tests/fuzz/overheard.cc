@@ -1,8 +1,8 @@
 // LCM datagrams as `ergocast doctor` overhears them: "LC02", a number, a channel, a message.
 //
 // Input: a length of 2 bytes, high one first, then a datagram, and so on. Tags are made right.
-#include "doctor/bus_listener.h"
-#include "doctor/print.h"
+#include "ops/doctor/bus_listener.h"
+#include "ops/doctor/print.h"
 #include "tests/fuzz/datagrams.h"
 #include "tests/fuzz/target.h"
 

@@ -1,10 +1,10 @@
 // The probes with which `ergocast doctor` of two hosts try each other, one after the other.
 //
 // Input: a length of 2 bytes, high one first, then a datagram, and so on.
-#include "doctor/probe.h"
+#include "ops/doctor/probe.h"
 
-#include "doctor/peer_exchange.h"
-#include "doctor/print.h"
+#include "ops/doctor/peer_exchange.h"
+#include "ops/doctor/print.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "doctor/peer_ledger.h"
+#include "ops/doctor/peer_ledger.h"
 #include "lcmtypes/channels.h"
 #include "scenario/scenario.h"
 #include "tests/fuzz/small_team.h"

@@ -4,7 +4,7 @@
 
 #include "core/require.h"
 #include "lcmtypes/codec.h"
-#include "status/team_text.h"
+#include "cli/team_text.h"
 #include "tests/support/team.h"
 
 namespace ergocast::fuzz {

@@ -11,7 +11,7 @@
 #include "coordinator/coordinator.h"
 #include "logger/recorder.h"
 #include "sim/world.h"
-#include "status/team_view.h"
+#include "cli/team_view.h"
 
 namespace ergocast::fuzz {
 

@@ -1,5 +1,5 @@
 // The kernel's table of UDP sockets.
-#include "doctor/socket_table.h"
+#include "ops/doctor/socket_table.h"
 
 #include "tests/fuzz/target.h"
 

@@ -1,5 +1,5 @@
 // Lines of a study's table: what is read is written again as the same figures.
-#include "studies/study_table.h"
+#include "lab/studies/study_table.h"
 
 #include "tests/fuzz/target.h"
 

@@ -1,7 +1,7 @@
 // summary.json as the report reads it back: whatever JSON it is, a page comes of it.
 #include "logger/summary.h"
 
-#include "logger/page.h"
+#include "report/page.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/team.h"

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/require.h"
-#include "doctor/group_listener.h"
+#include "ops/doctor/group_listener.h"
 #include "lcmtypes/codec.h"
 
 namespace ergocast::fuzz {

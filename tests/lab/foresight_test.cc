@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Laboratory, LockstepForesight,
 /// φ² at 600 s as agent 0 knows it, where agent 3 is heard no more from 150 s on, nor its vehicle.
 double metric_after_a_death(const std::string& law, const std::string& agents, std::uint64_t seed) {
   std::string text =
-      with(text_of("studies/law/random.textproto"), "u_max_mps: 20", "u_max_mps: 20 " + law);
+      with(text_of("lab/studies/law/random.textproto"), "u_max_mps: 20", "u_max_mps: 20 " + law);
   text = with(text, "agents {", "agents { " + agents);
   text = with(text, "dt_s: 0.1", "dt_s: 0.1 pace: REALTIME broadcast_period_ticks: 20");
   Overrides overrides;

@@ -1,5 +1,5 @@
-// Who hears what, as core/subscriptions.h says it, on LCM's channels and in README.md.
-#include "core/subscriptions.h"
+// Who hears what, as team/subscriptions.h says it, on LCM's channels and in README.md.
+#include "team/subscriptions.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/theorems/bounds.h"
+#include "lab/studies/theorems/bounds.h"
 
 namespace ergocast::test {
 namespace {

@@ -1,5 +1,5 @@
 // The law that scenarios get by default, from the starts that hold the classical one
-// (studies/law/*.textproto). Statements about probabilities hold but with probability 1e-9 over the
+// (lab/studies/law/*.textproto). Statements about probabilities hold but with probability 1e-9 over the
 // choice of seeds; docs/law.md has the figures of many more.
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/perturbation.h"
 #include "lab/manifolds.h"
-#include "studies/theorems/confidence.h"
+#include "lab/studies/theorems/confidence.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {
@@ -15,7 +15,7 @@ namespace {
 
 Mission mission_from(const std::string& start, std::uint64_t seed = 1) {
   const auto file =
-      std::filesystem::path(ERGOCAST_SOURCE_DIR) / "studies/law" / (start + ".textproto");
+      std::filesystem::path(ERGOCAST_SOURCE_DIR) / "lab/studies/law" / (start + ".textproto");
   Overrides overrides;
   overrides.seed = seed;
   return std::get<Scenario>(Scenario::load(file, overrides)).mission();

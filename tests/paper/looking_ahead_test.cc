@@ -6,8 +6,8 @@
 
 #include "core/look_ahead.h"
 #include "core/noise.h"
-#include "core/target.h"
-#include "studies/theorems/invariance.h"
+#include "target/target.h"
+#include "lab/studies/theorems/invariance.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {

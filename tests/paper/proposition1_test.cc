@@ -11,10 +11,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/target.h"
+#include "target/target.h"
 #include "lab/manifolds.h"
-#include "studies/theorems/escape.h"
-#include "studies/theorems/invariance.h"
+#include "lab/studies/theorems/escape.h"
+#include "lab/studies/theorems/invariance.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {

@@ -5,7 +5,7 @@
 //
 // What many seeds can show, each statement but with probability 1e-9: how probable escape is at least
 // by the time the test says, and that the time is distributed as the linearised recursion predicts
-// (studies/linearised.h). No number of seeds shows a probability of 1.
+// (lab/studies/theorems/linearised.h). No number of seeds shows a probability of 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,9 +13,9 @@
 #include <limits>
 
 #include "lab/manifolds.h"
-#include "studies/theorems/confidence.h"
-#include "studies/theorems/escape.h"
-#include "studies/theorems/invariance.h"
+#include "lab/studies/theorems/confidence.h"
+#include "lab/studies/theorems/escape.h"
+#include "lab/studies/theorems/invariance.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {

@@ -9,8 +9,8 @@
 
 #include <cmath>
 
-#include "studies/theorems/bounds.h"
-#include "studies/theorems/confidence.h"
+#include "lab/studies/theorems/bounds.h"
+#include "lab/studies/theorems/confidence.h"
 #include "tests/support/paper_team.h"
 
 namespace ergocast::test {

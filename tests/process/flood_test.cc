@@ -2,7 +2,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "lcmtypes/codec.h"
 #include "runtime/key_file.h"
 #include "runtime/socket.h"

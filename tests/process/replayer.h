@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/messages.h"
-#include "doctor/group_listener.h"
+#include "team/messages.h"
+#include "ops/doctor/group_listener.h"
 #include "runtime/lcm_url.h"
 #include "runtime/socket.h"
 

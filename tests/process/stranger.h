@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "runtime/lcm_url.h"
 #include "runtime/transport.h"
 

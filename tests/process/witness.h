@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "core/messages.h"
-#include "core/mission_follower.h"
+#include "team/messages.h"
+#include "team/mission_follower.h"
 #include "runtime/clock.h"
 #include "runtime/transport.h"
 #include "tests/process/programs.h"

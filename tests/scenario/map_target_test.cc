@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "core/raster_integral.h"
-#include "core/target.h"
+#include "target/raster_integral.h"
+#include "target/target.h"
 #include "tests/scenario/scenarios.h"
 #include "tests/support/grey_png.h"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "tests/scenario/scenarios.h"
 
 namespace ergocast {

@@ -14,7 +14,7 @@ namespace ergocast::test {
 
 /// What of the tests' needs this machine lacks: " xvfb xdotool"; empty if nothing.
 inline std::string missing_for_spy(bool with_screen) {
-  const std::string jar = std::string(ERGOCAST_BIN_DIR) + "/../spy/ergocast-spy.jar";
+  const std::string jar = std::string(ERGOCAST_BIN_DIR) + "/../ops/spy/ergocast-spy.jar";
   std::vector<std::pair<std::string, std::string>> needs{{jar, " default-jdk liblcm-java"}};
   if (with_screen) {
     needs.insert(needs.end(), {{"/usr/share/java/jchart2d.jar", " libjchart2d-java"},

@@ -1,7 +1,7 @@
 // The jar that lcm-spy gets: types, the plan's reader, and pictures of given messages.
 #include <cmath>
 
-#include "core/target.h"
+#include "target/target.h"
 #include "lcm_types.h"
 #include "scenario/scenario.h"
 #include "tests/spy/spy_desk.h"

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "lab/ideal_team.h"
+#include "core/ideal_team.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::test {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/messages.h"
+#include "team/messages.h"
 #include "core/mission.h"
-#include "core/mission_follower.h"
+#include "team/mission_follower.h"
 
 namespace ergocast::test {
 

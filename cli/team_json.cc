@@ -1,0 +1,74 @@
+#include <nlohmann/json.hpp>
+
+#include "cli/team_text.h"
+
+namespace ergocast {
+namespace {
+
+template <class T>
+nlohmann::ordered_json or_null(bool known, const T& value) {
+  return known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json json_of(const AgentRow& row) {
+  constexpr const char* kWords[] = {"silent", "waiting",  "late", "not heard",
+                                    "ok",     "finished", "gone"};
+  nlohmann::ordered_json json = {{"id", row.author.agent},
+                                 {"incarnation", to_hex(row.author.incarnation)},
+                                 {"state", kWords[static_cast<int>(row.condition)]},
+                                 {"silent_s", row.silent_s},
+                                 {"restarts", row.restarts}};
+  if (!row.status) return json;
+  const AgentStatus& status = *row.status;
+  json["host"] = status.host;
+  json["phase"] = to_string(status.phase);
+  json["tick"] = status.header.tick;
+  json["waiting_for"] = or_null(status.waiting_for != kUnassigned, name_of(status.waiting_for));
+  json["ergodic_metric"] = or_null(status.answered_tick >= 0, status.ergodic_metric);
+  json["max_staleness_s"] = status.max_staleness_s;
+  json["loop_lag_s"] = status.loop_lag_s;
+  json["contributions_lost"] = status.contributions_lost;
+  json["kernel_drops"] = status.kernel_drops;
+  for (std::size_t i = 0; i < status.refused.size(); ++i) {
+    json["refused"][to_string(static_cast<Refusal>(i))] = status.refused[i];
+  }
+  json["babbler"] = or_null(status.babbler != kUnassigned, status.babbler);
+  return json;
+}
+
+}  // namespace
+
+std::string team_json(const TeamPicture& at) {
+  nlohmann::ordered_json json = {
+      {"run_id", to_hex(at.run)},
+      {"authenticated", at.authenticated},
+      {"scenario", or_null(!at.scenario.empty(), at.scenario)},
+      {"state", at.state ? nlohmann::ordered_json(to_string(*at.state)) : nlohmann::ordered_json()},
+      {"reason", at.reason},
+      {"trouble", at.trouble},
+      {"tick", at.tick},
+      {"tick_count", or_null(at.tick_count > 0, at.tick_count)},
+      {"t_s", or_null(at.dt_s > 0, static_cast<double>(at.tick) * at.dt_s)},
+      {"ergodic_metric", or_null(at.ergodic_metric.has_value(), at.ergodic_metric.value_or(0))},
+      {"agents_alive", at.agents_alive},
+      {"agents_expected", at.agents_expected},
+      {"missed_deadlines", at.missed_deadlines},
+      {"skipped_ticks", at.skipped_ticks},
+      {"clamped_commands", at.clamped_commands},
+      {"forgotten", at.forgotten}};
+  json["agents"] = nlohmann::ordered_json::array();
+  for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
+  for (const ProcessRow& row : at.processes) {
+    json["processes"][row.name] = {{"state", row.trouble ? "silent"
+                                             : !row.heard ? "not heard"
+                                             : at.over    ? "ended"
+                                                          : "alive"},
+                                   {"silent_s", row.silent_s},
+                                   {"incarnation", or_null(row.heard, to_hex(row.incarnation))},
+                                   {"host", or_null(!row.host.empty(), row.host)},
+                                   {"tick", or_null(row.heard, row.tick)}};
+  }
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace ergocast

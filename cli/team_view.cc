@@ -1,0 +1,256 @@
+#include "cli/team_view.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Four of an agent's statuses, eight of the coordinator's.
+constexpr PacingClock::duration kSilence = 4 * kAgentStatusPeriod;
+constexpr PacingClock::duration kOverdue = 2 * kAgentStatusPeriod;
+/// In lockstep everybody waits for somebody now and then; for so long is worth a word.
+constexpr PacingClock::duration kStandstill = 750ms;
+/// A loop that was deaf for so long, or an agent so far behind the world, is late.
+constexpr double kLate_s = 0.5;
+constexpr std::size_t kMostLives = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
+
+double to_s(PacingClock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
+  std::vector<double> metrics;
+  for (const AgentRow& row : rows) {
+    const bool knows =
+        row.status && row.status->answered_tick >= 0 && row.condition != Condition::kGone;
+    if (knows) metrics.push_back(row.status->ergodic_metric);
+  }
+  if (metrics.empty()) return std::nullopt;
+  const auto middle = metrics.begin() + static_cast<std::ptrdiff_t>(metrics.size() / 2);
+  std::nth_element(metrics.begin(), middle, metrics.end());
+  return *middle;
+}
+
+}  // namespace
+
+TeamView::TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated)
+    : run_(run),
+      authenticated_(authenticated),
+      follower_(std::move(decode_plan)),
+      since_(since) {}
+
+void TeamView::receive(const Message& message, Instant now) {
+  const Header& from = header_of(message);
+  tick_ = std::max(tick_, from.tick);
+  if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
+  if (const auto* status = std::get_if<AgentStatus>(&message)) on(*status, now);
+  if (const auto* team = std::get_if<TeamStatus>(&message)) {
+    coordinator_host_ = team->host;
+    tick_count_ = team->tick_count;
+    team_state_ = team->state;
+  }
+  if (const auto* world = std::get_if<WorldState>(&message)) {
+    world_tick_ = std::max(world_tick_, from.tick);
+    missed_deadlines_ = std::max(missed_deadlines_, world->missed_deadlines);
+    skipped_ticks_ = std::max(skipped_ticks_, world->skipped_ticks);
+    clamped_commands_ = std::max(clamped_commands_, world->clamped_commands);
+  }
+  // MISSION may be repeated by an agent long after the coordinator's death.
+  const bool first_hand = !std::holds_alternative<MissionPart>(message);
+  if (first_hand && from.sender < kUnassigned && freshness_.is_news(from)) processes_[from.sender] = {now, from};
+}
+
+void TeamView::on(const AgentStatus& status, Instant now) {
+  const Author author{status.header.sender, status.header.incarnation};
+  if (author.agent < 0 || (agents_.size() >= kMostLives && !agents_.contains(author))) return;
+  const auto [at, is_new] = agents_.try_emplace(author);
+  Seen& seen = at->second;
+  // Only what is new is a sign of life.
+  if (!is_new && status.header.sequence <= seen.status.header.sequence) return;
+  if (is_new || status.header.tick != seen.status.header.tick) seen.tick_since = now;
+  seen.status = status;
+  seen.heard = now;
+  const auto& mission = follower_.mission();
+  if (mission && mission->timing.pace == Pace::kRealtime) {
+    const Timing& timing = mission->timing;
+    seen.behind_s = static_cast<double>(world_tick_ - status.header.tick - 1) * timing.dt_s /
+                    timing.realtime_factor;
+  }
+}
+
+Condition TeamView::condition_of(const Seen& seen, Instant now) const {
+  const AgentStatus& status = seen.status;
+  if (status.phase == AgentPhase::kFinished) return Condition::kFinished;
+  if (now - seen.heard >= kSilence) return Condition::kSilent;
+  const bool stands_still = now - seen.tick_since >= kStandstill;
+  if (status.waiting_for == kWorld || (status.waiting_for != kUnassigned && stands_still)) {
+    return Condition::kWaiting;
+  }
+  const bool late = now - seen.heard >= kOverdue || status.loop_lag_s >= kLate_s ||
+                    (status.phase == AgentPhase::kRunning && seen.behind_s >= kLate_s);
+  return late ? Condition::kLate : Condition::kOk;
+}
+
+AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const {
+  AgentRow row{author, Condition::kUnheard, to_s(now - since_), 0, {}};
+  if (now - since_ >= kSilence) row.condition = Condition::kSilent;
+  if (const auto seen = agents_.find(author); seen != agents_.end()) {
+    row.status = seen->second.status;
+    row.silent_s = to_s(now - seen->second.heard);
+    row.condition = condition_of(seen->second, now);
+  }
+  if (!member && row.condition != Condition::kFinished) row.condition = Condition::kGone;
+  const auto& roster = follower_.roster();
+  row.restarts =
+      static_cast<int>(std::count_if(roster.begin(), roster.end(), [&](const auto& entry) {
+        return entry.author.agent == author.agent && entry.author != author;
+      }));
+  return row;
+}
+
+/// By number: the newest incarnation, and whether it is a member.
+std::map<AgentId, std::pair<Author, bool>> TeamView::newest_lives() const {
+  std::map<AgentId, std::pair<Author, bool>> lives;
+  if (follower_.revision() < 0) {
+    std::map<AgentId, Instant> heard;
+    for (const auto& [author, seen] : agents_) {
+      if (const auto [at, is_new] = heard.try_emplace(author.agent, seen.heard);
+          is_new || seen.heard > at->second) {
+        at->second = seen.heard;
+        lives[author.agent] = {author, true};
+      }
+    }
+    return lives;
+  }
+  std::map<AgentId, Tick> left;
+  for (const RosterEntry& entry : follower_.roster()) {
+    const bool member = entry.active_until < 0;
+    const auto [at, is_new] = left.try_emplace(entry.author.agent, entry.active_until);
+    if (!is_new && !member &&
+        (lives[entry.author.agent].second || entry.active_until <= at->second)) {
+      continue;
+    }
+    at->second = entry.active_until;
+    lives[entry.author.agent] = {entry.author, member};
+  }
+  return lives;
+}
+
+void TeamView::add_agents(TeamPicture& picture, Instant now) const {
+  int members = 0;
+  for (const auto& [id, life] : newest_lives()) {
+    const AgentRow& row = picture.agents.emplace_back(row_of(life.first, life.second, now));
+    members += life.second ? 1 : 0;
+    picture.agents_alive += life.second && row.status && to_s(kSilence) > row.silent_s ? 1 : 0;
+  }
+  const auto& mission = follower_.mission();
+  const int planned = mission ? static_cast<int>(mission->starts_m.size()) : 0;
+  picture.agents_expected = std::max(members, planned);
+  std::stable_sort(picture.agents.begin(), picture.agents.end(),
+                   [](const AgentRow& a, const AgentRow& b) { return a.condition < b.condition; });
+  picture.ergodic_metric = median_metric(picture.agents);
+  picture.trouble |=
+      std::any_of(picture.agents.begin(), picture.agents.end(),
+                  [](const AgentRow& row) { return row.condition < Condition::kUnheard; });
+}
+
+/// A member that is forgotten is dead or unheard by the coordinator.
+void TeamView::add_forgotten(TeamPicture& picture) const {
+  for (const RosterEntry& entry : follower_.roster()) {
+    if (!entry.forgotten) continue;
+    picture.trouble |= entry.active_until < 0;
+    if (picture.forgotten.empty() || picture.forgotten.back() != entry.author.agent) {
+      picture.forgotten.push_back(entry.author.agent);
+    }
+  }
+}
+
+/// Whether a process of that kind has something to say at this stage of the mission.
+bool TeamView::should_speak(AgentId sender) const {
+  if (over() || !follower_.mission()) return sender == kCoordinator && !over();
+  if (sender == kWorld) return follower_.state() == MissionState::kRunning;
+  // A team that does not wait for a logger may fly without one.
+  const bool heard = processes_.contains(sender);
+  return sender == kCoordinator || heard || follower_.mission()->wait_for_logger;
+}
+
+PacingClock::duration TeamView::patience_with(AgentId sender) const {
+  const auto& mission = follower_.mission();
+  if (sender != kWorld || !mission || mission->timing.pace == Pace::kLockstep) return kSilence;
+  return std::max(kSilence, 3 * seconds(mission->timing.dt_s / mission->timing.realtime_factor));
+}
+
+void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) const {
+  ProcessRow row;
+  row.name = sender == kCoordinator ? "coordinator" : sender == kWorld ? "world" : "logger";
+  row.silent_s = to_s(now - since_);
+  if (const auto heard = processes_.find(sender); heard != processes_.end()) {
+    row.heard = true;
+    row.silent_s = to_s(now - heard->second.at);
+    row.incarnation = heard->second.header.incarnation;
+    row.tick = heard->second.header.tick;
+  }
+  if (sender == kCoordinator) row.host = coordinator_host_;
+  row.trouble = should_speak(sender) && row.silent_s >= to_s(patience_with(sender));
+  picture.trouble |= row.trouble;
+  picture.processes.push_back(std::move(row));
+}
+
+TeamPicture TeamView::picture(Instant now) const {
+  TeamPicture picture;
+  picture.run = run_;
+  picture.authenticated = authenticated_;
+  picture.tick_count = tick_count_;
+  if (const auto& mission = follower_.mission()) {
+    picture.scenario = mission->name;
+    picture.tick_count = mission->timing.tick_count;
+    picture.dt_s = mission->timing.dt_s;
+  }
+  picture.tick = picture.tick_count > 0 ? std::min(tick_, picture.tick_count) : tick_;
+  picture.state = follower_.revision() < 0 ? team_state_ : std::optional(follower_.state());
+  picture.reason = follower_.plan_problem().value_or(follower_.reason());
+  picture.missed_deadlines = missed_deadlines_;
+  picture.skipped_ticks = skipped_ticks_;
+  picture.clamped_commands = clamped_commands_;
+  picture.trouble = picture.state == MissionState::kFailed || follower_.plan_problem().has_value();
+  picture.over = over();
+  add_agents(picture, now);
+  add_forgotten(picture);
+  for (const AgentId sender : {kCoordinator, kWorld, kLogger}) add_process(picture, sender, now);
+  const bool under_way = picture.state == MissionState::kRunning && !over();
+  picture.trouble |= under_way && picture.agents_alive < picture.agents_expected;
+  return picture;
+}
+
+bool TeamView::complete() const {
+  if (!follower_.mission()) return false;
+  for (const AgentId sender : {kCoordinator, kWorld, kLogger}) {
+    if (should_speak(sender) && !processes_.contains(sender)) return false;
+  }
+  const auto lives = newest_lives();
+  return std::all_of(lives.begin(), lives.end(), [this](const auto& one) {
+    const auto& [author, member] = one.second;
+    return !member || agents_.contains(author);
+  });
+}
+
+bool TeamView::over() const {
+  if (follower_.over()) return true;
+  bool anybody_finished = false;
+  for (const auto& [id, life] : newest_lives()) {
+    const auto& [author, member] = life;
+    const auto seen = agents_.find(author);
+    const bool finished =
+        seen != agents_.end() && seen->second.status.phase == AgentPhase::kFinished;
+    // Who was struck from the roster, say because it died, will not say that it has finished.
+    if (member && !finished) return false;
+    anybody_finished |= finished;
+  }
+  return anybody_finished;
+}
+
+}  // namespace ergocast

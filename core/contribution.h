@@ -1,0 +1,27 @@
+// What an agent tells of its coverage: the one message that the method itself is about.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/ids.h"
+
+namespace ergocast {
+
+/// Doubles in one block of a contribution; the last block of a mission is padded with zeros.
+inline constexpr int kBlockSize = 128;
+
+/// One block of an agent's running sums: the numerator of (4), cumulative since its start.
+struct Contribution {
+  Header header;
+  std::int64_t steps = 0;        ///< samples in the sums; more steps win
+  Tick next_broadcast_tick = 0;  ///< when its sender will speak again
+  double elapsed_s = 0;          ///< time the sums cover, steps · dt
+  std::int32_t block = 0;
+  std::int32_t mode_count = 0;
+  alignas(16) std::array<double, kBlockSize> sums{};  ///< Σ f_k(x) dt, not divided by h_k [s]
+
+  Author author() const { return {header.sender, header.incarnation}; }
+};
+
+}  // namespace ergocast

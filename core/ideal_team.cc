@@ -1,0 +1,130 @@
+#include "core/ideal_team.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/geometry.h"
+#include "core/vectorized.h"
+
+namespace ergocast::lab {
+
+IdealTeam::IdealTeam(Mission mission, Edges edges)
+    : mission_(std::move(mission)),
+      edges_(edges),
+      table_(mission_.basis, mission_.timing.dt_s),
+      look_ahead_(mission_),
+      coverage_(Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y)),
+      earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
+      controller_(mission_) {
+  for (const Eigen::Vector2d& start_m : mission_.starts_m) {
+    const Author author{static_cast<AgentId>(agents_.size()), 1};
+    table_.add_row(author);
+    agents_.push_back({author,
+                       start_m,
+                       {0, 0},
+                       {0, 0},
+                       BasisAt(start_m, mission_.domain, mission_.basis),
+                       earlier_,
+                       earlier_,
+                       earlier_});
+  }
+}
+
+bool IdealTeam::stands_for(const Mission& mission) {
+  const Timing& timing = mission.timing;
+  const bool all_is_told = timing.broadcast_period_ticks == 1;
+  const bool all_is_known = mission.law.anticipation > 0 && mission.dead_reckoning;
+  return timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
+         (all_is_told || all_is_known);
+}
+
+void IdealTeam::step() {
+  sample();
+  if (look_ahead_.any()) {
+    look_ahead();
+  } else {
+    table_.average(coverage_);
+    controller_.see(coverage_);
+  }
+  for (Agent& agent : agents_) {
+    if (look_ahead_.any()) foresee(agent);
+    agent.v_mps = within_speed_limit(
+        mission_, controller_.command(agent.author.agent, tick_, agent.x_m, agent.at));
+    agent.b = controller_.spectral_gradient();
+  }
+  for (Agent& agent : agents_) {
+    agent.x_m = moved(mission_, agent.author.agent, tick_, agent.x_m, agent.v_mps);
+    if (edges_ == Edges::kReflect) agent.x_m = reflect(agent.x_m, mission_.domain);
+  }
+  ++tick_;
+}
+
+/// Everybody's sums of this tick, and what they gained since the last.
+void IdealTeam::sample() {
+  for (Agent& agent : agents_) {
+    agent.at = BasisAt(agent.x_m, mission_.domain, mission_.basis);
+    table_.add_sample(agent.author, agent.at);
+    if (!look_ahead_.any()) continue;
+    if (mission_.dead_reckoning) {
+      set_basis(agent.at, mission_.basis, mission_.timing.dt_s, agent.gain.data());
+      continue;
+    }
+    const double* sums = table_.sums_of(agent.author);
+    for (std::size_t k = 0; k < agent.gain.size(); ++k) {
+      agent.gain[k] = sums[k] - agent.said[k];
+      agent.said[k] = sums[k];
+    }
+  }
+}
+
+/// What ĉ of core/forecast.h is made of, in its order of additions, where every row was said in
+/// this tick: all agents' sums by as many additions as one agent's take.
+ERGOCAST_VECTORIZED
+void IdealTeam::look_ahead() {
+  const double dt_s = mission_.timing.dt_s;
+  const auto n = static_cast<int>(agents_.size());
+  const double weight_s = look_ahead_.weight_s(look_ahead_.horizon_s(n, tick_), 1, 0, 1);
+  double covered_s = static_cast<double>((tick_ + 1) * n) * dt_s;
+  for (int others = n - 1; others > 0; --others) covered_s += weight_s;
+  per_second_ = 1 / covered_s;
+  share_ = weight_s / dt_s;
+  std::fill(earlier_.begin(), earlier_.end(), 0);
+  for (std::size_t i = agents_.size() - 1; i > 0; --i) {
+    const double* sums = table_.sums_of(agents_[i].author);
+    const double* gain = agents_[i].gain.data();
+    const double* later = agents_[i].later.data();  // 0 of the last
+    double* all = agents_[i - 1].later.data();
+    for (std::size_t k = 0; k < earlier_.size(); ++k)
+      all[k] = later[k] + (sums[k] + share_ * gain[k]);
+  }
+}
+
+/// Shows ĉ to the next agent in the order of the team.
+ERGOCAST_VECTORIZED
+void IdealTeam::foresee(const Agent& agent) {
+  const double* own = table_.sums_of(agent.author);
+  const double* gain = agent.gain.data();
+  const double* later = agent.later.data();
+  double* earlier = earlier_.data();
+  double* foreseen = coverage_.data();
+  for (std::size_t k = 0; k < earlier_.size(); ++k) {
+    foreseen[k] = (earlier[k] + (later[k] + own[k])) * per_second_;
+    earlier[k] += own[k] + share_ * gain[k];
+  }
+  controller_.see(coverage_);
+}
+
+Coefficients IdealTeam::coverage() const {
+  Coefficients known = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+  table_.average(known);
+  return known;
+}
+
+void IdealTeam::run_until(double t_s, const std::function<void()>& each) {
+  while (this->t_s() < t_s - 1e-9) {
+    step();
+    each();
+  }
+}
+
+}  // namespace ergocast::lab

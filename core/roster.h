@@ -1,0 +1,27 @@
+// Who takes part, and whose coverage counts, from which tick on.
+#pragma once
+
+#include <cstdint>
+
+#include "core/ids.h"
+
+namespace ergocast {
+
+struct RosterEntry {
+  Author author;
+  Tick active_from = 0;
+  Tick active_until = -1;  ///< first tick without it; −1 while it is a member
+  bool forgotten = false;           ///< whether its coverage stops counting, or counts again, …
+  Tick since_tick = 0;              ///< … from this tick on, …
+  std::int64_t since_revision = 0;  ///< … once the world flies by this revision or a later one
+  bool active_at(Tick tick) const {
+    return tick >= active_from && (active_until < 0 || tick < active_until);
+  }
+  /// Whether its coverage does not count at a tick that the world flies by roster `revision`. All
+  /// who hear the world agree on that, whoever has heard more of the roster.
+  bool forgotten_at(Tick tick, std::int64_t revision) const {
+    return forgotten == (tick >= since_tick && revision >= since_revision);
+  }
+};
+
+}  // namespace ergocast

@@ -1,0 +1,317 @@
+// Tables and figures of docs/law.md, from the studies that lab/studies/law/run has flown.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "report/figures.h"
+#include "report/statistics.h"
+#include "lab/studies/panels.h"
+#include "lab/studies/table.h"
+
+namespace ergocast::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using Points = std::vector<StudyRuns>;
+
+constexpr const char* kMetric = "ergodic_metric";
+constexpr double kSoon_s = 15;
+
+/// The folders of a group end in these; what the tables and the figure call them.
+struct Law {
+  const char *folder, *name;
+};
+constexpr Law kLaws[] = {{"default", "the default"},
+                         {"old", "version 0.1.0"},
+                         {"classical", "classical"},
+                         {"paper", "the paper's constants"}};
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+/// The point whose names begin with `names`: what a law is made of stands behind them.
+const StudyRuns& named(const Points& points, const std::vector<std::string>& names) {
+  for (const StudyRuns& runs : points) {
+    if (std::equal(names.begin(), names.end(), runs.names.begin())) return runs;
+  }
+  throw std::runtime_error("no runs of " + joined(names));
+}
+
+/// Geometric mean of φ² against another's, seed by seed as far as both go.
+Estimate against(const StudyRuns& ours, const StudyRuns& theirs) {
+  std::vector<double> a = ours.of(kMetric), b = theirs.of(kMetric);
+  const std::size_t count = std::min(a.size(), b.size());
+  a.resize(count);
+  b.resize(count);
+  return ratio_of(a, b);
+}
+
+std::string text(const Estimate& e) {
+  char line[80];
+  std::snprintf(line, sizeof line, "%.3g (%.3g to %.3g)", e.value, e.low, e.high);
+  return line;
+}
+
+double share_within(const std::vector<double>& times_s, double limit_s) {
+  const auto end = std::upper_bound(times_s.begin(), times_s.end(), limit_s);
+  return static_cast<double>(end - times_s.begin()) / static_cast<double>(times_s.size());
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double geometric_mean(std::vector<double> values) {
+  for (double& value : values) value = std::log(value);
+  return std::exp(mean(values));
+}
+
+// ---- the laws ----
+
+/// The geometric mean, what one run in ten exceeds, and the worst: on targets that can be divided
+/// among the team in a wrong way, the first alone would hide what the others say.
+std::string spread(const StudyRuns& runs) {
+  std::vector<double> sorted = runs.of(kMetric);
+  std::sort(sorted.begin(), sorted.end());
+  char line[80];
+  std::snprintf(line, sizeof line, "%.2e · %.1e · %.1e", geometric_mean(sorted),
+                quantile(sorted, 0.9), sorted.back());
+  return line;
+}
+
+/// Studies of one kind, and what stands behind each name of their points.
+struct Group {
+  const char* study;
+  std::vector<std::string> units;
+};
+
+std::string label(const Group& group, const StudyRuns& runs) {
+  std::vector<std::string> names = runs.names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] += group.units.at(i);
+  return joined(names);
+}
+
+void print_rows(const fs::path& folder, const Group& group) {
+  std::vector<Points> laws;
+  for (const Law& law : kLaws) {
+    laws.push_back(
+        read_study(folder / (std::string(group.study) + "-" + law.folder) / "study.csv"));
+  }
+  for (const StudyRuns& ours : laws[0]) {
+    std::printf("| %s | %zu, %zu", label(group, ours).c_str(), ours.of(kMetric).size(),
+                named(laws[1], ours.names).of(kMetric).size());
+    for (const int law : {0, 1, 2})
+      std::printf(" | %s", spread(named(laws[law], ours.names)).c_str());
+    std::printf(" | %.1e", geometric_mean(named(laws[3], ours.names).of(kMetric)));
+    for (const int law : {1, 2})
+      std::printf(" | %s", text(against(ours, named(laws[law], ours.names))).c_str());
+    std::printf(" |\n");
+  }
+}
+
+void print_laws(const fs::path& folder, const std::vector<Group>& groups) {
+  std::printf(
+      "| | runs: default, others | the default | version 0.1.0 | classical | the paper's | default "
+      "against 0.1.0 "
+      "| default against classical |\n|---|---|---|---|---|---|---|---|\n");
+  for (const Group& group : groups) print_rows(folder, group);
+  std::printf("\n");
+}
+
+void print_escapes(const Points& ours, const Points& old, const Points& papers) {
+  std::printf(
+      "| start | agents | within 15 s | median [s] | 99 %% within [s] | last [s] "
+      "| version 0.1.0: within 15 s | the paper's constants: within 15 s "
+      "|\n|---|---|---|---|---|---|---|---|\n");
+  for (const StudyRuns& runs : ours) {
+    const std::vector<double> times_s = runs.escape_times_s();
+    const auto soon = [&](const Points& points) {
+      return 100 * share_within(named(points, runs.names).escape_times_s(), kSoon_s);
+    };
+    std::printf("| %s | %zu | %.2f %% | %.1f | %.1f | %.1f | %.2f %% | %.1f %% |\n",
+                runs.names.front().c_str(), times_s.size(), soon(ours), quantile(times_s, 0.5),
+                quantile(times_s, 0.99), times_s.back(), soon(old), soon(papers));
+  }
+  std::printf("\n");
+}
+
+/// φ² over time, by the columns ergodic_metric_at_T_s.
+void draw_decay(const fs::path& folder, const std::string& group, const fs::path& images) {
+  Panel panel{
+      "φ², geometric mean", log_axis("time [s]", 10, 20000), log_axis("φ²", 5e-8, 0.4), {}, {}};
+  std::vector<KeyEntry> key;
+  for (std::size_t i = 0; i < std::size(kLaws); ++i) {
+    Curve curve{agent_color(static_cast<AgentId>(i)), {}};
+    const StudyRuns runs =
+        read_study(folder / (group + "-" + kLaws[i].folder) / "study.csv").front();
+    for (const auto& [column, values] : runs.columns) {
+      const std::string begin = std::string(kMetric) + "_at_";
+      if (!column.starts_with(begin)) continue;
+      const double t_s = std::stod(column.substr(begin.size()));
+      if (t_s >= 10) curve.points.push_back({t_s, geometric_mean(values)});
+    }
+    curve.points.push_back({std::stod(runs.names.at(1)), geometric_mean(runs.of(kMetric))});
+    std::sort(curve.points.begin(), curve.points.end(),
+              [](const auto& a, const auto& b) { return a.x() < b.x(); });
+    panel.curves.push_back(curve);
+    key.push_back({kLaws[i].name, curve.color});
+  }
+  write_figure(images / "law_decay.svg",
+               figure("law_decay", "φ² over time under four laws", key, {panel}));
+}
+
+// ---- one constant varied ----
+
+/// A constant, and the default that it is compared with.
+struct Ladder {
+  const char *study, *title, *usual;
+};
+constexpr Ladder kLadders[] = {
+    {"anticipation", "anticipation", "2"}, {"epsilon", "ε [of the residual]", "0.05"},
+    {"ceiling", "σ_max [m/√s]", "20"},     {"floor", "σ [m/√s]", "1"},
+    {"contraction", "k [1/s]", "1e-4"},
+};
+
+/// The same scenario and duration at the default.
+const StudyRuns& usual(const Ladder& ladder, const Points& points, const StudyRuns& runs) {
+  std::vector<std::string> names = runs.names;
+  names.at(1) = ladder.usual;
+  return named(points, names);
+}
+
+void print_ladder(const Ladder& ladder, const Points& points) {
+  std::printf(
+      "| %s | start, time [s] | runs | φ² | against its value at %s | left within 15 s | mean "
+      "speed [m/s] "
+      "|\n|---|---|---|---|---|---|---|\n",
+      ladder.title, ladder.usual);
+  for (const StudyRuns& runs : points) {
+    const std::vector<double> times_s = runs.escape_times_s();
+    char left[32] = "";
+    if (!times_s.empty()) {
+      std::snprintf(left, sizeof left, "%.1f %%", 100 * share_within(times_s, kSoon_s));
+    }
+    std::printf("| %s | %s, %s | %zu | %.2e | %s | %s | %.1f |\n", runs.names.at(1).c_str(),
+                runs.names.front().c_str(), runs.names.at(2).c_str(), runs.of(kMetric).size(),
+                geometric_mean(runs.of(kMetric)),
+                text(against(runs, usual(ladder, points, runs))).c_str(), left,
+                mean(runs.of("speed_mean_mps")));
+  }
+  std::printf("\n");
+}
+
+/// One curve for each scenario and duration.
+void draw_ladder(const Ladder& ladder, const Points& points, const fs::path& images) {
+  Panel panel{"φ² against its value at " + std::string(ladder.usual),
+              range_axis("", "", 0, 1),
+              range_axis("", "", 0, 1),
+              {},
+              {}};
+  std::vector<std::string> lines;
+  double low = 1e300, high = 0, least = 0.7, most = 1.6;
+  for (const StudyRuns& runs : points) {
+    const std::string line = runs.names.front() + ", " + runs.names.at(2) + " s";
+    const auto place = std::find(lines.begin(), lines.end(), line) - lines.begin();
+    if (place == std::ssize(lines)) {
+      lines.push_back(line);
+      panel.curves.push_back({agent_color(static_cast<AgentId>(place)), {}});
+    }
+    const double x = std::stod(runs.names.at(1));
+    if (x <= 0) continue;
+    const Estimate ratio = against(runs, usual(ladder, points, runs));
+    Curve& curve = panel.curves.at(static_cast<std::size_t>(place));
+    curve.points.push_back({x, ratio.value});
+    panel.intervals.push_back({curve.color, x, ratio.low, ratio.value, ratio.high});
+    low = std::min(low, x);
+    high = std::max(high, x);
+    least = std::min(least, ratio.low / 1.1);
+    most = std::max(most, ratio.high * 1.1);
+  }
+  panel.y = log_axis("ratio", least, most);
+  panel.x = log_axis(ladder.title, low / 1.3, high * 1.3);
+  std::vector<KeyEntry> key;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    key.push_back({lines[i], panel.curves[i].color, "none", true});
+  const std::string name = std::string("law_") + ladder.study;
+  write_figure(images / (name + ".svg"), figure(name, ladder.title, key, {panel}));
+}
+
+/// What is off or on.
+void print_choice(const std::string& choice, const Points& points) {
+  std::printf("| %s | runs | off | on | on against off |\n|---|---|---|---|---|\n", choice.c_str());
+  for (const StudyRuns& off : points) {
+    if (off.names.at(1) != "false") continue;
+    std::vector<std::string> names = off.names;
+    names[1] = "true";
+    const StudyRuns& on = named(points, names);
+    names.erase(names.begin() + 1);
+    std::printf("| %s | %zu | %s | %s | %s |\n", joined(names).c_str(), on.of(kMetric).size(),
+                spread(off).c_str(), spread(on).c_str(), text(against(on, off)).c_str());
+  }
+  std::printf("\n");
+}
+
+void print_uniform(const Points& points) {
+  std::printf("| agents | runs | φ²(200 s) | slope |\n|---|---|---|---|\n");
+  for (const StudyRuns& runs : points) {
+    const Estimate slope = median_of(runs.of("slope"));
+    std::printf("| %s | %zu | %.3g | %.2f (%.2f to %.2f) |\n", runs.names.at(1).c_str(),
+                runs.of(kMetric).size(), median_of(runs.of(kMetric)).value, slope.value, slope.low,
+                slope.high);
+  }
+  std::printf("\n");
+}
+
+void run(const fs::path& folder, const fs::path& images) {
+  const auto study = [&](const std::string& name) {
+    return read_study(folder / name / "study.csv");
+  };
+  const std::vector<std::string> timed{"", " s"}, sized{"", " s", " agents"},
+      stepped{"", " s", " s a step"};
+  print_laws(folder, {{"promised", timed},
+                      {"short", timed},
+                      {"later", timed},
+                      {"long", timed},
+                      {"sixteen", sized}});
+  print_laws(folder, {{"sizes", sized}, {"large", sized}, {"starts", timed}});
+  print_laws(
+      folder,
+      {{"targets", timed}, {"far", timed}, {"modes", {"", " s", " modes along x", " along y"}}});
+  print_laws(folder, {{"steps", stepped},
+                      {"steps-16", stepped},
+                      {"steps-48", {"", " s", " s a step", " modes along x", " along y"}}});
+  draw_decay(folder, "long", images);
+  print_escapes(study("escape-default"), study("escape-old"), study("escape-paper"));
+  for (const Ladder& ladder : kLadders) {
+    const Points points = study(ladder.study);
+    print_ladder(ladder, points);
+    if (&ladder == kLadders) draw_ladder(ladder, points, images);
+  }
+  print_choice("`paired_pushes`; start, T [s]", study("pairs"));
+  print_choice("`ends_with_plan`; start, T [s]", study("ends"));
+  print_uniform(study("uniform"));
+}
+
+}  // namespace
+}  // namespace ergocast::studies
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: studies-law FOLDER_OF_STUDIES FOLDER_OF_IMAGES\n");
+    return 2;
+  }
+  try {
+    ergocast::studies::run(argv[1], argv[2]);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "studies-law: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,135 @@
+#include "lab/studies/study_run.h"
+
+#include <algorithm>
+#include <variant>
+#include <vector>
+
+#include "core/control.h"
+#include "core/coverage_table.h"
+#include "core/ideal_team.h"
+#include "lab/swarm.h"
+#include "logger/nowhere.h"
+#include "lab/studies/study_measure.h"
+
+namespace ergocast::studies {
+namespace {
+
+/// Of the whole team: each agent tells what it covered at its first tick, and in its turns.
+std::int64_t broadcasts_of(const Mission& mission) {
+  std::int64_t count = 0;
+  for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
+    for (Tick at = 0; at < mission.timing.tick_count; at = next_broadcast(mission, id, at)) ++count;
+  }
+  return count;
+}
+
+int blocks_of(const Basis& basis) { return (basis.mode_count() + kBlockSize - 1) / kBlockSize; }
+
+/// Sees a swarm as its logger does, and adds up coverage as an ideal team does.
+class Observer {
+ public:
+  explicit Observer(const Mission& mission)
+      : mission_(mission),
+        measure_(mission),
+        controller_(mission),
+        table_(mission.basis, mission.timing.dt_s),
+        coverage_(Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y)),
+        vehicles_(mission.starts_m.size()) {
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) table_.add_row(author(i));
+  }
+
+  /// Each message once, when it reaches the logger.
+  void hear(const Message& message) {
+    if (std::holds_alternative<Contribution>(message)) ++contributions_;
+    if (const auto* world = std::get_if<WorldState>(&message)) hear(*world);
+  }
+
+  StudyFigures figures() const {
+    StudyFigures figures = measure_.figures();
+    figures.messages = contributions_;
+    return figures;
+  }
+
+ private:
+  static Author author(std::size_t agent) { return {static_cast<AgentId>(agent), 1}; }
+
+  void hear(const WorldState& world) {
+    if (world.header.tick <= tick_) return;  // said again
+    if (world.header.tick != gathering_) {
+      gathering_ = world.header.tick;
+      parts_ = 0;
+    }
+    for (int i = 0; i < world.vehicle_count; ++i) {
+      const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+      const auto agent = static_cast<std::size_t>(vehicle.id);
+      if (agent < vehicles_.size()) vehicles_[agent] = vehicle;
+    }
+    if (++parts_ == world.parts) take(world.header.tick);
+  }
+
+  /// All of one tick, agent by agent.
+  void take(Tick tick) {
+    tick_ = tick;
+    const bool ended = tick >= mission_.timing.tick_count;
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      if (tick > 0) measure_.command(vehicles_[i].velocity_mps.head<2>());
+      if (ended) continue;
+      const Eigen::Vector2d x_m = vehicles_[i].position_m.head<2>();
+      measure_.position(i, tick, x_m);
+      table_.add_sample(author(i), BasisAt(x_m, mission_.domain, mission_.basis));
+    }
+    if (ended || !measure_.wants_metric(tick)) return;
+    table_.average(coverage_);
+    measure_.metric(tick, controller_.metric(coverage_));
+  }
+
+  const Mission& mission_;
+  StudyMeasure measure_;
+  Controller controller_;
+  CoverageTable table_;
+  Coefficients coverage_;
+  std::vector<Vehicle> vehicles_;  // at tick gathering_
+  Tick tick_ = -1, gathering_ = -1;
+  int parts_ = 0;
+  std::int64_t contributions_ = 0;
+};
+
+}  // namespace
+
+StudyFigures fly_without_messages(const Mission& mission) {
+  StudyMeasure measure(mission);
+  lab::IdealTeam team(mission);
+  for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
+    for (std::size_t i = 0; i < team.size(); ++i) measure.position(i, tick, team.x_m(i));
+    team.step();
+    for (std::size_t i = 0; i < team.size(); ++i) measure.command(team.v_mps(i));
+    if (measure.wants_metric(tick)) measure.metric(tick, team.metric());
+  }
+  StudyFigures figures = measure.figures();
+  figures.messages = broadcasts_of(mission) * blocks_of(mission.basis);
+  return figures;
+}
+
+StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
+  const Mission mission = std::get<Mission>(decode_plan(plan));
+  Observer observer(mission);
+  lab::Options options;
+  options.plan.assign(plan.begin(), plan.end());
+  options.decode_plan = decode_plan;
+  options.agents = static_cast<int>(mission.starts_m.size());
+  options.delivers = [&observer](const Message& message, int seat) {
+    if (seat == lab::kLoggerSeat) observer.hear(message);
+    return true;
+  };
+  Nowhere nowhere;
+  lab::Swarm(std::move(options), nowhere, nowhere).run();
+  return observer.figures();
+}
+
+StudyFigures fly_study_run(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
+  const Mission mission = std::get<Mission>(decode_plan(plan));
+  if (lab::IdealTeam::stands_for(mission)) return fly_without_messages(mission);
+  return fly_with_messages(plan, decode_plan);
+}
+
+}  // namespace ergocast::studies

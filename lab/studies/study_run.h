@@ -1,0 +1,54 @@
+// What one mission was like, in numbers.
+//
+// The mission's ticks are n = 0 … tick_count − 1, at t = n·dt; φ² at tick n counts the samples of
+// ticks 0 … n, as in metrics.csv. Positions are those at the ticks.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/ids.h"
+#include "team/mission_follower.h"
+
+namespace ergocast::studies {
+
+/// Times at which φ² is noted [s]: 1, 2, 5, 10 … 10⁷, as far as a mission goes.
+inline constexpr std::array<double, 22> kLadder_s = {1,   2,   5,   10,  20,  50,  100, 200,
+                                                     500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5,
+                                                     2e5, 5e5, 1e6, 2e6, 5e6, 1e7};
+
+/// Closer to an edge than this share of the domain's shorter side counts as at the edge.
+inline constexpr double kAtEdgeShare = 1e-3;
+
+/// Passes between processes as it is. What does not exist is nan.
+struct StudyFigures {
+  std::uint64_t seed = 0;
+  std::int32_t agents = 0;
+  bool complete = false;                           ///< the mission came to its last tick
+  std::array<double, kLadder_s.size()> metric_at;  ///< φ² at the first tick with t ≥ kLadder_s
+  double metric = 0;                               ///< φ² at the last tick
+  /// The power of t that fits φ² over the last decade of time (logger/slope.h), by 21 ticks evenly
+  /// spaced in log t.
+  double slope = 0;
+  /// When each agent was first farther than escape_distance_m() from the manifold_at() its start:
+  /// infinite if it never was, nan if the start lies on none.
+  std::array<double, kMaxAgents> escape_time_s;
+  /// ‖x − centre of contraction‖², over all agents and ticks.
+  double offset2_mean_m2 = 0, offset2_max_m2 = 0;
+  double edge_share = 0;      ///< of all agents' ticks
+  double speed_mean_mps = 0;  ///< of the vehicles: their commands within the speed limit
+  std::int64_t messages = 0;  ///< contributions sent, those repeated for others included
+};
+
+/// Flies the mission of a compiled plan: without messages where that is the same (IdealTeam), else
+/// with the real cores and codec in virtual time (Swarm), whatever its pace.
+/// @pre the plan decodes
+StudyFigures fly_study_run(std::span<const std::byte> plan, const PlanDecoder& decode_plan);
+
+/// The two ways to fly, which agree on every mission that IdealTeam stands for.
+StudyFigures fly_without_messages(const Mission& mission);
+StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecoder& decode_plan);
+
+}  // namespace ergocast::studies

@@ -1,0 +1,21 @@
+// All checks of this host, in order. Changes nothing on it.
+#pragma once
+
+#include "ops/doctor/finding.h"
+#include "lcmtypes/seal.h"
+#include "runtime/lcm_url.h"
+
+namespace ergocast::doctor {
+
+struct Examination {
+  Findings findings;
+  bool lcm_usable = false;
+  /// Why no probes may be sent to the swarm's port: somebody else is there; empty: nobody.
+  std::string port_taken;
+};
+
+/// @param seal  the team's, if it has a key
+/// @param several_hosts  whether the team is meant to be on more than this one
+Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts);
+
+}  // namespace ergocast::doctor

@@ -1,0 +1,76 @@
+// Who was heard, how well, and by whom this host is heard. No socket and no clock.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/ids.h"
+#include "ops/doctor/probe.h"
+
+namespace ergocast::doctor {
+
+struct Loss {
+  ProbeCount expected, heard;
+  double small_percent() const { return percent(expected.small, heard.small); }
+  double large_percent() const { return percent(expected.large, heard.large); }
+  double percent() const { return percent(expected.all(), heard.all()); }
+
+ private:
+  static double percent(std::uint32_t expected, std::uint32_t heard);
+};
+
+/// One other host, or rather one test on it.
+struct Peer {
+  std::string host, version, address;
+  Loss from_it;
+  std::optional<Loss> to_it;          ///< as it says; nothing if it never says that it hears us
+  std::vector<double> round_trips_s;  ///< ascending
+  std::int64_t duplicates = 0;
+  std::uint64_t key = 0;  ///< the fingerprint of its mission key; 0 without one
+
+  /// Whether it was heard for long enough (half a second) to say whom it hears.
+  bool judged() const { return from_it.heard.all() >= kProbesPerSecond / 2; }
+  /// @pre there are round trips
+  double round_trip_s(double quantile) const;
+};
+
+class PeerLedger {
+ public:
+  /// @param key  the fingerprint of ours
+  PeerLedger(std::uint64_t nonce, std::string host, std::string version, std::uint64_t key = 0);
+
+  /// The next probe to send. @pre at most kMaxProbes times
+  Probe next(Instant now);
+  void take(const Probe& probe, const std::string& address, Instant now);
+
+  std::uint32_t sent() const { return static_cast<std::uint32_t>(sent_at_.size()); }
+  /// By host.
+  std::vector<Peer> peers() const;
+  /// Tests that others went on hearing for a second and that this host never heard.
+  int only_heard_by_others() const;
+
+ private:
+  struct Row {
+    Peer peer;
+    std::vector<bool> seen;
+    std::uint32_t first = 0, last = 0;
+    Instant last_at{};
+    std::optional<std::uint32_t> last_timed;  // our probe of the newest round trip
+  };
+  void count(const Probe& probe, Instant now, Row& row);
+  void take_echo(const Echo& echo, Instant now, Row& row);
+
+  std::uint64_t nonce_;
+  std::string host_, version_;
+  std::uint64_t key_;
+  std::vector<Instant> sent_at_;
+  std::map<std::uint64_t, Row> rows_;
+  struct Rumour {
+    std::uint32_t first = 0, last = 0;
+  };
+  std::map<std::uint64_t, Rumour> rumours_;  // by nonce, what others hear
+};
+
+}  // namespace ergocast::doctor

@@ -1,0 +1,25 @@
+// Findings and peers for people and for programs.
+#pragma once
+
+#include <string>
+
+#include "ops/doctor/finding.h"
+#include "ops/doctor/peer_exchange.h"
+#include "runtime/lcm_url.h"
+
+namespace ergocast::doctor {
+
+struct Look {
+  bool coloured = false;
+  int columns = 100;  ///< width at which explanations are wrapped
+};
+
+/// The worst first.
+std::string text_of(const LcmUrl& url, Findings findings, const Look& look);
+/// A table, one line a peer; empty without peers.
+std::string text_of(const std::vector<Peer>& peers);
+
+/// {"url", "host", "findings": […], "peers": […]}.
+std::string json_of(const LcmUrl& url, const Findings& findings, const std::vector<Peer>& peers);
+
+}  // namespace ergocast::doctor

@@ -1,0 +1,78 @@
+// A plot's coordinate system: which values fall where, and the ticks and labels that say so.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "report/polyline.h"
+#include "report/raster.h"
+#include "report/svg.h"
+
+namespace ergocast {
+
+constexpr double kRoomLeft = 66, kRoomBelow = 48;  ///< of a plot, for labels
+
+enum class Scale { kLinear, kLog };
+
+/// One axis. Made by one of the functions below, low < high, both finite, and both > 0 if
+/// logarithmic.
+struct Axis {
+  std::string title;
+  double low = 0, high = 1;
+  Scale scale = Scale::kLinear;
+  double label_unit = 1;  ///< labels are values divided by this
+  std::vector<std::string> names{};  ///< if any, of the values 1, 2 …: the only marks
+
+  /// 0 at the low end, 1 at the high end.
+  double position(double value) const;
+};
+
+/// Exactly from `low` to `high`; "title [unit]".
+Axis range_axis(const std::string& title, const std::string& unit, double low, double high);
+/// From 0 to a little above the largest value; labels of tiny or huge values are in a power of
+/// ten that the title names.
+Axis amount_axis(const std::string& title, const std::string& unit, double largest);
+/// Logarithmic from `low` to `high`; each must be > 0 or is replaced.
+Axis log_axis(const std::string& title, double low, double high);
+/// Names side by side, at 1, 2 …
+Axis named_axis(const std::string& title, std::vector<std::string> names);
+
+struct AxisMark {
+  double value = 0;
+  std::string label;  ///< empty: a fine line without a number
+};
+/// Round values along the axis, about `count` of them with labels.
+std::vector<AxisMark> marks(const Axis& axis, int count);
+
+/// A rectangle of a drawing with two axes.
+class Plot {
+ public:
+  Plot(Svg& svg, const Box& area, Axis x, Axis y);
+
+  const Box& area() const { return area_; }
+  Eigen::Vector2d at(double x, double y) const;
+  Eigen::Vector2d at(const Eigen::Vector2d& point) const { return at(point.x(), point.y()); }
+
+  /// Grid lines, below what is plotted.
+  void grid();
+  /// Frame, tick labels and titles, above what is plotted.
+  void frame();
+  /// `field` stretched over the whole area.
+  void image(const Field& field, const ColorScale& colors, bool smooth);
+  /// A curve over ascending x, cut off at the area's edge. Logarithms of values ≤ 0 are left out.
+  void curve(const Polyline& points, std::string_view attributes);
+  /// In the middle of the area: why nothing is drawn.
+  void say(std::string_view message);
+
+ private:
+  Svg& svg_;
+  Box area_;
+  Axis x_, y_;
+};
+
+/// A strip of colours right of `area`, with labels, and its title above.
+void color_bar(Svg& svg, const Box& area, const ColorScale& colors, const Axis& axis);
+
+}  // namespace ergocast

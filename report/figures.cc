@@ -1,0 +1,49 @@
+#include "report/figures.h"
+
+#include <array>
+
+#include "report/markup.h"
+
+namespace ergocast {
+
+std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target) {
+  const Coefficients coverage = coverage_of(run, mission);
+  return {trajectories_figure(run, mission, target), metric_figure(run, mission),
+          coverage_figure(coverage, mission),        coefficients_figure(coverage, mission),
+          speeds_figure(run, mission),               communication_figure(run, mission)};
+}
+
+std::string conventions_line(const Basis& basis) {
+  const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
+  return std::string("λ = (1 + |k|") + (squared ? "²" : "") + ")^−" +
+         readable(basis.sobolev_exponent) + ", f " + (basis.normalized ? "" : "not ") +
+         "divided by hₖ, " + std::to_string(basis.modes_x) + " × " +
+         std::to_string(basis.modes_y) + " modes";
+}
+
+std::string agent_color(AgentId agent) {
+  static constexpr std::array<const char*, kAgentColors> kColors = {
+      "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a4fb5"};
+  return kColors[static_cast<std::size_t>(agent) % kColors.size()];
+}
+
+double agent_legend(Svg& svg, const RunData& run, double left, double top, double width) {
+  constexpr double kRow = 18, kColumn = 72;
+  if (run.tracks.size() > kAgentColors) {
+    svg.text({left, top + 12}, "class=\"tick\"",
+             std::to_string(run.tracks.size()) + " agents; the colours repeat after " +
+                 std::to_string(kAgentColors));
+    return kRow;
+  }
+  double x = left, y = top;
+  for (const auto& [agent, track] : run.tracks) {
+    if (x + kColumn > left + width) x = left, y += kRow;
+    svg.line({x, y + 8}, {x + 18, y + 8},
+             "stroke-width=\"3\" stroke=\"" + agent_color(agent) + '"');
+    svg.text({x + 23, y + 12}, "class=\"tick\"", "agent " + std::to_string(agent));
+    x += kColumn;
+  }
+  return y + kRow - top;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,55 @@
+// The six figures of a report. Each is a complete SVG document; an empty run gives empty plots.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mission.h"
+#include "report/raster.h"
+#include "logger/run_data.h"
+#include "report/svg.h"
+
+namespace ergocast {
+
+struct Figure {
+  std::string name;     ///< of its file, without ".svg"
+  std::string title;
+  std::string caption;  ///< what to see in it, in a sentence or two; plain text
+  std::string svg;
+  bool wide = false;    ///< needs the width of two others
+};
+
+/// Where the agents went, over the target density: crosses are starts, circles are ends.
+/// @param target  in multiples of the uniform density; if empty, what μ_k say of it is drawn
+Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target);
+
+/// φ² against t, log–log, with the power of t that fits the last decade.
+Figure metric_figure(const RunData& run, const Mission& mission);
+
+/// Σ c_k f_k beside Σ μ_k f_k, f normalised, in the same colours. `coverage` is c_k, or all zero.
+Figure coverage_figure(const Coefficients& coverage, const Mission& mission);
+
+/// |c_k − μ_k| of every mode, logarithmic. `coverage` is c_k, or all zero.
+Figure coefficients_figure(const Coefficients& coverage, const Mission& mission);
+
+/// Each agent's commanded speed over time.
+Figure speeds_figure(const RunData& run, const Mission& mission);
+
+/// Contributions received and lost, staleness, and how much the agents' own φ² differ.
+Figure communication_figure(const RunData& run, const Mission& mission);
+
+/// All of them, in the order of the report.
+std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target);
+
+/// "λ = (1 + |k|²)^−1.5, f not divided by hₖ, 15 × 15 modes": what a φ² means nothing without.
+std::string conventions_line(const Basis& basis);
+
+/// The colour of an agent, "#rrggbb": seven that are told apart with any colour vision (Okabe and
+/// Ito's, without those that vanish on white), then again from the first.
+std::string agent_color(AgentId agent);
+inline constexpr std::size_t kAgentColors = 7;
+
+/// A key to the agents' colours in rows of at most `width` pixels below `top`; the pixels it took.
+double agent_legend(Svg& svg, const RunData& run, double left, double top, double width);
+
+}  // namespace ergocast

@@ -1,0 +1,277 @@
+// The figures that are maps: of the domain, and of the modes.
+#include <algorithm>
+#include <cmath>
+
+#include "report/axes.h"
+#include "report/figures.h"
+#include "report/markup.h"
+
+namespace ergocast {
+namespace {
+
+constexpr double kBar = 72;                   // room for the bar of colours
+constexpr double kTitled = 30, kLegend = 48;  // room above it
+constexpr double kSide = 424;                 // of a map that shares its row with another
+constexpr double kWholeRow = 990;
+constexpr double kMostCells = 128;                 // along the longer side of a field
+constexpr double kFewestCells = kMaxModesPerAxis;  // so that no mode is mistaken for another
+
+/// The largest box of the proportions of `size` in kSide × `width`; never thinner than what can
+/// carry labels.
+Box fitted(double top, double width, const Eigen::Vector2d& size) {
+  constexpr double kThinnest = 60;
+  const double scale = std::min(width / size.x(), kSide / size.y());
+  return {kRoomLeft, top, std::max(size.x() * scale, kThinnest),
+          std::max(size.y() * scale, kThinnest)};
+}
+
+/// Maps of long domains get a row of their own.
+bool long_domain(const Rectangle& domain) { return domain.size_m.x() > 2 * domain.size_m.y(); }
+
+Box map_area(double top, const Rectangle& domain) {
+  return fitted(top, long_domain(domain) ? kWholeRow : kSide, domain.size_m);
+}
+
+Axis x_axis(const Rectangle& domain) {
+  return range_axis("x", "m", domain.origin_m.x(), domain.origin_m.x() + domain.size_m.x());
+}
+
+Axis y_axis(const Rectangle& domain) {
+  return range_axis("y", "m", domain.origin_m.y(), domain.origin_m.y() + domain.size_m.y());
+}
+
+/// `value(x)` at the centres of a grid of nearly square cells over the domain.
+template <class Value>
+Field sample(const Rectangle& domain, const Value& value) {
+  const Eigen::Vector2d cells =
+      (domain.size_m / domain.size_m.maxCoeff() * kMostCells).cwiseMax(kFewestCells);
+  Field field(static_cast<Eigen::Index>(cells.x()), static_cast<Eigen::Index>(cells.y()));
+  const Eigen::Vector2d cell_m(domain.size_m.x() / static_cast<double>(field.rows()),
+                               domain.size_m.y() / static_cast<double>(field.cols()));
+  for (Eigen::Index i = 0; i < field.rows(); ++i) {
+    for (Eigen::Index j = 0; j < field.cols(); ++j) {
+      const Eigen::Vector2d center(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
+      field(i, j) = value(domain.origin_m + cell_m.cwiseProduct(center));
+    }
+  }
+  return field;
+}
+
+/// Σ a_k f_k / mean(f_k²): what the coefficients say of the density, in multiples of uniform.
+Field reconstruction(const Coefficients& coefficients, const Mission& mission) {
+  Coefficients weights = coefficients;
+  weights.bottomRows(weights.rows() - 1) *= 2;  // mean(cos²) = ½ along each axis that varies
+  weights.rightCols(weights.cols() - 1) *= 2;
+  return sample(mission.domain, [&](const Eigen::Vector2d& x_m) {
+    return basis_values(x_m, mission.domain, mission.basis).cwiseProduct(weights).sum();
+  });
+}
+
+// --- trajectories ---
+
+constexpr std::size_t kMostTrackPoints = 50'000;  // together; about 7 bytes each
+constexpr double kUnseen = 0.15;                  // a deviation in pixels that nobody sees
+
+struct DrawnTracks {
+  std::map<AgentId, Polyline> lines;
+  double from_s = 0;  ///< what came before is left out
+  std::size_t points = 0;
+  double length = 0;
+};
+
+DrawnTracks draw_tracks(const RunData& run, const Plot& plot, double from_s) {
+  DrawnTracks drawn;
+  drawn.from_s = from_s;
+  for (const auto& [agent, track] : run.tracks) {
+    Polyline line;
+    for (const TrackPoint& point : track) {
+      if (point.t_s >= from_s) line.push_back(plot.at(point.x_m));
+    }
+    line = simplify(line, kUnseen);
+    for (std::size_t i = 1; i < line.size(); ++i) drawn.length += (line[i] - line[i - 1]).norm();
+    drawn.points += line.size();
+    drawn.lines[agent] = std::move(line);
+  }
+  return drawn;
+}
+
+/// All of the tracks, or of very long ones as much of the end as fits.
+DrawnTracks draw_tracks(const RunData& run, const Plot& plot) {
+  DrawnTracks drawn = draw_tracks(run, plot, 0);
+  if (drawn.points <= kMostTrackPoints) return drawn;
+  const double kept = static_cast<double>(kMostTrackPoints) / static_cast<double>(drawn.points);
+  return draw_tracks(run, plot, run.end_s() * (1 - kept));
+}
+
+/// Lines this wide cover at most about half of the ground together.
+double stroke_width(double length, const Box& area) {
+  constexpr double kInk = 0.5;
+  return std::clamp(kInk * area.width * area.height / std::max(length, 1.0), 0.4, 1.6);
+}
+
+/// Lines along the edges, where classical agents are caught, are drawn in full.
+void draw_lines(Svg& svg, const DrawnTracks& tracks, const Box& area) {
+  const std::string width = fixed(stroke_width(tracks.length, area), 2);
+  svg.begin_clip({area.left - 1, area.top - 1, area.width + 2, area.height + 2});
+  for (const auto& [agent, line] : tracks.lines) {
+    svg.path(path_data(line),
+             "class=\"curve\" stroke-width=\"" + width + "\" stroke=\"" + agent_color(agent) + '"');
+  }
+  svg.end_clip();
+}
+
+/// Crosses over open circles, so that an agent that never moved shows both.
+void draw_ends(Svg& svg, const RunData& run, const Plot& plot) {
+  constexpr double kArm = 5, kRadius = 5;
+  const Eigen::Vector2d falling(kArm, kArm), rising(kArm, -kArm);
+  for (const auto& [agent, track] : run.tracks) {
+    const Eigen::Vector2d end = plot.at(track.back().x_m);
+    svg.circle(end, kRadius + 2, "fill=\"#fff\"");
+    svg.circle(end, kRadius,
+               "fill=\"none\" stroke-width=\"2.6\" stroke=\"" + agent_color(agent) + '"');
+  }
+  for (const auto& [agent, track] : run.tracks) {
+    const Eigen::Vector2d start = plot.at(track.front().x_m);
+    const std::string cross =
+        path_data({start - falling, start + falling}) + path_data({start - rising, start + rising});
+    svg.path(cross, "fill=\"none\" stroke=\"#fff\" stroke-width=\"4.6\" stroke-linecap=\"round\"");
+    svg.path(cross, "fill=\"none\" stroke-width=\"2.4\" stroke=\"" + agent_color(agent) + '"');
+  }
+}
+
+/// Numbers beside the circles where colours alone do not tell the agents apart, as long as there
+/// is room for them.
+void draw_numbers(Svg& svg, const RunData& run, const Plot& plot) {
+  constexpr std::size_t kMostNumbers = 24;
+  if (run.tracks.size() <= kAgentColors || run.tracks.size() > kMostNumbers) return;
+  for (const auto& [agent, track] : run.tracks) {
+    const Eigen::Vector2d end = plot.at(track.back().x_m);
+    const bool at_edge = end.x() > plot.area().right() - 24;
+    svg.text(end + Eigen::Vector2d(at_edge ? -8 : 8, 4),
+             at_edge ? "class=\"onmap halo end\"" : "class=\"onmap halo\"", std::to_string(agent));
+  }
+}
+
+void draw_signs(Svg& svg, double right, double y) {
+  const double x = right - 92;
+  svg.path(path_data({{x, y + 4}, {x + 8, y + 12}}) + path_data({{x, y + 12}, {x + 8, y + 4}}),
+           "class=\"mark\" fill=\"none\" stroke-width=\"2\"");
+  svg.text({x + 13, y + 12}, "class=\"tick\"", "start");
+  svg.circle({x + 55, y + 8}, 4.5, "class=\"mark\" fill=\"none\" stroke-width=\"2\"");
+  svg.text({x + 64, y + 12}, "class=\"tick\"", "end");
+}
+
+std::string trajectories_caption(const RunData& run, double from_s) {
+  if (run.empty()) return "No position was recorded; the ground shows the target density.";
+  std::string caption =
+      "Crosses mark where the agents started, circles where they were at the end; the darker the "
+      "ground, the more of their time the target asks for there.";
+  if (from_s > 0) {
+    caption += " Only the last " + duration(run.end_s() - from_s) +
+               " of the paths are drawn: all of it would hide the ground.";
+  }
+  return caption;
+}
+
+// --- coverage and coefficients ---
+
+void draw_field(Svg& svg, const Box& area, const Field& field, double brightest,
+                const Rectangle& domain, std::string_view title) {
+  Plot plot(svg, area, x_axis(domain), y_axis(domain));
+  plot.image(field / brightest, viridis(), true);
+  plot.frame();
+  svg.text({area.left, area.top - 9}, "class=\"head\"", title);
+}
+
+Axis mode_axis(const std::string& title, int modes) {
+  return range_axis(title, "", -0.5, modes - 0.5);
+}
+
+/// log |c − μ| between the decades `low` and `high`, as 0 … 1.
+Field log_levels(const Coefficients& difference, const Axis& colors) {
+  return difference.unaryExpr(
+      [&](double value) { return value > colors.low ? colors.position(value) : 0.0; });
+}
+
+/// The three decades below the largest difference.
+Axis difference_axis(const Coefficients& difference) {
+  const double largest = difference.maxCoeff();
+  return log_axis("|cₖ − μₖ|", largest / 1000, largest);
+}
+
+}  // namespace
+
+Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target) {
+  const Box area = map_area(kLegend, mission.domain);
+  Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "trajectories", "Trajectories");
+  Plot plot(svg, area, x_axis(mission.domain), y_axis(mission.domain));
+
+  const Field ground =
+      target.size() > 0 ? target : reconstruction(mission.target_coefficients, mission);
+  // A uniform target is to look like paper, not like its own peak.
+  const double densest = std::max(2.0, ground.maxCoeff());
+  plot.image(ground / densest, pencil(), true);
+
+  const DrawnTracks tracks = draw_tracks(run, plot);
+  plot.frame();
+  draw_lines(svg, tracks, area);
+  draw_ends(svg, run, plot);
+  draw_numbers(svg, run, plot);
+  agent_legend(svg, run, kRoomLeft, 4, area.width);
+  if (!run.empty()) draw_signs(svg, area.right() + kBar - 8, 4);
+  color_bar(svg, area, pencil(), range_axis("density, × uniform", "", 0, densest));
+  return {"trajectories", "Where the agents went", trajectories_caption(run, tracks.from_s),
+          svg.str(), long_domain(mission.domain)};
+}
+
+Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
+  constexpr double kGap = 84;
+  const Field target = reconstruction(mission.target_coefficients, mission);
+  const Field achieved = reconstruction(coverage, mission);
+  // Some room above the target's own peak, for coverage that is too dense somewhere.
+  const double peak = target.maxCoeff();
+  const double brightest = std::clamp(achieved.maxCoeff(), peak, 1.5 * peak);
+
+  const Box first = map_area(kTitled, mission.domain);
+  const Box second = long_domain(mission.domain)
+                         ? Box{first.left, first.bottom() + kGap, first.width, first.height}
+                         : Box{first.right() + kGap, first.top, first.width, first.height};
+  Svg svg(second.right() + kBar, second.bottom() + kRoomBelow, "coverage",
+          "Coverage beside the target");
+  draw_field(svg, first, achieved, brightest, mission.domain, "achieved: Σ cₖ fₖ");
+  draw_field(svg, second, target, brightest, mission.domain, "target: Σ μₖ fₖ");
+  color_bar(svg, second, viridis(), range_axis("time spent, × uniform", "", 0, brightest));
+
+  std::string caption =
+      "Where the team spent its time beside where the target wants it, both as blurred as " +
+      std::to_string(mission.basis.modes_x) + " × " + std::to_string(mission.basis.modes_y) +
+      " modes show them.";
+  if (achieved.maxCoeff() > 1.01 * brightest) {
+    caption += " The achieved coverage reaches " + readable(achieved.maxCoeff()) +
+               " × uniform, beyond the end of the scale.";
+  }
+  return {"coverage", "Coverage achieved and wanted", caption, svg.str(), true};
+}
+
+Figure coefficients_figure(const Coefficients& coverage, const Mission& mission) {
+  const Coefficients difference = (coverage - mission.target_coefficients).cwiseAbs();
+  const Axis colors = difference_axis(difference);
+  const Eigen::Vector2d modes(mission.basis.modes_x, mission.basis.modes_y);
+  const Box area = fitted(kTitled, kSide, modes);
+  Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "coefficients", "Differences by mode");
+  Plot plot(svg, area, mode_axis("m (half waves along x)", mission.basis.modes_x),
+            mode_axis("n (half waves along y)", mission.basis.modes_y));
+  if (coverage(0, 0) == 0) {
+    plot.say("no position was recorded");
+  } else {
+    plot.image(log_levels(difference, colors), viridis(), false);
+  }
+  plot.frame();
+  color_bar(svg, area, viridis(), colors);
+  return {"coefficients", "What is left to cover, by scale",
+          "Each cell is one mode; large features of the target are at the lower left, fine ones at "
+          "the upper right, and bright cells still differ from the target.",
+          svg.str()};
+}
+
+}  // namespace ergocast

@@ -1,0 +1,135 @@
+#include "report/markup.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+namespace ergocast {
+namespace {
+
+constexpr const char* kMinus = "−";
+constexpr const char* kNarrowSpace = "\u202f";
+
+std::string plain_fixed(double value, int decimals) {
+  char text[400];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
+  return {text, end.ptr};
+}
+
+void trim_zeros(std::string& digits) {
+  if (digits.find('.') == std::string::npos) return;
+  digits.erase(digits.find_last_not_of('0') + 1);
+  if (digits.back() == '.') digits.pop_back();
+}
+
+/// Groups of three before the point from 10 000 on, and a real minus sign.
+std::string typeset(std::string digits) {
+  const bool negative = digits.front() == '-';
+  if (negative) digits.erase(0, 1);
+  const std::size_t whole = std::min(digits.find('.'), digits.size());
+  if (whole >= 5) {
+    for (std::size_t i = whole - 3; i > 0 && i < whole; i = i > 3 ? i - 3 : 0) {
+      digits.insert(i, kNarrowSpace);
+    }
+  }
+  return negative && digits != "0" ? kMinus + digits : digits;
+}
+
+std::string superscript(int number) {
+  static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = number < 0 ? "⁻" : "";
+  for (const char digit : std::to_string(std::abs(number))) text += kDigits[digit - '0'];
+  return text;
+}
+
+int decade_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      case '\'': out += "&#39;"; break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') {
+          out += "\ufffd";
+        } else {
+          out += c;
+        }
+    }
+  }
+  return out;
+}
+
+std::string fixed(double value, int decimals) {
+  std::string digits = plain_fixed(value, decimals);
+  trim_zeros(digits);
+  return digits == "-0" ? "0" : digits;
+}
+
+std::string readable(double value) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0) return "0";
+  const double size = std::abs(value);
+  if (size < 1e15 && value == std::round(value)) return typeset(plain_fixed(value, 0));
+  int decade = decade_of(value);
+  if (decade >= -3 && decade < 6) {
+    std::string digits = plain_fixed(value, std::max(0, 2 - decade));
+    trim_zeros(digits);
+    return typeset(digits);
+  }
+  std::string mantissa = plain_fixed(value / std::pow(10, decade), 2);
+  if (mantissa == "10.00" || mantissa == "-10.00") {
+    mantissa.erase(mantissa.find('0'), 1);
+    ++decade;
+  }
+  trim_zeros(mantissa);
+  return typeset(mantissa) + " × 10" + superscript(decade);
+}
+
+std::string with_unit(double value, std::string_view unit) {
+  static constexpr const char* kPrefixes[] = {"µ", "m", "", "k", "M", "G", "T"};
+  int prefix = value == 0 ? 0 : static_cast<int>(std::floor(decade_of(value) / 3.0));
+  prefix = std::clamp(prefix, -2, 4);
+  const double scaled = value / std::pow(1000, prefix);
+  return readable(scaled) + "\u00a0" + kPrefixes[prefix + 2] + std::string(unit);
+}
+
+std::string duration(double seconds) {
+  if (!(seconds >= 120 && seconds < 1e15)) return readable(seconds) + "\u00a0s";
+  const double unit = seconds < 3600 ? 1 : 60;  // seconds are lost in hours
+  const auto whole = static_cast<long long>(std::round(seconds / unit) * unit);
+  const long long hours = whole / 3600, minutes = whole / 60 % 60, rest = whole % 60;
+  std::string text;
+  if (hours > 0) text += std::to_string(hours) + "\u00a0h ";
+  if (minutes > 0) text += std::to_string(minutes) + "\u00a0min ";
+  if (rest > 0) text += std::to_string(rest) + "\u00a0s ";
+  text.pop_back();
+  return text;
+}
+
+std::string power_of_ten(int exponent, bool plain) {
+  if (!plain) return "10" + superscript(exponent);
+  return typeset(plain_fixed(std::pow(10, exponent), std::max(0, -exponent)));
+}
+
+double text_width(std::string_view text, double size) {
+  constexpr double kMeanAdvance = 0.56;  // of the size, for digits and lower case
+  const auto starts_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
+  const auto characters = std::count_if(text.begin(), text.end(), starts_character);
+  return kMeanAdvance * size * static_cast<double>(characters);
+}
+
+std::string axis_label(double value, double step) {
+  const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 12);
+  // A tick at a rounding error from 0 is 0.
+  return typeset(plain_fixed(std::abs(value) < step * 1e-6 ? 0 : value, decimals));
+}
+
+}  // namespace ergocast

@@ -1,0 +1,46 @@
+#include "report/report.h"
+
+#include "report/figures.h"
+#include "report/page.h"
+#include "logger/run_data.h"
+#include "logger/run_record.h"
+#include "logger/summary.h"
+#include "report/target_density.h"
+
+namespace ergocast {
+namespace {
+namespace fs = std::filesystem;
+}
+std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& run_dir,
+                                                               const Mission& mission) {
+  auto run = read_run(run_dir);
+  if (auto* problem = std::get_if<std::string>(&run)) return std::move(*problem);
+  auto summary = read_summary(run_dir);
+  if (auto* problem = std::get_if<std::string>(&summary)) return std::move(*problem);
+  auto target = read_target_density(run_dir / kTargetDensityFile);
+  if (auto* problem = std::get_if<std::string>(&target)) return std::move(*problem);
+
+  const auto& data = std::get<RunData>(run);
+  const std::vector<Figure> figures = draw_figures(data, mission, std::get<Field>(target));
+  std::vector<ReportFile> files;
+  for (const Figure& figure : figures) {
+    files.push_back({fs::path("figures") / (figure.name + ".svg"), figure.svg});
+  }
+  files.push_back({kReportFile, report_page(data, mission, std::get<nlohmann::ordered_json>(summary),
+                                            figures)});
+  return files;
+}
+
+std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission) {
+  const auto drawn = draw_report(run_dir, mission);
+  if (const auto* problem = std::get_if<std::string>(&drawn)) return *problem;
+  std::error_code error;
+  fs::create_directories(run_dir / "figures", error);
+  if (error) return (run_dir / "figures").string() + ": " + error.message();
+  for (const ReportFile& file : std::get<std::vector<ReportFile>>(drawn)) {
+    if (auto problem = write_file(run_dir / file.path, file.text)) return problem;
+  }
+  return {};
+}
+
+}  // namespace ergocast

@@ -1,0 +1,39 @@
+// The target density for people to look at: averages over the cells of a grid of the domain.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "target/raster_integral.h"
+#include "target/target.h"
+
+namespace ergocast {
+
+/// One number a cell: row i along x, column j along y, both upwards from the domain's origin.
+using DensityGrid = Eigen::MatrixXd;
+
+/// Averages over a raster's cells, row by row as RasterIntegral takes them.
+class RasterPicture {
+ public:
+  RasterPicture(const RasterGrid& grid, const Rectangle& domain, int cells_x, int cells_y);
+  void add_row(int row, std::span<const double> values);
+
+  /// Density [1/m²] of a raster whose whole mass is 1, exact but for rounding.
+  DensityGrid density() const;
+
+ private:
+  RasterGrid grid_;
+  Rectangle domain_;
+  DensityGrid mass_;
+  double whole_ = 0;
+};
+
+/// Σ of the target's parts [1/m²], before the division by its mass. `maps` holds the weighted
+/// densities of the maps. The edges of regions and keep-outs are exact along x and sampled eight
+/// times a cell along y; Gaussians are exact
+/// without correlation, with it averages of 4 × 4 points.
+DensityGrid density_picture(const TargetDensity& target, const DensityGrid& maps,
+                            const Rectangle& domain);
+
+}  // namespace ergocast

@@ -1,0 +1,34 @@
+// ∫ f_mn of one Gaussian, over the domain or what is left of it.
+#pragma once
+
+#include <span>
+
+#include "target/target.h"
+#include "target/trapezoids.h"
+
+namespace ergocast {
+
+/// N(x) of one Gaussian, without its weight [1/m²].
+class GaussianDensity {
+ public:
+  explicit GaussianDensity(const Gaussian& gaussian);
+  double operator()(const Eigen::Vector2d& x_m) const;
+
+ private:
+  Eigen::Vector2d mean_m_;
+  Eigen::Matrix2d precision_;
+  double scale_;
+};
+
+/// ∫ f_mn N over the whole domain. A diagonal covariance makes it a product of two one-dimensional
+/// integrals, exact to rounding (about 1e-14); with correlation it is taken by Gauss–Legendre
+/// panels, doubled until two successive results agree to 1e-12 or the limit of panels is reached.
+TargetCoefficients integrals_over_domain(const Gaussian& gaussian, const Rectangle& domain,
+                                         const Basis& basis);
+
+/// The same over `pieces` of it: panels along y, and at each of their nodes panels along x between
+/// the piece's sides, as wide as the Gaussian at that y. Doubled likewise.
+TargetCoefficients integrals_over(const Gaussian& gaussian, std::span<const Trapezoid> pieces,
+                                  const Rectangle& domain, const Basis& basis);
+
+}  // namespace ergocast

@@ -1,0 +1,69 @@
+#include "target/map_file.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "target/ascii_grid.h"
+#include "target/csv_map.h"
+#include "target/png_map.h"
+#include "text/regular_file.h"
+
+namespace ergocast {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Why `file` cannot be opened, if so.
+std::optional<MapProblem> check_file(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) {
+    return MapProblem{file.string() + ": there is no such file",
+                      "check the name; it counts from the scenario file's folder"};
+  }
+  if (const auto why = why_not_regular(file)) {
+    return MapProblem{file.string() + ' ' + *why, "name the map itself"};
+  }
+  if (!std::ifstream(file).is_open()) {
+    return MapProblem{file.string() + " cannot be read", "check its permissions"};
+  }
+  if (fs::file_size(file, error) == 0) {
+    return MapProblem{file.string() + " is empty", "write the map again"};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<MapKind> map_kind(const fs::path& file) {
+  std::string end = file.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (end == ".png") return MapKind::kPng;
+  if (end == ".csv") return MapKind::kCsv;
+  if (end == ".asc") return MapKind::kAsciiGrid;
+  return {};
+}
+
+OpenedMap open_map(const fs::path& file) {
+  if (auto problem = check_file(file)) return std::move(*problem);
+  switch (map_kind(file).value()) {
+    case MapKind::kPng:
+      return open_png_map(file);
+    case MapKind::kCsv:
+      return open_csv_map(file);
+    default:
+      return open_ascii_grid(file);
+  }
+}
+
+std::optional<MapProblem> check_dimensions(const fs::path& file, long long columns,
+                                           long long rows) {
+  if (columns >= 1 && rows >= 1 && columns <= kMaxMapSide && rows <= kMaxMapSide) return {};
+  const std::string limit = std::to_string(kMaxMapSide);
+  return MapProblem{file.string() + " has " + std::to_string(columns) + " columns and " +
+                        std::to_string(rows) + " rows; the limits are 1 and " + limit,
+                    "scale it to at most " + limit + " x " + limit};
+}
+
+}  // namespace ergocast

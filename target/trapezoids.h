@@ -1,0 +1,37 @@
+// The part of the domain that is inside one polygon and outside others, cut into trapezoids.
+//
+// Horizontals through every corner and every crossing of edges leave slabs in which no two edges
+// cross. There the edges stand in one order from left to right, and a walk along it that counts
+// which polygons it is inside of finds every piece: unions, differences and holes alike. A corner
+// that is off by a rounding error moves a piece's side by as much and breaks nothing.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/geometry.h"
+#include "target/polygon.h"
+
+namespace ergocast {
+
+/// Between two horizontals and two straight sides; lengths from the domain's lower left corner [m].
+struct Trapezoid {
+  double low, high;               ///< y of the horizontals
+  double left_low, left_high;     ///< x of the left side at low and at high
+  double right_low, right_high;   ///< x of the right side
+
+  /// The part between y = `from` and y = `to`, both within [low, high].
+  Trapezoid between(double from, double to) const;
+  /// Counter-clockwise from the lower left.
+  std::array<Eigen::Vector2d, 4> corners() const;
+};
+
+/// `domain` without `keep_outs`, which may overlap, as trapezoids that do not; ascending by `low`.
+std::vector<Trapezoid> free_area(const Rectangle& domain, std::span<const Polygon> keep_outs);
+
+/// The part of it inside `region`.
+std::vector<Trapezoid> free_area_within(const Polygon& region, const Rectangle& domain,
+                                        std::span<const Polygon> keep_outs);
+
+}  // namespace ergocast

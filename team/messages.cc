@@ -1,0 +1,21 @@
+#include "team/messages.h"
+
+namespace ergocast {
+
+const char* to_string(Refusal refusal) {
+  constexpr const char* kNames[kRefusalKinds] = {"size",     "type", "tag",   "unkeyed", "unsigned",
+                                                "run",      "range", "limit", "rate"};
+  return kNames[static_cast<int>(refusal)];
+}
+
+const char* to_string(MissionState state) {
+  constexpr const char* kNames[] = {"waiting", "running", "ended", "failed"};
+  return kNames[static_cast<int>(state)];
+}
+
+const char* to_string(AgentPhase phase) {
+  constexpr const char* kNames[] = {"joining", "waiting", "running", "finished"};
+  return kNames[static_cast<int>(phase)];
+}
+
+}  // namespace ergocast

@@ -1,0 +1,184 @@
+// Everything the processes say to each other, as plain values. How they look on the wire is known
+// to lcmtypes/ alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/contribution.h"
+#include "core/ids.h"
+#include "core/roster.h"
+
+namespace ergocast {
+
+inline constexpr int kMaxVehiclesPerState = 16;
+inline constexpr int kMaxRosterEntriesPerMessage = 8;
+inline constexpr int kMaxDigestEntriesPerMessage = 40;
+inline constexpr int kMaxPlanBytesPerMessage = 512;
+inline constexpr int kMaxPlanParts = 128;
+inline constexpr int kMaxReasonLength = 191;
+/// How often an agent says how it is, whatever else happens.
+inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
+
+/// Why bytes that arrived had no effect.
+enum class Refusal {
+  kSize,   ///< shorter or longer than its type and counts say
+  kType,   ///< not one of our types, or not the one its channel carries
+  kTag,    ///< damaged, or of a sender with another mission key
+  kUnkeyed,   ///< sound, but of a sender without a mission key
+  kUnsigned,  ///< without the signature of whoever may begin and end missions
+  kRun,    ///< of another run
+  kRange,  ///< a number that cannot be true: NaN, |S| > elapsed, a coverage from the future
+  kLimit,  ///< a table is full
+  kRate,   ///< its sender says far more than a mission needs
+};
+inline constexpr int kRefusalKinds = 9;
+const char* to_string(Refusal refusal);
+using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
+
+/// Ed25519, of the holder of a team's signing key; zero if nobody has signed.
+using Signature = std::array<std::byte, 64>;
+
+/// Somebody new speaks up. An agent asks to be admitted; its incarnation is the nonce that the roster
+/// will name. A coordinator or a world that has just started asks the agents what they know:
+/// header.tick is then −1 if it does not know the mission.
+struct Hello {
+  Header header;
+  AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one
+  std::string host;
+  std::string version;
+  /// The newest of MISSION of which an agent has heard any part; −1: none. It shows when this was
+  /// said: one from before the newest admits nobody, as it may be a recording.
+  std::int64_t revision = -1;
+};
+
+enum class MissionState { kWaiting, kRunning, kEnded, kFailed };
+const char* to_string(MissionState state);
+
+/// One numbered part of the mission; all parts of one revision together are the whole.
+struct MissionPart {
+  Header header;
+  std::int64_t revision = 0;  ///< of roster and state together
+  MissionState state = MissionState::kWaiting;
+  std::int32_t part = 0, parts = 1;
+  std::vector<RosterEntry> roster;   ///< this part's share
+  std::vector<std::byte> plan;       ///< this part's share of the compiled plan
+  std::string reason;                ///< why it ended or failed
+  Signature signature{};             ///< the coordinator's, which teammates repeat
+};
+
+struct DigestEntry {
+  Author author;
+  std::int64_t steps = 0;  ///< of the oldest block held; 0: nothing
+  std::uint64_t mark = 0;  ///< of the steps of all blocks held: equal if they are
+};
+
+/// What an agent holds of whom: one entry for each (agent, incarnation) of the roster, in as many
+/// messages as it takes. Who holds more answers with contributions.
+struct Digest {
+  Header header;
+  std::int32_t entry_count = 0;
+  std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
+};
+
+enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished };
+const char* to_string(AgentPhase phase);
+
+struct AgentStatus {
+  Header header;
+  AgentPhase phase = AgentPhase::kJoining;
+  double ergodic_metric = 0;             ///< φ² as this agent sees it, once answered_tick ≥ 0
+  double max_staleness_s = 0;            ///< age of the oldest teammate's contribution
+  AgentId waiting_for = kUnassigned;     ///< whose block the tick waits for; kWorld: no state comes
+  std::int64_t answered_tick = -1;       ///< last tick that got a command
+  std::int64_t contributions_received = 0, contributions_lost = 0, messages_sent = 0,
+               messages_received = 0;
+  std::int64_t contributions_relayed = 0;  ///< blocks of others that it repeated
+  std::int64_t missed_ticks = 0;         ///< world ticks that came and went without a command
+  RefusalCounts refused{};
+  AgentId babbler = kUnassigned;  ///< the last whose messages were refused as kRate
+  std::int64_t kernel_drops = 0;
+  double loop_lag_s = 0;  ///< the worst since its last status: how late or deaf its process was
+  std::string host;
+};
+
+struct TeamStatus {
+  Header header;
+  MissionState state = MissionState::kWaiting;
+  Tick tick_count = 0;
+  std::int32_t agents_alive = 0, agents_expected = 0;
+  double ergodic_metric = 0;  ///< median of the agents' own φ²; 0 until one has answered a tick
+  AgentId silent_agent = kUnassigned;  ///< the first that is not alive, if any
+  std::int64_t missed_deadlines = 0;  ///< as the world counts them
+  std::string host;                   ///< the coordinator's
+};
+
+/// Ends a run; final. In order, the coordinator does it for all; at once, everybody who hears it.
+struct Stop {
+  Header header;
+  bool failed = false;  ///< whether the mission failed or somebody simply wanted it to end
+  std::string reason;
+  bool now = false;     ///< emergency: everybody stands still at once, whoever leads
+  Signature signature{};
+};
+
+struct Vehicle {
+  AgentId id = 0;
+  std::int64_t answered_tick = -1;         ///< newest tick its commands have answered
+  Eigen::Vector3d position_m{0, 0, 0};
+  Eigen::Vector3d velocity_mps{0, 0, 0};   ///< applied in the step that led here
+};
+
+/// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.
+struct WorldState {
+  Header header;
+  std::int64_t roster_revision = 0;   ///< that it knew when it first said this tick
+  std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
+  std::int64_t skipped_ticks = 0;     ///< real time: ticks given up because the world was held up
+  std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
+  std::int32_t part = 0, parts = 1;
+  std::int32_t vehicle_count = 0;
+  std::array<Vehicle, kMaxVehiclesPerState> vehicles;
+};
+
+/// From tick and position a restarted world knows where it was.
+struct Command {
+  Header header;                           ///< header.tick is the tick it answers; −1: none yet
+  Eigen::Vector3d position_m{0, 0, 0};     ///< from which it was computed
+  Eigen::Vector3d velocity_mps{0, 0, 0};
+  Incarnation asked_by = 0;  ///< the world whose question it answers; 0: it answers a tick
+};
+
+/// The logger has everything up to and including header.tick (−1: it is ready).
+struct RecordAck {
+  Header header;
+};
+/// Lockstep: how many ticks the world may be ahead of what the logger has acknowledged, unless it has
+/// given that logger up.
+inline constexpr Tick kRecordWindowTicks = 64;
+
+using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
+                             WorldState, Command, RecordAck, Digest>;
+
+enum class Bus { kSwarm, kWorld, kCommand };
+inline constexpr int kBusCount = 3;
+
+/// What a core wants published.
+struct Outgoing {
+  Bus bus;
+  Message message;
+  AgentId relayer = kUnassigned;  ///< who repeats a message of somebody else's, if anybody does
+};
+using Outbox = std::vector<Outgoing>;
+
+inline const Header& header_of(const Message& message) {
+  return std::visit([](const auto& m) -> const Header& { return m.header; }, message);
+}
+
+}  // namespace ergocast

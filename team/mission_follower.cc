@@ -1,0 +1,67 @@
+#include "team/mission_follower.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ergocast {
+namespace {
+
+/// Incomplete revisions that are kept.
+constexpr std::size_t kMostRevisions = 4;
+
+}  // namespace
+
+bool MissionFollower::receive(const MissionPart& part) {
+  if (part.header.sender != kCoordinator || part.revision <= revision_ || part.parts < 1 ||
+      part.parts > kMaxPlanParts || part.part < 0 || part.part >= part.parts) {
+    return false;
+  }
+  Parts& parts = collected_[part.revision];
+  if (parts.size() != static_cast<std::size_t>(part.parts)) {
+    parts.assign(static_cast<std::size_t>(part.parts), std::nullopt);
+  }
+  parts[static_cast<std::size_t>(part.part)] = part;
+  if (std::all_of(parts.begin(), parts.end(), [](const auto& p) { return p.has_value(); })) {
+    const bool committed = commit(part.revision, parts);
+    collected_.erase(part.revision);
+    collected_.erase(collected_.begin(), collected_.upper_bound(revision_));
+    return committed;
+  }
+  // Several at once: the rest of the newest may have died with its coordinator.
+  if (collected_.size() > kMostRevisions) collected_.erase(collected_.begin());
+  return false;
+}
+
+bool MissionFollower::commit(std::int64_t revision, Parts& parts) {
+  std::vector<std::byte> plan;
+  for (const auto& part : parts) plan.insert(plan.end(), part->plan.begin(), part->plan.end());
+  const bool first = !mission_ && !plan_problem_;
+  if (!first && plan != plan_) {
+    ++foreign_plans_;
+    return false;
+  }
+  plan_ = std::move(plan);
+  revision_ = revision;
+  state_ = parts.front()->state;
+  reason_ = parts.front()->reason;
+  roster_.clear();
+  parts_.clear();
+  for (auto& part : parts) {
+    roster_.insert(roster_.end(), part->roster.begin(), part->roster.end());
+    parts_.push_back(std::move(*part));
+  }
+  if (!first) return true;
+  auto decoded = decode_plan_(plan_);
+  if (auto* mission = std::get_if<Mission>(&decoded)) mission_ = std::move(*mission);
+  if (auto* problem = std::get_if<std::string>(&decoded)) plan_problem_ = std::move(*problem);
+  return true;
+}
+
+const RosterEntry* MissionFollower::entry_of(Incarnation incarnation) const {
+  const auto at = std::find_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+    return entry.author.incarnation == incarnation;
+  });
+  return at == roster_.end() ? nullptr : &*at;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,83 @@
+// Puts the numbered parts of MISSION together: what every process but the coordinator knows of the
+// roster and of the mission's state.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/ids.h"
+#include "team/messages.h"
+#include "core/mission.h"
+
+namespace ergocast {
+
+/// Turns the compiled plan's bytes into a checked Mission, or says in a sentence why it cannot.
+/// The plan's format belongs to scenario/, which the cores do not know.
+using PlanDecoder = std::function<std::variant<Mission, std::string>(std::span<const std::byte>)>;
+
+class MissionFollower {
+ public:
+  explicit MissionFollower(PlanDecoder decode_plan) : decode_plan_(std::move(decode_plan)) {}
+
+  /// Takes in one part, in any order. True if it completed a newer revision. A run has one plan: a
+  /// revision that comes with another has no effect but on foreign_plans().
+  bool receive(const MissionPart& part);
+
+  /// The mission, once a whole plan has arrived and decoded.
+  const std::optional<Mission>& mission() const { return mission_; }
+  /// Why this program cannot read the plan that has arrived: it is another version's, or damaged.
+  const std::optional<std::string>& plan_problem() const { return plan_problem_; }
+  /// Complete revisions that were ignored because their plan is not this run's.
+  std::int64_t foreign_plans() const { return foreign_plans_; }
+
+  std::int64_t revision() const { return revision_; }
+  /// The newest revision of which any part has come; −1: none.
+  std::int64_t newest_heard() const {
+    return collected_.empty() ? revision_ : std::max(revision_, collected_.rbegin()->first);
+  }
+  MissionState state() const { return state_; }
+  bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
+  const std::string& reason() const { return reason_; }
+  const std::vector<RosterEntry>& roster() const { return roster_; }
+  const std::vector<std::byte>& plan() const { return plan_; }
+  /// The newest complete revision as its coordinator said it, to be repeated to whoever asks.
+  const std::vector<MissionPart>& parts() const { return parts_; }
+
+  /// The entry of an incarnation, or null.
+  const RosterEntry* entry_of(Incarnation incarnation) const;
+
+ private:
+  PlanDecoder decode_plan_;
+  std::optional<Mission> mission_;
+  std::optional<std::string> plan_problem_;
+  std::int64_t foreign_plans_ = 0;
+  std::int64_t revision_ = -1;
+  MissionState state_ = MissionState::kWaiting;
+  std::string reason_;
+  std::vector<RosterEntry> roster_;
+  std::vector<std::byte> plan_;
+  std::vector<MissionPart> parts_;
+
+  using Parts = std::vector<std::optional<MissionPart>>;
+  bool commit(std::int64_t revision, Parts& parts);
+
+  std::map<std::int64_t, Parts> collected_;  // by revision, none of them complete
+};
+
+/// Sequence numbers for one sender, counted per bus, so that a gap on a bus is a loss on that bus.
+class Sequencer {
+ public:
+  std::int64_t next(Bus bus) { return ++last_[static_cast<std::size_t>(bus)]; }
+  std::int64_t total() const { return last_[0] + last_[1] + last_[2]; }
+
+ private:
+  std::array<std::int64_t, kBusCount> last_{};
+};
+
+}  // namespace ergocast

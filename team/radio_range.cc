@@ -1,0 +1,22 @@
+#include "team/radio_range.h"
+
+namespace ergocast {
+
+void RadioRange::on(const WorldState& world) {
+  if (!limited() || world.header.tick < tick_) return;
+  tick_ = world.header.tick;
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    positions_m_[vehicle.id] = vehicle.position_m.head<2>();
+  }
+}
+
+bool RadioRange::hears(AgentId listener, AgentId transmitter) const {
+  if (!limited()) return true;
+  const auto here = positions_m_.find(listener);
+  const auto there = positions_m_.find(transmitter);
+  if (here == positions_m_.end() || there == positions_m_.end()) return true;
+  return (here->second - there->second).norm() <= range_m_;
+}
+
+}  // namespace ergocast

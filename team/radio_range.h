@@ -1,0 +1,28 @@
+// Who hears whom in a simulated world whose radios reach only so far.
+#pragma once
+
+#include <map>
+
+#include "core/ids.h"
+#include "team/messages.h"
+
+namespace ergocast {
+
+/// Positions by the newest world state, and the rule that follows: b hears what a transmits while
+/// ‖x_a − x_b‖ ≤ range. Whoever has no position yet, or is no agent, is heard by all.
+class RadioRange {
+ public:
+  /// @param range_m  0: unlimited
+  explicit RadioRange(double range_m = 0) : range_m_(range_m) {}
+
+  bool limited() const { return range_m_ > 0; }
+  void on(const WorldState& world);
+  bool hears(AgentId listener, AgentId transmitter) const;
+
+ private:
+  double range_m_;
+  Tick tick_ = -1;
+  std::map<AgentId, Eigen::Vector2d> positions_m_;
+};
+
+}  // namespace ergocast

@@ -1,0 +1,84 @@
+// Who hears what: the one table that processes and the laboratory go by.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <variant>
+
+#include "team/messages.h"
+
+namespace ergocast {
+
+enum class Role {
+  kAgent,
+  kCoordinator,
+  kWorld,
+  kDriver,    ///< robots in the world's place
+  kLogger,
+  kLauncher,  ///< `ergocast run`
+  kMonitor,   ///< `ergocast status`, `ergocast stop`
+};
+inline constexpr int kRoleCount = 7;
+
+/// Kinds of messages: bit i stands for alternative i of Message.
+using MessageTypes = std::uint32_t;
+inline constexpr std::size_t kMessageTypeCount = std::variant_size_v<Message>;
+
+/// Which alternative of Message M is.
+template <class M, std::size_t kFrom = 0>
+constexpr std::size_t type_index() {
+  if constexpr (std::is_same_v<M, std::variant_alternative_t<kFrom, Message>>) {
+    return kFrom;
+  } else {
+    return type_index<M, kFrom + 1>();
+  }
+}
+/// What Ms are, as a set.
+template <class... Ms>
+constexpr MessageTypes types_of() {
+  MessageTypes types = 0;
+  for (const std::size_t type : {type_index<Ms>()...}) types |= MessageTypes{1} << type;
+  return types;
+}
+template <class... Ms>
+inline constexpr MessageTypes kTypes = types_of<Ms...>();
+inline constexpr MessageTypes kEveryType = (MessageTypes{1} << kMessageTypeCount) - 1;
+
+/// What somebody hears, by bus.
+using Subscriptions = std::array<MessageTypes, kBusCount>;
+using SubscriptionTable = std::array<Subscriptions, kRoleCount>;
+
+// clang-format off
+inline constexpr SubscriptionTable kSubscriptions = [] {
+  SubscriptionTable table{};
+  const auto hears = [&table](Role role, Bus bus, MessageTypes types) {
+    table[static_cast<std::size_t>(role)][static_cast<std::size_t>(bus)] = types;
+  };
+  hears(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop>);
+  hears(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
+  hears(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
+  hears(Role::kCoordinator, Bus::kWorld,   kTypes<WorldState>);
+  hears(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, Command, RecordAck, Stop>);
+  hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
+  for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);
+  hears(Role::kLauncher,    Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, Stop>);
+  // A replayed event log has the messages of all buses on the first: LCM's player knows one URL.
+  hears(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
+  hears(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState>);
+  hears(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);
+  return table;
+}();
+// clang-format on
+
+constexpr const Subscriptions& subscriptions_of(Role role,
+                                                const SubscriptionTable& table = kSubscriptions) {
+  return table[static_cast<std::size_t>(role)];
+}
+
+inline bool hears(const Subscriptions& subscriptions, Bus bus, const Message& message) {
+  return (subscriptions[static_cast<std::size_t>(bus)] >> message.index() & 1) != 0;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,115 @@
+// A whole team as processes over LCM, beside a ping-pong of datagrams of the same number and size
+// between as many processes, without our codec and without mathematics: straight over UDP, which is the
+// floor, and over LCM.
+//
+// The real programs are started as a user starts them; how fast they were is read from the record.
+#include <benchmark/benchmark.h>
+#include <stdlib.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include "tests/bench/ping_pong.h"
+#include "runtime/child.h"
+#include "scenario/scenario.h"
+#include "tests/support/own_host.h"
+
+namespace ergocast::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDuration_s = 1000;
+const fs::path kScenario = fs::path(ERGOCAST_SCENARIO_DIR) / "paper_fig1a.textproto";
+
+/// A folder that goes with this object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = fs::temp_directory_path() / "ergocast-bench-XXXXXX";
+    path_ = mkdtemp(name.data()) != nullptr ? name : std::string();
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Ticks per second of a mission by the real programs, or why there is no such figure.
+std::variant<double, std::string> run_mission() {
+  const TemporaryFolder folder;
+  const fs::path record = folder.path() / "run", log = folder.path() / "log";
+  auto started = Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", kScenario,
+                                           "--duration", std::to_string(kDuration_s), "--out", record},
+                               .log = log,
+                               .signal_if_orphaned = SIGTERM});
+  if (const auto* problem = std::get_if<std::string>(&started)) return *problem;
+  Child& launcher = std::get<Child>(started);
+  while (launcher.running()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  if (launcher.exit_code() != 0) {
+    return "ergocast run " + launcher.fate() + "\n" + last_lines(log, 10);
+  }
+  std::ifstream summary(record / "summary.json");
+  return nlohmann::json::parse(summary).at("ticks_per_s").get<double>();
+}
+
+void Lockstep(benchmark::State& state) {
+  Overrides overrides;
+  overrides.duration_s = kDuration_s;
+  const auto loaded = Scenario::load(kScenario, overrides);
+  const auto* scenario = std::get_if<Scenario>(&loaded);
+  if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
+  const Traffic traffic = traffic_of(scenario->mission());
+
+  const Tick ticks = scenario->mission().timing.tick_count;
+  double ticks_per_s = 0, floor_ticks_per_s = 0, lcm_ticks_per_s = 0;
+  for (auto _ : state) {
+    const auto mission = run_mission();
+    if (const auto* why = std::get_if<std::string>(&mission)) {
+      return state.SkipWithError(why->c_str());
+    }
+    const auto floor = ping_pong(Carrier::kUdp, traffic, ticks);
+    const auto lcm = ping_pong(Carrier::kLcm, traffic, ticks);
+    if (!floor || !lcm) return state.SkipWithError("LCM cannot be used on this machine");
+    ticks_per_s = std::get<double>(mission);
+    floor_ticks_per_s = *floor;
+    lcm_ticks_per_s = *lcm;
+    state.SetIterationTime(1 / ticks_per_s);
+  }
+  state.counters["ticks_per_s"] = ticks_per_s;
+  state.counters["floor_ticks_per_s"] = floor_ticks_per_s;
+  state.counters["of_floor"] = ticks_per_s / floor_ticks_per_s;
+  state.counters["lcm_ticks_per_s"] = lcm_ticks_per_s;
+  state.counters["of_lcm"] = ticks_per_s / lcm_ticks_per_s;
+}
+
+// Each mission shows its figures; the time is that of one tick.
+BENCHMARK(Lockstep)->UseManualTime()->Iterations(1)->Repetitions(3)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace ergocast::bench
+
+int main(int argc, char** argv) {
+  try {
+    ergocast::test::enter_own_host();
+  } catch (const std::exception& why) {
+    std::fprintf(stderr, "%s: using the network of this machine\n", why.what());
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -1,0 +1,45 @@
+// The three buses without our transport, with bytes that mean nothing: over LCM, or straight over
+// UDP.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/ids.h"
+#include "team/messages.h"
+#include "runtime/lcm_url.h"
+
+namespace ergocast::bench {
+
+/// The first bytes of every message; the rest is padding.
+struct Stamp {
+  Tick tick;
+  AgentId sender;
+  std::int32_t block;
+};
+
+enum class Carrier {
+  kLcm,  ///< liblcm, as any program uses it
+  kUdp,  ///< one multicast socket a bus, read many datagrams at a time: no thread, no queue, no
+         ///< names
+};
+
+class RawBuses {
+ public:
+  using Handler = std::function<void(Bus, const Stamp&)>;
+
+  /// @param listening  buses to hear
+  static std::unique_ptr<RawBuses> open(Carrier carrier, const LcmUrl& url,
+                                        const std::vector<Bus>& listening, Handler handler);
+  virtual ~RawBuses() = default;
+
+  /// Datagrams of one size, whoever carries them: a name and `bytes` bytes.
+  virtual void publish(Bus bus, const std::string& channel, const Stamp& stamp,
+                       std::size_t bytes) = 0;
+  /// Handles all that is there, once something is. False if nothing came for so long.
+  virtual bool wait(int timeout_ms) = 0;
+};
+
+}  // namespace ergocast::bench

@@ -1,0 +1,70 @@
+// The control step as the leanest kernel we can write by hand: raw arrays, no blocks, no authors,
+// no checks, everything in one pass over the modes, with AVX2 and fused multiply-add where the
+// processor has them. What it costs is what the mathematics costs.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/look_ahead.h"
+#include "team/messages.h"
+#include "core/mission.h"
+#include "core/perturbation.h"
+
+namespace ergocast::bench {
+
+class StepFloor {
+ public:
+  StepFloor(const Mission& mission, int agents);
+
+  /// What teammates say: all blocks of some of them, agent after agent.
+  void take(const std::vector<Contribution>& news);
+
+  /// Agent 0's command, everybody's places [m] known if the mission says so; the same as Agent's
+  /// but for rounding.
+  Eigen::Vector2d step(Tick tick, const std::vector<Eigen::Vector2d>& places_m);
+
+  /// One axis: cos(m·k·x) for every mode m, its first derivative and its second.
+  struct Waves {
+    using Table = std::array<double, kMaxModesPerAxis>;
+    alignas(32) Table value, slope, bend;
+  };
+  /// What teammates are about to add to their sums.
+  enum class Ahead { kNothing, kGains, kPlaces };
+  /// One agent of the team.
+  struct Mate {
+    Waves along_x, along_y;  ///< where it is, if places are known
+    double step_s = 0;       ///< what its sums gain there
+    double share = 0;        ///< of what it is about to add
+    std::int64_t steps = 0, gained_steps = 0;
+    Tick tick = -1, period = 1;
+  };
+  /// The modes' tables. Rows are padded with zeros to whole vectors.
+  struct Tables {
+    int agents, modes, stride;
+    double* sums;         ///< one table an agent, the own one first
+    const double* gains;  ///< likewise
+    const double *target, *weight, *energy;
+    const Mate* mates;  ///< the own one first
+  };
+  /// What one pass over the modes yields: Σ of the residual over the modes with its derivatives.
+  struct Totals {
+    double power = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  };
+
+ private:
+  double per_second(Tick tick);
+  void see(Tick tick, const std::vector<Eigen::Vector2d>& places_m);
+  Totals totals(const Eigen::Vector2d& x_m, double per_second);
+
+  Mission mission_;
+  LookAhead look_ahead_;
+  Ahead ahead_;
+  int agents_, modes_, stride_;  // modes per axis
+  std::vector<double> sums_, gains_, target_, weight_, energy_;
+  std::vector<Mate> mates_;
+  Tick push_ticks_, push_ = -1;
+  Eigen::Vector2d eta_{0, 0};
+};
+
+}  // namespace ergocast::bench

@@ -1,0 +1,75 @@
+// What a study makes of a core: missions without messages, and the numbers noted of them.
+//
+// An iteration is one mission. Two threads stand for the two worker processes of a study, which
+// share nothing either. The floor is as many bare control steps, each of an agent by itself.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/bench/step_floor.h"
+#include "scenario/scenario.h"
+#include "lab/studies/study_run.h"
+
+namespace ergocast::bench {
+namespace {
+
+Mission mission_of(int agents, bool looks_ahead) {
+  Overrides overrides;
+  overrides.duration_s = 600;
+  overrides.agents = agents;
+  const std::string file = std::string(ERGOCAST_SCENARIO_DIR) + "/quadrimodal_corners.textproto";
+  Mission mission = std::get<Scenario>(Scenario::load(file, overrides)).mission();
+  if (!looks_ahead) mission.law.anticipation = 0;
+  return mission;
+}
+
+void report(const Mission& mission, benchmark::State& state) {
+  const std::int64_t agent_steps =
+      mission.timing.tick_count * static_cast<std::int64_t>(mission.starts_m.size());
+  state.counters["agent_steps_per_s"] = benchmark::Counter(
+      static_cast<double>(agent_steps * static_cast<std::int64_t>(state.iterations())),
+      benchmark::Counter::kIsRate);
+}
+
+void StudyRun(benchmark::State& state) {
+  const Mission mission = mission_of(static_cast<int>(state.range(0)), state.range(1) != 0);
+  for (auto _ : state) {
+    const studies::StudyFigures figures = studies::fly_without_messages(mission);
+    benchmark::DoNotOptimize(figures.metric);
+  }
+  report(mission, state);
+}
+
+void StudyFloor(benchmark::State& state) {
+  const Mission mission = mission_of(4, false);
+  for (auto _ : state) {
+    for (const Eigen::Vector2d& start_m : mission.starts_m) {
+      StepFloor floor(mission, 1);
+      std::vector<Eigen::Vector2d> x_m = {start_m};
+      for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
+        x_m[0] = reflect(x_m[0] + mission.timing.dt_s * floor.step(tick, x_m), mission.domain);
+      }
+      benchmark::DoNotOptimize(x_m);
+    }
+  }
+  report(mission, state);
+}
+
+BENCHMARK(StudyRun)
+    ->ArgNames({"agents", "looks_ahead"})
+    ->ArgsProduct({{4, 16, 64}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyRun)
+    ->ArgNames({"agents", "looks_ahead"})
+    ->Args({4, 1})
+    ->Threads(2)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyFloor)->Unit(benchmark::kMillisecond);
+BENCHMARK(StudyFloor)->Threads(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace ergocast::bench
+
+BENCHMARK_MAIN();

@@ -1,0 +1,134 @@
+// The table that people read: aligned, narrow, and with the worst on top.
+#include "cli/team_text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace ergocast {
+namespace {
+
+AgentRow row_of(AgentId id, Condition condition) {
+  AgentRow row;
+  row.author = {id, 0xabcdef0123456789};
+  row.condition = condition;
+  AgentStatus status;
+  status.header.tick = 599999;
+  status.phase = AgentPhase::kRunning;
+  status.ergodic_metric = 0.00123456;
+  status.answered_tick = 599999;
+  status.max_staleness_s = 12.34;
+  status.loop_lag_s = 0.0012;
+  status.host = "robot-12";
+  row.status = status;
+  return row;
+}
+
+TeamPicture flying_team() {
+  TeamPicture picture;
+  picture.run = 0x1234;
+  picture.scenario = "quadrimodal_corners";
+  picture.state = MissionState::kRunning;
+  picture.tick = 599999;
+  picture.tick_count = 1000000;
+  picture.dt_s = 0.1;
+  picture.ergodic_metric = 0.00123;
+  picture.agents_alive = 2;
+  picture.agents_expected = 3;
+  picture.agents = {row_of(2, Condition::kSilent), row_of(0, Condition::kOk),
+                    row_of(127, Condition::kOk)};
+  picture.agents[0].silent_s = 4.2;
+  picture.agents[0].status->refused = {0, 0, 3, 0, 0, 0, 1};
+  picture.agents[1].restarts = 1;
+  picture.processes = {{"coordinator", true, false, 0.1, 0xc0ffee, "base", 599999},
+                       {"world", true, true, 3.4, 0xabc, "", 599990},
+                       {"logger", false, false, 3.4, 0, "", 0}};
+  picture.trouble = true;
+  return picture;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(TeamTable, SaysEverythingInLinesThatFit) {
+  EXPECT_EQ(
+      team_table(flying_team(), false),
+      "quadrimodal_corners, run 0000000000001234, running, tick 599999 of 1000000 (60 %), t = "
+      "59999.9 s\n"
+      "2 of 3 agents alive, phi^2 0.00123 (median), unauthenticated\n"
+      "\n"
+      "coordinator  alive  life 000000  tick 599999  on base\n"
+      "world        silent 3 s  life 000000  tick 599990\n"
+      "logger       not heard\n"
+      "\n"
+      " id  state       host      life     tick   phi^2 stale s lag ms lost drops restarts  "
+      "refused\n"
+      "  2  silent 4 s  robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        0  tag 3 "
+      "range 1\n"
+      "  0  ok          robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        1\n"
+      "127  ok          robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        0\n");
+  for (const std::string& line : lines_of(team_table(flying_team(), false))) {
+    EXPECT_LE(line.size(), 100u) << line;
+  }
+}
+
+TEST(TeamTable, ColourChangesNothingButColour) {
+  std::string coloured = team_table(flying_team(), true);
+  EXPECT_NE(coloured.find("\x1b[31;1msilent 4 s\x1b[0m"), std::string::npos) << coloured;
+  for (auto at = coloured.find('\x1b'); at != std::string::npos; at = coloured.find('\x1b')) {
+    coloured.erase(at, coloured.find('m', at) - at + 1);
+  }
+  EXPECT_EQ(coloured, team_table(flying_team(), false));
+}
+
+TEST(TeamTable, NamesWhomAnAgentWaitsFor) {
+  AgentRow row = row_of(1, Condition::kWaiting);
+  row.status->waiting_for = 3;
+  EXPECT_EQ(condition_text(row), "waiting for 3");
+  row.status->waiting_for = kWorld;
+  EXPECT_EQ(condition_text(row), "waiting for world");
+}
+
+TEST(TeamTable, OfALongHostNameOrANeverHeardAgentStaysAligned) {
+  TeamPicture picture = flying_team();
+  picture.agents[0].status->host = std::string(63, 'h');
+  picture.agents[1].status->host = "über-träge-robotermaschine";
+  picture.agents[2].status.reset();
+  const auto lines = lines_of(team_table(picture, false));
+  const std::string title = lines[7];
+  EXPECT_NE(title.find("life"), std::string::npos);
+  EXPECT_EQ(lines[8].find("…"), title.find("life") - 3) << lines[8];
+  EXPECT_NE(lines[9].find("über-träge-ro…"), std::string::npos) << lines[9];
+  EXPECT_EQ(lines[10].find("abcdef"), title.find("life"));
+}
+
+TEST(TeamTable, IsCutToTheTerminalsHeight) {
+  EXPECT_EQ(cut_to_height("a\nb\nc\n", 3), "a\nb\nc\n");
+  EXPECT_EQ(cut_to_height("a\nb\nc\nd\n", 3), "a\nb\n… and 2 more\n");
+}
+
+TEST(TeamJson, IsOneLineWithNullForWhatIsNotKnown) {
+  const std::string line = team_json(flying_team());
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const auto json = nlohmann::json::parse(line);
+  EXPECT_EQ(json["run_id"], "0000000000001234");
+  EXPECT_EQ(json["state"], "running");
+  EXPECT_EQ(json["agents"][0]["state"], "silent");
+  EXPECT_EQ(json["agents"][0]["refused"]["tag"], 3);
+  EXPECT_EQ(json["agents"][1]["restarts"], 1);
+  EXPECT_EQ(json["processes"]["world"]["state"], "silent");
+  EXPECT_EQ(json["processes"]["logger"]["tick"], nullptr);
+  const auto unknown = nlohmann::json::parse(team_json(TeamPicture{}));
+  for (const char* key : {"scenario", "state", "tick_count", "t_s", "ergodic_metric"}) {
+    EXPECT_EQ(unknown[key], nullptr) << key;
+  }
+}
+
+}  // namespace
+}  // namespace ergocast

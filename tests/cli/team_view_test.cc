@@ -1,0 +1,321 @@
+// What somebody who only listens knows of a team: who is well, who is not, and since when.
+#include "cli/team_view.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/team.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+TeamStatus coordinator_at(Tick tick) {
+  TeamStatus team;
+  team.header = {kRun, kCoordinator, kCoordinatorLife, 1, tick};
+  team.state = MissionState::kRunning;
+  team.tick_count = 100;
+  team.host = "base";
+  return team;
+}
+
+/// A listener since 0 s, and a team whose words it hears.
+class TeamViewTest : public ::testing::Test {
+ protected:
+  explicit TeamViewTest(Mission mission = small_mission(4))
+      : view_(kRun, decoder_of(mission), at(0s)) {}
+
+  void hear_mission(Instant now, std::vector<RosterEntry> roster = roster_of(4),
+                    std::int64_t revision = 0, MissionState state = MissionState::kRunning,
+                    std::string reason = "") {
+    view_.receive(test::mission_part(revision, state, std::move(roster), std::move(reason)), now);
+  }
+  void hear_processes(Instant now, Tick tick = 0) {
+    view_.receive(coordinator_at(tick), now);
+    view_.receive(world_state(tick, {{1, 1}}), now);
+    view_.receive(RecordAck{{kRun, kLogger, kLoggerLife, 1, tick}}, now);
+  }
+  AgentStatus status(AgentId id, std::int64_t sequence, Tick tick = 0) const {
+    AgentStatus status = status_of(id, sequence, tick);
+    status.header.tick = tick;
+    return status;
+  }
+  /// Everybody is heard, with sequence numbers of that half second.
+  void hear_all(Instant now, Tick tick = 0, AgentId but = kUnassigned) {
+    hear_processes(now, tick);
+    for (AgentId id = 0; id < 4; ++id) {
+      if (id != but) view_.receive(status(id, sequence_of(now), tick), now);
+    }
+  }
+  static std::int64_t sequence_of(Instant now) { return 1 + now.time_since_epoch() / 1ms; }
+
+  AgentRow row(AgentId id, Instant now) const {
+    for (const AgentRow& row : view_.picture(now).agents) {
+      if (row.author.agent == id) return row;
+    }
+    ADD_FAILURE() << "no row of agent " << id;
+    return {};
+  }
+  Condition condition(AgentId id, Instant now) const { return row(id, now).condition; }
+
+  TeamView view_;
+};
+
+struct TeamViewRealtime : TeamViewTest {
+  static Mission mission() {
+    Mission mission = small_mission(4);
+    mission.timing.pace = Pace::kRealtime;
+    mission.timing.realtime_factor = 2;
+    return mission;
+  }
+  TeamViewRealtime() : TeamViewTest(mission()) {}
+};
+
+TEST_F(TeamViewTest, NamesWhoseCoverageIsForgottenAndCallsThatTrouble) {
+  auto roster = roster_of(4);
+  roster[2].forgotten = true;
+  hear_mission(at(0s), roster);
+  hear_all(at(100ms));
+  EXPECT_EQ(view_.picture(at(100ms)).forgotten, std::vector<AgentId>{2});
+  EXPECT_TRUE(view_.picture(at(100ms)).trouble);
+  roster[2].forgotten = false;
+  hear_mission(at(200ms), roster, 1);
+  EXPECT_TRUE(view_.picture(at(200ms)).forgotten.empty());
+  EXPECT_FALSE(view_.picture(at(200ms)).trouble);
+}
+
+TEST_F(TeamViewTest, OfATeamThatIsWellHasNoTrouble) {
+  hear_mission(at(0s));
+  hear_all(at(100ms), 40);
+  const TeamPicture picture = view_.picture(at(200ms));
+  EXPECT_FALSE(picture.trouble);
+  EXPECT_EQ(picture.scenario, "small");
+  EXPECT_EQ(picture.state, MissionState::kRunning);
+  EXPECT_EQ(picture.tick, 40);
+  EXPECT_EQ(picture.tick_count, 100);
+  EXPECT_EQ(picture.dt_s, 0.1);
+  EXPECT_EQ(picture.agents_alive, 4);
+  EXPECT_EQ(picture.agents_expected, 4);
+  ASSERT_EQ(picture.processes.size(), 3u);
+  for (const ProcessRow& process : picture.processes) EXPECT_TRUE(process.heard) << process.name;
+  EXPECT_EQ(picture.processes[0].host, "base");
+  EXPECT_TRUE(view_.complete());
+  EXPECT_FALSE(view_.over());
+}
+
+TEST_F(TeamViewTest, IsCompleteOnceTheMissionAndEveryMemberAreKnown) {
+  EXPECT_FALSE(view_.complete());
+  hear_all(at(0s), 0, 2);
+  EXPECT_FALSE(view_.complete()) << "without the mission nobody knows who is missing";
+  EXPECT_EQ(view_.picture(at(0s)).state, MissionState::kRunning) << "its coordinator says so";
+  hear_mission(at(0s));
+  EXPECT_FALSE(view_.complete());
+  EXPECT_EQ(condition(2, at(1s)), Condition::kUnheard);
+  view_.receive(status(2, 1), at(0s));
+  EXPECT_TRUE(view_.complete());
+}
+
+TEST_F(TeamViewTest, WhoSaysNothingIsLateThenSilentAndStandsFirst) {
+  hear_mission(at(0s));
+  for (const auto time : {0s, 1s, 2s, 3s}) hear_all(at(time), 0, time > 0s ? 2 : kUnassigned);
+  EXPECT_EQ(condition(2, at(900ms)), Condition::kOk);
+  EXPECT_EQ(condition(2, at(1s)), Condition::kLate);
+  EXPECT_EQ(condition(2, at(2s)), Condition::kSilent);
+  const TeamPicture picture = view_.picture(at(3s));
+  EXPECT_EQ(picture.agents.front().author.agent, 2);
+  EXPECT_EQ(picture.agents.front().silent_s, 3);
+  EXPECT_EQ(picture.agents[1].author.agent, 0) << "the others in their order";
+  EXPECT_EQ(picture.agents_alive, 3);
+  EXPECT_TRUE(picture.trouble);
+}
+
+TEST_F(TeamViewTest, AMemberThatWasNeverHeardIsSilentSinceWeListen) {
+  hear_mission(at(0s));
+  hear_all(at(2s), 0, 3);
+  EXPECT_EQ(condition(3, at(1900ms)), Condition::kUnheard);
+  EXPECT_EQ(condition(3, at(2s)), Condition::kSilent);
+  EXPECT_FALSE(row(3, at(2s)).status);
+  EXPECT_EQ(row(3, at(2500ms)).silent_s, 2.5);
+}
+
+TEST_F(TeamViewTest, AReplayKeepsNobodyAlive) {
+  hear_mission(at(0s));
+  view_.receive(status(1, 7), at(0s));
+  for (int i = 1; i < 10; ++i) view_.receive(status(1, 7), at(i * 1s));
+  EXPECT_EQ(row(1, at(9s)).silent_s, 9);
+}
+
+TEST_F(TeamViewTest, WhoWaitsAndStandsStillIsNamedWithWhomItWaitsFor) {
+  hear_mission(at(0s));
+  AgentStatus waiting = status(1, 1, 5);
+  waiting.waiting_for = 3;
+  view_.receive(waiting, at(0s));
+  EXPECT_EQ(condition(1, at(0s)), Condition::kOk) << "in lockstep everybody waits now and then";
+  waiting.header.sequence = 2;
+  view_.receive(waiting, at(800ms));
+  EXPECT_EQ(condition(1, at(800ms)), Condition::kWaiting);
+  waiting.header = {kRun, 1, life_of(1), 3, 6};
+  view_.receive(waiting, at(900ms));
+  EXPECT_EQ(condition(1, at(900ms)), Condition::kOk) << "it has moved on";
+  waiting.header.sequence = 4;
+  waiting.waiting_for = kWorld;
+  view_.receive(waiting, at(1s));
+  EXPECT_EQ(condition(1, at(1s)), Condition::kWaiting)
+      << "an agent says so only after a while itself";
+}
+
+TEST_F(TeamViewTest, ASlowLoopIsLate) {
+  hear_mission(at(0s));
+  AgentStatus slow = status(1, 1);
+  slow.loop_lag_s = 0.49;
+  view_.receive(slow, at(0s));
+  EXPECT_EQ(condition(1, at(0s)), Condition::kOk);
+  slow.header.sequence = 2;
+  slow.loop_lag_s = 0.5;
+  view_.receive(slow, at(0s));
+  EXPECT_EQ(condition(1, at(0s)), Condition::kLate);
+}
+
+TEST_F(TeamViewRealtime, WhoIsHalfASecondBehindTheWorldIsLate) {
+  hear_mission(at(0s));
+  // dt 0.1 s at twice the speed: ten ticks are half a second, and one is on its way.
+  view_.receive(world_state(51, {{1, 1}}), at(0s));
+  view_.receive(status(0, 1, 41), at(0s));
+  view_.receive(status(1, 1, 40), at(0s));
+  EXPECT_EQ(condition(0, at(0s)), Condition::kOk);
+  EXPECT_EQ(condition(1, at(0s)), Condition::kLate);
+}
+
+TEST_F(TeamViewTest, ARestartedAgentIsOneRowThatCountsItsFormerLives) {
+  std::vector<RosterEntry> roster = roster_of(4);
+  roster[1].active_until = 20;
+  roster.push_back({{1, 71}, 20, 30});
+  roster.push_back({{1, 7}, 30, -1});
+  hear_mission(at(0s), roster);
+  AgentStatus successor = status(1, 1, 35);
+  successor.header.incarnation = 7;
+  view_.receive(successor, at(0s));
+  const AgentRow one = row(1, at(0s));
+  EXPECT_EQ(one.author.incarnation, 7u);
+  EXPECT_EQ(one.restarts, 2);
+  EXPECT_EQ(one.condition, Condition::kOk);
+  EXPECT_EQ(view_.picture(at(0s)).agents.size(), 4u);
+  EXPECT_EQ(row(0, at(0s)).restarts, 0);
+}
+
+TEST_F(TeamViewTest, WhoHasLeftForGoodIsGoneAndMissing) {
+  std::vector<RosterEntry> roster = roster_of(4);
+  roster[2].active_until = 20;
+  hear_mission(at(0s), roster);
+  hear_all(at(0s), 30, 2);
+  EXPECT_EQ(condition(2, at(0s)), Condition::kGone);
+  EXPECT_TRUE(view_.complete());
+  const TeamPicture picture = view_.picture(at(0s));
+  EXPECT_EQ(picture.agents.back().author.agent, 2);
+  EXPECT_EQ(picture.agents_alive, 3);
+  EXPECT_EQ(picture.agents_expected, 4);
+  EXPECT_TRUE(picture.trouble);
+}
+
+TEST_F(TeamViewTest, AProcessThatFallsSilentIsTrouble) {
+  for (const AgentId silent : {kCoordinator, kWorld, kLogger}) {
+    TeamView view(kRun, decoder_of(small_mission(1)), at(0s));
+    view.receive(test::mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+    for (const auto time : {0s, 3s}) {
+      view.receive(status(0, sequence_of(at(time))), at(time));
+      if (silent != kCoordinator || time == 0s) view.receive(coordinator_at(0), at(time));
+      if (silent != kWorld || time == 0s) view.receive(world_state(0, {{1, 1}}), at(time));
+      if (silent != kLogger || time == 0s)
+        view.receive(RecordAck{{kRun, kLogger, 1, 1, 0}}, at(time));
+    }
+    const TeamPicture picture = view.picture(at(3s));
+    EXPECT_TRUE(picture.trouble) << silent;
+    for (const ProcessRow& row : picture.processes) {
+      EXPECT_EQ(row.trouble, row.silent_s == 3) << row.name;
+    }
+  }
+}
+
+TEST_F(TeamViewTest, BeforeTheStartNobodyMissesTheWorldNorALoggerThatIsNotWaitedFor) {
+  hear_mission(at(0s), roster_of(4), 0, MissionState::kWaiting);
+  view_.receive(coordinator_at(0), at(3s));
+  for (AgentId id = 0; id < 4; ++id) view_.receive(status(id, 1), at(3s));
+  EXPECT_FALSE(view_.picture(at(3s)).trouble);
+  EXPECT_TRUE(view_.complete());
+}
+
+TEST_F(TeamViewTest, WithoutACoordinatorTheAgentsThemselvesAreTheTeam) {
+  for (AgentId id = 0; id < 3; ++id) view_.receive(status(id, 1, 60), at(0s));
+  AgentStatus successor = status(1, 1, 61);
+  successor.header.incarnation = 7;
+  view_.receive(successor, at(1s));
+  const TeamPicture picture = view_.picture(at(1s));
+  EXPECT_EQ(picture.state, std::nullopt);
+  EXPECT_EQ(picture.agents.size(), 3u);
+  EXPECT_EQ(row(1, at(1s)).author.incarnation, 7u) << "who has spoken last";
+  EXPECT_EQ(picture.tick, 61);
+  EXPECT_TRUE(view_.picture(at(3s)).trouble) << "no coordinator";
+}
+
+TEST_F(TeamViewTest, TheMetricIsTheMedianOfWhoKnowsOne) {
+  hear_mission(at(0s));
+  EXPECT_EQ(view_.picture(at(0s)).ergodic_metric, std::nullopt);
+  for (AgentId id = 0; id < 4; ++id) {
+    AgentStatus one = status(id, 1, id == 0 ? -1 : 5);
+    one.header.tick = 5;
+    one.ergodic_metric = id;
+    view_.receive(one, at(0s));
+  }
+  EXPECT_EQ(view_.picture(at(0s)).ergodic_metric, 2);
+}
+
+TEST_F(TeamViewTest, IsOverWhenTheCoordinatorOrEverybodySaysSo) {
+  hear_mission(at(0s));
+  for (AgentId id = 0; id < 4; ++id) {
+    EXPECT_FALSE(view_.over());
+    AgentStatus last = status(id, 1, 100);
+    last.phase = AgentPhase::kFinished;
+    view_.receive(last, at(0s));
+    EXPECT_EQ(condition(id, at(9s)), Condition::kFinished) << "whatever the time";
+  }
+  EXPECT_TRUE(view_.over());
+
+  TeamView other(kRun, decoder_of(small_mission(1)), at(0s));
+  other.receive(test::mission_part(0, MissionState::kFailed, roster_of(1), "no agents"), at(0s));
+  EXPECT_TRUE(other.over());
+  EXPECT_EQ(other.picture(at(0s)).reason, "no agents");
+  EXPECT_TRUE(other.picture(at(0s)).trouble);
+}
+
+TEST_F(TeamViewTest, IsOverWhenAllAreDoneButOneThatWasStruckFromTheRoster) {
+  auto roster = roster_of(4);
+  roster[1].active_until = 20;
+  view_.receive(test::mission_part(0, MissionState::kRunning, roster), at(0s));
+  for (const AgentId id : {0, 2, 3}) {
+    EXPECT_FALSE(view_.over());
+    AgentStatus last = status(id, 1, 100);
+    last.phase = AgentPhase::kFinished;
+    view_.receive(last, at(0s));
+  }
+  EXPECT_TRUE(view_.over());
+}
+
+TEST_F(TeamViewTest, APlanOfAnotherVersionIsTroubleWithItsReason) {
+  TeamView view(
+      kRun, [](auto) { return "too new"; }, at(0s));
+  view.receive(test::mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  EXPECT_EQ(view.picture(at(0s)).reason, "too new");
+  EXPECT_TRUE(view.picture(at(0s)).trouble);
+}
+
+TEST_F(TeamViewTest, InventedAgentsCostNoMemory) {
+  for (Incarnation life = 1; life < 10000; ++life) {
+    AgentStatus invented = status(static_cast<AgentId>(life % kMaxAgents), 1);
+    invented.header.incarnation = life;
+    view_.receive(invented, at(0s));
+  }
+  EXPECT_LE(view_.picture(at(0s)).agents.size(), std::size_t{kMaxAgents});
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,177 @@
+// What a study notes of one mission.
+#include "lab/studies/study_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "lab/studies/study_measure.h"
+#include "scenario/scenario.h"
+
+namespace ergocast::studies {
+namespace {
+
+Scenario shipped(const std::string& name, double duration_s) {
+  Overrides overrides;
+  overrides.duration_s = duration_s;
+  const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
+  return std::get<Scenario>(Scenario::load(file, overrides));
+}
+
+/// 100 m × 200 m, ten ticks of 1 s; one agent on the midline x = 50, one in general position.
+Mission hand_made() {
+  Mission mission;
+  mission.seed = 9;
+  mission.domain = {{0, 0}, {100, 200}};
+  mission.timing.dt_s = 1;
+  mission.timing.tick_count = 11;
+  mission.law.contraction_center_m = {50, 100};
+  mission.starts_m = {{50, 30}, {31, 17}};
+  return mission;
+}
+
+TEST(StudyMeasure, MeasuresOffsetsEdgesAndSpeeds) {
+  const Mission mission = hand_made();
+  StudyMeasure measure(mission);
+  measure.position(0, 0, {50, 30});       // 70 m off the centre
+  measure.position(1, 0, {50, 100});      // on it
+  measure.position(0, 1, {0.0999, 100});  // nearer to the left edge than 0.1 m
+  measure.position(1, 1, {50, 199.89});   // not so near to the upper one
+  measure.command({3, 4});
+  measure.command({0, 0});
+  measure.command({0, 1});
+  const StudyFigures figures = measure.figures();
+  EXPECT_EQ(figures.seed, 9U);
+  EXPECT_EQ(figures.agents, 2);
+  const double left2 = 49.9001 * 49.9001, upper2 = 99.89 * 99.89;
+  EXPECT_NEAR(figures.offset2_mean_m2, (4900 + left2 + upper2) / 4, 1e-9);
+  EXPECT_NEAR(figures.offset2_max_m2, upper2, 1e-9);
+  EXPECT_EQ(figures.edge_share, 0.25);
+  EXPECT_EQ(figures.speed_mean_mps, 2);
+  EXPECT_FALSE(figures.complete);
+}
+
+TEST(StudyMeasure, EscapeIsTheFirstTimeFartherThanOnePercentOfTheShorterSide) {
+  const Mission mission = hand_made();
+  StudyMeasure measure(mission);
+  const double x_m[] = {50, 51, 51.0001, 50, 60};
+  for (Tick tick = 0; tick < 5; ++tick) {
+    measure.position(0, tick, {x_m[tick], 30 + 10.0 * static_cast<double>(tick)});
+    measure.position(1, tick, {x_m[tick], 17});
+  }
+  EXPECT_EQ(measure.figures().escape_time_s[0], 2);
+  EXPECT_TRUE(std::isnan(measure.figures().escape_time_s[1])) << "its start lies on no manifold";
+  EXPECT_TRUE(std::isnan(measure.figures().escape_time_s[2])) << "there is no such agent";
+}
+
+TEST(StudyMeasure, WhoStaysOnTheManifoldHasNotEscaped) {
+  const Mission mission = hand_made();
+  StudyMeasure measure(mission);
+  measure.position(0, 0, {50, 30});
+  measure.position(0, 1, {50.9, 180});
+  EXPECT_EQ(measure.figures().escape_time_s[0], std::numeric_limits<double>::infinity());
+}
+
+TEST(StudyMeasure, NotesTheMetricAtTheFirstTickOfEachStepOfTheLadderAndAtTheEnd) {
+  Mission mission = hand_made();
+  mission.timing.dt_s = 0.3;
+  mission.timing.tick_count = 51;  // up to 15 s
+  StudyMeasure measure(mission);
+  for (Tick tick = 0; tick < 51; ++tick) {
+    measure.position(0, tick, {50, 30});
+    if (measure.wants_metric(tick)) measure.metric(tick, 100 + static_cast<double>(tick));
+  }
+  const StudyFigures figures = measure.figures();
+  EXPECT_EQ(figures.metric_at[0], 104);  // 1.2 s
+  EXPECT_EQ(figures.metric_at[1], 107);  // 2.1 s
+  EXPECT_EQ(figures.metric_at[2], 117);  // 5.1 s
+  EXPECT_EQ(figures.metric_at[3], 134);  // 10.2 s
+  EXPECT_TRUE(std::isnan(figures.metric_at[4]));
+  EXPECT_EQ(figures.metric, 150);
+  EXPECT_TRUE(figures.complete);
+}
+
+TEST(StudyMeasure, ATimeThatTheStepDividesIsThatTick) {
+  Mission mission = hand_made();
+  mission.timing.dt_s = 0.1;
+  mission.timing.tick_count = 10001;
+  StudyMeasure measure(mission);
+  measure.position(0, 0, {50, 30});
+  for (Tick tick = 0; tick < 10001; ++tick) {
+    if (measure.wants_metric(tick)) measure.metric(tick, static_cast<double>(tick));
+  }
+  const StudyFigures figures = measure.figures();
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(figures.metric_at[i], kLadder_s[i] * 10) << i;
+}
+
+TEST(StudyMeasure, SlopeIsThePowerOfTheLastDecade) {
+  Mission mission = hand_made();
+  mission.timing.tick_count = 1001;
+  StudyMeasure measure(mission);
+  int asked = 0;
+  for (Tick tick = 0; tick < 1001; ++tick) {
+    measure.position(0, tick, {50, 30});
+    if (!measure.wants_metric(tick)) continue;
+    const auto t = static_cast<double>(tick);
+    measure.metric(tick, t < 100 ? 1 : std::pow(t / 100, -1.5));
+    ++asked;
+  }
+  EXPECT_NEAR(measure.figures().slope, -1.5, 1e-12);
+  EXPECT_LT(asked, 40) << "a metric costs as much as a step";
+}
+
+/// Equal bit for bit, nan included.
+void expect_same(const StudyFigures& a, const StudyFigures& b) {
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(a.agents, b.agents);
+  EXPECT_EQ(a.complete, b.complete);
+  EXPECT_EQ(std::memcmp(a.metric_at.data(), b.metric_at.data(), sizeof a.metric_at), 0);
+  EXPECT_EQ(a.metric, b.metric);
+  EXPECT_EQ(a.slope, b.slope);
+  EXPECT_EQ(std::memcmp(a.escape_time_s.data(), b.escape_time_s.data(), sizeof a.escape_time_s), 0);
+  EXPECT_EQ(a.offset2_mean_m2, b.offset2_mean_m2);
+  EXPECT_EQ(a.offset2_max_m2, b.offset2_max_m2);
+  EXPECT_EQ(a.edge_share, b.edge_share);
+  EXPECT_EQ(a.speed_mean_mps, b.speed_mean_mps);
+  EXPECT_EQ(a.messages, b.messages);
+}
+
+TEST(StudyRun, IsTheSameWithAndWithoutMessages) {
+  for (const char* name : {"quadrimodal_corners", "paper_fig1b", "paper_fig2a"}) {
+    SCOPED_TRACE(name);
+    const Scenario scenario = shipped(name, 60);
+    const StudyFigures figures = fly_without_messages(scenario.mission());
+    EXPECT_TRUE(figures.complete);
+    EXPECT_GT(figures.messages, 0);
+    expect_same(figures, fly_with_messages(scenario.plan(), decode_plan));
+    expect_same(figures, fly_study_run(scenario.plan(), decode_plan));
+  }
+}
+
+TEST(StudyRun, IsTheSameWithMoreAgentsThanOneWorldStateHolds) {
+  Overrides overrides;
+  overrides.duration_s = 5;
+  overrides.agents = 20;
+  const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / "quadrimodal_corners.textproto";
+  const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
+  expect_same(fly_without_messages(scenario.mission()),
+              fly_with_messages(scenario.plan(), decode_plan));
+}
+
+TEST(StudyRun, FliesRealTimeMissionsInVirtualTime) {
+  const StudyFigures figures = fly_study_run(shipped("faulty_team", 20).plan(), decode_plan);
+  EXPECT_TRUE(figures.complete);
+  EXPECT_GT(figures.messages, 0);
+  EXPECT_GT(figures.metric_at[0], figures.metric);
+}
+
+TEST(StudyRun, DiffersBySeed) {
+  const Scenario scenario = shipped("quadrimodal_corners", 20);
+  EXPECT_NE(fly_study_run(scenario.with_seed(1).plan(), decode_plan).metric,
+            fly_study_run(scenario.with_seed(2).plan(), decode_plan).metric);
+}
+
+}  // namespace
+}  // namespace ergocast::studies

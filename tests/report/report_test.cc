@@ -1,0 +1,440 @@
+// The report of a run: what it says is read back from its files, and what it draws is checked as
+// text: well-formed, self-contained, free of what is not a number, and small.
+#include "report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "target/target.h"
+#include "report/markup.h"
+#include "report/polyline.h"
+#include "report/raster.h"
+#include "logger/recorder.h"
+#include "logger/slope.h"
+#include "report/target_density.h"
+
+namespace ergocast {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kHostile = "<script>alert(\"x\")</script> & ']]>\x01";
+const std::vector<std::string> kFigures = {"trajectories", "ergodic_metric", "coverage",
+                                           "coefficients", "speeds",         "communication"};
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// Whether every element is closed in the right order and no '<' or stray '&' stands in a text.
+/// Enough for what we write ourselves: no comments, no CDATA, no '>' in attributes.
+testing::AssertionResult well_formed(const std::string& xml) {
+  static const std::regex kReference("&(amp|lt|gt|quot|#39);");
+  std::vector<std::string> open;
+  for (std::size_t at = 0; at < xml.size(); ++at) {
+    if (xml[at] == '&' && !std::regex_search(xml.begin() + static_cast<std::ptrdiff_t>(at),
+                                             xml.end(), kReference,
+                                             std::regex_constants::match_continuous)) {
+      return testing::AssertionFailure() << "stray & at " << xml.substr(at, 40);
+    }
+    if (xml[at] != '<') continue;
+    const std::size_t end = xml.find_first_of("<>", at + 1);
+    if (end == std::string::npos || xml[end] == '<') {
+      return testing::AssertionFailure() << "stray < at " << xml.substr(at, 40);
+    }
+    const std::string tag = xml.substr(at + 1, end - at - 1);
+    const std::string name = tag.substr(0, tag.find_first_of(" /\n", 1));
+    at = end;
+    if (tag[0] == '!' || tag.back() == '/') continue;
+    if (tag[0] != '/') {
+      open.push_back(name);
+    } else if (open.empty() || "/" + open.back() != tag) {
+      return testing::AssertionFailure() << "<" << tag << "> closes nothing";
+    } else {
+      open.pop_back();
+    }
+  }
+  if (!open.empty()) return testing::AssertionFailure() << "<" << open.back() << "> is not closed";
+  return testing::AssertionSuccess();
+}
+
+/// A run directory of its own, with the mission it belongs to.
+class Report : public testing::Test {
+ protected:
+  Report() {
+    dir = fs::path(testing::TempDir()) /
+          (std::string("report_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(dir);
+    fs::create_directories(dir);
+    mission.name = "two circles";
+    mission.seed = 18446744073709551615u;
+    mission.domain.size_m = {2000, 1000};
+    mission.basis.modes_x = 8;
+    mission.basis.modes_y = 6;
+    mission.law.u_max_mps = 10;
+    mission.timing.tick_count = 1000;
+    cover({{{1, {500, 500}, Eigen::Matrix2d::Identity() * 1e4}}, 0});
+  }
+  ~Report() override { fs::remove_all(dir); }
+
+  void cover(const TargetDensity& target) {
+    mission.target_coefficients = target_coefficients(target, mission.domain, mission.basis).values;
+  }
+
+  /// Agents on noisy circles, φ² falling like 1/t.
+  void record(int agents, int ticks) {
+    std::ostringstream track, metrics;
+    track << kTrajectoryHeader << '\n';
+    metrics << kMetricsHeader << '\n';
+    track.precision(17);
+    for (int tick = 0; tick < ticks; ++tick) {
+      const double t_s = 0.1 * tick;
+      for (int agent = 0; agent < agents; ++agent) {
+        const double angle = 0.02 * tick + agent, radius = 300 + 60 * std::sin(0.37 * tick);
+        track << tick << ',' << t_s << ',' << agent << ',' << 900 + radius * std::cos(angle) << ','
+              << 500 + radius * std::sin(angle) << ',' << 10 * std::cos(angle) << ",0\n";
+      }
+      if (tick % 10 == 0) {
+        metrics << tick << ',' << t_s << ',' << 1 / (1 + t_s) << ",0,0.1," << tick << ",0\n";
+      }
+    }
+    write(dir / "trajectory.csv", track.str());
+    write(dir / "metrics.csv", metrics.str());
+  }
+
+  std::optional<std::string> report() { return write_report(dir, mission); }
+  std::string page() { return read(dir / "report.html"); }
+
+  void expect_sound() {
+    EXPECT_TRUE(well_formed(page()));
+    for (const std::string& name : kFigures) {
+      const std::string svg = read(dir / "figures" / (name + ".svg"));
+      ASSERT_FALSE(svg.empty()) << name;
+      EXPECT_TRUE(well_formed(svg)) << name;
+      const std::regex number_that_is_none("[\"( ,lM-](nan|inf)[\"() ,-]", std::regex::icase);
+      EXPECT_FALSE(std::regex_search(svg, number_that_is_none)) << name;
+      EXPECT_NE(page().find(svg), std::string::npos) << name << " is not in the page";
+    }
+  }
+
+  fs::path dir;
+  Mission mission;
+};
+
+TEST_F(Report, HasSixFiguresInOnePageThatLoadsNothing) {
+  record(4, 1000);
+  ASSERT_EQ(report(), std::nullopt);
+  expect_sound();
+  const std::string html = std::regex_replace(
+      page(), std::regex("xmlns=\"http://www.w3.org/2000/svg\""), "");
+  EXPECT_EQ(html.find("http:"), std::string::npos);
+  EXPECT_EQ(html.find("https:"), std::string::npos);
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find("<link"), std::string::npos);
+  EXPECT_EQ(html.find("@import"), std::string::npos);
+  for (const auto& entry : fs::recursive_directory_iterator(dir)) {
+    EXPECT_NE(entry.path().extension(), ".tmp");
+  }
+}
+
+TEST_F(Report, SaysWhatTheSummarySaysAndEscapesIt) {
+  record(2, 1000);
+  mission.name = kHostile;
+  const std::string hostile = R"(<script>alert(\"x\")</script> & ']]>\u0001)";
+  write(dir / "summary.json", R"({"result":"failed","reason":")" + hostile +
+                                  R"(","mode":"lockstep","scenario_hash":")" + hostile +
+                                  R"(","ticks_per_s":512.25,"agents":[{"id":1,"host":")" + hostile +
+                                  R"(","messages_sent":4321}],"messages":{"sent":98765,)" +
+                                  R"("refused":{"tag":3,"run":0}}})");
+  ASSERT_EQ(report(), std::nullopt);
+  expect_sound();
+  const std::string html = page();
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find('\x01'), std::string::npos);
+  for (const char* text :
+       {"Failed.", "&lt;script&gt;alert(&quot;x&quot;)", "512", "4321", "3 for tag",
+        "18446744073709551615", "lcm-logplayer", "ergocast verify"}) {
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  }
+}
+
+TEST_F(Report, ToleratesASummaryOfOtherTypesOrWithoutKeys) {
+  record(1, 100);
+  for (const char* summary : {"{}", "[]", "null", "7", R"({"agents":{"id":1},"messages":[1]})",
+                              R"({"agents":[null,7,{"id":[]}],"result":3,"mode":null})",
+                              R"({"ticks_per_s":null,"wall_time_s":"x","messages":{"refused":[]}})"}) {
+    write(dir / "summary.json", summary);
+    EXPECT_EQ(report(), std::nullopt) << summary;
+    EXPECT_TRUE(well_formed(page())) << summary;
+  }
+}
+
+TEST_F(Report, NamesASummaryThatIsNotJson) {
+  record(1, 100);
+  write(dir / "summary.json", "{\"result\":\n\"do");
+  const auto problem = report();
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("summary.json"), std::string::npos) << *problem;
+  EXPECT_NE(problem->find("line 2"), std::string::npos) << *problem;
+}
+
+TEST_F(Report, ReplayIsNotOfferedForASimulation) {
+  record(1, 100);
+  write(dir / "summary.json", R"({"mode":"simulate"})");
+  ASSERT_EQ(report(), std::nullopt);
+  EXPECT_EQ(page().find("lcm-logplayer"), std::string::npos);
+}
+
+TEST_F(Report, EmptyRunHasAReport) {
+  record(0, 0);
+  ASSERT_EQ(report(), std::nullopt);
+  expect_sound();
+  write(dir / "trajectory.csv", "");  // killed before the first flush
+  write(dir / "metrics.csv", "");
+  ASSERT_EQ(report(), std::nullopt);
+  expect_sound();
+}
+
+TEST_F(Report, RunsOfAFewTicksHaveAReport) {
+  for (const int ticks : {1, 2, 3, 11, 21}) {
+    record(1, ticks);
+    ASSERT_EQ(report(), std::nullopt) << ticks;
+    expect_sound();
+  }
+}
+
+TEST_F(Report, TornLastLineIsLeftOut) {
+  record(2, 50);
+  ASSERT_EQ(report(), std::nullopt);
+  const std::string whole = page();
+  write(dir / "trajectory.csv", read(dir / "trajectory.csv") + "50,5,0,1e3,12");
+  write(dir / "metrics.csv", read(dir / "metrics.csv") + "50,5,0.0");
+  ASSERT_EQ(report(), std::nullopt);
+  EXPECT_EQ(page(), whole);
+}
+
+TEST_F(Report, SegmentsReadAsOneTable) {
+  record(2, 50);
+  ASSERT_EQ(report(), std::nullopt);
+  const std::string whole = page();
+  for (const std::string table : {"trajectory", "metrics"}) {
+    const std::string text = read(dir / (table + ".csv")), header = text.substr(0, text.find('\n') + 1);
+    const auto first = text.find("\n20,") + 1, second = text.find("\n30,") + 1;
+    write(dir / (table + ".csv"), text.substr(0, first) + "20,2,0,1");
+    write(dir / (table + "-001.csv"), header + text.substr(first, second - first) + "30,3");
+    write(dir / (table + "-002.csv"), header.substr(0, 9));  // killed amid its header
+    write(dir / (table + "-003.csv"), header + text.substr(second));
+  }
+  ASSERT_EQ(report(), std::nullopt);
+  EXPECT_EQ(page(), whole);
+  write(dir / "trajectory-001.csv", std::string(kTrajectoryHeader) + "\n19,1.9,0,1,1,1,1\n");
+  const auto problem = report();
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("trajectory-001.csv:2: "), std::string::npos) << *problem;
+}
+
+TEST_F(Report, MalformedLineIsNamedAndNothingIsWritten) {
+  const std::vector<std::string> lines = {
+      "2,0.2,0,1,1,1",     "2,0.2,0,1,1,1,1,1",  "2,0.2,0,nan,1,1,1", "2,0.2,0,1e300,1,1,1",
+      "2,0.2,x,1,1,1,1",   "2,0.2,999,1,1,1,1",  "2,0.2,0,1,1,1,1\r", "0,0.2,0,1,1,1,1",
+      "2.5,0.2,0,1,1,1,1", "2,-1,1,1,1,1,1",     "-2,0.2,1,1,1,1,1",  ""};
+  for (const std::string& line : lines) {
+    record(1, 2);
+    write(dir / "trajectory.csv", read(dir / "trajectory.csv") + line + "\n3,0.3,0,1,1,1,1\n");
+    const auto problem = report();
+    ASSERT_TRUE(problem) << line;
+    EXPECT_NE(problem->find("trajectory.csv:4: "), std::string::npos) << *problem;
+    EXPECT_EQ(problem->find('\n'), std::string::npos) << *problem;
+    EXPECT_FALSE(fs::exists(dir / "report.html"));
+  }
+}
+
+TEST_F(Report, CountsOfContributionsThatCannotBeAreNamed) {
+  for (const char* counts : {"-1,0", "0.5,0", "1e30,0", "0,1e30"}) {
+    record(1, 2);
+    write(dir / "metrics.csv",
+          std::string(kMetricsHeader) + "\n0,0,0.5,0,0,4711,0\n1,0.1,0.5,0,0," + counts + "\n");
+    const auto problem = report();
+    ASSERT_TRUE(problem) << counts;
+    EXPECT_NE(problem->find("metrics.csv:3: the contributions"), std::string::npos) << *problem;
+  }
+}
+
+TEST_F(Report, MissingTablesAreNamed) {
+  const auto problem = report();
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("trajectory.csv"), std::string::npos) << *problem;
+}
+
+TEST_F(Report, WhatCannotBeWrittenIsNamed) {
+  record(1, 100);
+  write(dir / "figures", "a file where the directory belongs");
+  const auto problem = report();
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("figures"), std::string::npos) << *problem;
+}
+
+TEST_F(Report, UniformTargetAndExtremeDomainsAreDrawn) {
+  for (const auto& [width_m, height_m] : {std::pair(1e5, 1.0), {1.0, 1e5}, {1.0, 1.0}}) {
+    mission.domain.size_m = {width_m, height_m};
+    cover({{}, 1});
+    record(3, 200);  // mostly outside: an observer takes what the files say
+    ASSERT_EQ(report(), std::nullopt);
+    expect_sound();
+  }
+}
+
+/// The picture under the trajectories.
+std::string ground_in(const std::string& svg) {
+  const auto at = svg.find("data:image/png;base64,");
+  return svg.substr(at, svg.find('"', at) - at);
+}
+
+TEST_F(Report, DrawsTheRecordedTargetAndWithoutOneWhatTheCoefficientsSay) {
+  record(2, 50);
+  const auto drawn = [&] {
+    EXPECT_EQ(report(), std::nullopt);
+    return ground_in(read(dir / "figures" / "trajectories.svg"));
+  };
+  const std::string from_coefficients = drawn();
+  Field density(4, 2);
+  density << 0, 0, 1.25, 3, 0, 0, 0, 3.75;
+  ASSERT_EQ(write_target_density(dir / kTargetDensityFile, density), std::nullopt);
+  EXPECT_EQ(std::get<Field>(read_target_density(dir / kTargetDensityFile)), density);
+  const std::string recorded = drawn();
+  EXPECT_EQ(recorded, png_data_uri(density / 3.75, pencil()));
+  EXPECT_NE(recorded, from_coefficients);
+  expect_sound();
+}
+
+TEST_F(Report, NamesARecordedTargetThatIsDamaged) {
+  record(2, 50);
+  write(dir / kTargetDensityFile, "1,2\n1,x\n");
+  const auto problem = report();
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("target_density.csv, line 2: x is not a number"), std::string::npos)
+      << *problem;
+}
+
+TEST_F(Report, StaysBelowAMegabyteForALargeRun) {
+  ASSERT_EQ(write_target_density(dir / kTargetDensityFile, Field::Constant(256, 256, 1)),
+            std::nullopt);
+  record(64, 3000);  // each tick turns sharply, so that hardly a point can be left out
+  ASSERT_EQ(report(), std::nullopt);
+  EXPECT_LT(fs::file_size(dir / "report.html"), 1'000'000u);
+  EXPECT_NE(page().find("Only the last"), std::string::npos);
+}
+
+// --- slope ---
+
+/// A row each second up to `end_s` of 3·t^power.
+std::pair<std::vector<double>, std::vector<double>> power_law(double power, double end_s) {
+  std::vector<double> t_s, values;
+  for (double t = 0; t <= end_s; ++t) {
+    t_s.push_back(t);
+    values.push_back(t == 0 ? 1 : 3 * std::pow(t, power));
+  }
+  return {t_s, values};
+}
+
+TEST(Slope, PowerLawsGiveTheirExponent) {
+  for (const double power : {-2.0, -1.0, -0.37, 0.0, 1.5}) {
+    const auto [t_s, values] = power_law(power, 1000);
+    const auto law = fit_last_decade(t_s, values);
+    ASSERT_TRUE(law);
+    EXPECT_NEAR(law->slope, power, 1e-12);  // rounding of logarithms up to 14, over 900 rows
+    EXPECT_NEAR(law->at(500), 3 * std::pow(500, power), 1e-10 * law->at(500));
+    EXPECT_NEAR(law->from_s, 100, 1e-9);
+    EXPECT_NEAR(law->to_s, 1000, 1e-9);
+  }
+}
+
+TEST(Slope, OnlyTheLastDecadeCounts) {
+  auto [t_s, values] = power_law(-1, 1000);
+  for (std::size_t i = 0; i < 100; ++i) values[i] = 1e6;
+  EXPECT_NEAR(log_log_slope(t_s, values).value(), -1, 1e-12);
+}
+
+TEST(Slope, IsNotGuessedFromTooLittle) {
+  EXPECT_FALSE(log_log_slope({}, {}));
+  EXPECT_FALSE(log_log_slope(std::vector{0.0, 1.0, 2.0}, std::vector{1.0, 0.5, 0.2}));
+  EXPECT_FALSE(log_log_slope(std::vector{10.0, 11.0, 12.0}, std::vector{1.0, 0.5, 0.2}));
+  EXPECT_FALSE(log_log_slope(std::vector{1.0, 2.0, 4.0}, std::vector{0.0, 0.0, 0.0}));
+}
+
+// --- the parts a drawing is made of ---
+
+TEST(Polylines, SimplifiedOnesStayWithinTheTolerance) {
+  Polyline wave;
+  for (int i = 0; i <= 2000; ++i) wave.push_back({0.2 * i, 50 * std::sin(0.01 * i)});
+  const Polyline few = simplify(wave, 0.15);
+  EXPECT_LT(few.size(), wave.size() / 10);
+  EXPECT_EQ(few.front(), wave.front());
+  EXPECT_EQ(few.back(), wave.back());
+  std::size_t segment = 0;
+  for (const Eigen::Vector2d& point : wave) {
+    while (few[segment + 1].x() < point.x()) ++segment;
+    const Eigen::Vector2d along = (few[segment + 1] - few[segment]).normalized();
+    const Eigen::Vector2d offset = point - few[segment];
+    EXPECT_LE(std::abs(along.x() * offset.y() - along.y() * offset.x()), 0.15);
+  }
+}
+
+TEST(Polylines, ThinnedColumnsKeepTheirExtremes) {
+  const Polyline thin = thin_columns({{0.0, 1}, {0.1, 5}, {0.2, 2}, {0.3, -4}, {0.4, 0}, {1.5, 7}});
+  EXPECT_EQ(thin, (Polyline{{0.0, 1}, {0.1, 5}, {0.3, -4}, {0.4, 0}, {1.5, 7}}));
+}
+
+TEST(Polylines, PathsDoNotDrift) {
+  Polyline line;
+  for (int i = 0; i <= 1000; ++i) line.push_back({0.04 * i, 0});  // below what a path resolves
+  const std::string data = path_data(line);
+  double x = 0;
+  for (std::size_t at = data.find('l') + 1; at < data.size();) {
+    std::size_t used = 0;
+    x += std::stod(data.substr(at), &used);
+    at += used + 2;  // " 0"
+    if (at < data.size()) ++at;
+  }
+  EXPECT_NEAR(x, 40, 0.05);
+  EXPECT_EQ(path_data({}), "");
+  EXPECT_EQ(path_data({{1, 2}}), "M1 2l0 0");
+}
+
+// The last chunk of every PNG is empty and its checksum known, which vouches for those before.
+TEST(Raster, IsAPng) {
+  const std::string uri = png_data_uri(Field::Constant(3, 1, 0.5), pencil());
+  EXPECT_TRUE(uri.starts_with("data:image/png;base64,iVBORw0KGgo")) << uri;
+  EXPECT_TRUE(uri.ends_with("AAAAAElFTkSuQmCC")) << uri;
+}
+
+TEST(Numbers, AreShortForPeople) {
+  EXPECT_EQ(readable(0.36812), "0.368");
+  EXPECT_EQ(readable(143976), "143\u202f976");
+  EXPECT_EQ(readable(1234567), "1\u202f234\u202f567");
+  EXPECT_EQ(readable(-9.329e-4), "−9.33 × 10⁻⁴");
+  EXPECT_EQ(readable(9.999e-6), "1 × 10⁻⁵");
+  EXPECT_EQ(readable(std::nan("")), "–");
+  EXPECT_EQ(with_unit(11234, "m"), "11.2\u00a0km");
+  EXPECT_EQ(duration(599.7), "10\u00a0min");
+  EXPECT_EQ(duration(4985), "1\u00a0h 23\u00a0min");
+  EXPECT_EQ(escape("<a b='\"'>&\x02"), "&lt;a b=&#39;&quot;&#39;&gt;&amp;\ufffd");
+}
+
+}  // namespace
+}  // namespace ergocast

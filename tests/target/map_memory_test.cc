@@ -1,0 +1,58 @@
+// A large map is read and transformed in far less memory than it has.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "target/raster_integral.h"
+#include "target/map_file.h"
+#include "tests/support/grey_png.h"
+
+#ifdef __has_feature  // clang's way to say what GCC says with __SANITIZE_ADDRESS__
+#define ERGOCAST_CLANG_SANITIZES __has_feature(address_sanitizer)
+#else
+#define ERGOCAST_CLANG_SANITIZES 0
+#endif
+
+namespace ergocast {
+namespace {
+
+/// A line of /proc/self/status such as VmHWM, the most memory so far, in MiB.
+double memory_mib(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kib = 0;
+    if (word == key + ":" && status >> kib) return kib / 1024;
+  }
+  return 0;
+}
+
+TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || ERGOCAST_CLANG_SANITIZES
+  GTEST_SKIP() << "a sanitizer needs more than the program";
+#endif
+  constexpr int kSide = 4096;
+  const auto file = std::filesystem::path(::testing::TempDir()) / "map_memory.png";
+  test::write_png(file, kSide, kSide, {.bits = 16},
+                  [](int column, int row, int) { return (column ^ row) & 1023; });
+  // From now on the peak counts anew.
+  if (!(std::ofstream("/proc/self/clear_refs") << 5 << std::flush)) GTEST_SKIP() << "no clear_refs";
+  const double before = memory_mib("VmRSS");
+
+  const Rectangle domain{{0, 0}, {100, 100}};
+  OpenedMap opened = open_map(file);
+  MapFile& map = *std::get<0>(opened);
+  RasterIntegral integral({domain, kSide, kSide}, domain, {.modes_x = 16, .modes_y = 16},
+                          free_area(domain, {}));
+  std::vector<double> row(kSide);
+  for (int i = 0; i < kSide; ++i) {
+    ASSERT_FALSE(map.next_row(row));
+    integral.add_row(kSide - 1 - i, row);
+  }
+  EXPECT_NEAR(integral.shares().values(0, 0), 1, 1e-12);
+  // As numbers the map has 128 MiB, as pixels 32; a row of numbers and the cosines have 0.6.
+  EXPECT_LT(memory_mib("VmHWM") - before, 8);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace ergocast
