@@ -1,8 +1,8 @@
 // Plain messages to checked bytes and back: the only place that knows the wire.
 //
-// Bytes are believed in this order: size, type, tag (a hash over everything), run, signature, the
-// counts against the size; only then does a generated decoder see them. Debian's decoders trust a
-// declared count before they look at the length, so nothing else may call them.
+// Bytes are believed in this order: size, type, tag (a hash over everything), run, signature, then
+// field by field (lcmtypes/fields.h). The decoders that lcm-gen makes are not used: they trust a
+// declared count before they look at the length.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace ergocast {
 
 /// Writes `message` into `out`, whose capacity is reused. Strings are cut at their limits.
 /// @param channel  that it will be published on; only a keyed seal asks
-/// @pre counts within the limits of core/messages.h.
+/// @pre counts within the limits of team/messages.h.
 void encode(const Message& message, std::vector<std::byte>& out, const Seal& seal = {},
             std::string_view channel = {});
 

@@ -1,49 +1,190 @@
-// Plain messages and LCM's generated types, field by field: what every field means on the wire.
-// For the codec alone; nothing else sees a generated type.
+// LCM's encoding: big-endian numbers, strings with their length and a final NUL, arrays whose
+// lengths stand before them. A Writer puts fields behind each other; a Reader takes them in turn
+// from bytes that may be anything.
 #pragma once
 
-#include <ergocast/agent_status_t.hpp>
-#include <ergocast/command_t.hpp>
-#include <ergocast/contribution_t.hpp>
-#include <ergocast/digest_t.hpp>
-#include <ergocast/hello_t.hpp>
-#include <ergocast/mission_t.hpp>
-#include <ergocast/record_ack_t.hpp>
-#include <ergocast/stop_t.hpp>
-#include <ergocast/team_status_t.hpp>
-#include <ergocast/world_state_t.hpp>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
 
-#include "team/messages.h"
+#include "core/require.h"
+#include "lcmtypes/seal.h"
 
 namespace ergocast {
 
-/// The message with its tag still zero, and its signature as it is. Strings are cut at their limits.
-contribution_t to_wire(const Contribution& m);
-agent_status_t to_wire(const AgentStatus& m);
-team_status_t to_wire(const TeamStatus& m);
-hello_t to_wire(const Hello& m);
-stop_t to_wire(const Stop& m);
-world_state_t to_wire(const WorldState& m);
-command_t to_wire(const Command& m);
-record_ack_t to_wire(const RecordAck& m);
-mission_t to_wire(const MissionPart& m);
-digest_t to_wire(const Digest& m);
+/// More messages, ticks or events of any kind than a run can have; sums of a few cannot overflow.
+inline constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
 
-/// Fills `m`; false for what cannot be true: NaN, a count below 0, an id out of range, a text with
-/// control characters.
-/// @pre counts within the arrays of `m`, as the codec has checked them.
-bool from_wire(const contribution_t& w, Contribution& m);
-bool from_wire(const agent_status_t& w, AgentStatus& m);
-bool from_wire(const team_status_t& w, TeamStatus& m);
-bool from_wire(const hello_t& w, Hello& m);
-bool from_wire(const stop_t& w, Stop& m);
-bool from_wire(const world_state_t& w, WorldState& m);
-bool from_wire(const command_t& w, Command& m);
-bool from_wire(const record_ack_t& w, RecordAck& m);
-bool from_wire(const mission_t& w, MissionPart& m);
-bool from_wire(const digest_t& w, Digest& m);
+/// The unsigned number of as many bits, most significant byte first on the wire.
+template <class Number>
+using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t, std::uint32_t>;
 
-/// Whether a header can be anybody's.
-bool plausible(const Header& h);
+inline std::uint64_t swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
+inline std::uint32_t swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
+
+/// `text` as it is sent: at most `limit` characters, up to a NUL, with a space for each character
+/// that means something to a terminal. Readers refuse what is different.
+std::string bounded(const std::string& text, int limit);
+/// Whether no character of `text` means something to a terminal.
+bool plausible_text(const std::string& text);
+
+class Writer {
+ public:
+  /// @param out  grows to the longest datagram, and shrinks to what was written by size()
+  explicit Writer(std::vector<std::byte>& out) : out_(out) { out_.resize(kMaxDatagramBytes); }
+
+  std::size_t size() const { return at_; }
+
+  template <class Number>
+  void number(Number value) {
+    const auto bits = swapped(std::bit_cast<Bits<Number>>(value));
+    std::memcpy(room(sizeof bits), &bits, sizeof bits);
+  }
+  void numbers(std::span<const double> values) {
+    std::byte* const at = room(values.size_bytes());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const std::uint64_t bits = swapped(std::bit_cast<std::uint64_t>(values[k]));
+      std::memcpy(at + 8 * k, &bits, sizeof bits);
+    }
+  }
+  void count(std::int64_t value) { number(value); }
+  /// Of what others can make us count: who leaps ahead in its numbering makes a loss of it.
+  void capped_count(std::int64_t value) { number(std::min(value, kMostEver)); }
+  void count_or_none(std::int64_t value) { number(value); }
+  void finite(double value) { number(value); }
+  void quantity(double value) { number(value); }
+  void within(std::int32_t value, std::int32_t, std::int32_t) { number(value); }
+  void vector(const Eigen::Vector3d& value) { numbers({value.data(), 3}); }
+  void flag(bool value) { *room(1) = static_cast<std::byte>(value); }
+  template <class Enum>
+  void enumerator(Enum value, Enum) {
+    *room(1) = static_cast<std::byte>(value);
+  }
+  void bytes(std::span<const std::byte> value) {
+    if (!value.empty()) std::memcpy(room(value.size()), value.data(), value.size());
+  }
+  void text(const std::string& value, int limit);
+  void room_for_tag() { std::memset(room(kTagBytes), 0, kTagBytes); }
+  void holds(bool) {}
+
+  template <class Element>
+  void length(const std::vector<Element>& elements, int limit) {
+    ERGOCAST_REQUIRE(elements.size() <= static_cast<std::size_t>(limit));
+    number(static_cast<std::int32_t>(elements.size()));
+  }
+  template <class Element, std::size_t kLimit>
+  std::span<const Element> length(const std::array<Element, kLimit>& elements, std::int32_t count) {
+    ERGOCAST_REQUIRE(count >= 0 && static_cast<std::size_t>(count) <= kLimit);
+    number(count);
+    return std::span(elements).first(static_cast<std::size_t>(count));
+  }
+
+ private:
+  std::byte* room(std::size_t count) {
+    ERGOCAST_REQUIRE(count <= kMaxDatagramBytes - at_);
+    at_ += count;
+    return out_.data() + at_ - count;
+  }
+
+  std::vector<std::byte>& out_;
+  std::size_t at_ = 0;
+};
+
+/// Fields that are not there read as 0. A length beyond its limit is one of nothing.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  /// Whether there was every field, and nothing after the last.
+  bool complete() const { return complete_ && bytes_.empty(); }
+  /// Whether all that was read can be true.
+  bool plausible() const { return plausible_; }
+
+  template <class Number>
+  void number(Number& value) {
+    Bits<Number> bits = 0;
+    if (const std::byte* at = take(sizeof bits)) std::memcpy(&bits, at, sizeof bits);
+    value = std::bit_cast<Number>(swapped(bits));
+  }
+  void numbers(std::span<double> values) {
+    const std::byte* const at = take(values.size_bytes());
+    if (at == nullptr) return;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      std::uint64_t bits;
+      std::memcpy(&bits, at + 8 * k, sizeof bits);
+      values[k] = std::bit_cast<double>(swapped(bits));
+    }
+  }
+  void count(std::int64_t& value) { number(value), holds(value >= 0 && value <= kMostEver); }
+  void capped_count(std::int64_t& value) { count(value); }
+  void count_or_none(std::int64_t& value) { number(value), holds(value >= -1 && value <= kMostEver); }
+  void finite(double& value) { number(value), holds(std::isfinite(value)); }
+  void quantity(double& value) { number(value), holds(std::isfinite(value) && value >= 0); }
+  void within(std::int32_t& value, std::int32_t least, std::int32_t most) {
+    number(value), holds(value >= least && value <= most);
+  }
+  void vector(Eigen::Vector3d& value) {
+    numbers({value.data(), 3});
+    holds(value.allFinite());
+  }
+  void flag(bool& value) { value = byte() != std::byte{0}; }
+  template <class Enum>
+  void enumerator(Enum& value, Enum last) {
+    const auto read = static_cast<std::int8_t>(byte());
+    const bool known = read >= 0 && read <= static_cast<int>(last);
+    value = known ? static_cast<Enum>(read) : Enum();
+    holds(known);
+  }
+  void bytes(std::span<std::byte> value) {
+    const std::byte* const at = take(value.size());
+    if (at != nullptr && !value.empty()) std::memcpy(value.data(), at, value.size());
+  }
+  void text(std::string& value, int limit);
+  void room_for_tag() { take(kTagBytes); }
+  void holds(bool condition) { plausible_ = plausible_ && condition; }
+
+  template <class Element>
+  void length(std::vector<Element>& elements, int limit) {
+    elements.resize(declared(limit));
+  }
+  template <class Element, std::size_t kLimit>
+  std::span<Element> length(std::array<Element, kLimit>& elements, std::int32_t& count) {
+    count = static_cast<std::int32_t>(declared(static_cast<int>(kLimit)));
+    return std::span(elements).first(static_cast<std::size_t>(count));
+  }
+
+ private:
+  /// The next `count` bytes; null if there are fewer, and of all that follows.
+  const std::byte* take(std::size_t count) {
+    complete_ = complete_ && count <= bytes_.size();
+    if (!complete_) return nullptr;
+    const std::byte* const at = bytes_.data();
+    bytes_ = bytes_.subspan(count);
+    return at;
+  }
+  std::byte byte() {
+    const std::byte* const at = take(1);
+    return at == nullptr ? std::byte{0} : *at;
+  }
+  std::size_t declared(int limit) {
+    std::int32_t count = 0;
+    number(count);
+    complete_ = complete_ && count >= 0 && count <= limit;
+    return complete_ ? static_cast<std::size_t>(count) : 0;
+  }
+
+  std::span<const std::byte> bytes_;
+  bool complete_ = true, plausible_ = true;
+};
 
 }  // namespace ergocast

@@ -1,0 +1,198 @@
+// Every message field by field, in the order of its .lcm file: the one statement of what it is on
+// the wire. Writing, reading, the sizes of messages and what cannot be true all follow from it.
+//
+// Fields<M>::list(io, m) names each field of `m` once, by what kind of number it is. Writer and
+// Reader (lcmtypes/wire.h) are the two that ask.
+#pragma once
+
+#include <ergocast/agent_status_t.hpp>
+#include <ergocast/command_t.hpp>
+#include <ergocast/contribution_t.hpp>
+#include <ergocast/digest_t.hpp>
+#include <ergocast/hello_t.hpp>
+#include <ergocast/mission_t.hpp>
+#include <ergocast/record_ack_t.hpp>
+#include <ergocast/stop_t.hpp>
+#include <ergocast/team_status_t.hpp>
+#include <ergocast/world_state_t.hpp>
+#include <limits>
+
+#include "team/messages.h"
+
+namespace ergocast {
+
+/// `Generated` is lcm-gen's type: of it, only its fingerprint is used.
+template <class M>
+struct Fields;
+
+template <>
+struct Fields<Hello> {
+  using Generated = hello_t;
+  static void list(auto& io, auto& m) {
+    io.within(m.requested_id, kUnassigned, kMaxAgents - 1);
+    io.count_or_none(m.revision);
+    io.text(m.host, kMaxHostLength);
+    io.text(m.version, kMaxVersionLength);
+  }
+};
+
+template <>
+struct Fields<MissionPart> {
+  using Generated = mission_t;
+  static void list(auto& io, auto& m) {
+    io.bytes(m.signature);
+    io.count(m.revision);
+    io.enumerator(m.state, MissionState::kFailed);
+    io.within(m.part, 0, kMaxPlanParts - 1);
+    io.within(m.parts, 1, kMaxPlanParts);
+    io.holds(m.part < m.parts);
+    io.length(m.roster, kMaxRosterEntriesPerMessage);
+    io.length(m.plan, kMaxPlanBytesPerMessage);
+    for (auto& entry : m.roster) {
+      io.within(entry.author.agent, 0, kMaxAgents - 1);
+      io.number(entry.author.incarnation);
+      io.count(entry.active_from);
+      io.count_or_none(entry.active_until);
+      io.flag(entry.forgotten);
+      io.count(entry.since_tick);
+      io.count(entry.since_revision);
+    }
+    io.bytes(m.plan);
+    io.text(m.reason, kMaxReasonLength);
+  }
+};
+
+/// Whether the sums can be true is for CoverageTable::merge(), which knows the mission.
+template <>
+struct Fields<Contribution> {
+  using Generated = contribution_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= 0);
+    io.count(m.steps);
+    io.count(m.next_broadcast_tick);
+    io.finite(m.elapsed_s);
+    io.number(m.block);
+    io.number(m.mode_count);
+    io.numbers(m.sums);
+  }
+};
+
+template <>
+struct Fields<AgentStatus> {
+  using Generated = agent_status_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= kUnassigned);
+    io.enumerator(m.phase, AgentPhase::kFinished);
+    io.quantity(m.ergodic_metric);
+    io.quantity(m.max_staleness_s);
+    io.within(m.waiting_for, kOperator, kMaxAgents - 1);
+    io.count_or_none(m.answered_tick);
+    io.count(m.contributions_received);
+    io.capped_count(m.contributions_lost);
+    io.count(m.messages_sent);
+    io.count(m.messages_received);
+    io.count(m.contributions_relayed);
+    io.count(m.missed_ticks);
+    for (auto& count : m.refused) io.count(count);
+    io.within(m.babbler, kUnassigned, kMaxAgents - 1);
+    io.count(m.kernel_drops);
+    io.quantity(m.loop_lag_s);
+    io.text(m.host, kMaxHostLength);
+  }
+};
+
+template <>
+struct Fields<TeamStatus> {
+  using Generated = team_status_t;
+  static void list(auto& io, auto& m) {
+    io.enumerator(m.state, MissionState::kFailed);
+    io.count(m.tick_count);
+    io.within(m.agents_alive, 0, kAnyNumber);
+    io.within(m.agents_expected, 0, kAnyNumber);
+    io.quantity(m.ergodic_metric);
+    io.within(m.silent_agent, kOperator, kMaxAgents - 1);
+    io.count(m.missed_deadlines);
+    io.text(m.host, kMaxHostLength);
+  }
+
+ private:
+  static constexpr std::int32_t kAnyNumber = std::numeric_limits<std::int32_t>::max();
+};
+
+template <>
+struct Fields<Stop> {
+  using Generated = stop_t;
+  static void list(auto& io, auto& m) {
+    io.bytes(m.signature);
+    io.flag(m.failed);
+    io.flag(m.now);
+    io.text(m.reason, kMaxReasonLength);
+  }
+};
+
+template <>
+struct Fields<WorldState> {
+  using Generated = world_state_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.tick >= 0);
+    io.count(m.roster_revision);
+    io.count(m.missed_deadlines);
+    io.count(m.skipped_ticks);
+    io.count(m.clamped_commands);
+    io.within(m.part, 0, kMaxAgents - 1);
+    io.within(m.parts, 1, kMaxAgents);
+    io.holds(m.part < m.parts);
+    for (auto& vehicle : io.length(m.vehicles, m.vehicle_count)) {
+      io.within(vehicle.id, 0, kMaxAgents - 1);
+      io.count_or_none(vehicle.answered_tick);
+      io.vector(vehicle.position_m);
+      io.vector(vehicle.velocity_mps);
+    }
+  }
+};
+
+template <>
+struct Fields<Command> {
+  using Generated = command_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= 0);
+    io.vector(m.position_m);
+    io.vector(m.velocity_mps);
+    io.number(m.asked_by);
+  }
+};
+
+template <>
+struct Fields<RecordAck> {
+  using Generated = record_ack_t;
+  static void list(auto&, auto&) {}
+};
+
+template <>
+struct Fields<Digest> {
+  using Generated = digest_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= 0);
+    for (auto& entry : io.length(m.entries, m.entry_count)) {
+      io.within(entry.author.agent, 0, kMaxAgents - 1);
+      io.number(entry.author.incarnation);
+      io.count(entry.steps);
+      io.number(entry.mark);
+    }
+  }
+};
+
+/// What every message begins with, after its fingerprint.
+template <>
+struct Fields<Header> {
+  static void list(auto& io, auto& h) {
+    io.number(h.run);
+    io.within(h.sender, kOperator, kMaxAgents - 1);
+    io.number(h.incarnation);
+    io.count(h.sequence);
+    io.count_or_none(h.tick);
+    io.room_for_tag();
+  }
+};
+
+}  // namespace ergocast
