@@ -18,8 +18,8 @@ using namespace std::chrono_literals;
 /// at once, and a team that is merely slow is not buried in repeats.
 constexpr std::chrono::nanoseconds kRepeatPeriod = 20ms;
 constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
-/// A world that begins asks the agents where they are, this often; and begins without those that
-/// have not answered for so long. Nobody can answer a tick then either.
+/// A world that begins asks the agents where they are, this often; and in real time it begins without
+/// those that have not answered for so long.
 constexpr auto kQuestionPeriod = 100ms;
 constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
@@ -105,7 +105,11 @@ void World::ask_team(Instant now, Outbox& out) {
   const bool heard = std::any_of(bodies_.begin(), bodies_.end(),
                                  [](const auto& one) { return one.second.command.has_value(); });
   if (!heard) asking_since_ = now;
-  if (team_has_answered() || now - *asking_since_ >= kQuestionPatience) return begin(now);
+  // In lockstep a tick waits for everybody anyway. Whoever alone had heard our predecessor's last tick
+  // would never answer an earlier one.
+  const bool may_begin_without = follower_.mission()->timing.pace == Pace::kRealtime &&
+                                 now - *asking_since_ >= kQuestionPatience;
+  if (team_has_answered() || may_begin_without) return begin(now);
   if (now < next_question_) return;
   next_question_ = now + kQuestionPeriod;
   ask(0, out);
