@@ -173,6 +173,7 @@ void Coordinator::admit(const Author& author, Instant now) {
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   members_[author].heard = now;
   asked_.erase(author.incarnation);
+  tick_since_ = now;  // the tick waits for the newcomer, too, which has its time for it
   announce();
 }
 

@@ -145,6 +145,33 @@ TEST(CoordinatorTimeOut, StartsAgainWithEveryTick) {
   }
 }
 
+/// When the roster says that this life has left.
+Tick until(const Coordinator& coordinator, const Author& author) {
+  for (const RosterEntry& entry : coordinator.roster()) {
+    if (entry.author == author) return entry.active_until;
+  }
+  ADD_FAILURE() << "no member";
+  return 0;
+}
+
+TEST(CoordinatorTimeOut, StartsAgainWithAnAdmissionThatTheTickWaitsFor) {
+  for (const OnTimeout on_timeout : {OnTimeout::kEndMission, OnTimeout::kEvict}) {
+    Coordinator coordinator = running_coordinator(impatient(2, on_timeout));
+    coordinator.receive(world_where(5, {5, 4}), at(1s));
+    all_alive(coordinator, {-1}, at(10s));
+    advance(coordinator, at(10900ms));
+    coordinator.receive(hello_of(1, 99), at(10900ms));
+    all_alive(coordinator, {-1}, at(20800ms));
+    advance(coordinator, at(20899ms));
+    EXPECT_EQ(coordinator.state(), MissionState::kRunning) << "its time has only begun";
+    EXPECT_EQ(until(coordinator, {1, 99}), -1);
+    advance(coordinator, at(20900ms));
+    const bool evicts = on_timeout == OnTimeout::kEvict;
+    EXPECT_EQ(coordinator.state(), evicts ? MissionState::kRunning : MissionState::kFailed);
+    EXPECT_EQ(until(coordinator, {1, 99}), evicts ? 5 : -1);
+  }
+}
+
 TEST(CoordinatorTimeOut, IsNotPutOffByRepeatsOfTheSameTick) {
   Coordinator coordinator = running_coordinator(impatient(1));
   for (int i = 0; i <= 10; ++i) {
