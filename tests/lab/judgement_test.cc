@@ -153,6 +153,22 @@ TEST(Eviction, OfWhoWasAwayIsNoFault) {
   EXPECT_GE(evicted, 3);
 }
 
+// A mission that goes on for long after everybody is back judges nobody a second time.
+TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
+  int evicted = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Faults faults;
+    faults.delay_mean_s = 0.05;
+    faults.delay_max_s = 0.1;
+    faults.partitions_per_s = 0.03;
+    faults.partition_max_s = 10;
+    const TrialResult result = fly(evicting(), seed, faults);
+    EXPECT_EQ(problem(result), "") << seed;
+    evicted += result.figures.evictions > 0;
+  }
+  EXPECT_GE(evicted, 3);
+}
+
 TEST(Eviction, OfWhoWasThereIs) {
   const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
   EXPECT_EQ(broken(fly(evicting(), 1, {}, without(states))), Invariant::kNoEarlyEnd);
