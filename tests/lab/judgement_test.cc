@@ -169,6 +169,16 @@ TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
   EXPECT_GE(evicted, 3);
 }
 
+// There all were evicted before the coordinator was to be killed: they had ended, and nobody else
+// could have told its successor of the mission.
+TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
+  for (const std::uint64_t seed : {751, 1948, 4022}) {
+    const TrialResult result = fly(evicting(), seed, lab::drawn(seed));
+    EXPECT_EQ(problem(result), "") << seed;
+    EXPECT_GE(result.figures.evictions, 1) << seed;
+  }
+}
+
 TEST(Eviction, OfWhoWasThereIs) {
   const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
   EXPECT_EQ(broken(fly(evicting(), 1, {}, without(states))), Invariant::kNoEarlyEnd);
