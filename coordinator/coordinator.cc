@@ -124,6 +124,7 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
 void Coordinator::on(const Hello& hello, Instant now) {
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   const Incarnation nonce = hello.header.incarnation;
+  if (hello.header.sender == kWorld) return on_question(hello, now);
   if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
   if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
   if (hello.version != version_) {
@@ -157,6 +158,15 @@ void Coordinator::on(const Hello& hello, Instant now) {
     }
   }
   admit({*id, nonce}, now);
+}
+
+/// A world that begins asks the team where it is, for which the tick has its time anew.
+void Coordinator::on_question(const Hello& question, Instant now) {
+  if (!freshness_.is_news(question.header)) return;
+  if (question.header.incarnation != asking_world_) tick_since_ = now;
+  asking_world_ = question.header.incarnation;
+  unheard_ = question.requested_id;
+  questioned_ = now;
 }
 
 void Coordinator::admit(const Author& author, Instant now) {
@@ -217,6 +227,9 @@ AgentId Coordinator::waits_for(const RosterEntry& entry) const {
 }
 
 RosterEntry* Coordinator::culprit(Instant now) {
+  // A world that begins lacks the answers that its predecessor may have had.
+  RosterEntry* unheard = now - questioned_ <= kOverdue ? active_entry(unheard_) : nullptr;
+  if (unheard != nullptr) return unheard;
   RosterEntry* silent = nullptr;
   RosterEntry* suspect = nullptr;
   for (RosterEntry& entry : roster_) {

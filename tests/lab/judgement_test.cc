@@ -80,7 +80,10 @@ bool never_missed(const Heard& heard) {
   // the tests of real processes do.
   if (type == kTypes<Stop>) return true;
   if (heard.role == Role::kAgent) return type == kTypes<AgentStatus>;
-  if (heard.role == Role::kCoordinator) return type == kTypes<TeamStatus>;
+  if (heard.role == Role::kCoordinator) {
+    // It asks in lockstep only whom a world that begins waits for.
+    return type == kTypes<TeamStatus> || (type == kTypes<Hello> && heard.bus == Bus::kWorld);
+  }
   // The logger keeps everything for who looks at the event log later; its tables need this only.
   return heard.role == Role::kLogger && !(type == kTypes<WorldState> && heard.bus == Bus::kWorld);
 }

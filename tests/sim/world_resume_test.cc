@@ -195,6 +195,18 @@ TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
   EXPECT_EQ(place(state, 1), Eigen::Vector2d(700, 500));
 }
 
+TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
+  World world = asking_world(small_mission(3));
+  const auto asked_for = [&](Instant now) { return only<Hello>(advance(world, now)).at(0).requested_id; };
+  EXPECT_EQ(asked_for(at(100ms)), 0);
+  nobody_has_moved(world, 1, at(100ms));
+  EXPECT_EQ(asked_for(at(200ms)), 1);
+  world.receive(command_from(1, 9, {301, 401}, {0, 1}), at(200ms));
+  EXPECT_EQ(asked_for(at(300ms)), 1) << "that is half an answer";
+  world.receive(command_from(1, 8, {300, 400}, {1, 0}), at(300ms));
+  EXPECT_EQ(asked_for(at(400ms)), 2);
+}
+
 TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9}) world.receive(command_from(0, tick, {300, 400}, {1, 0}), at(0s));
