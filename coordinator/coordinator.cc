@@ -124,6 +124,7 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
 void Coordinator::on(const Hello& hello, Instant now) {
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   const Incarnation nonce = hello.header.incarnation;
+  if (hello.header.sender == kWorld) return on_question(hello, now);
   if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
   if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
   if (hello.version != version_) {
@@ -159,6 +160,15 @@ void Coordinator::on(const Hello& hello, Instant now) {
   admit({*id, nonce}, now);
 }
 
+/// A world that begins asks the team where it is, for which the tick has its time anew.
+void Coordinator::on_question(const Hello& question, Instant now) {
+  if (!freshness_.is_news(question.header)) return;
+  if (question.header.incarnation != asking_world_) tick_since_ = now;
+  asking_world_ = question.header.incarnation;
+  unheard_ = question.requested_id;
+  questioned_ = now;
+}
+
 void Coordinator::admit(const Author& author, Instant now) {
   const auto lives = std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return entry.author.agent == author.agent;
@@ -173,6 +183,7 @@ void Coordinator::admit(const Author& author, Instant now) {
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   members_[author].heard = now;
   asked_.erase(author.incarnation);
+  tick_since_ = now;  // the tick waits for the newcomer, too, which has its time for it
   announce();
 }
 
@@ -222,6 +233,9 @@ AgentId Coordinator::waits_for(const RosterEntry& entry) const {
 }
 
 RosterEntry* Coordinator::culprit(Instant now) {
+  // A world that begins lacks the answers that its predecessor may have had.
+  RosterEntry* unheard = now - questioned_ <= kOverdue ? active_entry(unheard_) : nullptr;
+  if (unheard != nullptr) return unheard;
   RosterEntry* silent = nullptr;
   RosterEntry* suspect = nullptr;
   for (RosterEntry& entry : roster_) {

@@ -79,6 +79,7 @@ class Coordinator {
   };
 
   void on(const Hello& hello, Instant now);
+  void on_question(const Hello& question, Instant now);
   void on(const AgentStatus& status, Instant now);
   void on(const MissionPart& part, Instant now);
   void on(const WorldState& world, Instant now);
@@ -128,6 +129,9 @@ class Coordinator {
   Tick team_tick_ = 0;  // the newest of any agent
   std::optional<TeamStatus> rival_;  // another coordinator's
   Instant rival_heard_{};
+  Incarnation asking_world_ = 0;   // that began last, …
+  AgentId unheard_ = kUnassigned;  // … whose answer it waited for when it said so last, …
+  Instant questioned_{};           // … and when that was
   Freshness freshness_;
   Instant next_question_{};
   Sequencer sequencer_;

@@ -104,6 +104,7 @@ void Flight::start(Seat seat) {
     logger_lost_ = false;
   }
   process.up = true;
+  process.judged = false;
   process.restart = Instant::max();
   process.wakeup = now_;
   ++process.life;
@@ -244,9 +245,9 @@ void Flight::after_agent(Seat seat) {
   Agent& one = agent(seat);
   invariants_.refused(t_s, one.author(), one.refused());
   look_for_recovery(seat);
-  if (one.finished()) {
-    invariants_.finished(t_s, one.author(), one.reason(), mission_over() || evicted(seat));
-  }
+  if (!one.finished() || at(seat).judged) return;
+  at(seat).judged = true;  // by what is wrong at this moment
+  invariants_.finished(t_s, one.author(), one.reason(), mission_over() || evicted(seat));
 }
 
 void Flight::after_world() {

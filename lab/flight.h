@@ -34,6 +34,7 @@ class Flight {
     Instant restart = Instant::max();  // when it is started again, while it is down
     std::uint32_t life = 0;
     bool up = false, heard = false;
+    bool judged = false;  // it has finished, and whether it may have is said
   };
   struct Ending {
     Instant at;

@@ -51,9 +51,11 @@ void Flight::end_incidents() {
   });
 }
 
+/// An evicted agent has ended, and tells nobody any more.
 bool Flight::anybody_else_knows_the_mission(Seat but) {
   for (Seat seat = 0; seat < agents_count_; ++seat) {
-    if (seat != but && at(seat).up && agent(seat).follower().mission()) return true;
+    if (seat == but || !at(seat).up || agent(seat).finished()) continue;
+    if (agent(seat).follower().mission()) return true;
   }
   return false;
 }

@@ -18,8 +18,8 @@ using namespace std::chrono_literals;
 /// at once, and a team that is merely slow is not buried in repeats.
 constexpr std::chrono::nanoseconds kRepeatPeriod = 20ms;
 constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
-/// A world that begins asks the agents where they are, this often; and begins without those that
-/// have not answered for so long. Nobody can answer a tick then either.
+/// A world that begins asks the agents where they are, this often; and in real time it begins
+/// without those that have not answered for so long.
 constexpr auto kQuestionPeriod = 100ms;
 constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
@@ -90,12 +90,13 @@ void World::start(Instant now) {
 /// The coordinator says it each second; with none left, the agents do if they are asked.
 void World::ask_for_mission(Instant now, Outbox& out) {
   if (follower_.mission() || run_ == 0) return;
-  if (next_question_ != Instant{} && now >= next_question_) ask(-1, out);
+  if (next_question_ != Instant{} && now >= next_question_) ask(-1, kUnassigned, out);
   if (now >= next_question_) next_question_ = now + kMissionPatience;
 }
 
-void World::ask(Tick known, Outbox& out) {
+void World::ask(Tick known, AgentId whom, Outbox& out) {
   Hello question;
+  question.requested_id = whom;
   question.header = {run_, kWorld, incarnation_, sequencer_.next(Bus::kWorld), known};
   out.push_back({Bus::kWorld, question});
 }
@@ -105,19 +106,25 @@ void World::ask_team(Instant now, Outbox& out) {
   const bool heard = std::any_of(bodies_.begin(), bodies_.end(),
                                  [](const auto& one) { return one.second.command.has_value(); });
   if (!heard) asking_since_ = now;
-  if (team_has_answered() || now - *asking_since_ >= kQuestionPatience) return begin(now);
+  // In lockstep a tick waits for everybody anyway. Whoever alone had heard our predecessor's last
+  // tick would never answer an earlier one.
+  const bool may_begin_without = follower_.mission()->timing.pace == Pace::kRealtime &&
+                                 now - *asking_since_ >= kQuestionPatience;
+  const AgentId unheard = first_unheard();
+  if (unheard == kUnassigned || may_begin_without) return begin(now);
   if (now < next_question_) return;
   next_question_ = now + kQuestionPeriod;
-  ask(0, out);
+  ask(0, unheard, out);
 }
 
-bool World::team_has_answered() const {
-  // With its last two commands, or with one that says that there is none.
-  return std::all_of(bodies_.begin(), bodies_.end(), [](const auto& one) {
-    const Body& body = one.second;
-    return body.author.incarnation == 0 || body.command_before ||
-           (body.command && body.answered() < 0);
-  });
+/// The first member that has not answered with its last two commands, or with one that says that
+/// there is none; kUnassigned: all have.
+AgentId World::first_unheard() const {
+  for (const auto& [id, body] : bodies_) {
+    const bool heard = body.command_before || (body.command && body.answered() < 0);
+    if (body.author.incarnation != 0 && !heard) return id;
+  }
+  return kUnassigned;
 }
 
 void World::begin(Instant now) {

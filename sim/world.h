@@ -67,8 +67,8 @@ class World {
   void start(Instant now);
   void ask_for_mission(Instant now, Outbox& out);
   void ask_team(Instant now, Outbox& out);
-  void ask(Tick known, Outbox& out);
-  bool team_has_answered() const;
+  void ask(Tick known, AgentId whom, Outbox& out);
+  AgentId first_unheard() const;
   void begin(Instant now);
   void recall(AgentId id, Body& body);
   void move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const;

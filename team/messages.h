@@ -50,7 +50,7 @@ using Signature = std::array<std::byte, 64>;
 /// header.tick is then −1 if it does not know the mission.
 struct Hello {
   Header header;
-  AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one
+  AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one; of a world: whom it waits for
   std::string host;
   std::string version;
   /// The newest of MISSION of which an agent has heard any part; −1: none. It shows when this was

@@ -145,6 +145,81 @@ TEST(CoordinatorTimeOut, StartsAgainWithEveryTick) {
   }
 }
 
+/// When the roster says that this life has left.
+Tick until(const Coordinator& coordinator, const Author& author) {
+  for (const RosterEntry& entry : coordinator.roster()) {
+    if (entry.author == author) return entry.active_until;
+  }
+  ADD_FAILURE() << "no member";
+  return 0;
+}
+
+TEST(CoordinatorTimeOut, StartsAgainWithAnAdmissionThatTheTickWaitsFor) {
+  for (const OnTimeout on_timeout : {OnTimeout::kEndMission, OnTimeout::kEvict}) {
+    Coordinator coordinator = running_coordinator(impatient(2, on_timeout));
+    coordinator.receive(world_where(5, {5, 4}), at(1s));
+    all_alive(coordinator, {-1}, at(10s));
+    advance(coordinator, at(10900ms));
+    coordinator.receive(hello_of(1, 99), at(10900ms));
+    all_alive(coordinator, {-1}, at(20800ms));
+    advance(coordinator, at(20899ms));
+    EXPECT_EQ(coordinator.state(), MissionState::kRunning) << "its time has only begun";
+    EXPECT_EQ(until(coordinator, {1, 99}), -1);
+    advance(coordinator, at(20900ms));
+    const bool evicts = on_timeout == OnTimeout::kEvict;
+    EXPECT_EQ(coordinator.state(), evicts ? MissionState::kRunning : MissionState::kFailed);
+    EXPECT_EQ(until(coordinator, {1, 99}), evicts ? 5 : -1);
+  }
+}
+
+/// A world that begins asks the team where it is, and waits for `whom`.
+Hello question_of_world(Incarnation life, AgentId whom) {
+  return {{kRun, kWorld, life, next_sequence(), 0}, whom, "", ""};
+}
+
+TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {
+  for (const bool heard_a_world : {false, true}) {
+    Coordinator coordinator = running_coordinator(impatient(3));
+    // Its predecessor had the answers of all but another.
+    if (heard_a_world) coordinator.receive(world_where(5, {4, 5, 5}), at(0s));
+    for (int tenths = 0; tenths <= 100; ++tenths) {
+      const Instant now = at(tenths * 100ms);
+      EXPECT_EQ(coordinator.state(), MissionState::kRunning);
+      coordinator.receive(question_of_world(kWorldLife + 1, 1), now);
+      all_alive(coordinator, {kWorld, kWorld, kWorld}, now);
+      advance(coordinator, now);
+    }
+    EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+    EXPECT_NE(coordinator.reason().find("agent 1 has not answered tick"), std::string::npos)
+        << coordinator.reason();
+  }
+}
+
+TEST(CoordinatorTimeOut, BelievesTheWorldThatHasBegunOnceItSpeaks) {
+  Coordinator coordinator = running_coordinator(impatient(2));
+  coordinator.receive(question_of_world(kWorldLife, 0), at(0s));
+  coordinator.receive(world_where(5, {5, 4}), at(500ms));
+  all_alive(coordinator, {-1, -1}, at(10s));
+  advance(coordinator, at(10500ms));
+  EXPECT_NE(coordinator.reason().find("agent 1 has not answered tick 5"), std::string::npos)
+      << coordinator.reason();
+}
+
+TEST(CoordinatorTimeOut, StartsAgainWithAWorldThatBeginsButNotWithARecordingOfOne) {
+  Coordinator coordinator = running_coordinator(impatient(1));
+  coordinator.receive(world_where(5, {4}), at(0s));
+  const Hello question = question_of_world(kWorldLife + 1, 0);
+  coordinator.receive(question, at(9s));
+  for (int s = 9; s < 19; ++s) {
+    coordinator.receive(question, at(s * 1s));
+    coordinator.receive(question_of_world(kWorldLife + 1, 0), at(s * 1s));
+    advance(coordinator, at(s * 1s));
+    EXPECT_EQ(coordinator.state(), MissionState::kRunning) << s << " s";
+  }
+  advance(coordinator, at(19s));
+  EXPECT_EQ(coordinator.state(), MissionState::kFailed);
+}
+
 TEST(CoordinatorTimeOut, IsNotPutOffByRepeatsOfTheSameTick) {
   Coordinator coordinator = running_coordinator(impatient(1));
   for (int i = 0; i <= 10; ++i) {

@@ -166,8 +166,9 @@ TEST(WorldAsks, TenTimesASecondAndMovesNobodyMeanwhile) {
   EXPECT_LE(world.next_wakeup(), at(1100ms));
 }
 
-TEST(WorldAsks, BeginsWithoutASilentAgentAfterTwoSeconds) {
-  const Mission mission = small_mission(2);
+TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
   World world = asking_world(mission);
   world.receive(command_from(0, 8, {300, 400}, {1, 0}), at(0s));
   world.receive(command_from(0, 9, {301, 401}, {0, 1}), at(0s));
@@ -179,6 +180,40 @@ TEST(WorldAsks, BeginsWithoutASilentAgentAfterTwoSeconds) {
   EXPECT_EQ(place(states[0], 0), Eigen::Vector2d(301, 401));
   EXPECT_EQ(applied(states[0], 0), Eigen::Vector2d(1, 0)) << "in the step that led here";
   EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
+}
+
+// Only that one may have heard the last tick of the world's predecessor, and where it is nobody else
+// knows.
+TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
+  World world = asking_world(small_mission(2));
+  for (const Tick tick : {8, 9}) world.receive(command_from(0, tick, {300, 400}, {1, 0}), at(0s));
+  for (int s = 1; s <= 20; ++s) EXPECT_TRUE(states_after(world, at(s * 1s)).empty()) << s << " s";
+  for (const Tick tick : {9, 10}) world.receive(command_from(1, tick, {700, 500}, {0, 10}), at(21s));
+  const WorldState state = state_after(world, at(21s));
+  EXPECT_EQ(state.header.tick, 10);
+  EXPECT_EQ(place(state, 0), Eigen::Vector2d(300.1, 400)) << "a tick further, by its command";
+  EXPECT_EQ(place(state, 1), Eigen::Vector2d(700, 500));
+}
+
+TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
+  World world = asking_world(small_mission(3));
+  const auto asked_for = [&](Instant now) { return only<Hello>(advance(world, now)).at(0).requested_id; };
+  EXPECT_EQ(asked_for(at(100ms)), 0);
+  nobody_has_moved(world, 1, at(100ms));
+  EXPECT_EQ(asked_for(at(200ms)), 1);
+  world.receive(command_from(1, 9, {301, 401}, {0, 1}), at(200ms));
+  EXPECT_EQ(asked_for(at(300ms)), 1) << "that is half an answer";
+  world.receive(command_from(1, 8, {300, 400}, {1, 0}), at(300ms));
+  EXPECT_EQ(asked_for(at(400ms)), 2);
+}
+
+TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
+  World world = asking_world(small_mission(2));
+  for (const Tick tick : {8, 9}) world.receive(command_from(0, tick, {300, 400}, {1, 0}), at(0s));
+  auto roster = roster_of(2);
+  roster[1].active_until = 9;
+  world.receive(mission_part(1, MissionState::kRunning, roster), at(5s));
+  EXPECT_EQ(state_after(world, at(5s)).header.tick, 9);
 }
 
 // Agents that have not been anywhere answer with (0, 0), which may lie outside.
