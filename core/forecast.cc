@@ -1,16 +1,61 @@
 #include "core/forecast.h"
 
 #include <algorithm>
-#include <array>
+#include <tuple>
 
 #include "core/vectorized.h"
 
 namespace ergocast {
 namespace {
 
+/// Calls each(k, m, n) for every k of the modes, which belongs to f_mn.
+template <class Each>
+inline void for_modes(int first, int count, int modes_y, const Each& each) {
+  const int end = first + count;
+  for (int m = first / modes_y, k = first; k < end; ++m) {
+    const int row = m * modes_y, row_end = std::min(row + modes_y, end);
+    for (; k < row_end; ++k) each(k, m, k - row);
+  }
+}
+
+/// S += f dt.
 ERGOCAST_VECTORIZED
-void add_block(const double* a, const double* b, double* sum) {
-  for (std::size_t k = 0; k < kBlockSize; ++k) sum[k] = a[k] + b[k];
+void add_basis(const BasisAt& at, int modes_y, double dt_s, int first, int count, double* __restrict sums) {
+  for_modes(first, count, modes_y,
+            [&](int k, int m, int n) { sums[k] += at.cos_x[m] * dt_s * at.cos_y[n]; });
+}
+
+/// sum += S.
+ERGOCAST_VECTORIZED
+void add_sums(const double* sums, int count, double* __restrict sum) {
+  for (int k = 0; k < count; ++k) sum[k] += sums[k];
+}
+
+/// sum += S + share · gains.
+ERGOCAST_VECTORIZED
+void add_gaining(const double* sums, const double* gains, double share, int count,
+                 double* __restrict sum) {
+  for (int k = 0; k < count; ++k) sum[k] += sums[k] + share * gains[k];
+}
+
+/// sum += S + share · f dt.
+ERGOCAST_VECTORIZED
+void add_staying(const BasisAt& at, int modes_y, double dt_s, double share, int first, int count,
+                 const double* sums, double* __restrict sum) {
+  for_modes(first, count, modes_y, [&](int k, int m, int n) {
+    sum[k] += sums[k] + share * (at.cos_x[m] * dt_s * at.cos_y[n]);
+  });
+}
+
+/// S += f dt, and then sum += S + share · f dt.
+ERGOCAST_VECTORIZED
+void add_arriving(const BasisAt& at, int modes_y, double dt_s, double share, int first, int count,
+                  double* __restrict sums, double* __restrict sum) {
+  for_modes(first, count, modes_y, [&](int k, int m, int n) {
+    const double gain = at.cos_x[m] * dt_s * at.cos_y[n];
+    sums[k] += gain;
+    sum[k] += sums[k] + share * gain;
+  });
 }
 
 /// Whether `entry` is active at `tick` and nobody newer is under its number; the roster ascends by
@@ -40,7 +85,9 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       dt_s_(mission.timing.dt_s),
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
-      most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)) {}
+      most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
+      earlier_(static_cast<std::size_t>(basis_.mode_count())),
+      later_(earlier_) {}
 
 void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
   if (!reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
@@ -69,9 +116,10 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
     track.said_steps.assign(blocks, -1);
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);
+    track.due.assign(blocks, 0);
     track.sums.assign(blocks * kBlockSize, 0);
-    track.gain.assign(blocks * kBlockSize, 0);
-    track.gain_tick = -1;
+    track.newest.reset();
+    track.newest_tick = -1;
   }
   for (std::size_t b = 0; b < blocks; ++b) {
     const CoverageTable::BlockView said = table.view(row, static_cast<int>(b));
@@ -84,34 +132,41 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
       track.places.end() - static_cast<std::ptrdiff_t>(std::min(track.places.size(), most_places_));
   auto place = track.places.end();
   while (place != first && std::prev(place)->tick > oldest) --place;
+  // The newest is where the vehicle goes on from, whether or not its author has said it already.
+  if (place == track.places.end() && place != first) --place;
   for (; place != track.places.end(); ++place) {
     if (entry.active_at(place->tick)) add_place(*place, table, row, track);
-  }
-  if (!track.places.empty() && entry.active_at(track.places.back().tick)) {
-    gain_at(track.places.back(), track);
   }
   return &track;
 }
 
-/// f(x) dt.
-void Forecast::gain_at(const Place& place, Track& track) const {
-  if (track.gain_tick == place.tick) return;
-  track.gain_tick = place.tick;
-  set_basis(BasisAt(place.x_m, domain_, basis_), basis_, dt_s_, track.gain.data());
-}
-
-/// S += f(x) dt in every block that does not hold it, as its author does.
+/// S += f(x) dt in every block that does not hold it, as its author does: at the next use.
 void Forecast::add_place(const Place& place, const CoverageTable& table, std::size_t row,
                          Track& track) const {
-  gain_at(place, track);
+  if (place.tick != track.newest_tick) {
+    add_what_is_due(track);
+    track.newest.emplace(place.x_m, domain_, basis_);
+    track.newest_tick = place.tick;
+  }
   for (std::size_t b = 0; b < track.until.size(); ++b) {
     if (track.said_steps[b] == 0 || place.tick <= track.until[b]) continue;
-    double* sums = track.sums.data() + b * kBlockSize;
-    const bool is_first = track.steps[b] == track.said_steps[b];
-    const double* before = is_first ? table.view(row, static_cast<int>(b)).sums : sums;
-    add_block(before, track.gain.data() + b * kBlockSize, sums);
+    if (track.steps[b] == track.said_steps[b]) {
+      std::copy_n(table.view(row, static_cast<int>(b)).sums, kBlockSize,
+                  track.sums.data() + b * kBlockSize);
+    }
+    track.due[b] = 1;
     track.until[b] = place.tick;
     ++track.steps[b];
+  }
+}
+
+void Forecast::add_what_is_due(Track& track) const {
+  for (std::size_t b = 0; b < track.due.size(); ++b) {
+    if (!track.due[b]) continue;
+    const int first = static_cast<int>(b) * kBlockSize;
+    add_basis(*track.newest, basis_.modes_y, dt_s_, first,
+              std::min(kBlockSize, basis_.mode_count() - first), track.sums.data());
+    track.due[b] = 0;
   }
 }
 
@@ -139,25 +194,26 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
     if (!table.blocks_alike(row)) return false;
     const Track* track = reckoned_[row];
     if (track == nullptr) continue;
-    const auto& steps = track->steps;
+    const auto& [steps, due] = std::tie(track->steps, track->due);
     if (!std::equal(steps.begin() + 1, steps.end(), steps.begin())) return false;
+    if (!std::equal(due.begin() + 1, due.end(), due.begin())) return false;
   }
   return true;
 }
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
-  Term term{said.sums, said.gains, said.steps, 0, said.tick, said.period, 0};
+  Term term{said.sums, said.gains, nullptr, said.steps, 0, said.tick, said.period, 0};
   if (!flies_[row] || said.steps == 0) return term;
   term.gained_steps = said.gained_steps;
-  const Track* track = reckoned_[row];
-  if (track == nullptr || track->gain_tick < said.tick) return term;
+  Track* track = reckoned_[row];
+  if (track == nullptr || track->newest_tick < said.tick) return term;
   const auto b = static_cast<std::size_t>(block);
   if (track->steps[b] > said.steps) term.sums = track->sums.data() + b * kBlockSize;
-  term.gains = track->gain.data() + b * kBlockSize;
+  term.track = track;
   term.steps = track->steps[b];
   term.gained_steps = 1;
-  term.tick = track->gain_tick;
+  term.tick = track->newest_tick;
   return term;
 }
 
@@ -187,35 +243,39 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   return steps > 0 ? 1 / covered_s : 0;
 }
 
-/// sum += what so many rows will have covered, for one block's modes.
-template <int kTerms>
-inline void Forecast::add_terms(const Term* terms, int first, double* __restrict sum) {
-  for (int k = 0; k < kBlockSize; ++k) {
-    double all = sum[k];
-    for (int i = 0; i < kTerms; ++i) {
-      all += terms[i].sums[first + k] + terms[i].share * terms[i].gains[first + k];
-    }
-    sum[k] = all;
+/// What a row will have covered.
+void Forecast::add(const Term& term, Modes modes, double* sum) const {
+  const auto b = static_cast<std::size_t>(modes.first / kBlockSize);
+  Track* track = term.track;
+  if (track != nullptr && track->due[b]) {
+    add_arriving(*track->newest, basis_.modes_y, dt_s_, term.share, modes.first, modes.count,
+                 track->sums.data(), sum - modes.first);
+    for (std::size_t i = b; i * kBlockSize < static_cast<std::size_t>(modes.first + modes.count); ++i) track->due[i] = 0;
+  } else if (term.share == 0) {
+    add_sums(term.sums, modes.count, sum);
+  } else if (track == nullptr) {
+    add_gaining(term.sums, term.gains, term.share, modes.count, sum);
+  } else {
+    add_staying(*track->newest, basis_.modes_y, dt_s_, term.share, modes.first, modes.count,
+                term.sums - modes.first, sum - modes.first);
   }
 }
 
-/// The terms of `count` modes, from both ends of the team up to the own row: lab/ideal_team.cc
-/// makes all its agents' sums in this order, with few more additions than one agent's take.
+/// Scales what two parts of a team will have covered.
 ERGOCAST_VECTORIZED
-void Forecast::add_up(double per_second, int count, double* coverage) const {
-  const Term* const own = terms_.data() + before_own_;
-  const Term* const end = terms_.data() + terms_.size();
-  for (int first = 0; first < count; first += kBlockSize) {
-    std::array<double, kBlockSize> before{}, after{};
-    // Several at a time, and their sum stays in a register.
-    const Term* term = terms_.data();
-    for (; own - term >= 3; term += 3) add_terms<3>(term, first, before.data());
-    for (; term < own; ++term) add_terms<1>(term, first, before.data());
-    for (; end - term >= 4; term += 4) add_terms<4>(term, first, after.data());
-    for (; term < end; ++term) add_terms<1>(term, first, after.data());
-    const int here = std::min(kBlockSize, count - first);
-    for (int k = 0; k < here; ++k) coverage[first + k] = (before[k] + after[k]) * per_second;
+void average_of(const double* a, const double* b, double per_second, int count, double* __restrict average) {
+  for (int k = 0; k < count; ++k) average[k] = (a[k] + b[k]) * per_second;
+}
+
+/// The terms from both ends of the team up to the own row: lab/ideal_team.cc makes all its agents'
+/// sums in this order, with few more additions than one agent's take.
+void Forecast::add_up(Modes modes, double per_second, double* coverage) {
+  std::fill_n(earlier_.begin(), modes.count, 0.0);
+  std::fill_n(later_.begin(), modes.count, 0.0);
+  for (std::ptrdiff_t i = 0; i < std::ssize(terms_); ++i) {
+    add(terms_[static_cast<std::size_t>(i)], modes, i < before_own_ ? earlier_.data() : later_.data());
   }
+  average_of(earlier_.data(), later_.data(), per_second, modes.count, coverage);
 }
 
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
@@ -225,7 +285,7 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   for (int b = 0; b < table.block_count(); b += at_once) {
     const int first = b * kBlockSize;
     const int count = std::min(at_once * kBlockSize, basis_.mode_count() - first);
-    add_up(weigh_terms(table, b, tick), count, coverage.data() + first);
+    add_up({first, count}, weigh_terms(table, b, tick), coverage.data() + first);
   }
 }
 

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/basis.h"
@@ -59,30 +60,35 @@ class Forecast {
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
-    std::vector<double> sums;  // likewise; of blocks to which nothing was added, anything
-    std::vector<double> gain;  // f dt at the newest place
-    Tick gain_tick = -1;
+    std::vector<char> due;     // whether that one counts, but is not in the sums yet
+    std::vector<double> sums;  // with the places; of blocks to which nothing was added, anything
+    std::optional<BasisAt> newest;  // f at the newest place, and its tick
+    Tick newest_tick = -1;
+  };
+  /// Consecutive modes in the order of the wire.
+  struct Modes {
+    int first, count;
   };
   /// One row's part in one block.
   struct Term {
     const double* sums;
     const double* gains;
+    Track* track;  // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
     double share;  // of the gains
   };
 
   Track* reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
-  void gain_at(const Place& place, Track& track) const;
   void add_place(const Place& place, const CoverageTable& table, std::size_t row,
                  Track& track) const;
+  void add_what_is_due(Track& track) const;
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
   bool blocks_alike(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
-  template <int kTerms>
-  static void add_terms(const Term* terms, int first, double* __restrict sum);
-  void add_up(double per_second, int count, double* coverage) const;
+  void add_up(Modes modes, double per_second, double* coverage);
+  void add(const Term& term, Modes modes, double* sum) const;
 
   Author self_;
   Rectangle domain_;
@@ -96,6 +102,7 @@ class Forecast {
   std::vector<char> flies_;       // per row: whether it has a forecast
   std::vector<Term> terms_;  // of the rows that count: ascending by author before the own one, …
   std::ptrdiff_t before_own_ = 0;  // … so many; then descending down to it
+  std::vector<double> earlier_, later_;  // what the rows before the own one will have covered; the others
 };
 
 }  // namespace ergocast
