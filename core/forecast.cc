@@ -20,7 +20,7 @@ inline void for_modes(int first, int count, int modes_y, const Each& each) {
 
 /// S += f dt.
 ERGOCAST_VECTORIZED
-void add_basis(const BasisAt& at, int modes_y, double dt_s, int first, int count, double* __restrict sums) {
+void add_basis(const CosinesAt& at, int modes_y, double dt_s, int first, int count, double* __restrict sums) {
   for_modes(first, count, modes_y,
             [&](int k, int m, int n) { sums[k] += at.cos_x[m] * dt_s * at.cos_y[n]; });
 }
@@ -40,7 +40,7 @@ void add_gaining(const double* sums, const double* gains, double share, int coun
 
 /// sum += S + share · f dt.
 ERGOCAST_VECTORIZED
-void add_staying(const BasisAt& at, int modes_y, double dt_s, double share, int first, int count,
+void add_staying(const CosinesAt& at, int modes_y, double dt_s, double share, int first, int count,
                  const double* sums, double* __restrict sum) {
   for_modes(first, count, modes_y, [&](int k, int m, int n) {
     sum[k] += sums[k] + share * (at.cos_x[m] * dt_s * at.cos_y[n]);
@@ -49,7 +49,7 @@ void add_staying(const BasisAt& at, int modes_y, double dt_s, double share, int 
 
 /// S += f dt, and then sum += S + share · f dt.
 ERGOCAST_VECTORIZED
-void add_arriving(const BasisAt& at, int modes_y, double dt_s, double share, int first, int count,
+void add_arriving(const CosinesAt& at, int modes_y, double dt_s, double share, int first, int count,
                   double* __restrict sums, double* __restrict sum) {
   for_modes(first, count, modes_y, [&](int k, int m, int n) {
     const double gain = at.cos_x[m] * dt_s * at.cos_y[n];
@@ -126,6 +126,7 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
     if (track.said_steps[b] == said.steps) continue;
     track.said_steps[b] = track.steps[b] = said.steps;
     track.until[b] = said.tick;
+    track.due[b] = 0;
   }
   const Tick oldest = *std::min_element(track.until.begin(), track.until.end());
   const auto first =

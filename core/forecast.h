@@ -62,7 +62,7 @@ class Forecast {
     std::vector<Tick> until;               // the tick of the last step
     std::vector<char> due;     // whether that one counts, but is not in the sums yet
     std::vector<double> sums;  // with the places; of blocks to which nothing was added, anything
-    std::optional<BasisAt> newest;  // f at the newest place, and its tick
+    std::optional<CosinesAt> newest;  // at the newest place, and its tick
     Tick newest_tick = -1;
   };
   /// Consecutive modes in the order of the wire.

@@ -12,6 +12,13 @@
 #define ERGOCAST_VECTORIZED
 #endif
 
+// A part of such a function: compiled for its caller's processor.
+#if defined(__GNUC__)
+#define ERGOCAST_VECTORIZED_PART [[gnu::always_inline]] inline
+#else
+#define ERGOCAST_VECTORIZED_PART inline
+#endif
+
 namespace ergocast {
 
 /// So many modes at a time are added up over many rows: their sums stay in registers.
