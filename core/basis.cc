@@ -77,12 +77,18 @@ void set_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sum
   }
 }
 
-ERGOCAST_VECTORIZED
 void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums) {
-  for (int m = 0; m < basis.modes_x; ++m) {
+  accumulate_basis(at, basis, dt_s, {0, basis.mode_count()}, sums);
+}
+
+ERGOCAST_VECTORIZED
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes,
+                      double* __restrict sums) {
+  const int end = modes.first + modes.count;
+  for (int m = modes.first / basis.modes_y, k = modes.first; k < end; ++m) {
+    const int row = m * basis.modes_y, row_end = std::min(row + basis.modes_y, end);
     const double along_x = at.cos_x[m] * dt_s;
-    double* row = sums + m * basis.modes_y;
-    for (int n = 0; n < basis.modes_y; ++n) row[n] += along_x * at.cos_y[n];
+    for (; k < row_end; ++k) sums[k] += along_x * at.cos_y[k - row];
   }
 }
 

@@ -8,54 +8,66 @@
 namespace ergocast {
 namespace {
 
-/// Calls each(k, m, n) for every k of the modes, which belongs to f_mn.
+// What these functions call sum is a running sum over rows, `before` what it was before this row: it may
+// be the same table. All tables begin with the mode 0, 0.
+
+/// Calls each(k, f dt) for every k of the modes, at the place of these cosines.
 template <class Each>
-inline void for_modes(int first, int count, int modes_y, const Each& each) {
-  const int end = first + count;
-  for (int m = first / modes_y, k = first; k < end; ++m) {
+ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, int modes_y, double dt_s, Modes modes,
+                                        const Each& each) {
+  const int end = modes.first + modes.count;
+  for (int m = modes.first / modes_y, k = modes.first; k < end; ++m) {
     const int row = m * modes_y, row_end = std::min(row + modes_y, end);
-    for (; k < row_end; ++k) each(k, m, k - row);
+    const double along_x = at.cos_x[m] * dt_s;
+    ERGOCAST_INDEPENDENT
+    for (int n = k - row; n < row_end - row; ++n) each(row + n, along_x * at.cos_y[n]);
+    k = row_end;
   }
 }
 
-/// S += f dt.
+/// sum = before + S.
 ERGOCAST_VECTORIZED
-void add_basis(const CosinesAt& at, int modes_y, double dt_s, int first, int count, double* __restrict sums) {
-  for_modes(first, count, modes_y,
-            [&](int k, int m, int n) { sums[k] += at.cos_x[m] * dt_s * at.cos_y[n]; });
+void add_sums(const double* sums, Modes modes, const double* before, double* sum) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) sum[k] = before[k] + sums[k];
 }
 
-/// sum += S.
+/// sum = before + S + share · gains.
 ERGOCAST_VECTORIZED
-void add_sums(const double* sums, int count, double* __restrict sum) {
-  for (int k = 0; k < count; ++k) sum[k] += sums[k];
+void add_gaining(const double* sums, const double* gains, double share, Modes modes,
+                 const double* before, double* sum) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    sum[k] = before[k] + (sums[k] + share * gains[k]);
+  }
 }
 
-/// sum += S + share · gains.
+/// sum = before + S + share · f dt.
 ERGOCAST_VECTORIZED
-void add_gaining(const double* sums, const double* gains, double share, int count,
-                 double* __restrict sum) {
-  for (int k = 0; k < count; ++k) sum[k] += sums[k] + share * gains[k];
+void add_staying(const CosinesAt& at, int modes_y, double dt_s, const double* sums, double share,
+                 Modes modes, const double* before, double* sum) {
+  for_gains(at, modes_y, dt_s, modes,
+            [=](int k, double gain) { sum[k] = before[k] + (sums[k] + share * gain); });
 }
 
-/// sum += S + share · f dt.
+/// S += f dt, and then sum = before + S + share · f dt.
 ERGOCAST_VECTORIZED
-void add_staying(const CosinesAt& at, int modes_y, double dt_s, double share, int first, int count,
-                 const double* sums, double* __restrict sum) {
-  for_modes(first, count, modes_y, [&](int k, int m, int n) {
-    sum[k] += sums[k] + share * (at.cos_x[m] * dt_s * at.cos_y[n]);
-  });
-}
-
-/// S += f dt, and then sum += S + share · f dt.
-ERGOCAST_VECTORIZED
-void add_arriving(const CosinesAt& at, int modes_y, double dt_s, double share, int first, int count,
-                  double* __restrict sums, double* __restrict sum) {
-  for_modes(first, count, modes_y, [&](int k, int m, int n) {
-    const double gain = at.cos_x[m] * dt_s * at.cos_y[n];
+void add_arriving(const CosinesAt& at, int modes_y, double dt_s, double* sums, double share,
+                  Modes modes, const double* before, double* sum) {
+  for_gains(at, modes_y, dt_s, modes, [=](int k, double gain) {
     sums[k] += gain;
-    sum[k] += sums[k] + share * gain;
+    sum[k] = before[k] + (sums[k] + share * gain);
   });
+}
+
+/// coverage = (earlier + (later + own)) · per_second.
+ERGOCAST_VECTORIZED
+void average(const double* earlier, const double* later, const double* own, double per_second,
+             Modes modes, double* coverage) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    coverage[k] = (earlier[k] + (later[k] + own[k])) * per_second;
+  }
 }
 
 /// Whether `entry` is active at `tick` and nobody newer is under its number; the roster ascends by
@@ -86,8 +98,9 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
-      earlier_(static_cast<std::size_t>(basis_.mode_count())),
-      later_(earlier_) {}
+      nothing_(static_cast<std::size_t>(basis_.mode_count())),
+      earlier_(nothing_),
+      later_(nothing_) {}
 
 void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
   if (!reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
@@ -164,9 +177,8 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
 void Forecast::add_what_is_due(Track& track) const {
   for (std::size_t b = 0; b < track.due.size(); ++b) {
     if (!track.due[b]) continue;
-    const int first = static_cast<int>(b) * kBlockSize;
-    add_basis(*track.newest, basis_.modes_y, dt_s_, first,
-              std::min(kBlockSize, basis_.mode_count() - first), track.sums.data());
+    accumulate_basis(*track.newest, basis_, dt_s_, modes_of(static_cast<int>(b), 1),
+                     track.sums.data());
     track.due[b] = 0;
   }
 }
@@ -204,13 +216,14 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
-  Term term{said.sums, said.gains, nullptr, said.steps, 0, said.tick, said.period, 0};
+  const int first = modes_of(block, 1).first;
+  Term term{said.sums - first, said.gains - first, nullptr, said.steps, 0, said.tick, said.period, 0};
   if (!flies_[row] || said.steps == 0) return term;
   term.gained_steps = said.gained_steps;
   Track* track = reckoned_[row];
   if (track == nullptr || track->newest_tick < said.tick) return term;
   const auto b = static_cast<std::size_t>(block);
-  if (track->steps[b] > said.steps) term.sums = track->sums.data() + b * kBlockSize;
+  if (track->steps[b] > said.steps) term.sums = track->sums.data();
   term.track = track;
   term.steps = track->steps[b];
   term.gained_steps = 1;
@@ -222,14 +235,20 @@ Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, in
 double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   terms_.clear();
   before_own_ = 0;
+  own_sums_ = nothing_.data();
   std::int64_t steps = 0;
   int n = 1;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
-    before_own_ += table.author(row) < self_;
-    const Term& term = terms_.emplace_back(term_of(table, row, block));
+    const Term term = term_of(table, row, block);
     steps += term.steps;
     n += term.gained_steps > 0;
+    if (table.author(row) == self_) {
+      own_sums_ = term.sums;
+      continue;
+    }
+    before_own_ += table.author(row) < self_;
+    terms_.push_back(term);
   }
   const double horizon_s = look_ahead_.horizon_s(n, tick);
   double covered_s = static_cast<double>(steps) * dt_s_;
@@ -240,43 +259,40 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
     covered_s += weight_s;
     term.share = weight_s / (static_cast<double>(term.gained_steps) * dt_s_);
   }
-  std::reverse(terms_.begin() + before_own_, terms_.end());
   return steps > 0 ? 1 / covered_s : 0;
 }
 
-/// What a row will have covered.
-void Forecast::add(const Term& term, Modes modes, double* sum) const {
-  const auto b = static_cast<std::size_t>(modes.first / kBlockSize);
+/// Adds what a row will have covered to `before`.
+void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) const {
   Track* track = term.track;
-  if (track != nullptr && track->due[b]) {
-    add_arriving(*track->newest, basis_.modes_y, dt_s_, term.share, modes.first, modes.count,
-                 track->sums.data(), sum - modes.first);
-    for (std::size_t i = b; i * kBlockSize < static_cast<std::size_t>(modes.first + modes.count); ++i) track->due[i] = 0;
+  const auto block = modes.first / kBlockSize;
+  if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
+    add_arriving(*track->newest, basis_.modes_y, dt_s_, track->sums.data(), term.share, modes,
+                 before, sum);
+    std::fill_n(track->due.begin() + block, (modes.count + kBlockSize - 1) / kBlockSize, 0);
   } else if (term.share == 0) {
-    add_sums(term.sums, modes.count, sum);
-  } else if (track == nullptr) {
-    add_gaining(term.sums, term.gains, term.share, modes.count, sum);
+    add_sums(term.sums, modes, before, sum);
+  } else if (track != nullptr) {
+    add_staying(*track->newest, basis_.modes_y, dt_s_, term.sums, term.share, modes, before, sum);
   } else {
-    add_staying(*track->newest, basis_.modes_y, dt_s_, term.share, modes.first, modes.count,
-                term.sums - modes.first, sum - modes.first);
+    add_gaining(term.sums, term.gains, term.share, modes, before, sum);
   }
 }
 
-/// Scales what two parts of a team will have covered.
-ERGOCAST_VECTORIZED
-void average_of(const double* a, const double* b, double per_second, int count, double* __restrict average) {
-  for (int k = 0; k < count; ++k) average[k] = (a[k] + b[k]) * per_second;
-}
-
-/// The terms from both ends of the team up to the own row: lab/ideal_team.cc makes all its agents'
+/// The rows from both ends of the team, and the own one last: lab/ideal_team.cc makes all its agents'
 /// sums in this order, with few more additions than one agent's take.
 void Forecast::add_up(Modes modes, double per_second, double* coverage) {
-  std::fill_n(earlier_.begin(), modes.count, 0.0);
-  std::fill_n(later_.begin(), modes.count, 0.0);
-  for (std::ptrdiff_t i = 0; i < std::ssize(terms_); ++i) {
-    add(terms_[static_cast<std::size_t>(i)], modes, i < before_own_ ? earlier_.data() : later_.data());
+  const double *earlier = nothing_.data(), *later = nothing_.data();
+  const auto own = terms_.begin() + before_own_;
+  for (auto term = terms_.begin(); term != own; ++term) {
+    add(*term, modes, earlier, earlier_.data());
+    earlier = earlier_.data();
   }
-  average_of(earlier_.data(), later_.data(), per_second, modes.count, coverage);
+  for (auto term = terms_.rbegin(); term.base() != own; ++term) {
+    add(*term, modes, later, later_.data());
+    later = later_.data();
+  }
+  average(earlier, later, own_sums_, per_second, modes, coverage);
 }
 
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
@@ -284,10 +300,13 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   gather(table, roster, tick);
   const int at_once = blocks_alike(table) ? table.block_count() : 1;
   for (int b = 0; b < table.block_count(); b += at_once) {
-    const int first = b * kBlockSize;
-    const int count = std::min(at_once * kBlockSize, basis_.mode_count() - first);
-    add_up({first, count}, weigh_terms(table, b, tick), coverage.data() + first);
+    add_up(modes_of(b, at_once), weigh_terms(table, b, tick), coverage.data());
   }
+}
+
+Modes Forecast::modes_of(int block, int count) const {
+  const int first = block * kBlockSize;
+  return {first, std::min(count * kBlockSize, basis_.mode_count() - first)};
 }
 
 }  // namespace ergocast

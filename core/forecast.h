@@ -65,15 +65,10 @@ class Forecast {
     std::optional<CosinesAt> newest;  // at the newest place, and its tick
     Tick newest_tick = -1;
   };
-  /// Consecutive modes in the order of the wire.
-  struct Modes {
-    int first, count;
-  };
   /// One row's part in one block.
   struct Term {
-    const double* sums;
-    const double* gains;
-    Track* track;  // null: by its blocks
+    const double *sums, *gains;        // from the mode 0, 0 on
+    Track* track;                      // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
     double share;  // of the gains
@@ -88,7 +83,8 @@ class Forecast {
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
   void add_up(Modes modes, double per_second, double* coverage);
-  void add(const Term& term, Modes modes, double* sum) const;
+  void add(const Term& term, Modes modes, const double* before, double* sum) const;
+  Modes modes_of(int block, int count) const;
 
   Author self_;
   Rectangle domain_;
@@ -100,9 +96,11 @@ class Forecast {
   std::map<AgentId, Track> tracks_;
   std::vector<Track*> reckoned_;  // per row of the table; null: by its blocks
   std::vector<char> flies_;       // per row: whether it has a forecast
-  std::vector<Term> terms_;  // of the rows that count: ascending by author before the own one, …
-  std::ptrdiff_t before_own_ = 0;  // … so many; then descending down to it
-  std::vector<double> earlier_, later_;  // what the rows before the own one will have covered; the others
+  std::vector<Term> terms_;       // of the other rows that count, ascending by author
+  std::ptrdiff_t before_own_ = 0;  // so many of them come before the own row
+  const double* own_sums_ = nullptr;
+  const std::vector<double> nothing_;
+  std::vector<double> earlier_, later_;  // what the rows before the own one will have covered, and after
 };
 
 }  // namespace ergocast
