@@ -12,41 +12,64 @@ namespace {
 
 double half_unless_zero(int mode) { return mode == 0 ? 1.0 : 0.5; }
 
-}  // namespace
+Eigen::Vector2d wave_numbers_of(const Rectangle& domain) {
+  return {std::numbers::pi / domain.size_m.x(), std::numbers::pi / domain.size_m.y()};
+}
 
-BasisAt::BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
+/// cos(mα) and sin(mα).
+struct Wave {
+  double cosine, sine;
+  /// Of one mode more, by those of the first.
+  Wave after(const Wave& first) const {
+    return {cosine * first.cosine - sine * first.sine, sine * first.cosine + cosine * first.sine};
+  }
+};
+
+/// Calls each(m, wave along x, wave along y) for every mode of the axis that has more of them: both axes
+/// in one loop, for neither waits for the other, and the shorter one's tables have room.
+template <class Each>
+inline void for_each_mode(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis,
+                          const Each& each) {
   ERGOCAST_REQUIRE(x_m.allFinite());
   ERGOCAST_REQUIRE(basis.modes_x <= kMaxModesPerAxis && basis.modes_y <= kMaxModesPerAxis);
-  const double wave_x = std::numbers::pi / domain.size_m.x();
-  const double wave_y = std::numbers::pi / domain.size_m.y();
-  const double angle_x = wave_x * (x_m.x() - domain.origin_m.x());
-  const double angle_y = wave_y * (x_m.y() - domain.origin_m.y());
-  const double first_cx = std::cos(angle_x), first_sx = std::sin(angle_x);
-  const double first_cy = std::cos(angle_y), first_sy = std::sin(angle_y);
-  double cx = 1, sx = 0, cy = 1, sy = 0;
-  // Both axes in one loop, for neither waits for the other; the shorter one's tables have room.
+  const Eigen::Vector2d angle = wave_numbers_of(domain).cwiseProduct(x_m - domain.origin_m);
+  const Wave first_x{std::cos(angle.x()), std::sin(angle.x())};
+  const Wave first_y{std::cos(angle.y()), std::sin(angle.y())};
+  Wave x{1, 0}, y{1, 0};
   for (int m = 0, end = std::max(basis.modes_x, basis.modes_y); m < end; ++m) {
-    cos_x[m] = cx;
-    cos_y[m] = cy;
-    slope_x[m] = -m * wave_x * sx;
-    slope_y[m] = -m * wave_y * sy;
-    const double next_x = cx * first_cx - sx * first_sx;
-    const double next_y = cy * first_cy - sy * first_sy;
-    sx = sx * first_cx + cx * first_sx;
-    sy = sy * first_cy + cy * first_sy;
-    cx = next_x;
-    cy = next_y;
+    each(m, x, y);
+    x = x.after(first_x);
+    y = y.after(first_y);
   }
+}
+
+}  // namespace
+
+CosinesAt::CosinesAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
+  for_each_mode(x_m, domain, basis, [this](int m, const Wave& x, const Wave& y) {
+    cos_x[m] = x.cosine;
+    cos_y[m] = y.cosine;
+  });
+}
+
+BasisAt::BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
+  const Eigen::Vector2d wave_numbers = wave_numbers_of(domain);
+  for_each_mode(x_m, domain, basis, [&](int m, const Wave& x, const Wave& y) {
+    cos_x[m] = x.cosine;
+    cos_y[m] = y.cosine;
+    slope_x[m] = -m * wave_numbers.x() * x.sine;
+    slope_y[m] = -m * wave_numbers.y() * y.sine;
+  });
 }
 
 Coefficients basis_values(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis) {
   Coefficients values = Coefficients::Zero(basis.modes_x, basis.modes_y);
-  accumulate_basis(BasisAt(x_m, domain, basis), basis, 1.0, values.data());
+  accumulate_basis(CosinesAt(x_m, domain, basis), basis, 1.0, values.data());
   return values;
 }
 
 ERGOCAST_VECTORIZED
-void set_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums) {
+void set_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums) {
   for (int m = 0; m < basis.modes_x; ++m) {
     const double along_x = at.cos_x[m] * dt_s;
     double* row = sums + m * basis.modes_y;
@@ -54,12 +77,18 @@ void set_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums)
   }
 }
 
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums) {
+  accumulate_basis(at, basis, dt_s, {0, basis.mode_count()}, sums);
+}
+
 ERGOCAST_VECTORIZED
-void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums) {
-  for (int m = 0; m < basis.modes_x; ++m) {
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes,
+                      double* __restrict sums) {
+  const int end = modes.first + modes.count;
+  for (int m = modes.first / basis.modes_y, k = modes.first; k < end; ++m) {
+    const int row = m * basis.modes_y, row_end = std::min(row + basis.modes_y, end);
     const double along_x = at.cos_x[m] * dt_s;
-    double* row = sums + m * basis.modes_y;
-    for (int n = 0; n < basis.modes_y; ++n) row[n] += along_x * at.cos_y[n];
+    for (; k < row_end; ++k) sums[k] += along_x * at.cos_y[k - row];
   }
 }
 
@@ -84,32 +113,56 @@ Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const d
   return gradient;
 }
 
+namespace {
+
+/// As in weighted_gradient(), with one more column sum: of f'' along x.
+struct ColumnSums {
+  BasisAt::Table over_bend, over_slope, over_cos;
+};
+
+/// Adds so many rows from row m on, one after the other. Several at a time: sums are read and written less.
+template <int kRows>
+ERGOCAST_VECTORIZED_PART void add_rows(const BasisAt& at, const BasisAt::Table& bend,
+                                       const Basis& basis, const double* weights, int m,
+                                       ColumnSums& __restrict sums) {
+  for (int n = 0; n < basis.modes_y; ++n) {
+    double over_bend = sums.over_bend[n], over_slope = sums.over_slope[n], over_cos = sums.over_cos[n];
+    for (int row = m; row < m + kRows; ++row) {
+      const double weight = weights[row * basis.modes_y + n];
+      over_bend += bend[row] * weight;
+      over_slope += at.slope_x[row] * weight;
+      over_cos += at.cos_x[row] * weight;
+    }
+    sums.over_bend[n] = over_bend;
+    sums.over_slope[n] = over_slope;
+    sums.over_cos[n] = over_cos;
+  }
+}
+
+}  // namespace
+
 ERGOCAST_VECTORIZED
 FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Rectangle& domain,
                        const double* weights) {
   const Eigen::Vector2d wave_number_squared =
       (std::numbers::pi * domain.size_m.cwiseInverse()).cwiseAbs2();
-  // As in weighted_gradient(), with one more column sum: of f'' along x.
-  BasisAt::Table over_bend, over_slope, over_cos;
-  for (int n = 0; n < basis.modes_y; ++n) over_bend[n] = over_slope[n] = over_cos[n] = 0;
-  for (int m = 0; m < basis.modes_x; ++m) {
-    const double* row = weights + m * basis.modes_y;
-    const double slope = at.slope_x[m], cosine = at.cos_x[m];
-    const double bend = -wave_number_squared.x() * m * m * cosine;
-    for (int n = 0; n < basis.modes_y; ++n) {
-      over_bend[n] += bend * row[n];
-      over_slope[n] += slope * row[n];
-      over_cos[n] += cosine * row[n];
-    }
+  BasisAt::Table bend;
+  for (int m = 0; m < basis.modes_x; ++m) bend[m] = -wave_number_squared.x() * m * m * at.cos_x[m];
+  ColumnSums over;
+  for (int n = 0; n < basis.modes_y; ++n) {
+    over.over_bend[n] = over.over_slope[n] = over.over_cos[n] = 0;
   }
+  int m = 0;
+  for (; m + 2 <= basis.modes_x; m += 2) add_rows<2>(at, bend, basis, weights, m, over);
+  for (; m < basis.modes_x; ++m) add_rows<1>(at, bend, basis, weights, m, over);
   FieldAt field;
   double xx = 0, xy = 0, yy = 0;
   for (int n = 0; n < basis.modes_y; ++n) {
-    field.gradient.x() += over_slope[n] * at.cos_y[n];
-    field.gradient.y() += over_cos[n] * at.slope_y[n];
-    xx += over_bend[n] * at.cos_y[n];
-    xy += over_slope[n] * at.slope_y[n];
-    yy -= over_cos[n] * (wave_number_squared.y() * n * n * at.cos_y[n]);
+    field.gradient.x() += over.over_slope[n] * at.cos_y[n];
+    field.gradient.y() += over.over_cos[n] * at.slope_y[n];
+    xx += over.over_bend[n] * at.cos_y[n];
+    xy += over.over_slope[n] * at.slope_y[n];
+    yy -= over.over_cos[n] * (wave_number_squared.y() * n * n * at.cos_y[n]);
   }
   field.hessian << xx, xy, xy, yy;
   return field;

@@ -33,15 +33,25 @@ struct Basis {
   int mode_count() const { return modes_x * modes_y; }
 };
 
-/// Cosines and sines of every mode along both axes at one point: all that f and ∇f need.
-struct BasisAt {
+/// Cosines of every mode along both axes at one point: all that f needs.
+struct CosinesAt {
   using Table = std::array<double, kMaxModesPerAxis>;
-  Table cos_x, cos_y;    ///< cos(mπx/Lx), cos(nπy/Ly)
-  Table slope_x, slope_y;  ///< their derivatives, −(mπ/Lx) sin(mπx/Lx) …  [1/m]
+  Table cos_x, cos_y;  ///< cos(mπx/Lx), cos(nπy/Ly)
 
   /// @pre x_m is finite; up to kMaxModesPerAxis modes an axis.
   /// Outside the domain f goes on as what it is, even about each edge and periodic.
   /// By recurrence from one cosine and sine an axis: |cos| may exceed 1 by about 1e-15 · modes.
+  CosinesAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
+
+ protected:
+  CosinesAt() = default;
+};
+
+/// With their derivatives: all that f and ∇f need.
+struct BasisAt : CosinesAt {
+  Table slope_x, slope_y;  ///< −(mπ/Lx) sin(mπx/Lx) …  [1/m]
+
+  /// @pre as for CosinesAt, whose bits it has.
   BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
 };
 
@@ -49,10 +59,18 @@ struct BasisAt {
 Coefficients basis_values(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
 
 /// sums(m,n) = f_mn · dt_s. `sums` points to mode_count() doubles.
-void set_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums);
+void set_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums);
 
 /// sums(m,n) += f_mn · dt_s, for the running sums of (4). `sums` points to mode_count() doubles.
-void accumulate_basis(const BasisAt& at, const Basis& basis, double dt_s, double* sums);
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums);
+
+/// Consecutive modes in the order of the wire.
+struct Modes {
+  int first, count;
+};
+/// The same for these modes alone; `sums` still begins with the mode 0, 0.
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes,
+                      double* sums);
 
 /// Σ_mn weights(m,n) ∇f_mn: (6) when weights are λ_mn (c_mn − μ_mn) [unit of weights per metre].
 /// `weights` points to mode_count() doubles. Summed in a fixed order, whatever the processor.

@@ -24,7 +24,7 @@ Controller::Controller(const Mission& mission)
       basis_(mission.basis),
       law_(mission.law),
       seed_(mission.seed),
-      dt_s_(mission.timing.dt_s),
+      scale_(mission.law, mission.timing.dt_s),
       push_ticks_(push_ticks(mission.law, mission.timing.dt_s)),
       target_(mission.target_coefficients),
       weights_(sobolev_weights(mission.basis, mission.domain)),
@@ -33,32 +33,31 @@ Controller::Controller(const Mission& mission)
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
 }
 
-ERGOCAST_VECTORIZED
 void Controller::see(const Coefficients& coverage) {
+  const double residual_gradient = set_residual(coverage);
+  epsilon_ = law_.epsilon;
+  if (law_.regularization == Regularization::kRelative) epsilon_ *= residual_gradient;
+}
+
+ERGOCAST_VECTORIZED
+double Controller::set_residual(const Coefficients& coverage) {
   const Eigen::Index count = residual_.size();
   const double* c = coverage.data();
   const double* mu = target_.data();
   const double* weight = weights_.data();
-  double* residual = residual_.data();
-  for (Eigen::Index k = 0; k < count; ++k) residual[k] = weight[k] * (c[k] - mu[k]);
-  epsilon_ = law_.epsilon;
-  if (law_.regularization == Regularization::kRelative) epsilon_ *= residual_gradient();
-}
-
-ERGOCAST_VECTORIZED
-double Controller::residual_gradient() const {
-  const Eigen::Index count = residual_.size();
-  const double* residual = residual_.data();
   const double* energy = energies_.data();
+  double* __restrict residual = residual_.data();
   // Four partial sums in a fixed order: one chain of additions would cost more than all the rest.
   double partial[4] = {0, 0, 0, 0};
+  const auto take = [&](Eigen::Index k, int lane) {
+    residual[k] = weight[k] * (c[k] - mu[k]);
+    partial[lane] += residual[k] * residual[k] * energy[k];
+  };
   Eigen::Index k = 0;
   for (; k + 4 <= count; k += 4) {
-    for (int lane = 0; lane < 4; ++lane) {
-      partial[lane] += residual[k + lane] * residual[k + lane] * energy[k + lane];
-    }
+    for (int lane = 0; lane < 4; ++lane) take(k + lane, lane);
   }
-  for (; k < count; ++k) partial[0] += residual[k] * residual[k] * energy[k];
+  for (; k < count; ++k) take(k, 0);
   return std::sqrt((partial[0] + partial[1]) + (partial[2] + partial[3]));
 }
 
@@ -78,17 +77,21 @@ Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vecto
         normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
                     static_cast<std::uint64_t>(tick));
     const Eigen::Vector2d eta = push(agent, tick / push_ticks_);
-    velocity += perturbation(law_, dt_s_, epsilon_, field, xi, eta);
+    velocity += perturbation(scale_, epsilon_, field, xi, eta);
   }
   return velocity;
 }
 
 /// η of one stretch of push_ticks_ ticks.
-Eigen::Vector2d Controller::push(AgentId agent, Tick stretch) const {
+Eigen::Vector2d Controller::push(AgentId agent, Tick stretch) {
   const AgentId drawn = law_.paired_pushes ? agent - agent % 2 : agent;
-  const Eigen::Vector2d eta = normal_pair(seed_, Purpose::kPush, static_cast<std::uint32_t>(drawn),
-                                          static_cast<std::uint64_t>(stretch));
-  return drawn == agent ? eta : Eigen::Vector2d(-eta);
+  Push& last = pushes_[static_cast<std::uint32_t>(drawn) % pushes_.size()];
+  if (last.drawn != drawn || last.stretch != stretch) {
+    last = {drawn, stretch,
+            normal_pair(seed_, Purpose::kPush, static_cast<std::uint32_t>(drawn),
+                        static_cast<std::uint64_t>(stretch))};
+  }
+  return drawn == agent ? last.eta : Eigen::Vector2d(-last.eta);
 }
 
 double Controller::metric(const Coefficients& coverage) const {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "core/basis.h"
 #include "core/ids.h"
 #include "core/mission.h"
+#include "core/perturbation.h"
 
 namespace ergocast {
 
@@ -38,19 +40,27 @@ class Controller {
   double metric(const Coefficients& coverage) const;
 
  private:
-  Eigen::Vector2d push(AgentId agent, Tick stretch) const;
-  /// The RMS over the domain of ‖Σ λ (c − μ) ∇f‖ [1/m].
-  double residual_gradient() const;
+  /// An η, and where it was drawn.
+  struct Push {
+    AgentId drawn = kUnassigned;
+    Tick stretch = -1;
+    Eigen::Vector2d eta{0, 0};
+  };
+
+  Eigen::Vector2d push(AgentId agent, Tick stretch);
+  /// Sets the residual λ (c − μ); returns the RMS over the domain of ‖Σ λ (c − μ) ∇f‖ [1/m].
+  double set_residual(const Coefficients& coverage);
 
   Rectangle domain_;
   Basis basis_;
   ControlLaw law_;
   std::uint64_t seed_;
-  double dt_s_;
+  PerturbationScale scale_;
   Tick push_ticks_;
   Coefficients target_, weights_, energies_, residual_;
   Eigen::Vector2d spectral_gradient_{0, 0};
   double epsilon_ = 0;
+  std::array<Push, kMaxAgents> pushes_;  // the last of each agent: one is held for many ticks
 };
 
 }  // namespace ergocast

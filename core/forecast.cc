@@ -1,16 +1,73 @@
 #include "core/forecast.h"
 
 #include <algorithm>
-#include <array>
+#include <tuple>
 
 #include "core/vectorized.h"
 
 namespace ergocast {
 namespace {
 
+// What these functions call sum is a running sum over rows, `before` what it was before this row: it may
+// be the same table. All tables begin with the mode 0, 0.
+
+/// Calls each(k, f dt) for every k of the modes, at the place of these cosines.
+template <class Each>
+ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, int modes_y, double dt_s, Modes modes,
+                                        const Each& each) {
+  const int end = modes.first + modes.count;
+  for (int m = modes.first / modes_y, k = modes.first; k < end; ++m) {
+    const int row = m * modes_y, row_end = std::min(row + modes_y, end);
+    const double along_x = at.cos_x[m] * dt_s;
+    ERGOCAST_INDEPENDENT
+    for (int n = k - row; n < row_end - row; ++n) each(row + n, along_x * at.cos_y[n]);
+    k = row_end;
+  }
+}
+
+/// sum = before + S.
 ERGOCAST_VECTORIZED
-void add_block(const double* a, const double* b, double* sum) {
-  for (std::size_t k = 0; k < kBlockSize; ++k) sum[k] = a[k] + b[k];
+void add_sums(const double* sums, Modes modes, const double* before, double* sum) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) sum[k] = before[k] + sums[k];
+}
+
+/// sum = before + S + share · gains.
+ERGOCAST_VECTORIZED
+void add_gaining(const double* sums, const double* gains, double share, Modes modes,
+                 const double* before, double* sum) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    sum[k] = before[k] + (sums[k] + share * gains[k]);
+  }
+}
+
+/// sum = before + S + share · f dt.
+ERGOCAST_VECTORIZED
+void add_staying(const CosinesAt& at, int modes_y, double dt_s, const double* sums, double share,
+                 Modes modes, const double* before, double* sum) {
+  for_gains(at, modes_y, dt_s, modes,
+            [=](int k, double gain) { sum[k] = before[k] + (sums[k] + share * gain); });
+}
+
+/// S += f dt, and then sum = before + S + share · f dt.
+ERGOCAST_VECTORIZED
+void add_arriving(const CosinesAt& at, int modes_y, double dt_s, double* sums, double share,
+                  Modes modes, const double* before, double* sum) {
+  for_gains(at, modes_y, dt_s, modes, [=](int k, double gain) {
+    sums[k] += gain;
+    sum[k] = before[k] + (sums[k] + share * gain);
+  });
+}
+
+/// coverage = (earlier + (later + own)) · per_second.
+ERGOCAST_VECTORIZED
+void average(const double* earlier, const double* later, const double* own, double per_second,
+             Modes modes, double* coverage) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    coverage[k] = (earlier[k] + (later[k] + own[k])) * per_second;
+  }
 }
 
 /// Whether `entry` is active at `tick` and nobody newer is under its number; the roster ascends by
@@ -40,7 +97,10 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       dt_s_(mission.timing.dt_s),
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
-      most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)) {}
+      most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
+      nothing_(static_cast<std::size_t>(basis_.mode_count())),
+      earlier_(nothing_),
+      later_(nothing_) {}
 
 void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
   if (!reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
@@ -69,49 +129,57 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
     track.said_steps.assign(blocks, -1);
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);
+    track.due.assign(blocks, 0);
     track.sums.assign(blocks * kBlockSize, 0);
-    track.gain.assign(blocks * kBlockSize, 0);
-    track.gain_tick = -1;
+    track.newest.reset();
+    track.newest_tick = -1;
   }
   for (std::size_t b = 0; b < blocks; ++b) {
     const CoverageTable::BlockView said = table.view(row, static_cast<int>(b));
     if (track.said_steps[b] == said.steps) continue;
     track.said_steps[b] = track.steps[b] = said.steps;
     track.until[b] = said.tick;
+    track.due[b] = 0;
   }
   const Tick oldest = *std::min_element(track.until.begin(), track.until.end());
   const auto first =
       track.places.end() - static_cast<std::ptrdiff_t>(std::min(track.places.size(), most_places_));
   auto place = track.places.end();
   while (place != first && std::prev(place)->tick > oldest) --place;
+  // The newest is where the vehicle goes on from, whether or not its author has said it already.
+  if (place == track.places.end() && place != first) --place;
   for (; place != track.places.end(); ++place) {
     if (entry.active_at(place->tick)) add_place(*place, table, row, track);
-  }
-  if (!track.places.empty() && entry.active_at(track.places.back().tick)) {
-    gain_at(track.places.back(), track);
   }
   return &track;
 }
 
-/// f(x) dt.
-void Forecast::gain_at(const Place& place, Track& track) const {
-  if (track.gain_tick == place.tick) return;
-  track.gain_tick = place.tick;
-  set_basis(BasisAt(place.x_m, domain_, basis_), basis_, dt_s_, track.gain.data());
-}
-
-/// S += f(x) dt in every block that does not hold it, as its author does.
+/// S += f(x) dt in every block that does not hold it, as its author does: at the next use.
 void Forecast::add_place(const Place& place, const CoverageTable& table, std::size_t row,
                          Track& track) const {
-  gain_at(place, track);
+  if (place.tick != track.newest_tick) {
+    add_what_is_due(track);
+    track.newest.emplace(place.x_m, domain_, basis_);
+    track.newest_tick = place.tick;
+  }
   for (std::size_t b = 0; b < track.until.size(); ++b) {
     if (track.said_steps[b] == 0 || place.tick <= track.until[b]) continue;
-    double* sums = track.sums.data() + b * kBlockSize;
-    const bool is_first = track.steps[b] == track.said_steps[b];
-    const double* before = is_first ? table.view(row, static_cast<int>(b)).sums : sums;
-    add_block(before, track.gain.data() + b * kBlockSize, sums);
+    if (track.steps[b] == track.said_steps[b]) {
+      std::copy_n(table.view(row, static_cast<int>(b)).sums, kBlockSize,
+                  track.sums.data() + b * kBlockSize);
+    }
+    track.due[b] = 1;
     track.until[b] = place.tick;
     ++track.steps[b];
+  }
+}
+
+void Forecast::add_what_is_due(Track& track) const {
+  for (std::size_t b = 0; b < track.due.size(); ++b) {
+    if (!track.due[b]) continue;
+    accumulate_basis(*track.newest, basis_, dt_s_, modes_of(static_cast<int>(b), 1),
+                     track.sums.data());
+    track.due[b] = 0;
   }
 }
 
@@ -139,25 +207,27 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
     if (!table.blocks_alike(row)) return false;
     const Track* track = reckoned_[row];
     if (track == nullptr) continue;
-    const auto& steps = track->steps;
+    const auto& [steps, due] = std::tie(track->steps, track->due);
     if (!std::equal(steps.begin() + 1, steps.end(), steps.begin())) return false;
+    if (!std::equal(due.begin() + 1, due.end(), due.begin())) return false;
   }
   return true;
 }
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
-  Term term{said.sums, said.gains, said.steps, 0, said.tick, said.period, 0};
+  const int first = modes_of(block, 1).first;
+  Term term{said.sums - first, said.gains - first, nullptr, said.steps, 0, said.tick, said.period, 0};
   if (!flies_[row] || said.steps == 0) return term;
   term.gained_steps = said.gained_steps;
-  const Track* track = reckoned_[row];
-  if (track == nullptr || track->gain_tick < said.tick) return term;
+  Track* track = reckoned_[row];
+  if (track == nullptr || track->newest_tick < said.tick) return term;
   const auto b = static_cast<std::size_t>(block);
-  if (track->steps[b] > said.steps) term.sums = track->sums.data() + b * kBlockSize;
-  term.gains = track->gain.data() + b * kBlockSize;
+  if (track->steps[b] > said.steps) term.sums = track->sums.data();
+  term.track = track;
   term.steps = track->steps[b];
   term.gained_steps = 1;
-  term.tick = track->gain_tick;
+  term.tick = track->newest_tick;
   return term;
 }
 
@@ -165,14 +235,20 @@ Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, in
 double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   terms_.clear();
   before_own_ = 0;
+  own_sums_ = nothing_.data();
   std::int64_t steps = 0;
   int n = 1;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
-    before_own_ += table.author(row) < self_;
-    const Term& term = terms_.emplace_back(term_of(table, row, block));
+    const Term term = term_of(table, row, block);
     steps += term.steps;
     n += term.gained_steps > 0;
+    if (table.author(row) == self_) {
+      own_sums_ = term.sums;
+      continue;
+    }
+    before_own_ += table.author(row) < self_;
+    terms_.push_back(term);
   }
   const double horizon_s = look_ahead_.horizon_s(n, tick);
   double covered_s = static_cast<double>(steps) * dt_s_;
@@ -183,39 +259,40 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
     covered_s += weight_s;
     term.share = weight_s / (static_cast<double>(term.gained_steps) * dt_s_);
   }
-  std::reverse(terms_.begin() + before_own_, terms_.end());
   return steps > 0 ? 1 / covered_s : 0;
 }
 
-/// sum += what so many rows will have covered, for one block's modes.
-template <int kTerms>
-inline void Forecast::add_terms(const Term* terms, int first, double* __restrict sum) {
-  for (int k = 0; k < kBlockSize; ++k) {
-    double all = sum[k];
-    for (int i = 0; i < kTerms; ++i) {
-      all += terms[i].sums[first + k] + terms[i].share * terms[i].gains[first + k];
-    }
-    sum[k] = all;
+/// Adds what a row will have covered to `before`.
+void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) const {
+  Track* track = term.track;
+  const auto block = modes.first / kBlockSize;
+  if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
+    add_arriving(*track->newest, basis_.modes_y, dt_s_, track->sums.data(), term.share, modes,
+                 before, sum);
+    std::fill_n(track->due.begin() + block, (modes.count + kBlockSize - 1) / kBlockSize, 0);
+  } else if (term.share == 0) {
+    add_sums(term.sums, modes, before, sum);
+  } else if (track != nullptr) {
+    add_staying(*track->newest, basis_.modes_y, dt_s_, term.sums, term.share, modes, before, sum);
+  } else {
+    add_gaining(term.sums, term.gains, term.share, modes, before, sum);
   }
 }
 
-/// The terms of `count` modes, from both ends of the team up to the own row: core/ideal_team.cc
-/// makes all its agents' sums in this order, with few more additions than one agent's take.
-ERGOCAST_VECTORIZED
-void Forecast::add_up(double per_second, int count, double* coverage) const {
-  const Term* const own = terms_.data() + before_own_;
-  const Term* const end = terms_.data() + terms_.size();
-  for (int first = 0; first < count; first += kBlockSize) {
-    std::array<double, kBlockSize> before{}, after{};
-    // Several at a time, and their sum stays in a register.
-    const Term* term = terms_.data();
-    for (; own - term >= 3; term += 3) add_terms<3>(term, first, before.data());
-    for (; term < own; ++term) add_terms<1>(term, first, before.data());
-    for (; end - term >= 4; term += 4) add_terms<4>(term, first, after.data());
-    for (; term < end; ++term) add_terms<1>(term, first, after.data());
-    const int here = std::min(kBlockSize, count - first);
-    for (int k = 0; k < here; ++k) coverage[first + k] = (before[k] + after[k]) * per_second;
+/// The rows from both ends of the team, and the own one last: core/ideal_team.cc makes all its agents'
+/// sums in this order, with few more additions than one agent's take.
+void Forecast::add_up(Modes modes, double per_second, double* coverage) {
+  const double *earlier = nothing_.data(), *later = nothing_.data();
+  const auto own = terms_.begin() + before_own_;
+  for (auto term = terms_.begin(); term != own; ++term) {
+    add(*term, modes, earlier, earlier_.data());
+    earlier = earlier_.data();
   }
+  for (auto term = terms_.rbegin(); term.base() != own; ++term) {
+    add(*term, modes, later, later_.data());
+    later = later_.data();
+  }
+  average(earlier, later, own_sums_, per_second, modes, coverage);
 }
 
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
@@ -223,10 +300,13 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   gather(table, roster, tick);
   const int at_once = blocks_alike(table) ? table.block_count() : 1;
   for (int b = 0; b < table.block_count(); b += at_once) {
-    const int first = b * kBlockSize;
-    const int count = std::min(at_once * kBlockSize, basis_.mode_count() - first);
-    add_up(weigh_terms(table, b, tick), count, coverage.data() + first);
+    add_up(modes_of(b, at_once), weigh_terms(table, b, tick), coverage.data());
   }
+}
+
+Modes Forecast::modes_of(int block, int count) const {
+  const int first = block * kBlockSize;
+  return {first, std::min(count * kBlockSize, basis_.mode_count() - first)};
 }
 
 }  // namespace ergocast

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/basis.h"
@@ -59,30 +60,31 @@ class Forecast {
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
-    std::vector<double> sums;  // likewise; of blocks to which nothing was added, anything
-    std::vector<double> gain;  // f dt at the newest place
-    Tick gain_tick = -1;
+    std::vector<char> due;     // whether that one counts, but is not in the sums yet
+    std::vector<double> sums;  // with the places; of blocks to which nothing was added, anything
+    std::optional<CosinesAt> newest;  // at the newest place, and its tick
+    Tick newest_tick = -1;
   };
   /// One row's part in one block.
   struct Term {
-    const double* sums;
-    const double* gains;
+    const double *sums, *gains;        // from the mode 0, 0 on
+    Track* track;                      // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
     double share;  // of the gains
   };
 
   Track* reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
-  void gain_at(const Place& place, Track& track) const;
   void add_place(const Place& place, const CoverageTable& table, std::size_t row,
                  Track& track) const;
+  void add_what_is_due(Track& track) const;
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
   bool blocks_alike(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
-  template <int kTerms>
-  static void add_terms(const Term* terms, int first, double* __restrict sum);
-  void add_up(double per_second, int count, double* coverage) const;
+  void add_up(Modes modes, double per_second, double* coverage);
+  void add(const Term& term, Modes modes, const double* before, double* sum) const;
+  Modes modes_of(int block, int count) const;
 
   Author self_;
   Rectangle domain_;
@@ -94,8 +96,11 @@ class Forecast {
   std::map<AgentId, Track> tracks_;
   std::vector<Track*> reckoned_;  // per row of the table; null: by its blocks
   std::vector<char> flies_;       // per row: whether it has a forecast
-  std::vector<Term> terms_;  // of the rows that count: ascending by author before the own one, …
-  std::ptrdiff_t before_own_ = 0;  // … so many; then descending down to it
+  std::vector<Term> terms_;       // of the other rows that count, ascending by author
+  std::ptrdiff_t before_own_ = 0;  // so many of them come before the own row
+  const double* own_sums_ = nullptr;
+  const std::vector<double> nothing_;
+  std::vector<double> earlier_, later_;  // what the rows before the own one will have covered, and after
 };
 
 }  // namespace ergocast

@@ -42,11 +42,15 @@ double greatest_deviation_mps(const ControlLaw& law, double dt_s) {
   return std::hypot(noise_mps, greatest_push_mps(law, dt_s));
 }
 
-Eigen::Vector2d perturbation(const ControlLaw& law, double dt_s, double epsilon,
-                             const FieldAt& field, const Eigen::Vector2d& xi,
-                             const Eigen::Vector2d& eta) {
-  const Eigen::Vector2d noise_mps = law.noise_intensity / std::sqrt(dt_s) * xi;
-  if (law.perturbation == Perturbation::kConstant) return noise_mps;
+PerturbationScale::PerturbationScale(const ControlLaw& law, double dt_s)
+    : is_adaptive(law.perturbation == Perturbation::kAdaptive),
+      noise_mps(law.noise_intensity / std::sqrt(dt_s)),
+      push_mps(is_adaptive ? greatest_push_mps(law, dt_s) : 0) {}
+
+Eigen::Vector2d perturbation(const PerturbationScale& scale, double epsilon, const FieldAt& field,
+                             const Eigen::Vector2d& xi, const Eigen::Vector2d& eta) {
+  const Eigen::Vector2d noise_mps = scale.noise_mps * xi;
+  if (!scale.is_adaptive) return noise_mps;
   // H = mean·1 + spread·(v vᵀ − w wᵀ) with its principal directions v and w, spread ≥ 0.
   const Eigen::Matrix2d& hessian = field.hessian;
   const double mean = 0.5 * (hessian(0, 0) + hessian(1, 1));
@@ -55,8 +59,7 @@ Eigen::Vector2d perturbation(const ControlLaw& law, double dt_s, double epsilon,
   const Eigen::Vector2d v = steepest_bend(difference, spread), w(-v.y(), v.x());
   const double along_v = share_along(epsilon, mean + spread, field.gradient.dot(v));
   const double along_w = share_along(epsilon, mean - spread, field.gradient.dot(w));
-  return noise_mps +
-         greatest_push_mps(law, dt_s) * (along_v * eta.dot(v) * v + along_w * eta.dot(w) * w);
+  return noise_mps + scale.push_mps * (along_v * eta.dot(v) * v + along_w * eta.dot(w) * w);
 }
 
 }  // namespace ergocast

@@ -25,6 +25,15 @@ double greatest_push_mps(const ControlLaw& law, double dt_s);
 /// adaptive √(σ²/dt + greatest_push²).
 double greatest_deviation_mps(const ControlLaw& law, double dt_s);
 
+/// What of a perturbation is the same at every step.
+struct PerturbationScale {
+  PerturbationScale(const ControlLaw& law, double dt_s);
+
+  bool is_adaptive;
+  double noise_mps;  ///< σ/√dt
+  double push_mps;   ///< adaptive: greatest_push_mps(), else 0
+};
+
 /// The velocity that stands for σ dW over one step [m/s].
 ///
 /// Constant: σ ξ / √dt, the paper's. Adaptive: besides, along each of the two principal directions v
@@ -37,8 +46,7 @@ double greatest_deviation_mps(const ControlLaw& law, double dt_s);
 /// @param field  B, in the unit of ε, and H; H is not read by the constant law
 /// @param xi     two independent standard normal numbers of this step
 /// @param eta    two of the push_ticks() steps that it belongs to
-Eigen::Vector2d perturbation(const ControlLaw& law, double dt_s, double epsilon,
-                             const FieldAt& field, const Eigen::Vector2d& xi,
-                             const Eigen::Vector2d& eta);
+Eigen::Vector2d perturbation(const PerturbationScale& scale, double epsilon, const FieldAt& field,
+                             const Eigen::Vector2d& xi, const Eigen::Vector2d& eta);
 
 }  // namespace ergocast

@@ -12,6 +12,20 @@
 #define ERGOCAST_VECTORIZED
 #endif
 
+// A part of such a function: compiled for its caller's processor.
+#if defined(__GNUC__)
+#define ERGOCAST_VECTORIZED_PART [[gnu::always_inline]] inline
+#else
+#define ERGOCAST_VECTORIZED_PART inline
+#endif
+
+// Before a loop none of whose passes reads what another one writes, though the compiler cannot see it.
+#if defined(__GNUC__) && !defined(__clang__)
+#define ERGOCAST_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define ERGOCAST_INDEPENDENT
+#endif
+
 namespace ergocast {
 
 /// So many modes at a time are added up over many rows: their sums stay in registers.

@@ -224,6 +224,7 @@ StepFloor::StepFloor(const Mission& mission, int agents)
       sums_(static_cast<std::size_t>(agents * modes_ * stride_)),
       gains_(sums_),
       mates_(static_cast<std::size_t>(agents)),
+      scale_(mission.law, mission.timing.dt_s),
       push_ticks_(push_ticks(mission.law, mission.timing.dt_s)) {
   const auto padded = [this](const Coefficients& table) {
     std::vector<double> all(static_cast<std::size_t>(modes_ * stride_));
@@ -323,7 +324,7 @@ Eigen::Vector2d StepFloor::step(Tick tick, const std::vector<Eigen::Vector2d>& p
   }
   return -law.u_max_mps / length * field.gradient -
          law.contraction_gain_per_s * (x_m - law.contraction_center_m) +
-         perturbation(law, mission_.timing.dt_s, epsilon, field, xi, eta_);
+         perturbation(scale_, epsilon, field, xi, eta_);
 }
 
 }  // namespace ergocast::bench

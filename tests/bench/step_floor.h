@@ -63,6 +63,7 @@ class StepFloor {
   int agents_, modes_, stride_;  // modes per axis
   std::vector<double> sums_, gains_, target_, weight_, energy_;
   std::vector<Mate> mates_;
+  PerturbationScale scale_;
   Tick push_ticks_, push_ = -1;
   Eigen::Vector2d eta_{0, 0};
 };

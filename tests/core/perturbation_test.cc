@@ -40,7 +40,7 @@ const double kStep_s = std::pow(kCeiling / kSpeed_mps, 2);
 /// one step a second.
 Eigen::Matrix2d intensities(const FieldAt& at, double epsilon = kEpsilon) {
   const auto response = [&](const Eigen::Vector2d& xi, const Eigen::Vector2d& eta) {
-    return (perturbation(adaptive(), kStep_s, epsilon, at, xi, eta) * std::sqrt(kStep_s)).eval();
+    return (perturbation({adaptive(), kStep_s}, epsilon, at, xi, eta) * std::sqrt(kStep_s)).eval();
   };
   Eigen::Matrix<double, 2, 4> all;
   all << response({1, 0}, {0, 0}), response({0, 1}, {0, 0}), response({0, 0}, {1, 0}),
@@ -57,7 +57,7 @@ void expect_near(const Eigen::Matrix2d& sigma, double along_x, double along_y) {
 TEST(Perturbation, ItsGreatestDeviationIsThatOfAStepWhereTheFieldIsWhollyOpen) {
   for (const double dt_s : {0.1, kStep_s}) {  // a push held for many steps, and for one
     const auto along_x = [&](double xi, double eta) {
-      return perturbation(adaptive(), dt_s, kEpsilon, field({0, 0}, -1e-7, 0, -2e-7), {xi, 0},
+      return perturbation({adaptive(), dt_s}, kEpsilon, field({0, 0}, -1e-7, 0, -2e-7), {xi, 0},
                           {eta, 0})
           .x();
     };
@@ -140,7 +140,7 @@ TEST(Perturbation, ConstantIsSigmaWhateverTheField) {
   ControlLaw law;
   law.noise_intensity = 0.75;
   const Eigen::Vector2d xi(0.3, -2);
-  EXPECT_EQ(perturbation(law, 0.125, 0, field({1, 2}, -1, 0, -1), xi, {5, 7}),
+  EXPECT_EQ(perturbation({law, 0.125}, 0, field({1, 2}, -1, 0, -1), xi, {5, 7}),
             0.75 / std::sqrt(0.125) * xi);
 }
 
@@ -163,7 +163,7 @@ TEST(Perturbation, SpreadsLikeItsCeilingOverManyPushes) {
     for (Tick n = 0; n < kTicks; ++n) {
       const auto step = static_cast<std::uint64_t>(n);
       const auto push = static_cast<std::uint64_t>(n / push_ticks(adaptive(), kDt_s));
-      x_m += kDt_s * perturbation(adaptive(), kDt_s, kEpsilon, ridge,
+      x_m += kDt_s * perturbation({adaptive(), kDt_s}, kEpsilon, ridge,
                                   normal_pair(1, Purpose::kPerturbation, walk, step),
                                   normal_pair(1, Purpose::kPush, walk, push))
                          .x();
