@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cli/fault_file.h"
 
 #include <CLI/CLI.hpp>

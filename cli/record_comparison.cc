@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cli/record_comparison.h"
 
 #include <algorithm>

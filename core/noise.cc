@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/noise.h"
 
 #include <Random123/philox.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Plain messages and LCM's generated types, field by field: what every field means on the wire.
 // For the codec alone; nothing else sees a generated type.
 #pragma once

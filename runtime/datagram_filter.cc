@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/datagram_filter.h"
 
 #include <linux/filter.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/group_membership.h"
 
 #include <arpa/inet.h>

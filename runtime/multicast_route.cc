@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/multicast_route.h"
 
 #include <linux/rtnetlink.h>

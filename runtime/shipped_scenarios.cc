@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/shipped_scenarios.h"
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/socket.h"
 
 #include <arpa/inet.h>

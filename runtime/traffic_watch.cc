@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/traffic_watch.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/transport.h"
 
 #include <linux/sock_diag.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scenario/assign.h"
 
 #include <google/protobuf/io/tokenizer.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scenario/plan.h"
 
 #include <google/protobuf/io/coded_stream.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "text/regular_file.h"
 #include "scenario/scenario.h"
 

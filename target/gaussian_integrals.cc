@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "target/gaussian_integrals.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "target/raster_integral.h"
 
 #include <algorithm>

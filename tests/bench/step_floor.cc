@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/bench/step_floor.h"
 
 #if defined(__x86_64__)

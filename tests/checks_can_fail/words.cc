@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/checks_can_fail/words.h"
 
 #include <algorithm>

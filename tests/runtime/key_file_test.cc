@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "runtime/key_file.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/drawn_scenario.h"
 
 #include <google/protobuf/descriptor.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "team/freshness.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ops/doctor/peer_ledger.h"
 
 #include <gtest/gtest.h>

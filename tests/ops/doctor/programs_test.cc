@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ops/doctor/programs.h"
 
 #include "tests/ops/doctor/fixture.h"
