@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One pair of functions for each type copies the fields in both directions and refuses
+// implausible numbers.
 #include "lcmtypes/wire.h"
 
 #include <algorithm>
