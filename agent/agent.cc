@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joins the mission, takes in each message, answers each tick with a command, and broadcasts in
+// turn.
 #include "agent/agent.h"
 
 #include <algorithm>

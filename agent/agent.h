@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One agent: messages and time in, messages out. No socket, thread, clock, logger or file.
 //
 // Messages only update tables; the control step reads them. In lockstep a tick is answered once

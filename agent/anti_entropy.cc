@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares each digest with the own table and schedules an answer after a random delay, which a
+// teammate's earlier answer cancels.
 #include "agent/anti_entropy.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mends what teammates lack: reads their digests and repeats, for the authors that they cannot
 // hear, what those have said. Lost messages, late joiners, restarts, the dead agents' sums and
 // teams in which not all hear all need nothing else.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an agent has heard of its teammates on the swarm bus: how much was lost, how old the news is.
 #pragma once
 

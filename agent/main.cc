@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ergocast-agent: one agent of the team as a process.
 #include <spdlog/spdlog.h>
 

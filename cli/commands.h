@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What `ergocast` can do, one function a command. Each returns the program's exit code.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a command that cannot go on says why.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast deploy`: reads the scenario and the list of hosts, and prints or writes the files
+// that ops/deploy makes.
 #include "ops/deploy/deploy.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast doctor`: what keeps agents on this host and others from hearing each other.
 #include <sys/ioctl.h>
 #include <unistd.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads an INI file with CLI11's parser and looks each name up in the table of fault fields.
 #include "cli/fault_file.h"
 
 #include <CLI/CLI.hpp>

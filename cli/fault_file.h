@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Faults as people write them: one `name = value` a line, '#' begins a comment.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads both files, which one name leads to, and refuses them unless they are the two halves of
+// one key.
 #include "cli/key_pair.h"
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The two files of a mission key: the team's and the coordinator's.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast keygen`: a team's mission key.
 #include <cstdio>
 #include <memory>

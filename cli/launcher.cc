@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each process has a state; every turn looks at it and decides whether to wait, restart, report
+// or kill.
 #include "cli/launcher.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mission's processes on this host: started, watched, restarted and ended.
 #pragma once
 

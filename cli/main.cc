@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ergocast: the command a person types.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each message moves the mission to a later stage, never back; the clock tells when a stage is
+// overdue.
 #include "cli/mission_watch.h"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What `ergocast run` hears of its mission and shows of it; and the one word it can say: STOP.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Goes through the possible causes of silence in order, keys first, and words the first one that
+// holds.
 #include "cli/nobody.h"
 
 namespace ergocast::cli {

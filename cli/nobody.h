@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Why a command that listens to a team hears nobody.
 #pragma once
 

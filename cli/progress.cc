@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Words the facts of a mission's progress and hands them to the progress line, the most
+// important first.
 #include "cli/progress.h"
 
 #include <algorithm>

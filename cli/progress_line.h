@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One line that says how far something is: a bar on a terminal, a plain line now and then elsewhere.
 #pragma once
 

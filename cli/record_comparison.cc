@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Makes each file of a record again in memory and reports the first place where the recorded
+// file differs.
 #include "cli/record_comparison.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The files of a record besides its trajectory, each held against what makes it: the scenario, the
 // simulated recorder, or the other files.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast report`: reads the plan from a record and draws the report of that record again.
 #include "report/report.h"
 
 #include <cstdio>

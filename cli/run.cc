@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast run`: prepares the run directory and the key, starts all processes, watches the
+// mission, and completes the summary.
 #include <chrono>
 #include <cstdio>
 

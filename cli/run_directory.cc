@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chooses or checks the run directory, and prints where the results of a mission are.
 #include "cli/run_directory.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where a run's files go, and the last words of `run` and `simulate`.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast simulate`: steps the simulated team until the mission ends; its recorder writes the
+// tables, this file the summary.
 #include <chrono>
 #include <cstdio>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast spy`: LCM's own viewer, lcm-spy, with Ergocast's message types and pictures.
 //
 // Debian 12's script of that name does not start with Java 17, so the viewer's class is started

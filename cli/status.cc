@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast status`: what a team looks like from any host on its buses. It only listens.
 #include <algorithm>
 #include <chrono>

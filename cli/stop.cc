@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast stop`: ends a mission from any host on its buses, and says whether the team obeyed.
 #include <algorithm>
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // STOP, said again and again: by `ergocast run` to its mission, by `ergocast stop` to anybody's.
 #pragma once
 

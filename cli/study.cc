@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast study`: hands the missing runs to worker processes, writes a row for each, then
+// makes the table and the page.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

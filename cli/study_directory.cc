@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Locks the folder, refuses one that another study began, reads the finished rows, and appends
+// new ones.
 #include "cli/study_directory.h"
 
 #include <fcntl.h>

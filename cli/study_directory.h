@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The folder of a study: study.json says what is compared, study.csv has one row a run. It outlives
 // the calls that add to it.
 #pragma once

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Counts through all combinations of values, compiles each scenario with them, and reports each
+// problem once.
 #include "cli/study_points.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The points of a study: every scenario with every combination of the varied fields, compiled.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Remembers the last message of every process of a run, and judges by silence whether the
+// process has ended.
 #include "cli/team_ears.h"
 
 #include <algorithm>

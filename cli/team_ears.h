@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The runs that speak on one URL: what `ergocast status` and `ergocast stop` listen to, and whether
 // they still speak, which `stop` goes by.
 #pragma once

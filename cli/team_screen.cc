@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Redraws the picture in place on a terminal, and prints pictures one after the other elsewhere.
 #include "cli/team_screen.h"
 
 #include <sys/ioctl.h>

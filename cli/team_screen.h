@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where `ergocast status` shows its pictures.
 #pragma once
 

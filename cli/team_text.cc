@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lays the picture of a team out in columns as wide as their widest cells, and colours what is
+// wrong.
 #include "cli/team_text.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A team's picture as people read it, and as programs do.
 #pragma once
 

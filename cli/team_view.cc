@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps the newest message of every kind from each process, and derives the state of each row
+// from their ages.
 #include "cli/team_view.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A team as somebody sees it who only listens: messages and time in, rows out. No clock, no I/O.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A recorded trajectory held against one that is simulated: row by row, bit by bit.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One table of counts yields the CSV header, the CSV rows and the totals.
 #include "cli/trial_table.h"
 
 #include <algorithm>

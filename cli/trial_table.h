@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What came of many trials: a CSV row a seed, and a summary for people.
 #pragma once
 

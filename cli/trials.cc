@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast simulate --seeds`: flies each seed in a worker process, prints failures with the
+// command that repeats them.
 #include <chrono>
 #include <cstdio>
 #include <fstream>

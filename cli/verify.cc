@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Simulates the mission of a record again and holds every file against it that the simulation
 // determines: first what the plan is made of, then the trajectory, then what follows from both.
 #include <cstdio>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Forks workers that do a range of jobs each and send fixed-size results through a pipe of their
+// own.
 #include "cli/workers.h"
 
 #include <poll.h>

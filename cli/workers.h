@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Many jobs over worker processes: one that crashes, aborts or hangs costs one job.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Admits agents into the roster, repeats the mission until it ends, and removes or names members
+// that do not answer.
 #include "coordinator/coordinator.h"
 
 #include <algorithm>

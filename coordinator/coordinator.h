@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Admits agents, distributes the mission, starts, watches and ends it. Never steers.
 //
 // It repeats its whole state once a second, so that nothing it says needs an acknowledgement. One

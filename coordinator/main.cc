@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ergocast-coordinator: admits agents, hands out the mission, starts, watches and ends it.
 #include <spdlog/spdlog.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a coordinator comes by a mission that is already flying, and gives it up to another.
 #include <algorithm>
 #include <chrono>

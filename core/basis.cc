@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sums over modes are products of two short tables of cosines, which recurrences fill, one for
+// each axis.
 #include "core/basis.h"
 
 #include <algorithm>

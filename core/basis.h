@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The cosine basis (2) on a rectangle, its gradient, and the weights that compare coefficients.
 //
 // Equation numbers are those of Lee & Martinez, "Breaking Symmetry-Induced Degeneracy in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an agent tells of its coverage: the one message that the method itself is about.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Weights the residual once for each coverage, then evaluates field, direction, contraction and
+// perturbation at the position.
 #include "core/control.h"
 
 #include <cmath>

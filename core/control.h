@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The control step: the one place that computes an agent's input.
 #pragma once
 

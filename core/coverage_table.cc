@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rows of blocks in one array: a block with more steps replaces one with fewer, and c_k adds the
+// rows in ascending order.
 #include "core/coverage_table.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an agent holds of everybody's coverage: a state-based CRDT of cumulative sums.
 //
 // One row per (agent, incarnation), each in blocks with their own step counts. A block with more

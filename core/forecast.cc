@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Extrapolates each teammate's row by its last rate or by its reported places, and adds the rows
+// from both ends of the team.
 #include "core/forecast.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The team's coverage as one agent foresees it: what its law answers to, beside what is known.
 //
 //   ĉ_i = [Σ_j S_j + Σ_{j≠i} w_j r_j] / [Σ_j T_j + Σ_{j≠i} w_j]

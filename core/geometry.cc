@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Folds a coordinate back into its side, so that an edge reflects any number of crossings at
+// once.
 #include "core/geometry.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The domain: a rectangle with its own origin, whose edges reflect.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps all agents on one shared coverage, with the additions in the order that a coverage table
+// has.
 #include "core/ideal_team.h"
 
 #include <algorithm>

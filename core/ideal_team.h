@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The method without messages: every agent knows everything at once, as in the paper's equations.
 //
 // What a distributed team in lockstep does that tells or knows everything each tick, bit for bit

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Prints an identity as sixteen hexadecimal digits.
 #include "core/ids.h"
 
 #include <cstdio>

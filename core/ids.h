@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who is who, and when: identities, limits and the clock that cannot be asked for the time.
 #pragma once
 

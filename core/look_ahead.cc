@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Derives the spread of the target from its coefficients, and from it the horizon and each
+// teammate's weight.
 #include "core/look_ahead.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How far ahead an agent looks: what the weights of core/forecast.h follow from.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moves a vehicle by one step, and says when an agent broadcasts and where it starts.
 #include "core/mission.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The mission plan as every process holds it once it is validated: nothing here needs checking.
 #pragma once
 

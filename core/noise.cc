@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs Philox on (seed, purpose, who, step) as a counter, and turns its bits into uniform or
+// normal pairs.
 #include "core/noise.h"
 
 #include <Random123/philox.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random numbers as a function of (seed, purpose, who, step): no generator state anywhere, so runs
 // repeat bit for bit, in any order and after any restart.
 #pragma once

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Diagonalises the curvature of the field in closed form and scales a push along each principal
+// direction.
 #include "core/perturbation.h"
 
 #include <algorithm>

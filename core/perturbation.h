@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The perturbation σ dW of (9) and (10): how strong, in which direction, and for how long.
 //
 // Where the agents must choose between two sides, the field does not tell them which: on a corner B

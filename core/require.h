@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Our own mistakes stop the program; what a user or the network gave us never comes here.
 #pragma once
 

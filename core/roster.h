@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who takes part, and whose coverage counts, from which tick on.
 #pragma once
 

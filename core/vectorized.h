@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A second copy of a function for processors with AVX2; the program chooses when it starts.
 //
 // Both copies give the same bits: the loops meant here have independent lanes or sums in a fixed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A process's own clock, as wrong as the laboratory wants it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A stream of random numbers that follows from a seed and a name alone.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One table names every field; a seed draws the strengths of the faults and the times of the
+// incidents.
 #include "lab/faults.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the laboratory does to a mission, and the schedule of it that a seed draws.
 #pragma once
 

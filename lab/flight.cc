@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Jumps to the earliest event, delivers what is due, and advances every process that heard
+// something or wakes up.
 #include "lab/flight.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The inside of a trial: who sits where, what time it is, what is wrong with whom. Its functions are
 // in flight.cc (time and messages), flight_faults.cc (what is done to processes and links) and
 // trial.cc (who is still there, and what came of it).

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Crashes, freezes and cuts off simulated processes by the schedule, but never destroys all
+// copies of one fact.
 #include <algorithm>
 
 #include "team/silence.h"

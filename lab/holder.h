@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What one agent knows, as seen from outside, and how a violation speaks of it.
 #pragma once
 

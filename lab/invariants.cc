@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is said and done: messages, refusals, ends.
 #include "lab/invariants.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What must hold in every mission, whatever happens to its messages and processes.
 //
 // Safety holds always; liveness within a bounded time after everything has been healed. Nothing

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is known: what agents hold, compute from it and learn from each other.
 #include <algorithm>
 #include <cmath>

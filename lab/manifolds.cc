@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Finds the symmetry lines of the domain through a point, and measures the distance from them.
 #include "lab/manifolds.h"
 
 #include <algorithm>

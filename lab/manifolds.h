@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The sets of Proposition 1 that symmetric targets make invariant, and how far off them one is.
 #pragma once
 

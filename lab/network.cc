@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws the fate of each copy of a message from the seed, the link and the number of the
+// message.
 #include "lab/network.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Three buses on which things go wrong: an event queue ordered by (time, insertion).
 //
 // What happens to a message on a link follows from the seed, the link and how many messages the

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Computes ĉ a second time from received messages alone, and shares no code of the look-ahead
+// with core/.
 #include "lab/shadow.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What one agent has to foresee: ĉ of core/forecast.h again, by its equation, from what reached it.
 //
 // A shadow keeps the blocks and the places that its agent heard. It uses nothing of the forecast,

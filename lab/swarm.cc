@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Delivers every message in flight before time passes, then jumps to the earliest wake-up of a
+// process.
 #include "lab/swarm.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The whole swarm in one process: the same cores and the same codec as over LCM, in virtual time.
 //
 // Messages travel as bytes and arrive in the order they were sent; a filter may drop them. When

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the team's views after the healing, and decides which failures the faults excuse.
 #include "lab/trial.h"
 
 #include <algorithm>

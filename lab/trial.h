@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One mission under faults: the real cores and the real codec, each process with a clock of its
 // own, in virtual time. Everything follows from the plan, the faults and one seed.
 //

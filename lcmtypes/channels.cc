@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Makes all channel names once, by message type and agent, so that publishing builds no string.
 #include "lcmtypes/channels.h"
 
 #include <array>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks sizes, counts and the tag on raw bytes, and only then calls the generated decoder of
+// the type.
 #include "lcmtypes/codec.h"
 
 #include <algorithm>

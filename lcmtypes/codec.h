@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Plain messages to checked bytes and back: the only place that knows the wire.
 //
 // Bytes are believed in this order: size, type, tag (a hash over everything), run, signature, then

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every message field by field, in the order of its .lcm file: the one statement of what it is on
 // the wire. Writing, reading, the sizes of messages and what cannot be true all follow from it.
 //

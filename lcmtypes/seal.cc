@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hashes a message with its tag and signature masked by zeros, and remembers which signatures
+// were valid.
 #include "lcmtypes/seal.h"
 
 #include <sodium.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What makes a datagram believable: a tag over all its bytes and, on what begins, rules and ends a
 // mission, a signature. Both stand at fixed places and are checked before anything is decoded.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Texts on the wire, which end up in logs and on terminals.
 #include "lcmtypes/wire.h"
 

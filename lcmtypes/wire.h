@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // LCM's encoding: big-endian numbers, strings with their length and a final NUL, arrays whose
 // lengths stand before them. A Writer puts fields behind each other; a Reader takes them in turn
 // from bytes that may be anything.

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A stream buffer gathers lines and writes only whole ones; after a failure it cuts the file at
+// the last whole line.
 #include "logger/line_file.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A text file that holds whole lines, whatever happens to the disk.
 #pragma once
 

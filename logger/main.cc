@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ergocast-logger: the run record as a process. Watches all three buses, never takes part.
 #include <spdlog/spdlog.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where tables go that nobody keeps.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Holds states until a tick and its successor are complete, then writes the row and acknowledges
+// the tick.
 #include "logger/recorder.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The run record: trajectory.csv and metrics.csv from what the world says, as an outside observer.
 //
 // Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that

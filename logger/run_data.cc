@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads the tables row by row, stops a segment at its first damaged row, and samples the
+// coverage again.
 #include "logger/run_data.h"
 
 #include <algorithm>

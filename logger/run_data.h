@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a run directory says, read back: the two tables, and the coverage they amount to.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Opens the files of a new segment exclusively, and counts segments by their file names.
 #include "logger/run_record.h"
 
 #include <cerrno>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The files of a run directory that grow during the run. Whoever goes on with a record begins files
 // of its own, so that a line which a killed process left unfinished stays the last of its file.
 #pragma once

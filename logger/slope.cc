@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fits a line to log φ² over log t, with weights that make equal parts of the logarithmic axis
+// count equally.
 #include "logger/slope.h"
 
 #include <cmath>

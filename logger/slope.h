@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How fast φ² falls: the power of t that fits its last decade.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Collects what the recorder, the plan and the process know into one JSON object with a fixed
+// order of keys.
 #include "logger/summary.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // summary.json: what a run was and how it ended, for people and programs.
 #pragma once
 

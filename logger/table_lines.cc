@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Opens one segment after the other, checks its header, and hands out its lines.
 #include "logger/table_lines.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A recorded table read line by line, all its segments in order as one.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sourced by ./run, ./test and others (bash): installs what is missing of the packages in the lists
 # $packages of this folder (default packages.txt), and builds $target, if any, of build/release.
 #   ERGOCAST_NO_INSTALL=1   never install anything

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chooses round steps or powers of ten for the marks, and draws grid, labels and titles around a
+// box.
 #include "report/axes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A plot's coordinate system: which values fall where, and the ticks and labels that say so.
 #pragma once
 

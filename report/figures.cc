@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Calls the function of each figure in the order of the page, and gives each agent its colour.
 #include "report/figures.h"
 
 #include <array>

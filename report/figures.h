@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The six figures of a report. Each is a complete SVG document; an empty run gives empty plots.
 #pragma once
 

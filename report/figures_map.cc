@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The figures that are maps: of the domain, and of the modes.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The pieces of HTML that a report is made of. Content is HTML: escape() is the caller's duty.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Formats numbers with few digits, narrow spaces and real minus signs, and escapes the
+// characters of XML.
 #include "report/markup.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Text for people: numbers with few digits and SI prefixes, and what XML needs escaped.
 #pragma once
 

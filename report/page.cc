@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Puts the sections together from summary, record and figures; a value that is missing leaves no
+// empty line.
 #include "report/page.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // report.html: one page that needs nothing but itself.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How report.html looks: on a light or a dark screen, narrow or wide, and on paper.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Simplifies by Douglas and Peucker's rule, keeps the extremes of each pixel column, and writes
+// short path data.
 #include "report/polyline.h"
 
 #include <algorithm>

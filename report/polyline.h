@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Curves with far more points than pixels, made small without changing the picture.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes PNG by hand with stored blocks, because small pictures are not worth compressing.
 #include "report/raster.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fields of numbers as small pictures: colour scales and a PNG in a data URI.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads record, summary and target, draws the figures, and writes them and the page.
 #include "report/report.h"
 
 #include "report/figures.h"

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Takes intervals of medians from order statistics, and intervals of ratios from a bootstrap
+// with fixed seeds.
 #include "report/statistics.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What many seeds say: medians, ratios, and how sure one can be of them.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Appends each element as text, with coordinates of one decimal that are cut where they are far
+// outside.
 #include "report/svg.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A drawing, element by element. Whatever enters is made safe here: text is escaped, and a
 // coordinate that is no number never gets into the file.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stores the density as a CSV table with the functions that read target maps.
 #include "report/target_density.h"
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The target as a picture in the run directory, so that a report needs neither scenario nor maps.
 #pragma once
 

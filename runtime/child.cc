@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Forks and executes a program with its output in a log file, and ties its life to that of its
+// parent.
 #include "runtime/child.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A process that this one starts, watches and ends.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Assembles a classic BPF program that compares magic, channel name, length and sequence number.
 #include "runtime/datagram_filter.h"
 
 #include <linux/filter.h>

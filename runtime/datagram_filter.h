@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What LCM must not see: it keeps every channel name it ever met, and a crafted header of a
 // fragmented message ("LC03", as none of ours is) makes it write outside its memory.
 #pragma once

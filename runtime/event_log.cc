@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Starts a new segment at a size limit, removes the oldest beyond the total, and cuts a torn
+// event off.
 #include "runtime/event_log.h"
 
 #include <cerrno>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Messages as they came, in LCM's log format: lcm-logplayer replays them, lcm-logplayer-gui shows them.
 #pragma once
 

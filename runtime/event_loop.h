@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The life of every process: deliver what arrives, let the core act, publish what it says.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the routed interface with the joined one, and moves the membership of LCM's sockets
+// when they differ.
 #include "runtime/group_membership.h"
 
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A socket's membership in LCM's group belongs to one network interface and ends with it: after an
 // adapter was unplugged, or a container disconnected from its network, LCM stays deaf on the next
 // one. It has no call for that, so its sockets are dealt with here.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks owner and permissions on the open file, then reads one `name hex` pair a line.
 #include "runtime/key_file.h"
 
 #include <fcntl.h>

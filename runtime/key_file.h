@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mission keys as files that only their owner may read.
 //
 //   ergocast key 1

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parses the URL strictly, derives the ports of three buses, and reserves free ports with an
+// abstract socket.
 #include "runtime/lcm_url.h"
 
 #include <arpa/inet.h>

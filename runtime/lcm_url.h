@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one base URL from which a run's three buses follow.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Formats log lines for a terminal or for the journal, and disarms characters that could steer a
+// terminal.
 #include "runtime/logging.h"
 
 #include <spdlog/pattern_formatter.h>

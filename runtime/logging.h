@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where a process's log lines go, and how they look.
 #pragma once
 

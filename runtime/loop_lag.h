@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How late or deaf an event loop was: what a machine that is too slow, or a process that stood
 // still, looks like from inside.
 #pragma once

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Asks the kernel over netlink for the route to the group and reads the interface from its
+// answer.
 #include "runtime/multicast_route.h"
 
 #include <linux/rtnetlink.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Over which network interface the kernel sends to a multicast group.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Declares the options that all programs share, and words what a mistyped argument may have
+// meant.
 #include "runtime/node.h"
 
 #include <lcm/lcm.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the command lines of all processes have in common.
 #pragma once
 
@@ -60,7 +61,7 @@ std::string version_text();
 std::string build_text();
 /// Whether this processor multiplies and adds in one rounding: glibc's sin and cos depend on it.
 bool cpu_has_fma();
-/// "0.1.0": what has to be equal in a team.
+/// "0.2.0": what has to be equal in a team.
 std::string version();
 
 /// 64 random bits of the operating system's, not 0.

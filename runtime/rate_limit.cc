@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Derives the budget of a message rate from the mission, and refills it by seconds and by ticks
+// of the world.
 #include "runtime/rate_limit.h"
 
 #include <algorithm>

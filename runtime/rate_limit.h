@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How much one agent may say, so that one that babbles does not drown the others.
 #pragma once
 

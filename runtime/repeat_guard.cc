@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Counts repeats in short windows and lists the newest sequence of each repeated incarnation
+// while a flood lasts.
 #include "runtime/repeat_guard.h"
 
 namespace ergocast {

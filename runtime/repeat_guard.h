@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tells when a bus is flooded with what has been said before, and what the kernel has to know to
 // keep most of it from us.
 //

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Looks in the places that an installation has, and in those of the source tree, relative to the
+// running program.
 #include "runtime/shipped_folder.h"
 
 namespace ergocast {

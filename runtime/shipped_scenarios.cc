@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A CLI11 validator replaces the bare name of a shipped scenario by its path.
 #include "runtime/shipped_scenarios.h"
 
 #include <filesystem>

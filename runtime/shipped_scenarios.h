@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scenarios that are installed with the programs, or lie in their source tree.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Blocks SIGINT and SIGTERM and reads them from a signalfd.
 #include "runtime/signals.h"
 
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Requests to end, as something to wait for instead of something that interrupts.
 #pragma once
 

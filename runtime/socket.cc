@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Wraps a descriptor, and finds the descriptors of this process that are bound to given ports.
 #include "runtime/socket.h"
 
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A socket that closes itself, and where it may send to.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the counters of the transport with those of the last look, and logs what grew, each
+// kind rarely.
 #include "runtime/traffic_watch.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Says what was refused or lost on the way in, without letting a flood fill the log, and keeps the
 // process listening when its network interface is exchanged.
 #pragma once

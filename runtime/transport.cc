@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One LCM instance for each bus: installs filters, decodes datagrams without throwing, and waits
+// with one poll.
 #include "runtime/transport.h"
 
 #include <linux/sock_diag.h>

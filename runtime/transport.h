@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The three LCM buses as one process uses them: checked messages in, messages out.
 #pragma once
 

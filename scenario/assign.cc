@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Follows a path through Protobuf's reflection, and has the text parser read the value.
 #include "scenario/assign.h"
 
 #include <google/protobuf/io/tokenizer.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Setting one field of a scenario by its path.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares values with their ranges, and stays silent about a field that already has a problem.
 #include "scenario/checks.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What rules say of a scenario's fields, each mistake once.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads the maps row by row, adds up all parts of the target, and checks what lies inside the
+// domain.
 #include "scenario/compile_target.h"
 
 #include <cmath>

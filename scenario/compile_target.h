@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From a target as it is written to the numbers that the agents get.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copies each Protobuf block into the plain type of the same meaning.
 #include "scenario/convert.h"
 
 #include <cmath>

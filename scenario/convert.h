@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From Protobuf's blocks to the cores' plain types. Defaults are filled in; nothing is checked.
 #pragma once
 

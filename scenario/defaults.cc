@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Puts the options over the text, fills what is left open, first what depends on other fields,
+// and draws the random starts.
 #include "scenario/defaults.h"
 
 #include <algorithm>

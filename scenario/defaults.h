@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a scenario file leaves open: the command line's words, the defaults, the random starts.
 #pragma once
 

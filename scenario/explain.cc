@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recognises the parser's sentences by their beginnings, and suggests the nearest field or value
+// name.
 #include "scenario/explain.h"
 
 #include <google/protobuf/descriptor.h>

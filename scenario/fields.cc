@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table has one row for each number, found by the full name of the field.
 #include "scenario/fields.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One table of every number in a scenario: its default and its limits, as scenario.proto's comments
 // state them. What depends on more than one field is in validate.cc.
 #pragma once

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Resolves a path through the parser's locations to a line and column, and sorts the problems by
+// place.
 #include "scenario/findings.h"
 
 #include <algorithm>

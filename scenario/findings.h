@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is wrong with a scenario, and which line of the file is to blame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Names of scenarios: they become names of folders.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Declares one option for each override; only lockstep and real time exclude each other.
 #include "scenario/override_options.h"
 
 #include <string>

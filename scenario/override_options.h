@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The command-line options that say something over a scenario file.
 #pragma once
 

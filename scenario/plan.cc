@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Serialises the plan deterministically with the version first, and refuses the plan of another
+// version by that field.
 #include "scenario/plan.h"
 
 #include <google/protobuf/io/coded_stream.h>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tests every pair of edges in extended precision, then whether each hole lies inside the
+// outline.
 #include "scenario/polygon_flaw.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Splits the text into tokens and finds the field around an error by its name, brackets and
+// separators.
 #include "scenario/salvage.h"
 
 #include <algorithm>

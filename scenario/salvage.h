@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reading on after a syntax error: Protobuf's parser stops at the first one, but a person wants to
 // hear of all. The field that holds the error is cut out of the text, and the rest is read again.
 #pragma once

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chains the steps text, defaults, validation, target and plan, and stops at the first step that
+// finds problems.
 #include "text/regular_file.h"
 #include "scenario/scenario.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a person writes (scenario.proto, text format) and what the team gets (the compiled plan).
 // The only place that knows Protobuf; this header does not show it.
 #pragma once

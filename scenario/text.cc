@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parses until no error is left or none can be cut out, and prints numbers in the fewest digits.
 #include "scenario/text.h"
 
 #include <google/protobuf/io/tokenizer.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Protobuf's text format, read with useful complaints and printed to be read.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Decides the length of each character by its leading byte and checks the bytes that follow.
 #include "scenario/utf8.h"
 
 namespace ergocast {

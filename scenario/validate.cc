@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One function for each block checks what the table of fields cannot: rules between fields.
 #include "scenario/validate.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks Gaussians, regions, keep-outs and maps one by one, each under its own path.
 #include "scenario/validate_target.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether the parts of a target are what scenario.proto says they must be.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the speed limit with the noise of the law, and the step with the size of the domain.
 #include "scenario/warnings.h"
 
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a scenario may do, but will hardly want.
 #pragma once
 

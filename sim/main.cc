@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ergocast-sim: the simulated world as a process. On robots, their driver takes its place.
 #include <spdlog/spdlog.h>
 

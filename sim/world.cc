@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Collects the commands of a tick, moves the vehicles, publishes the next state, and repeats it
+// until it is answered.
 #include "sim/world.h"
 
 #include <algorithm>

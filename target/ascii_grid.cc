@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads the header as key and value words, then streams the cells row by row.
 #include "target/ascii_grid.h"
 
 #include <algorithm>

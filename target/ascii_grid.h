@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ESRI ASCII grid: a few "key value" lines, then the cells from the north-west, row by row.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Turns the integral over a polygon into sums over its edges, with a series where a divisor
+// vanishes.
 #include "target/cosine_integrals.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ∫ cos(mπx/Lx) cos(nπy/Ly) in closed form: over intervals, and over polygons by Green's theorem.
 //
 // Differences of sines, which cancel over short lengths, are written as products with

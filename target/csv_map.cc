@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scans the file once for its shape without storing a line, then reads it again row by row.
 #include "target/csv_map.h"
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A table of numbers separated by commas: a line is a row of cells.
 #pragma once
 

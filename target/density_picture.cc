@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Distributes each part of the density over the cells of a grid by the area that they share.
 #include "target/density_picture.h"
 
 #include <algorithm>

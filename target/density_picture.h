@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The target density for people to look at: averages over the cells of a grid of the domain.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A separable Gaussian takes one integral for each axis; a correlated or cut one takes rules in
+// two dimensions.
 #include "target/gaussian_integrals.h"
 
 #include <algorithm>

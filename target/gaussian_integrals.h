@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ∫ f_mn of one Gaussian, over the domain or what is left of it.
 #pragma once
 

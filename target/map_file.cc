@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chooses the reader by the end of the file's name, and checks size and dimensions first.
 #include "target/map_file.h"
 
 #include <algorithm>

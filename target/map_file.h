@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Target maps as people have them: PNG pictures, tables of numbers, ESRI ASCII grids.
 //
 // A map is read row by row, so that one of 8192 × 8192 cells needs the memory of a row.

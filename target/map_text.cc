@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads a file word by word, keeps the beginning of long words, and checks each number for a
+// density.
 #include "target/map_text.h"
 
 #include <cmath>

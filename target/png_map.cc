@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads one row after the other with libpng, and refuses pictures whose rows are no plain greys.
 #include "target/png_map.h"
 
 #include <png.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A grey PNG: a pixel is a cell.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Computes areas by the shoelace formula and membership by counting crossings.
 #include "target/polygon.h"
 
 #include <cmath>

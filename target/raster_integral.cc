@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Adds the integrals of whole cells by columns, and cuts only cells that a slanted side passes
+// through.
 #include "target/raster_integral.h"
 
 #include <algorithm>

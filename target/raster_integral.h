@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ∫ f_mn over the domain of a density that is constant in each cell of a raster.
 #pragma once
 

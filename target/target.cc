@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Adds the integrals of all parts, and divides by their mass.
 #include "target/target.h"
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The target density ρ and its coefficients μ_k, (3) and (7).
 #pragma once
 

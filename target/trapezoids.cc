@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sweeps over the levels between corners and crossings, and walks along each level from left to
+// right.
 #include "target/trapezoids.h"
 
 #include <algorithm>

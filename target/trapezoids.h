@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The part of the domain that is inside one polygon and outside others, cut into trapezoids.
 //
 // Horizontals through every corner and every crossing of edges leave slabs in which no two edges

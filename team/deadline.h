@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // When something is due that recurs in wall time and in mission time: a lockstep run passes
 // thousands of mission seconds in a wall second, a real-time run the other way round.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tells what is said for the first time from what is only said again.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names the values of the enumerations in logs and records.
 #include "team/messages.h"
 
 namespace ergocast {

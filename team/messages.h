@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Everything the processes say to each other, as plain values. How they look on the wire is known
 // to lcmtypes/ alone.
 #pragma once

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Collects the parts of a few revisions side by side, and commits a revision once all its parts
+// agree.
 #include "team/mission_follower.h"
 
 #include <algorithm>

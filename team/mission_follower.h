@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Puts the numbered parts of MISSION together: what every process but the coordinator knows of the
 // roster and of the mission's state.
 #pragma once

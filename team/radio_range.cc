@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the distance of two vehicles in the newest world state with the range.
 #include "team/radio_range.h"
 
 namespace ergocast {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who hears whom in a simulated world whose radios reach only so far.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // When whoever hears nothing may take it that the mission is over: who is cut off while it ends
 // does not hear of the end, and those who know of it are gone.
 #pragma once

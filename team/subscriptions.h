@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who hears what: the one table that processes and the laboratory go by.
 #pragma once
 

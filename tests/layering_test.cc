@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reads every #include of the tree and holds it against the one table of who may know whom.
 #include <gtest/gtest.h>
 

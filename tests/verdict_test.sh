@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # ./test, with its own tests in the place of ours, ends as they do, and not well when it skips what it
 # should not.
 #   verdict_test.sh SOURCE_DIR

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Computes edit distances, and accepts the nearest name if few letters differ.
 #include "text/likeness.h"
 
 #include <algorithm>

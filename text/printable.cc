@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copies well-formed characters and writes all other bytes as hexadecimal escapes.
 #include "text/printable.h"
 
 #include <algorithm>

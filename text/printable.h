@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Text of files and strangers as a terminal may have it.
 #pragma once
 

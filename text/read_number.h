@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers in texts that somebody else wrote.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Asks the file system for the type of the file without opening it.
 #include "text/regular_file.h"
 
 namespace ergocast {

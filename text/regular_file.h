@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether a file that a person names can be read to its end.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Publishes where the robots are at each tick, passes commands on to them, and stops robots that
+// get none.
 #include "examples/driver/driver.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A driver in the place of the simulated world: it says where the robots are, and has them do what
 // the agents command. Copy this folder and replace robot.h; the rest may stay.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ergocast-example-driver: robots instead of the simulated world.
 #include <spdlog/spdlog.h>
 

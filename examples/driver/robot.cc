@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Turns towards the commanded velocity at a limited rate and drives along the heading.
 #include "examples/driver/robot.h"
 
 #include <algorithm>

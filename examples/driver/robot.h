@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A small wheeled robot that exists only as numbers. Replace this file by your vehicle's interface:
 // a position to read, a velocity to ask for.
 #pragma once

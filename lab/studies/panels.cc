@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Places plots and one key on a drawing whose height follows from the key.
 #include "lab/studies/panels.h"
 
 #include <stdexcept>

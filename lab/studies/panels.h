@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A figure of one or more plots side by side, with one key for all.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws each series as curves, bands or estimates, with a colour for each value of the main
+// field.
 #include "lab/studies/study_figures.h"
 
 #include <algorithm>

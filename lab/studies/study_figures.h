@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The figures of a study.
 //
 // One varied field is told apart within a figure: the one with the most values. What remains, the

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Notes φ² at fixed times, escapes at the first tick far enough away, and motion as running
+// sums.
 #include "lab/studies/study_measure.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Gathers the numbers of study_run.h tick by tick.
 #pragma once
 

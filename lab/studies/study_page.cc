@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tables of columns say what a study shows; page and terminal print the columns for which there
+// are values.
 #include "lab/studies/study_page.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A study as a page and as lines on a terminal.
 #pragma once
 

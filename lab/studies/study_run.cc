@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Flies the mission with an ideal team where that gives the same numbers, and with messages
+// elsewhere.
 #include "lab/studies/study_run.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What one mission was like, in numbers.
 //
 // The mission's ticks are n = 0 … tick_count − 1, at t = n·dt; φ² at tick n counts the samples of

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The field with the most values becomes the main one; every combination of the others makes one
+// series.
 #include "lab/studies/study_series.h"
 
 #include <algorithm>

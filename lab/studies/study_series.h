@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How the points of a study are laid out for its figures.
 #pragma once
 

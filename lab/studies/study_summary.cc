@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reduces the runs of each point to medians and means, and to ratios with the first point over
+// common seeds.
 #include "lab/studies/study_summary.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the runs of one point of a study say together.
 #pragma once
 

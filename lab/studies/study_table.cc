@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One table of quantities yields the header, writes each row and reads it back.
 #include "lab/studies/study_table.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A study's rows as lines of a CSV file: one row a run.
 #pragma once
 

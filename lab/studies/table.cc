@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads CSV files into columns by the names in their headers.
 #include "lab/studies/table.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The CSV files that tables and figures are made of: numbers by column.
 #pragma once
 

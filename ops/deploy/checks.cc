@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the roles of all hosts with the mission, and lists the processes that each host
+// starts.
 #include <algorithm>
 
 #include "ops/deploy/deploy.h"

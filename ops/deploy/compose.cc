@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes one Compose file for each host, with every string quoted for YAML and for Compose.
 #include <cstdio>
 
 #include "ops/deploy/deploy.h"

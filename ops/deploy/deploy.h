@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which computer does what in a mission on several of them, and the texts that make them do it.
 // Nothing here opens a file or starts a process; names and paths are not trusted.
 #pragma once

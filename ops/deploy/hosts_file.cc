@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Splits each line into words with their columns and reports every word that is no host, address
+// or role.
 #include <algorithm>
 #include <map>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the shell scripts of `ergocast deploy` have in common.
 #pragma once
 

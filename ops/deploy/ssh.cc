@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A fixed bash script starts, watches and ends processes over ssh; only its tables of hosts and
+// commands vary.
 #include "ops/deploy/deploy.h"
 #include "ops/deploy/script.h"
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A fixed bash script writes settings and drives the installed services over ssh; only its table
+// of hosts varies.
 #include "ops/deploy/deploy.h"
 #include "ops/deploy/script.h"
 

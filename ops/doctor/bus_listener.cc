@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Opens LCM datagrams by hand, sorts them by run, and words what the runs and strangers on the
+// bus mean.
 #include "ops/doctor/bus_listener.h"
 
 #include <poll.h>

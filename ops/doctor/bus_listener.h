@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Is a run on the swarm bus? Only listens: nothing that it does reaches a team.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs a command through the shell, with the folders of system programs on its path, and returns
+// what it prints.
 #include "ops/doctor/command_output.h"
 
 #include <cstdio>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs each check and hands on what later checks need: the route, the failure of LCM, a free
+// port.
 #include "ops/doctor/examination.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All checks of this host, in order. Changes nothing on it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Orders levels, joins words and formats numbers for the sentences of all checks.
 #include "ops/doctor/finding.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What one check of the machine says, and how bad it is.
 #pragma once
 

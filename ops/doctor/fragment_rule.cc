@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads nft's rules as JSON and follows the input chains in order until a rule drops the
+// fragments.
 #include "ops/doctor/fragment_rule.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether the kernel drops LCM's fragments before they reach anybody at our ports.
 #pragma once
 

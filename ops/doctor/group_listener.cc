@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Binds a non-blocking socket to the group's address, which other sockets may share, and joins
+// the group.
 #include "ops/doctor/group_listener.h"
 
 #include <cerrno>

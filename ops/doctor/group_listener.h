@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A socket that listens to a group beside LCM's.
 #pragma once
 

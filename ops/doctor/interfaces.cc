@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Asks the kernel for addresses, flags and MTU of each interface, and for the route to a group.
 #include "ops/doctor/interfaces.h"
 
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // This host's network interfaces, and which of them the kernel would send to a group over.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads settings below /proc and /sys, compares each with what our datagrams need, and words the
+// commands.
 #include "ops/doctor/kernel_limits.h"
 
 #include <algorithm>

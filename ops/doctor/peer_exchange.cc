@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sends a probe in each period and spends the rest of the period reading the probes of others.
 #include "ops/doctor/peer_exchange.h"
 
 #include <arpa/inet.h>

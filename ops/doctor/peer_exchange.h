@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sends probes, listens for others', and says who hears whom.
 #pragma once
 

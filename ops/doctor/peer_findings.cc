@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is said of the hosts that were heard, and of those that were not.
 #include <algorithm>
 

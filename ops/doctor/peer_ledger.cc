@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Counts the probes of each peer by sequence number, and echoes the counts so that both
+// directions are known.
 #include "ops/doctor/peer_ledger.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who was heard, how well, and by whom this host is heard. No socket and no clock.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Finds the inodes of the sockets at our ports, and then the processes whose descriptors name
+// them.
 #include "ops/doctor/ports.h"
 
 #include <algorithm>

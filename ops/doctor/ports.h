@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who has the three ports of a run open on this host.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sorts findings by level, wraps their text to the width of the terminal, and writes the same as
+// JSON.
 #include "ops/doctor/print.h"
 
 #include <algorithm>

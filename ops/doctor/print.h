@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Findings and peers for people and for programs.
 #pragma once
 

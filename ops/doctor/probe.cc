@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes fixed fields in big-endian order and accepts exactly the bytes that it could have
+// written.
 #include "ops/doctor/probe.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The datagram with which hosts try whether they hear each other.
 //
 // It is no LCM message: it goes to the port that the team will use, since a firewall may treat

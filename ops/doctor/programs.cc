@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Looks for files and on the path, asks the kernel about the clock, and reads the firewall's
+// default policy.
 #include "ops/doctor/programs.h"
 
 #include <sys/timex.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What else on this host matters: Java for lcm-spy, the clock, the firewall.
 #pragma once
 

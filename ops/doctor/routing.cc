@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares the interface that the route names with those that reach other hosts, and words the
+// `ip` commands.
 #include "ops/doctor/routing.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Does multicast leave over the interface that is meant?
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Splits each line of the table at blanks and skips lines that are not well formed.
 #include "ops/doctor/socket_table.h"
 
 #include <iterator>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kernel's table of UDP sockets, /proc/net/udp: which ports are taken, and by whom.
 #pragma once
 

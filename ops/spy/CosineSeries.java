@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 package ergocast.spy;
 
 /** A density from its coefficients: the sum of mu_k f_k / h_k^2 over the modes there are. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 package ergocast.spy;
 
 import java.awt.Dimension;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Turns what "PROGRAM [COMMAND] --help" prints (CLI11's form) into a manual page, or into a command's
 # sub-section of its program's page.
 #   -v program=NAME -v command=NAME or "" -v version=X

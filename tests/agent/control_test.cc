@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // When an agent samples, speaks and answers: the control step, in lockstep and in real time.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a team knows in the end whose members could not all hear each other, or died: everything,
 // once, in its authors' own words.
 #include <gtest/gtest.h>

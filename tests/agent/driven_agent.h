@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An agent driven by hand, and what its teammates would say.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an agent makes of looking ahead: what its command answers to, when its tick may be answered,
 // and that nothing foreseen is ever said. Which places it believes: reckoning_test.cc.
 #include <gtest/gtest.h>

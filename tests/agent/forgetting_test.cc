@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coverage that the roster forgets: from a named tick on it does not steer, but it is passed on.
 #include <gtest/gtest.h>
 

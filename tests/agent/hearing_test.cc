@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an agent believes of what it hears, and what its status says of it.
 #include <gtest/gtest.h>
 

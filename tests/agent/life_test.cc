@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How an agent joins, is replaced and ends.
 #include <gtest/gtest.h>
 

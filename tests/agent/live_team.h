@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several agents in one hand: what one says on the swarm bus, the others hear at once, if they can.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Agents as the mission's memory: they repeat it to a coordinator or a world that has just started,
 // tell the world where they were, and ask anew when the roster has lost them.
 #include <gtest/gtest.h>

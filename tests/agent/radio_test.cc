@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Agents whose radios reach only so far: what they do not hear, hear through others, and wait for.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an agent foresees from where its teammates are: their places since their last blocks count as if
 // said there, the next block replaces them, and nobody is told of them.
 #include <gtest/gtest.h>

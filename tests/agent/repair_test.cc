@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rules of repair: what a digest says, which gap is worth an answer, who gives it and when.
 // What teams make of these rules is in divided_team_test.cc.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One agent's control step beside its floor, and what it costs to take in the teammates' news.
 //
 // Every timed step stands directly after the merges of what teammates say in that tick, as in a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a flood of repeats costs a keyed team that flies in real time: somebody without the key
 // keeps what the team says and sends it again, word for word, so many times a second.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A copy of this process that does one thing and is gone with its handle, or with this process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A whole team as processes over LCM, beside a ping-pong of datagrams of the same number and size
 // between as many processes, without our codec and without mathematics: straight over UDP, which is the
 // floor, and over LCM.

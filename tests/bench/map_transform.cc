@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The transform of a map against its size, beside reading as many doubles from memory once: what no
 // way of adding up a map that is held as doubles could do without.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A bare world and bare agents exchange datagrams of the sizes that a real tick has, and repeat
+// lost ones.
 #include "tests/bench/ping_pong.h"
 
 #include <algorithm>

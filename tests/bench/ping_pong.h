@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The floor of lockstep, and beside it what LCM alone costs: processes that only pass the same messages around.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Implements the same three buses twice, over liblcm and over UDP system calls.
 #include "tests/bench/raw_buses.h"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The three buses without our transport, with bytes that mean nothing: over LCM, or straight over
 // UDP.
 #pragma once

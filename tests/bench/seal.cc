@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a mission key costs each message: closing and opening datagrams with and without one, beside
 // the hash alone over as many bytes.
 #include <benchmark/benchmark.h>

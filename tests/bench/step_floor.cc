@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Computes tables, sums and command in one pass over padded arrays, with AVX2 intrinsics and
+// without.
 #include "tests/bench/step_floor.h"
 
 #if defined(__x86_64__)

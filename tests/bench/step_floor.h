@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The control step as the leanest kernel we can write by hand: raw arrays, no blocks, no authors,
 // no checks, everything in one pass over the modes, with AVX2 and fused multiply-add where the
 // processor has them. What it costs is what the mathematics costs.

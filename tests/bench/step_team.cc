@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moves teammates along a path that never closes, and prepares the blocks that they would send.
 #include "tests/bench/step_team.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Agent 0 of a team, with what its teammates say at hand, for timing what it does with it.
 #pragma once
 

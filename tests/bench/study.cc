@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a study makes of a core: missions without messages, and the numbers noted of them.
 //
 // An iteration is one mission. Two threads stand for the two worker processes of a study, which

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A whole team in one process, messages as bytes: what the laboratory makes of one core.
 //
 // An iteration is one mission from the first hello to the last row of its record. The record is

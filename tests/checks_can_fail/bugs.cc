@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The bugs that the laboratory has to see. This file is linked in front of the real program,
 // ergocast-with-bugs, whose calls from one library into another it stands between (--wrap: the names
 // in WRAPPED lines are the linker's, and CMake reads them here). ERGOCAST_BUG chooses the bug;

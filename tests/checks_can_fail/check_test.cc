@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each finding of `ergocast check` against a scenario that has it: small edits to a good one, and every
 // field outside its limits, as the program's own table of fields has them.
 #include <google/protobuf/text_format.h>

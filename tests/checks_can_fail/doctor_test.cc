@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each finding of `ergocast doctor` on a host that has it: some thirty hosts on one network, each with
 // a fault of its own, are examined at once.
 #include <arpa/inet.h>

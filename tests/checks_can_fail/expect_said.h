@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The register's rule: whatever the sources can say has been said by the program, to a plant.
 #pragma once
 

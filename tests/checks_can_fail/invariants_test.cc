@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each invariant of the laboratory, and each goal, against a bug that breaks it: the real program
 // flies the same seeds with the bug (bugs.cc) and without.
 #include <iterator>

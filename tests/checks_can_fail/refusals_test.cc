@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each reason for which a message is refused: somebody says such a message to a team that flies, whose
 // agents count it by name, as `ergocast status` shows and their logs say.
 #include <lcm/lcm-cpp.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each thing that `ergocast verify` can say, by a record that has been falsified so.
 #include <functional>
 #include <sstream>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A small tokenizer of C++ collects the texts that a function puts together, and looks for them
+// in what was said.
 #include "tests/checks_can_fail/words.h"
 
 #include <algorithm>

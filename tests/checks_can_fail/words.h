@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the sources of a part of the program can say: read out of them, so that a check that somebody
 // adds is asked for its plant whether or not he knows of the register.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is left to wait must not jump: the rate behind it follows slowly, and comes to the truth.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table that people read: aligned, narrow, and with the worst on top.
 #include "cli/team_text.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What somebody who only listens knows of a team: who is well, who is not, and since when.
 #include "cli/team_view.h"
 

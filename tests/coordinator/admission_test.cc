@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whom the coordinator admits, under which number, and when the mission starts.
 #include <gtest/gtest.h>
 

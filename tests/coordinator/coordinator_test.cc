@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The coordinator under way, driven by hand: what it repeats, whom a time-out names, and that the end
 // reaches everybody.
 #include <gtest/gtest.h>

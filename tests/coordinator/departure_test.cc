@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Agents that leave, and coverage that is forgotten: what the roster says of those who are gone.
 #include <gtest/gtest.h>
 

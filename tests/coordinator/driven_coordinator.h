@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A coordinator driven by hand, and what agents and the world tell it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A coordinator that finds a mission already flying: it listens, takes over what the agents
 // remember, and never speaks against another.
 #include <gtest/gtest.h>

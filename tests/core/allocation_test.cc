@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The control step allocates nothing. Counted are all ways to the allocator that this program's own
 // code has: operator new, replaced here, and malloc and its kin, which the linker redirects here
 // (Eigen calls them directly).

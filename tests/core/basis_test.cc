@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The cosine basis (2): values against the cosines themselves, the gradient against differences of
 // the values, the weights against their definition, Parseval against a mean over the domain.
 #include "core/basis.h"

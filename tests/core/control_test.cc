@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The control step against the paper's formulas written out term by term, and B against the slope
 // of φ² itself.
 #include "core/control.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The coverage table as a CRDT: whatever is lost, repeated or reordered, who has heard the same
 // holds the same; and c_k, (4), from its blocks.
 #include "core/coverage_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // ĉ on random tables, against its formula evaluated again from all that was heard; and what it must
 // not depend on: the order in which things come, and what anybody only claims.
 #include "core/forecast.h"

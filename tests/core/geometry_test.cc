@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reflection at the edges: a point never ends outside, and one that is inside is not touched.
 #include "core/geometry.h"
 

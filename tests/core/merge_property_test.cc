@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The coverage table on random histories: many lives, lost, late, repeated and relayed blocks,
 // groups that merge in any order, authors that are forgotten. What was heard decides what is held.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Noise as a function: the generator against its published vectors, its numbers against the moments
 // and the distribution of a standard normal.
 //

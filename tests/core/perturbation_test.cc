@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The adaptive perturbation: between its floor and its ceiling, strong across the directions that
 // the field leaves open, and nowhere else.
 #include "core/perturbation.h"

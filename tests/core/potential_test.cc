@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The potential that a team with fresh rows descends, docs/law_theory.md:
 //   E(x) = Σ_i ⟨S − T_a μ, f(x_i)⟩_λ + w Σ_{i<j} G(x_i, x_j),   G(x, y) = ⟨f(x), f(y)⟩_λ
 // with T_a = T + (N − 1) w. Its slope in x_i is T_a B_i: not nearly, but exactly.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the scenario's speed limit leaves of a command.
 #include <gtest/gtest.h>
 

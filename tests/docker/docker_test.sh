@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The image and the compose files: a team of containers flies, survives what befalls containers, and
 # leaves a record that belongs to the person.
 #   docker_test.sh BUILD_DIR

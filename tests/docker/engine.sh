@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sourced by docker_test.sh after debian.sh (bash): a container engine of the test's own. Neither
 # this machine's network nor an engine that runs here is touched. Engine and containers are in the
 # test's process and mount namespaces, so they end with it.

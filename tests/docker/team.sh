@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sourced by docker_test.sh (bash): a person who uses the compose files, and what is expected of it.
 # shellcheck shell=bash disable=SC2154  # work and source are set before
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The example driver, driven by hand.
 #include "examples/driver/driver.h"
 

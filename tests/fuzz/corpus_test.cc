@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "runtime/node.h"
 #include "tests/fuzz/target.h"
 
 namespace ergocast::fuzz {
@@ -29,6 +30,16 @@ TEST(Corpus, EveryTargetHasOneAndEveryOneATarget) {
     kept.insert(folder.path().filename().string());
   }
   EXPECT_EQ(named, kept);
+}
+
+/// A plan of another version is refused at its first field, and nothing behind it is read.
+TEST(Corpus, PlansAreOfThisVersion) {
+  const std::string field = std::string{'\x0a', static_cast<char>(version().size())} + version();
+  for (const auto& file : fs::directory_iterator(kCorpora / "plan")) {
+    const auto content = content_of(file.path());
+    const std::string text(content.begin(), content.end());
+    EXPECT_EQ(text.substr(0, field.size()), field) << file.path() << "; fuzz-seeds writes it anew";
+  }
 }
 
 class CorpusOf : public ::testing::TestWithParam<const char*> {};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One datagram under some channel, as it came and with its tag made right: what is accepted says
 // the same when it is sent again, one message alone cannot break a table, and who has a key accepts
 // nothing.

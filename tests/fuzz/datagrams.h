@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Datagrams that lie: bytes changed where fields are, and the tag made right again.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A file of faults for the laboratory.
 #include "cli/fault_file.h"
 #include "tests/fuzz/files.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files that hold an input, for readers that want a path.
 #pragma once
 

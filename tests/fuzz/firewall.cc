@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What nft and iptables say.
 #include "ops/doctor/programs.h"
 #include "tests/fuzz/target.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What libFuzzer calls: the one target of this program.
 #include "tests/fuzz/target.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A hosts file: refused with problems, or hosts from which every kind of deployment is written.
 #include "ops/deploy/deploy.h"
 #include "tests/fuzz/target.h"

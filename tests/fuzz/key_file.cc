@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mission key's file: refused in a sentence, or a key that reads back from its own text.
 #include "runtime/key_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A bus's URL: what is accepted is spelled so that it reads back the same.
 #include "runtime/lcm_url.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One core that hears nothing but a stranger who knows its run: it does not break, holds nothing
 // that cannot be, and says nothing that would be refused.
 //

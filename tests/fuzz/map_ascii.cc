@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An ESRI ASCII grid.
 #include "target/ascii_grid.h"
 #include "tests/fuzz/map_target.h"

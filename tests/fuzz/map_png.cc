@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A PNG. Its chunks carry checksums, at which a changed file would always fail: they are made
 // right.
 #include <zlib.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the targets of all map formats do: read every row, and check the promises of
 // target/map_file.h.
 #pragma once

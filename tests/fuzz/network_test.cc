@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A team that flies in real time while somebody throws damaged datagrams at its buses: nobody dies,
 // nothing is accepted, and the mission is flown to its end.
 //

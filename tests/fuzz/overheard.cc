@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // LCM datagrams as `ergocast doctor` overhears them: "LC02", a number, a channel, a message.
 //
 // Input: a length of 2 bytes, high one first, then a datagram, and so on. Tags are made right.

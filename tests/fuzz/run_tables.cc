@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables of a run directory: trajectory.csv, and after a line "--" metrics.csv.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What `--set` puts over a scenario: a line "path=value" each.
 #include "scenario/scenario.h"
 #include "tests/fuzz/target.h"

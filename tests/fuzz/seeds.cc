@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Writes the binary inputs that the corpora began with: fuzz-seeds DIRECTORY
 // To be run again when a message or the plan has changed its format.
 #include <cstdio>

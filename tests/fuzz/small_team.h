@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A whole team in one process, two agents, that hears what a fuzzer says among its own messages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kernel's table of UDP sockets.
 #include "ops/doctor/socket_table.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lines of a study's table: what is read is written again as the same figures.
 #include "lab/studies/study_table.h"
 

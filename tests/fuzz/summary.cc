@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // summary.json as the report reads it back: whatever JSON it is, a page comes of it.
 #include "logger/summary.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A fuzz target: a function of bytes that has to come back, whatever they are.
 //
 // Each file of this folder that is named after a folder of corpus/ defines one, with

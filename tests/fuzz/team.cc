@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A team that flies, among whose messages a stranger's come: nobody in it breaks, and nobody says
 // what the others would not accept. The first byte of the input is Features.
 #include "tests/fuzz/small_team.h"

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts an input into turns by their lengths, and mutates whole turns as well as bytes within
+// them.
 #include "tests/fuzz/turns.h"
 
 #include <algorithm>

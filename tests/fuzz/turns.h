@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a stranger says, one datagram after the other: the input of the targets that have a state.
 //
 // First kPrefixBytes that the target reads. Then turns of 4 bytes and a datagram: how long to wait

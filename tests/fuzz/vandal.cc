@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps recent datagrams, changes one to four things in a copy, and sends the copy in LCM's
+// form.
 #include "tests/fuzz/vandal.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Somebody on the network of a team who keeps what it says and sends it back damaged.
 #pragma once
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # What "ergocast deploy --to ssh" prints flies a mission, with keys and without: three hosts on a bridge, and an ssh that goes
 # into the network namespace of the host it is given.
 #   deploy_ssh_test.sh BIN_DIR SCENARIO

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What `ergocast doctor` says of hosts on one network, and of what goes wrong there.
 #include <unistd.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fragments of LCM's with crafted headers, which crash a program inside liblcm.
 #include "runtime/socket.h"
 #include "tests/process/mission.h"

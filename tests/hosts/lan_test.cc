@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The network that the other tests stand on does what they ask of it.
 #include <arpa/inet.h>
 #include <poll.h>

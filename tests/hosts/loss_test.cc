@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A network that loses frames at random: lockstep makes up for every one of them, real time goes on
 // without.
 #include "tests/hosts/team_on_hosts.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hosts that do not hear each other for a while: in real time everybody goes on with what there is,
 // and afterwards the team agrees again.
 #include "tests/hosts/team_on_hosts.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hosts that are gone for good: what ran there goes on elsewhere.
 #include "tests/hosts/team_on_hosts.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Programs on several hosts, each with a network stack of its own, as people would start them
 // there.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A team on three hosts: everybody is found, and the mission is flown as on one.
 #include "tests/hosts/team_on_hosts.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A host whose multicast goes elsewhere, or nowhere: its agent is missed, by its number.
 #include "tests/hosts/team_on_hosts.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Teams that look ahead, in the laboratory: in lockstep nothing that happens to messages,
 // coordinator or world changes what is foreseen; in real time a dead teammate is not counted on for
 // ever.

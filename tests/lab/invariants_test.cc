@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every invariant can fail: states that violate it, and the same states without the violation.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the laboratory blames a mission for: what its faults can have caused is forgiven, and what they
 // cannot have caused is not; and a message that somebody does not subscribe to is missed.
 #include <gtest/gtest.h>

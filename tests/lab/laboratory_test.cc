@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Missions under faults: what a seed gives it gives again, every kind of fault happens, and without
 // any the laboratory flies the mission that lab/swarm.h flies.
 #include <gtest/gtest.h>

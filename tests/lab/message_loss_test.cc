@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lockstep waits for nothing that is not repeated: whatever kind of message is lost, the mission
 // ends, and its trajectory is the one without losses, bit for bit. Where agents reckon, it is the same
 // however seldom they broadcast, too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which message may come under which name.
 #include "lcmtypes/channels.h"
 

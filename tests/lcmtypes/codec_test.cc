@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Honest messages: every field survives, and the types that lcm-gen generates read the same from our
 // bytes, because lcm-spy and log players use them.
 #include "lcmtypes/codec.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coverage that the codec cannot judge and the table can: bytes in, no effect.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hostile bytes: whatever they are, the answer is a reason, never a message, a throw or a read past
 // the end (each datagram stands in an allocation of its exact size, for the address sanitizer).
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One message of every kind, every field with a value of its own, and their bytes.
 #pragma once
 

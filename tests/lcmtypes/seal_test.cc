@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a mission key promises: an outsider can at most repeat, word for word and on its own channel,
 // what a member has said; and a member cannot speak for the coordinator.
 #include "lcmtypes/seal.h"

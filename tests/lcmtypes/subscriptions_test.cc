@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who hears what, as team/subscriptions.h says it, on LCM's channels and in README.md.
 #include "team/subscriptions.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A recorder whose streams take nothing for a while, as on a full disk.
 #include "logger/nowhere.h"
 #include "tests/logger/record.h"

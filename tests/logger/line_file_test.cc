@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A table on a disk that takes no more, and then takes more again.
 #include "logger/line_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A recorder with the streams it writes to, and what it is told in tests.
 #pragma once
 

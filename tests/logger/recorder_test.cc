@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The run record: which rows, which numbers, what is acknowledged, and what a gap or an end does.
 #include "logger/recorder.h"
 

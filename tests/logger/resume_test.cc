@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A logger that was killed and goes on: nothing twice, nothing changed, and only what nobody can
 // repeat is missing.
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The summary is valid JSON for any bytes, and says of the mission's goal only what is known.
 #include "logger/summary.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sourced by the tests of the Debian package (bash): a bare Debian 12 of the test's own.
 #   SCRIPT BUILD_DIR
 # It lies in memory, in a mount namespace that ends with the test, and its processes in a process

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The package installs on a bare Debian 12, flies there, and leaves nothing when it is purged.
 # shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
@@ -40,6 +41,7 @@ check_files() {
       fail "ergocast(1) does not speak of $name"
   done
   expect_file usr/share/doc/ergocast/README.md
+  expect_file usr/share/doc/ergocast/copyright
   expect_file etc/ergocast/ergocast.env
   for name in agent@ coordinator logger sim; do
     expect_file "usr/lib/systemd/system/ergocast-$name.service"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The installed services under a systemd of the test's own (systemd-nspawn): they fly a mission, come
 # back after crashes, end in order, take a mission key, and are shut in.
 # shellcheck disable=SC2034

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Corollary 1: without noise, ‖x(t) − c‖ is bounded by a contraction towards a ball.
 //
 // Euler steps break the continuous inequality by O(k·dt); what holds at every step is its discrete

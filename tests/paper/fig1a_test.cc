@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fig. 1(a): the classical law (5) from the four corners is caught by the target's symmetry.
 //
 // In exact arithmetic nobody would move at all. Three of the four do, because sin(mπ) is not zero

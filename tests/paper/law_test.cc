@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The law that scenarios get by default, from the starts that hold the classical one
 // (lab/studies/law/*.textproto). Statements about probabilities hold but with probability 1e-9 over the
 // choice of seeds; docs/law.md has the figures of many more.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What docs/law_theory.md claims of the law that looks ahead, on teams that fly: the potential in
 // time, Proposition 1 for symmetric teams, and boundedness.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Proposition 1: under the classical law (5) corners, axes, midlines and diagonals are invariant.
 //
 // Its premises are more than the target's symmetry: on midlines and diagonals the team has to be

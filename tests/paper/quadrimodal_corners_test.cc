@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Our recommended law, ε relative to the residual, from the starts that hold the classical one.
 #include <gtest/gtest.h>
 

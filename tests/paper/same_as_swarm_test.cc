@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The distributed team is the paper's team: agents that only hear each other's messages take the
 // same steps, bit for bit, as agents that know everything.
 #include <gtest/gtest.h>

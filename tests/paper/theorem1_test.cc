@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Theorem 1: with noise, B·n is not 0 at any time after the start, almost surely.
 //
 // The theorem is about (9), without contraction, and about the set {B·n = 0}. The first test is about

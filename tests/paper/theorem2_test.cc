@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Theorem 2: under (10), E‖x − c‖² ≤ max{E‖x(0) − c‖², u_max²/k² + 2σ²/k} in two dimensions.
 //
 // It holds for the discrete recursion as long as k·dt ≤ 1. With q = 1 − k·dt,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The classical law on a uniform unit square, in the conventions of Mathew & Mezić, against numbers
 // published for another implementation: φ² at 200 s of 2.6e-5, 5.0e-6 and 1.3e-6 for 1, 4 and 16
 // agents, falling like t^−1.97, t^−1.92 and t^−2.07 over 10…200 s, one seed of random starts each.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One clear error, the documented exit code, and nothing written.
 
 #include "tests/process/programs.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Programs that people start one by one, without `ergocast run`.
 #include "tests/process/mission.h"
 #include "tests/process/witness.h"

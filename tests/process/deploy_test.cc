@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast deploy`, and the shipped scenarios that it and others know by name.
 #include "tests/process/programs.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast doctor` on this host: what it finds, and that it disturbs nobody.
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The example driver in the place of ergocast-sim, with everything else as it is.
 #include "tests/process/mission.h"
 #include "tests/process/record.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What happens when processes hang, are told to stop, or hear what nobody of theirs said.
 #include <lcm/lcm-cpp.hpp>
 

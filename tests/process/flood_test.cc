@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Floods on the buses of a team that goes on flying.
 #include <lcm/lcm-cpp.hpp>
 #include <map>

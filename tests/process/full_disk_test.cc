@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The disk of a run directory is full for a while: the team goes on, and later so does the record.
 #include <sys/mount.h>
 #include <sys/statvfs.h>

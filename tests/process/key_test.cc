@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A team with a mission key beside somebody who hears everything, repeats it and forges more.
 #include <sys/stat.h>
 

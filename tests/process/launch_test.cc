@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast run` on a machine that cannot start again at once what has died: the mission goes on.
 #include <sys/resource.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the programs log: how much, and how it looks in the journal.
 #include <sys/stat.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A test of processes that fails prints what they logged, and ends them.
 #include "tests/process/mission.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every test of this program runs on a host of its own.
 #include <gtest/gtest.h>
 

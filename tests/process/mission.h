@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mission of real processes that a test disturbs.
 //
 // Machines differ tenfold in speed, both ways, so no test may need a fast or a slow one: a mission

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The recorded trajectory of a mission of real processes, as a test asks it.
 #pragma once
 

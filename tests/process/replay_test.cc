@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A recorded mission is played again on one URL, as LCM's player does it: `ergocast status` sees it whole.
 #include "tests/process/mission.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Somebody on the network of a team who keeps its datagrams and sends them again, word for word.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // kill -9: nobody's death alone ends a mission, and what is started again goes on where it was.
 #include <lcm/lcm-cpp.hpp>
 

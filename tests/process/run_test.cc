@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The main job: a mission as real processes over real LCM.
 #include <algorithm>
 #include <sstream>

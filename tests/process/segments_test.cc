@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A record in several segments, as a logger leaves it that was killed and started again.
 #include "runtime/event_log.h"
 #include "tests/process/programs.h"

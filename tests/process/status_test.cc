@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast status` beside a mission that flies: what it sees, how it ends, and that it only
 // listens.
 #include <set>

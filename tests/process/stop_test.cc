@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast stop`: a mission of real processes is ended from outside, in order and at once.
 #include <algorithm>
 #include <set>

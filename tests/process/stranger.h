@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Somebody on the buses who says what a test wants him to.
 #pragma once
 

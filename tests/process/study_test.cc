@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast study`: every combination once, whatever interrupts it.
 #include <algorithm>
 #include <cmath>

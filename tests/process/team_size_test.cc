@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Teams of one and two, and teams that grow while they fly.
 #include "tests/process/mission.h"
 #include "tests/process/witness.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast simulate --seeds`: each seed flies the mission that `--seed` flies, is recorded, and is
 // repeated by the command that is printed when it fails.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What people type wrong, and files that are not what they should be: one sentence that says what to do,
 // nothing that a terminal obeys, and nobody waits.
 #include <fcntl.h>

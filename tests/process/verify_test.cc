@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A record is falsified, one value at a time: `ergocast verify` finds it and names the place.
 #include <algorithm>
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hosts with different versions of Ergocast: nobody takes part in a mission it may misunderstand,
 // and both sides say so.
 #include "runtime/node.h"

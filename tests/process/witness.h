@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Somebody on the buses of a mission who only listens: what the team says of itself.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What keeps vehicles slow and still, with the real programs.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Axes without numbers say nothing: whatever the range, at least two of its marks have labels.
 #include "report/axes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The report of a run: what it says is read back from its files, and what it draws is checked as
 // text: well-formed, self-contained, free of what is not a number, and small.
 #include "report/report.h"

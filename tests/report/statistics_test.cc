@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Medians and ratios with their confidence.
 #include "report/statistics.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The event log's limits, and a disk that takes no more.
 #include "runtime/event_log.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Key files come back as written; loose permissions, other files and other text are refused.
 #include "runtime/key_file.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Log lines as the journal wants them.
 #include "runtime/logging.h"
 

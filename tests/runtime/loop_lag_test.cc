@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How late or deaf a loop was, from the times that it tells.
 #include "runtime/loop_lag.h"
 

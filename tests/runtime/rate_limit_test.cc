@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Nobody who does what the mission asks is ever limited; whoever babbles soon is.
 #include "runtime/rate_limit.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A flood of repeats is seen and its end is seen; what a team repeats for good reasons is none.
 #include "runtime/repeat_guard.h"
 

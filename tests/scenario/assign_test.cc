@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fields set by their paths, as `ergocast study --vary` does.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets from files: where a map lies, what of it counts, what the agents get of it, and what is said
 // of one that cannot be used.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The compiled plan: one spelling for each scenario, and nothing that comes off the network is
 // taken for one unless it could have been compiled here.
 #include <gtest/gtest.h>

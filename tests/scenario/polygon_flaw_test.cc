@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What makes a polygon none, and what does not.
 #include "scenario/polygon_flaw.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is said of a scenario that cannot be flown: everything that is wrong, at once, with its
 // place, the limit it breaks and the remedy.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a valid scenario becomes: defaults, overrides, random starts, print(), the shipped files.
 #include "scenario/scenario.h"
 

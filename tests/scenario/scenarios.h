@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenario texts for tests, and the two ways their reading can end.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a scenario is warned of, in its own numbers: a speed limit below what the law commands, and
 // steps too coarse for agents that look ahead.
 #include <gtest/gtest.h>

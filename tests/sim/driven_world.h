@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A world driven by hand, and what it says.
 #pragma once
 

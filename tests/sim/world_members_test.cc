@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The simulated world, driven by hand: whose commands count, and who joins and leaves.
 #include <gtest/gtest.h>
 

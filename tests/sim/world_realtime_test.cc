@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The simulated world, driven by hand: real time, where ticks go by the clock.
 #include <gtest/gtest.h>
 

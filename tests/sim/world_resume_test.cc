@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A world that dies and is started again goes on where the team was, by what the agents tell it:
 // in lockstep as if nothing had happened, bit for bit, at whatever moment it died.
 #include <gtest/gtest.h>

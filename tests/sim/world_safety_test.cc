@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The simulated world, driven by hand: what keeps vehicles slow, finite and still.
 #include <gtest/gtest.h>
 

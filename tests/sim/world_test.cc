@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The simulated world, driven by hand: lockstep, motion, the record's window and the end.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A screen that nobody sees, with LCM's viewer on it.
 #pragma once
 

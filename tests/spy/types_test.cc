@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The jar that lcm-spy gets: types, the plan's reader, and pictures of given messages.
 #include <cmath>
 

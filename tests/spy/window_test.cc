@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `ergocast spy` beside a real mission, on a real screen as far as programs can tell.
 #include "tests/spy/spy_desk.h"
 

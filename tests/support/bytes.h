@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A message as it travels: two are the same if their bytes are.
 #pragma once
 

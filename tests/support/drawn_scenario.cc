@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One rule for each field says how its value is drawn, and a field without a rule is an error.
 #include "tests/support/drawn_scenario.h"
 
 #include <google/protobuf/descriptor.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random scenarios that use every field of scenario.proto, for tests that must hold for all of them.
 #pragma once
 

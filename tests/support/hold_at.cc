@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Preloaded into programs, stops one of them as SIGSTOP from outside would, but at the very message
 // a test names, however fast the machine is: the first program that is about to say on a channel
 // what has that tick or a later one in its header.

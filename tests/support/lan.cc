@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs `ip`, `nft` and `tc` inside the namespaces, which this process holds open by their
+// descriptors.
 #include "tests/support/lan.h"
 
 #include <fcntl.h>

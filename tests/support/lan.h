@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hosts on a network of the test's own: network namespaces whose cables end in a bridge, which
 // stands in one more as the switch. None of them has a name outside this process, so all are gone
 // once it and the programs it started are, however they ended.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Preloaded into a program, makes its system one that has no room for another process while the file
 // $ERGOCAST_TEST_NO_MORE_PROCESSES is there.
 #include <sys/types.h>

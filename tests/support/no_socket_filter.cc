@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Preloaded into a program, makes its kernel one that knows no socket filters.
 #include <sys/socket.h>
 #include <sys/syscall.h>

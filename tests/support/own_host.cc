@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moves the test into a new network namespace, and finds the processes in it through /proc.
 #include "tests/support/own_host.h"
 
 #include <sched.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A host of the test's own: a network namespace with multicast on its loopback, so that tests
 // that open sockets neither hear nor disturb anybody, and can see which processes they left.
 #pragma once

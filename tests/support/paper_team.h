@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shipped missions for tests of the method itself.
 #pragma once
 

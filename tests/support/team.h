@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Small missions and messages for tests that drive one core by hand.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Preloaded into a program, makes its kernel one whose clock nobody has set.
 #include <sys/timex.h>
 

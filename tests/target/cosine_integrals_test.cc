@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Closed forms against quadrature, and where they could cancel.
 #include "target/cosine_integrals.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What maps say is read as it stands, and what cannot be one is refused with a remedy.
 #include "target/map_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A large map is read and transformed in far less memory than it has.
 #include <gtest/gtest.h>
 

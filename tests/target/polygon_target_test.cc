@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets with regions and keep-outs: exact against quadrature over triangles, Gaussians within
 // their stated error.
 #include <gtest/gtest.h>

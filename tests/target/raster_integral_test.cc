@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The transform of a map: exact for cells of constant density, wherever the cells lie.
 #include "target/raster_integral.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // μ_k, (3), against integrals found in other ways: Romberg's rule in extended precision for bells
 // that are products, the characteristic function for those well inside, another Gauss rule for the
 // rest.

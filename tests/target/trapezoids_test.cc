@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The cut of the domain: areas are those of the plane geometry, and no point is in two pieces.
 #include "target/trapezoids.h"
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Only a newer sequence of the same sender and incarnation counts as new, and the memory is
+// bounded.
 #include "team/freshness.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MISSION's parts put together: any order, repeats, losses, mixed revisions and lies.
 #include "team/mission_follower.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who hears whom: by distance, between agents whose places are known.
 #include "team/radio_range.h"
 

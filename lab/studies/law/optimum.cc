@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How low φ² could have come: whole missions flown by one mind that knows the end, for docs/law.md.
 //
 //   minimise φ²(T) over all velocities ‖v_i(t)‖ ≤ u_max,   x_i(0) given

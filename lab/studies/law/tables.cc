@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tables and figures of docs/law.md, from the studies that lab/studies/law/run has flown.
 #include <algorithm>
 #include <cmath>

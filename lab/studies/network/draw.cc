@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tables and figures of the network studies, from what lab/studies/network/run has simulated.
 #include <algorithm>
 #include <cstdio>

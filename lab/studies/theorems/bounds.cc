@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Evaluates the bounds of Theorem 2 and Corollary 1, and flies teams to measure the same
+// quantities.
 #include "lab/studies/theorems/bounds.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Theorem 2 and Corollary 1: how far an agent may be from the centre of contraction, and how far it is.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Closed forms of the inequalities: Dvoretzky-Kiefer-Wolfowitz, empirical Bernstein, and tails
+// of chi-square.
 #include "lab/studies/theorems/confidence.h"
 
 #include <cmath>

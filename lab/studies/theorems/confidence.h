@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a finite number of seeds proves, with a stated probability of being wrong.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Corollary 1: how runs without noise keep to its discrete form, and break the continuous one.
 #include <cmath>
 #include <cstdio>

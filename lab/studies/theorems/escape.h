@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // When an agent that starts on a set of Proposition 1 leaves it: measured, and as predicted.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lists the points of the study, and stores each with its measured and predicted escape times in
+// one row.
 #include "lab/studies/theorems/escape_points.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is varied in the study of Theorem 1: the set, the weights, ε and σ; and one such point, measured
 // and predicted.
 #pragma once

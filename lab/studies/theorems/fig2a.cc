@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fig. 2(a): how far its agents are from their sets at its end.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Places teams on each invariant set and compares the normal part of B with the rounding error
+// of its sum.
 #include "lab/studies/theorems/invariance.h"
 
 #include <cmath>

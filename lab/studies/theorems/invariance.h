@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Proposition 1 in floating point: how far from 0 the normal part of B is, and what comes of it.
 #pragma once
 

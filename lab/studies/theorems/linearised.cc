@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Carries the covariances of the deviation and of its past along the path without noise.
 #include "lab/studies/theorems/linearised.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How fast noise carries an agent off a set of Proposition 1, to first order in how far off it is.
 //
 // One agent on such a set, x = x̄ + δ n: x̄ is its path without noise, which stays on the set, n the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Proposition 1: what rounding leaves of it, and how fast rounding alone drives agents off.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Theorem 1: times of escape by the strength of the noise, from every set of Proposition 1.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plots measured medians and distributions of escape times over the predicted ones.
 #include "lab/studies/theorems/theorem1_figures.h"
 
 #include <algorithm>

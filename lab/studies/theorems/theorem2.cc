@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Theorem 2: mean square distances from the centre of contraction against the bound.
 #include <cmath>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program of lab/studies/theorems/run: lists the parts, simulates one, reports on all.
 #include <cstdio>
 #include <cstdlib>

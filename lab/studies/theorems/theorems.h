@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What docs/theorems.md reports: parts that are simulated, each into a file of its own, and the
 // tables and figures that are made of them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Limits that are exceeded no more often than they say: tried with an error that can be seen.
 #include "lab/studies/theorems/confidence.h"
 

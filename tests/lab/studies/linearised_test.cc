@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The linearised recursion against the method itself, noise for noise.
 #include "lab/studies/theorems/linearised.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A study flies what `ergocast simulate` flies, bit for bit, whatever the scenario says: without
 // messages where the ideal team can stand for the swarm, with them where it cannot.
 #include <google/protobuf/text_format.h>

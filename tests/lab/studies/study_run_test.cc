@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a study notes of one mission.
 #include "lab/studies/study_run.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A study's rows as text, and what they say together.
 #include "lab/studies/study_table.h"
 

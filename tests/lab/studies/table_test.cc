@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The files that figures are drawn from.
 #include "lab/studies/table.h"
 

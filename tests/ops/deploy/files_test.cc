@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What `ergocast deploy` writes is read by those it is written for: bash, Compose.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hosts file of `ergocast deploy`: what it says, and every way it can be wrong.
 #include <gtest/gtest.h>
 

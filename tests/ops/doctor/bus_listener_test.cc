@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Datagrams of runs, strangers and random bytes lead to the right finding, and none does harm.
 #include "ops/doctor/bus_listener.h"
 
 #include <cstring>

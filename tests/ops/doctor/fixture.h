@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A folder that stands for /, /proc or /sys, and finding one's way in findings.
 #pragma once
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rule sets as nft prints them: which of them drop all fragments to our ports, and which only
+// seem to.
 #include "ops/doctor/fragment_rule.h"
 
 #include "tests/ops/doctor/fixture.h"

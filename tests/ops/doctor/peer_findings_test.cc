@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each way in which two hosts can fail to hear each other has its finding and its level.
 #include "ops/doctor/peer_exchange.h"
 #include "tests/ops/doctor/fixture.h"
 

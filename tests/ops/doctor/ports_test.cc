@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A made-up /proc says who holds which port, and hostile names in it reach no terminal.
 #include "ops/doctor/ports.h"
 
 #include "tests/ops/doctor/fixture.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Findings are sorted, wrapped, coloured only on request, and complete as JSON.
 #include "ops/doctor/print.h"
 
 #include <nlohmann/json.hpp>

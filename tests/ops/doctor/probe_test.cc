@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A probe survives writing and reading, LCM does not parse it, and impossible ones are refused.
 #include "ops/doctor/probe.h"
 
 #include <gtest/gtest.h>

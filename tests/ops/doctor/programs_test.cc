@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lcm-spy lacks is found in a made-up file system, and a firewall's policy in its rules.
 #include "ops/doctor/programs.h"
 
 #include "tests/ops/doctor/fixture.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each combination of route and interfaces leads to the right finding and the right commands.
 #include "ops/doctor/routing.h"
 
 #include "tests/ops/doctor/fixture.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Well-formed lines of the kernel's table are read, all others are skipped.
 #include "ops/doctor/socket_table.h"
 
 #include <gtest/gtest.h>
