@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Where a text stops being UTF-8.
 #pragma once
 
 #include <cstddef>

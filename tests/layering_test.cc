@@ -227,6 +227,21 @@ TEST(Layering, EveryRuleIsAboutSomethingThatIsThere) {
   }
 }
 
+TEST(Sources, BeginWithTheirLicenceAndASentenceOfTheirOwn) {
+  std::vector<std::string> sentences;
+  for (const std::string& path : code_of_the_tree()) {
+    std::ifstream file(std::filesystem::path(ERGOCAST_SOURCE_DIR) / path);
+    std::string licence, sentence;
+    std::getline(file, licence) && std::getline(file, sentence);
+    EXPECT_EQ(licence, "// SPDX-License-Identifier: BSD-3-Clause") << path;
+    EXPECT_TRUE(sentence.starts_with("// ")) << path << ": say what the file is about";
+    sentences.push_back(sentence);
+  }
+  std::sort(sentences.begin(), sentences.end());
+  const auto twice = std::adjacent_find(sentences.begin(), sentences.end());
+  EXPECT_EQ(twice, sentences.end()) << *twice;
+}
+
 /// What the checker says of one line in a file.
 std::string said_of(const std::string& path, const std::string& line) {
   const auto found = violations_in(path, "// first\n" + line + "\n");
