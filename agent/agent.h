@@ -2,8 +2,8 @@
 // One agent: messages and time in, messages out. No socket, thread, clock, logger or file.
 //
 // Messages only update tables; the control step reads them. In lockstep a tick is answered once
-// every block due by it is held; in real time at once, with the blocks that are there. The agent
-// repeats missing coverage to teammates (anti_entropy.h), and the mission on request.
+// every block due by it is held; in real time at once, with what is there. What teammates lack it
+// repeats to them (anti_entropy.h), and the mission itself to whoever asks for it.
 #pragma once
 
 #include <algorithm>

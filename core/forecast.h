@@ -60,8 +60,8 @@ class Forecast {
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
-    std::vector<double> sums;              // likewise; unspecified for blocks without additions
-    std::vector<double> gain;              // f dt at the newest place
+    std::vector<double> sums;  // likewise; of blocks to which nothing was added, anything
+    std::vector<double> gain;  // f dt at the newest place
     Tick gain_tick = -1;
   };
   /// One row's part in one block.
