@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mends what teammates lack: reads their digests and repeats, for the authors that they cannot
-// hear, what those have said. Lost messages, late joiners, restarts, the dead agents' sums and
-// teams in which not all hear all need nothing else.
+// Repairs missing coverage: reads teammates' digests and repeats the blocks of authors that they
+// cannot hear. Lost messages, late joiners, restarts, sums of stopped agents and divided teams need
+// nothing else.
 #pragma once
 
 #include <map>

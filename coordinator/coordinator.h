@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Admits agents, distributes the mission, starts, watches and ends it. Never steers.
 //
-// It repeats its whole state once a second, so that nothing it says needs an acknowledgement. One
-// that is restarted takes the mission over from the agents, who repeat it to whoever asks.
+// It repeats its whole state once a second, so that none of its messages needs an acknowledgement.
+// A restarted coordinator takes the mission over from the agents, which repeat it on request.
 #pragma once
 
 #include <map>

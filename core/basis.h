@@ -40,7 +40,7 @@ struct CosinesAt {
   Table cos_x, cos_y;  ///< cos(mπx/Lx), cos(nπy/Ly)
 
   /// @pre x_m is finite; up to kMaxModesPerAxis modes an axis.
-  /// Outside the domain f goes on as what it is, even about each edge and periodic.
+  /// Outside the domain f continues, even about each edge and periodic.
   /// By recurrence from one cosine and sine an axis: |cos| may exceed 1 by about 1e-15 · modes.
   CosinesAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
 
@@ -74,7 +74,7 @@ void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, Mode
                       double* sums);
 
 /// Σ_mn weights(m,n) ∇f_mn: (6) when weights are λ_mn (c_mn − μ_mn) [unit of weights per metre].
-/// `weights` points to mode_count() doubles. Summed in a fixed order, whatever the processor.
+/// `weights` points to mode_count() doubles. The order of the sum is the same on every processor.
 Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights);
 
 /// weighted_gradient() and its Jacobian, Σ_mn weights(m,n) ∂²f_mn [its unit per metre].

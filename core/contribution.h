@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent tells of its coverage: the one message that the method itself is about.
+// What an agent says about its coverage: the only message that the method needs.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ inline constexpr int kBlockSize = 128;
 struct Contribution {
   Header header;
   std::int64_t steps = 0;        ///< samples in the sums; more steps win
-  Tick next_broadcast_tick = 0;  ///< when its sender will speak again
+  Tick next_broadcast_tick = 0;  ///< when its sender will broadcast again
   double elapsed_s = 0;          ///< time the sums cover, steps · dt
   std::int32_t block = 0;
   std::int32_t mode_count = 0;

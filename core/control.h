@@ -23,8 +23,8 @@ class Controller {
  public:
   explicit Controller(const Mission& mission);
 
-  /// Takes in the team's c_k as the agent knows or foresees it, mode_count() entries: what all later
-  /// commands answer to.
+  /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
+  /// it.
   void see(const Coefficients& coverage);
 
   /// The velocity command of (10) at position `x_m`:
@@ -34,7 +34,7 @@ class Controller {
 
   /// B of (6) for the last command() [1/m].
   const Eigen::Vector2d& spectral_gradient() const { return spectral_gradient_; }
-  /// The ε that belongs to what was last seen.
+  /// The ε that belongs to the last coverage seen.
   double epsilon() const { return epsilon_; }
 
   /// φ² of `coverage` against the mission's target.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent holds of everybody's coverage: a state-based CRDT of cumulative sums.
+// The coverage of all agents as one agent knows it: a state-based CRDT of cumulative sums.
 //
 // One row per (agent, incarnation), each in blocks with their own step counts. A block with more
 // steps replaces one with fewer, so merging is commutative, associative and idempotent: loss,
 // repetition and reordering need no protocol. The team's c_k is rebuilt in ascending
-// (agent, incarnation) order, because the order of additions alone changes trajectories.
+// (agent, incarnation) order, because the order of additions changes trajectories.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit };
 
 class CoverageTable {
  public:
-  /// @param joined  the tick from which its holder takes part. What a row held before may be this or
-  ///                that, so nothing is compared with a block said before it.
+  /// @param joined  the tick from which its holder takes part. Earlier blocks depend on when the
+  ///                holder joined, so no block is compared with one said before that tick.
   CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
   int block_count() const { return block_count_; }
 
-  /// Makes an empty row, if there is none yet.
+  /// Adds an empty row, if `author` has none.
   /// @pre the table has room.
   void add_row(const Author& author);
 
@@ -43,13 +43,13 @@ class CoverageTable {
   /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.
   Contribution block(const Author& author, int block) const;
 
-  /// From now on the row of `author` does not count, whenever it comes; it is kept and passed on.
+  /// From now on the row of `author` does not count, even if it arrives later. It is kept and relayed.
   void forget(const Author& author);
-  /// From now on it counts again, with all that came meanwhile.
+  /// From now on the row counts again, with all blocks that arrived meanwhile.
   void remember(const Author& author);
 
   /// c_k = Σ_j S_j / Σ_j elapsed_j per block, (4) weighted by the time each row covers.
-  /// Entries of blocks that nobody has covered are 0. Does not allocate.
+  /// Entries of blocks without any samples are 0. Does not allocate.
   void average(Coefficients& coverage) const;
 
   /// The fewest steps among a row's blocks; nothing if the row is unknown.
@@ -58,7 +58,7 @@ class CoverageTable {
   /// The longest silence that `author` has announced between two of its broadcasts; 0 if unknown.
   Tick announced_period(const Author& author) const;
 
-  /// One row as a digest speaks of it.
+  /// One row as a digest describes it.
   struct Holding {
     Author author;
     std::int64_t steps;         ///< the fewest among its blocks
@@ -84,8 +84,8 @@ class CoverageTable {
     Tick period;                ///< until its author speaks again, as announced
   };
   BlockView view(std::size_t row, int block) const;
-  /// Whether the views of all blocks of a row are alike but for their numbers, which then follow each
-  /// other.
+  /// Whether the views of all blocks of a row differ only in their pointers, which then are
+  /// consecutive.
   bool blocks_alike(std::size_t row) const;
 
   /// The sums of a row [s], mode_count() of them and then zeros; null if it is unknown.
@@ -103,7 +103,7 @@ class CoverageTable {
   struct Block {
     std::int64_t steps = 0;
     Tick next_broadcast_tick = 0;
-    std::int64_t sequence = 0;  // of the message that brought it, for who repeats it
+    std::int64_t sequence = 0;  // of the message that brought it, for a relay
     Tick tick = 0;
     std::int64_t gained_steps = 0;
     bool looks_like(const Block& other) const;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The team's coverage as one agent foresees it: what its law answers to, beside what is known.
+// The forecast of the team's coverage by one agent, which its law answers to.
 //
 //   ĉ_i = [Σ_j S_j + Σ_{j≠i} w_j r_j] / [Σ_j T_j + Σ_{j≠i} w_j]
 //   r_j = (S_j − S'_j) / (T_j − T'_j)
 //
-// Each teammate j goes on for w_j as it did since the block before (core/look_ahead.h has w_j).
-// Where agents steer by what the team *has* covered, several chase the same deficit; by ĉ, each
-// leaves to the others what they are about to cover. docs/law_theory.md has the derivation,
-// docs/law.md what it is worth.
+// Each teammate j continues for w_j as since the block before (core/look_ahead.h has w_j). Agents
+// that steer by the team's *past* coverage chase the same deficit. With ĉ, each leaves to the
+// others what they are about to cover. docs/law_theory.md has the derivation, docs/law.md the
+// figures.
 //
-// With dead reckoning, f at the places where a teammate is known to have been since its last block
-// is added to its row, and r_j is f at the newest of them: a row is then as good as one said there.
-// Rows stay the truth. What is foreseen is never said to anybody, and the next block replaces it.
+// With dead reckoning, f at a teammate's known places since its last block is added to its row, and
+// r_j is f at the newest place. The row then equals one that was said there. The table is not
+// changed, the forecast is never sent, and the next block replaces these additions.
 //
-// ĉ is a function of the table, the roster and the places known, whatever the order in which they
-// came: in lockstep all who hear the same foresee the same.
+// ĉ is a function of the table, the roster and the known places, and does not depend on the order
+// of their arrival: in lockstep all agents that hear the same compute the same forecast.
 #pragma once
 
 #include <map>
@@ -32,20 +32,20 @@ namespace ergocast {
 
 class Forecast {
  public:
-  /// So many places of a vehicle are kept beyond those of the longest period: more than any honest
-  /// silence has, so that a late block loses none.
+  /// Places of a vehicle that are kept beyond those of the longest period. An honest silence is
+  /// shorter, so a late block loses none.
   static constexpr Tick kPlacesBeyondPeriod = 64;
 
   Forecast(const Mission& mission, const Author& self);
 
   /// A vehicle was at `x_m` at `tick`. Without effect: without dead reckoning, for our own vehicle,
-  /// for a tick that is no news, outside the domain.
+  /// for a tick that is already known, outside the domain.
   void see(AgentId agent, Tick tick, const Eigen::Vector2d& x_m);
 
-  /// ĉ at `tick`; entries of blocks that nobody has covered are 0. A row has a forecast if the
-  /// roster has its author active and nobody newer under its number, it counts, and its gains are
-  /// possible: n is 1 + their number, for each block. Allocates for a teammate's first place and
-  /// first row only.
+  /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if its author
+  /// is active in the roster without a newer incarnation, the row counts, and its gains are
+  /// possible: n is 1 + the number of such rows, for each block. Allocates only for a teammate's
+  /// first place and first row.
   void look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick,
                   Coefficients& coverage);
 
@@ -54,10 +54,10 @@ class Forecast {
     Tick tick;
     Eigen::Vector2d x_m;
   };
-  /// A row since its last blocks. Places are of the vehicle, whoever drives it.
+  /// A row since its last blocks. Places belong to the vehicle, not to an incarnation.
   struct Track {
     std::vector<Place> places;             // ascending by tick; the last most_places_ count
-    Author author;                         // whose row is reckoned
+    Author author;                         // of the row that is extended
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step

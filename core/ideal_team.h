@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The method without messages: every agent knows everything at once, as in the paper's equations.
+// The method with perfect communication: every agent knows all coverage at once, as in the paper.
 //
-// What a distributed team in lockstep does that tells or knows everything each tick, bit for bit
-// (tests/lab/studies/same_as_simulate_test.cc), and several times as fast: for statistics over many
-// seeds.
+// It computes the same bits as a distributed lockstep team that broadcasts or knows all coverage
+// each tick (tests/lab/studies/same_as_simulate_test.cc), several times as fast: for statistics
+// over many seeds.
 #pragma once
 
 #include <functional>
@@ -19,15 +19,15 @@ namespace ergocast::lab {
 /// What happens to a vehicle that crosses the domain's edge.
 enum class Edges {
   kReflect,
-  kNone,  ///< it goes on: the paper's theorems know no edges
+  kNone,  ///< it continues: the paper's theorems have no edges
 };
 
 class IdealTeam {
  public:
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
 
-  /// Whether a distributed team would do the same: lockstep, all heard by all, and everything told
-  /// each tick, or else known from where teammates are.
+  /// Whether a distributed team would compute the same: lockstep, every agent hears every other,
+  /// and all coverage is broadcast each tick or known by dead reckoning.
   static bool stands_for(const Mission& mission);
 
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.
@@ -44,7 +44,7 @@ class IdealTeam {
   std::size_t size() const { return agents_.size(); }
   /// Where an agent is now.
   const Eigen::Vector2d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
-  /// Its velocity in the last step: the command, as far as the speed limit allows.
+  /// Its velocity in the last step: the command, cut to the speed limit.
   const Eigen::Vector2d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
   const Eigen::Vector2d& b(std::size_t agent) const { return agents_[agent].b; }

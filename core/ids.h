@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who is who, and when: identities, limits and the clock that cannot be asked for the time.
+// Identities, limits, ticks, and the clock type without now().
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ using Tick = std::int64_t;
 
 inline constexpr int kMaxAgents = 128;
 inline constexpr int kMaxIncarnationsPerAgent = 16;
-/// Lives of all agents together.
+/// Incarnations of all agents together.
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 inline constexpr int kMaxModesPerAxis = 64;
 inline constexpr int kMaxHostLength = 63;
@@ -37,24 +37,24 @@ inline constexpr AgentId kWorld = -3;
 inline constexpr AgentId kLogger = -4;
 inline constexpr AgentId kOperator = -5;
 
-/// One stretch of an agent's life: what its contributions are keyed by.
+/// One incarnation of an agent: the key of its contributions.
 struct Author {
   AgentId agent = kUnassigned;
   Incarnation incarnation = 0;
   auto operator<=>(const Author&) const = default;
 };
 
-/// Who says something, and as which of its messages.
+/// The sender of a message, and the message's place in the sender's sequence.
 struct Header {
   RunId run = 0;
   AgentId sender = kUnassigned;
   Incarnation incarnation = 0;
   std::int64_t sequence = 0;  ///< grows by one with each message of this sender on one bus
-  Tick tick = 0;              ///< the sender's tick when it spoke
+  Tick tick = 0;              ///< the sender's tick when it sent this
 };
 
-/// The clock that paces repeats and time-outs. It has no now(): only a main() or the laboratory
-/// can tell the time, so logic that reads a clock does not compile.
+/// The clock of repeats and time-outs. It has no now(): only a main() or the laboratory knows the
+/// time, so logic that reads a clock does not compile.
 struct PacingClock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;
@@ -68,7 +68,7 @@ inline PacingClock::duration seconds(double s) {
   return PacingClock::duration(static_cast<std::int64_t>(s * 1e9));
 }
 
-/// An identity as people read it: 16 hex digits.
+/// An identity as 16 hex digits.
 std::string to_hex(std::uint64_t identity);
 
 }  // namespace ergocast

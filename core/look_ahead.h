@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far ahead an agent looks: what the weights of core/forecast.h follow from.
+// How far ahead an agent looks: the weights of core/forecast.h.
 #pragma once
 
 #include "core/basis.h"
@@ -11,7 +11,7 @@ namespace ergocast {
 /// The RMS distance of the target's mass from its mean, s = √(Var x + Var y) [m], from μ alone, with
 /// L the domain's size along an axis and μ_m the coefficients along it:
 ///   E[x]/L = ½ − Σ_{m odd} 4 μ_m / (π² m²),   E[x²]/L² = ⅓ + Σ_{m ≥ 1} (−1)^m 4 μ_m / (π² m²)
-/// as far as the modes reach: what they leave out of each is at most 4 / (π² (modes − ½)).
+/// The sums end with the last mode; the rest of each is at most 4 / (π² (modes − ½)).
 double target_spread_m(const Coefficients& target, const Rectangle& domain);
 
 /// h and the weights of a teammate's gains, for one mission.
@@ -22,15 +22,14 @@ class LookAhead {
   /// Whether the mission's law looks ahead at all.
   bool any() const { return alone_s_ > 0; }
 
-  /// h = a s / (u_max √n) [s] for a team of `n`; with ends_with_plan at most what is left at `tick`,
-  /// which is nothing after the end.
+  /// h = a s / (u_max √n) [s] for a team of `n`; with ends_with_plan at most the time left at `tick`,
+  /// which is 0 after the end.
   double horizon_s(int n, Tick tick) const;
 
-  /// For how long [s] a teammate's gains over `span` ticks, last known `age` ticks ago, are taken to
-  /// have gone on and to go on:
+  /// For how long [s] a teammate's rate over `span` ticks, last known `age` ticks ago, is assumed to
+  /// hold, past and future together:
   ///   w = h + min(span dt, cap) + age dt,   0 if age dt > max(h, cap),   cap = 8 periods
-  /// @param period  that the teammate has announced, which may be anything: of it counts what the
-  ///                plan allows
+  /// @param period  announced by the teammate, any number; it is limited to what the plan allows
   double weight_s(double horizon_s, Tick span, Tick age, Tick period) const;
 
   /// The longest time between two broadcasts that the plan allows.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mission plan as every process holds it once it is validated: nothing here needs checking.
+// The validated mission plan of every process: nothing here needs checking.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ struct ControlLaw {
   double noise_ceiling = 0;                   ///< adaptive: its greatest value [m/√s]
   double contraction_gain_per_s = 0;          ///< k
   Eigen::Vector2d contraction_center_m{0, 0};
-  double anticipation = 0;     ///< a of core/look_ahead.h; 0: agents answer to what they know, c
-  bool ends_with_plan = false; ///< nobody looks beyond the mission's end
+  double anticipation = 0;     ///< a of core/look_ahead.h; 0: agents answer to the known coverage c
+  bool ends_with_plan = false; ///< no agent looks beyond the mission's end
   bool paired_pushes = false;  ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
 
   /// What σ never exceeds [m/√s].
@@ -48,11 +48,11 @@ enum class OnTimeout { kEndMission, kEvict };
 struct Timing {
   double dt_s = 0.1;
   Tick tick_count = 0;  ///< the mission has ticks 0 … tick_count − 1
-  int broadcast_period_ticks = 1;  ///< an agent tells what it covered every so many ticks
+  int broadcast_period_ticks = 1;  ///< an agent broadcasts its coverage every so many ticks
   Pace pace = Pace::kLockstep;
   double realtime_factor = 1;         ///< mission seconds per wall second
   double lockstep_timeout_s = 10;     ///< wall time a tick may stay unanswered
-  double command_hold_s = 0.5;        ///< mission time the world goes on with an old command
+  double command_hold_s = 0.5;        ///< mission time for which the world holds an old command
   double admission_timeout_s = 30;    ///< wall time the quorum may take
   int catch_up_limit_ticks = 5;       ///< late ticks the world makes up for; the rest are skipped
   OnTimeout on_timeout = OnTimeout::kEndMission;
@@ -69,16 +69,16 @@ struct Mission {
   std::vector<Eigen::Vector2d> starts_m;  ///< where agent i begins; one per planned agent
   int quorum = 1;                         ///< agents that must be admitted before the start
   double forget_silent_after_s = 0;       ///< wall time; 0: a silent agent's coverage counts for ever
-  double goal_ergodic_metric = 0;         ///< what the mission is to reach; 0: nothing in particular
+  double goal_ergodic_metric = 0;         ///< the goal for φ²; 0: none
   double disturbance_intensity = 0;       ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;               ///< how far agents hear each other; 0: everywhere
-  double speed_limit_mps = 0;             ///< what no vehicle exceeds; 0: no limit
-  bool dead_reckoning = false;            ///< whether forecasts use where teammates are, core/forecast.h
+  double speed_limit_mps = 0;             ///< the limit of every vehicle; 0: none
+  bool dead_reckoning = false;            ///< whether forecasts use teammates' places, core/forecast.h
   bool wait_for_logger = true;            ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
 
-/// What a vehicle does of the command `v_mps`: all of it, bit for bit, or as fast as the speed
-/// limit allows in its direction.
+/// The velocity that a vehicle executes for the command `v_mps`: the command, bit for bit, or the
+/// speed limit in its direction.
 /// @pre v_mps is finite.
 Eigen::Vector2d within_speed_limit(const Mission& mission, const Eigen::Vector2d& v_mps);
 
@@ -87,11 +87,11 @@ Eigen::Vector2d within_speed_limit(const Mission& mission, const Eigen::Vector2d
 Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector2d& x_m,
                       const Eigen::Vector2d& v_mps);
 
-/// When agent `id` tells what it covered for the first time after `tick`: the planned agents take
-/// turns within the period.
+/// The first tick after `tick` at which agent `id` broadcasts: the planned agents take turns within
+/// the period.
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick);
 
-/// Where agent `id` begins: as planned, or for those beyond the plan drawn from the seed.
+/// The start of agent `id`: as planned, or beyond the plan drawn from the seed.
 Eigen::Vector2d start_of(const Mission& mission, AgentId id);
 /// The draw itself: uniform in the domain.
 Eigen::Vector2d random_start(const Rectangle& domain, std::uint64_t seed, AgentId id);

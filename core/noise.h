@@ -14,8 +14,8 @@ enum class Purpose : std::uint32_t {
   kStart = 3,         ///< random initial positions
   kIncarnation = 4,   ///< identities in a simulation
   kFault = 5,         ///< the laboratory's network
-  kAnswer = 6,        ///< who waits how long before it answers for others
-  kPush = 7,          ///< the part of an adaptive perturbation that is held for a while
+  kAnswer = 6,        ///< random delays before answers
+  kPush = 7,          ///< the part of an adaptive perturbation that is held for several steps
 };
 
 /// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The perturbation σ dW of (9) and (10): how strong, in which direction, and for how long.
 //
-// Where the agents must choose between two sides, the field does not tell them which: on a corner B
-// vanishes, on a midline or diagonal only its part across does. There the potential
+// Where agents must choose between two sides, the field does not decide: on a corner B vanishes, on
+// a midline or diagonal its part across vanishes. There the potential
 // U = Σ λ (c − μ) f, which agents descend, bends down across the set, and a deviation δ along such a
 // direction v grows by itself, δ' = −u_max (vᵀHv) / √(‖B‖² + ε²) · δ, where H = ∇B is the curvature
-// of U. What the noise has to do is to begin it. Everywhere else it only blurs.
+// of U. Noise has to start this growth. Everywhere else it only blurs.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ namespace ergocast {
 /// the push is no faster than u_max along each direction (one standard deviation).
 Tick push_ticks(const ControlLaw& law, double dt_s);
 
-/// The push along a direction that is wholly open, √((σ_max² − σ²) / T): one standard deviation.
+/// The push along a direction with s = 1, √((σ_max² − σ²) / T): one standard deviation.
 double greatest_push_mps(const ControlLaw& law, double dt_s);
 
 /// The greatest standard deviation along any direction of the velocity below [m/s]: constant σ/√dt,
@@ -40,9 +40,9 @@ struct PerturbationScale {
 /// Constant: σ ξ / √dt, the paper's. Adaptive: besides, along each of the two principal directions v
 /// of H, which are orthogonal, a push of
 ///   √(s (σ_max² − σ²) / T) · v·η,   s = ε² / (ε² + (v·B)²) where U bends down, vᵀHv < 0, else 0
-/// with σ = noise_intensity, σ_max = noise_ceiling and T the time for which η is held: strong where B
-/// along v is small against ε, at which (8) too becomes weak. Where ε and v·B are both 0, s is 1.
-/// Over times longer than T what is added along v spreads like σ_v dW with
+/// with σ = noise_intensity, σ_max = noise_ceiling and T the time for which η is held. It is strong
+/// where B along v is small against ε; there (8) becomes weak, too. For ε = v·B = 0, s is 1.
+/// Over times longer than T the sum along v spreads like σ_v dW with
 /// σ_v² = σ² + s (σ_max² − σ²), which lies between σ² and σ_max².
 /// @param field  B, in the unit of ε, and H; H is not read by the constant law
 /// @param xi     two independent standard normal numbers of this step

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our own mistakes stop the program; what a user or the network gave us never comes here.
+// Programming errors stop the program. Input from users or the network is never checked with this.
 #pragma once
 
 #include <cstdio>

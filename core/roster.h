@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who takes part, and whose coverage counts, from which tick on.
+// The members of the team, and from which tick on their coverage counts.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct RosterEntry {
     return tick >= active_from && (active_until < 0 || tick < active_until);
   }
   /// Whether its coverage does not count at a tick that the world flies by roster `revision`. All
-  /// who hear the world agree on that, whoever has heard more of the roster.
+  /// agents that hear the world agree on it, even if some know a newer roster.
   bool forgotten_at(Tick tick, std::int64_t revision) const {
     return forgotten == (tick >= since_tick && revision >= since_revision);
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A second copy of a function for processors with AVX2; the program chooses when it starts.
 //
-// Both copies give the same bits: the loops meant here have independent lanes or sums in a fixed
-// order, and -ffp-contract=off keeps multiplications and additions apart.
+// Both copies give the same bits: their loops have independent lanes or sums in a fixed order, and
+// -ffp-contract=off keeps multiplications and additions apart.
 #pragma once
 
-// Sanitizers' runtimes are not there yet when the choice is made.
+// The choice is made before the sanitizers' runtimes exist.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define ERGOCAST_VECTORIZED __attribute__((target_clones("avx2", "default")))
@@ -29,7 +29,7 @@
 
 namespace ergocast {
 
-/// So many modes at a time are added up over many rows: their sums stay in registers.
+/// Modes that are added up together over many rows, so that their sums stay in registers.
 inline constexpr int kModesPerStride = 8;
 
 }  // namespace ergocast

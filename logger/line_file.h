@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A text file that holds whole lines, whatever happens to the disk.
+// A text file that holds whole lines, also on a full disk.
 #pragma once
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where tables go that nobody keeps.
+// A stream that discards tables.
 #pragma once
 
 #include <ostream>

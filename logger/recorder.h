@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The run record: trajectory.csv and metrics.csv from what the world says, as an outside observer.
+// The run record: trajectory.csv and metrics.csv from the world's states, as an outside observer.
 //
 // Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
 // the world applied in between. Rows are written in order and acknowledged to the world, which in
-// lockstep repeats whatever state is still missing. What is acknowledged is in the file, so a
-// recorder that is killed is told again of all the rows it lost. While its streams are bad, as on a
-// full disk, no row is written and none acknowledged.
+// lockstep repeats every missing state. Acknowledged rows are in the file, so a killed recorder
+// receives all lost rows again. While its streams are bad, as on a full disk, no row is written and
+// none acknowledged.
 //
-// In lockstep a row is left out only where nobody is left who could repeat its states: for ticks
-// before the first state that a resumed recorder heard, or that was heard of a new world, or that
-// came while nothing could be written, or after the world had given up a recorder that was cut off.
+// In lockstep a row is left out only where no process can repeat its states: for ticks before the
+// first state that a resumed recorder heard, or that was heard of a new world, or that came while
+// nothing could be written, or after the world had given up a recorder that was cut off.
 #pragma once
 
 #include <map>

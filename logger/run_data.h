@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run directory says, read back: the two tables, and the coverage they amount to.
+// Reads a run directory back: the two tables, and the coverage that they add up to.
 #pragma once
 
 #include <Eigen/Core>

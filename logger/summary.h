@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// summary.json: what a run was and how it ended, for people and programs.
+// summary.json: the description and the result of a run, for people and programs.
 #pragma once
 
 #include <filesystem>

@@ -2,10 +2,10 @@
 // The simulated world: integrates commands, reflects at the edge, publishes states, keeps the tick.
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
-//   v_n is the command, or what the scenario's speed limit leaves of it.
+//   v_n is the command, cut to the scenario's speed limit.
 //
 // In lockstep a tick is repeated until every member of the roster has answered it, and the world
-// runs a bounded number of ticks ahead of the record. In real time it goes by the clock.
+// runs a bounded number of ticks ahead of the record. In real time it follows the clock.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When something is due that recurs in wall time and in mission time: a lockstep run passes
-// thousands of mission seconds in a wall second, a real-time run the other way round.
+// A deadline in wall time and in mission time. A lockstep run passes thousands of mission seconds
+// in a wall second; a real-time run may take many wall seconds for a mission second.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything the processes say to each other, as plain values. How they look on the wire is known
-// to lcmtypes/ alone.
+// All messages between processes, as plain values. Only lcmtypes/ knows their bytes.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,38 +23,38 @@ inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 128;
 inline constexpr int kMaxReasonLength = 191;
-/// How often an agent says how it is, whatever else happens.
+/// The period of an agent's status in wall time.
 inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
 
 /// Why bytes that arrived had no effect.
 enum class Refusal {
   kSize,   ///< shorter or longer than its type and counts say
-  kType,   ///< not one of our types, or not the one its channel carries
+  kType,   ///< an unknown type, or one that its channel does not carry
   kTag,    ///< damaged, or of a sender with another mission key
   kUnkeyed,   ///< sound, but of a sender without a mission key
-  kUnsigned,  ///< without the signature of whoever may begin and end missions
+  kUnsigned,  ///< without the signature of the coordinator's key
   kRun,    ///< of another run
-  kRange,  ///< a number that cannot be true: NaN, |S| > elapsed, a coverage from the future
+  kRange,  ///< an impossible number: NaN, |S| > elapsed, a coverage from the future
   kLimit,  ///< a table is full
-  kRate,   ///< its sender says far more than a mission needs
+  kRate,   ///< its sender exceeds its rate budget
 };
 inline constexpr int kRefusalKinds = 9;
 const char* to_string(Refusal refusal);
 using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
 
-/// Ed25519, of the holder of a team's signing key; zero if nobody has signed.
+/// Ed25519, by the holder of a team's signing key; zero if the message is not signed.
 using Signature = std::array<std::byte, 64>;
 
-/// Somebody new speaks up. An agent asks to be admitted; its incarnation is the nonce that the roster
-/// will name. A coordinator or a world that has just started asks the agents what they know:
-/// header.tick is then −1 if it does not know the mission.
+/// A process announces itself. An agent requests admission; the roster will name its incarnation.
+/// A coordinator or a world that has just started asks the agents what they know; header.tick is
+/// −1 if it does not know the mission.
 struct Hello {
   Header header;
   AgentId requested_id = kUnassigned;  ///< kUnassigned: any free one; of a world: whom it waits for
   std::string host;
   std::string version;
-  /// The newest of MISSION of which an agent has heard any part; −1: none. It shows when this was
-  /// said: one from before the newest admits nobody, as it may be a recording.
+  /// The newest revision of MISSION of which the agent has heard any part; −1: none. A HELLO with
+  /// an older revision than the newest admits no agent, because it may be a recording.
   std::int64_t revision = -1;
 };
 
@@ -77,11 +76,11 @@ struct MissionPart {
 struct DigestEntry {
   Author author;
   std::int64_t steps = 0;  ///< of the oldest block held; 0: nothing
-  std::uint64_t mark = 0;  ///< of the steps of all blocks held: equal if they are
+  std::uint64_t mark = 0;  ///< a hash of the steps of all blocks held
 };
 
-/// What an agent holds of whom: one entry for each (agent, incarnation) of the roster, in as many
-/// messages as it takes. Who holds more answers with contributions.
+/// The coverage that an agent holds: one entry for each (agent, incarnation) of the roster, in as
+/// many messages as needed. An agent that holds more answers with contributions.
 struct Digest {
   Header header;
   std::int32_t entry_count = 0;
@@ -94,18 +93,18 @@ const char* to_string(AgentPhase phase);
 struct AgentStatus {
   Header header;
   AgentPhase phase = AgentPhase::kJoining;
-  double ergodic_metric = 0;             ///< φ² as this agent sees it, once answered_tick ≥ 0
+  double ergodic_metric = 0;             ///< φ² of its known coverage, once answered_tick ≥ 0
   double max_staleness_s = 0;            ///< age of the oldest teammate's contribution
   AgentId waiting_for = kUnassigned;     ///< whose block the tick waits for; kWorld: no state comes
   std::int64_t answered_tick = -1;       ///< last tick that got a command
   std::int64_t contributions_received = 0, contributions_lost = 0, messages_sent = 0,
                messages_received = 0;
-  std::int64_t contributions_relayed = 0;  ///< blocks of others that it repeated
-  std::int64_t missed_ticks = 0;         ///< world ticks that came and went without a command
+  std::int64_t contributions_relayed = 0;  ///< blocks of others that it relayed
+  std::int64_t missed_ticks = 0;         ///< world ticks that passed without a command
   RefusalCounts refused{};
-  AgentId babbler = kUnassigned;  ///< the last whose messages were refused as kRate
+  AgentId babbler = kUnassigned;  ///< the last agent whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
-  double loop_lag_s = 0;  ///< the worst since its last status: how late or deaf its process was
+  double loop_lag_s = 0;  ///< the longest delay or busy time of its process since its last status
   std::string host;
 };
 
@@ -120,12 +119,13 @@ struct TeamStatus {
   std::string host;                   ///< the coordinator's
 };
 
-/// Ends a run; final. In order, the coordinator does it for all; at once, everybody who hears it.
+/// Ends a run for good. Without `now` only the coordinator obeys, and ends the mission for all;
+/// with `now` every process that hears it obeys.
 struct Stop {
   Header header;
-  bool failed = false;  ///< whether the mission failed or somebody simply wanted it to end
+  bool failed = false;  ///< whether the mission failed, or was only ended
   std::string reason;
-  bool now = false;     ///< emergency: everybody stands still at once, whoever leads
+  bool now = false;     ///< emergency: all vehicles stand still at once
   Signature signature{};
 };
 
@@ -141,22 +141,22 @@ struct WorldState {
   Header header;
   std::int64_t roster_revision = 0;   ///< that it knew when it first said this tick
   std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
-  std::int64_t skipped_ticks = 0;     ///< real time: ticks given up because the world was held up
+  std::int64_t skipped_ticks = 0;     ///< real time: ticks that a delayed world skipped
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
   std::int32_t part = 0, parts = 1;
   std::int32_t vehicle_count = 0;
   std::array<Vehicle, kMaxVehiclesPerState> vehicles;
 };
 
-/// From tick and position a restarted world knows where it was.
+/// A restarted world learns tick and position from it.
 struct Command {
   Header header;                           ///< header.tick is the tick it answers; −1: none yet
   Eigen::Vector3d position_m{0, 0, 0};     ///< from which it was computed
   Eigen::Vector3d velocity_mps{0, 0, 0};
-  Incarnation asked_by = 0;  ///< the world whose question it answers; 0: it answers a tick
+  Incarnation asked_by = 0;  ///< the world that asked; 0: it answers a tick
 };
 
-/// The logger has everything up to and including header.tick (−1: it is ready).
+/// The logger has recorded all ticks up to and including header.tick (−1: it is ready).
 struct RecordAck {
   Header header;
 };
@@ -170,11 +170,11 @@ using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, Team
 enum class Bus { kSwarm, kWorld, kCommand };
 inline constexpr int kBusCount = 3;
 
-/// What a core wants published.
+/// A message that a core publishes.
 struct Outgoing {
   Bus bus;
   Message message;
-  AgentId relayer = kUnassigned;  ///< who repeats a message of somebody else's, if anybody does
+  AgentId relayer = kUnassigned;  ///< the agent that relays another process's message, if any
 };
 using Outbox = std::vector<Outgoing>;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who hears whom in a simulated world whose radios reach only so far.
+// Which agents hear each other in a simulated world with a limited radio range.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 namespace ergocast {
 
 /// Positions by the newest world state, and the rule that follows: b hears what a transmits while
-/// ‖x_a − x_b‖ ≤ range. Whoever has no position yet, or is no agent, is heard by all.
+/// ‖x_a − x_b‖ ≤ range. All agents hear a process without a known position.
 class RadioRange {
  public:
   /// @param range_m  0: unlimited

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who hears what: the one table that processes and the laboratory go by.
+// Which role hears which messages: the one table that processes and the laboratory use.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ inline constexpr int kRoleCount = 7;
 using MessageTypes = std::uint32_t;
 inline constexpr std::size_t kMessageTypeCount = std::variant_size_v<Message>;
 
-/// Which alternative of Message M is.
+/// The index of M among the alternatives of Message.
 template <class M, std::size_t kFrom = 0>
 constexpr std::size_t type_index() {
   if constexpr (std::is_same_v<M, std::variant_alternative_t<kFrom, Message>>) {
@@ -36,7 +36,7 @@ constexpr std::size_t type_index() {
     return type_index<M, kFrom + 1>();
   }
 }
-/// What Ms are, as a set.
+/// The set of the types Ms.
 template <class... Ms>
 constexpr MessageTypes types_of() {
   MessageTypes types = 0;
@@ -47,7 +47,7 @@ template <class... Ms>
 inline constexpr MessageTypes kTypes = types_of<Ms...>();
 inline constexpr MessageTypes kEveryType = (MessageTypes{1} << kMessageTypeCount) - 1;
 
-/// What somebody hears, by bus.
+/// The messages that one role hears, by bus.
 using Subscriptions = std::array<MessageTypes, kBusCount>;
 using SubscriptionTable = std::array<Subscriptions, kRoleCount>;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every target over every input of its corpus, with the ordinary compiler. Inputs that once broke
 // something stay there.
 #include <gtest/gtest.h>
