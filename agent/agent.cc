@@ -110,7 +110,11 @@ void Agent::join() {
   active_from_ = follower_.entry_of(identity_.incarnation)->active_from;
   table_.emplace(mission.basis, mission.timing.dt_s, active_from_);
   controller_.emplace(mission);
-  if (mission.law.anticipation > 0) forecast_.emplace(mission, self_);
+  if (mission.law.anticipation > 0) {
+    forecast_.emplace(mission, self_);
+  } else {
+    table_->forgo_gains();
+  }
   anti_entropy_.emplace(self_, mission.seed, mission.timing.dt_s);
   radio_ = RadioRange(mission.radio_range_m);
   team_coverage_ = foreseen_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);

@@ -28,8 +28,8 @@ struct Wave {
   }
 };
 
-/// Calls each(m, wave along x, wave along y) for every mode of the axis that has more of them: both axes
-/// in one loop, for neither waits for the other, and the shorter one's tables have room.
+/// Calls each(m, wave along x, wave along y) for every mode of the axis that has more of them: both
+/// axes in one loop, for neither waits for the other, and the shorter one's tables have room.
 template <class Each>
 inline void for_each_mode(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis,
                           const Each& each) {
@@ -80,18 +80,12 @@ void set_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sum
   }
 }
 
-void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums) {
-  accumulate_basis(at, basis, dt_s, {0, basis.mode_count()}, sums);
-}
-
 ERGOCAST_VECTORIZED
-void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes,
-                      double* __restrict sums) {
-  const int end = modes.first + modes.count;
-  for (int m = modes.first / basis.modes_y, k = modes.first; k < end; ++m) {
-    const int row = m * basis.modes_y, row_end = std::min(row + basis.modes_y, end);
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums) {
+  for (int m = 0; m < basis.modes_x; ++m) {
     const double along_x = at.cos_x[m] * dt_s;
-    for (; k < row_end; ++k) sums[k] += along_x * at.cos_y[k - row];
+    double* row = sums + m * basis.modes_y;
+    for (int n = 0; n < basis.modes_y; ++n) row[n] += along_x * at.cos_y[n];
   }
 }
 
@@ -123,13 +117,15 @@ struct ColumnSums {
   BasisAt::Table over_bend, over_slope, over_cos;
 };
 
-/// Adds so many rows from row m on, one after the other. Several at a time: sums are read and written less.
+/// Adds so many rows, from row m on and in this order. By several at a time the sums are read and
+/// written less often.
 template <int kRows>
 ERGOCAST_VECTORIZED_PART void add_rows(const BasisAt& at, const BasisAt::Table& bend,
                                        const Basis& basis, const double* weights, int m,
                                        ColumnSums& __restrict sums) {
   for (int n = 0; n < basis.modes_y; ++n) {
-    double over_bend = sums.over_bend[n], over_slope = sums.over_slope[n], over_cos = sums.over_cos[n];
+    double over_bend = sums.over_bend[n], over_slope = sums.over_slope[n];
+    double over_cos = sums.over_cos[n];
     for (int row = m; row < m + kRows; ++row) {
       const double weight = weights[row * basis.modes_y + n];
       over_bend += bend[row] * weight;

@@ -65,14 +65,6 @@ void set_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sum
 /// sums(m,n) += f_mn · dt_s, for the running sums of (4). `sums` points to mode_count() doubles.
 void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums);
 
-/// Consecutive modes in the order of the wire.
-struct Modes {
-  int first, count;
-};
-/// The same for these modes alone; `sums` still begins with the mode 0, 0.
-void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes,
-                      double* sums);
-
 /// Σ_mn weights(m,n) ∇f_mn: (6) when weights are λ_mn (c_mn − μ_mn) [unit of weights per metre].
 /// `weights` points to mode_count() doubles. The order of the sum is the same on every processor.
 Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights);

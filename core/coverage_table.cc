@@ -91,7 +91,7 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (row == nullptr) return Merge::kRefusedLimit;
   Block& block = row->blocks[static_cast<std::size_t>(theirs.block)];
   if (theirs.steps <= block.steps) return Merge::kStale;
-  const std::int64_t gained_steps = take_gains(theirs, block, *row);
+  const std::int64_t gained_steps = notes_gains_ ? take_gains(theirs, block, *row) : 0;
   block = {theirs.steps, theirs.next_broadcast_tick, theirs.header.sequence, theirs.header.tick,
            gained_steps};
   std::copy(theirs.sums.begin(), theirs.sums.end(), row->sums.begin() + theirs.block * kBlockSize);

@@ -25,6 +25,10 @@ class CoverageTable {
   ///                holder joined, so no block is compared with one said before that tick.
   CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
+  /// From now on nothing is noted of what blocks gain, and view() says that no gains are possible: for
+  /// who does not look ahead.
+  void forgo_gains() { notes_gains_ = false; }
+
   int block_count() const { return block_count_; }
 
   /// Adds an empty row, if `author` has none.
@@ -79,7 +83,8 @@ class CoverageTable {
     const double* sums;         ///< kBlockSize of them [s]
     const double* gains;        ///< sums less those of the block held before [s]
     std::int64_t steps;
-    std::int64_t gained_steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their time
+    std::int64_t gained_steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their time,
+                                ///< or not noted
     Tick tick;                  ///< when it was said
     Tick period;                ///< until its author speaks again, as announced
   };
@@ -130,6 +135,7 @@ class CoverageTable {
   double dt_s_;
   Tick joined_;
   int block_count_;
+  bool notes_gains_ = true;
   std::vector<Row> rows_;  // ascending by author
 };
 

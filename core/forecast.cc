@@ -11,8 +11,10 @@
 namespace ergocast {
 namespace {
 
-// What these functions call sum is a running sum over rows, `before` what it was before this row: it may
-// be the same table. All tables begin with the mode 0, 0.
+using Modes = Forecast::Modes;
+
+// What these functions call sum is a running sum over rows, `before` what it was before this row:
+// it may be the same table. All tables begin with the mode 0, 0.
 
 /// Calls each(k, f dt) for every k of the modes, at the place of these cosines.
 template <class Each>
@@ -26,6 +28,12 @@ ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, int modes_y, double
     for (int n = k - row; n < row_end - row; ++n) each(row + n, along_x * at.cos_y[n]);
     k = row_end;
   }
+}
+
+/// S += f dt.
+ERGOCAST_VECTORIZED
+void add_gain(const CosinesAt& at, int modes_y, double dt_s, Modes modes, double* sums) {
+  for_gains(at, modes_y, dt_s, modes, [=](int k, double gain) { sums[k] += gain; });
 }
 
 /// sum = before + S.
@@ -180,8 +188,8 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
 void Forecast::add_what_is_due(Track& track) const {
   for (std::size_t b = 0; b < track.due.size(); ++b) {
     if (!track.due[b]) continue;
-    accumulate_basis(*track.newest, basis_, dt_s_, modes_of(static_cast<int>(b), 1),
-                     track.sums.data());
+    add_gain(*track.newest, basis_.modes_y, dt_s_, modes_of(static_cast<int>(b), 1),
+             track.sums.data());
     track.due[b] = 0;
   }
 }
@@ -220,7 +228,8 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
   const int first = modes_of(block, 1).first;
-  Term term{said.sums - first, said.gains - first, nullptr, said.steps, 0, said.tick, said.period, 0};
+  Term term{said.sums - first, said.gains - first, nullptr, said.steps, 0,
+            said.tick,         said.period,        0};
   if (!flies_[row] || said.steps == 0) return term;
   term.gained_steps = said.gained_steps;
   Track* track = reckoned_[row];
@@ -282,8 +291,8 @@ void Forecast::add(const Term& term, Modes modes, const double* before, double* 
   }
 }
 
-/// The rows from both ends of the team, and the own one last: core/ideal_team.cc makes all its agents'
-/// sums in this order, with few more additions than one agent's take.
+/// The rows from both ends of the team, and the own one last: core/ideal_team.cc makes all its
+/// agents' sums in this order, with few more additions than one agent's take.
 void Forecast::add_up(Modes modes, double per_second, double* coverage) {
   const double *earlier = nothing_.data(), *later = nothing_.data();
   const auto own = terms_.begin() + before_own_;
@@ -307,7 +316,7 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   }
 }
 
-Modes Forecast::modes_of(int block, int count) const {
+Forecast::Modes Forecast::modes_of(int block, int count) const {
   const int first = block * kBlockSize;
   return {first, std::min(count * kBlockSize, basis_.mode_count() - first)};
 }

@@ -36,6 +36,11 @@ class Forecast {
   /// shorter, so a late block loses none.
   static constexpr Tick kPlacesBeyondPeriod = 64;
 
+  /// Consecutive modes in the order of the wire.
+  struct Modes {
+    int first, count;
+  };
+
   Forecast(const Mission& mission, const Author& self);
 
   /// A vehicle was at `x_m` at `tick`. Without effect: without dead reckoning, for our own vehicle,
@@ -61,7 +66,7 @@ class Forecast {
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
-    std::vector<char> due;     // whether that one counts, but is not in the sums yet
+    std::vector<char> due;                 // whether that one counts, but is not in the sums yet
     std::vector<double> sums;  // with the places; of blocks to which nothing was added, anything
     std::optional<CosinesAt> newest;  // at the newest place, and its tick
     Tick newest_tick = -1;
@@ -95,13 +100,14 @@ class Forecast {
   bool reckons_;
   std::size_t most_places_;
   std::map<AgentId, Track> tracks_;
-  std::vector<Track*> reckoned_;  // per row of the table; null: by its blocks
-  std::vector<char> flies_;       // per row: whether it has a forecast
-  std::vector<Term> terms_;       // of the other rows that count, ascending by author
+  std::vector<Track*> reckoned_;   // per row of the table; null: by its blocks
+  std::vector<char> flies_;        // per row: whether it has a forecast
+  std::vector<Term> terms_;        // of the other rows that count, ascending by author
   std::ptrdiff_t before_own_ = 0;  // so many of them come before the own row
   const double* own_sums_ = nullptr;
-  const std::vector<double> nothing_;
-  std::vector<double> earlier_, later_;  // what the rows before the own one will have covered, and after
+  std::vector<double> nothing_;  // zeros
+  // What the rows before the own one and those after it will have covered.
+  std::vector<double> earlier_, later_;
 };
 
 }  // namespace ergocast

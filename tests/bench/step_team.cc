@@ -50,6 +50,7 @@ StepTeam::StepTeam(int modes_per_axis, int agents, Sight sight)
       teammates_(static_cast<std::size_t>(agents - 1),
                  CoverageTable(mission_.basis, mission_.timing.dt_s)),
       places_m_(static_cast<std::size_t>(agents)) {
+  if (sight == Sight::kKnown) own_.forgo_gains();
   for (AgentId id = 0; id < agents; ++id) roster_.push_back({author_of(id)});
 }
 

@@ -135,6 +135,17 @@ TEST(CoverageTable, LostMessagesAreContainedInTheNext) {
   expect_same(held_after(last), held_after(everything_said()));
 }
 
+TEST(CoverageTable, WithoutGainsItHoldsTheSame) {
+  const std::vector<Contribution> said = everything_said();
+  CoverageTable table = table_of();
+  table.forgo_gains();
+  for (const Contribution& block : said) table.merge(block, kManySteps);
+  expect_same(held(table, kTeam), held_after(said));
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    EXPECT_EQ(table.view(row, 0).gained_steps, 0);
+  }
+}
+
 TEST(CoverageTable, SaysWhetherAMessageWasNews) {
   CoverageTable table = table_of();
   const Contribution older = blocks_of({1, 5}, 3)[0], newer = blocks_of({1, 5}, 4)[0];
