@@ -15,7 +15,7 @@ constexpr auto kCoordinatorPatience = 2s;
 
 }  // namespace
 
-void MissionWatch::receive(const Message& message, Instant now) {
+void MissionWatch::receive(const Message& message, Bus, AgentId, Instant now) {
   if (const auto* team = std::get_if<TeamStatus>(&message)) on(*team, now);
   if (const auto* agent = std::get_if<AgentStatus>(&message)) on(*agent, now);
   if (const auto* part = std::get_if<MissionPart>(&message)) on(*part, now);

@@ -24,13 +24,15 @@ enum class Stage {
 
 class MissionWatch {
  public:
+  static constexpr Role kRole = Role::kLauncher;
+
   MissionWatch(RunId run, const Timing& timing, ProgressDisplay& display)
       : run_(run), timing_(timing), display_(display) {
     progress_.tick_count = timing.tick_count;
     progress_.dt_s = timing.dt_s;
   }
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   Stage stage() const { return stage_; }
   /// Whether the coordinator has said that the mission failed; and why it ended, in any case.

@@ -40,7 +40,9 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(options_, [this](const Message& message) { hear(message); });
+    auto opened = listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+      hear(message, bus, transmitter);
+    });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -58,10 +60,12 @@ class Listener {
   const Transport& transport() const { return *transport_; }
 
  private:
-  void hear(const Message& message) {
+  void hear(const Message& message, Bus bus, AgentId transmitter) {
     const RunId run = header_of(message).run;
     if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
-    runs_.try_emplace(run, run, decode_plan, since_, options_.seal.keyed()).first->second.receive(message, now());
+    TeamView& view =
+        runs_.try_emplace(run, run, decode_plan, since_, options_.seal.keyed()).first->second;
+    view.receive(message, bus, transmitter, now());
   }
 
   const StatusOptions& options_;

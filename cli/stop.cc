@@ -48,7 +48,9 @@ class Stopping {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(options_, [this](const Message& message) { hear(message); });
+    auto opened = listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+      hear(message, bus, transmitter);
+    });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -69,11 +71,11 @@ class Stopping {
   }
 
  private:
-  void hear(const Message& message) {
+  void hear(const Message& message, Bus bus, AgentId transmitter) {
     const RunId run = header_of(message).run;
     if (run == 0) return;
     if (runs_.size() < kMostRuns || runs_.contains(run)) {
-      runs_[run].receive(message, now());
+      runs_[run].receive(message, bus, transmitter, now());
     } else if (crowd_.size() < kMostInATurn) {
       crowd_.insert(run);
     }

@@ -22,13 +22,12 @@ std::string name_of(AgentId sender) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
-    const BusOptions& options, std::function<void(const Message&)> hear) {
-  return Transport::open(
-      options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
-      {.on_message = [hear = std::move(hear)](const Message& message, AgentId) { hear(message); }});
+    const BusOptions& options, Hear hear) {
+  return Transport::open(options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
+                         {.on_message = std::move(hear)});
 }
 
-void RunHeard::receive(const Message& message, Instant now) {
+void RunHeard::receive(const Message& message, Bus, AgentId, Instant now) {
   const Header& from = header_of(message);
   tick_ = std::max(tick_, from.tick);
   if (const auto* part = std::get_if<MissionPart>(&message)) {

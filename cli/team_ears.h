@@ -21,14 +21,19 @@ namespace ergocast::cli {
 /// Runs on one URL that are told apart.
 inline constexpr std::size_t kMostRuns = 16;
 
+/// Told what is heard, on which bus and from whom.
+using Hear = std::function<void(const Message&, Bus, AgentId transmitter)>;
+
 /// Hears all that tells how teams are. An error says why LCM cannot be used.
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
-    const BusOptions& options, std::function<void(const Message&)> hear);
+    const BusOptions& options, Hear hear);
 
 /// What was heard of one run.
 class RunHeard {
  public:
-  void receive(const Message& message, Instant now);
+  static constexpr Role kRole = Role::kMonitor;
+
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   /// Whether the coordinator, or who repeats its words, says that the mission is over.
   bool over() const { return over_; }

@@ -43,7 +43,7 @@ TeamView::TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authe
       follower_(std::move(decode_plan)),
       since_(since) {}
 
-void TeamView::receive(const Message& message, Instant now) {
+void TeamView::receive(const Message& message, Bus, AgentId, Instant now) {
   const Header& from = header_of(message);
   tick_ = std::max(tick_, from.tick);
   if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);

@@ -10,6 +10,7 @@
 #include "core/ids.h"
 #include "team/messages.h"
 #include "team/mission_follower.h"
+#include "team/subscriptions.h"
 
 namespace ergocast {
 
@@ -65,12 +66,14 @@ struct TeamPicture {
 
 class TeamView {
  public:
+  static constexpr Role kRole = Role::kMonitor;
+
   /// @param since  when the listening began
   /// @param authenticated  whether what it receives was checked with the team's key
   TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated = false);
 
   /// @pre the message is of this view's run
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   TeamPicture picture(Instant now) const;
 

@@ -50,7 +50,7 @@ Coordinator::Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode
   ERGOCAST_REQUIRE(mission_ || takeover == Takeover::kMust);
 }
 
-void Coordinator::receive(const Message& message, Instant now) {
+void Coordinator::receive(const Message& message, Bus, AgentId, Instant now) {
   const Header& from = header_of(message);
   const auto* status = std::get_if<AgentStatus>(&message);
   const bool flying = status != nullptr && (status->phase == AgentPhase::kWaiting ||

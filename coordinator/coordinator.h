@@ -16,6 +16,7 @@
 #include "team/messages.h"
 #include "core/mission.h"
 #include "team/mission_follower.h"
+#include "team/subscriptions.h"
 
 namespace ergocast {
 
@@ -40,11 +41,13 @@ struct CoordinatorIdentity {
 
 class Coordinator {
  public:
+  static constexpr Role kRole = Role::kCoordinator;
+
   /// @param plan  the compiled plan as it travels; may be empty with kMust: any mission's
   Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode_plan,
               std::vector<std::byte> plan, Takeover takeover = Takeover::kNever);
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 

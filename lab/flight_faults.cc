@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "team/silence.h"
+#include "team/liveness.h"
 #include "lab/flight.h"
 
 namespace ergocast::lab {

@@ -11,7 +11,7 @@ Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanD
       speed_limit_mps_(speed_limit_mps),
       follower_(std::move(decode_plan)) {}
 
-void Driver::receive(const Message& message, Instant now) {
+void Driver::receive(const Message& message, Bus, AgentId, Instant now) {
   if (finished_ || (run_ != 0 && header_of(message).run != run_)) return;
   if (const auto* command = std::get_if<Command>(&message)) return on(*command);
   if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);

@@ -15,17 +15,20 @@
 #include "core/ids.h"
 #include "team/messages.h"
 #include "team/mission_follower.h"
+#include "team/subscriptions.h"
 #include "examples/driver/robot.h"
 
 namespace ergocast::example {
 
 class Driver {
  public:
+  static constexpr Role kRole = Role::kDriver;
+
   /// @param run              0: the first mission heard
   /// @param speed_limit_mps  of the robots
   Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan);
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const { return running_ && !finished_ ? next_tick_ : Instant::max(); }
 
