@@ -19,7 +19,10 @@ std::optional<Arrival> Participant::accept(const Message& message, Bus bus, Agen
   const auto* part = std::get_if<MissionPart>(&message);
   // Teammates repeat MISSION in the coordinator's name, also after its death.
   const bool is_sign = part == nullptr || coordinator_sign() == CoordinatorSign::kMission;
-  arrival.fresh = transmitter == from.sender && liveness_.record(from, bus, now, is_sign);
+  // Who asks to be admitted is nobody yet, and a stranger could ask in any number of lives.
+  const bool asks = std::holds_alternative<Hello>(message) && from.sender >= kUnassigned;
+  const bool direct = transmitter == from.sender;
+  arrival.fresh = direct && !asks && liveness_.record(from, bus, now, is_sign);
   if (part != nullptr) follow(*part, arrival);
   return arrival;
 }

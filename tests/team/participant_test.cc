@@ -113,6 +113,28 @@ TEST(Participant, OnlyWhatItsSenderSaysForTheFirstTimeIsFresh) {
   EXPECT_EQ(agent.liveness().last_sign(author_of(1)), at(2s));
 }
 
+TEST(Participant, AHelloOfAnAgentIsNoSignOfLife) {
+  Participant coordinator = participant(Role::kCoordinator);
+  for (const AgentId sender : {kUnassigned, 3}) {
+    const auto arrival = accept(coordinator, Hello{{kRun, sender, 7, 1, 0}, 3, "there", "1", -1});
+    ASSERT_TRUE(arrival);
+    EXPECT_FALSE(arrival->fresh);
+    EXPECT_FALSE(coordinator.liveness().last_sign({sender, 7}));
+  }
+  Participant agent = participant(Role::kAgent);
+  const auto question = accept(agent, Hello{{kRun, kWorld, kWorldLife, 1, -1}, kUnassigned, "", "", -1});
+  EXPECT_TRUE(question && question->fresh) << "it asks what the team knows, and is to be answered once";
+}
+
+TEST(Participant, WhoWasNotToSpeakYetIsNotSilent) {
+  Participant agent = participant(Role::kAgent);
+  EXPECT_TRUE(agent.silent(kWorld, at(10s)));
+  EXPECT_FALSE(agent.silent(kWorld, at(12999ms), at(10s)));
+  EXPECT_TRUE(agent.silent(kWorld, at(13s), at(10s)));
+  accept(agent, world_state(0, {{1, 1}}), at(11s));
+  EXPECT_FALSE(agent.silent(kWorld, at(13999ms), at(10s)));
+}
+
 TEST(Participant, KnowsMembersUnderTheirOwnNumbersOnly) {
   Participant agent = participant(Role::kAgent);
   accept(agent, mission_part(0, MissionState::kWaiting, roster_of(2)));
