@@ -24,8 +24,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// MISSION comes once a second, and twice means that a lost one was made up for.
-constexpr auto kPatience = 2500ms;
+/// Longer than anybody may say nothing without being silent.
+constexpr auto kPatience = 3500ms;
 constexpr auto kTurn = 50ms;
 constexpr auto kLastWord = 1s;
 

@@ -64,7 +64,7 @@ class Stopping {
     }
     if (runs_.size() > 1 && !options_.at_once) return choose();
     if (runs_.empty() && options_.run == 0) return nobody();
-    if (options_.run != 0) runs_[options_.run];
+    if (options_.run != 0) runs_.try_emplace(options_.run, options_.run);
     if (!options_.at_once) transport_->set_run(runs_.begin()->first);
     since_ = now();
     return insist();
@@ -75,7 +75,7 @@ class Stopping {
     const RunId run = header_of(message).run;
     if (run == 0) return;
     if (runs_.size() < kMostRuns || runs_.contains(run)) {
-      runs_[run].receive(message, bus, transmitter, now());
+      runs_.try_emplace(run, run).first->second.receive(message, bus, transmitter, now());
     } else if (crowd_.size() < kMostInATurn) {
       crowd_.insert(run);
     }
@@ -103,7 +103,7 @@ class Stopping {
       if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
       for (const auto& [run, word] : words) {
         if (codes.contains(run)) continue;
-        if (const auto code = verdict(runs_[run])) codes[run] = *code;
+        if (const auto code = verdict(runs_.at(run))) codes[run] = *code;
       }
     } while (codes.size() < runs_.size());
     if (crowded_) {

@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "team/freshness.h"
 #include "core/ids.h"
 #include "team/messages.h"
+#include "team/participant.h"
 #include "runtime/node.h"
 #include "runtime/transport.h"
 
@@ -33,14 +33,16 @@ class RunHeard {
  public:
   static constexpr Role kRole = Role::kMonitor;
 
+  explicit RunHeard(RunId run);
+
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   /// Whether the coordinator, or who repeats its words, says that the mission is over.
   bool over() const { return over_; }
   const std::string& reason() const { return reason_; }
   Tick tick() const { return tick_; }
-  bool unheard() const { return agents_.empty() && processes_.empty() && !over_; }
-  bool coordinator_heard() const { return processes_.contains(kCoordinator); }
+  bool unheard() const;
+  bool coordinator_heard() const { return heard(kCoordinator); }
   bool world_heard() const { return world_tick_ >= 0; }
   /// Whether no vehicle moved in the newest state of the world; true if none was heard.
   bool stands_still() const;
@@ -52,13 +54,17 @@ class RunHeard {
   int agents() const { return static_cast<int>(agents_.size()); }
 
  private:
-  struct Seen {
-    Instant heard{};
-    bool finished = false;
-  };
-  Freshness freshness_;
-  std::map<Author, Seen> agents_;
-  std::map<AgentId, Instant> processes_;
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const AgentStatus& status, const Arrival& arrival);
+  void on(const WorldState& world, const Arrival& arrival);
+  bool heard(AgentId process) const {
+    return me_.liveness().last_sign_of_kind(process).has_value();
+  }
+
+  Participant me_;
+  std::map<Author, bool> agents_;  // whether it has said that it has finished
   std::map<AgentId, Eigen::Vector3d> velocities_mps_;  // in the newest state
   Tick tick_ = 0, world_tick_ = -1;
   bool over_ = false;  // says the coordinator

@@ -12,7 +12,7 @@ using namespace test;
 
 TeamStatus coordinator_at(Tick tick) {
   TeamStatus team;
-  team.header = {kRun, kCoordinator, kCoordinatorLife, 1, tick};
+  team.header = {kRun, kCoordinator, kCoordinatorLife, next_sequence(), tick};
   team.state = MissionState::kRunning;
   team.tick_count = 100;
   team.host = "base";
@@ -33,7 +33,7 @@ class TeamViewTest : public ::testing::Test {
   void hear_processes(Instant now, Tick tick = 0) {
     give(view_, coordinator_at(tick), now);
     give(view_, world_state(tick, {{1, 1}}), now);
-    give(view_, RecordAck{{kRun, kLogger, kLoggerLife, 1, tick}}, now);
+    give(view_, RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), tick}}, now);
   }
   AgentStatus status(AgentId id, std::int64_t sequence, Tick tick = 0) const {
     AgentStatus status = status_of(id, sequence, tick);
@@ -120,7 +120,8 @@ TEST_F(TeamViewTest, WhoSaysNothingIsLateThenSilentAndStandsFirst) {
   for (const auto time : {0s, 1s, 2s, 3s}) hear_all(at(time), 0, time > 0s ? 2 : kUnassigned);
   EXPECT_EQ(condition(2, at(900ms)), Condition::kOk);
   EXPECT_EQ(condition(2, at(1s)), Condition::kLate);
-  EXPECT_EQ(condition(2, at(2s)), Condition::kSilent);
+  EXPECT_EQ(condition(2, at(2999ms)), Condition::kLate);
+  EXPECT_EQ(condition(2, at(3s)), Condition::kSilent);
   const TeamPicture picture = view_.picture(at(3s));
   EXPECT_EQ(picture.agents.front().author.agent, 2);
   EXPECT_EQ(picture.agents.front().silent_s, 3);
@@ -132,10 +133,10 @@ TEST_F(TeamViewTest, WhoSaysNothingIsLateThenSilentAndStandsFirst) {
 TEST_F(TeamViewTest, AMemberThatWasNeverHeardIsSilentSinceWeListen) {
   hear_mission(at(0s));
   hear_all(at(2s), 0, 3);
-  EXPECT_EQ(condition(3, at(1900ms)), Condition::kUnheard);
-  EXPECT_EQ(condition(3, at(2s)), Condition::kSilent);
-  EXPECT_FALSE(row(3, at(2s)).status);
-  EXPECT_EQ(row(3, at(2500ms)).silent_s, 2.5);
+  EXPECT_EQ(condition(3, at(2900ms)), Condition::kUnheard);
+  EXPECT_EQ(condition(3, at(3s)), Condition::kSilent);
+  EXPECT_FALSE(row(3, at(3s)).status);
+  EXPECT_EQ(row(3, at(3500ms)).silent_s, 3.5);
 }
 
 TEST_F(TeamViewTest, AReplayKeepsNobodyAlive) {
@@ -226,7 +227,7 @@ TEST_F(TeamViewTest, AProcessThatFallsSilentIsTrouble) {
       if (silent != kCoordinator || time == 0s) give(view, coordinator_at(0), at(time));
       if (silent != kWorld || time == 0s) give(view, world_state(0, {{1, 1}}), at(time));
       if (silent != kLogger || time == 0s)
-        give(view, RecordAck{{kRun, kLogger, 1, 1, 0}}, at(time));
+        give(view, RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), 0}}, at(time));
     }
     const TeamPicture picture = view.picture(at(3s));
     EXPECT_TRUE(picture.trouble) << silent;
