@@ -5,13 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <utility>
 
-#include "core/noise.h"
 #include "core/require.h"
-#include "team/silence.h"
 
 namespace ergocast {
 namespace {
@@ -23,15 +20,6 @@ constexpr auto kHelloPeriod = 250ms;
 constexpr auto kHelloGap = 10ms;
 /// This often in mission time too, so that a fast lockstep run is not left alone.
 constexpr double kStatusMissionPeriod_s = 1.0;
-constexpr auto kDigestPeriod = 1s;
-constexpr double kDigestMissionPeriod_s = 1.0;
-/// Whoever asks for the mission gets it from one of us, after a random share of this; and from each
-/// of us at most so often, or where an old one is heard, which may be a recording, so often.
-constexpr auto kLongestRepeatDelay = 50ms;
-constexpr auto kAnswerGap = 100ms;
-constexpr auto kCorrectionGap = 500ms;
-/// A world that says nothing for so long is worth a word.
-constexpr auto kWorldSilence = 1s;
 /// How far ahead of us a teammate's coverage may be before it counts as forged.
 constexpr double kLead_s = 60;
 constexpr Tick kLeadTicks = 64;
@@ -39,463 +27,323 @@ constexpr Tick kLeadTicks = 64;
 /// who is not deceived by repeats of what a dead one said, would have admitted us by then.
 constexpr auto kRivalPatience = 5s;
 
+const Coefficients kNoCoverage;
+
 }  // namespace
 
-Agent::Agent(AgentIdentity identity, PlanDecoder decode_plan)
-    : identity_(std::move(identity)), follower_(std::move(decode_plan)) {
-  ERGOCAST_REQUIRE(identity_.incarnation != 0);
-  self_ = {identity_.requested_id, identity_.incarnation};
-  last_command_.header.tick = command_before_.header.tick = -1;
-}
-
-void Agent::receive(const Message& message, Instant now, AgentId transmitter) {
-  const Header& from = header_of(message);
-  if (finished() || from.incarnation == identity_.incarnation) return;
-  if (identity_.run != 0 && from.run != identity_.run) return count_refused(Refusal::kRun);
-  if (!radio_.hears(self_.agent, transmitter)) return;
-  ++received_;
-  if (const auto* m = std::get_if<Contribution>(&message)) return on(*m, transmitter, now);
-  if (const auto* m = std::get_if<WorldState>(&message)) return on(*m, now);
-  if (const auto* m = std::get_if<Digest>(&message)) return on(*m, now);
-  if (const auto* m = std::get_if<Hello>(&message)) return on(*m, now);
-  if (const auto* m = std::get_if<MissionPart>(&message)) return on(*m, now);
-  if (const auto* m = std::get_if<AgentStatus>(&message)) return on(*m, now);
-  // Of a run that it does not know, it may be the end of a former one, said again.
-  if (const auto* m = std::get_if<Stop>(&message); m && identity_.run != 0) return on(*m);
-}
-
-void Agent::on(const MissionPart& part, Instant now) {
-  if (identity_.run == 0) identity_.run = part.header.run;
-  if (freshness_.is_news(part.header)) coordinator_heard_ = now;
-  // Said by somebody else; or by one who has not heard of what came later, or will not be heard.
-  // That is believed twice only: it may be a recording of one part.
-  if (part.revision >= follower_.revision() && mission_repeat_ && ++repeats_left_to_others_ <= 2) {
-    mission_repeat_.reset();
-  }
-  if (part.revision < follower_.revision()) plan_mission_repeat(now, kCorrectionGap);
-  const std::int64_t foreign_plans = follower_.foreign_plans();
-  const std::int64_t heard_before = follower_.newest_heard();
-  const bool news = follower_.receive(part);
-  if (follower_.newest_heard() > heard_before) {
-    next_hello_ = std::min(next_hello_, std::max(now, last_hello_ + kHelloGap));
-  }
-  if (follower_.foreign_plans() != foreign_plans) count_refused(Refusal::kRange);
-  if (!news) return;
-  if (follower_.plan_problem()) return finish(true, *follower_.plan_problem());
-  if (follower_.over()) {
-    return finish(follower_.state() == MissionState::kFailed, follower_.reason());
-  }
-  const RosterEntry* own = follower_.entry_of(identity_.incarnation);
-  if (own == nullptr) return;
-  if (evicted(std::max<Tick>(tick_, 0))) return;
-  if (phase_ == AgentPhase::kJoining) {
-    self_ = own->author;
-    join();
-  }
-  if (phase_ == AgentPhase::kWaiting && follower_.state() == MissionState::kRunning) {
-    phase_ = AgentPhase::kRunning;
-    world_heard_ = now;
-  }
-}
-
-bool Agent::evicted(Tick tick) {
-  const RosterEntry* own = follower_.entry_of(identity_.incarnation);
-  if (own == nullptr || own->active_until < 0 || own->active_until > tick) return false;
-  finish(true, "evicted from the roster at tick " + std::to_string(own->active_until));
-  return true;
-}
-
-void Agent::join() {
-  const Mission& mission = *follower_.mission();
-  active_from_ = follower_.entry_of(identity_.incarnation)->active_from;
-  table_.emplace(mission.basis, mission.timing.dt_s, active_from_);
-  controller_.emplace(mission);
+Agent::InMission::InMission(const Mission& mission, const Author& self, Tick joined)
+    : active_from(joined),
+      table(mission.basis, mission.timing.dt_s, joined),
+      controller(mission),
+      anti_entropy(self, mission.seed, mission.timing.dt_s),
+      foreseen(Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y)),
+      team_coverage(foreseen) {
   if (mission.law.anticipation > 0) {
-    forecast_.emplace(mission, self_);
+    forecast.emplace(mission, self);
   } else {
-    table_->forgo_gains();
+    table.forgo_gains();
   }
-  anti_entropy_.emplace(self_, mission.seed, mission.timing.dt_s);
-  radio_ = RadioRange(mission.radio_range_m);
-  team_coverage_ = foreseen_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
-  table_->add_row(self_);  // before any other incarnation could take its place
-  published_.resize(static_cast<std::size_t>(table_->block_count()));
-  phase_ = AgentPhase::kWaiting;
+  table.add_row(self);  // before any other incarnation could take its place
+  published.resize(static_cast<std::size_t>(table.block_count()));
+  last_command.header.tick = command_before.header.tick = -1;
 }
 
-/// Whose word it is, if it is that of a member, present or former, under its own number.
-const RosterEntry* Agent::member(const Header& from) const {
-  const RosterEntry* entry = follower_.entry_of(from.incarnation);
-  return entry != nullptr && entry->author.agent == from.sender ? entry : nullptr;
+Agent::Agent(AgentIdentity identity, PlanDecoder decode_plan)
+    : me_(kRole, {identity.run, identity.requested_id, identity.incarnation}, std::move(decode_plan)),
+      requested_id_(identity.requested_id),
+      version_(std::move(identity.version)),
+      mission_repeat_(identity.incarnation) {
+  ERGOCAST_REQUIRE(identity.incarnation != 0);
+  status_.host = std::move(identity.host);
 }
 
-std::int64_t Agent::most_steps(const RosterEntry& author, Instant now) const {
-  const Timing& timing = follower_.mission()->timing;
+void Agent::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  // What is out of range is not heard at all.
+  if (finished() || !radio_.hears(me_.id(), transmitter)) return;
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
+}
+
+const Agent::InMission* Agent::flight() const {
+  const auto* end = std::get_if<Finished>(&state_);
+  if (end == nullptr) return std::get_if<InMission>(&state_);
+  return end->mission ? &*end->mission : nullptr;
+}
+
+// ---- the mission ---------------------------------------------------------------------------------
+
+void Agent::on(const MissionPart& part, const Arrival& arrival) {
+  mission_repeat_.overheard(part.revision, follower().revision(), arrival.now, me_.received());
+  if (follower().newest_heard() > hellos_.revision) {
+    hellos_.next = std::min(hellos_.next, std::max(arrival.now, hellos_.last + kHelloGap));
+  }
+  if (!arrival.mission_changed) return;
+  if (follower().plan_problem()) return finish(true, *follower().plan_problem());
+  if (follower().over()) {
+    return finish(follower().state() == MissionState::kFailed, follower().reason());
+  }
+  const RosterEntry* own = own_entry();
+  if (own == nullptr) return;
+  if (const auto why = evicted(std::max<Tick>(tick(), 0))) return finish(true, *why);
+  if (std::holds_alternative<Joining>(state_)) {
+    me_.set_id(own->author.agent);
+    radio_ = RadioRange(mission().radio_range_m);
+    state_.emplace<InMission>(mission(), me_.author(), own->active_from);
+  }
+  std::optional<Instant>& running_since = in_mission()->running_since;
+  if (!running_since && follower().state() == MissionState::kRunning) running_since = arrival.now;
+}
+
+/// Why it is no member at `tick` any more, if so.
+std::optional<std::string> Agent::evicted(Tick tick) const {
+  const RosterEntry* own = own_entry();
+  if (own == nullptr || own->active_until < 0 || own->active_until > tick) return std::nullopt;
+  return "evicted from the roster at tick " + std::to_string(own->active_until);
+}
+
+void Agent::on(const Hello& hello, const Arrival& arrival) {
+  if (!me_.knows_mission() || !arrival.fresh) return;
+  InMission* const flight = in_mission();
+  if (hello.header.sender == kWorld && flight) flight->world_asks = hello.header.incarnation;
+  const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
+  if (knows_no_mission) mission_repeat_.asked(arrival.now, me_.received());
+}
+
+void Agent::on(const AgentStatus& status, const Arrival& arrival) {
+  auto* const joining = std::get_if<Joining>(&state_);
+  const bool rivals = joining != nullptr && requested_id_ != kUnassigned && arrival.fresh &&
+                      status.header.sender == requested_id_;
+  if (!rivals) return;
+  if (!joining->rival_since) joining->rival_since = arrival.now;
+  if (arrival.now - *joining->rival_since < kRivalPatience) return;
+  finish(true, "agent " + std::to_string(requested_id_) + " is already running on " + status.host +
+                   ": choose another id, or none");
+}
+
+void Agent::on(const Stop& stop, const Arrival&) {
+  // Of a run that it does not know, it may be the end of a former one, said again. In order, the
+  // coordinator ends the mission for all of us.
+  if (me_.run() == 0 || !stop.now) return;
+  finish(stop.failed, stop.reason, phase() == AgentPhase::kRunning && tick() >= 0);
+}
+
+// ---- what teammates and the world say ------------------------------------------------------------
+
+std::int64_t Agent::most_steps(const InMission& flight, const RosterEntry& author, Instant now) const {
+  const Timing& timing = mission().timing;
+  const Tick tick = flight.step.tick;
   Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
-  if (timing.pace == Pace::kRealtime && tick_ >= 0) {
+  if (timing.pace == Pace::kRealtime && tick >= 0) {
     // Others have gone on while we heard nothing of the world; twice, for clocks that differ.
-    const double unheard_s = std::chrono::duration<double>(now - world_heard_).count();
+    const Instant heard = std::max(flight.running_since.value_or(Instant{}),
+                                   me_.liveness().last_sign_of_kind(kWorld).value_or(Instant{}));
+    const double unheard_s = std::chrono::duration<double>(now - heard).count();
     lead += static_cast<Tick>(2 * unheard_s * timing.realtime_factor / timing.dt_s);
   }
-  const Tick current = tick_ + 1;
+  const Tick current = tick + 1;
   return lead + (author.active_until < 0 ? current : std::min(current, author.active_until + 1));
 }
 
-void Agent::on(const Contribution& theirs, AgentId transmitter, Instant now) {
-  if (!table_) return;
-  const RosterEntry* entry = member(theirs.header);
+void Agent::on(const Contribution& theirs, const Arrival& arrival) {
+  InMission* const flight = in_mission();
+  if (flight == nullptr) return;
+  const RosterEntry* entry = me_.member(theirs.header);
   if (entry == nullptr) return;  // nobody we know of yet
-  if (transmitter == theirs.header.sender) {
-    hearing_.count(theirs.header);
-  } else {
-    anti_entropy_->on_relayed(theirs, *table_);
+  if (arrival.transmitter != theirs.header.sender) {
+    flight->anti_entropy.on_relayed(theirs, flight->table);
   }
-  ++contributions_received_;
-  const std::int64_t max_steps = most_steps(*entry, now);
-  if (tick_ < 0 && theirs.steps > max_steps) return;  // we do not know yet how late it is
-  switch (table_->merge(theirs, max_steps)) {
+  ++status_.contributions_received;
+  const std::int64_t max_steps = most_steps(*flight, *entry, arrival.now);
+  // We do not know yet how late it is.
+  if (flight->step.tick < 0 && theirs.steps > max_steps) return;
+  switch (flight->table.merge(theirs, max_steps)) {
     case Merge::kRefusedRange: return count_refused(Refusal::kRange);
     case Merge::kRefusedLimit: return count_refused(Refusal::kLimit);
-    case Merge::kNewer: return hearing_.news(theirs.author(), tick_);
+    case Merge::kNewer: flight->news[theirs.author()] = flight->step.tick; return;
     case Merge::kStale: return;
   }
 }
 
-void Agent::on(const Digest& theirs, Instant now) {
-  if (!table_ || member(theirs.header) == nullptr) return;
-  hearing_.count(theirs.header);
-  if (!freshness_.is_news(theirs.header)) return;
-  anti_entropy_->on(theirs, *table_, follower_.roster(), now, tick_);
+void Agent::on(const Digest& theirs, const Arrival& arrival) {
+  InMission* const flight = in_mission();
+  if (flight == nullptr || !arrival.fresh || me_.member(theirs.header) == nullptr) return;
+  flight->anti_entropy.on(theirs, flight->table, follower().roster(), arrival.now, flight->step.tick);
 }
 
-void Agent::on(const Hello& hello, Instant now) {
-  if (!follower_.mission()) return;
-  if (!freshness_.is_news(hello.header)) return;
-  if (hello.header.sender == kWorld && table_) world_asks_ = hello.header.incarnation;
-  const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
-  if (knows_no_mission) plan_mission_repeat(now, kAnswerGap);
-}
-
-void Agent::plan_mission_repeat(Instant now, PacingClock::duration gap) {
-  if (mission_repeat_) return;
-  if (mission_repeated_ && now - *mission_repeated_ < gap) return;
-  const double share = uniform_pair(identity_.incarnation, Purpose::kAnswer, 0,
-                                    static_cast<std::uint64_t>(received_)).x();
-  mission_repeat_ = now + std::chrono::duration_cast<PacingClock::duration>(share * kLongestRepeatDelay);
-}
-
-void Agent::on(const AgentStatus& status, Instant now) {
-  if (table_ && member(status.header) != nullptr) hearing_.count(status.header);
-  if (phase_ != AgentPhase::kJoining || identity_.requested_id == kUnassigned ||
-      status.header.sender != identity_.requested_id || !freshness_.is_news(status.header)) {
-    return;
-  }
-  if (!rival_since_) rival_since_ = now;
-  if (now - *rival_since_ >= kRivalPatience) {
-    finish(true, "agent " + std::to_string(identity_.requested_id) + " is already running on " +
-                     status.host + ": choose another id, or none");
-  }
-}
-
-void Agent::on(const WorldState& world, Instant now) {
-  if (!follower_.mission() || phase_ == AgentPhase::kJoining) return;
-  const bool is_news = freshness_.is_news(world.header);
-  if (is_news) world_heard_ = now;
+void Agent::on(const WorldState& world, const Arrival& arrival) {
+  InMission* const flight = in_mission();
+  if (flight == nullptr) return;
+  Step& step = flight->step;
   radio_.on(world);
-  if (forecast_ && world.header.tick >= active_from_) note_places(world);
+  if (flight->forecast && world.header.tick >= flight->active_from) note_places(*flight, world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    if (vehicle.id != self_.agent) continue;
+    if (vehicle.id != me_.id()) continue;
     // From before we were admitted, repeated for the logger: our predecessor drove then.
-    if (world.header.tick < active_from_ && vehicle.answered_tick > answered_tick_) return;
-    if (!follower_.mission()->domain.contains(vehicle.position_m.head<2>())) {
+    if (world.header.tick < flight->active_from && vehicle.answered_tick > step.answered) return;
+    if (!mission().domain.contains(vehicle.position_m.head<2>())) {
       return count_refused(Refusal::kRange);
     }
-    const Tick newest = pending_ ? pending_->tick : tick_;
+    const Tick newest = flight->pending ? flight->pending->tick : step.tick;
     if (world.header.tick < newest) return;
-    if (world.header.tick == tick_) {
-      repeat_wanted_ = repeat_wanted_ || is_news;
+    if (world.header.tick == step.tick) {
+      step.repeat_wanted = step.repeat_wanted || arrival.fresh;
       return;
     }
-    pending_ = WorldView{world.header.tick, world.roster_revision, vehicle.position_m};
+    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.position_m};
   }
 }
 
-/// Where the others are, as far as they are heard. Nobody drives a vehicle whose answers have stopped
-/// for as long as the world goes on with an old one; in lockstep the world waits for them.
-void Agent::note_places(const WorldState& world) {
-  const Timing& timing = follower_.mission()->timing;
-  const Tick tick = world.header.tick;
-  if (tick > places_tick_) {
-    places_tick_ = tick;
-    places_parts_.reset();
-  }
-  if (tick == places_tick_ && static_cast<std::size_t>(world.part) < places_parts_.size()) {
-    places_parts_.set(static_cast<std::size_t>(world.part));
-    places_wanted_ = static_cast<std::size_t>(world.parts);
-  }
-  const auto hold = static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
-  for (int i = 0; i < world.vehicle_count; ++i) {
-    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    if (!radio_.hears(self_.agent, vehicle.id)) continue;
-    if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
-    forecast_->see(vehicle.id, tick, vehicle.position_m.head<2>());
-  }
-}
-
-void Agent::on(const Stop& stop) {
-  if (!stop.now) return;  // the coordinator ends the mission for all of us
-  halted_ = phase_ == AgentPhase::kRunning && tick_ >= 0;
-  finish(stop.failed, stop.reason);
-}
+// ---- acting --------------------------------------------------------------------------------------
 
 void Agent::advance(Instant now, Outbox& out) {
-  // A coordinator that was restarted may not know of us any more: then we ask again.
-  const bool may_ask = !finished() && identity_.run != 0 && !admitted();
-  if (may_ask && now >= next_hello_) {
-    last_hello_ = now;
-    next_hello_ = now + kHelloPeriod;
-    const Hello hello{{}, self_.agent, identity_.host, identity_.version, follower_.newest_heard()};
-    publish(Bus::kSwarm, hello, 0, out);
+  ask_for_admission(now, out);
+  if (phase() == AgentPhase::kRunning) fly(*in_mission(), now, out);
+  if (!finished() && mission_repeat_.due(now)) repeat_mission(now, out);
+  if (InMission* const flight = in_mission()) {
+    help_others(*flight, now, out);
+    if (flight->next_status.due(now, flight->step.tick)) publish_status(*flight, now, out);
   }
-  if (phase_ == AgentPhase::kRunning) {
-    if (pending_) begin_tick(now, out);
-    if (repeat_wanted_) repeat(out);
-    if (phase_ == AgentPhase::kRunning && answered_tick_ < tick_ && may_answer()) answer(out);
+  if (auto* const end = std::get_if<Finished>(&state_)) {
+    std::move(end->last_words.begin(), end->last_words.end(), std::back_inserter(out));
+    end->last_words.clear();
   }
-  if (phase_ == AgentPhase::kRunning && stalled(now)) {
-    stalled_said_ = now;
-    broadcast(out);
-  }
-  if (phase_ == AgentPhase::kRunning && abandoned(now)) {
-    finish(true, "neither the world nor the coordinator can be heard, and the mission must be over by "
-                 "now: check this host's network");
-  }
-  if (halted_) stand_still(out);
-  if (!finished() && mission_repeat_ && now >= *mission_repeat_) repeat_mission(now, out);
-  // Nobody can tell two joining processes apart by an id that neither has been given.
-  if (!table_) return;
-  if (!finished()) help_others(now, out);
-  if (next_status_.due(now, tick_)) publish_status(now, out);
 }
 
-void Agent::help_others(Instant now, Outbox& out) {
-  if (world_asks_) tell_world(out);
-  for (Contribution& block : anti_entropy_->answers_due(*table_, now, tick_)) {
-    block.header.run = identity_.run;
-    out.push_back({Bus::kSwarm, block, self_.agent});
-  }
-  if (!next_digest_.due(now, tick_)) return;
-  const double dt_s = follower_.mission()->timing.dt_s;
-  next_digest_ = Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, dt_s, tick_);
-  for (const Digest& digest : AntiEntropy::digests(*table_, follower_.roster())) {
-    publish(Bus::kSwarm, digest, std::max<Tick>(tick_, 0), out);
-  }
+void Agent::ask_for_admission(Instant now, Outbox& out) {
+  if (!may_ask() || now < hellos_.next) return;
+  hellos_ = {now + kHelloPeriod, now, follower().newest_heard()};
+  const Hello hello{{}, me_.id(), status_.host, version_, hellos_.revision};
+  me_.publish(Bus::kSwarm, hello, 0, out);
 }
 
 /// Also before it is admitted: it may be the only one left who knows the mission.
 void Agent::repeat_mission(Instant now, Outbox& out) {
-  mission_repeat_.reset();
-  repeats_left_to_others_ = 0;
-  mission_repeated_ = now;
-  for (const MissionPart& part : follower_.parts()) {
+  mission_repeat_.done(now);
+  for (const MissionPart& part : follower().parts()) {
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) out.push_back({bus, part});
   }
 }
 
-void Agent::tell_world(Outbox& out) {
-  for (Command command : {command_before_, last_command_}) {
-    command.asked_by = *world_asks_;
-    publish(Bus::kCommand, command, command.header.tick, out);
-  }
-  world_asks_.reset();
+Instant Agent::next_wakeup() const {
+  if (finished()) return Instant::max();
+  const Instant next = std::min(may_ask() ? hellos_.next : Instant::max(), mission_repeat_.next());
+  const auto* const flight = std::get_if<InMission>(&state_);
+  if (flight == nullptr) return next;
+  return std::min({next, flight->next_status.at, flight->next_digest.at,
+                   flight->anti_entropy.next_answer()});
 }
 
-/// The last word to the vehicle, whose driver may know no STOP.
-void Agent::stand_still(Outbox& out) {
-  halted_ = false;
-  last_command_.position_m << x_m_, 0;
-  last_command_.velocity_mps.setZero();
-  publish(Bus::kCommand, last_command_, tick_, out);
-}
-
-void Agent::begin_tick(Instant now, Outbox& out) {
-  const Mission& mission = *follower_.mission();
-  const WorldView view = *pending_;
-  pending_.reset();
-  repeat_wanted_ = false;
-  if (view.tick >= mission.timing.tick_count) {
-    tick_ = view.tick;
-    return finish(false, "mission complete");
-  }
-  if (evicted(view.tick)) return;
-  if (tick_ >= 0) missed_ticks_ += view.tick - tick_ - 1;
-  tick_ = view.tick;
-  tick_begun_ = now;
-  roster_revision_ = view.roster_revision;
-  x_m_ = view.position_m.head<2>();
-  basis_at_.emplace(x_m_, mission.domain, mission.basis);
-  // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
-  if (tick_ < active_from_) return;
-  table_->add_sample(self_, *basis_at_);
-  if (tick_ >= next_broadcast_tick_) broadcast(out);
-}
-
-/// Whether the ticks have stopped coming: then what we have is said now and then without waiting for
-/// more. In lockstep nobody may hear of a tick before the broadcast that was announced.
-bool Agent::stalled(Instant now) const {
-  return follower_.mission()->timing.pace == Pace::kRealtime && tick_ >= active_from_ &&
-         now - std::max(tick_begun_, stalled_said_) >= kWorldSilence;
-}
-
-bool Agent::abandoned(Instant now) const {
-  return must_be_over(follower_.mission()->timing, tick_,
-                      now - std::max(world_heard_, coordinator_heard_));
-}
-
-void Agent::broadcast(Outbox& out) {
-  next_broadcast_tick_ = next_broadcast(*follower_.mission(), self_.agent, tick_);
-  for (int b = 0; b < table_->block_count(); ++b) {
-    Contribution& block = published_[static_cast<std::size_t>(b)];
-    block = table_->block(self_, b);
-    block.header.tick = tick_;  // a repeat says it, too: forecasts count a block's age from it
-    block.next_broadcast_tick = next_broadcast_tick_;
-    publish(Bus::kSwarm, block, tick_, out);
-  }
-}
-
-void Agent::repeat(Outbox& out) {
-  repeat_wanted_ = false;
-  // The blocks as they were broadcast: newer sums would make a tick depend on what was lost.
-  for (const Contribution& block : published_) {
-    if (block.steps > 0) publish(Bus::kSwarm, block, block.header.tick, out);
-  }
-  if (answered_tick_ == tick_) publish(Bus::kCommand, last_command_, tick_, out);
-}
-
-/// Whether all parts of the tick's WORLD_STATE are there: what a command depends on is the same for
-/// whoever hears them in another order.
-bool Agent::knows_places() const {
-  if (!forecast_ || !follower_.mission()->dead_reckoning || tick_ < active_from_) return true;
-  return places_tick_ > tick_ || places_parts_.count() >= places_wanted_;
-}
-
-bool Agent::may_answer() {
-  waiting_for_ = kUnassigned;
-  if (follower_.mission()->timing.pace == Pace::kRealtime) return true;
-  if (!knows_places()) {
-    waiting_for_ = kWorld;
-    return false;
-  }
-  // Who takes part in a tick is what the world says, not who has heard of it first.
-  if (follower_.revision() < roster_revision_) return false;
-  for (const RosterEntry& entry : follower_.roster()) {
-    if (entry.author == self_ || !entry.active_at(tick_)) continue;
-    if (!radio_.hears(self_.agent, entry.author.agent)) continue;
-    if (!table_->holds_due(entry.author, tick_)) {
-      waiting_for_ = entry.author.agent;
-      return false;
+/// Nobody can tell two joining processes apart by an id that neither has been given: only who was
+/// admitted has last words.
+void Agent::finish(bool failed, std::string reason, bool stand_still) {
+  if (finished()) return;
+  Finished end{failed, std::move(reason), {}, {}};
+  if (InMission* const flight = in_mission()) {
+    if (stand_still) {  // the last word to the vehicle, whose driver may know no STOP
+      flight->last_command.position_m << flight->step.x_m, 0;
+      flight->last_command.velocity_mps.setZero();
+      me_.publish(Bus::kCommand, flight->last_command, flight->step.tick, end.last_words);
     }
+    me_.publish(Bus::kSwarm, status_of(*flight, AgentPhase::kFinished),
+                std::max<Tick>(flight->step.tick, 0), end.last_words);
+    end.mission = std::move(*flight);
   }
-  return true;
+  state_ = std::move(end);
 }
 
-void Agent::answer(Outbox& out) {
-  // By the roster that the tick may have waited for.
-  for (const RosterEntry& entry : follower_.roster()) {
-    // What we cover ourselves counts: we live, whatever the coordinator has heard.
-    const bool forgotten = entry.author != self_ && entry.forgotten_at(tick_, roster_revision_);
-    forgotten ? table_->forget(entry.author) : table_->remember(entry.author);
-  }
-  if (forecast_) {
-    forecast_->look_ahead(*table_, follower_.roster(), tick_, foreseen_);
-  } else {
-    table_->average(foreseen_);
-  }
-  controller_->see(foreseen_);
-  const Eigen::Vector2d velocity =
-      controller_->command(self_.agent, tick_, x_m_, *basis_at_);
-  command_before_ = last_command_;
-  last_command_.header.tick = tick_;
-  last_command_.position_m << x_m_, 0;
-  last_command_.velocity_mps << velocity, 0;
-  answered_tick_ = tick_;
-  publish(Bus::kCommand, last_command_, tick_, out);
+// ---- what it says of itself ----------------------------------------------------------------------
+
+AgentPhase Agent::phase() const {
+  if (finished()) return AgentPhase::kFinished;
+  const auto* const flight = std::get_if<InMission>(&state_);
+  if (flight == nullptr) return AgentPhase::kJoining;
+  return flight->running_since ? AgentPhase::kRunning : AgentPhase::kWaiting;
+}
+
+bool Agent::failed() const {
+  const auto* const end = std::get_if<Finished>(&state_);
+  return end != nullptr && end->failed;
+}
+
+const std::string& Agent::reason() const {
+  static const std::string kNone;
+  const auto* const end = std::get_if<Finished>(&state_);
+  return end == nullptr ? kNone : end->reason;
 }
 
 const Coefficients& Agent::team_coverage() const {
-  if (table_) table_->average(team_coverage_);
-  return team_coverage_;
+  if (flight() == nullptr) return kNoCoverage;
+  flight()->table.average(flight()->team_coverage);
+  return flight()->team_coverage;
 }
 
-void Agent::publish_status(Instant now, Outbox& out) {
-  AgentStatus status;
-  status.phase = phase_;
-  if (tick_ >= 0) status.ergodic_metric = controller_->metric(team_coverage());
-  const double dt_s = follower_.mission()->timing.dt_s;
-  if (tick_ >= 0) {
-    status.max_staleness_s =
-        static_cast<double>(hearing_.oldest_news(follower_.roster(), self_, tick_)) * dt_s;
+const Coefficients& Agent::foreseen_coverage() const {
+  return flight() == nullptr ? kNoCoverage : flight()->foreseen;
+}
+
+/// Messages of members that are missing on the swarm bus.
+std::int64_t Agent::lost() const {
+  std::int64_t lost = 0;
+  for (const RosterEntry& entry : follower().roster()) {
+    lost += me_.liveness().lost(entry.author, Bus::kSwarm);
   }
-  const bool world_is_silent = phase_ == AgentPhase::kRunning && now - world_heard_ > kWorldSilence;
-  status.waiting_for = world_is_silent ? kWorld : waiting_for_;
-  status.answered_tick = answered_tick_;
-  status.contributions_received = contributions_received_;
-  status.contributions_lost = hearing_.lost();
-  status.messages_sent = sequencer_.total();
-  status.messages_received = received_;
-  status.contributions_relayed = anti_entropy_->relayed();
-  status.missed_ticks = missed_ticks_;
-  status.refused = refused_;
-  status.babbler = babbler_;
-  status.kernel_drops = kernel_drops_;
-  status.loop_lag_s = std::exchange(loop_lag_s_, 0);
-  status.host = identity_.host;
-  publish(Bus::kSwarm, status, std::max<Tick>(tick_, 0), out);
-  next_status_ = Deadline::in(kAgentStatusPeriod, now, kStatusMissionPeriod_s, dt_s, tick_);
-  if (finished()) next_status_ = {Instant::max(), std::numeric_limits<Tick>::max()};
+  return lost;
+}
+
+/// Ticks since the last news of the teammate that we know least of.
+Tick Agent::oldest_news(const InMission& flight) const {
+  Tick oldest = 0;
+  for (const RosterEntry& entry : follower().roster()) {
+    if (entry.author == me_.author() || !entry.active_at(flight.step.tick)) continue;
+    const auto news = flight.news.find(entry.author);
+    const Tick last = news == flight.news.end() ? -1 : news->second;
+    oldest = std::max(oldest, flight.step.tick - std::max(last, entry.active_from - 1));
+  }
+  return oldest;
+}
+
+AgentStatus Agent::status_of(const InMission& flight, AgentPhase phase) {
+  AgentStatus status = status_;
+  status_.loop_lag_s = 0;
+  status.phase = phase;
+  if (flight.step.tick >= 0) {
+    status.ergodic_metric = flight.controller.metric(team_coverage());
+    status.max_staleness_s = static_cast<double>(oldest_news(flight)) * mission().timing.dt_s;
+  }
+  status.waiting_for = flight.step.waiting_for;
+  status.answered_tick = flight.step.answered;
+  status.contributions_lost = lost();
+  status.messages_sent = me_.sent();
+  status.messages_received = me_.received();
+  status.contributions_relayed = flight.anti_entropy.relayed();
+  status.refused = me_.refused();
+  return status;
+}
+
+void Agent::publish_status(InMission& flight, Instant now, Outbox& out) {
+  AgentStatus status = status_of(flight, phase());
+  const auto since = flight.running_since;
+  if (since && me_.silent(kWorld, now, *since)) status.waiting_for = kWorld;
+  me_.publish(Bus::kSwarm, status, std::max<Tick>(flight.step.tick, 0), out);
+  flight.next_status = Deadline::in(kAgentStatusPeriod, now, kStatusMissionPeriod_s,
+                                    mission().timing.dt_s, flight.step.tick);
 }
 
 std::string Agent::obstacle() const {
   if (finished()) return "";
-  if (follower_.revision() < 0) return "no coordinator is heard";
-  const std::string as_agent = "admitted as agent " + std::to_string(self_.agent) + ", waiting for ";
-  if (phase_ == AgentPhase::kWaiting) return as_agent + "the quorum";
-  if (phase_ == AgentPhase::kRunning) return tick_ < 0 ? as_agent + "the world" : "";
-  const auto& roster = follower_.roster();
+  if (follower().revision() < 0) return "no coordinator is heard";
+  const std::string as_agent = "admitted as agent " + std::to_string(me_.id()) + ", waiting for ";
+  if (phase() == AgentPhase::kWaiting) return as_agent + "the quorum";
+  if (phase() == AgentPhase::kRunning) return tick() < 0 ? as_agent + "the world" : "";
+  const auto& roster = follower().roster();
   const bool taken = std::any_of(roster.begin(), roster.end(), [this](const RosterEntry& entry) {
-    return entry.author.agent == identity_.requested_id && entry.active_until < 0;
+    return entry.author.agent == requested_id_ && entry.active_until < 0;
   });
   if (!taken) return "waiting to be admitted";
-  return "waiting to be admitted: the roster has another agent " +
-         std::to_string(identity_.requested_id) + ", which may have died and not be missed yet";
-}
-
-Instant Agent::next_wakeup() const {
-  if (finished()) return Instant::max();
-  Instant next = identity_.run != 0 && !admitted() ? next_hello_ : Instant::max();
-  if (mission_repeat_) next = std::min(next, *mission_repeat_);
-  if (!table_) return next;
-  return std::min({next, next_status_.at, next_digest_.at, anti_entropy_->next_answer()});
-}
-
-void Agent::finish(bool failed, std::string reason) {
-  phase_ = AgentPhase::kFinished;
-  failed_ = failed;
-  reason_ = std::move(reason);
-  next_status_ = {};  // the last status says that it has finished
-}
-
-Header Agent::header(Bus bus, Tick tick) {
-  return {identity_.run, self_.agent, identity_.incarnation, sequencer_.next(bus), tick};
-}
-
-template <class M>
-void Agent::publish(Bus bus, const M& message, Tick tick, Outbox& out) {
-  // Copied once, into its place: a contribution is a kilobyte.
-  Outgoing& outgoing = out.emplace_back();
-  outgoing.bus = bus;
-  outgoing.message.emplace<M>(message).header = header(bus, tick);
+  return "waiting to be admitted: the roster has another agent " + std::to_string(requested_id_) +
+         ", which may have died and not be missed yet";
 }
 
 }  // namespace ergocast

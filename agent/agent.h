@@ -3,25 +3,27 @@
 //
 // Messages only update tables; the control step reads them. In lockstep a tick is answered once
 // every block due by it is held; in real time at once, with what is there. What teammates lack it
-// repeats to them (anti_entropy.h), and the mission itself to whoever asks for it.
+// repeats to them (anti_entropy.h), and the mission itself to whoever asks for it
+// (mission_repeat.h). Its life until and after the mission is in agent.cc, the tick in flying.cc.
 #pragma once
 
 #include <algorithm>
-#include <bitset>
+#include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "agent/anti_entropy.h"
-#include "agent/hearing.h"
+#include "agent/mission_repeat.h"
+#include "agent/state_parts.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
-#include "team/deadline.h"
 #include "core/forecast.h"
-#include "team/freshness.h"
 #include "core/ids.h"
+#include "team/deadline.h"
 #include "team/messages.h"
-#include "team/mission_follower.h"
+#include "team/participant.h"
 #include "team/radio_range.h"
 
 namespace ergocast {
@@ -36,14 +38,14 @@ struct AgentIdentity {
 
 class Agent {
  public:
+  static constexpr Role kRole = Role::kAgent;
+
   Agent(AgentIdentity identity, PlanDecoder decode_plan);
 
   /// Takes in a message. Harmless when late, repeated, out of order or untrue.
+  /// @param bus  on which it came
   /// @param transmitter  who it comes from: its sender, or an agent that repeats it
-  void receive(const Message& message, Instant now, AgentId transmitter);
-  void receive(const Message& message, Instant now) {
-    receive(message, now, header_of(message).sender);
-  }
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   /// Does whatever is due at `now` and appends what to publish, in order.
   void advance(Instant now, Outbox& out);
@@ -54,122 +56,136 @@ class Agent {
   /// When advance() must be called at the latest, even if nothing arrives.
   Instant next_wakeup() const;
 
-  bool finished() const { return phase_ == AgentPhase::kFinished; }
+  bool finished() const { return std::holds_alternative<Finished>(state_); }
   /// Why it finished; `failed()` if that is an error of this agent or of the mission.
-  const std::string& reason() const { return reason_; }
-  bool failed() const { return failed_; }
+  const std::string& reason() const;
+  bool failed() const;
   /// What keeps it from taking part in the mission, in words; empty if nothing does.
   std::string obstacle() const;
 
-  RunId run() const { return identity_.run; }
-  AgentId id() const { return self_.agent; }
-  const Author& author() const { return self_; }
-  AgentPhase phase() const { return phase_; }
-  Tick tick() const { return tick_; }
-  const CoverageTable* coverage() const { return table_ ? &*table_ : nullptr; }
+  RunId run() const { return me_.run(); }
+  AgentId id() const { return me_.id(); }
+  Author author() const { return me_.author(); }
+  AgentPhase phase() const;
+  Tick tick() const { return flight() ? flight()->step.tick : -1; }
+  /// Null before it is admitted.
+  const CoverageTable* coverage() const { return flight() ? &flight()->table : nullptr; }
   /// c_k of the rows that it holds, added up when it is asked for: a law that looks ahead needs ĉ_k.
   const Coefficients& team_coverage() const;
   /// What its last command answers to: ĉ_k if the law looks ahead, else c_k.
-  const Coefficients& foreseen_coverage() const { return foreseen_; }
-  const MissionFollower& follower() const { return follower_; }
+  const Coefficients& foreseen_coverage() const;
+  const MissionFollower& follower() const { return me_.follower(); }
   /// Of the roster that the world flies tick() by.
-  std::int64_t roster_revision() const { return roster_revision_; }
-  const RefusalCounts& refused() const { return refused_; }
+  std::int64_t roster_revision() const { return flight() ? flight()->step.roster_revision : 0; }
+  const RefusalCounts& refused() const { return me_.refused(); }
 
   /// What the transport counted; shown in the status.
-  void count_refused(Refusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
-  void note_babbler(AgentId agent) { babbler_ = agent; }
-  void set_kernel_drops(std::int64_t drops) { kernel_drops_ = drops; }
+  void count_refused(Refusal refusal) { me_.count_refused(refusal); }
+  void note_babbler(AgentId agent) { status_.babbler = agent; }
+  void set_kernel_drops(std::int64_t drops) { status_.kernel_drops = drops; }
   /// How late or deaf its process was; the next status tells the worst since the last.
-  void note_loop_lag(double lag_s) { loop_lag_s_ = std::max(loop_lag_s_, lag_s); }
+  void note_loop_lag(double lag_s) { status_.loop_lag_s = std::max(status_.loop_lag_s, lag_s); }
 
  private:
+  /// How it asks to be admitted, also by a coordinator that was restarted and does not know of it.
+  struct Hellos {
+    Instant next{}, last{};
+    std::int64_t revision = -1;  // that the last one named
+  };
+  /// Until the roster names it.
+  struct Joining {
+    std::optional<Instant> rival_since;  // a teammate already speaks under the id we ask for
+  };
+  /// A tick of the world.
+  struct Step {
+    Tick tick = -1, answered = -1;
+    std::int64_t roster_revision = 0;  // of the world, at `tick`
+    Eigen::Vector2d x_m{0, 0};
+    std::optional<BasisAt> basis_at;
+    Instant begun{};
+    bool repeat_wanted = false;
+    AgentId waiting_for = kUnassigned;
+  };
   struct WorldView {
     Tick tick;
     std::int64_t roster_revision;
     Eigen::Vector3d position_m;
   };
+  /// From its admission on. While the mission waits for its quorum, no tick comes.
+  struct InMission {
+    InMission(const Mission& mission, const Author& self, Tick active_from);
 
-  void on(const MissionPart& part, Instant now);
-  void on(const Contribution& theirs, AgentId transmitter, Instant now);
-  void on(const Digest& theirs, Instant now);
-  void on(const AgentStatus& status, Instant now);
-  void on(const WorldState& world, Instant now);
-  void on(const Hello& hello, Instant now);
-  void on(const Stop& stop);
+    Tick active_from;  // as the roster says
+    CoverageTable table;
+    Controller controller;
+    std::optional<Forecast> forecast;  // if the law looks ahead
+    AntiEntropy anti_entropy;
+    StateParts state_parts;
+    Coefficients foreseen;
+    mutable Coefficients team_coverage;   // of when it was asked for last
+    std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
+    Tick next_broadcast_tick = 0;
+    std::map<Author, Tick> news;          // when a member's coverage last grew for us
+    std::optional<Instant> running_since;
+    Instant stalled_said{};
+    std::optional<WorldView> pending;
+    Step step;
+    Command last_command, command_before;   // header.tick −1: none yet
+    std::optional<Incarnation> world_asks;  // where we were: it has just started
+    Deadline next_status, next_digest;
+  };
+  struct Finished {
+    bool failed;
+    std::string reason;
+    std::optional<InMission> mission;  // as it was
+    Outbox last_words;                 // its final status, still to be published
+  };
 
-  void note_places(const WorldState& world);
-  void join();
-  bool admitted() const { return follower_.entry_of(identity_.incarnation) != nullptr; }
-  const RosterEntry* member(const Header& from) const;
-  std::int64_t most_steps(const RosterEntry& author, Instant now) const;
-  bool evicted(Tick tick);
-  void begin_tick(Instant now, Outbox& out);
-  bool stalled(Instant now) const;
-  bool abandoned(Instant now) const;
-  void broadcast(Outbox& out);
-  void repeat(Outbox& out);
-  bool knows_places() const;
-  bool may_answer();
-  void answer(Outbox& out);
-  void help_others(Instant now, Outbox& out);
-  void plan_mission_repeat(Instant now, PacingClock::duration gap);
-  void repeat_mission(Instant now, Outbox& out);
-  void tell_world(Outbox& out);
-  void stand_still(Outbox& out);
-  void publish_status(Instant now, Outbox& out);
-  void finish(bool failed, std::string reason);
-  Header header(Bus bus, Tick tick);
   template <class M>
-  void publish(Bus bus, const M& message, Tick tick, Outbox& out);
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const Contribution& theirs, const Arrival& arrival);
+  void on(const Digest& theirs, const Arrival& arrival);
+  void on(const AgentStatus& status, const Arrival& arrival);
+  void on(const WorldState& world, const Arrival& arrival);
+  void on(const Hello& hello, const Arrival& arrival);
+  void on(const Stop& stop, const Arrival& arrival);
 
-  AgentIdentity identity_;
-  MissionFollower follower_;
-  Author self_;
-  AgentPhase phase_ = AgentPhase::kJoining;
-  bool failed_ = false;
-  std::string reason_;
+  const Mission& mission() const { return me_.mission(); }
+  InMission* in_mission() { return std::get_if<InMission>(&state_); }
+  /// Its mission, also after its end; null if it was never admitted.
+  const InMission* flight() const;
+  const RosterEntry* own_entry() const { return follower().entry_of(me_.incarnation()); }
+  bool may_ask() const { return !finished() && me_.run() != 0 && own_entry() == nullptr; }
+  std::optional<std::string> evicted(Tick tick) const;
+  void ask_for_admission(Instant now, Outbox& out);
+  void repeat_mission(Instant now, Outbox& out);
+  std::int64_t most_steps(const InMission& flight, const RosterEntry& author, Instant now) const;
+  std::int64_t lost() const;
+  Tick oldest_news(const InMission& flight) const;
+  AgentStatus status_of(const InMission& flight, AgentPhase phase);
+  void publish_status(InMission& flight, Instant now, Outbox& out);
+  void finish(bool failed, std::string reason, bool stand_still = false);
 
-  std::optional<CoverageTable> table_;
-  std::optional<Controller> controller_;
-  std::optional<Forecast> forecast_;  // if the law looks ahead
-  std::optional<AntiEntropy> anti_entropy_;
+  void fly(InMission& flight, Instant now, Outbox& out);
+  void note_places(InMission& flight, const WorldState& world);
+  bool begin_tick(InMission& flight, Instant now, Outbox& out);
+  bool stalled(const InMission& flight, Instant now) const;
+  void broadcast(InMission& flight, Outbox& out);
+  void repeat(InMission& flight, Outbox& out);
+  bool may_answer(InMission& flight) const;
+  void answer(InMission& flight, Outbox& out);
+  void help_others(InMission& flight, Instant now, Outbox& out);
+  void tell_world(InMission& flight, Outbox& out);
+
+  Participant me_;
+  AgentId requested_id_;
+  std::string version_;
+  Hellos hellos_;
+  MissionRepeat mission_repeat_;
   RadioRange radio_;
-  Hearing hearing_;
-  Coefficients foreseen_;
-  mutable Coefficients team_coverage_;  // of when it was asked for last
-  std::vector<Contribution> published_;  // own blocks as last broadcast: what a repeat repeats
-
-  std::optional<WorldView> pending_;
-  Tick places_tick_ = -1;  // of the newest WORLD_STATE, …
-  std::bitset<kMaxAgents / kMaxVehiclesPerState> places_parts_;  // … its parts that were heard, …
-  std::size_t places_wanted_ = 0;                                // … and how many there are
-  bool repeat_wanted_ = false;
-  std::int64_t roster_revision_ = 0;  // of the world, at tick_
-  Tick active_from_ = 0;  // as the roster says
-  Tick tick_ = -1, answered_tick_ = -1, next_broadcast_tick_ = 0;
-  Instant tick_begun_{}, stalled_said_{};
-  Eigen::Vector2d x_m_{0, 0};
-  std::optional<BasisAt> basis_at_;
-  Command last_command_, command_before_;  // header.tick −1: none yet
-  AgentId waiting_for_ = kUnassigned;
-  Instant world_heard_{}, coordinator_heard_{};  // the latter also through a teammate
-  std::optional<Incarnation> world_asks_;  // where we were: it has just started
-  bool halted_ = false;                    // its vehicle has yet to be told
-
-  Instant next_hello_{}, last_hello_{};
-  Deadline next_status_, next_digest_;
-  std::optional<Instant> mission_repeat_;  // somebody has asked for the mission
-  std::optional<Instant> mission_repeated_;
-  int repeats_left_to_others_ = 0;
-  Sequencer sequencer_;
-  std::int64_t received_ = 0, contributions_received_ = 0, missed_ticks_ = 0, kernel_drops_ = 0;
-  AgentId babbler_ = kUnassigned;
-  double loop_lag_s_ = 0;
-  RefusalCounts refused_{};
-
-  Freshness freshness_;
-  std::optional<Instant> rival_since_;  // a teammate already speaks under the id we ask for
+  AgentStatus status_;  // what it counts, and what the transport told
+  std::variant<Joining, InMission, Finished> state_;
 };
 
 }  // namespace ergocast

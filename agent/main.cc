@@ -35,9 +35,9 @@ int run(const NodeOptions& node, AgentId requested_id) {
   StopSignals signals;
   Agent agent({node.run, requested_id, random_identity(), host_name(), version()}, decode_plan);
   auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Role::kAgent),
-      {.on_message = [&agent](const Message& message, AgentId transmitter) {
-         agent.receive(message, now(), transmitter);
+      node.url, node.run, node.seal, subscriptions_of(Agent::kRole),
+      {.on_message = [&agent](const Message& message, Bus bus, AgentId transmitter) {
+         agent.receive(message, bus, transmitter, now());
        },
        .on_refused = [&agent](Refusal refusal) { agent.count_refused(refusal); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {

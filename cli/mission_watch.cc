@@ -11,26 +11,23 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A coordinator that says nothing for so long is worth a word.
-constexpr auto kCoordinatorSilence = 2s;
-/// How long it may take to end the mission in order.
+/// How long a coordinator may take to end the mission in order.
 constexpr auto kCoordinatorPatience = 2s;
 
 }  // namespace
 
-void MissionWatch::receive(const Message& message, Instant now) {
-  if (const auto* team = std::get_if<TeamStatus>(&message)) on(*team, now);
-  if (const auto* agent = std::get_if<AgentStatus>(&message)) on(*agent, now);
-  if (const auto* part = std::get_if<MissionPart>(&message)) on(*part, now);
-  if (const auto* stop = std::get_if<Stop>(&message)) on(*stop, now);
-  progress_.coordinator_silent =
-      coordinator_heard_ && now - *coordinator_heard_ > kCoordinatorSilence;
+void MissionWatch::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
+  const bool heard = me_.liveness().last_sign_of_kind(kCoordinator).has_value();
+  progress_.coordinator_silent = heard && me_.silent(kCoordinator, now);
   if (stage_ >= Stage::kFlying) display_.show(progress_);
 }
 
-void MissionWatch::on(const TeamStatus& team, Instant now) {
-  if (!freshness_.is_news(team.header)) return;
-  coordinator_heard_ = now;
+void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
+  if (!arrival.fresh) return;
+  const Instant now = arrival.now;
   reach(team.header.tick, now);
   // One that was restarted has yet to learn the metric.
   if (team.ergodic_metric > 0) progress_.ergodic_metric = team.ergodic_metric;
@@ -40,7 +37,8 @@ void MissionWatch::on(const TeamStatus& team, Instant now) {
   progress_.silent_agent = team.silent_agent;
 }
 
-void MissionWatch::on(const AgentStatus& agent, Instant now) {
+void MissionWatch::on(const AgentStatus& agent, const Arrival& arrival) {
+  const Instant now = arrival.now;
   reach(agent.header.tick, now);
   reach(agent.phase == AgentPhase::kRunning ? Stage::kFlying : Stage::kReady, now);
   if (agent.phase == AgentPhase::kRunning) progress_.world_silent = agent.waiting_for == kWorld;
@@ -49,14 +47,16 @@ void MissionWatch::on(const AgentStatus& agent, Instant now) {
   if (agent.phase == AgentPhase::kFinished && at_the_end) reach(Stage::kOver, now);
 }
 
-void MissionWatch::on(const MissionPart& part, Instant now) {
+void MissionWatch::on(const MissionPart& part, const Arrival& arrival) {
+  const Instant now = arrival.now;
   failed_ = failed_ || part.state == MissionState::kFailed;
   if (!part.reason.empty()) reason_ = part.reason;
   reach(part.header.tick, now);
   if (failed_ || part.state == MissionState::kEnded) reach(Stage::kOver, now);
 }
 
-void MissionWatch::on(const Stop& stop, Instant now) {
+void MissionWatch::on(const Stop& stop, const Arrival& arrival) {
+  const Instant now = arrival.now;
   if (!stop.now || stopping()) return;  // somebody else's
   failed_ = failed_ || stop.failed;
   reason_ = stop.reason;
@@ -82,7 +82,7 @@ std::optional<std::string> MissionWatch::overdue(Instant now) const {
 }
 
 void MissionWatch::stop(bool failed, std::string reason) {
-  if (!stop_) stop_.emplace(run_, failed, std::move(reason));
+  if (!stop_) stop_.emplace(me_.run(), failed, std::move(reason));
 }
 
 void MissionWatch::repeat(Transport& transport, Instant now, bool led) {

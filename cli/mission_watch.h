@@ -7,11 +7,12 @@
 
 #include "cli/progress.h"
 #include "cli/stop_word.h"
-#include "team/freshness.h"
 #include "core/ids.h"
 #include "team/messages.h"
 #include "core/mission.h"
+#include "team/participant.h"
 #include "runtime/transport.h"
+#include "scenario/scenario.h"
 
 namespace ergocast::cli {
 
@@ -25,13 +26,15 @@ enum class Stage {
 
 class MissionWatch {
  public:
+  static constexpr Role kRole = Role::kLauncher;
+
   MissionWatch(RunId run, const Timing& timing, ProgressDisplay& display)
-      : run_(run), timing_(timing), display_(display) {
+      : me_(kRole, {run, kUnassigned, 0}, decode_plan), timing_(timing), display_(display) {
     progress_.tick_count = timing.tick_count;
     progress_.dt_s = timing.dt_s;
   }
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   Stage stage() const { return stage_; }
   /// Whether the coordinator has said that the mission failed; and why it ended, in any case.
@@ -50,22 +53,22 @@ class MissionWatch {
   void repeat(Transport& transport, Instant now, bool led);
 
  private:
-  void on(const TeamStatus& team, Instant now);
-  void on(const AgentStatus& agent, Instant now);
-  void on(const MissionPart& part, Instant now);
-  void on(const Stop& stop, Instant now);
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const TeamStatus& team, const Arrival& arrival);
+  void on(const AgentStatus& agent, const Arrival& arrival);
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const Stop& stop, const Arrival& arrival);
   void reach(Stage stage, Instant now);
   void reach(Tick tick, Instant now);
 
-  RunId run_;
+  Participant me_;
   Timing timing_;
   ProgressDisplay& display_;
   MissionProgress progress_;
   Stage stage_ = Stage::kGathering;
   bool failed_ = false;
   std::string reason_;
-  std::optional<Instant> coordinator_heard_;
-  Freshness freshness_;
   Instant tick_since_{};  // when the last tick or stage was reached
 
   std::optional<StopWord> stop_;

@@ -25,8 +25,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// MISSION comes once a second, and twice means that a lost one was made up for.
-constexpr auto kPatience = 2500ms;
+/// Longer than anybody may say nothing without being silent.
+constexpr auto kPatience = 3500ms;
 constexpr auto kTurn = 50ms;
 constexpr auto kLastWord = 1s;
 
@@ -41,7 +41,9 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(options_, [this](const Message& message) { hear(message); });
+    auto opened = listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+      hear(message, bus, transmitter);
+    });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -59,10 +61,12 @@ class Listener {
   const Transport& transport() const { return *transport_; }
 
  private:
-  void hear(const Message& message) {
+  void hear(const Message& message, Bus bus, AgentId transmitter) {
     const RunId run = header_of(message).run;
     if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
-    runs_.try_emplace(run, run, decode_plan, since_, options_.seal.keyed()).first->second.receive(message, now());
+    TeamView& view =
+        runs_.try_emplace(run, run, decode_plan, since_, options_.seal.keyed()).first->second;
+    view.receive(message, bus, transmitter, now());
   }
 
   const StatusOptions& options_;

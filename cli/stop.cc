@@ -49,7 +49,9 @@ class Stopping {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(options_, [this](const Message& message) { hear(message); });
+    auto opened = listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+      hear(message, bus, transmitter);
+    });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -63,18 +65,18 @@ class Stopping {
     }
     if (runs_.size() > 1 && !options_.at_once) return choose();
     if (runs_.empty() && options_.run == 0) return nobody();
-    if (options_.run != 0) runs_[options_.run];
+    if (options_.run != 0) runs_.try_emplace(options_.run, options_.run);
     if (!options_.at_once) transport_->set_run(runs_.begin()->first);
     since_ = now();
     return insist();
   }
 
  private:
-  void hear(const Message& message) {
+  void hear(const Message& message, Bus bus, AgentId transmitter) {
     const RunId run = header_of(message).run;
     if (run == 0) return;
     if (runs_.size() < kMostRuns || runs_.contains(run)) {
-      runs_[run].receive(message, now());
+      runs_.try_emplace(run, run).first->second.receive(message, bus, transmitter, now());
     } else if (crowd_.size() < kMostInATurn) {
       crowd_.insert(run);
     }
@@ -102,7 +104,7 @@ class Stopping {
       if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
       for (const auto& [run, word] : words) {
         if (codes.contains(run)) continue;
-        if (const auto code = verdict(runs_[run])) codes[run] = *code;
+        if (const auto code = verdict(runs_.at(run))) codes[run] = *code;
       }
     } while (codes.size() < runs_.size());
     if (crowded_) {

@@ -4,18 +4,17 @@
 #include "cli/team_ears.h"
 
 #include <algorithm>
-#include <chrono>
+#include <iterator>
 #include <utility>
+
+#include "scenario/scenario.h"
 
 namespace ergocast::cli {
 namespace {
 
-using namespace std::chrono_literals;
-
-/// Three of an agent's statuses; a world in real time may be slower, but STOP finds it all the
-/// same.
-constexpr auto kSilence = 3 * kAgentStatusPeriod;
+/// Members that are told apart; those of former lives go as soon as the roster says so.
 constexpr std::size_t kMostLives = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
+constexpr AgentId kProcesses[] = {kLogger, kWorld, kCoordinator};
 
 std::string name_of(AgentId sender) {
   if (sender >= 0) return "agent " + std::to_string(sender);
@@ -25,43 +24,52 @@ std::string name_of(AgentId sender) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
-    const BusOptions& options, std::function<void(const Message&)> hear) {
-  return Transport::open(
-      options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
-      {.on_message = [hear = std::move(hear)](const Message& message, AgentId) { hear(message); }});
+    const BusOptions& options, Hear hear) {
+  return Transport::open(options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
+                         {.on_message = std::move(hear)});
 }
 
-void RunHeard::receive(const Message& message, Instant now) {
-  const Header& from = header_of(message);
-  tick_ = std::max(tick_, from.tick);
-  if (const auto* part = std::get_if<MissionPart>(&message)) {
-    // An agent may repeat it long after the coordinator's death, and says nothing new by it.
-    over_ = over_ || part->state == MissionState::kEnded || part->state == MissionState::kFailed;
-    if (over_ && !part->reason.empty()) reason_ = part->reason;
-    for (const RosterEntry& entry : part->roster) {
-      if (agents_.size() < kMostLives) agents_.try_emplace(entry.author);
-      if (entry.active_until >= 0) agents_.erase(entry.author);
-    }
-    return;
+RunHeard::RunHeard(RunId run) : me_(kRole, {run, kUnassigned, 0}, decode_plan) {}
+
+void RunHeard::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  tick_ = std::max(tick_, arrival->from.tick);
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
+}
+
+/// An agent may repeat it long after the coordinator's death, and says nothing new by it.
+void RunHeard::on(const MissionPart& part, const Arrival&) {
+  over_ = over_ || part.state == MissionState::kEnded || part.state == MissionState::kFailed;
+  if (over_ && !part.reason.empty()) reason_ = part.reason;
+  for (const RosterEntry& entry : part.roster) {
+    if (agents_.size() < kMostLives) agents_.try_emplace(entry.author);
+    if (entry.active_until >= 0) agents_.erase(entry.author);
   }
-  if (!freshness_.is_news(from)) return;
-  if (const auto* status = std::get_if<AgentStatus>(&message)) {
-    const Author author{from.sender, from.incarnation};
-    if (from.sender < 0 || (agents_.size() >= kMostLives && !agents_.contains(author))) return;
-    agents_[author] = {now, status->phase == AgentPhase::kFinished};
-    return;
+}
+
+void RunHeard::on(const AgentStatus& status, const Arrival& arrival) {
+  const Author author{status.header.sender, status.header.incarnation};
+  if (!arrival.fresh || author.agent < 0) return;
+  if (agents_.size() >= kMostLives && !agents_.contains(author)) return;
+  agents_[author] = status.phase == AgentPhase::kFinished;
+}
+
+void RunHeard::on(const WorldState& world, const Arrival& arrival) {
+  const Tick tick = world.header.tick;
+  if (!arrival.fresh || tick < world_tick_) return;
+  if (tick > world_tick_) velocities_mps_.clear();
+  world_tick_ = tick;
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    velocities_mps_[vehicle.id] = vehicle.velocity_mps;
   }
-  if (from.sender == kCoordinator || from.sender == kWorld || from.sender == kLogger) {
-    processes_[from.sender] = now;
-  }
-  if (const auto* world = std::get_if<WorldState>(&message); world && from.tick >= world_tick_) {
-    if (from.tick > world_tick_) velocities_mps_.clear();
-    world_tick_ = from.tick;
-    for (int i = 0; i < world->vehicle_count; ++i) {
-      const Vehicle& vehicle = world->vehicles[static_cast<std::size_t>(i)];
-      velocities_mps_[vehicle.id] = vehicle.velocity_mps;
-    }
-  }
+}
+
+bool RunHeard::unheard() const {
+  return agents_.empty() && !over_ && std::none_of(std::begin(kProcesses), std::end(kProcesses), [this](AgentId process) {
+    return heard(process);
+  });
 }
 
 bool RunHeard::stands_still() const {
@@ -71,19 +79,19 @@ bool RunHeard::stands_still() const {
 
 std::vector<std::string> RunHeard::still_there(Instant now) const {
   std::vector<std::string> names;
-  for (const auto& [author, seen] : agents_) {
-    if (!seen.finished && now - seen.heard < kSilence) names.push_back(name_of(author.agent));
+  for (const auto& [author, finished] : agents_) {
+    if (!finished && !me_.silent(author, now)) names.push_back(name_of(author.agent));
   }
-  for (const auto& [sender, heard] : processes_) {
-    if (now - heard < kSilence) names.push_back(name_of(sender));
+  for (const AgentId process : kProcesses) {
+    if (heard(process) && !me_.silent(process, now)) names.push_back(name_of(process));
   }
   return names;
 }
 
 std::vector<std::string> RunHeard::lost(Instant now) const {
   std::vector<std::string> names;
-  for (const auto& [author, seen] : agents_) {
-    if (!seen.finished && now - seen.heard >= kSilence) names.push_back(name_of(author.agent));
+  for (const auto& [author, finished] : agents_) {
+    if (!finished && me_.silent(author, now)) names.push_back(name_of(author.agent));
   }
   return names;
 }

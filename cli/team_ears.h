@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
-#include "team/freshness.h"
 #include "core/ids.h"
 #include "team/messages.h"
+#include "team/participant.h"
 #include "runtime/node.h"
 #include "runtime/transport.h"
 
@@ -22,21 +22,28 @@ namespace ergocast::cli {
 /// Runs on one URL that are told apart.
 inline constexpr std::size_t kMostRuns = 16;
 
+/// Told what is heard, on which bus and from whom.
+using Hear = std::function<void(const Message&, Bus, AgentId transmitter)>;
+
 /// Hears all that tells how teams are. An error says why LCM cannot be used.
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
-    const BusOptions& options, std::function<void(const Message&)> hear);
+    const BusOptions& options, Hear hear);
 
 /// What was heard of one run.
 class RunHeard {
  public:
-  void receive(const Message& message, Instant now);
+  static constexpr Role kRole = Role::kMonitor;
+
+  explicit RunHeard(RunId run);
+
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   /// Whether the coordinator, or who repeats its words, says that the mission is over.
   bool over() const { return over_; }
   const std::string& reason() const { return reason_; }
   Tick tick() const { return tick_; }
-  bool unheard() const { return agents_.empty() && processes_.empty() && !over_; }
-  bool coordinator_heard() const { return processes_.contains(kCoordinator); }
+  bool unheard() const;
+  bool coordinator_heard() const { return heard(kCoordinator); }
   bool world_heard() const { return world_tick_ >= 0; }
   /// Whether no vehicle moved in the newest state of the world; true if none was heard.
   bool stands_still() const;
@@ -48,13 +55,17 @@ class RunHeard {
   int agents() const { return static_cast<int>(agents_.size()); }
 
  private:
-  struct Seen {
-    Instant heard{};
-    bool finished = false;
-  };
-  Freshness freshness_;
-  std::map<Author, Seen> agents_;
-  std::map<AgentId, Instant> processes_;
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const AgentStatus& status, const Arrival& arrival);
+  void on(const WorldState& world, const Arrival& arrival);
+  bool heard(AgentId process) const {
+    return me_.liveness().last_sign_of_kind(process).has_value();
+  }
+
+  Participant me_;
+  std::map<Author, bool> agents_;  // whether it has said that it has finished
   std::map<AgentId, Eigen::Vector3d> velocities_mps_;  // in the newest state
   Tick tick_ = 0, world_tick_ = -1;
   bool over_ = false;  // says the coordinator

@@ -12,14 +12,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Four of an agent's statuses, eight of the coordinator's.
-constexpr PacingClock::duration kSilence = 4 * kAgentStatusPeriod;
 constexpr PacingClock::duration kOverdue = 2 * kAgentStatusPeriod;
 /// In lockstep everybody waits for somebody now and then; for so long is worth a word.
 constexpr PacingClock::duration kStandstill = 750ms;
 /// A loop that was deaf for so long, or an agent so far behind the world, is late.
 constexpr double kLate_s = 0.5;
-constexpr std::size_t kMostLives = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
 
 double to_s(PacingClock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -41,43 +38,45 @@ std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
 }  // namespace
 
 TeamView::TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated)
-    : run_(run),
+    : me_(kRole, {run, kUnassigned, 0}, std::move(decode_plan)),
       authenticated_(authenticated),
-      follower_(std::move(decode_plan)),
       since_(since) {}
 
-void TeamView::receive(const Message& message, Instant now) {
-  const Header& from = header_of(message);
-  tick_ = std::max(tick_, from.tick);
-  if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
-  if (const auto* status = std::get_if<AgentStatus>(&message)) on(*status, now);
-  if (const auto* team = std::get_if<TeamStatus>(&message)) {
-    coordinator_host_ = team->host;
-    tick_count_ = team->tick_count;
-    team_state_ = team->state;
-  }
-  if (const auto* world = std::get_if<WorldState>(&message)) {
-    world_tick_ = std::max(world_tick_, from.tick);
-    missed_deadlines_ = std::max(missed_deadlines_, world->missed_deadlines);
-    skipped_ticks_ = std::max(skipped_ticks_, world->skipped_ticks);
-    clamped_commands_ = std::max(clamped_commands_, world->clamped_commands);
-  }
+void TeamView::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  tick_ = std::max(tick_, arrival->from.tick);
   // MISSION may be repeated by an agent long after the coordinator's death.
-  const bool first_hand = !std::holds_alternative<MissionPart>(message);
-  if (first_hand && from.sender < kUnassigned && freshness_.is_news(from)) processes_[from.sender] = {now, from};
+  const bool first_hand = arrival->fresh && !std::holds_alternative<MissionPart>(message);
+  if (first_hand && arrival->from.sender < kUnassigned) processes_[arrival->from.sender] = arrival->from;
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
 }
 
-void TeamView::on(const AgentStatus& status, Instant now) {
+void TeamView::on(const TeamStatus& team, const Arrival&) {
+  coordinator_host_ = team.host;
+  tick_count_ = team.tick_count;
+  team_state_ = team.state;
+}
+
+void TeamView::on(const WorldState& world, const Arrival& arrival) {
+  world_tick_ = std::max(world_tick_, arrival.from.tick);
+  missed_deadlines_ = std::max(missed_deadlines_, world.missed_deadlines);
+  skipped_ticks_ = std::max(skipped_ticks_, world.skipped_ticks);
+  clamped_commands_ = std::max(clamped_commands_, world.clamped_commands);
+}
+
+Instant TeamView::last_sign(const Author& author) const {
+  return me_.liveness().last_sign(author).value_or(since_);
+}
+
+void TeamView::on(const AgentStatus& status, const Arrival& arrival) {
   const Author author{status.header.sender, status.header.incarnation};
-  if (author.agent < 0 || (agents_.size() >= kMostLives && !agents_.contains(author))) return;
+  if (author.agent < 0 || !arrival.fresh) return;
   const auto [at, is_new] = agents_.try_emplace(author);
   Seen& seen = at->second;
-  // Only what is new is a sign of life.
-  if (!is_new && status.header.sequence <= seen.status.header.sequence) return;
-  if (is_new || status.header.tick != seen.status.header.tick) seen.tick_since = now;
+  if (is_new || status.header.tick != seen.status.header.tick) seen.tick_since = arrival.now;
   seen.status = status;
-  seen.heard = now;
-  const auto& mission = follower_.mission();
+  const auto& mission = follower().mission();
   if (mission && mission->timing.pace == Pace::kRealtime) {
     const Timing& timing = mission->timing;
     seen.behind_s = static_cast<double>(world_tick_ - status.header.tick - 1) * timing.dt_s /
@@ -85,29 +84,29 @@ void TeamView::on(const AgentStatus& status, Instant now) {
   }
 }
 
-Condition TeamView::condition_of(const Seen& seen, Instant now) const {
+Condition TeamView::condition_of(const Author& author, const Seen& seen, Instant now) const {
   const AgentStatus& status = seen.status;
   if (status.phase == AgentPhase::kFinished) return Condition::kFinished;
-  if (now - seen.heard >= kSilence) return Condition::kSilent;
+  if (me_.silent(author, now)) return Condition::kSilent;
   const bool stands_still = now - seen.tick_since >= kStandstill;
   if (status.waiting_for == kWorld || (status.waiting_for != kUnassigned && stands_still)) {
     return Condition::kWaiting;
   }
-  const bool late = now - seen.heard >= kOverdue || status.loop_lag_s >= kLate_s ||
+  const bool late = now - last_sign(author) >= kOverdue || status.loop_lag_s >= kLate_s ||
                     (status.phase == AgentPhase::kRunning && seen.behind_s >= kLate_s);
   return late ? Condition::kLate : Condition::kOk;
 }
 
 AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const {
   AgentRow row{author, Condition::kUnheard, to_s(now - since_), 0, {}};
-  if (now - since_ >= kSilence) row.condition = Condition::kSilent;
+  if (now - since_ >= silence_of(author.agent)) row.condition = Condition::kSilent;
   if (const auto seen = agents_.find(author); seen != agents_.end()) {
     row.status = seen->second.status;
-    row.silent_s = to_s(now - seen->second.heard);
-    row.condition = condition_of(seen->second, now);
+    row.silent_s = to_s(now - last_sign(author));
+    row.condition = condition_of(author, seen->second, now);
   }
   if (!member && row.condition != Condition::kFinished) row.condition = Condition::kGone;
-  const auto& roster = follower_.roster();
+  const auto& roster = follower().roster();
   row.restarts =
       static_cast<int>(std::count_if(roster.begin(), roster.end(), [&](const auto& entry) {
         return entry.author.agent == author.agent && entry.author != author;
@@ -118,19 +117,20 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
 /// By number: the newest incarnation, and whether it is a member.
 std::map<AgentId, std::pair<Author, bool>> TeamView::newest_lives() const {
   std::map<AgentId, std::pair<Author, bool>> lives;
-  if (follower_.revision() < 0) {
+  if (follower().revision() < 0) {
     std::map<AgentId, Instant> heard;
     for (const auto& [author, seen] : agents_) {
-      if (const auto [at, is_new] = heard.try_emplace(author.agent, seen.heard);
-          is_new || seen.heard > at->second) {
-        at->second = seen.heard;
+      const Instant sign = last_sign(author);
+      if (const auto [at, is_new] = heard.try_emplace(author.agent, sign);
+          is_new || sign > at->second) {
+        at->second = sign;
         lives[author.agent] = {author, true};
       }
     }
     return lives;
   }
   std::map<AgentId, Tick> left;
-  for (const RosterEntry& entry : follower_.roster()) {
+  for (const RosterEntry& entry : follower().roster()) {
     const bool member = entry.active_until < 0;
     const auto [at, is_new] = left.try_emplace(entry.author.agent, entry.active_until);
     if (!is_new && !member &&
@@ -148,9 +148,9 @@ void TeamView::add_agents(TeamPicture& picture, Instant now) const {
   for (const auto& [id, life] : newest_lives()) {
     const AgentRow& row = picture.agents.emplace_back(row_of(life.first, life.second, now));
     members += life.second ? 1 : 0;
-    picture.agents_alive += life.second && row.status && to_s(kSilence) > row.silent_s ? 1 : 0;
+    picture.agents_alive += life.second && row.status && !me_.silent(life.first, now) ? 1 : 0;
   }
-  const auto& mission = follower_.mission();
+  const auto& mission = follower().mission();
   const int planned = mission ? static_cast<int>(mission->starts_m.size()) : 0;
   picture.agents_expected = std::max(members, planned);
   std::stable_sort(picture.agents.begin(), picture.agents.end(),
@@ -163,7 +163,7 @@ void TeamView::add_agents(TeamPicture& picture, Instant now) const {
 
 /// A member that is forgotten is dead or unheard by the coordinator.
 void TeamView::add_forgotten(TeamPicture& picture) const {
-  for (const RosterEntry& entry : follower_.roster()) {
+  for (const RosterEntry& entry : follower().roster()) {
     if (!entry.forgotten) continue;
     picture.trouble |= entry.active_until < 0;
     if (picture.forgotten.empty() || picture.forgotten.back() != entry.author.agent) {
@@ -174,17 +174,11 @@ void TeamView::add_forgotten(TeamPicture& picture) const {
 
 /// Whether a process of that kind has something to say at this stage of the mission.
 bool TeamView::should_speak(AgentId sender) const {
-  if (over() || !follower_.mission()) return sender == kCoordinator && !over();
-  if (sender == kWorld) return follower_.state() == MissionState::kRunning;
+  if (over() || !follower().mission()) return sender == kCoordinator && !over();
+  if (sender == kWorld) return follower().state() == MissionState::kRunning;
   // A team that does not wait for a logger may fly without one.
   const bool heard = processes_.contains(sender);
-  return sender == kCoordinator || heard || follower_.mission()->wait_for_logger;
-}
-
-PacingClock::duration TeamView::patience_with(AgentId sender) const {
-  const auto& mission = follower_.mission();
-  if (sender != kWorld || !mission || mission->timing.pace == Pace::kLockstep) return kSilence;
-  return std::max(kSilence, 3 * seconds(mission->timing.dt_s / mission->timing.realtime_factor));
+  return sender == kCoordinator || heard || follower().mission()->wait_for_logger;
 }
 
 void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) const {
@@ -193,33 +187,33 @@ void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) co
   row.silent_s = to_s(now - since_);
   if (const auto heard = processes_.find(sender); heard != processes_.end()) {
     row.heard = true;
-    row.silent_s = to_s(now - heard->second.at);
-    row.incarnation = heard->second.header.incarnation;
-    row.tick = heard->second.header.tick;
+    row.silent_s = to_s(now - me_.liveness().last_sign_of_kind(sender).value_or(since_));
+    row.incarnation = heard->second.incarnation;
+    row.tick = heard->second.tick;
   }
   if (sender == kCoordinator) row.host = coordinator_host_;
-  row.trouble = should_speak(sender) && row.silent_s >= to_s(patience_with(sender));
+  row.trouble = should_speak(sender) && me_.silent(sender, now, since_);
   picture.trouble |= row.trouble;
   picture.processes.push_back(std::move(row));
 }
 
 TeamPicture TeamView::picture(Instant now) const {
   TeamPicture picture;
-  picture.run = run_;
+  picture.run = me_.run();
   picture.authenticated = authenticated_;
   picture.tick_count = tick_count_;
-  if (const auto& mission = follower_.mission()) {
+  if (const auto& mission = follower().mission()) {
     picture.scenario = mission->name;
     picture.tick_count = mission->timing.tick_count;
     picture.dt_s = mission->timing.dt_s;
   }
   picture.tick = picture.tick_count > 0 ? std::min(tick_, picture.tick_count) : tick_;
-  picture.state = follower_.revision() < 0 ? team_state_ : std::optional(follower_.state());
-  picture.reason = follower_.plan_problem().value_or(follower_.reason());
+  picture.state = follower().revision() < 0 ? team_state_ : std::optional(follower().state());
+  picture.reason = follower().plan_problem().value_or(follower().reason());
   picture.missed_deadlines = missed_deadlines_;
   picture.skipped_ticks = skipped_ticks_;
   picture.clamped_commands = clamped_commands_;
-  picture.trouble = picture.state == MissionState::kFailed || follower_.plan_problem().has_value();
+  picture.trouble = picture.state == MissionState::kFailed || follower().plan_problem().has_value();
   picture.over = over();
   add_agents(picture, now);
   add_forgotten(picture);
@@ -230,7 +224,7 @@ TeamPicture TeamView::picture(Instant now) const {
 }
 
 bool TeamView::complete() const {
-  if (!follower_.mission()) return false;
+  if (!follower().mission()) return false;
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) {
     if (should_speak(sender) && !processes_.contains(sender)) return false;
   }
@@ -242,7 +236,7 @@ bool TeamView::complete() const {
 }
 
 bool TeamView::over() const {
-  if (follower_.over()) return true;
+  if (follower().over()) return true;
   bool anybody_finished = false;
   for (const auto& [id, life] : newest_lives()) {
     const auto& [author, member] = life;

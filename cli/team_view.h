@@ -7,16 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "team/freshness.h"
 #include "core/ids.h"
 #include "team/messages.h"
-#include "team/mission_follower.h"
+#include "team/participant.h"
 
 namespace ergocast {
 
 /// How an agent is doing, worst first.
 enum class Condition {
-  kSilent,   ///< has said nothing for 2 s or more
+  kSilent,   ///< has said nothing for 3 s or more
   kWaiting,  ///< stands still because of somebody else
   kLate,     ///< speaks late, is behind the world, or its process is too slow
   kUnheard,  ///< not heard yet, and we have not listened for long
@@ -66,12 +65,14 @@ struct TeamPicture {
 
 class TeamView {
  public:
+  static constexpr Role kRole = Role::kMonitor;
+
   /// @param since  when the listening began
   /// @param authenticated  whether what it receives was checked with the team's key
   TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated = false);
 
   /// @pre the message is of this view's run
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   TeamPicture picture(Instant now) const;
 
@@ -83,32 +84,31 @@ class TeamView {
  private:
   struct Seen {
     AgentStatus status;
-    Instant heard{}, tick_since{};
+    Instant tick_since{};
     double behind_s = 0;  ///< more than a tick behind the world, in wall time
   };
-  struct Heard {
-    Instant at{};
-    Header header;
-  };
 
-  void on(const AgentStatus& status, Instant now);
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing more follows from the other types
+  void on(const AgentStatus& status, const Arrival& arrival);
+  void on(const TeamStatus& team, const Arrival& arrival);
+  void on(const WorldState& world, const Arrival& arrival);
+  const MissionFollower& follower() const { return me_.follower(); }
+  Instant last_sign(const Author& author) const;
   AgentRow row_of(const Author& author, bool member, Instant now) const;
-  Condition condition_of(const Seen& seen, Instant now) const;
+  Condition condition_of(const Author& author, const Seen& seen, Instant now) const;
   std::map<AgentId, std::pair<Author, bool>> newest_lives() const;
   void add_agents(TeamPicture& picture, Instant now) const;
   void add_forgotten(TeamPicture& picture) const;
   void add_process(TeamPicture& picture, AgentId sender, Instant now) const;
   bool should_speak(AgentId sender) const;
-  PacingClock::duration patience_with(AgentId sender) const;
 
-  Freshness freshness_;
-  RunId run_;
+  Participant me_;
   bool authenticated_;
-  MissionFollower follower_;
   Instant since_;
   Tick tick_ = 0, world_tick_ = 0;
   std::map<Author, Seen> agents_;
-  std::map<AgentId, Heard> processes_;
+  std::map<AgentId, Header> processes_;  // the newest of each
   std::string coordinator_host_;
   std::optional<MissionState> team_state_;  // as TEAM_STATUS has it, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;

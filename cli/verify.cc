@@ -59,7 +59,9 @@ struct Observer {
   Observer(RunData rows, const MissionFollower& heard)
       : recorder(0, 1, decode_plan, trajectory, metrics) {
     recorder.resume(std::move(rows));
-    for (const MissionPart& part : heard.parts()) recorder.receive(part, Instant{});
+    for (const MissionPart& part : heard.parts()) {
+      recorder.receive(part, Bus::kSwarm, kCoordinator, Instant{});
+    }
   }
 
   std::ostringstream trajectory, metrics;

@@ -18,9 +18,7 @@ using namespace std::chrono_literals;
 constexpr auto kMissionPeriod = 1s;
 constexpr auto kMissionGap = 100ms;
 constexpr auto kTeamStatusPeriod = 250ms;
-/// An agent that says nothing for so long is not alive.
-constexpr auto kSilence = 6 * kAgentStatusPeriod;
-/// What it said before that is out of date.
+/// What an agent said before that is out of date.
 constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 /// How long the end is repeated.
 constexpr auto kFarewell = 1s;
@@ -42,53 +40,46 @@ Presence Coordinator::presence(const RosterEntry& entry, Instant now) const {
 
 Coordinator::Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode_plan,
                          std::vector<std::byte> plan, Takeover takeover)
-    : run_(identity.run),
-      incarnation_(identity.incarnation),
-      host_(std::move(identity.host)),
-      version_(std::move(identity.version)),
-      plan_(std::move(plan)),
-      follower_(decode_plan),
-      takeover_(takeover) {
-  if (!plan_.empty()) mission_ = std::get<Mission>(decode_plan(plan_));
-  ERGOCAST_REQUIRE(mission_ || takeover == Takeover::kMust);
+    : me_(kRole, {identity.run, kCoordinator, identity.incarnation}, decode_plan),
+      name_{std::move(identity.host), std::move(identity.version)},
+      flown_{{}, std::move(plan)},
+      search_{takeover, {}, {}} {
+  if (!flown_.plan.empty()) flown_.mission = std::get<Mission>(decode_plan(flown_.plan));
+  ERGOCAST_REQUIRE(flown_.mission || takeover == Takeover::kMust);
 }
 
-void Coordinator::receive(const Message& message, Instant now) {
-  const Header& from = header_of(message);
-  const auto* status = std::get_if<AgentStatus>(&message);
-  const bool flying = status != nullptr && (status->phase == AgentPhase::kWaiting ||
-                                            status->phase == AgentPhase::kRunning);
-  if (takeover_ != Takeover::kNever && run_ == 0 && flying) run_ = from.run;
-  // While it knows no run, whoever leads one here leads the one that it would disturb.
-  const auto* team = std::get_if<TeamStatus>(&message);
-  if (team != nullptr && (run_ == 0 || from.run == run_)) return on(*team, now);
-  if (run_ == 0 || from.run != run_) return;
-  if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
-  if (const auto* stop = std::get_if<Stop>(&message)) return end(stop->failed, stop->reason, now);
-  if (takeover_ != Takeover::kNever) {
-    if (std::holds_alternative<WorldState>(message)) tick_ = std::max(tick_, from.tick);
-    if (from.sender >= 0) team_tick_ = std::max(team_tick_, from.tick);
+void Coordinator::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  if (me_.run() == 0) {
+    const auto* status = std::get_if<AgentStatus>(&message);
+    const bool flying = status != nullptr && (status->phase == AgentPhase::kWaiting ||
+                                              status->phase == AgentPhase::kRunning);
+    if (looking() && flying) me_.set_run(status->header.run);
+    // While it knows no run, whoever leads one here leads the one that it would disturb.
+    if (me_.run() == 0 && !std::holds_alternative<TeamStatus>(message)) return;
+  }
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
+}
+
+void Coordinator::on(const Stop& stop, const Arrival& arrival) {
+  end(stop.failed, stop.reason, arrival.now);
+}
+
+void Coordinator::on(const AgentStatus& status, const Arrival& arrival) {
+  if (looking()) {
+    team_tick_ = std::max(team_tick_, status.header.tick);
     return;
   }
-  if (const auto* hello = std::get_if<Hello>(&message)) return on(*hello, now);
-  if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
-  if (status != nullptr) return on(*status, now);
-}
-
-void Coordinator::on(const AgentStatus& status, Instant now) {
   const auto at = members_.find({status.header.sender, status.header.incarnation});
-  if (at == members_.end()) return;
-  Member& member = at->second;
-  // Liveness advances only on what is new: a replay keeps nobody alive.
-  if (member.status && member.status->header.sequence >= status.header.sequence) return;
-  member.status = status;
-  member.heard = now;
-  team_tick_ = std::max(team_tick_, std::min(status.header.tick, mission_->timing.tick_count));
+  if (at == members_.end() || !arrival.fresh) return;
+  at->second.status = status;
+  team_tick_ = std::max(team_tick_, std::min(status.header.tick, timing().tick_count));
   RosterEntry* entry = active_entry(status.header.sender);
   const bool leaves = status.phase == AgentPhase::kFinished && state_ == MissionState::kRunning &&
-                      status.header.tick < mission_->timing.tick_count;
+                      status.header.tick < timing().tick_count;
   if (!leaves || entry == nullptr || entry->author != at->first) return;
-  entry->active_until = std::max(tick_, status.header.tick);
+  entry->active_until = std::max(world_.tick, status.header.tick);
   change();
 }
 
@@ -104,18 +95,18 @@ RosterEntry* Coordinator::active_entry(AgentId id) {
 /// Whether a member has said nothing since, and may be dead: soon its number may be free.
 bool Coordinator::doubtful(Instant since, Instant now) const {
   return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
-    return alive(entry, now) && members_.at(entry.author).heard < since;
+    return alive(entry, now) && last_sign(entry.author) < since;
   });
 }
 
 std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
   // A process that was started again at once is the successor of one that still seems to live.
-  if (asked_.size() >= kMaxRosterEntries) {
-    asked_.erase(std::min_element(asked_.begin(), asked_.end(), [](const auto& a, const auto& b) {
+  if (newcomers_.asked.size() >= kMaxRosterEntries) {
+    newcomers_.asked.erase(std::min_element(newcomers_.asked.begin(), newcomers_.asked.end(), [](const auto& a, const auto& b) {
       return a.second < b.second;
     }));
   }
-  const Instant since = asked_.try_emplace(newcomer, now).first->second;
+  const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
   if (doubtful(since, now)) return std::nullopt;
   for (AgentId id = 0; id < kMaxAgents; ++id) {
     const RosterEntry* holder = active_entry(id);
@@ -124,14 +115,16 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
   return std::nullopt;
 }
 
-void Coordinator::on(const Hello& hello, Instant now) {
+void Coordinator::on(const Hello& hello, const Arrival& arrival) {
+  const Instant now = arrival.now;
+  if (looking()) return;
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   const Incarnation nonce = hello.header.incarnation;
-  if (hello.header.sender == kWorld) return on_question(hello, now);
+  if (hello.header.sender == kWorld) return on_question(hello, arrival);
   if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
   if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
-  if (hello.version != version_) {
-    if (strangers_.size() < kMaxStrangers) strangers_.emplace(hello.host, hello.version);
+  if (hello.version != name_.version) {
+    if (newcomers_.strangers.size() < kMaxStrangers) newcomers_.strangers.emplace(hello.host, hello.version);
     return;
   }
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
@@ -139,13 +132,13 @@ void Coordinator::on(const Hello& hello, Instant now) {
   });
   if (known) {
     // It has not heard: say it again soon, but let nobody's hellos flood the bus.
-    next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
+    said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
     return;
   }
   note_silences(now);
-  if (hello.revision < admits_from_) {
+  if (hello.revision < revisions_.admits_from) {
     // Said before the newest was: by somebody who has yet to hear of it, or a recording.
-    next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
+    said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
     return;
   }
   std::optional<AgentId> id = hello.requested_id;
@@ -156,7 +149,7 @@ void Coordinator::on(const Hello& hello, Instant now) {
     // The silence of one concerns only who would take its number: where messages are late, members fall
     // silent all the time, and nobody else's HELLO would ever be new enough.
     if (hello.revision < members_[holder->author].silence_revision) {
-      next_mission_ = std::min(next_mission_, last_mission_ + kMissionGap);
+      said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
       return;
     }
   }
@@ -164,12 +157,12 @@ void Coordinator::on(const Hello& hello, Instant now) {
 }
 
 /// A world that begins asks the team where it is, for which the tick has its time anew.
-void Coordinator::on_question(const Hello& question, Instant now) {
-  if (!freshness_.is_news(question.header)) return;
-  if (question.header.incarnation != asking_world_) tick_since_ = now;
-  asking_world_ = question.header.incarnation;
-  unheard_ = question.requested_id;
-  questioned_ = now;
+void Coordinator::on_question(const Hello& question, const Arrival& arrival) {
+  if (!arrival.fresh) return;
+  if (question.header.incarnation != world_.begun) world_.tick_since = arrival.now;
+  world_.begun = question.header.incarnation;
+  world_.unheard = question.requested_id;
+  world_.asked = arrival.now;
 }
 
 void Coordinator::admit(const Author& author, Instant now) {
@@ -178,42 +171,51 @@ void Coordinator::admit(const Author& author, Instant now) {
   });
   if (roster_.size() >= kMaxRosterEntries || lives >= kMaxIncarnationsPerAgent) return;
   // The agents may be further than the last state that we heard of a world that is dead by now.
-  const Tick newest = std::max(tick_, team_tick_);
+  const Tick newest = std::max(world_.tick, team_tick_);
   if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
   const Tick from = state_ == MissionState::kRunning ? newest : 0;
   roster_.push_back({author, from, -1});
   std::sort(roster_.begin(), roster_.end(),
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
-  members_[author].heard = now;
-  asked_.erase(author.incarnation);
-  tick_since_ = now;  // the tick waits for the newcomer, too, which has its time for it
+  members_[author];
+  me_.presume_alive(author, now);
+  newcomers_.asked.erase(author.incarnation);
+  world_.tick_since = now;  // the tick waits for the newcomer, too, which has its time for it
   announce();
 }
 
-void Coordinator::on(const WorldState& world, Instant now) {
-  world_heard_ = true;
-  if (world.roster_revision > revision_) {
+void Coordinator::on(const WorldState& world, const Arrival& arrival) {
+  const Instant now = arrival.now;
+  if (looking()) {
+    world_.tick = std::max(world_.tick, world.header.tick);
+    return;
+  }
+  world_.heard = true;
+  if (world.roster_revision > revisions_.current) {
     // A predecessor said it, and of all who live the world alone has heard it: the team waits for
     // that roster, or for a newer one.
-    revision_ = world.roster_revision;
+    revisions_.current = world.roster_revision;
     change();
   }
-  if (world.header.tick < tick_) return;
-  if (world.header.tick > tick_) tick_since_ = now;
-  tick_ = world.header.tick;
-  world_revision_ = world.roster_revision;
-  missed_deadlines_ = std::max(missed_deadlines_, world.missed_deadlines);
+  if (world.header.tick < world_.tick) return;
+  if (world.header.tick > world_.tick) world_.tick_since = now;
+  world_.tick = world.header.tick;
+  world_.revision = world.roster_revision;
+  world_.missed_deadlines = std::max(world_.missed_deadlines, world.missed_deadlines);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    Tick& answered = answered_.try_emplace(vehicle.id, -1).first->second;
+    Tick& answered = world_.answered.try_emplace(vehicle.id, -1).first->second;
     answered = std::max(answered, vehicle.answered_tick);
   }
-  if (tick_ >= mission_->timing.tick_count) end(false, "mission complete", now);
+  if (world_.tick >= timing().tick_count) end(false, "mission complete", now);
 }
 
 bool Coordinator::alive(const RosterEntry& entry, Instant now) const {
-  const auto at = members_.find(entry.author);
-  return entry.active_until < 0 && at != members_.end() && now - at->second.heard < kSilence;
+  return entry.active_until < 0 && !me_.silent(entry.author, now);
+}
+
+Instant Coordinator::last_sign(const Author& author) const {
+  return me_.liveness().last_sign(author).value_or(Instant{});
 }
 
 int Coordinator::alive_count(Instant now) const {
@@ -223,10 +225,10 @@ int Coordinator::alive_count(Instant now) const {
 }
 
 void Coordinator::end(bool failed, std::string reason, Instant now) {
-  if (ended_) return;
+  if (ending_.since) return;
   state_ = failed ? MissionState::kFailed : MissionState::kEnded;
-  reason_ = std::move(reason);
-  ended_ = now;
+  ending_.reason = std::move(reason);
+  ending_.since = now;
   change();
 }
 
@@ -237,15 +239,16 @@ AgentId Coordinator::waits_for(const RosterEntry& entry) const {
 
 RosterEntry* Coordinator::culprit(Instant now) {
   // A world that begins lacks the answers that its predecessor may have had.
-  RosterEntry* unheard = now - questioned_ <= kOverdue ? active_entry(unheard_) : nullptr;
+  const bool asks = now - world_.asked <= kOverdue;
+  RosterEntry* unheard = asks ? active_entry(world_.unheard) : nullptr;
   if (unheard != nullptr) return unheard;
   RosterEntry* silent = nullptr;
   RosterEntry* suspect = nullptr;
   for (RosterEntry& entry : roster_) {
-    if (entry.active_until >= 0 || answered_[entry.author.agent] >= tick_) continue;
-    const Member& member = members_[entry.author];
-    if (now - member.heard > kOverdue) {
-      if (silent == nullptr || member.heard < members_[silent->author].heard) silent = &entry;
+    if (entry.active_until >= 0 || world_.answered[entry.author.agent] >= world_.tick) continue;
+    const Instant heard = last_sign(entry.author);
+    if (now - heard > kOverdue) {
+      if (silent == nullptr || heard < last_sign(silent->author)) silent = &entry;
       continue;
     }
     // Who waits for a teammate is not to blame; that teammate is, unless it waits itself.
@@ -261,36 +264,36 @@ RosterEntry* Coordinator::culprit(Instant now) {
 }
 
 void Coordinator::check_admission(Instant now) {
-  if (now - *started_ < seconds(mission_->timing.admission_timeout_s)) return;
+  if (now - *said_.first < seconds(timing().admission_timeout_s)) return;
   std::string missing;
-  for (AgentId id = 0; id < static_cast<AgentId>(mission_->starts_m.size()); ++id) {
+  for (AgentId id = 0; id < static_cast<AgentId>(flown_.mission->starts_m.size()); ++id) {
     const RosterEntry* entry = active_entry(id);
     if (entry != nullptr && alive(*entry, now)) continue;
     missing += (missing.empty() ? "" : ", ") + std::to_string(id);
   }
   end(true, "only " + std::to_string(alive_count(now)) + " of the quorum of " +
-                std::to_string(mission_->quorum) + " agents were admitted; missing: " + missing, now);
+                std::to_string(flown_.mission->quorum) + " agents were admitted; missing: " + missing, now);
 }
 
 void Coordinator::check_tick(Instant now) {
-  if (now - tick_since_ < seconds(mission_->timing.lockstep_timeout_s)) return;
+  if (now - world_.tick_since < seconds(timing().lockstep_timeout_s)) return;
   RosterEntry* late = culprit(now);
   std::ostringstream since_text;
-  since_text << " for " << mission_->timing.lockstep_timeout_s << " s";
+  since_text << " for " << timing().lockstep_timeout_s << " s";
   const std::string since = since_text.str();
   if (late == nullptr) {
     if (alive_count(now) == 0) {
-      return end(true, "no agent is left to answer tick " + std::to_string(tick_), now);
+      return end(true, "no agent is left to answer tick " + std::to_string(world_.tick), now);
     }
-    return end(true, world_heard_ ? "the world has not gone beyond tick " + std::to_string(tick_) + since
+    return end(true, world_.heard ? "the world has not gone beyond tick " + std::to_string(world_.tick) + since
                                   : "no world was heard" + since + ": is one running on this URL?",
                now);
   }
   const std::string who = "agent " + std::to_string(late->author.agent) +
-                          " has not answered tick " + std::to_string(tick_) + since;
-  if (mission_->timing.on_timeout == OnTimeout::kEndMission) return end(true, who, now);
-  late->active_until = tick_;
-  tick_since_ = now;
+                          " has not answered tick " + std::to_string(world_.tick) + since;
+  if (timing().on_timeout == OnTimeout::kEndMission) return end(true, who, now);
+  late->active_until = world_.tick;
+  world_.tick_since = now;
   change();
 }
 
@@ -302,7 +305,7 @@ void Coordinator::note_silences(Instant now) {
     const bool silent = !alive(entry, now);
     if (silent && !member.silence_said) {
       say_anew();
-      member.silence_revision = revision_;
+      member.silence_revision = revisions_.current;
     }
     member.silence_said = silent;
   }
@@ -311,10 +314,10 @@ void Coordinator::note_silences(Instant now) {
 /// What was covered under a number stops counting once nobody was heard under it for as long as the
 /// plan says, and counts again once somebody is.
 void Coordinator::review_coverage(Instant now) {
-  if (mission_->forget_silent_after_s <= 0) return;
+  if (flown_.mission->forget_silent_after_s <= 0) return;
   // Who hears nobody is deaf itself, and learns nothing of others' silence.
   if (alive_count(now) == 0) deaf_until_ = now;
-  const auto patience = std::max<PacingClock::duration>(seconds(mission_->forget_silent_after_s), kSilence);
+  const auto patience = std::max(seconds(flown_.mission->forget_silent_after_s), silence_of(0));
   struct Number {
     Instant heard{};
     bool speaks = false;
@@ -322,8 +325,8 @@ void Coordinator::review_coverage(Instant now) {
   std::map<AgentId, Number> numbers;
   for (const auto& [author, member] : members_) {
     Number& number = numbers[author.agent];
-    number.heard = std::max(number.heard, member.heard);
-    number.speaks |= member.status && now - member.heard < kSilence;
+    number.heard = std::max(number.heard, last_sign(author));
+    number.speaks |= member.status && !me_.silent(author, now);
   }
   for (RosterEntry& entry : roster_) {
     const Number& number = numbers[entry.author.agent];
@@ -335,61 +338,61 @@ void Coordinator::review_coverage(Instant now) {
 
 /// Not before the last switch has happened: an entry has room for one.
 bool Coordinator::may_switch(const RosterEntry& entry) const {
-  return tick_ >= entry.since_tick && world_revision_ >= entry.since_revision;
+  return world_.tick >= entry.since_tick && world_.revision >= entry.since_revision;
 }
 
 void Coordinator::switch_coverage(RosterEntry& entry, bool forgotten) {
-  const Timing& timing = mission_->timing;
+  const Timing& timing = flown_.mission->timing;
   const double notice_s = timing.pace == Pace::kLockstep ? 0 : kNotice_s;
   change();
   entry.forgotten = forgotten;
-  entry.since_tick = tick_ + 1 + static_cast<Tick>(notice_s * timing.realtime_factor / timing.dt_s);
-  entry.since_revision = revision_;
+  entry.since_tick = world_.tick + 1 + static_cast<Tick>(notice_s * timing.realtime_factor / timing.dt_s);
+  entry.since_revision = revisions_.current;
 }
 
 void Coordinator::advance(Instant now, Outbox& out) {
-  if (finished_) return;
-  if (takeover_ != Takeover::kNever) look_for_mission(now, out);
-  if (takeover_ == Takeover::kNever && !finished_) lead(now, out);
+  if (ending_.finished) return;
+  if (looking()) look_for_mission(now, out);
+  if (!looking() && !ending_.finished) lead(now, out);
 }
 
 void Coordinator::lead(Instant now, Outbox& out) {
-  if (!started_) started_ = now;
+  if (!said_.first) said_.first = now;
   note_silences(now);
   if (state_ == MissionState::kRunning) review_coverage(now);
   if (state_ == MissionState::kWaiting) check_admission(now);
-  if (state_ == MissionState::kRunning && mission_->timing.pace == Pace::kLockstep) check_tick(now);
-  if (state_ == MissionState::kWaiting && alive_count(now) >= mission_->quorum) {
+  if (state_ == MissionState::kRunning && timing().pace == Pace::kLockstep) check_tick(now);
+  if (state_ == MissionState::kWaiting && alive_count(now) >= flown_.mission->quorum) {
     state_ = MissionState::kRunning;
-    tick_since_ = now;
+    world_.tick_since = now;
     change();
   }
   // First, so that a coordinator whom our mission outranks knows that we live.
-  if (now >= next_team_status_) {
+  if (now >= said_.next_team_status) {
     publish_team_status(now, out);
-    next_team_status_ = now + kTeamStatusPeriod;
+    said_.next_team_status = now + kTeamStatusPeriod;
   }
-  if (now >= next_mission_) {
+  if (now >= said_.next_mission) {
     publish_mission(out);
-    last_mission_ = now;
-    next_mission_ = now + (ended_ ? kMissionGap : kMissionPeriod);
+    said_.last_mission = now;
+    said_.next_mission = now + (ending_.since ? kMissionGap : kMissionPeriod);
   }
-  finished_ = ended_ && now - *ended_ >= kFarewell;
+  ending_.finished = ending_.since && now - *ending_.since >= kFarewell;
 }
 
 void Coordinator::publish_mission(Outbox& out) {
-  admits_from_ = who_may_join_;
+  revisions_.admits_from = revisions_.who_may_join;
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
   const std::size_t parts =
-      std::max({std::size_t{1}, ceil_div(plan_.size(), kMaxPlanBytesPerMessage),
+      std::max({std::size_t{1}, ceil_div(flown_.plan.size(), kMaxPlanBytesPerMessage),
                 ceil_div(roster_.size(), kMaxRosterEntriesPerMessage)});
   for (std::size_t p = 0; p < parts; ++p) {
     MissionPart part;
-    part.revision = revision_;
+    part.revision = revisions_.current;
     part.state = state_;
     part.part = static_cast<std::int32_t>(p);
     part.parts = static_cast<std::int32_t>(parts);
-    part.reason = reason_;
+    part.reason = ending_.reason;
     const auto slice = [p](const auto& all, std::size_t size, auto& into) {
       const std::size_t first = std::min(p * size, all.size());
       const std::size_t last = std::min(first + size, all.size());
@@ -397,10 +400,9 @@ void Coordinator::publish_mission(Outbox& out) {
                   all.begin() + static_cast<std::ptrdiff_t>(last));
     };
     slice(roster_, kMaxRosterEntriesPerMessage, part.roster);
-    slice(plan_, kMaxPlanBytesPerMessage, part.plan);
+    slice(flown_.plan, kMaxPlanBytesPerMessage, part.plan);
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
-      part.header = header(bus);
-      out.push_back({bus, part});
+      me_.publish(bus, part, world_.tick, out);
     }
   }
 }
@@ -408,14 +410,14 @@ void Coordinator::publish_mission(Outbox& out) {
 void Coordinator::publish_team_status(Instant now, Outbox& out) {
   TeamStatus team;
   team.state = state_;
-  team.tick_count = mission_->timing.tick_count;
-  team.missed_deadlines = missed_deadlines_;
+  team.tick_count = timing().tick_count;
+  team.missed_deadlines = world_.missed_deadlines;
   team.agents_alive = alive_count(now);
   const auto members = std::count_if(roster_.begin(), roster_.end(), [](const RosterEntry& entry) {
     return entry.active_until < 0;
   });
   team.agents_expected = static_cast<std::int32_t>(
-      std::max(members, static_cast<std::ptrdiff_t>(mission_->starts_m.size())));
+      std::max(members, static_cast<std::ptrdiff_t>(flown_.mission->starts_m.size())));
   std::vector<double> metrics;
   for (const RosterEntry& entry : roster_) {
     const auto& status = members_[entry.author].status;
@@ -431,19 +433,14 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
     return entry.active_until < 0 && !alive(entry, now);
   });
   if (silent != roster_.end()) team.silent_agent = silent->author.agent;
-  team.host = host_;
-  team.header = header(Bus::kSwarm);
-  out.push_back({Bus::kSwarm, team});
-}
-
-Header Coordinator::header(Bus bus) {
-  return {run_, kCoordinator, incarnation_, sequencer_.next(bus), tick_};
+  team.host = name_.host;
+  me_.publish(Bus::kSwarm, team, world_.tick, out);
 }
 
 Instant Coordinator::next_wakeup() const {
-  if (takeover_ != Takeover::kNever) return next_look();
-  if (!started_) return Instant{};
-  return std::min(next_mission_, next_team_status_);
+  if (looking()) return next_look();
+  if (!said_.first) return Instant{};
+  return std::min(said_.next_mission, said_.next_team_status);
 }
 
 }  // namespace ergocast

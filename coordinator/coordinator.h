@@ -12,11 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "team/freshness.h"
 #include "core/ids.h"
 #include "team/messages.h"
 #include "core/mission.h"
-#include "team/mission_follower.h"
+#include "team/participant.h"
 
 namespace ergocast {
 
@@ -41,11 +40,13 @@ struct CoordinatorIdentity {
 
 class Coordinator {
  public:
+  static constexpr Role kRole = Role::kCoordinator;
+
   /// @param plan  the compiled plan as it travels; may be empty with kMust: any mission's
   Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode_plan,
               std::vector<std::byte> plan, Takeover takeover = Takeover::kNever);
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
@@ -53,38 +54,87 @@ class Coordinator {
   void end(bool failed, std::string reason, Instant now);
 
   /// True once the end has been repeated for long enough.
-  bool finished() const { return finished_; }
-  RunId run() const { return run_; }
+  bool finished() const { return ending_.finished; }
+  RunId run() const { return me_.run(); }
   /// Null until it has one, which with a takeover takes a moment.
-  const Mission* mission() const { return mission_ ? &*mission_ : nullptr; }
+  const Mission* mission() const { return flown_.mission ? &*flown_.mission : nullptr; }
   /// Whether it has yet to find out if there is a mission to take over.
-  bool looking() const { return takeover_ != Takeover::kNever; }
+  bool looking() const { return search_.takeover != Takeover::kNever; }
   /// Whether it took the mission over from a predecessor.
-  bool took_over() const { return took_over_; }
+  bool took_over() const { return flown_.taken_over; }
   /// Whether it has finished without a word because the mission is not its to lead; reason() says why.
-  bool left() const { return left_; }
+  bool left() const { return ending_.left; }
   MissionState state() const { return state_; }
-  const std::string& reason() const { return reason_; }
+  const std::string& reason() const { return ending_.reason; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
   Presence presence(const RosterEntry& entry, Instant now) const;
   /// Hosts and versions of agents that were not admitted because their version is not ours.
-  const std::set<std::pair<std::string, std::string>>& strangers() const { return strangers_; }
-  Tick tick() const { return tick_; }
+  const std::set<std::pair<std::string, std::string>>& strangers() const { return newcomers_.strangers; }
+  Tick tick() const { return world_.tick; }
 
  private:
+  struct Name {
+    std::string host, version;
+  };
+  /// What it leads, or is to lead.
+  struct Flown {
+    std::optional<Mission> mission;
+    std::vector<std::byte> plan;  // as it travels
+    bool taken_over = false;
+  };
+  /// How it finds a mission that is under way, until it leads one; the follower has what agents say.
+  struct MissionSearch {
+    Takeover takeover;
+    std::optional<Instant> since, found;
+    Instant next_question{};
+  };
+  struct Revisions {
+    std::int64_t current = 0;
+    std::int64_t who_may_join = 0;  // the newest that bears on all newcomers, …
+    std::int64_t admits_from = -1;  // … and what a HELLO must know of, once it was said
+  };
   struct Member {
     std::optional<AgentStatus> status;
-    Instant heard{};
     bool silence_said = false;
     std::int64_t silence_revision = -1;  // that tells of its last silence
   };
+  struct Newcomers {
+    std::map<Incarnation, Instant> asked;  // without a number: since when
+    std::set<std::pair<std::string, std::string>> strangers;
+  };
+  /// The newest that was heard of the world.
+  struct WorldSeen {
+    bool heard = false;
+    Tick tick = 0;
+    Instant tick_since{};
+    std::int64_t revision = 0;  // of the roster that the tick is flown by
+    std::int64_t missed_deadlines = 0;
+    std::map<AgentId, Tick> answered;
+    Incarnation begun = 0;         // the life that asked last where the team is, …
+    AgentId unheard = kUnassigned; // … whose answer it waited for when it asked last, …
+    Instant asked{};               // … and when that was
+  };
+  struct Said {
+    std::optional<Instant> first;  // when it began to lead
+    Instant next_mission{}, last_mission{}, next_team_status{};
+  };
+  struct Ending {
+    std::optional<Instant> since;
+    std::string reason;
+    bool finished = false, left = false;
+  };
 
-  void on(const Hello& hello, Instant now);
-  void on_question(const Hello& question, Instant now);
-  void on(const AgentStatus& status, Instant now);
-  void on(const MissionPart& part, Instant now);
-  void on(const WorldState& world, Instant now);
-  void on(const TeamStatus& theirs, Instant now);
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const Hello& hello, const Arrival& arrival);
+  void on_question(const Hello& question, const Arrival& arrival);
+  void on(const AgentStatus& status, const Arrival& arrival);
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const WorldState& world, const Arrival& arrival);
+  void on(const TeamStatus& theirs, const Arrival& arrival);
+  void on(const Stop& stop, const Arrival& arrival);
+  const Timing& timing() const { return flown_.mission->timing; }
+  Instant last_sign(const Author& author) const;
   void admit(const Author& author, Instant now);
   bool doubtful(Instant since, Instant now) const;
   std::optional<AgentId> free_id(Incarnation newcomer, Instant now);
@@ -109,53 +159,28 @@ class Coordinator {
   void check_tick(Instant now);
   AgentId waits_for(const RosterEntry& entry) const;
   RosterEntry* culprit(Instant now);
-  void announce() { say_anew(), who_may_join_ = revision_; }
-  void say_anew() { ++revision_, next_mission_ = Instant{}; }
+  void announce() { say_anew(), revisions_.who_may_join = revisions_.current; }
+  void say_anew() { ++revisions_.current, said_.next_mission = Instant{}; }
   /// Anything but an admission: newcomers have to know of it, so that no recording of one gets in.
-  void change() { announce(), admits_from_ = revision_; }
+  void change() { announce(), revisions_.admits_from = revisions_.current; }
   void publish_mission(Outbox& out);
   void publish_team_status(Instant now, Outbox& out);
-  Header header(Bus bus);
 
-  RunId run_;
-  Incarnation incarnation_;
-  std::string host_, version_;
-  std::set<std::pair<std::string, std::string>> strangers_;
-  std::optional<Mission> mission_;
-  std::vector<std::byte> plan_;
-  MissionFollower follower_;  // what agents say of a mission under way
-  Takeover takeover_;
-  bool took_over_ = false, left_ = false;
-  std::optional<Instant> looking_since_, found_;
-  Tick team_tick_ = 0;  // the newest of any agent
+  Participant me_;
+  Name name_;
+  Flown flown_;
+  MissionSearch search_;
   std::optional<TeamStatus> rival_;  // another coordinator's
-  Instant rival_heard_{};
-  Incarnation asking_world_ = 0;   // that began last, …
-  AgentId unheard_ = kUnassigned;  // … whose answer it waited for when it said so last, …
-  Instant questioned_{};           // … and when that was
-  Freshness freshness_;
-  Instant next_question_{};
-  Sequencer sequencer_;
-
   MissionState state_ = MissionState::kWaiting;
-  std::string reason_;
-  std::int64_t revision_ = 0;
-  std::int64_t who_may_join_ = 0;  // the newest revision that bears on all newcomers, …
-  std::int64_t admits_from_ = -1;  // … and what a HELLO must know of, once it was said
   std::vector<RosterEntry> roster_;
+  Revisions revisions_;
   std::map<Author, Member> members_;
-  std::map<Incarnation, Instant> asked_;  // newcomers without a number: since when
-  std::map<AgentId, std::int64_t> answered_;  // by the world's word
-
-  bool world_heard_ = false;
-  Tick tick_ = 0;
-  std::int64_t world_revision_ = 0;  // of the roster that tick_ is flown by
-  Instant deaf_until_{};             // it heard nobody
-  std::int64_t missed_deadlines_ = 0;
-  std::optional<Instant> started_, ended_;
-  Instant tick_since_{};
-  Instant next_mission_{}, last_mission_{}, next_team_status_{};
-  bool finished_ = false;
+  Newcomers newcomers_;
+  WorldSeen world_;
+  Tick team_tick_ = 0;    // the newest of any agent
+  Instant deaf_until_{};  // it heard nobody
+  Said said_;
+  Ending ending_;
 };
 
 }  // namespace ergocast

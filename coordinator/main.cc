@@ -92,8 +92,10 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   Coordinator coordinator({node.run, random_identity(), host_name(), version()}, decode_plan,
                           std::move(plan), takeover);
   auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Role::kCoordinator),
-      {.on_message = [&](const Message& message, AgentId) { coordinator.receive(message, now()); }});
+      node.url, node.run, node.seal, subscriptions_of(Coordinator::kRole),
+      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
+        coordinator.receive(message, bus, transmitter, now());
+      }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;

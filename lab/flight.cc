@@ -181,13 +181,13 @@ void Flight::hear(Seat seat, const Delivery& delivery) {
   // Everything on a bus arrives; what no subscription names goes no further.
   if (!hears(subscriptions(seat), delivery.bus, message)) return;
   process.heard = true;
-  if (seat >= agents_count_) {
-    if (seat == coordinator_seat()) return coordinator_->receive(message, local);
-    return seat == world_seat() ? world_->receive(message, local) : recorder_.receive(message, local);
-  }
-  if (const auto* digest = std::get_if<Digest>(&message)) invariants_.heard(agent(seat).author(), *digest);
+  const auto* digest = std::get_if<Digest>(&message);
+  if (digest != nullptr && seat < agents_count_) invariants_.heard(agent(seat).author(), *digest);
+  with(seat, [&](auto& core) {
+    core.receive(message, delivery.bus, delivery.transmitter, local);
+  });
+  if (seat >= agents_count_) return;
   Agent& one = agent(seat);
-  one.receive(message, local, delivery.transmitter);
   invariants_.received({one.author(), one.coverage(), nullptr, &one.follower().roster()}, message);
 }
 

@@ -3,7 +3,7 @@
 // copies of one fact.
 #include <algorithm>
 
-#include "team/silence.h"
+#include "team/liveness.h"
 #include "lab/flight.h"
 
 namespace ergocast::lab {

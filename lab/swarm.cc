@@ -102,15 +102,16 @@ void Swarm::deliver(const Datagram& datagram) {
   const auto decoded = decode(datagram.bytes, run_);
   const Message* message = std::get_if<Message>(&decoded);
   if (message == nullptr) return;
-  const auto heard_by = [&](Role role) { return hears(subscriptions_of(role), datagram.bus, *message); };
-  if (heard_by(Role::kAgent)) {
-    for (std::size_t i = 0; i < agents_.size(); ++i) {
-      if (reaches(*message, static_cast<int>(i))) agents_[i]->receive(*message, now_, datagram.transmitter);
+  const auto tell = [&]<class Core>(Core& core, int seat) {
+    const bool heard = hears(subscriptions_of(Core::kRole), datagram.bus, *message);
+    if (heard && reaches(*message, seat)) {
+      core.receive(*message, datagram.bus, datagram.transmitter, now_);
     }
-  }
-  if (heard_by(Role::kCoordinator) && reaches(*message, kCoordinatorSeat)) coordinator_.receive(*message, now_);
-  if (heard_by(Role::kWorld) && reaches(*message, kWorldSeat)) world_.receive(*message, now_);
-  if (heard_by(Role::kLogger) && reaches(*message, kLoggerSeat)) recorder_.receive(*message, now_);
+  };
+  for (std::size_t i = 0; i < agents_.size(); ++i) tell(*agents_[i], static_cast<int>(i));
+  tell(coordinator_, kCoordinatorSeat);
+  tell(world_, kWorldSeat);
+  tell(recorder_, kLoggerSeat);
 }
 
 bool Swarm::everybody_finished() const {

@@ -206,8 +206,10 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLi
   RunLogger logger(node.run, *std::get<0>(created), std::move(past), limits);
   Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Role::kLogger),
-      {.on_message = [&](const Message& message, AgentId) { recorder.receive(message, now()); },
+      node.url, node.run, node.seal, subscriptions_of(Recorder::kRole),
+      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
+         recorder.receive(message, bus, transmitter, now());
+       },
        .on_accepted = [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
          logger.keep_event(bus, channel, bytes);
        }});

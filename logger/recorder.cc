@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "core/require.h"
-#include "team/silence.h"
 
 namespace ergocast {
 namespace {
@@ -48,9 +47,7 @@ bool Recorder::State::complete() const {
 
 Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
                    std::ostream& trajectory, std::ostream& metrics)
-    : run_(run),
-      incarnation_(incarnation),
-      follower_(std::move(decode_plan)),
+    : me_(kRole, {run, kLogger, incarnation}, std::move(decode_plan)),
       trajectory_(trajectory),
       metrics_(metrics) {
   ERGOCAST_REQUIRE(writing());
@@ -59,60 +56,55 @@ Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
 }
 
 void Recorder::resume(RunData past) {
-  resumed_ = true;
+  former_.resumed = true;
   for (const auto& [agent, track] : past.tracks) next_row_ = std::max(next_row_, track.back().tick);
-  past_ = std::move(past);
+  former_.rows = std::move(past);
 }
 
 void Recorder::go_on(Instant now) {
-  ++incarnation_;
-  lost_before_ = std::max(lost_before_, newest_);
+  me_.set_incarnation(me_.incarnation() + 1);
+  heard_.lost_before = std::max(heard_.lost_before, heard_.newest);
   progress_ = now;
-  next_ack_ = now;
+  acked_.next = now;
 }
 
-void Recorder::receive(const Message& message, Instant now) {
-  const Header& from = header_of(message);
-  if (finished_ || (run_ != 0 && from.run != run_)) return;
-  if (const auto* world = std::get_if<WorldState>(&message)) return on(*world, now);
-  if (const auto* status = std::get_if<AgentStatus>(&message)) {
-    const Author author{from.sender, from.incarnation};
-    if (statuses_.size() >= kMaxStatuses && !statuses_.contains(author)) return;
-    AgentStatus& latest = statuses_[author];
-    if (from.sequence <= latest.header.sequence) return;
-    const double worst_lag_s = std::max(latest.loop_lag_s, status->loop_lag_s);
-    latest = *status;
-    latest.loop_lag_s = worst_lag_s;
-    return;
-  }
-  if (const auto* part = std::get_if<MissionPart>(&message)) {
-    if (run_ == 0) run_ = from.run;
-    if (freshness_.is_news(from)) heard_ = now;
-    const bool had_mission = follower_.mission().has_value();
-    if (!follower_.receive(*part)) return;
-    if (follower_.plan_problem()) return fail(*follower_.plan_problem());
-    if (!had_mission && follower_.mission()) begin();
-    if (follower_.over() && !over_since_) {
-      over_since_ = now;
-      failed_ = follower_.state() == MissionState::kFailed;
-      reason_ = follower_.reason();
-    }
-    return;
-  }
-  if (const auto* stop = std::get_if<Stop>(&message); stop && stop->now && run_ != 0 && !over_since_) {
-    over_since_ = now;
-    facts_.halted = true;
-    failed_ = stop->failed;
-    reason_ = stop->reason;
-  }
+void Recorder::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  if (ending_.finished) return;
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
+}
+
+void Recorder::on(const AgentStatus& status, const Arrival& arrival) {
+  if (!arrival.fresh) return;
+  AgentStatus& latest = statuses_[{arrival.from.sender, arrival.from.incarnation}];
+  const double worst_lag_s = std::max(latest.loop_lag_s, status.loop_lag_s);
+  latest = status;
+  latest.loop_lag_s = worst_lag_s;
+}
+
+void Recorder::on(const MissionPart&, const Arrival& arrival) {
+  if (!arrival.mission_changed) return;
+  if (follower().plan_problem()) return fail(*follower().plan_problem());
+  if (me_.knows_mission() && !observer_.begun()) begin();
+  if (!follower().over() || ending_.since) return;
+  ending_.since = arrival.now;
+  ending_.failed = follower().state() == MissionState::kFailed;
+  ending_.reason = follower().reason();
+}
+
+void Recorder::on(const Stop& stop, const Arrival& arrival) {
+  if (!stop.now || me_.run() == 0 || ending_.since) return;
+  ending_.since = arrival.now;
+  facts_.halted = true;
+  ending_.failed = stop.failed;
+  ending_.reason = stop.reason;
 }
 
 void Recorder::begin() {
-  const Mission& mission = *follower_.mission();
-  weights_ = sobolev_weights(mission.basis, mission.domain);
-  sums_s_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
-  if (past_) replay(*past_);
-  past_.reset();
+  observer_.begin(mission());
+  if (former_.rows) replay(*former_.rows);
+  former_.rows.reset();
   states_.erase(states_.begin(), states_.lower_bound(next_row_));
 }
 
@@ -122,13 +114,13 @@ void Recorder::replay(const RunData& past) {
     facts_.ergodic_metric.push_back(row.ergodic_metric);
   }
   if (!past.metrics.empty()) {
-    former_metrics_ = past.metrics.back();
+    former_.metrics = past.metrics.back();
     facts_.ergodic_metric_first = facts_.ergodic_metric.front();
     facts_.ergodic_metric_last = facts_.ergodic_metric.back();
   }
-  std::size_t vehicles = 0, expected = follower_.mission()->starts_m.size();
+  std::size_t vehicles = 0, expected = mission().starts_m.size();
   for_each_row(past, [&](AgentId id, const TrackPoint& row) {
-    if (row.tick > former_end_.first) {
+    if (row.tick > former_.end.first) {
       if (vehicles > 0) write_due_metrics();
       expected = std::max(expected, vehicles);
       next_row_ = row.tick;
@@ -137,10 +129,10 @@ void Recorder::replay(const RunData& past) {
     }
     observe(id, row.x_m);
     ++vehicles;
-    former_end_ = {row.tick, id};
+    former_.end = {row.tick, id};
   });
   facts_.former_ticks = facts_.ticks;
-  facts_.gaps = former_end_.first + 1 - facts_.ticks;
+  facts_.gaps = former_.end.first + 1 - facts_.ticks;
   // With fewer, the last tick may have been cut off amid its rows, and is recorded to its end.
   if (vehicles == 0 || vehicles < expected) return;
   write_due_metrics();
@@ -148,19 +140,17 @@ void Recorder::replay(const RunData& past) {
 }
 
 bool Recorder::is_lockstep() const {
-  return !follower_.mission() || follower_.mission()->timing.pace == Pace::kLockstep;
+  return !me_.knows_mission() || mission().timing.pace == Pace::kLockstep;
 }
 
-void Recorder::on(const WorldState& world, Instant now) {
+void Recorder::on(const WorldState& world, const Arrival& arrival) {
   const Tick tick = world.header.tick;
-  const bool is_news = freshness_.is_news(world.header);
-  if (is_news) heard_ = now;
-  if (follower_.mission()) {
-    if (tick > follower_.mission()->timing.tick_count) return;
-    newest_ = std::max(newest_, tick);
-    if (is_news) meet(world.header, now);
+  if (me_.knows_mission()) {
+    if (tick > mission().timing.tick_count) return;
+    heard_.newest = std::max(heard_.newest, tick);
+    if (arrival.fresh) meet(world.header, arrival.now);
   }
-  const Tick horizon = std::max(next_row_, lost_before_) + kLeadTicks;
+  const Tick horizon = std::max(next_row_, heard_.lost_before) + kLeadTicks;
   if (tick < next_row_ || (is_lockstep() && tick > horizon)) return;
   facts_.missed_deadlines = std::max(facts_.missed_deadlines, world.missed_deadlines);
   facts_.skipped_ticks = std::max(facts_.skipped_ticks, world.skipped_ticks);
@@ -181,29 +171,29 @@ void Recorder::on(const WorldState& world, Instant now) {
 }
 
 void Recorder::meet(const Header& world, Instant now) {
-  if (world.incarnation == world_) return;
-  const bool from_the_start = world_ == 0 && !resumed_;
-  world_ = world.incarnation;
+  if (world.incarnation == heard_.world) return;
+  const bool from_the_start = heard_.world == 0 && !former_.resumed;
+  heard_.world = world.incarnation;
   if (from_the_start) return;
-  lost_before_ = std::max(lost_before_, world.tick);
+  heard_.lost_before = std::max(heard_.lost_before, world.tick);
   progress_ = now;
 }
 
 void Recorder::advance(Instant now, Outbox& out) {
-  if (finished_) return;
-  if (follower_.mission()) {
+  if (ending_.finished) return;
+  if (me_.knows_mission()) {
     if (given_up(now)) go_on(now);
     write_rows(now);
-    if (next_row_ >= follower_.mission()->timing.tick_count && !over_since_) {
-      over_since_ = now;
-      reason_ = "mission complete";
+    if (next_row_ >= mission().timing.tick_count && !ending_.since) {
+      ending_.since = now;
+      ending_.reason = "mission complete";
     }
   }
-  if (over_since_ && now - std::max(*over_since_, progress_) >= kFarewell) close();
+  if (ending_.since && now - std::max(*ending_.since, progress_) >= kFarewell) close();
   if (abandoned(now)) {
     stop("neither the world nor the coordinator can be heard, and the mission must be over by now");
   }
-  if (follower_.mission()) acknowledge(now, out);
+  if (me_.knows_mission()) acknowledge(now, out);
 }
 
 void Recorder::write_rows(Instant now) {
@@ -216,44 +206,41 @@ void Recorder::write_rows(Instant now) {
 
 void Recorder::acknowledge(Instant now, Outbox& out) {
   const Tick recorded = next_row_ - 1;
-  const bool progress = recorded > acked_ + kAckEveryTicks - 1 || (finished_ && recorded > acked_);
-  if (!progress && now < next_ack_) return;
+  const bool progress = recorded > acked_.tick + kAckEveryTicks - 1 || (ending_.finished && recorded > acked_.tick);
+  if (!progress && now < acked_.next) return;
   trajectory_.flush();
   metrics_.flush();
   const bool hole = !states_.empty() && states_.rbegin()->first > next_row_ + 1;
-  next_ack_ = now + (hole ? kImpatientAckPeriod : kAckPeriod);
+  acked_.next = now + (hole ? kImpatientAckPeriod : kAckPeriod);
   if (!writing()) return;
-  acked_ = recorded;
-  out.push_back({Bus::kCommand, RecordAck{{run_, kLogger, incarnation_,
-                                          sequencer_.next(Bus::kCommand), recorded}}});
+  acked_.tick = recorded;
+  me_.publish(Bus::kCommand, RecordAck{}, recorded, out);
 }
 
 bool Recorder::abandoned(Instant now) const {
-  if (finished_ || over_since_ || !follower_.mission()) return false;
-  if (follower_.state() != MissionState::kRunning) return false;
-  const Tick newest = states_.empty() ? next_row_ : states_.rbegin()->first;
-  return must_be_over(follower_.mission()->timing, newest, now - heard_);
+  if (ending_.finished || ending_.since) return false;
+  return me_.cut_off(states_.empty() ? next_row_ : states_.rbegin()->first, now);
 }
 
 Instant Recorder::next_wakeup() const {
-  return finished_ || !follower_.mission() ? Instant::max() : next_ack_;
+  return ending_.finished || !me_.knows_mission() ? Instant::max() : acked_.next;
 }
 
 void Recorder::stop(std::string reason) {
-  if (!over_since_) reason_ = std::move(reason);
+  if (!ending_.since) ending_.reason = std::move(reason);
   close();
 }
 
 void Recorder::fail(std::string reason) {
-  failed_ = true;
+  ending_.failed = true;
   stop(std::move(reason));
 }
 
 void Recorder::close() {
-  if (finished_) return;
-  finished_ = true;
+  if (ending_.finished) return;
+  ending_.finished = true;
   // What stands behind a gap is written now or never.
-  lost_before_ = std::max(lost_before_, newest_);
+  heard_.lost_before = std::max(heard_.lost_before, heard_.newest);
   while (writing() && gap_ahead() && next_pair() != states_.end()) {
     skip_gap();
     while (write_next_row()) {
@@ -262,8 +249,8 @@ void Recorder::close() {
 }
 
 const char* Recorder::result() const {
-  if (failed_) return "failed";
-  const bool complete = follower_.mission() && next_row_ >= follower_.mission()->timing.tick_count;
+  if (ending_.failed) return "failed";
+  const bool complete = me_.knows_mission() && next_row_ >= mission().timing.tick_count;
   return complete ? "done" : "stopped";
 }
 
@@ -273,22 +260,21 @@ bool Recorder::holds(Tick tick) const {
 }
 
 bool Recorder::write_next_row() {
-  if (!writing() || next_row_ >= follower_.mission()->timing.tick_count) return false;
+  if (!writing() || next_row_ >= mission().timing.tick_count) return false;
   if (!holds(next_row_) || !holds(next_row_ + 1)) return false;
   write_trajectory(states_.at(next_row_), states_.at(next_row_ + 1));
   write_due_metrics();
   states_.erase(next_row_);
-  if (next_row_ > former_end_.first) ++facts_.ticks;
+  if (next_row_ > former_.end.first) ++facts_.ticks;
   ++next_row_;
   return true;
 }
 
 /// Whether a state is missing that may never come, and newer ones are there.
 bool Recorder::gap_ahead() const {
-  const auto& mission = follower_.mission();
-  if (!mission || next_row_ >= mission->timing.tick_count || states_.empty()) return false;
+  if (!me_.knows_mission() || next_row_ >= mission().timing.tick_count || states_.empty()) return false;
   const Tick missing = holds(next_row_) ? next_row_ + 1 : next_row_;
-  return states_.rbegin()->first > missing && (!is_lockstep() || missing < lost_before_);
+  return states_.rbegin()->first > missing && (!is_lockstep() || missing < heard_.lost_before);
 }
 
 bool Recorder::gap_is_final(Instant now) const {
@@ -298,9 +284,9 @@ bool Recorder::gap_is_final(Instant now) const {
 /// Whether the world goes on without us, as it does in lockstep when it has not heard of a row for half
 /// of the time-out: we were cut off, and what was said meanwhile nobody repeats.
 bool Recorder::given_up(Instant now) const {
-  const Tick expected = std::max(next_row_, lost_before_) + kRecordWindowTicks;
-  return is_lockstep() && writing() && newest_ > expected &&
-         now - progress_ > seconds(follower_.mission()->timing.lockstep_timeout_s / 2);
+  const Tick expected = std::max(next_row_, heard_.lost_before) + kRecordWindowTicks;
+  return is_lockstep() && writing() && heard_.newest > expected &&
+         now - progress_ > seconds(mission().timing.lockstep_timeout_s / 2);
 }
 
 /// The first two successive states, with which the record can go on behind a gap.
@@ -313,18 +299,18 @@ std::map<Tick, Recorder::State>::const_iterator Recorder::next_pair() const {
 void Recorder::skip_gap() {
   const auto pair = next_pair();
   Tick resume = pair == states_.end() ? std::prev(states_.end())->first : pair->first;
-  if (is_lockstep()) resume = std::min(resume, lost_before_);
-  facts_.gaps += resume - std::max(next_row_, former_end_.first + 1);
+  if (is_lockstep()) resume = std::min(resume, heard_.lost_before);
+  facts_.gaps += resume - std::max(next_row_, former_.end.first + 1);
   next_row_ = resume;
   states_.erase(states_.begin(), states_.lower_bound(resume));
 }
 
 void Recorder::write_trajectory(const State& now, const State& next) {
-  const double t_s = static_cast<double>(next_row_) * follower_.mission()->timing.dt_s;
+  const double t_s = static_cast<double>(next_row_) * mission().timing.dt_s;
   std::string line;
   for (const auto& [id, vehicle] : now.vehicles) {
     const auto after = next.vehicles.find(id);
-    if (after == next.vehicles.end() || std::pair(next_row_, id) <= former_end_) continue;
+    if (after == next.vehicles.end() || std::pair(next_row_, id) <= former_.end) continue;
     observe(id, vehicle.position_m.head<2>());
     line += std::to_string(next_row_) + ',';
     append_number(line, t_s);
@@ -340,38 +326,34 @@ void Recorder::write_trajectory(const State& now, const State& next) {
 }
 
 bool Recorder::is_member(AgentId id) const {
-  const auto& roster = follower_.roster();
+  const auto& roster = follower().roster();
   return std::any_of(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
     return entry.author.agent == id && entry.active_at(next_row_);
   });
 }
 
 void Recorder::observe(AgentId id, const Eigen::Vector2d& x_m) {
-  const Mission& mission = *follower_.mission();
-  if (!is_member(id) || !mission.domain.contains(x_m)) return;
-  accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis,
-                   mission.timing.dt_s, sums_s_.data());
-  covered_s_ += mission.timing.dt_s;
+  if (is_member(id)) observer_.see(mission(), x_m);
 }
 
 void Recorder::write_due_metrics() {
-  const Mission& mission = *follower_.mission();
+  const Mission& mission = me_.mission();
   const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
   const bool last = next_row_ + 1 == mission.timing.tick_count;
-  if (covered_s_ == 0 || (next_row_ % period != 0 && !last)) return;
-  if (next_row_ <= former_metrics_.tick) return;
-  write_metrics(ergodic_metric(sums_s_ / covered_s_, mission.target_coefficients, weights_));
+  if (!observer_.has_seen_any() || (next_row_ % period != 0 && !last)) return;
+  if (next_row_ <= former_.metrics.tick) return;
+  write_metrics(observer_.metric(mission));
 }
 
 void Recorder::write_metrics(double metric) {
-  const double t_s = static_cast<double>(next_row_) * follower_.mission()->timing.dt_s;
+  const double t_s = static_cast<double>(next_row_) * mission().timing.dt_s;
   double low = 0, high = 0, staleness_s = 0;
   std::int64_t received = 0, lost = 0;
   bool first = true;
   for (const auto& [author, status] : statuses_) {
     received += status.contributions_received;
     lost += status.contributions_lost;
-    const RosterEntry* entry = follower_.entry_of(author.incarnation);
+    const RosterEntry* entry = follower().entry_of(author.incarnation);
     if (entry == nullptr || !entry->active_at(next_row_)) continue;
     staleness_s = std::max(staleness_s, status.max_staleness_s);
     if (status.answered_tick < 0) continue;  // it knows of no coverage yet
@@ -380,8 +362,8 @@ void Recorder::write_metrics(double metric) {
     first = false;
   }
   // Until everybody has spoken again, what a former process had counted is nearer the truth.
-  received = std::max(received, static_cast<std::int64_t>(former_metrics_.received));
-  lost = std::max(lost, static_cast<std::int64_t>(former_metrics_.lost));
+  received = std::max(received, static_cast<std::int64_t>(former_.metrics.received));
+  lost = std::max(lost, static_cast<std::int64_t>(former_.metrics.lost));
   std::string line = std::to_string(next_row_);
   for (const double value : {t_s, metric, high - low, staleness_s}) {
     line += ',';

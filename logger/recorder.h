@@ -19,12 +19,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/basis.h"
-#include "team/freshness.h"
 #include "core/ids.h"
-#include "team/messages.h"
-#include "team/mission_follower.h"
+#include "logger/observer.h"
 #include "logger/run_data.h"
+#include "team/messages.h"
+#include "team/participant.h"
 
 namespace ergocast {
 
@@ -42,8 +41,7 @@ struct RunFacts {
 
 class Recorder {
  public:
-  /// Lives of agents whose last status is kept.
-  static constexpr std::size_t kMaxStatuses = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
+  static constexpr Role kRole = Role::kLogger;
 
   /// Writes to streams that outlive it; the caller mends those that become bad and says go_on().
   /// @param run  the run to record; 0: the run of the first mission heard
@@ -62,25 +60,25 @@ class Recorder {
   /// given this recorder up takes it back under its new incarnation.
   void go_on(Instant now);
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
   /// Ends the record with what has come so far.
   void stop(std::string reason);
   Instant next_wakeup() const;
 
   /// True once the last tick is recorded or the mission is over, and no more can come.
-  bool finished() const { return finished_; }
-  RunId run() const { return run_; }
-  const MissionFollower& follower() const { return follower_; }
+  bool finished() const { return ending_.finished; }
+  RunId run() const { return me_.run(); }
+  const MissionFollower& follower() const { return me_.follower(); }
   /// "done" (its last tick is recorded), "failed" or "stopped" (somebody ended it), and why.
   const char* result() const;
-  const std::string& reason() const { return reason_; }
+  const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return facts_; }
-  /// The newest of each, but with the worst loop lag of all.
+  /// The newest of each life that Liveness has room for, but with the worst loop lag of all.
   const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
   Tick next_row() const { return next_row_; }
   /// The newest of which a state was heard.
-  Tick newest() const { return newest_; }
+  Tick newest() const { return heard_.newest; }
 
  private:
   struct State {
@@ -90,7 +88,36 @@ class Recorder {
     bool complete() const;
   };
 
-  void on(const WorldState& world, Instant now);
+  /// What was heard of the world.
+  struct Heard {
+    Incarnation world = 0;  // the last heard
+    Tick newest = 0;        // of which a state was heard
+    Tick lost_before = 0;   // states of earlier ticks may be gone for good
+  };
+  struct Acknowledged {
+    Tick tick = -2;
+    Instant next{};
+  };
+  struct Ending {
+    std::optional<Instant> since;  // no more is to come
+    bool finished = false, failed = false;
+    std::string reason;
+  };
+  /// What a former process left.
+  struct Former {
+    std::optional<RunData> rows;  // until the mission is known
+    bool resumed = false;
+    std::pair<Tick, AgentId> end{-1, -1};  // tick and agent of the last row
+    MetricsRow metrics{.tick = -1};        // the last
+  };
+
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const WorldState& world, const Arrival& arrival);
+  void on(const AgentStatus& status, const Arrival& arrival);
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const Stop& stop, const Arrival& arrival);
+  const Mission& mission() const { return me_.mission(); }
   void meet(const Header& world, Instant now);
   void begin();
   void replay(const RunData& past);
@@ -115,34 +142,18 @@ class Recorder {
   void write_due_metrics();
   void write_metrics(double metric);
 
-  RunId run_;
-  Incarnation incarnation_;
-  MissionFollower follower_;
-  Freshness freshness_;
+  Participant me_;
   std::ostream& trajectory_;
   std::ostream& metrics_;
-  Sequencer sequencer_;
-
   std::map<Tick, State> states_;
-  Tick next_row_ = 0, acked_ = -2;
-  bool finished_ = false, failed_ = false;
-  std::optional<Instant> over_since_;
-  Instant heard_{};     // of world or coordinator
+  Tick next_row_ = 0;
   Instant progress_{};  // last row, or first word of a new world
-  std::string reason_;
-
-  Incarnation world_ = 0;  // the last heard
-  Tick newest_ = 0;        // state heard
-  Tick lost_before_ = 0;   // states of earlier ticks may be gone for good
-  std::optional<RunData> past_;  // until the mission is known
-  bool resumed_ = false;
-  std::pair<Tick, AgentId> former_end_{-1, -1};  // tick and agent of the former process's last row
-  MetricsRow former_metrics_{.tick = -1};        // its last
-
-  Coefficients sums_s_, weights_;
-  double covered_s_ = 0;
+  Heard heard_;
+  Acknowledged acked_;
+  Ending ending_;
+  Former former_;
+  Observer observer_;
   std::map<Author, AgentStatus> statuses_;
-  Instant next_ack_{};
   RunFacts facts_;
 };
 

@@ -25,7 +25,7 @@ bool RepeatGuard::count(const Header& from, bool is_news, Instant now) {
     return was_flooded;
   }
   for (const Author& life : lives_) {
-    flooded_.push_back({life.incarnation, freshness_.newest(life)});
+    flooded_.push_back({life.incarnation, liveness_.newest(life, bus_)});
   }
   return true;
 }

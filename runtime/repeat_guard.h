@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "team/freshness.h"
+#include "team/liveness.h"
 #include "core/ids.h"
 #include "team/messages.h"
 #include "runtime/datagram_filter.h"
@@ -34,9 +34,11 @@ class RepeatGuard {
   /// As many as a team has at a time, and some.
   static constexpr std::size_t kMostLives = 144;
 
-  /// Whether its sender has said nothing later yet, nor this, in this life (team/freshness.h).
+  explicit RepeatGuard(Bus bus) : bus_(bus) {}
+
+  /// Whether its sender has said nothing later yet, nor this, in this life (team/liveness.h).
   /// @pre the message is believed
-  bool is_news(const Header& from) { return freshness_.is_news(from); }
+  bool is_news(const Header& from, Instant now) { return liveness_.record(from, bus_, now); }
 
   /// Counts a message that is_news() was asked about. True if flooded() has changed.
   bool count(const Header& from, bool is_news, Instant now);
@@ -45,7 +47,8 @@ class RepeatGuard {
   std::span<const Repeated> flooded() const { return flooded_; }
 
  private:
-  Freshness freshness_;
+  Bus bus_;
+  Liveness liveness_;
   Instant window_began_{};
   int repeats_ = 0;         // in this window, that came to us
   std::set<Author> lives_;  // that were repeated since the flood began

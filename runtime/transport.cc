@@ -81,7 +81,7 @@ class LcmTransport final : public Transport {
     LcmTransport* transport = nullptr;
     Bus bus{};
     std::vector<int> sockets;
-    RepeatGuard guard;
+    RepeatGuard guard{Bus::kSwarm};
     bool is_cut = false;             // the kernel drops repeats,
     std::int64_t drops_counted = 0;  // and of its drops so many have been told apart
     void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
@@ -147,6 +147,7 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscr
                             [](int socket) { return admit_only_our_channels(socket); });
     lines_[at].transport = this;
     lines_[at].bus = bus;
+    lines_[at].guard = RepeatGuard(bus);
     lines_[at].sockets = sockets;
     buses_[at]
         ->subscribe(channels_of(hears[at]), &Line::on_datagram, &lines_[at])
@@ -212,14 +213,14 @@ void LcmTransport::take(Line& line, const lcm::ReceiveBuffer* buffer,
     const auto transmitter = transmitter_of(message, channel);
     if (!transmitter) return refuse(Refusal::kType);
     const Instant heard = now();
-    const bool is_news = line.guard.is_news(header_of(message));
+    const bool is_news = line.guard.is_news(header_of(message), heard);
     if (line.guard.count(header_of(message), is_news, heard)) cut_repeats(line);
     if (!rates_.admit(*transmitter, is_news, heard)) {
       if (is_news) babbler_ = *transmitter, ++babbled_;
       return refuse(Refusal::kRate);
     }
     if (handlers_.on_accepted) handlers_.on_accepted(line.bus, channel, bytes);
-    handlers_.on_message(message, *transmitter);
+    handlers_.on_message(message, line.bus, *transmitter);
   } catch (...) {  // an exception that passes through LCM's C frames would abort the next call
     refuse(Refusal::kLimit);
   }

@@ -29,7 +29,7 @@ class Transport {
   /// What becomes of a datagram; all but the first may be left out. `on_accepted` sees the bytes.
   /// `transmitter` is the message's sender, or whoever relays it.
   struct Handlers {
-    std::function<void(const Message&, AgentId transmitter)> on_message;
+    std::function<void(const Message&, Bus, AgentId transmitter)> on_message;
     std::function<void(Refusal)> on_refused = {};
     std::function<void(Bus, std::string_view channel, std::span<const std::byte>)> on_accepted = {};
   };

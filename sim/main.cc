@@ -16,8 +16,10 @@ int run(const NodeOptions& node) {
   StopSignals signals;
   World world(node.run, random_identity(), decode_plan);
   auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Role::kWorld),
-      {.on_message = [&](const Message& message, AgentId) { world.receive(message, now()); }});
+      node.url, node.run, node.seal, subscriptions_of(World::kRole),
+      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
+        world.receive(message, bus, transmitter, now());
+      }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;

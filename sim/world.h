@@ -8,24 +8,25 @@
 // runs a bounded number of ticks ahead of the record. In real time it follows the clock.
 #pragma once
 
-#include <array>
-#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "team/freshness.h"
 #include "core/ids.h"
+#include "sim/record_window.h"
 #include "team/messages.h"
-#include "team/mission_follower.h"
+#include "team/participant.h"
 
 namespace ergocast {
 
 class World {
  public:
+  static constexpr Role kRole = Role::kWorld;
+
   World(RunId run, Incarnation incarnation, PlanDecoder decode_plan);
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
@@ -35,23 +36,23 @@ class World {
 
   bool finished() const { return finished_; }
   /// Whether it has finished because it cannot take part at all.
-  bool failed() const { return follower_.plan_problem().has_value(); }
-  RunId run() const { return run_; }
+  bool failed() const { return follower().plan_problem().has_value(); }
+  RunId run() const { return me_.run(); }
   const std::string& reason() const { return reason_; }
-  const MissionFollower& follower() const { return follower_; }
+  const MissionFollower& follower() const { return me_.follower(); }
   Tick tick() const { return tick_; }
   /// The tick from which it goes on, once it moves; above 0 if another world began the mission.
   std::optional<Tick> begun_at() const { return begun_at_; }
   /// Real time: commands that were not there when their tick was over.
-  std::int64_t missed_deadlines() const { return missed_deadlines_; }
+  std::int64_t missed_deadlines() const { return counted_.missed_deadlines; }
   /// Real time: ticks that were dropped because the process had been held up for too long.
-  std::int64_t skipped_ticks() const { return skipped_ticks_; }
+  std::int64_t skipped_ticks() const { return counted_.skipped_ticks; }
   /// Steps of a vehicle that the speed limit made slower than its command.
-  std::int64_t clamped_commands() const { return clamped_commands_; }
+  std::int64_t clamped_commands() const { return counted_.clamped_commands; }
   /// Messages that came through the wire's checks and had no effect because they cannot be true.
-  std::int64_t refused() const { return refused_; }
+  std::int64_t refused() const { return me_.refused(Refusal::kRange); }
   /// True once a silent logger has been given up.
-  bool logger_lost() const { return logger_lost_; }
+  bool logger_lost() const { return record_.lost(); }
 
  private:
   struct Body {
@@ -62,8 +63,29 @@ class World {
     Tick answered() const { return command ? command->header.tick : -1; }
   };
 
-  void on(const Command& command);
-  void note_heard(const Message& message, Instant now);
+  /// How it finds out at its beginning where the team is.
+  struct Question {
+    std::optional<Instant> since;  // while it asks
+    Instant next{};
+  };
+  /// When something is to be said or done next.
+  struct Schedule {
+    Instant next_publish{};
+    std::chrono::nanoseconds repeat_period{};
+    Instant next_tick{};
+    bool published = false;  // tick_
+  };
+  struct Counted {
+    std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
+  };
+
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const Command& command, const Arrival& arrival);
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const RecordAck& ack, const Arrival& arrival);
+  void on(const Stop& stop, const Arrival& arrival);
+  const Mission& mission() const { return me_.mission(); }
   void take_roster();
   void start(Instant now);
   void ask_for_mission(Instant now, Outbox& out);
@@ -75,7 +97,6 @@ class World {
   void move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const;
   bool everyone_answered() const;
   bool record_is_close(Instant now);
-  bool record_complete() const;
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
   void step(bool hold_old_commands);
@@ -84,41 +105,22 @@ class World {
   void publish(const std::vector<WorldState>& states, Outbox& out);
   void remember_and_publish(Instant now, Outbox& out);
   void repeat(Instant now, Outbox& out);
-  void help_logger(Outbox& out);
-  void on(const Stop& stop);
   void stand_still(Instant now, Outbox& out);
   std::string why_over() const;
   void finish(std::string reason);
 
-  RunId run_;
-  Incarnation incarnation_;
-  MissionFollower follower_;
-  Sequencer sequencer_;
+  Participant me_;
   bool started_ = false, finished_ = false;
   std::string reason_;
   Tick tick_ = 0;
   std::map<AgentId, Body> bodies_;
-
-  std::optional<Instant> asking_since_;  // where the team was
-  Instant next_question_{};
+  Question question_;
   std::optional<Tick> begun_at_;
-
-  Instant next_publish_{};
-  std::chrono::nanoseconds repeat_period_{};
-  Instant next_tick_{};
-  bool published_ = false;
+  Schedule schedule_;
   std::optional<Instant> over_since_;  // nobody moves any more
   std::optional<std::string> halted_;  // by a STOP at once: why
-
-  std::optional<Tick> recorded_;  // what the logger has acknowledged
-  Incarnation logger_ = 0;
-  Instant record_progress_{};
-  bool logger_lost_ = false;
-  Freshness freshness_;
-  Instant heard_{};  // when an agent or the coordinator last said something new
-  std::deque<std::vector<WorldState>> history_;  // states of the last ticks, for the logger
-
-  std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, refused_ = 0;
+  RecordWindow record_;
+  Counted counted_;
 };
 
 }  // namespace ergocast

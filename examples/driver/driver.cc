@@ -9,56 +9,55 @@
 namespace ergocast::example {
 
 Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan)
-    : run_(run),
-      incarnation_(incarnation),
-      speed_limit_mps_(speed_limit_mps),
-      follower_(std::move(decode_plan)) {}
+    : me_(kRole, {run, kWorld, incarnation}, std::move(decode_plan)), speed_limit_mps_(speed_limit_mps) {}
 
-void Driver::receive(const Message& message, Instant now) {
-  if (finished_ || (run_ != 0 && header_of(message).run != run_)) return;
-  if (const auto* command = std::get_if<Command>(&message)) return on(*command);
-  if (const auto* part = std::get_if<MissionPart>(&message)) return on(*part, now);
-  if (const auto* over = std::get_if<Stop>(&message); over && over->now && run_ != 0) {
-    stop(over->reason);
-    halted_ = running_;
-  }
+void Driver::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+  if (finished_) return;
+  const auto arrival = me_.accept(message, bus, transmitter, now);
+  if (!arrival) return;
+  std::visit([&](const auto& m) { on(m, *arrival); }, message);
 }
 
-void Driver::on(const MissionPart& part, Instant now) {
-  run_ = part.header.run;
-  if (!follower_.receive(part)) return;
-  if (follower_.over()) return stop(follower_.reason());
-  failed_ = follower_.plan_problem() || follower_.mission()->timing.pace == Pace::kLockstep;
+void Driver::on(const Stop& over, const Arrival&) {
+  if (!over.now || me_.run() == 0) return;  // in order, the coordinator ends the mission
+  stop(over.reason);
+  halted_ = running_;
+}
+
+void Driver::on(const MissionPart& part, const Arrival& arrival) {
+  if (!arrival.mission_changed) return;
+  if (follower().over()) return stop(follower().reason());
+  failed_ = follower().plan_problem() || me_.mission().timing.pace == Pace::kLockstep;
   if (failed_) {
-    return stop(follower_.plan_problem().value_or(
+    return stop(follower().plan_problem().value_or(
         "the mission is in lockstep, which robots cannot be: give it pace: REALTIME"));
   }
   take_roster();
-  if (running_ || follower_.state() != MissionState::kRunning) return;
+  if (running_ || follower().state() != MissionState::kRunning) return;
   running_ = true;
   tick_ = part.header.tick;
-  next_tick_ = now;
+  next_tick_ = arrival.now;
 }
 
 /// Every member gets a robot. Here they are made where the plan says that they begin; yours stand
 /// somewhere already.
 void Driver::take_roster() {
   std::map<AgentId, Author> members;
-  for (const RosterEntry& entry : follower_.roster()) {
+  for (const RosterEntry& entry : follower().roster()) {
     if (entry.active_until < 0) members[entry.author.agent] = entry.author;
   }
   for (auto& [id, drive] : drives_) {
     if (!members.contains(id)) drive.author = {};
   }
   for (const auto& [id, author] : members) {
-    const Robot robot(start_of(*follower_.mission(), id), speed_limit_mps_);
+    const Robot robot(start_of(me_.mission(), id), speed_limit_mps_);
     Drive& drive = drives_.try_emplace(id, Drive{author, robot}).first->second;
     if (drive.author != author) drive.answered = -1;
     drive.author = author;
   }
 }
 
-void Driver::on(const Command& command) {
+void Driver::on(const Command& command, const Arrival&) {
   const auto at = drives_.find(command.header.sender);
   if (at == drives_.end() || at->second.author.incarnation != command.header.incarnation) return;
   Drive& drive = at->second;
@@ -68,7 +67,7 @@ void Driver::on(const Command& command) {
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
   drive.answered = command.header.tick;
   const Eigen::Vector2d wanted_mps = command.velocity_mps.head<2>();
-  const Eigen::Vector2d allowed_mps = within_speed_limit(*follower_.mission(), wanted_mps);
+  const Eigen::Vector2d allowed_mps = within_speed_limit(me_.mission(), wanted_mps);
   if (allowed_mps != wanted_mps) ++clamped_commands_;
   drive.robot.drive(allowed_mps);
 }
@@ -80,7 +79,7 @@ void Driver::advance(Instant now, Outbox& out) {
     return say_where(out);
   }
   if (!running_ || finished_ || now < next_tick_) return;
-  const Timing& timing = follower_.mission()->timing;
+  const Timing& timing = me_.mission().timing;
   if (said_ && tick_ < timing.tick_count) pass_tick();
   say_where(out);
   said_ = true;
@@ -91,7 +90,7 @@ void Driver::advance(Instant now, Outbox& out) {
 
 /// A robot never goes on for long without being told to.
 void Driver::pass_tick() {
-  const Timing& timing = follower_.mission()->timing;
+  const Timing& timing = me_.mission().timing;
   for (auto& [id, drive] : drives_) {
     const bool driven = drive.author.incarnation != 0;
     const double age_s = static_cast<double>(tick_ - drive.answered) * timing.dt_s;
@@ -103,13 +102,12 @@ void Driver::pass_tick() {
 }
 
 void Driver::say_where(Outbox& out) {
-  const Rectangle& domain = follower_.mission()->domain;
+  const Rectangle& domain = me_.mission().domain;
   const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
   auto drive = drives_.begin();
   for (std::size_t part = 0; part < parts; ++part) {
     WorldState state;
-    state.header = {run_, kWorld, incarnation_, sequencer_.next(Bus::kWorld), tick_};
-    state.roster_revision = follower_.revision();
+    state.roster_revision = follower().revision();
     state.missed_deadlines = missed_deadlines_;
     state.clamped_commands = clamped_commands_;
     state.part = static_cast<std::int32_t>(part);
@@ -125,7 +123,7 @@ void Driver::say_where(Outbox& out) {
                                 .cwiseMin(domain.origin_m + domain.size_m), 0;
       vehicle.velocity_mps << one.robot.velocity_mps(), 0;
     }
-    out.push_back({Bus::kWorld, state});
+    me_.publish(Bus::kWorld, state, tick_, out);
   }
 }
 

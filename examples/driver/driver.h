@@ -15,18 +15,20 @@
 
 #include "core/ids.h"
 #include "team/messages.h"
-#include "team/mission_follower.h"
+#include "team/participant.h"
 #include "examples/driver/robot.h"
 
 namespace ergocast::example {
 
 class Driver {
  public:
+  static constexpr Role kRole = Role::kDriver;
+
   /// @param run              0: the first mission heard
   /// @param speed_limit_mps  of the robots
   Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan);
 
-  void receive(const Message& message, Instant now);
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const { return running_ && !finished_ ? next_tick_ : Instant::max(); }
 
@@ -36,13 +38,13 @@ class Driver {
   bool finished() const { return finished_; }
   bool failed() const { return failed_; }
   const std::string& reason() const { return reason_; }
-  RunId run() const { return run_; }
+  RunId run() const { return me_.run(); }
   Tick tick() const { return tick_; }
   /// Ticks at which some robot had no command of that tick in time, summed over robots.
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
   /// Commands that were faster than the scenario's speed limit.
   std::int64_t clamped_commands() const { return clamped_commands_; }
-  const MissionFollower& follower() const { return follower_; }
+  const MissionFollower& follower() const { return me_.follower(); }
   const Robot& robot(AgentId id) const { return drives_.at(id).robot; }
 
  private:
@@ -52,17 +54,17 @@ class Driver {
     Tick answered = -1;  ///< newest tick that a command was for
   };
 
-  void on(const MissionPart& part, Instant now);
-  void on(const Command& command);
+  template <class M>
+  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const MissionPart& part, const Arrival& arrival);
+  void on(const Command& command, const Arrival& arrival);
+  void on(const Stop& over, const Arrival& arrival);
   void take_roster();
   void pass_tick();
   void say_where(Outbox& out);
 
-  RunId run_;
-  Incarnation incarnation_;
+  Participant me_;
   double speed_limit_mps_;
-  MissionFollower follower_;
-  Sequencer sequencer_;
   std::map<AgentId, Drive> drives_;
   bool running_ = false, said_ = false, finished_ = false, failed_ = false;
   bool halted_ = false;  // by a STOP at once: the last state is still to be said

@@ -15,8 +15,10 @@ int run(const NodeOptions& node, double speed_limit_mps) {
   StopSignals signals;
   Driver driver(node.run, random_identity(), speed_limit_mps, decode_plan);
   auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Role::kDriver),
-      {.on_message = [&](const Message& message, AgentId) { driver.receive(message, now()); }});
+      node.url, node.run, node.seal, subscriptions_of(Driver::kRole),
+      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
+        driver.receive(message, bus, transmitter, now());
+      }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;

@@ -30,7 +30,7 @@ inline Mission two_block_mission(int agents) {
 inline Agent running_agent(const Mission& mission, AgentId id = 0) {
   Agent agent(identity_of(id), decoder_of(mission));
   const auto team = static_cast<int>(mission.starts_m.size());
-  agent.receive(mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
+  give(agent, mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
   return agent;
 }
 
@@ -60,7 +60,7 @@ inline Contribution block_of(const Mission& mission, AgentId id, const std::vect
 }
 
 inline Outbox tell(Agent& agent, const Message& message, Instant now = at(0s)) {
-  agent.receive(message, now);
+  give(agent, message, now);
   return advance(agent, now);
 }
 

@@ -46,7 +46,7 @@ std::vector<Contribution> words_of(const Mission& mission, AgentId id, Tick tick
   return blocks_of(mission, author_of(id), path_m, tick + period);
 }
 void hear(Agent& agent, const std::vector<Contribution>& said) {
-  for (const Contribution& block : said) agent.receive(block, at(0s));
+  for (const Contribution& block : said) give(agent, block, at(0s));
 }
 
 // ---- what it answers to ------------------------------------------------------------------------
@@ -64,7 +64,7 @@ TEST(AgentForesees, ItsCommandAnswersToWhatItForeseesAndItsStatusTellsWhatItKnow
     for (Tick tick = 0; tick < 25; ++tick) {
       if (tick % 10 == 3) {
         for (const Contribution& block : words_of(mission, 1, tick - 2)) {
-          agent.receive(block, at(0s));
+          give(agent, block, at(0s));
           table.merge(block, 1000);
         }
       }
@@ -139,7 +139,7 @@ TEST(AgentForesees, NothingFromWhatATeammateHasGainedSinceBeforeItTookPart) {
     std::vector<RosterEntry> roster = roster_of(3);
     roster[0].active_from = 5;
     Agent agent(identity_of(0), decoder_of(mission));
-    agent.receive(mission_part(0, MissionState::kRunning, roster), at(0s));
+    give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
     tell(agent, world_of(3, 4));
     if (knows_more) hear(agent, words_of(mission, 1, 3));
     hear(agent, words_of(mission, 1, 6));
@@ -205,7 +205,7 @@ TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
       {author_of(0), 0, -1}, {author_of(1), 0, 5}, {reborn, 5, -1}};
   const auto foreseen = [&](const Eigen::Vector2d& before_m) {
     Agent agent(identity_of(0), decoder_of(mission));
-    agent.receive(mission_part(0, MissionState::kRunning, roster), at(0s));
+    give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
     hear(agent, words_of(mission, 1, 2));
     for (Tick tick = 3; tick < 5; ++tick) tell(agent, with_vehicle_1(tick, before_m));
     auto words = blocks_of(mission, reborn, {{700, 300}}, 15);
@@ -231,7 +231,7 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
       digest.header = {kRun, 2, life_of(2), ++sequence, tick};
       digest.entry_count = 1;
       digest.entries[0] = {author_of(1), 0};
-      agent.receive(digest, at(tick * 100ms));
+      give(agent, digest, at(tick * 100ms));
     }
     for (Outgoing& word : tell(agent, world_of(3, tick), at(tick * 100ms)))
       said.push_back(std::move(word));

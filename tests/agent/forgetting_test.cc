@@ -38,8 +38,8 @@ bool steered_alone(const Agent& agent, const Mission& mission, Tick ticks) {
 TEST(AgentForgets, FromTheNamedTickOn) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
-  agent.receive(forgetting_from(3), at(0s));
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
+  give(agent, forgetting_from(3), at(0s));
   for (Tick tick = 0; tick < 6; ++tick) {
     EXPECT_EQ(only<Command>(tell(agent, world_at(tick))).size(), 1u);
     EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 3) << tick;
@@ -49,10 +49,10 @@ TEST(AgentForgets, FromTheNamedTickOn) {
 TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(forgetting_from(0), at(0s));
+  give(agent, forgetting_from(0), at(0s));
   // While the tick waits for another revision, a teammate passes on what 1 had said.
   EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 2))).empty());
-  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
   EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0, 2))).size(), 1u);
   EXPECT_TRUE(steered_alone(agent, mission, 1));
 }
@@ -61,7 +61,7 @@ TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
   // All must forget at the same tick, whoever hears of it first.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
   EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 1))).empty()) << "the world knows more";
   EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0))).size(), 1u);
   EXPECT_TRUE(steered_alone(agent, mission, 1));
@@ -71,10 +71,10 @@ TEST(AgentForgets, NotBeforeTheWorldFliesByTheRosterThatSaysSo) {
   // Agents that have heard more of the roster than others must not differ from them.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
   MissionPart news = forgetting_from(0, 8);
   news.roster[1].since_revision = 8;
-  agent.receive(news, at(0s));
+  give(agent, news, at(0s));
   for (Tick tick = 0; tick < 6; ++tick) {
     EXPECT_EQ(only<Command>(tell(agent, world_at(tick, tick < 3 ? 7 : 8))).size(), 1u);
     EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 3) << tick;
@@ -84,12 +84,12 @@ TEST(AgentForgets, NotBeforeTheWorldFliesByTheRosterThatSaysSo) {
 TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
-  agent.receive(forgetting_from(1), at(0s));
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
+  give(agent, forgetting_from(1), at(0s));
   MissionPart again = forgetting_from(4, 2);
   again.roster[1].forgotten = false;
   for (Tick tick = 0; tick < 7; ++tick) {
-    if (tick == 3) agent.receive(again, at(0s));
+    if (tick == 3) give(agent, again, at(0s));
     EXPECT_EQ(only<Command>(tell(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);
     EXPECT_EQ(steered_alone(agent, mission, tick + 1), tick >= 1 && tick < 4) << tick;
   }
@@ -98,7 +98,7 @@ TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
 TEST(AgentForgets, NeverItself) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(mission_part(1, MissionState::kRunning,
+  give(agent, mission_part(1, MissionState::kRunning,
                              {{author_of(0), 0, -1, true, 0}, {author_of(1), 0, 0}}), at(0s));
   EXPECT_EQ(only<Command>(tell(agent, world_at(0))).size(), 1u);
   EXPECT_EQ(agent.team_coverage()(0, 0), 1) << "it lives, whatever the coordinator has heard";
@@ -107,8 +107,8 @@ TEST(AgentForgets, NeverItself) {
 TEST(AgentForgets, ButPassesItOn) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(block_of(mission, 1, kGone, 100), at(0s));
-  agent.receive(forgetting_from(0), at(0s));
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
+  give(agent, forgetting_from(0), at(0s));
   tell(agent, world_at(0));
   EXPECT_EQ(agent.coverage()->block(author_of(1), 0).sums, block_of(mission, 1, kGone, 100).sums);
   EXPECT_EQ(only<Digest>(advance(agent, at(5s))).at(0).entries[1].steps, 2);

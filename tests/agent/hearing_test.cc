@@ -12,20 +12,6 @@ namespace {
 
 using namespace test;
 
-TEST(Hearing, RemembersNoMoreLivesThanARosterHas) {
-  Hearing hearing;
-  const auto lose_one = [&hearing](Incarnation life) {
-    for (const std::int64_t sequence : {1, 3}) hearing.count({kRun, 1, life, sequence, 0});
-  };
-  for (Incarnation life = 1; life <= kMaxRosterEntries; ++life) lose_one(life);
-  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(kMaxRosterEntries));
-  lose_one(kMaxRosterEntries + 1);
-  hearing.news({1, kMaxRosterEntries + 2}, 5);
-  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(kMaxRosterEntries));
-  hearing.count({kRun, 1, 1, 5, 0});
-  EXPECT_EQ(hearing.lost(), static_cast<std::int64_t>(kMaxRosterEntries) + 1) << "of those it goes on";
-}
-
 // ---- what is refused -----------------------------------------------------------------------------
 
 /// Feeds one untrue contribution and expects: no row, no block, one more refusal for `why`.
@@ -120,7 +106,7 @@ TEST(AgentStatusReport, CountsGapsInATeammatesSequenceAsLost) {
   Contribution theirs = block_of(mission, 1, {{200, 500}}, 1);
   for (const std::int64_t sequence : {11, 12, 15, 14}) {
     theirs.header.sequence = sequence;
-    agent.receive(theirs, at(0s));
+    give(agent, theirs, at(0s));
   }
   const AgentStatus status = status_after(agent, at(0s));
   EXPECT_EQ(status.contributions_received, 4);
@@ -132,10 +118,10 @@ TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
   tell(agent, world_state(0, {{100, 500}}));
-  agent.receive(block_of(mission, 1, {{200, 500}}, 1), at(0s));
-  agent.receive(block_of(mission, 2, {{300, 500}}, 1), at(0s));
+  give(agent, block_of(mission, 1, {{200, 500}}, 1), at(0s));
+  give(agent, block_of(mission, 2, {{300, 500}}, 1), at(0s));
   tell(agent, world_state(9, {{100, 500}}));
-  agent.receive(block_of(mission, 1, {{200, 500}, {200, 500}, {200, 500}}, 3), at(0s));
+  give(agent, block_of(mission, 1, {{200, 500}, {200, 500}, {200, 500}}, 3), at(0s));
   // Teammate 2 was last heard of at tick 0. How many samples the others gave does not matter: a
   // teammate that was held up once is not out of date for ever.
   EXPECT_DOUBLE_EQ(status_after(agent, at(0s)).max_staleness_s, 0.9);

@@ -42,14 +42,14 @@ TEST(AgentJoining, TakesTheNumberThatTheRosterGivesItsIncarnation) {
   anybody.incarnation = life_of(2);
   Agent agent(anybody, decoder_of(small_mission(3)));
   EXPECT_EQ(agent.id(), kUnassigned);
-  agent.receive(mission_part(0, MissionState::kRunning, roster_of(3)), at(0s));
+  give(agent, mission_part(0, MissionState::kRunning, roster_of(3)), at(0s));
   EXPECT_EQ(agent.id(), 2);
 }
 
 TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
   const Mission mission = small_mission(1);
   Agent agent(identity_of(0), decoder_of(mission));
-  agent.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
+  give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   const Outbox waiting = tell(agent, world_state(0, {{100, 500}}));
   EXPECT_TRUE(only<Command>(waiting).empty());
   EXPECT_TRUE(only<Contribution>(waiting).empty());
@@ -62,11 +62,11 @@ TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstItHearsOf) {
   AgentIdentity late = identity_of(0);
   late.run = 0;
   Agent agent(late, decoder_of(small_mission(1)));
-  agent.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  give(agent, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   EXPECT_EQ(agent.run(), kRun);
   MissionPart other = mission_part(9, MissionState::kEnded, {});
   other.header.run = kRun + 1;
-  agent.receive(other, at(0s));
+  give(agent, other, at(0s));
   EXPECT_FALSE(agent.finished());
 }
 
@@ -77,7 +77,7 @@ TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
   for (std::int64_t sequence = 1; sequence <= 11; ++sequence) {
     EXPECT_FALSE(agent.finished());
     rival.header.sequence = sequence;
-    agent.receive(rival, at(500ms * (sequence - 1)));
+    give(agent, rival, at(500ms * (sequence - 1)));
   }
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
@@ -92,10 +92,10 @@ TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
   auto when = 0s;
   for (const std::int64_t sequence : {5, 6, 5, 4, 3, 5, 6, 6}) {
     rival.header.sequence = sequence;
-    agent.receive(rival, at(when));
+    give(agent, rival, at(when));
     when = when == 0s ? 1s : when + 10s;
   }
-  for (int i = 0; i < 10; ++i) agent.receive(status_of(0, i), at(0s));
+  for (int i = 0; i < 10; ++i) give(agent, status_of(0, i), at(0s));
   EXPECT_FALSE(agent.finished());
 }
 
@@ -103,7 +103,7 @@ TEST(AgentJoining, AnAgentThatAskedForNoNumberHasNoRival) {
   AgentIdentity anybody = identity_of(1);
   anybody.requested_id = kUnassigned;
   Agent agent(anybody, decoder_of(small_mission(2)));
-  for (int i = 1; i < 10; ++i) agent.receive(status_of(0, i), at(0s));
+  for (int i = 1; i < 10; ++i) give(agent, status_of(0, i), at(0s));
   EXPECT_FALSE(agent.finished());
 }
 
@@ -112,14 +112,14 @@ TEST(AgentJoining, OnceAdmittedItDoesNotGiveWay) {
   AgentStatus rival = status_of(0, 1);
   rival.header.incarnation = 77;
   for (rival.header.sequence = 1; rival.header.sequence < 10; ++rival.header.sequence) {
-    agent.receive(rival, at(0s));
+    give(agent, rival, at(0s));
   }
   EXPECT_FALSE(agent.finished());
 }
 
 TEST(AgentJoining, RefusesAPlanItCannotReadAndSaysWhatToDo) {
   Agent agent(identity_of(0), [](auto) { return "install another version"; });
-  agent.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
+  give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
   EXPECT_EQ(agent.reason(), "install another version");
@@ -129,16 +129,16 @@ TEST(AgentJoining, SaysWhatItWaitsFor) {
   const Mission mission = small_mission(2);
   Agent agent(identity_of(1), decoder_of(mission));
   EXPECT_EQ(agent.obstacle(), "no coordinator is heard");
-  agent.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
+  give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_EQ(agent.obstacle(), "waiting to be admitted");
-  agent.receive(mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
+  give(agent, mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
   EXPECT_EQ(agent.obstacle(), "waiting to be admitted: the roster has another agent 1, which may have "
                               "died and not be missed yet");
-  agent.receive(mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
+  give(agent, mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
   EXPECT_EQ(agent.obstacle(), "admitted as agent 1, waiting for the quorum");
-  agent.receive(mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));
+  give(agent, mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));
   EXPECT_EQ(agent.obstacle(), "admitted as agent 1, waiting for the world");
-  agent.receive(world_state(0, mission.starts_m), at(0s));
+  give(agent, world_state(0, mission.starts_m), at(0s));
   advance(agent, at(0s));
   EXPECT_EQ(agent.obstacle(), "");
   agent.leave("enough");
@@ -149,7 +149,7 @@ TEST(Agent, IgnoresAndCountsAPlanThatIsNotItsRuns) {
   Agent agent = running_agent(small_mission(2));
   MissionPart other = mission_part(1000, MissionState::kFailed, {});
   other.plan.push_back(std::byte{9});
-  agent.receive(other, at(0s));
+  give(agent, other, at(0s));
   EXPECT_FALSE(agent.finished());
   EXPECT_NE(agent.follower().revision(), 1000);
   EXPECT_EQ(agent.refused()[static_cast<std::size_t>(Refusal::kRange)], 1);
@@ -171,11 +171,11 @@ TEST(AgentHears, CoverageOfMembersOnly) {
   Agent agent = running_agent(mission);
   // More lives of our own number than a table holds, and one of a teammate: none is in the roster.
   for (Incarnation life = 1; life <= 20; ++life) {
-    agent.receive(blocks_of(mission, {0, life}, {{900, 900}}, 1).front(), at(0s));
-    agent.receive(blocks_of(mission, {1, life}, {{900, 900}}, 1).front(), at(0s));
+    give(agent, blocks_of(mission, {0, life}, {{900, 900}}, 1).front(), at(0s));
+    give(agent, blocks_of(mission, {1, life}, {{900, 900}}, 1).front(), at(0s));
   }
   // A member's name with another's life is nobody's either.
-  agent.receive(blocks_of(mission, {0, life_of(1)}, {{900, 900}}, 1).front(), at(0s));
+  give(agent, blocks_of(mission, {0, life_of(1)}, {{900, 900}}, 1).front(), at(0s));
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
   tell(agent, world_state(0, {{100, 500}, {200, 500}}));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
@@ -184,11 +184,11 @@ TEST(AgentHears, CoverageOfMembersOnly) {
 TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  agent.receive(mission_part(5, MissionState::kRunning,
+  give(agent, mission_part(5, MissionState::kRunning,
                              {{author_of(0), 0, -1}, {author_of(1), 0, 2}}), at(0s));
   tell(agent, world_state(9, {{100, 500}, {200, 500}}));
   const auto hear = [&](std::size_t steps) {
-    agent.receive(block_of(mission, 1, std::vector<Eigen::Vector2d>(steps, {200, 500}), 1), at(0s));
+    give(agent, block_of(mission, 1, std::vector<Eigen::Vector2d>(steps, {200, 500}), 1), at(0s));
     return *agent.coverage()->steps_held(author_of(1));
   };
   // The ticks 0, 1 and 2, and the lead that everybody is granted: who evicted it may not have heard
@@ -213,8 +213,8 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   const Author former{0, 55};
   auto roster = roster_of(1);
   roster.push_back({former, 0, 3});
-  agent.receive(mission_part(9, MissionState::kRunning, roster), at(0s));
-  agent.receive(blocks_of(mission, former, {{900, 900}, {910, 900}}, 2).front(), at(0s));
+  give(agent, mission_part(9, MissionState::kRunning, roster), at(0s));
+  give(agent, blocks_of(mission, former, {{900, 900}, {910, 900}}, 2).front(), at(0s));
   const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0].steps, 1) << "the old sum is never added into the new";
@@ -231,12 +231,12 @@ TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
   EXPECT_EQ(named(at(0s)), -1) << "it knows no mission yet";
   MissionPart part = mission_part(5, MissionState::kWaiting, {});
   part.parts = 2;
-  agent.receive(part, at(50ms));
+  give(agent, part, at(50ms));
   EXPECT_EQ(named(at(50ms)), 5) << "the other part may be lost";
-  agent.receive(mission_part(4, MissionState::kWaiting, {}), at(55ms));
+  give(agent, mission_part(4, MissionState::kWaiting, {}), at(55ms));
   EXPECT_EQ(named(at(100ms)), std::nullopt) << "an old one is no news";
   for (std::int64_t revision = 6; revision < 100; ++revision) {
-    agent.receive(mission_part(revision, MissionState::kWaiting, {}), at(101ms));
+    give(agent, mission_part(revision, MissionState::kWaiting, {}), at(101ms));
     advance(agent, at(101ms));
   }
   EXPECT_LE(agent.next_wakeup(), at(111ms)) << "but many are no reason to flood a bus";
@@ -247,8 +247,8 @@ TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
 Agent successor_from_7(const Mission& mission) {
   Agent agent(identity_of(0), decoder_of(mission));
   std::vector<RosterEntry> roster{{{0, 55}, 0, 7}, {author_of(0), 7, -1}};
-  agent.receive(mission_part(9, MissionState::kRunning, roster), at(0s));
-  agent.receive(blocks_of(mission, {0, 55}, std::vector<Eigen::Vector2d>(7, {900, 900}), 7).front(), at(0s));
+  give(agent, mission_part(9, MissionState::kRunning, roster), at(0s));
+  give(agent, blocks_of(mission, {0, 55}, std::vector<Eigen::Vector2d>(7, {900, 900}), 7).front(), at(0s));
   return agent;
 }
 
@@ -302,13 +302,13 @@ TEST(AgentEnd, AStopAtOnceEndsItAndTheLastStatusSaysSoOnce) {
 
 TEST(AgentEnd, AStopOfAnotherRunDoesNot) {
   Agent agent = running_agent(small_mission(1));
-  agent.receive(Stop{{kRun + 1, kOperator, 1, 1, 0}, false, "enough", true}, at(0s));
+  give(agent, Stop{{kRun + 1, kOperator, 1, 1, 0}, false, "enough", true}, at(0s));
   EXPECT_FALSE(agent.finished());
 }
 
 TEST(AgentEnd, AStopInOrderIsTheCoordinatorsToObey) {
   Agent agent = running_agent(small_mission(1));
-  agent.receive(Stop{{kRun, kOperator, 1, 1, 0}, false, "enough"}, at(0s));
+  give(agent, Stop{{kRun, kOperator, 1, 1, 0}, false, "enough"}, at(0s));
   EXPECT_FALSE(agent.finished());
 }
 
@@ -337,11 +337,11 @@ TEST(AgentEnd, ItsLastCommandAfterAStopAtOnceIsToStandStill) {
 
 TEST(AgentEnd, TheMissionsEndIsItsEnd) {
   Agent done = running_agent(small_mission(1));
-  done.receive(mission_part(1, MissionState::kEnded, roster_of(1), "mission complete"), at(0s));
+  give(done, mission_part(1, MissionState::kEnded, roster_of(1), "mission complete"), at(0s));
   EXPECT_TRUE(done.finished());
   EXPECT_FALSE(done.failed());
   Agent failed = running_agent(small_mission(1));
-  failed.receive(mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));
+  give(failed, mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));
   EXPECT_TRUE(failed.finished());
   EXPECT_TRUE(failed.failed());
   EXPECT_EQ(failed.reason(), "agent 3 is late");
@@ -361,7 +361,7 @@ TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   mission.timing.realtime_factor = 2;
   Agent agent = running_agent(mission);
   tell(agent, world_state(40, {{100, 500}}), at(5s));  // 60 ticks of 0.05 s are left
-  agent.receive(status_of(1, 1), at(37s));  // a teammate may be cut off as we are
+  give(agent, status_of(1, 1), at(37s));  // a teammate may be cut off as we are
   advance(agent, at(38s));
   EXPECT_FALSE(agent.finished());
   const auto last = only<AgentStatus>(advance(agent, at(38s + 1ms)));
@@ -378,12 +378,12 @@ TEST(AgentEnd, IsNotThereForAsLongAsTheWorldOrTheCoordinatorSpeaks) {
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
   for (auto now = 0s; now < 1h; now += 35s) {  // 10 s are planned
-    agent.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(now));
+    give(agent, mission_part(0, MissionState::kRunning, roster_of(1)), at(now));
     advance(agent, at(now + 34s));
     EXPECT_FALSE(agent.finished());
   }
   for (auto now = 1h + 0s; now < 2h; now += 35s) {
-    agent.receive(world_state(7, {{100, 500}}), at(now));
+    give(agent, world_state(7, {{100, 500}}), at(now));
     advance(agent, at(now + 34s));
     EXPECT_FALSE(agent.finished());
   }
@@ -409,14 +409,14 @@ TEST(AgentEnd, AnEvictedAgentStopsAtTheNamedTick) {
 
   Agent there = running_agent(mission);
   tell(there, world_state(3, {{100, 500}}));
-  there.receive(eviction, at(0s));
+  give(there, eviction, at(0s));
   EXPECT_TRUE(there.finished());
   EXPECT_TRUE(there.failed());
   EXPECT_EQ(there.reason(), "evicted from the roster at tick 3");
 
   Agent behind = running_agent(mission);
   tell(behind, world_state(1, {{100, 500}}));
-  behind.receive(eviction, at(0s));
+  give(behind, eviction, at(0s));
   EXPECT_EQ(only<Command>(tell(behind, world_state(2, {{100, 500}}))).size(), 1u);
   EXPECT_TRUE(only<Command>(tell(behind, world_state(3, {{100, 500}}))).empty());
   EXPECT_TRUE(behind.finished());

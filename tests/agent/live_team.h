@@ -30,7 +30,7 @@ class LiveTeam {
 
   /// The world or the coordinator says something to everybody; returns all that this leads to.
   Outbox tell(const Message& message, Instant now) {
-    for (auto& [id, agent] : agents_) agent.receive(message, now);
+    for (auto& [id, agent] : agents_) give(agent, message, now);
     return settle(now);
   }
 
@@ -63,7 +63,7 @@ class LiveTeam {
     if (word.bus != Bus::kSwarm) return;
     for (auto& [id, agent] : agents_) {
       if (id != transmitter && hears_(id, transmitter)) {
-        agent.receive(word.message, now, transmitter);
+        give(agent, word.message, now, transmitter);
       }
     }
   }

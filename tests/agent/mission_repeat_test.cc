@@ -31,7 +31,7 @@ std::array<MissionPart, 2> two_parts(std::int64_t revision) {
 /// Agent 0 of two, which knows revision 3.
 Agent informed_agent(Mission mission = small_mission(2)) {
   Agent agent(identity_of(0), decoder_of(std::move(mission)));
-  for (const MissionPart& part : two_parts(3)) agent.receive(part, at(0s));
+  for (const MissionPart& part : two_parts(3)) give(agent, part, at(0s));
   advance(agent, at(10s));
   return agent;
 }
@@ -42,14 +42,14 @@ Hello question_of(AgentId who, Tick tick) {
 }
 
 std::size_t repeated_after(Agent& agent, const Message& message) {
-  agent.receive(message, at(10s));
+  give(agent, message, at(10s));
   return only<MissionPart>(advance(agent, at(10s + 50ms))).size();
 }
 
 TEST(MissionRepeat, IsEveryPartAsItsCoordinatorSaidItOnBothBuses) {
   for (const AgentId asker : {kCoordinator, kWorld}) {
     Agent agent = informed_agent();
-    agent.receive(question_of(asker, -1), at(10s));
+    give(agent, question_of(asker, -1), at(10s));
     std::vector<std::vector<std::byte>> repeated[kBusCount];
     for (const Outgoing& outgoing : advance(agent, at(10s + 50ms))) {
       if (!std::holds_alternative<MissionPart>(outgoing.message)) continue;
@@ -67,9 +67,9 @@ TEST(MissionRepeat, ComesAfterAWaitOfItsOwnWithin50Milliseconds) {
   std::vector<Instant> due;
   for (const AgentId id : {0, 1}) {
     Agent agent(identity_of(id), decoder_of(small_mission(2)));
-    for (const MissionPart& part : two_parts(3)) agent.receive(part, at(0s));
+    for (const MissionPart& part : two_parts(3)) give(agent, part, at(0s));
     advance(agent, at(10s));
-    agent.receive(question_of(kCoordinator, -1), at(10s));
+    give(agent, question_of(kCoordinator, -1), at(10s));
     due.push_back(agent.next_wakeup());
     EXPECT_GT(due.back(), at(10s));
     EXPECT_LE(due.back(), at(10s + 50ms));
@@ -96,23 +96,23 @@ TEST(MissionRepeat, IsNotForAnAgentThatJoins) {
 
 TEST(MissionRepeat, IsNotGivenBeforeTheMissionIsKnown) {
   Agent agent(identity_of(0), decoder_of(small_mission(2)));
-  agent.receive(two_parts(3)[0], at(0s));
+  give(agent, two_parts(3)[0], at(0s));
   EXPECT_EQ(repeated_after(agent, question_of(kCoordinator, -1)), 0u);
 }
 
 TEST(MissionRepeat, IsNotNeededIfSomebodyElseHasSaidIt) {
   for (const std::int64_t revision : {3, 4}) {
     Agent agent = informed_agent();
-    agent.receive(question_of(kCoordinator, -1), at(10s));
-    agent.receive(two_parts(revision)[0], at(10s));
+    give(agent, question_of(kCoordinator, -1), at(10s));
+    give(agent, two_parts(revision)[0], at(10s));
     EXPECT_TRUE(only<MissionPart>(advance(agent, at(10s + 50ms))).empty());
   }
 }
 
 TEST(MissionRepeat, IsNeededIfSomebodyElseKnowsLess) {
   Agent agent = informed_agent();
-  agent.receive(question_of(kCoordinator, -1), at(10s));
-  agent.receive(two_parts(2)[0], at(10s));
+  give(agent, question_of(kCoordinator, -1), at(10s));
+  give(agent, two_parts(2)[0], at(10s));
   EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 50ms))).size(), 4u);
 }
 
@@ -122,7 +122,7 @@ std::size_t repeats_to(Say say) {
   Agent agent = informed_agent();
   std::size_t parts = 0;
   for (int ms = 0; ms < 3000; ++ms) {
-    agent.receive(say(), at(10s + ms * 1ms));
+    give(agent, say(), at(10s + ms * 1ms));
     parts += only<MissionPart>(advance(agent, at(10s + ms * 1ms))).size();
   }
   return parts / 4;
@@ -142,7 +142,7 @@ TEST(MissionRepeat, ComesTenTimesASecondAtMostToWhoAsks) {
 TEST(MissionRepeat, ComesToWhoAsksAlsoJustAfterAnOldOneWasCorrected) {
   Agent agent = informed_agent();
   EXPECT_EQ(repeated_after(agent, two_parts(2)[0]), 4u);
-  agent.receive(question_of(kCoordinator, -1), at(10s + 151ms));
+  give(agent, question_of(kCoordinator, -1), at(10s + 151ms));
   EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 201ms))).size(), 4u);
 }
 
@@ -193,7 +193,7 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   EXPECT_TRUE(only<Hello>(advance(agent, at(10s))).empty());
 
   // A coordinator that took over from a memory in which agent 0 was not yet a member.
-  agent.receive(mission_part(1000, MissionState::kRunning, {{author_of(1), 0, -1}}), at(11s));
+  give(agent, mission_part(1000, MissionState::kRunning, {{author_of(1), 0, -1}}), at(11s));
   const auto hellos = only<Hello>(advance(agent, at(11s)));
   ASSERT_EQ(hellos.size(), 1u);
   EXPECT_EQ(hellos[0].requested_id, 0);
@@ -205,7 +205,7 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
 
   auto roster = roster_of(2);
   roster[0].active_from = 1;
-  agent.receive(mission_part(1001, MissionState::kRunning, roster), at(12s));
+  give(agent, mission_part(1001, MissionState::kRunning, roster), at(12s));
   EXPECT_TRUE(only<Hello>(advance(agent, at(13s))).empty());
   EXPECT_EQ(agent.phase(), AgentPhase::kRunning);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 2) << "and has lost nothing";

@@ -23,8 +23,8 @@ TEST(AgentRadio, DoesNotHearWhoIsTooFar) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
   tell(agent, world_state(0, kLine));
-  agent.receive(block_of(mission, 1, {kLine[1]}, 1), at(0s));
-  agent.receive(block_of(mission, 2, {kLine[2]}, 1), at(0s));
+  give(agent, block_of(mission, 1, {kLine[1]}, 1), at(0s));
+  give(agent, block_of(mission, 2, {kLine[2]}, 1), at(0s));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 1);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), std::nullopt);
   EXPECT_EQ(status_after(agent, at(0s)).refused, RefusalCounts{}) << "nothing wrong with it";
@@ -35,12 +35,12 @@ TEST(AgentRadio, HearsItThroughATeammateInReach) {
   Agent agent = running_agent(mission);
   tell(agent, world_state(0, kLine));
   const Contribution far = block_of(mission, 2, {kLine[2]}, 1);
-  agent.receive(far, at(0s), 2);
+  give(agent, far, at(0s), 2);
   EXPECT_EQ(agent.coverage()->row_count(), 1u);
-  agent.receive(far, at(0s), 1);
+  give(agent, far, at(0s), 1);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
   // The other way round too: what a near one said does not come from afar.
-  agent.receive(block_of(mission, 1, {kLine[1]}, 1), at(0s), 2);
+  give(agent, block_of(mission, 1, {kLine[1]}, 1), at(0s), 2);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt);
 }
 
@@ -49,7 +49,7 @@ TEST(AgentRadio, HearsAgainWhoComesCloser) {
   Agent agent = running_agent(mission);
   tell(agent, world_state(0, kLine));
   tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500}}));
-  agent.receive(block_of(mission, 2, {kLine[2]}, 1), at(0s));
+  give(agent, block_of(mission, 2, {kLine[2]}, 1), at(0s));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
 }
 
@@ -63,7 +63,7 @@ TEST(AgentRadio, LockstepDoesNotWaitForWhomItCannotHear) {
 TEST(AgentRadio, LockstepWaitsForWhoHasComeIntoReach) {
   const Mission mission = short_range(Pace::kLockstep);
   Agent agent = running_agent(mission);
-  agent.receive(block_of(mission, 1, {kLine[1]}, 9), at(0s));
+  give(agent, block_of(mission, 1, {kLine[1]}, 9), at(0s));
   EXPECT_EQ(only<Command>(tell(agent, world_state(0, kLine))).size(), 1u);
   EXPECT_TRUE(only<Command>(tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500}}))).empty());
   const Contribution theirs = block_of(mission, 2, {kLine[2], {400, 500}}, 2);

@@ -74,10 +74,10 @@ class Reckoning : public ::testing::Test {
     agent_.emplace(identity_of(0), decoder_of(mission));
     std::vector<RosterEntry> roster = roster_of(2);
     roster[0].active_from = active_from;
-    agent_->receive(mission_part(0, MissionState::kRunning, roster), at(0s));
+    give(*agent_, mission_part(0, MissionState::kRunning, roster), at(0s));
   }
   void hear_block(const Path& path, Tick next = kPeriod) {
-    agent_->receive(block_of(mission_, 1, path, next), at(0s));
+    give(*agent_, block_of(mission_, 1, path, next), at(0s));
   }
   /// Ticks `from` to `until`, without the last.
   void fly(Tick from, Tick until) {
@@ -122,7 +122,7 @@ TEST_F(Reckoning, TheNextBlockReplacesWhatWasReckoned) {
 TEST_F(Reckoning, NothingOfItIsHeldOrPassedOn) {
   begin(reckoning_mission());
   const Contribution said = block_of(mission_, 1, their_path(0, 1), kPeriod);
-  agent_->receive(said, at(0s));
+  give(*agent_, said, at(0s));
   fly(0, 20);
   EXPECT_EQ(agent_->coverage()->steps_held(author_of(1)), 1);
   EXPECT_EQ(agent_->coverage()->block(author_of(1), 0).sums, said.sums);

@@ -363,14 +363,14 @@ TEST(AgentDigests, OfWhoIsNoMemberAreNotRead) {
   Mission mission = small_mission(3);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  agent.receive(block_of(mission, 2, path_of(20), 20), at(0s));
+  give(agent, block_of(mission, 2, path_of(20), 20), at(0s));
   const auto answers_to = [&](const Author& from) {
     Digest digest;
     digest.entry_count = 1;
     digest.entries[0] = {author_of(2), 0};
     for (std::int64_t sequence = 1; sequence <= 5; ++sequence) {
       digest.header = {kRun, from.agent, from.incarnation, sequence, 0};
-      agent.receive(digest, at(1s));
+      give(agent, digest, at(1s));
     }
     return only<Contribution>(advance(agent, at(2s))).size();
   };

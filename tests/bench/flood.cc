@@ -74,7 +74,7 @@ class KeyedTeam {
     const auto ear = std::get<0>(
         Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, Seal(key_),
                         subscriptions_of(Role::kMonitor),
-                        {.on_message = [&](const Message& message, AgentId) {
+                        {.on_message = [&](const Message& message, Bus, AgentId) {
                           if (const auto* state = std::get_if<WorldState>(&message)) {
                             says.tick = state->header.tick;
                             says.late = state->missed_deadlines;

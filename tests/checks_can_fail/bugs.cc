@@ -47,14 +47,14 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELin1ELi1ELin1ELin1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELin1ELi1ELin1ELin1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
-WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEEi", Agent*, const Message&, Instant, AgentId)
+WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
 WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
 WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
 WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
 WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", World*, Instant, Outbox&)
 WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
-WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Instant)
-WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENSt6chrono10time_pointINS_11PacingClockENSF_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Instant)
+WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_4SealESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const Seal&, std::string_view, KnownSignatures*)
 // clang-format on
@@ -119,10 +119,10 @@ void bug_make_table(CoverageTable* self, const Basis& basis, double dt_s, Tick j
   told_to[self] = {basis, dt_s, joined, {}};
 }
 
-void bug_hear(Agent* self, const Message& message, Instant now, AgentId transmitter) {
+void bug_hear(Agent* self, const Message& message, Bus bus, AgentId transmitter, Instant now) {
   listener = self;
   is_relayed = transmitter != header_of(message).sender;
-  real_hear(self, message, now, transmitter);
+  real_hear(self, message, bus, transmitter, now);
 }
 
 Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t max_steps) {
@@ -264,15 +264,16 @@ void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
   real_coordinate(self, now, out);
 }
 
-void bug_tell_coordinator(Coordinator* self, const Message& message, Instant now) {
+void bug_tell_coordinator(Coordinator* self, const Message& message, Bus bus, AgentId transmitter,
+                          Instant now) {
   const auto* status = std::get_if<AgentStatus>(&message);
   if (bug("the coordinator does not hear an agent") && status != nullptr && status->header.sender == 2) return;
-  real_tell_coordinator(self, message, now);
+  real_tell_coordinator(self, message, bus, transmitter, now);
 }
 
-void bug_tell_world(World* self, const Message& message, Instant now) {
+void bug_tell_world(World* self, const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (bug("the world does not hear the logger") && std::holds_alternative<RecordAck>(message)) return;
-  real_tell_world(self, message, now);
+  real_tell_world(self, message, bus, transmitter, now);
 }
 
 namespace {

@@ -33,7 +33,7 @@ class RefusalsCanBeSeen : public FlyingMission {
   void learn_mission() {
     const auto ear = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, seal(team_), {kTypes<MissionPart>, 0, 0},
-        {.on_message = [this](const Message& message, AgentId) {
+        {.on_message = [this](const Message& message, Bus, AgentId) {
           if (const auto* part = std::get_if<MissionPart>(&message)) follower_.receive(*part);
         }}));
     ASSERT_TRUE(eventually([&] {

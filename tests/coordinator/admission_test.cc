@@ -16,8 +16,8 @@ using namespace test;
 
 TEST(CoordinatorAdmits, EachAgentUnderTheNumberItAsksFor) {
   Coordinator coordinator = coordinator_of(small_mission(3));
-  coordinator.receive(hello_of(2), at(0s));
-  coordinator.receive(hello_of(0), at(0s));
+  give(coordinator, hello_of(2), at(0s));
+  give(coordinator, hello_of(0), at(0s));
   ASSERT_EQ(coordinator.roster().size(), 2u);
   EXPECT_EQ(coordinator.roster()[0].author, author_of(0)) << "in the order of numbers";
   EXPECT_EQ(coordinator.roster()[1].author, author_of(2));
@@ -26,9 +26,9 @@ TEST(CoordinatorAdmits, EachAgentUnderTheNumberItAsksFor) {
 
 TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
   Coordinator coordinator = coordinator_of(small_mission(3));
-  coordinator.receive(hello_of(1), at(0s));
-  coordinator.receive(hello_of(kUnassigned, 71), at(0s));
-  coordinator.receive(hello_of(kUnassigned, 72), at(0s));
+  give(coordinator, hello_of(1), at(0s));
+  give(coordinator, hello_of(kUnassigned, 71), at(0s));
+  give(coordinator, hello_of(kUnassigned, 72), at(0s));
   ASSERT_EQ(coordinator.roster().size(), 3u);
   EXPECT_EQ(coordinator.roster()[0].author, (Author{0, 71}));
   EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 72}));
@@ -36,9 +36,9 @@ TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
 
 TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
   Coordinator coordinator = coordinator_of(small_mission(2));
-  coordinator.receive(hello_of(5), at(0s));
+  give(coordinator, hello_of(5), at(0s));
   for (Incarnation life = 1; life <= 200; ++life) {
-    coordinator.receive(hello_of(kUnassigned, life), at(0s));
+    give(coordinator, hello_of(kUnassigned, life), at(0s));
   }
   ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));
   EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 3})) << "the first beyond the plan";
@@ -51,7 +51,7 @@ TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
 TEST(CoordinatorAdmits, NobodyUnderANumberThatDoesNotExist) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   for (const AgentId id : {kMaxAgents, kMaxAgents + 70, -2, -70}) {
-    coordinator.receive(hello_of(id, 71), at(0s));
+    give(coordinator, hello_of(id, 71), at(0s));
   }
   EXPECT_TRUE(coordinator.roster().empty());
 }
@@ -60,36 +60,36 @@ TEST(CoordinatorAdmits, NobodyWhoIsNotOfThisMission) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   Hello foreign = hello_of(0);
   foreign.header.run = kRun + 1;
-  coordinator.receive(foreign, at(0s));
-  coordinator.receive(hello_of(0, 0), at(0s));
+  give(coordinator, foreign, at(0s));
+  give(coordinator, hello_of(0, 0), at(0s));
   Hello no_agent = hello_of(0);
   no_agent.header.sender = kWorld;
-  coordinator.receive(no_agent, at(0s));
+  give(coordinator, no_agent, at(0s));
   EXPECT_TRUE(coordinator.roster().empty());
 }
 
 TEST(CoordinatorAdmits, OneProcessOnce) {
   Coordinator coordinator = coordinator_of(small_mission(3));
-  for (int i = 0; i < 5; ++i) coordinator.receive(hello_of(kUnassigned, 71), at(i * 1s));
+  for (int i = 0; i < 5; ++i) give(coordinator, hello_of(kUnassigned, 71), at(i * 1s));
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
 TEST(CoordinatorAdmits, NotTheYoungerOfTwoWithOneNumberWhileTheElderLives) {
   Coordinator coordinator = coordinator_of(small_mission(2));
-  coordinator.receive(hello_of(0), at(0s));
-  coordinator.receive(hello_of(0, 99), at(1s));
-  coordinator.receive(status_of(0, 1), at(2s));
-  coordinator.receive(hello_of(0, 99), at(4900ms));
+  give(coordinator, hello_of(0), at(0s));
+  give(coordinator, hello_of(0, 99), at(1s));
+  give(coordinator, status_of(0, 1), at(2s));
+  give(coordinator, hello_of(0, 99), at(4900ms));
   ASSERT_EQ(coordinator.roster().size(), 1u);
   EXPECT_EQ(coordinator.roster()[0].author, author_of(0));
 }
 
 TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(world_where(7, {6, 6}), at(1s));
-  coordinator.receive(hello_of(0, 99), at(2999ms));
+  give(coordinator, world_where(7, {6, 6}), at(1s));
+  give(coordinator, hello_of(0, 99), at(2999ms));
   EXPECT_EQ(coordinator.roster().size(), 2u);
-  coordinator.receive(hello_of(0, 99), at(3s));
+  give(coordinator, hello_of(0, 99), at(3s));
   ASSERT_EQ(coordinator.roster().size(), 3u);
   const auto entry = [&](Incarnation incarnation) {
     return *std::find_if(coordinator.roster().begin(), coordinator.roster().end(),
@@ -103,11 +103,11 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
 TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
   // The world's last state was lost to the coordinator, and the world died with it.
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(world_where(7, {6, 6}), at(1s));
+  give(coordinator, world_where(7, {6, 6}), at(1s));
   AgentStatus status = status_of(1, 1);
   status.header.tick = 8;
-  coordinator.receive(status, at(1s));
-  coordinator.receive(hello_of(0, 99), at(3s));
+  give(coordinator, status, at(1s));
+  give(coordinator, hello_of(0, 99), at(3s));
   ASSERT_EQ(coordinator.roster().size(), 3u);
   for (const RosterEntry& entry : coordinator.roster()) {
     if (entry.author == author_of(1)) continue;
@@ -119,11 +119,11 @@ TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
 TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const auto ask_at = [&](Instant now) {
-    coordinator.receive(hello_of(kUnassigned, 99), now);
+    give(coordinator, hello_of(kUnassigned, 99), now);
     return coordinator.roster().size();
   };
   EXPECT_EQ(ask_at(at(500ms)), 2u);
-  coordinator.receive(status_of(1, 1), at(600ms));
+  give(coordinator, status_of(1, 1), at(600ms));
   EXPECT_EQ(ask_at(at(2999ms)), 2u) << "agent 0 may be dead";
   ASSERT_EQ(ask_at(at(3s)), 3u);
   EXPECT_TRUE(std::any_of(coordinator.roster().begin(), coordinator.roster().end(),
@@ -132,21 +132,21 @@ TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
 
 TEST(CoordinatorAdmits, WhoeverDoesNotCareOnceAllMembersHaveSpoken) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(hello_of(kUnassigned, 99), at(500ms));
-  coordinator.receive(status_of(0, 1), at(600ms));
-  coordinator.receive(status_of(1, 1), at(600ms));
-  coordinator.receive(hello_of(kUnassigned, 99), at(700ms));
+  give(coordinator, hello_of(kUnassigned, 99), at(500ms));
+  give(coordinator, status_of(0, 1), at(600ms));
+  give(coordinator, status_of(1, 1), at(600ms));
+  give(coordinator, hello_of(kUnassigned, 99), at(700ms));
   ASSERT_EQ(coordinator.roster().size(), 3u);
   EXPECT_EQ(coordinator.roster()[2].author, (Author{2, 99}));
 }
 
 TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
   Coordinator coordinator = coordinator_of(small_mission(1));
-  coordinator.receive(hello_of(0), at(0s));
-  coordinator.receive(status_of(0, 5), at(1s));
-  coordinator.receive(status_of(0, 5), at(3s));
-  coordinator.receive(status_of(0, 4), at(3s));
-  coordinator.receive(hello_of(0, 99), at(4s));
+  give(coordinator, hello_of(0), at(0s));
+  give(coordinator, status_of(0, 5), at(1s));
+  give(coordinator, status_of(0, 5), at(3s));
+  give(coordinator, status_of(0, 4), at(3s));
+  give(coordinator, hello_of(0, 99), at(4s));
   EXPECT_EQ(coordinator.roster().size(), 2u);
 }
 
@@ -162,18 +162,18 @@ std::int64_t newest_said(Coordinator& coordinator, Instant now) {
 TEST(CoordinatorAdmits, NobodyWhoDoesNotKnowTheNewestMissionAndSaysItSoon) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   EXPECT_EQ(newest_said(coordinator, at(0s)), 0);
-  coordinator.receive(hello_of(0, 71, -1), at(10ms));
+  give(coordinator, hello_of(0, 71, -1), at(10ms));
   EXPECT_TRUE(coordinator.roster().empty());
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(99ms))).empty()) << "hellos flood no bus";
   EXPECT_EQ(newest_said(coordinator, at(100ms)), 0);
-  coordinator.receive(hello_of(0, 71, 0), at(110ms));
+  give(coordinator, hello_of(0, 71, 0), at(110ms));
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
 TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
   Coordinator coordinator = coordinator_of(small_mission(20));
   const std::int64_t known = newest_said(coordinator, at(0s));
-  for (AgentId id = 0; id < 20; ++id) coordinator.receive(hello_of(id, life_of(id), known), at(1ms));
+  for (AgentId id = 0; id < 20; ++id) give(coordinator, hello_of(id, life_of(id), known), at(1ms));
   EXPECT_EQ(coordinator.roster().size(), 20u);
 }
 
@@ -181,15 +181,15 @@ TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
 TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const std::int64_t known = newest_said(coordinator, at(1s));
-  coordinator.receive(hello_of(0, 99, known), at(1s));
+  give(coordinator, hello_of(0, 99, known), at(1s));
   advance(coordinator, at(2500ms));
-  coordinator.receive(hello_of(0, 99, known), at(3400ms));
+  give(coordinator, hello_of(0, 99, known), at(3400ms));
   EXPECT_EQ(coordinator.roster().size(), 2u) << "and not before it has noticed the silence either";
   const std::int64_t newer = newest_said(coordinator, at(3400ms));
   EXPECT_GT(newer, known) << "a silence is news";
-  coordinator.receive(hello_of(0, 99, known), at(3500ms));
+  give(coordinator, hello_of(0, 99, known), at(3500ms));
   EXPECT_EQ(coordinator.roster().size(), 2u);
-  coordinator.receive(hello_of(0, 99, newer), at(3500ms));
+  give(coordinator, hello_of(0, 99, newer), at(3500ms));
   EXPECT_EQ(coordinator.roster().size(), 3u) << "who waits there still";
 }
 
@@ -198,35 +198,35 @@ TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheySpoke) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const std::int64_t known = newest_said(coordinator, at(1s));
   EXPECT_GT(newest_said(coordinator, at(3400ms)), known) << "a silence is news";
-  coordinator.receive(hello_of(5, 99, known), at(3500ms));
+  give(coordinator, hello_of(5, 99, known), at(3500ms));
   EXPECT_EQ(coordinator.roster().size(), 3u);
 }
 
 TEST(CoordinatorAdmits, NobodyBySomethingSaidToItsPredecessor) {
   Coordinator coordinator({0, 0xc1, "here", kVersion}, decoder_of(small_mission(2)), kPlan, Takeover::kMust);
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
+  give(coordinator, status_of(0, 1), at(0s));
   MissionPart memory = mission_part(7, MissionState::kRunning, roster_of(2));
   memory.plan = kPlan;
-  coordinator.receive(memory, at(0s));
+  give(coordinator, memory, at(0s));
   const std::int64_t newest = newest_said(coordinator, at(1s));
-  coordinator.receive(hello_of(5, 99, 8), at(1s));
+  give(coordinator, hello_of(5, 99, 8), at(1s));
   EXPECT_EQ(coordinator.roster().size(), 2u);
-  coordinator.receive(hello_of(5, 99, newest), at(1s));
+  give(coordinator, hello_of(5, 99, newest), at(1s));
   EXPECT_EQ(coordinator.roster().size(), 3u);
 }
 
 TEST(CoordinatorAdmits, NobodyOnceTheMissionIsOver) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   coordinator.end(false, "enough", at(1s));
-  coordinator.receive(hello_of(0, 99), at(10s));
+  give(coordinator, hello_of(0, 99), at(10s));
   EXPECT_EQ(coordinator.roster().size(), 2u);
 }
 
 TEST(CoordinatorAdmits, ABoundedNumberOfLives) {
   Coordinator coordinator = coordinator_of(small_mission(1));
   for (Incarnation life = 1; life <= 2000; ++life) {
-    coordinator.receive(hello_of(0, life), at(std::chrono::seconds(10 * life)));
+    give(coordinator, hello_of(0, life), at(std::chrono::seconds(10 * life)));
   }
   EXPECT_LE(coordinator.roster().size(), 4u * kMaxAgents);
 }
@@ -235,16 +235,16 @@ TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   Hello hello = hello_of(0);
   hello.version = "9.9.9";
-  coordinator.receive(hello, at(0s));
-  coordinator.receive(hello, at(0s));
+  give(coordinator, hello, at(0s));
+  give(coordinator, hello, at(0s));
   EXPECT_TRUE(coordinator.roster().empty());
   EXPECT_EQ(coordinator.strangers(), (std::set<std::pair<std::string, std::string>>{{"somewhere", "9.9.9"}}));
   for (int i = 0; i < 1000; ++i) {
     hello.host = std::to_string(i);
-    coordinator.receive(hello, at(0s));
+    give(coordinator, hello, at(0s));
   }
   EXPECT_EQ(coordinator.strangers().size(), 64u) << "whoever invents hosts costs no memory";
-  coordinator.receive(hello_of(0), at(0s));
+  give(coordinator, hello_of(0), at(0s));
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
@@ -255,7 +255,7 @@ TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
   admit_all(coordinator, 2, at(0s));
   advance(coordinator, at(1s));
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
-  coordinator.receive(hello_of(3), at(1s));
+  give(coordinator, hello_of(3), at(1s));
   const auto said = only<MissionPart>(advance(coordinator, at(1s)));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
   ASSERT_FALSE(said.empty()) << "and says so at once";
@@ -264,11 +264,11 @@ TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
 
 TEST(CoordinatorStarts, DoesNotCountThoseWhoHaveDiedMeanwhile) {
   Coordinator coordinator = coordinator_of(small_mission(2));
-  coordinator.receive(hello_of(0), at(0s));
-  coordinator.receive(hello_of(1), at(4s));
+  give(coordinator, hello_of(0), at(0s));
+  give(coordinator, hello_of(1), at(4s));
   advance(coordinator, at(4s));
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
-  coordinator.receive(status_of(0, 1), at(4s));
+  give(coordinator, status_of(0, 1), at(4s));
   advance(coordinator, at(4s));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
 }
@@ -279,11 +279,11 @@ TEST(CoordinatorStarts, OrFailsByATimeOutThatNamesWhoIsMissing) {
   mission.timing.admission_timeout_s = 20;
   Coordinator coordinator = coordinator_of(mission);
   advance(coordinator, at(100s));
-  coordinator.receive(hello_of(1), at(100s));
-  coordinator.receive(hello_of(2), at(100s));
+  give(coordinator, hello_of(1), at(100s));
+  give(coordinator, hello_of(2), at(100s));
   advance(coordinator, at(119999ms));
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
-  coordinator.receive(status_of(1, 1), at(119s));
+  give(coordinator, status_of(1, 1), at(119s));
   advance(coordinator, at(120s));
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
   EXPECT_EQ(coordinator.reason(),

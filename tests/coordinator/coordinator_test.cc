@@ -33,7 +33,7 @@ TEST(CoordinatorRepeats, SoonerToWhoeverHasNotHeardButWithoutAFlood) {
   Coordinator coordinator = running_coordinator(small_mission(1));
   int missions = 0;
   for (int ms = 1; ms <= 1000; ++ms) {
-    coordinator.receive(hello_of(0), at(ms * 1ms));
+    give(coordinator, hello_of(0), at(ms * 1ms));
     missions += static_cast<int>(only<MissionPart>(advance(coordinator, at(ms * 1ms))).size());
   }
   EXPECT_EQ(missions, 2 * 10) << "every 100 ms, on two buses";
@@ -74,11 +74,11 @@ TEST(CoordinatorRepeats, ANewRevisionForEveryChange) {
     const auto parts = only<MissionPart>(advance(coordinator, now));
     return parts.empty() ? -1 : parts[0].revision;
   };
-  coordinator.receive(hello_of(0), at(1ms));
+  give(coordinator, hello_of(0), at(1ms));
   EXPECT_GT(next_revision(at(1ms)), last);
   last = next_revision(at(1001ms));
   EXPECT_GE(last, 0);
-  coordinator.receive(hello_of(1), at(1002ms));
+  give(coordinator, hello_of(1), at(1002ms));
   EXPECT_GT(next_revision(at(1002ms)), last) << "admission and start";
   last = next_revision(at(3s));
   coordinator.end(false, "enough", at(3s));
@@ -91,11 +91,11 @@ TEST(CoordinatorRepeats, HowTheTeamIs) {
   for (AgentId id = 0; id < 4; ++id) {
     AgentStatus status = status_of(id, 1, 0);
     status.ergodic_metric = metrics[id];
-    coordinator.receive(status, id == 2 ? at(0s) : at(2s));
+    give(coordinator, status, id == 2 ? at(0s) : at(2s));
   }
   WorldState world = world_where(7, {6, 6, 6, 6});
   world.missed_deadlines = 12;
-  coordinator.receive(world, at(2s));
+  give(coordinator, world, at(2s));
   const auto teams = only<TeamStatus>(advance(coordinator, at(3s)));
   ASSERT_EQ(teams.size(), 1u);
   EXPECT_EQ(teams[0].state, MissionState::kRunning);
@@ -120,14 +120,14 @@ Mission impatient(int agents, OnTimeout on_timeout = OnTimeout::kEndMission) {
 /// Everybody in `ids` says at `now` that it lives and for whom it waits.
 void all_alive(Coordinator& coordinator, const std::vector<AgentId>& waiting_for, Instant now) {
   for (std::size_t id = 0; id < waiting_for.size(); ++id) {
-    coordinator.receive(status_of(static_cast<AgentId>(id), now.time_since_epoch().count() + 1, -1,
+    give(coordinator, status_of(static_cast<AgentId>(id), now.time_since_epoch().count() + 1, -1,
                                   waiting_for[id]), now);
   }
 }
 
 TEST(CoordinatorTimeOut, NamesTheAgentThatHasNotAnsweredAndEndsTheMission) {
   Coordinator coordinator = running_coordinator(impatient(3));
-  coordinator.receive(world_where(5, {5, 4, 5}), at(1s));
+  give(coordinator, world_where(5, {5, 4, 5}), at(1s));
   all_alive(coordinator, {-1, -1, -1}, at(10500ms));
   advance(coordinator, at(10999ms));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
@@ -140,7 +140,7 @@ TEST(CoordinatorTimeOut, NamesTheAgentThatHasNotAnsweredAndEndsTheMission) {
 TEST(CoordinatorTimeOut, StartsAgainWithEveryTick) {
   Coordinator coordinator = running_coordinator(impatient(1));
   for (int i = 0; i < 5; ++i) {
-    coordinator.receive(world_where(i, {i - 1}), at(i * 9s));
+    give(coordinator, world_where(i, {i - 1}), at(i * 9s));
     advance(coordinator, at(i * 9s + 8s));
     EXPECT_EQ(coordinator.state(), MissionState::kRunning);
   }
@@ -224,7 +224,7 @@ TEST(CoordinatorTimeOut, StartsAgainWithAWorldThatBeginsButNotWithARecordingOfOn
 TEST(CoordinatorTimeOut, IsNotPutOffByRepeatsOfTheSameTick) {
   Coordinator coordinator = running_coordinator(impatient(1));
   for (int i = 0; i <= 10; ++i) {
-    coordinator.receive(world_where(1, {0}), at(i * 1s));
+    give(coordinator, world_where(1, {0}), at(i * 1s));
     advance(coordinator, at(i * 1s));
   }
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
@@ -234,7 +234,7 @@ TEST(CoordinatorTimeOut, IsNotPutOffByRepeatsOfTheSameTick) {
 std::string blamed(const std::vector<AgentId>& waiting_for) {
   const auto agents = static_cast<int>(waiting_for.size());
   Coordinator coordinator = running_coordinator(impatient(agents));
-  coordinator.receive(world_where(5, std::vector<Tick>(waiting_for.size(), 4)), at(1s));
+  give(coordinator, world_where(5, std::vector<Tick>(waiting_for.size(), 4)), at(1s));
   all_alive(coordinator, waiting_for, at(10500ms));
   advance(coordinator, at(11s));
   return coordinator.reason().substr(0, coordinator.reason().find(" has"));
@@ -253,9 +253,9 @@ TEST(CoordinatorTimeOut, DoesNotBlameWhoWaitsForATeammate) {
 TEST(CoordinatorTimeOut, BlamesTheSilentFirstAndAmongThemTheOneSilentForLongest) {
   // 0 waits for 1 and says so; 1 was heard 2 s ago, 2 has not been heard since the start.
   Coordinator coordinator = running_coordinator(impatient(3));
-  coordinator.receive(world_where(5, {4, 4, 4}), at(1s));
-  coordinator.receive(status_of(1, 1, 4), at(9s));
-  coordinator.receive(status_of(0, 1, 4, 1), at(10500ms));
+  give(coordinator, world_where(5, {4, 4, 4}), at(1s));
+  give(coordinator, status_of(1, 1, 4), at(9s));
+  give(coordinator, status_of(0, 1, 4, 1), at(10500ms));
   advance(coordinator, at(11s));
   EXPECT_NE(coordinator.reason().find("agent 2 has not answered tick 5"), std::string::npos)
       << coordinator.reason();
@@ -263,7 +263,7 @@ TEST(CoordinatorTimeOut, BlamesTheSilentFirstAndAmongThemTheOneSilentForLongest)
 
 TEST(CoordinatorTimeOut, NamesTheWorldIfEverybodyHasAnswered) {
   Coordinator coordinator = running_coordinator(impatient(2));
-  coordinator.receive(world_where(5, {5, 5}), at(1s));
+  give(coordinator, world_where(5, {5, 5}), at(1s));
   all_alive(coordinator, {-1, -1}, at(10s));
   advance(coordinator, at(11s));
   EXPECT_NE(coordinator.reason().find("the world has not gone beyond tick 5"), std::string::npos)
@@ -272,7 +272,7 @@ TEST(CoordinatorTimeOut, NamesTheWorldIfEverybodyHasAnswered) {
 
 TEST(CoordinatorTimeOut, EvictsInsteadIfTheScenarioSaysSo) {
   Coordinator coordinator = running_coordinator(impatient(2, OnTimeout::kEvict));
-  coordinator.receive(world_where(5, {5, 4}), at(1s));
+  give(coordinator, world_where(5, {5, 4}), at(1s));
   all_alive(coordinator, {-1, -1}, at(10s));
   const auto said = only<MissionPart>(advance(coordinator, at(11s)));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
@@ -285,7 +285,7 @@ TEST(CoordinatorTimeOut, EvictsInsteadIfTheScenarioSaysSo) {
 
 TEST(CoordinatorTimeOut, FailsWhenTheLastAgentIsEvicted) {
   Coordinator coordinator = running_coordinator(impatient(1, OnTimeout::kEvict));
-  coordinator.receive(world_where(5, {4}), at(1s));
+  give(coordinator, world_where(5, {4}), at(1s));
   advance(coordinator, at(11s));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning) << "it may be restarted";
   advance(coordinator, at(21s));
@@ -297,7 +297,7 @@ TEST(CoordinatorTimeOut, DoesNotExistInRealTime) {
   Mission mission = impatient(1);
   mission.timing.pace = Pace::kRealtime;
   Coordinator coordinator = running_coordinator(mission);
-  coordinator.receive(world_where(5, {4}), at(1s));
+  give(coordinator, world_where(5, {4}), at(1s));
   advance(coordinator, at(1h));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
 }
@@ -306,26 +306,26 @@ TEST(CoordinatorTimeOut, DoesNotExistInRealTime) {
 
 TEST(CoordinatorEnds, WhenTheWorldHasReachedTheLastTick) {
   Coordinator coordinator = running_coordinator(small_mission(1));
-  coordinator.receive(world_where(99, {98}), at(1s));
+  give(coordinator, world_where(99, {98}), at(1s));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-  coordinator.receive(world_where(100, {99}), at(1s));
+  give(coordinator, world_where(100, {99}), at(1s));
   EXPECT_EQ(coordinator.state(), MissionState::kEnded);
   EXPECT_EQ(coordinator.reason(), "mission complete");
 }
 
 TEST(CoordinatorEnds, IgnoresAWorldThatSpeaksOfThePast) {
   Coordinator coordinator = running_coordinator(impatient(1));
-  coordinator.receive(world_where(7, {6}), at(1s));
-  coordinator.receive(world_where(3, {3}), at(2s));
+  give(coordinator, world_where(7, {6}), at(1s));
+  give(coordinator, world_where(3, {3}), at(2s));
   EXPECT_EQ(coordinator.tick(), 7);
 }
 
 TEST(CoordinatorEnds, ByAStopWithItsReasonAndItsResult) {
   for (const bool failed : {false, true}) {
     Coordinator coordinator = running_coordinator(small_mission(1));
-    coordinator.receive(Stop{{kRun + 1, kOperator, 1, 1, 0}, failed, "not ours"}, at(1s));
+    give(coordinator, Stop{{kRun + 1, kOperator, 1, 1, 0}, failed, "not ours"}, at(1s));
     EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-    coordinator.receive(Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough"}, at(1s));
+    give(coordinator, Stop{{kRun, kOperator, 1, 1, 0}, failed, "enough"}, at(1s));
     EXPECT_EQ(coordinator.state(), failed ? MissionState::kFailed : MissionState::kEnded);
     EXPECT_EQ(coordinator.reason(), "enough");
   }
@@ -361,7 +361,7 @@ TEST(CoordinatorEnds, WakesUpNoLaterThanItsNextWord) {
   EXPECT_EQ(coordinator.next_wakeup(), Instant{}) << "at once, to begin";
   advance(coordinator, at(10s));
   EXPECT_EQ(coordinator.next_wakeup(), at(10s + 250ms)) << "the team's status";
-  coordinator.receive(hello_of(0), at(10s));
+  give(coordinator, hello_of(0), at(10s));
   EXPECT_LE(coordinator.next_wakeup(), at(10s)) << "a change is said at once";
 }
 

@@ -35,8 +35,8 @@ AgentStatus farewell_of(AgentId id, Tick tick) {
 
 TEST(Leaving, AnAgentThatSaysItHasFinishedIsAMemberNoLonger) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(world_where(7, {6, 6}), at(100ms));
-  coordinator.receive(farewell_of(1, 5), at(100ms));
+  give(coordinator, world_where(7, {6, 6}), at(100ms));
+  give(coordinator, farewell_of(1, 5), at(100ms));
   EXPECT_EQ(entry_of(coordinator, author_of(1)).active_until, 7);
   EXPECT_EQ(entry_of(coordinator, author_of(0)).active_until, -1);
   EXPECT_TRUE(said_revision(coordinator, at(100ms))) << "and all are told at once";
@@ -44,29 +44,29 @@ TEST(Leaving, AnAgentThatSaysItHasFinishedIsAMemberNoLonger) {
 
 TEST(Leaving, ItsLastTickCountsEvenIfTheWorldHasNotSpokenOfItYet) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(world_where(7, {6, 6}), at(100ms));
-  coordinator.receive(farewell_of(1, 9), at(100ms));
+  give(coordinator, world_where(7, {6, 6}), at(100ms));
+  give(coordinator, farewell_of(1, 9), at(100ms));
   EXPECT_EQ(entry_of(coordinator, author_of(1)).active_until, 9);
 }
 
 TEST(Leaving, ItsSuccessorNeedNotWaitForItsSilence) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(farewell_of(1, 5), at(100ms));
-  coordinator.receive(hello_of(1, 99), at(101ms));
+  give(coordinator, farewell_of(1, 5), at(100ms));
+  give(coordinator, hello_of(1, 99), at(101ms));
   EXPECT_EQ(entry_of(coordinator, {1, 99}).active_until, -1);
 }
 
 TEST(Leaving, TheEndOfTheMissionIsNone) {
   const Mission mission = small_mission(2);
   Coordinator coordinator = running_coordinator(mission);
-  coordinator.receive(farewell_of(1, mission.timing.tick_count), at(100ms));
+  give(coordinator, farewell_of(1, mission.timing.tick_count), at(100ms));
   EXPECT_EQ(entry_of(coordinator, author_of(1)).active_until, -1);
 }
 
 TEST(Leaving, AFormerLifesFarewellDoesNotConcernItsSuccessor) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(hello_of(1, 99), at(3s));
-  coordinator.receive(farewell_of(1, 5), at(3s));
+  give(coordinator, hello_of(1, 99), at(3s));
+  give(coordinator, farewell_of(1, 5), at(3s));
   EXPECT_EQ(entry_of(coordinator, {1, 99}).active_until, -1);
 }
 
@@ -84,7 +84,7 @@ Mission forgetful(Pace pace = Pace::kRealtime) {
 void speaks(Coordinator& coordinator, const Author& author, Instant now) {
   AgentStatus status = status_of(author.agent, now.time_since_epoch().count() + 1);
   status.header.incarnation = author.incarnation;
-  coordinator.receive(status, now);
+  give(coordinator, status, now);
 }
 void only_0_speaks(Coordinator& coordinator, Instant now) { speaks(coordinator, author_of(0), now); }
 
@@ -98,7 +98,7 @@ WorldState flown_by(std::int64_t revision, Tick tick) {
 /// A coordinator whose agent 1 has been silent for 20 s at tick 50; the newest revision is said.
 Coordinator with_1_forgotten(Pace pace = Pace::kRealtime) {
   Coordinator coordinator = running_coordinator(forgetful(pace));
-  coordinator.receive(flown_by(1, 50), at(1s));
+  give(coordinator, flown_by(1, 50), at(1s));
   only_0_speaks(coordinator, at(19s));
   advance(coordinator, at(20s));
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten);
@@ -107,7 +107,7 @@ Coordinator with_1_forgotten(Pace pace = Pace::kRealtime) {
 
 TEST(Forgetting, ASilentAgentsCoverageStopsCountingAfterItsTimeFromANamedTickOn) {
   Coordinator coordinator = running_coordinator(forgetful());
-  coordinator.receive(world_where(50, {49, 49}), at(1s));
+  give(coordinator, world_where(50, {49, 49}), at(1s));
   only_0_speaks(coordinator, at(19s));
   const auto before = said_revision(coordinator, at(19999ms));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
@@ -131,7 +131,7 @@ TEST(Forgetting, InLockstepActsAtTheNextTick) {
 TEST(Forgetting, IsDecidedOnce) {
   Coordinator coordinator = with_1_forgotten();
   const Tick from = entry_of(coordinator, author_of(1)).since_tick;
-  coordinator.receive(flown_by(1000, 90), at(21s));
+  give(coordinator, flown_by(1000, 90), at(21s));
   only_0_speaks(coordinator, at(39s));
   advance(coordinator, at(40s));
   EXPECT_EQ(entry_of(coordinator, author_of(1)).since_tick, from);
@@ -141,7 +141,7 @@ TEST(Forgetting, IsRevokedFromANamedTickOnWhenTheAgentIsHeardAgain) {
   for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
     Coordinator coordinator = with_1_forgotten(pace);
     const RosterEntry gone = entry_of(coordinator, author_of(1));
-    coordinator.receive(flown_by(gone.since_revision, 90), at(21s));
+    give(coordinator, flown_by(gone.since_revision, 90), at(21s));
     speaks(coordinator, author_of(1), at(21s));
     const auto said = said_revision(coordinator, at(21s));
     ASSERT_TRUE(said) << "at once";
@@ -161,7 +161,7 @@ TEST(Forgetting, IsNotRevokedBeforeItHasHappenedForAll) {
   speaks(coordinator, author_of(1), at(20500ms));
   advance(coordinator, at(20500ms));
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "some agents would never do it";
-  coordinator.receive(flown_by(gone.since_revision, gone.since_tick), at(22s));
+  give(coordinator, flown_by(gone.since_revision, gone.since_tick), at(22s));
   advance(coordinator, at(22s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten);
 }
@@ -172,10 +172,10 @@ TEST(Forgetting, IsNotRevokedByATakeover) {
   MissionPart memory = mission_part(7, MissionState::kRunning, {{author_of(0), 0, -1}, {author_of(1), 0, -1, true, 5, 3}});
   memory.plan = kPlan;
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
-  coordinator.receive(memory, at(0s));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, memory, at(0s));
   advance(coordinator, at(1s));
-  coordinator.receive(flown_by(2000, 9), at(1s));
+  give(coordinator, flown_by(2000, 9), at(1s));
   only_0_speaks(coordinator, at(2s));
   advance(coordinator, at(2s));
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "nothing was heard of it";
@@ -202,7 +202,7 @@ TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
   // The successor has its predecessor's place and goes on with its work.
   Coordinator coordinator = running_coordinator(forgetful());
   advance(coordinator, at(3s));
-  coordinator.receive(hello_of(1, 99), at(3s));
+  give(coordinator, hello_of(1, 99), at(3s));
   speaks(coordinator, {1, 99}, at(39s));
   only_0_speaks(coordinator, at(39s));
   advance(coordinator, at(40s));
@@ -211,7 +211,7 @@ TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
   advance(coordinator, at(59s));
   EXPECT_TRUE(entry_of(coordinator, author_of(1)).forgotten) << "now both are gone";
   EXPECT_TRUE(entry_of(coordinator, {1, 99}).forgotten);
-  coordinator.receive(flown_by(1000, 90), at(60s));
+  give(coordinator, flown_by(1000, 90), at(60s));
   speaks(coordinator, {1, 99}, at(60s));
   advance(coordinator, at(60s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten) << "and both are back";

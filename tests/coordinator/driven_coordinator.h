@@ -28,7 +28,7 @@ inline Hello hello_of(AgentId id, Incarnation incarnation, std::int64_t revision
 inline Hello hello_of(AgentId id) { return hello_of(id, life_of(id)); }
 
 inline void admit_all(Coordinator& coordinator, int agents, Instant now) {
-  for (AgentId id = 0; id < agents; ++id) coordinator.receive(hello_of(id), now);
+  for (AgentId id = 0; id < agents; ++id) give(coordinator, hello_of(id), now);
 }
 
 /// A coordinator whose mission runs since `now`.

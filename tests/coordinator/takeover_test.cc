@@ -33,8 +33,8 @@ MissionPart memory_of(std::int64_t revision, std::vector<RosterEntry> roster = r
 Coordinator taken_over(const MissionPart& memory, Mission mission = small_mission(2)) {
   Coordinator coordinator = successor(Takeover::kIfFlying, 0, std::move(mission));
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
-  coordinator.receive(memory, at(0s));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, memory, at(0s));
   advance(coordinator, at(1s));
   EXPECT_TRUE(coordinator.took_over());
   return coordinator;
@@ -83,9 +83,9 @@ TEST(TakeoverIfFlying, AgentsThatJoinOrHaveFinishedFlyNothing) {
   for (const AgentPhase phase : {AgentPhase::kJoining, AgentPhase::kFinished}) {
     AgentStatus status = status_of(0, 1);
     status.phase = phase;
-    coordinator.receive(status, at(0s));
+    give(coordinator, status, at(0s));
   }
-  coordinator.receive(hello_of(0), at(0s));
+  give(coordinator, hello_of(0), at(0s));
   EXPECT_EQ(coordinator.run(), 0u);
   advance(coordinator, at(750ms));
   EXPECT_EQ(coordinator.run(), kSuccessorLife);
@@ -94,7 +94,7 @@ TEST(TakeoverIfFlying, AgentsThatJoinOrHaveFinishedFlyNothing) {
 TEST(Takeover, AsksTheAgentsFourTimesASecondOnceItKnowsTheRun) {
   Coordinator coordinator = successor(Takeover::kIfFlying);
   EXPECT_TRUE(advance(coordinator, at(0s)).empty()) << "whom?";
-  coordinator.receive(status_of(0, 1), at(200ms));
+  give(coordinator, status_of(0, 1), at(200ms));
   EXPECT_EQ(coordinator.run(), kRun);
   int questions = 0;
   for (int ms = 250; ms < 2250; ms += 10) {
@@ -116,7 +116,7 @@ TEST(Takeover, OfAGivenRunAsksBeforeItHearsAnybody) {
   EXPECT_EQ(only<Hello>(advance(coordinator, at(0s))).size(), 1u);
   AgentStatus foreign = status_of(0, 1);
   foreign.header.run = kRun + 1;
-  coordinator.receive(foreign, at(0s));
+  give(coordinator, foreign, at(0s));
   EXPECT_EQ(coordinator.run(), kRun);
 }
 
@@ -136,7 +136,7 @@ TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
 TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
   Coordinator coordinator = successor(Takeover::kIfFlying);
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
+  give(coordinator, status_of(0, 1), at(0s));
   for (int ms = 0; ms < 30000; ms += 250) {
     EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(ms * 1ms))).empty());
   }
@@ -154,9 +154,9 @@ constexpr const char* kLedByAnother =
 TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
   Coordinator coordinator = successor(Takeover::kIfFlying);
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
-  coordinator.receive(alive(kCoordinatorLife), at(100ms));
-  coordinator.receive(memory_of(3), at(100ms));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, alive(kCoordinatorLife), at(100ms));
+  give(coordinator, memory_of(3), at(100ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(700ms))).empty()) << "and says nothing to its team";
   EXPECT_TRUE(coordinator.finished());
   EXPECT_TRUE(coordinator.left());
@@ -167,7 +167,7 @@ TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
 TEST(TakeoverIfFlying, LeavesALeaderAloneThatStillWaitsForItsFirstAgent) {
   Coordinator coordinator = successor(Takeover::kIfFlying);
   advance(coordinator, at(0s));
-  coordinator.receive(alive(kCoordinatorLife), at(100ms));
+  give(coordinator, alive(kCoordinatorLife), at(100ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(750ms))).empty());
   EXPECT_TRUE(coordinator.left());
   EXPECT_EQ(coordinator.reason(), kLedByAnother);
@@ -178,17 +178,17 @@ TEST(TakeoverIfFlying, AfterTheEndOfALeadersMissionStartsItsOwn) {
   advance(coordinator, at(0s));
   TeamStatus farewell = alive(kCoordinatorLife, 2);
   farewell.state = MissionState::kEnded;
-  coordinator.receive(alive(kCoordinatorLife), at(0s));
-  coordinator.receive(farewell, at(100ms));
+  give(coordinator, alive(kCoordinatorLife), at(0s));
+  give(coordinator, farewell, at(100ms));
   EXPECT_EQ(said_by(advance(coordinator, at(750ms))).header.run, kSuccessorLife);
 }
 
 TEST(TakeoverMust, TakesOverFromALivingOneToo) {
   Coordinator coordinator = successor(Takeover::kMust);
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
-  coordinator.receive(alive(kCoordinatorLife), at(100ms));
-  coordinator.receive(memory_of(3), at(100ms));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, alive(kCoordinatorLife), at(100ms));
+  give(coordinator, memory_of(3), at(100ms));
   advance(coordinator, at(700ms));
   EXPECT_TRUE(coordinator.took_over());
 }
@@ -203,11 +203,11 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   roster[0].since_revision = 2;
   Coordinator coordinator = successor(Takeover::kIfFlying);
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
-  coordinator.receive(memory_of(5), at(100ms));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, memory_of(5), at(100ms));
   EXPECT_LE(coordinator.next_wakeup(), at(700ms)) << "a moment for other opinions";
-  coordinator.receive(memory_of(7, roster), at(250ms));
-  coordinator.receive(memory_of(6), at(260ms));
+  give(coordinator, memory_of(7, roster), at(250ms));
+  give(coordinator, memory_of(6), at(260ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(699ms))).empty());
   const MissionPart said = said_by(advance(coordinator, at(700ms)));
   EXPECT_TRUE(coordinator.took_over());
@@ -231,8 +231,8 @@ TEST(TakeoverMust, NeedsNoPlanOfItsOwn) {
   Coordinator coordinator = successor(Takeover::kMust, 0, small_mission(2), {});
   EXPECT_EQ(coordinator.mission(), nullptr);
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
-  coordinator.receive(memory_of(3), at(0s));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, memory_of(3), at(0s));
   EXPECT_EQ(said_by(advance(coordinator, at(600ms))).plan, kPlan);
   ASSERT_NE(coordinator.mission(), nullptr);
   EXPECT_EQ(coordinator.mission()->name, "small");
@@ -242,8 +242,8 @@ TEST(Takeover, OfAnotherVersionsPlanIsRefusedWithItsDecodersSentence) {
   Coordinator coordinator({0, kSuccessorLife, "here", kVersion}, [](auto) { return "too new"; }, {},
                           Takeover::kMust);
   advance(coordinator, at(0s));
-  coordinator.receive(status_of(0, 1), at(0s));
-  coordinator.receive(memory_of(3), at(0s));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, memory_of(3), at(0s));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(600ms))).empty());
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
@@ -254,10 +254,10 @@ TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
   for (const Takeover takeover : {Takeover::kIfFlying, Takeover::kMust}) {
     Coordinator coordinator = successor(takeover);
     advance(coordinator, at(0s));
-    coordinator.receive(status_of(0, 1), at(0s));
+    give(coordinator, status_of(0, 1), at(0s));
     MissionPart other = memory_of(3);
     other.plan.push_back(std::byte{9});
-    coordinator.receive(other, at(0s));
+    give(coordinator, other, at(0s));
     const Outbox out = advance(coordinator, at(600ms));
     EXPECT_TRUE(only<MissionPart>(out).empty());
     EXPECT_TRUE(coordinator.finished());
@@ -271,8 +271,8 @@ TEST(Takeover, OfAMissionThatWaitsStartsItWhenTheQuorumIsThere) {
   Coordinator coordinator =
       taken_over(memory_of(3, roster_of(1), 0, MissionState::kWaiting), small_mission(2));
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
-  coordinator.receive(status_of(0, 2), at(1s));
-  coordinator.receive(hello_of(1), at(1s));
+  give(coordinator, status_of(0, 2), at(1s));
+  give(coordinator, hello_of(1), at(1s));
   EXPECT_EQ(said_by(advance(coordinator, at(1s))).state, MissionState::kRunning);
 }
 
@@ -302,8 +302,8 @@ TEST(TookOver, EverybodyHasTimeToSpeakAndTheTickHasItsTimeAnew) {
 
 TEST(TookOver, AnAgentItDoesNotKnowComesBackUnderItsIncarnation) {
   Coordinator coordinator = taken_over(memory_of(3, roster_of(1)));
-  coordinator.receive(world_where(12, {11, 11}), at(1s));
-  coordinator.receive(hello_of(1), at(1s));
+  give(coordinator, world_where(12, {11, 11}), at(1s));
+  give(coordinator, hello_of(1), at(1s));
   ASSERT_EQ(coordinator.roster().size(), 2u);
   EXPECT_EQ(coordinator.roster()[1].author, author_of(1));
   EXPECT_EQ(coordinator.roster()[1].active_from, 12);
@@ -314,14 +314,14 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
   for (const Tick remembered : {12, 3}) {
     Coordinator coordinator = successor(Takeover::kIfFlying);
     advance(coordinator, at(0s));
-    coordinator.receive(status_of(0, 1), at(0s));
-    if (remembered < 12) coordinator.receive(world_where(12, {11, 11}), at(100ms));
-    coordinator.receive(memory_of(3, roster_of(2), remembered), at(100ms));
+    give(coordinator, status_of(0, 1), at(0s));
+    if (remembered < 12) give(coordinator, world_where(12, {11, 11}), at(100ms));
+    give(coordinator, memory_of(3, roster_of(2), remembered), at(100ms));
     advance(coordinator, at(700ms));
     ASSERT_TRUE(coordinator.took_over());
     EXPECT_EQ(coordinator.tick(), 12);
     // The restarted agent's former life covered twelve ticks, not none.
-    coordinator.receive(hello_of(1, 99), at(5s));
+    give(coordinator, hello_of(1, 99), at(5s));
     ASSERT_EQ(coordinator.roster().size(), 3u);
     const auto former = std::find_if(coordinator.roster().begin(), coordinator.roster().end(),
                                      [](const RosterEntry& e) { return e.author == author_of(1); });
@@ -335,8 +335,8 @@ TEST(TookOver, KnowsTheTickThatOnlyTheAgentsHaveSeen) {
   advance(coordinator, at(0s));
   AgentStatus status = status_of(0, 1);
   status.header.tick = 12;
-  coordinator.receive(status, at(0s));
-  coordinator.receive(memory_of(3, roster_of(2), 3), at(100ms));
+  give(coordinator, status, at(0s));
+  give(coordinator, memory_of(3, roster_of(2), 3), at(100ms));
   advance(coordinator, at(700ms));
   ASSERT_TRUE(coordinator.took_over());
   EXPECT_EQ(coordinator.tick(), 12);
@@ -347,15 +347,15 @@ TEST(TookOver, BelievesNoTickBeyondTheMissions) {
   advance(coordinator, at(0s));
   AgentStatus status = status_of(0, 1);
   status.header.tick = 1'000'000;
-  coordinator.receive(status, at(0s));
-  coordinator.receive(memory_of(3), at(100ms));
+  give(coordinator, status, at(0s));
+  give(coordinator, memory_of(3), at(100ms));
   advance(coordinator, at(700ms));
   EXPECT_EQ(coordinator.tick(), 100);
 }
 
 TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
   Coordinator coordinator = taken_over(memory_of(3));
-  coordinator.receive(world_where(100, {99, 99}), at(2s));
+  give(coordinator, world_where(100, {99, 99}), at(2s));
   EXPECT_EQ(coordinator.state(), MissionState::kEnded);
   EXPECT_EQ(coordinator.reason(), "mission complete");
 }
@@ -367,8 +367,8 @@ TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
   advance(coordinator, at(1s));
   MissionPart newer = memory_of(1000);
   newer.header.incarnation = kSuccessorLife;
-  coordinator.receive(alive(kSuccessorLife), at(1400ms));
-  coordinator.receive(newer, at(1500ms));
+  give(coordinator, alive(kSuccessorLife), at(1400ms));
+  give(coordinator, newer, at(1500ms));
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.reason(), "another coordinator has taken the mission over");
   EXPECT_TRUE(advance(coordinator, at(3s)).empty()) << "the mission is not its to end";
@@ -379,8 +379,8 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
   advance(coordinator, at(1s));
   MissionPart repeated = memory_of(1000);
   repeated.header.incarnation = kSuccessorLife;
-  coordinator.receive(alive(kSuccessorLife), at(1s));
-  coordinator.receive(repeated, at(3s));  // by an agent, long after its last word
+  give(coordinator, alive(kSuccessorLife), at(1s));
+  give(coordinator, repeated, at(3s));  // by an agent, long after its last word
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
   EXPECT_GT(said_by(advance(coordinator, at(3s))).revision, 1000) << "or the team would not listen";
 }
@@ -390,19 +390,19 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanWhatTheWorldAloneHasHeardOfTheDead) 
   const std::int64_t before = said_by(advance(coordinator, at(2s))).revision;
   WorldState world = world_where(0, {0, 0});
   world.roster_revision = before + 8;
-  coordinator.receive(world, at(2s));
+  give(coordinator, world, at(2s));
   EXPECT_GT(said_by(advance(coordinator, at(2s))).revision, before + 8);
-  coordinator.receive(world, at(2100ms));
+  give(coordinator, world, at(2100ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(2100ms))).empty()) << "once is enough";
 }
 
 TEST(TakenOver, ARecordedSignOfLifeIsNone) {
   Coordinator coordinator = running_coordinator(small_mission(2));
-  coordinator.receive(alive(kSuccessorLife, 7), at(1s));
-  coordinator.receive(alive(kSuccessorLife, 7), at(5s));
+  give(coordinator, alive(kSuccessorLife, 7), at(1s));
+  give(coordinator, alive(kSuccessorLife, 7), at(5s));
   MissionPart repeated = memory_of(1000);
   repeated.header.incarnation = kSuccessorLife;
-  coordinator.receive(repeated, at(5s));
+  give(coordinator, repeated, at(5s));
   EXPECT_FALSE(coordinator.finished());
 }
 
@@ -410,10 +410,10 @@ TEST(TakenOver, ItsOwnOrOlderWordsComingBackDoNotScareACoordinator) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   MissionPart echo = memory_of(1000);
   echo.header.incarnation = kCoordinatorLife;
-  coordinator.receive(echo, at(1s));
+  give(coordinator, echo, at(1s));
   MissionPart predecessors = memory_of(0);
   predecessors.header.incarnation = 0xc2;
-  coordinator.receive(predecessors, at(1s));
+  give(coordinator, predecessors, at(1s));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
 }
 
@@ -424,8 +424,8 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
       two.emplace_back(CoordinatorIdentity{0, life, "here", kVersion}, decoder_of(small_mission(2)),
                        kPlan, Takeover::kIfFlying);
       advance(two.back(), at(0s));
-      two.back().receive(status_of(0, 1), at(0s));
-      two.back().receive(memory_of(5), at(0s));
+      give(two.back(), status_of(0, 1), at(0s));
+      give(two.back(), memory_of(5), at(0s));
     }
     return two;
   }();
@@ -433,10 +433,10 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
   const MissionPart ones = said_by(advance(one, at(600ms)));
   const MissionPart others = said_by(advance(other, at(600ms)));
   ASSERT_EQ(ones.revision, others.revision);
-  one.receive(alive(kSuccessorLife + 1), at(600ms));
-  other.receive(alive(kSuccessorLife), at(600ms));
-  one.receive(others, at(601ms));
-  other.receive(ones, at(601ms));
+  give(one, alive(kSuccessorLife + 1), at(600ms));
+  give(other, alive(kSuccessorLife), at(600ms));
+  give(one, others, at(601ms));
+  give(other, ones, at(601ms));
   EXPECT_NE(one.finished(), other.finished());
 }
 

@@ -23,7 +23,7 @@ Mission mission_of(Pace pace, double command_hold_s = 0.5) {
 /// A driver that has heard at 0 s that the mission of two agents runs.
 Driver running_driver(const Mission& mission, double speed_limit_mps = kSpeedLimit_mps) {
   Driver driver(kRun, kWorldLife, speed_limit_mps, decoder_of(mission));
-  driver.receive(mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
+  give(driver, mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
   return driver;
 }
 
@@ -42,7 +42,7 @@ TEST(ExampleDriver, SaysEachTickWhereItsRobotsAre) {
   EXPECT_EQ(first.vehicles[1].answered_tick, -1);
   EXPECT_EQ(driver.next_wakeup(), at(100ms));
   EXPECT_TRUE(advance(driver, at(99ms)).empty());
-  driver.receive(command_of(1, 0, {4, 0}), at(99ms));
+  give(driver, command_of(1, 0, {4, 0}), at(99ms));
   const WorldState second = state_at(driver, at(100ms));
   EXPECT_EQ(second.header.tick, 1);
   EXPECT_EQ(second.vehicles[1].answered_tick, 0);
@@ -58,18 +58,18 @@ TEST(ExampleDriver, ObeysOnlyTheAgentOfTheRobotAndNothingOld) {
   advance(driver, at(100ms));
   Command stranger = command_of(0, 1, {5, 0});
   stranger.header.incarnation = 99;
-  driver.receive(stranger, at(101ms));
-  driver.receive(command_of(0, 2, {5, 0}), at(102ms));  // of a tick that is yet to come
+  give(driver, stranger, at(101ms));
+  give(driver, command_of(0, 2, {5, 0}), at(102ms));  // of a tick that is yet to come
   EXPECT_EQ(state_at(driver, at(200ms)).vehicles[0].position_m.x(), 100);
-  driver.receive(command_of(0, 2, {5, 0}), at(201ms));
-  driver.receive(command_of(0, 1, {0, 0}), at(202ms));  // overtaken
+  give(driver, command_of(0, 2, {5, 0}), at(201ms));
+  give(driver, command_of(0, 1, {0, 0}), at(202ms));  // overtaken
   EXPECT_NEAR(state_at(driver, at(300ms)).vehicles[0].position_m.x(), 100.5, 1e-9);
 }
 
 TEST(ExampleDriver, StopsARobotWhoseCommandsDoNotComeAnyMore) {
   Driver driver = running_driver(mission_of(Pace::kRealtime, 0.25));
   advance(driver, at(0s));
-  driver.receive(command_of(0, 0, {5, 0}), at(0s));
+  give(driver, command_of(0, 0, {5, 0}), at(0s));
   for (int tick = 1; tick <= 6; ++tick) {
     const WorldState state = state_at(driver, at(tick * 100ms));
     EXPECT_EQ(state.vehicles[0].velocity_mps.x(), tick <= 3 ? 5 : 0) << tick;
@@ -80,7 +80,7 @@ TEST(ExampleDriver, ARobotThatOvershootsIsSaidToBeAtTheEdge) {
   Driver driver = running_driver(mission_of(Pace::kRealtime), 50);
   WorldState state = state_at(driver, at(0s));
   for (int tick = 1; tick <= 60; ++tick) {
-    driver.receive(command_of(0, tick - 1, {-1e6, 0}), at(tick * 1s));
+    give(driver, command_of(0, tick - 1, {-1e6, 0}), at(tick * 1s));
     state = state_at(driver, at(tick * 1s));
     EXPECT_GE(state.vehicles[0].position_m.x(), 0);
   }
@@ -92,7 +92,7 @@ TEST(ExampleDriver, GoesOnAtTheTickThatTheCoordinatorNames) {
   Driver driver(kRun, kWorldLife, kSpeedLimit_mps, decoder_of(mission_of(Pace::kRealtime)));
   MissionPart part = mission_part(7, MissionState::kRunning, roster_of(2));
   part.header.tick = 41;
-  driver.receive(part, at(3s));
+  give(driver, part, at(3s));
   EXPECT_EQ(state_at(driver, at(3s)).header.tick, 41);
   EXPECT_EQ(state_at(driver, at(3100ms)).header.tick, 42);
 }
@@ -100,8 +100,8 @@ TEST(ExampleDriver, GoesOnAtTheTickThatTheCoordinatorNames) {
 TEST(ExampleDriver, EndsWithTheMissionAndStopsItsRobots) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
-  driver.receive(command_of(0, 0, {5, 0}), at(0s));
-  driver.receive(mission_part(2, MissionState::kEnded, roster_of(2), "mission complete"), at(1s));
+  give(driver, command_of(0, 0, {5, 0}), at(0s));
+  give(driver, mission_part(2, MissionState::kEnded, roster_of(2), "mission complete"), at(1s));
   EXPECT_TRUE(driver.finished());
   EXPECT_FALSE(driver.failed());
   EXPECT_EQ(driver.reason(), "mission complete");
@@ -110,12 +110,12 @@ TEST(ExampleDriver, EndsWithTheMissionAndStopsItsRobots) {
 TEST(ExampleDriver, AStopAtOnceStopsItsRobotsAndItSaysWhereTheyAre) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
-  driver.receive(command_of(0, 0, {5, 0}), at(0s));
+  give(driver, command_of(0, 0, {5, 0}), at(0s));
   Stop stop{{kRun, kOperator, 1, 1, 0}, false, "enough"};
-  driver.receive(stop, at(1ms));
+  give(driver, stop, at(1ms));
   EXPECT_FALSE(driver.finished()) << "in order, the coordinator ends the mission";
   stop.now = true;
-  driver.receive(stop, at(2ms));
+  give(driver, stop, at(2ms));
   EXPECT_TRUE(driver.finished());
   EXPECT_EQ(driver.reason(), "enough");
   const WorldState last = state_at(driver, at(2ms));
@@ -128,9 +128,9 @@ TEST(ExampleDriver, AStopAtOnceStopsItsRobotsAndItSaysWhereTheyAre) {
 TEST(ExampleDriver, AnAgentMayTakeItsAnswerBackToStandStill) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
-  driver.receive(command_of(0, 0, {5, 0}), at(1ms));
-  driver.receive(command_of(0, 0, {4, 0}), at(2ms));
-  driver.receive(command_of(0, 0, {0, 0}), at(3ms));
+  give(driver, command_of(0, 0, {5, 0}), at(1ms));
+  give(driver, command_of(0, 0, {4, 0}), at(2ms));
+  give(driver, command_of(0, 0, {0, 0}), at(3ms));
   EXPECT_EQ(state_at(driver, at(100ms)).vehicles[0].velocity_mps, Eigen::Vector3d(0, 0, 0));
 }
 
@@ -139,7 +139,7 @@ TEST(ExampleDriver, ObeysTheScenariosSpeedLimitToo) {
   mission.speed_limit_mps = 2;
   Driver driver = running_driver(mission);
   advance(driver, at(0s));
-  driver.receive(command_of(0, 0, {4, 0}), at(1ms));
+  give(driver, command_of(0, 0, {4, 0}), at(1ms));
   const WorldState state = state_at(driver, at(100ms));
   EXPECT_EQ(state.vehicles[0].velocity_mps, Eigen::Vector3d(2, 0, 0));
   EXPECT_EQ(state.clamped_commands, 1);

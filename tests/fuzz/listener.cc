@@ -52,7 +52,7 @@ Instant listen(Input input, Core& core, const Receive& receive) {
 void agent_listens(Input input) {
   Agent agent({test::kRun, 0, test::life_of(0), "here", "1"}, decoder_of(mission_with(input[0])));
   listen(input, agent, [&agent](const Message& message, Instant now, AgentId transmitter) {
-    agent.receive(message, now, transmitter);
+    test::give(agent, message, now, transmitter);
   });
   check(agent);
 }
@@ -63,14 +63,14 @@ void coordinator_listens(Input input) {
                           decoder_of(mission_with(input[0])), kPlan,
                           takes_over ? Takeover::kIfFlying : Takeover::kNever);
   listen(input, coordinator, [&coordinator](const Message& message, Instant now, AgentId) {
-    coordinator.receive(message, now);
+    test::give(coordinator, message, now);
   });
 }
 
 void world_listens(Input input) {
   World world(test::kRun, test::kWorldLife, decoder_of(mission_with(input[0])));
   listen(input, world,
-         [&world](const Message& message, Instant now, AgentId) { world.receive(message, now); });
+         [&world](const Message& message, Instant now, AgentId) { test::give(world, message, now); });
   ERGOCAST_REQUIRE(world.tick() >= 0);
 }
 
@@ -79,7 +79,7 @@ void recorder_listens(Input input) {
   Recorder recorder(test::kRun, test::kLoggerLife, decoder_of(mission_with(input[0])), trajectory,
                     metrics);
   listen(input, recorder, [&recorder](const Message& message, Instant now, AgentId) {
-    recorder.receive(message, now);
+    test::give(recorder, message, now);
   });
   check_table(trajectory.view());
   check_table(metrics.view());
@@ -94,7 +94,7 @@ struct Viewer : TeamView {
 void viewer_listens(Input input) {
   Viewer view(test::kRun, decoder_of(mission_with(input[0])), test::at(std::chrono::seconds(1)));
   const Instant now = listen(input, view, [&view](const Message& message, Instant at, AgentId) {
-    view.receive(message, at);
+    test::give(view, message, at);
   });
   check(view.picture(now));
 }

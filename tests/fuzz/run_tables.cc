@@ -30,7 +30,7 @@ void resume(RunData run) {
                     trajectory, metrics);
   recorder.resume(std::move(run));
   const Instant now = test::at(std::chrono::seconds(1));
-  recorder.receive(test::mission_part(0, MissionState::kRunning, test::roster_of(2)), now);
+  test::give(recorder, test::mission_part(0, MissionState::kRunning, test::roster_of(2)), now);
   Outbox out;
   recorder.advance(now, out);
 }

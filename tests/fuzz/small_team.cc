@@ -95,11 +95,11 @@ SmallTeam::SmallTeam(std::uint8_t features)
 }
 
 void SmallTeam::take(const Message& message, AgentId transmitter) {
-  for (Agent& agent : agents_) agent.receive(message, now_, transmitter);
-  world_.receive(message, now_);
-  coordinator_.receive(message, now_);
-  recorder_.receive(message, now_);
-  view_.receive(message, now_);
+  for (Agent& agent : agents_) test::give(agent, message, now_, transmitter);
+  test::give(world_, message, now_);
+  test::give(coordinator_, message, now_);
+  test::give(recorder_, message, now_);
+  test::give(view_, message, now_);
 }
 
 void SmallTeam::hear(std::span<const std::byte> datagram, AgentId transmitter) {

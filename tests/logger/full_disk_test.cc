@@ -90,8 +90,8 @@ TEST(Statuses, OfNoMoreLivesThanThereCanBeAreKept) {
     status.header.incarnation = life;
     record.tell(status);
   };
-  for (Incarnation life = 1; life <= Recorder::kMaxStatuses + 1; ++life) hear(life, 1);
-  EXPECT_EQ(record.recorder.statuses().size(), Recorder::kMaxStatuses);
+  for (Incarnation life = 1; life <= Liveness::kMostLives + 1; ++life) hear(life, 1);
+  EXPECT_EQ(record.recorder.statuses().size(), Liveness::kMostLives - 1) << "and the coordinator";
   hear(1, 2);
   EXPECT_EQ(record.recorder.statuses().at({1, 1}).header.sequence, 2) << "of those it goes on";
 }

@@ -31,11 +31,11 @@ struct Record {
       : recorder(kRun, kLoggerLife, decoder_of(mission), trajectory, metrics) {
     if (past) recorder.resume(std::move(*past));
     const auto team = static_cast<int>(mission.starts_m.size());
-    recorder.receive(mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
+    give(recorder, mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
   }
 
   Outbox tell(const Message& message, Instant now = at(0s)) {
-    recorder.receive(message, now);
+    give(recorder, message, now);
     return advance(recorder, now);
   }
 

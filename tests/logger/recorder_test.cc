@@ -107,7 +107,7 @@ TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
   std::ostringstream trajectory, metrics;
   Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
   EXPECT_TRUE(advance(recorder, at(0s)).empty()) << "not before it knows the mission";
-  recorder.receive(mission_part(0, MissionState::kWaiting, {}), at(0s));
+  give(recorder, mission_part(0, MissionState::kWaiting, {}), at(0s));
   EXPECT_EQ(acks(advance(recorder, at(0s))), (std::vector<Tick>{-1}));
 }
 
@@ -403,7 +403,7 @@ TEST(RecordEnd, APlanItCannotReadEndsItAtOnce) {
   std::ostringstream trajectory, metrics;
   Recorder recorder(kRun, kLoggerLife, [](auto) { return "install another version"; }, trajectory,
                     metrics);
-  recorder.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  give(recorder, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   EXPECT_TRUE(recorder.finished());
   EXPECT_STREQ(recorder.result(), "failed");
   EXPECT_EQ(recorder.reason(), "install another version");

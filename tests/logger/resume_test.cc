@@ -160,10 +160,10 @@ TEST_F(Resume, WhatIsAcknowledgedIsInTheFile) {
   auto record = std::get<0>(RunRecord::create(dir));
   const Mission mission = small_mission(1);
   Recorder recorder(kRun, kLoggerLife, decoder_of(mission), record->trajectory(), record->metrics());
-  recorder.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  give(recorder, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   int seen = 0;
   for (Tick tick = 0; tick <= 60; ++tick) {
-    recorder.receive(state_of(tick), at(0s));
+    give(recorder, state_of(tick), at(0s));
     for (const Tick ack : acks(advance(recorder, at(0s)))) {
       EXPECT_EQ(rows_of(read("trajectory.csv")).size(), static_cast<std::size_t>(ack + 1));
       EXPECT_EQ(rows_of(read("metrics.csv")).size(), static_cast<std::size_t>(ack + 10) / 10);

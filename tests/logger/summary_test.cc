@@ -14,8 +14,8 @@ namespace {
 TEST(Summary, IsWrittenWhateverBytesTheNetworkBrought) {
   std::ostringstream trajectory, metrics;
   Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
-  recorder.receive(mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
-  recorder.receive(Stop{{kRun, kOperator, 1, 1, 0}, true, "caf\xe9", true}, at(0s));
+  give(recorder, mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
+  give(recorder, Stop{{kRun, kOperator, 1, 1, 0}, true, "caf\xe9", true}, at(0s));
   const auto read = nlohmann::json::parse(to_text(summarize(recorder, {})));
   EXPECT_EQ(read["result"], "failed");
   EXPECT_EQ(read["reason"], "caf\xef\xbf\xbd") << "the replacement character";
@@ -27,8 +27,8 @@ nlohmann::ordered_json goal_after_a_tick(double goal_ergodic_metric) {
   mission.goal_ergodic_metric = goal_ergodic_metric;
   std::ostringstream trajectory, metrics;
   Recorder recorder(kRun, kLoggerLife, decoder_of(mission), trajectory, metrics);
-  recorder.receive(mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
-  for (const Tick tick : {0, 1}) recorder.receive(world_state(tick, {{100, 500}}), at(0s));
+  give(recorder, mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
+  for (const Tick tick : {0, 1}) give(recorder, world_state(tick, {{100, 500}}), at(0s));
   advance(recorder, at(0s));
   const auto summary = summarize(recorder, {});
   return summary.contains("goal") ? summary["goal"] : nlohmann::ordered_json();

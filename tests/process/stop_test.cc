@@ -215,7 +215,7 @@ TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
   std::set<RunId> told;
   const auto listener = std::get<0>(Transport::open(
       std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
-      {.on_message = [&](const Message& stop, AgentId) { told.insert(header_of(stop).run); }}));
+      {.on_message = [&](const Message& stop, Bus, AgentId) { told.insert(header_of(stop).run); }}));
   Stranger stranger(kUrl);
   Program& decided = hand("ergocast", {"stop", "--now"});
   ASSERT_TRUE(eventually([&] {

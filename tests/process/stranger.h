@@ -19,7 +19,7 @@ class Stranger {
   explicit Stranger(const std::string& url, const Seal& seal = {})
       : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
         transport_(std::get<0>(
-            Transport::open(url_, 0, seal, Subscriptions{}, {.on_message = [](const Message&, AgentId) {}}))) {}
+            Transport::open(url_, 0, seal, Subscriptions{}, {.on_message = [](const Message&, Bus, AgentId) {}}))) {}
 
   void say(Bus bus, Message message) {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);

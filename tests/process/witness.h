@@ -23,7 +23,7 @@ class Witness {
     transport_ = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(url)), 0, seal,
         {kTypes<MissionPart, Contribution, Digest, AgentStatus>, 0, kTypes<Command, RecordAck>},
-        {.on_message = [this](const Message& message, AgentId) { hear(message); }}));
+        {.on_message = [this](const Message& message, Bus, AgentId) { hear(message); }}));
   }
 
   /// Listens until `condition` holds; false if it does not come.

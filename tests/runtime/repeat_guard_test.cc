@@ -17,7 +17,7 @@ class Guarded : public ::testing::Test {
  protected:
   /// True if the kernel is to be told something else.
   bool hear(const Header& from, Instant when) {
-    return guard_.count(from, guard_.is_news(from), when);
+    return guard_.count(from, guard_.is_news(from, when), when);
   }
   /// So many of the same at once.
   bool flood(const Header& from, int count, Instant when) {
@@ -33,7 +33,7 @@ class Guarded : public ::testing::Test {
     return -1;
   }
 
-  RepeatGuard guard_;
+  RepeatGuard guard_{Bus::kSwarm};
 };
 
 TEST_F(Guarded, NewsAreNeverAFlood) {

@@ -18,7 +18,7 @@ inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation 
   for (AgentId id = 0; id < agents; ++id) {
     Command answer = command_of(id, -1, {0, 0});
     answer.asked_by = life;
-    world.receive(answer, now);
+    give(world, answer, now);
   }
 }
 
@@ -26,7 +26,7 @@ inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation 
 inline World running_world(const Mission& mission, Instant now = at(0s)) {
   World world = world_of(mission);
   const auto team = static_cast<int>(mission.starts_m.size());
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(team)), now);
+  give(world, mission_part(0, MissionState::kRunning, roster_of(team)), now);
   nobody_has_moved(world, team, now);
   return world;
 }

@@ -24,15 +24,15 @@ TEST(WorldRefuses, CommandsThatAreNotAnAnswerOfAMemberToThisTick) {
   const Command lies[] = {command_of(3, 0, {1, 1}), stranger, foreign, command_of(0, 1, {1, 1}),
                           command_of(0, Tick{1} << 48, {1, 1})};
   for (const Command& lie : lies) {
-    world.receive(lie, at(0s));
+    give(world, lie, at(0s));
     EXPECT_TRUE(advance(world, at(0s)).empty());
   }
   EXPECT_EQ(world.tick(), 0);
   // None of them stands in the way of the real answer.
-  world.receive(command_of(0, 0, {2, 0}), at(0s));
+  give(world, command_of(0, 0, {2, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(2, 0));
   // An old one does not count as an answer to the new tick.
-  world.receive(command_of(0, 0, {9, 9}), at(0s));
+  give(world, command_of(0, 0, {9, 9}), at(0s));
   EXPECT_TRUE(advance(world, at(0s)).empty());
 }
 
@@ -40,14 +40,14 @@ TEST(WorldRefuses, TheCommandsOfAnEvictedAgentWhichStandsStill) {
   const Mission mission = small_mission(2);
   World world = running_world(mission);
   advance(world, at(0s));
-  world.receive(command_of(0, 0, {1, 0}), at(0s));
-  world.receive(command_of(1, 0, {1, 0}), at(0s));
+  give(world, command_of(0, 0, {1, 0}), at(0s));
+  give(world, command_of(1, 0, {1, 0}), at(0s));
   advance(world, at(0s));
   std::vector<RosterEntry> roster = roster_of(2);
   roster[1].active_until = 1;
-  world.receive(mission_part(1, MissionState::kRunning, roster), at(0s));
-  world.receive(command_of(1, 1, {5, 5}), at(0s));
-  world.receive(command_of(0, 1, {1, 0}), at(0s));
+  give(world, mission_part(1, MissionState::kRunning, roster), at(0s));
+  give(world, command_of(1, 1, {5, 5}), at(0s));
+  give(world, command_of(0, 1, {1, 0}), at(0s));
   const WorldState state = state_after(world, at(0s));
   EXPECT_EQ(state.header.tick, 2) << "nobody waits for it any more";
   EXPECT_EQ(applied(state, 1), Eigen::Vector2d(0, 0));
@@ -58,18 +58,18 @@ TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
   const Mission mission = small_mission(1);
   World world = running_world(mission);
   advance(world, at(0s));
-  world.receive(command_of(0, 0, {10, 0}), at(0s));
+  give(world, command_of(0, 0, {10, 0}), at(0s));
   advance(world, at(0s));
   std::vector<RosterEntry> roster = roster_of(1);
   roster[0].active_until = 1;
   roster.push_back({{0, 2000}, 1, -1});
-  world.receive(mission_part(1, MissionState::kRunning, roster), at(0s));
-  world.receive(command_of(0, 1, {-9, 0}), at(0s));
+  give(world, mission_part(1, MissionState::kRunning, roster), at(0s));
+  give(world, command_of(0, 1, {-9, 0}), at(0s));
   EXPECT_TRUE(advance(world, at(0s)).empty());
   EXPECT_EQ(world.tick(), 1);
   Command reborn = command_of(0, 1, {0, 10});
   reborn.header.incarnation = 2000;
-  world.receive(reborn, at(0s));
+  give(world, reborn, at(0s));
   const WorldState state = state_after(world, at(0s));
   EXPECT_EQ(state.header.tick, 2);
   EXPECT_EQ(place(state), Eigen::Vector2d(101, 501));
@@ -80,7 +80,7 @@ TEST(WorldRefuses, ToRunOnWithNobodyLeft) {
   advance(world, at(0s));
   std::vector<RosterEntry> roster = roster_of(2);
   roster[0].active_until = roster[1].active_until = 0;
-  world.receive(mission_part(1, MissionState::kRunning, roster), at(0s));
+  give(world, mission_part(1, MissionState::kRunning, roster), at(0s));
   EXPECT_TRUE(advance(world, at(1ms)).empty());
   EXPECT_EQ(state_after(world, at(20ms)).header.tick, 0);
 }
@@ -90,7 +90,7 @@ TEST(WorldAdmits, AgentsBeyondThePlanAtStartsDrawnFromTheSeed) {
     Mission mission = small_mission(1);
     mission.seed = seed;
     World world = running_world(mission);
-    world.receive(mission_part(1, MissionState::kRunning, roster_of(3)), at(0s));
+    give(world, mission_part(1, MissionState::kRunning, roster_of(3)), at(0s));
     nobody_has_moved(world, 3, at(0s));
     const WorldState state = state_after(world, at(0s));
     EXPECT_EQ(state.vehicle_count, 3);
@@ -109,18 +109,18 @@ TEST(WorldAdmits, AgentsBeyondThePlanAtStartsDrawnFromTheSeed) {
 TEST(WorldAdmits, ALateAgentAtItsOwnStart) {
   const Mission mission = small_mission(2);
   World world = world_of(mission);
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   nobody_has_moved(world, 1, at(0s));
   EXPECT_EQ(state_after(world, at(0s)).vehicle_count, 1);
-  world.receive(mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
-  world.receive(command_of(0, 0, {0, 0}), at(0s));
+  give(world, mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
+  give(world, command_of(0, 0, {0, 0}), at(0s));
   EXPECT_TRUE(advance(world, at(1ms)).empty()) << "the tick is the newcomer's too";
   const WorldState again = state_after(world, at(20ms));
   EXPECT_EQ(again.header.tick, 0);
   EXPECT_EQ(again.roster_revision, 0) << "a tick is flown by one roster";
   ASSERT_EQ(again.vehicle_count, 2) << "which has to see where it is";
   EXPECT_EQ(place(again, 1), mission.starts_m[1]);
-  world.receive(command_of(1, 0, {0, 0}), at(20ms));
+  give(world, command_of(1, 0, {0, 0}), at(20ms));
   const WorldState state = state_after(world, at(20ms));
   EXPECT_EQ(state.header.tick, 1);
   EXPECT_EQ(state.roster_revision, 1);
@@ -131,15 +131,15 @@ TEST(WorldAdmits, ALateAgentAtItsOwnStart) {
 TEST(WorldAdmits, ALateAgentInTheMiddleOfATickWhichItThenWaitsFor) {
   World world = running_world(small_mission(2));
   EXPECT_EQ(state_after(world, at(0s)).vehicle_count, 2);
-  world.receive(mission_part(2, MissionState::kRunning, roster_of(3)), at(1ms));
-  world.receive(command_of(0, 0, {1, 1}), at(2ms));
-  world.receive(command_of(1, 0, {1, 1}), at(2ms));
+  give(world, mission_part(2, MissionState::kRunning, roster_of(3)), at(1ms));
+  give(world, command_of(0, 0, {1, 1}), at(2ms));
+  give(world, command_of(1, 0, {1, 1}), at(2ms));
   const WorldState again = state_after(world, at(20ms));
   EXPECT_EQ(again.header.tick, 0);
   ASSERT_EQ(again.vehicle_count, 3) << "else it would never learn that it is waited for";
   EXPECT_EQ(again.vehicles[1].answered_tick, 0);
   EXPECT_EQ(again.vehicles[2].answered_tick, -1);
-  world.receive(command_of(2, 0, {1, 1}), at(21ms));
+  give(world, command_of(2, 0, {1, 1}), at(21ms));
   EXPECT_EQ(state_after(world, at(21ms)).header.tick, 1);
 }
 

@@ -44,7 +44,7 @@ class Flight {
     now_ += 10ms;
     for (const WorldState& state : only<WorldState>(step_world())) {
       for (AgentId id = 0; id < 3; ++id) {
-        if (death.heard[id]) team_[id].receive(state, now_);
+        if (death.heard[id]) give(team_[id], state, now_);
       }
     }
     team_.settle(now_);  // whatever they say, no world hears it
@@ -62,7 +62,7 @@ class Flight {
  private:
   World begin(Incarnation life) const {
     World world(kRun, life, decoder_of(mission_));
-    world.receive(mission_part(0, MissionState::kRunning, roster_of(3)), now_);
+    give(world, mission_part(0, MissionState::kRunning, roster_of(3)), now_);
     if (life == 1) nobody_has_moved(world, 3, now_, life);
     return world;
   }
@@ -82,7 +82,7 @@ class Flight {
   }
 
   void obey(const Outbox& said) {
-    for (const Command& command : only<Command>(said)) world_.receive(command, now_);
+    for (const Command& command : only<Command>(said)) give(world_, command, now_);
   }
 
   Mission mission_;
@@ -146,7 +146,7 @@ Command command_from(AgentId id, Tick tick, const Eigen::Vector2d& x_m, const Ei
 World asking_world(const Mission& mission) {
   World world = world_of(mission);
   const auto team = static_cast<int>(mission.starts_m.size());
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
+  give(world, mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
   advance(world, at(0s));
   return world;
 }
@@ -171,8 +171,8 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   World world = asking_world(mission);
-  world.receive(command_from(0, 8, {300, 400}, {1, 0}), at(0s));
-  world.receive(command_from(0, 9, {301, 401}, {0, 1}), at(0s));
+  give(world, command_from(0, 8, {300, 400}, {1, 0}), at(0s));
+  give(world, command_from(0, 9, {301, 401}, {0, 1}), at(0s));
   EXPECT_TRUE(only<WorldState>(advance(world, at(1999ms))).empty());
   const auto states = only<WorldState>(advance(world, at(2s)));
   ASSERT_EQ(states.size(), 1u);
@@ -233,7 +233,7 @@ TEST(WorldAsks, BeginsAtOnceInADomainFarFromTheOrigin) {
 /// The state with which a world of one agent begins that was told these commands, in this order.
 WorldState begun_with(const std::vector<Command>& told) {
   World world = asking_world(small_mission(1));
-  for (const Command& command : told) world.receive(command, at(0s));
+  for (const Command& command : told) give(world, command, at(0s));
   return state_after(world, at(1ms));
 }
 
@@ -250,10 +250,10 @@ TEST(WorldAsks, TheOrderOfTheAnswersDoesNotMatter) {
 
 TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
   World world = asking_world(small_mission(1));
-  world.receive(command_from(0, 9, {301, 401}, {0, 1}), at(0s));
+  give(world, command_from(0, 9, {301, 401}, {0, 1}), at(0s));
   EXPECT_TRUE(only<WorldState>(advance(world, at(1ms))).empty());
   EXPECT_EQ(only<Hello>(advance(world, at(100ms))).size(), 1u) << "it asks again";
-  world.receive(command_from(0, 8, {300, 400}, {1, 0}), at(101ms));
+  give(world, command_from(0, 8, {300, 400}, {1, 0}), at(101ms));
   EXPECT_EQ(applied(state_after(world, at(101ms))), Eigen::Vector2d(1, 0));
 }
 
@@ -263,22 +263,22 @@ TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
     for (const Tick tick : {4, 5}) {
       Command recording = command_from(0, tick, {300, 400}, {1, 0});
       recording.asked_by = asked_by;
-      world.receive(recording, at(0s));
+      give(world, recording, at(0s));
     }
   }
   EXPECT_TRUE(states_after(world, at(1ms)).empty()) << "what was said before does not say where it is";
-  for (const Tick tick : {8, 9}) world.receive(command_from(0, tick, {301, 401}, {0, 1}), at(1s));
+  for (const Tick tick : {8, 9}) give(world, command_from(0, tick, {301, 401}, {0, 1}), at(1s));
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
 }
 
 TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
   const Mission mission = small_mission(1);
   World world = asking_world(mission);
-  world.receive(command_from(0, mission.timing.tick_count + 1, {300, 400}, {0, 0}), at(0s));
-  world.receive(command_from(0, 50, {-1, 400}, {0, 0}), at(0s));
+  give(world, command_from(0, mission.timing.tick_count + 1, {300, 400}, {0, 0}), at(0s));
+  give(world, command_from(0, 50, {-1, 400}, {0, 0}), at(0s));
   Command stranger = command_from(0, 50, {300, 400}, {0, 0});
   stranger.header.incarnation = 99;
-  world.receive(stranger, at(0s));
+  give(world, stranger, at(0s));
   EXPECT_TRUE(states_after(world, at(2s)).empty()) << "nobody has answered";
   nobody_has_moved(world, 1, at(3s));
   const WorldState state = state_after(world, at(3s));
@@ -291,7 +291,7 @@ TEST(WorldAsks, NotTheRosterForATickBeyondThePlan) {
   World world = world_of(mission);
   auto roster = roster_of(1);
   roster.push_back({{0, 99}, 0, Tick{1} << 47});
-  world.receive(mission_part(0, MissionState::kRunning, roster), at(0s));
+  give(world, mission_part(0, MissionState::kRunning, roster), at(0s));
   nobody_has_moved(world, 1, at(0s));
   advance(world, at(0s));
   EXPECT_EQ(world.tick(), mission.timing.tick_count);
@@ -305,8 +305,8 @@ TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
     mission.timing.pace = Pace::kRealtime;
     mission.timing.command_hold_s = hold_s;
     World world = asking_world(mission);
-    for (const Tick tick : {9, 10}) world.receive(command_from(0, tick, {500, 500}, {10, 0}), at(0s));
-    for (const Tick tick : {6, 7}) world.receive(command_from(1, tick, {700, 500}, {0, 10}), at(0s));
+    for (const Tick tick : {9, 10}) give(world, command_from(0, tick, {500, 500}, {10, 0}), at(0s));
+    for (const Tick tick : {6, 7}) give(world, command_from(1, tick, {700, 500}, {0, 10}), at(0s));
     const WorldState state = state_after(world, at(5ms));
     EXPECT_EQ(state.header.tick, 10);
     EXPECT_EQ(place(state, 0), Eigen::Vector2d(500, 500));
@@ -339,14 +339,14 @@ TEST(WorldWithoutAMission, WaitsForTheFirstItHearsOfIfItKnowsNoRun) {
   World world(0, kWorldLife, decoder_of(small_mission(1)));
   for (int second = 0; second < 10; ++second) EXPECT_TRUE(advance(world, at(second * 1s)).empty());
   EXPECT_EQ(world.next_wakeup(), Instant::max());
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(10s));
+  give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(10s));
   EXPECT_EQ(world.run(), kRun);
 }
 
 TEST(WorldWithoutAMission, AsksNoMoreOnceItWaitsForTheStart) {
   World world = world_of(small_mission(1));
   advance(world, at(10s));
-  world.receive(mission_part(0, MissionState::kWaiting, roster_of(1)), at(11s));
+  give(world, mission_part(0, MissionState::kWaiting, roster_of(1)), at(11s));
   EXPECT_TRUE(advance(world, at(20s)).empty());
 }
 
@@ -358,26 +358,26 @@ TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   World world = running_world(mission);
   const auto run_while_it_goes = [&](Instant now) {
     while (!states_after(world, now).empty()) {
-      world.receive(command_of(0, world.tick(), {1, 0}), now);
+      give(world, command_of(0, world.tick(), {1, 0}), now);
     }
   };
-  world.receive(ack_of(10), at(0s));
+  give(world, ack_of(10), at(0s));
   run_while_it_goes(at(0s));
   EXPECT_EQ(world.tick(), 75);
   RecordAck successors = ack_of(5);
   successors.header.incarnation = kLoggerLife + 1;
-  world.receive(successors, at(1s));
+  give(world, successors, at(1s));
   std::vector<Tick> repeated;
   for (const WorldState& state : states_after(world, at(2s))) repeated.push_back(state.header.tick);
   // The next row that it lacks, and the state after it; what is no longer remembered is a gap.
   ASSERT_FALSE(repeated.empty());
   EXPECT_EQ(repeated.front(), 74);
-  world.receive(ack_of(3), at(2s));
+  give(world, ack_of(3), at(2s));
   run_while_it_goes(at(2s));
   EXPECT_EQ(world.tick(), 75) << "it has still 64 ticks to go";
   successors.header.tick = 20;
   ++successors.header.sequence;
-  world.receive(successors, at(3s));
+  give(world, successors, at(3s));
   run_while_it_goes(at(3s));
   EXPECT_EQ(world.tick(), 85);
 }
@@ -390,15 +390,15 @@ TEST(WorldRecord, WordsOfADeadLoggerSaidAgainDoNotKeepTheTeamWaiting) {
   const RecordAck dead = ack_of(-1);
   RecordAck alive = ack_of(-1);
   alive.header.incarnation = kLoggerLife + 1;
-  world.receive(dead, at(0s));
-  world.receive(alive, at(0s));
+  give(world, dead, at(0s));
+  give(world, alive, at(0s));
   for (int i = 0; i < 200 && world.tick() <= 64; ++i) {
     states_after(world, at(0s));
-    world.receive(command_of(0, world.tick(), {1, 0}), at(0s));
+    give(world, command_of(0, world.tick(), {1, 0}), at(0s));
   }
   for (int tenths = 0; tenths < 60; ++tenths) {
     const Instant now = at(tenths * 100ms);
-    for (const RecordAck& replayed : {dead, alive}) world.receive(replayed, now);
+    for (const RecordAck& replayed : {dead, alive}) give(world, replayed, now);
     states_after(world, now);
   }
   EXPECT_TRUE(world.logger_lost());

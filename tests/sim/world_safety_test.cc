@@ -26,8 +26,8 @@ Stop stop_now(bool failed = false) {
 /// The state after both agents have answered `tick`.
 WorldState answered(World& world, Tick tick, const Eigen::Vector2d& first,
                     const Eigen::Vector2d& second) {
-  world.receive(command_of(0, tick, first), at(0s));
-  world.receive(command_of(1, tick, second), at(0s));
+  give(world, command_of(0, tick, first), at(0s));
+  give(world, command_of(1, tick, second), at(0s));
   return state_after(world, at(0s));
 }
 
@@ -61,14 +61,14 @@ TEST(WorldSpeedLimit, HoldsForAWorldThatRemembersByTheAgentsCommands) {
   advance(first, at(0s));
   answered(first, 0, {6, 8}, {1, 0});
   const WorldState before = answered(first, 1, {0, 7}, {1, 0});
-  second.receive(mission_part(0, MissionState::kRunning, roster_of(2)), at(0s));
+  give(second, mission_part(0, MissionState::kRunning, roster_of(2)), at(0s));
   for (const AgentId id : {0, 1}) {
     for (const Tick tick : {1, 2}) {  // the last two of each, with where it was
       Command command =
           command_of(id, tick, tick == 1 ? Eigen::Vector2d(0, 7) : Eigen::Vector2d(1, 0));
       command.position_m = before.vehicles[static_cast<std::size_t>(id)].position_m;
       command.asked_by = kWorldLife;
-      second.receive(command, at(0s));
+      give(second, command, at(0s));
     }
   }
   EXPECT_EQ(applied(state_after(second, at(0s))), applied(before));
@@ -99,26 +99,26 @@ TEST(WorldNumbers, CountsTheCommandsThatCannotBeTrue) {
   advance(world, at(0s));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Eigen::Vector2d& v : {Eigen::Vector2d(kHuge, 0), {nan, 0}, {0, -2 * kHuge}}) {
-    world.receive(command_of(0, 0, v), at(0s));
+    give(world, command_of(0, 0, v), at(0s));
   }
   EXPECT_EQ(world.refused(), 3);
-  world.receive(command_of(0, 1, {1, 0}), at(0s));
+  give(world, command_of(0, 1, {1, 0}), at(0s));
   EXPECT_EQ(world.refused(), 4) << "a tick that was not said";
   EXPECT_TRUE(advance(world, at(0s)).empty()) << "unanswered";
-  world.receive(command_of(0, 0, {1, 0}), at(0s));
+  give(world, command_of(0, 0, {1, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0));
   EXPECT_EQ(world.refused(), 4);
 }
 
 TEST(WorldNumbers, OfAPlaceOutsideTheDomainAWorldThatBeginsTakesNothing) {
   World world = world_of(small_mission(1));
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double x_m : {-1.0, 2001.0, kHuge, nan}) {
     Command command = command_of(0, 7, {1, 0});
     command.position_m = {x_m, 500, 0};
     command.asked_by = kWorldLife;
-    world.receive(command, at(0s));
+    give(world, command, at(0s));
   }
   EXPECT_EQ(world.refused(), 4);
 }
@@ -133,16 +133,16 @@ TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndSaysSo) {
     mission.disturbance_intensity = 10;
     World world = running_world(mission);
     const WorldState before = state_after(world, at(0s));
-    world.receive(command_of(0, 0, {9, 0}), at(1ms));
-    world.receive(stop_now(), at(2ms));
+    give(world, command_of(0, 0, {9, 0}), at(1ms));
+    give(world, stop_now(), at(2ms));
     const WorldState halt = state_after(world, at(2ms));
     EXPECT_EQ(halt.header.tick, before.header.tick + 1);
     for (int i = 0; i < 2; ++i) {
       EXPECT_EQ(applied(halt, i), Eigen::Vector2d(0, 0));
       EXPECT_EQ(place(halt, i), place(before, i)) << "not even the disturbance moves it";
     }
-    for (AgentId id : {0, 1}) world.receive(command_of(id, 1, {9, 0}), at(3ms));
-    world.receive(mission_part(1, MissionState::kEnded, roster_of(2), "later"), at(3ms));
+    for (AgentId id : {0, 1}) give(world, command_of(id, 1, {9, 0}), at(3ms));
+    give(world, mission_part(1, MissionState::kEnded, roster_of(2), "later"), at(3ms));
     EXPECT_EQ(place(state_after(world, at(1s))), place(before)) << "said again, and nobody moves";
     EXPECT_FALSE(world.finished());
     advance(world, at(2100ms));
@@ -155,14 +155,14 @@ TEST(WorldHalt, SaysFirstWhereTheLastStepLed) {
   Mission mission = small_mission(1);
   mission.wait_for_logger = true;
   World world = running_world(mission);
-  world.receive(ack_of(-1), at(0s));
+  give(world, ack_of(-1), at(0s));
   Tick tick = 0;
   // Until the world is as far ahead of the record as it may be: the next state is not said.
   for (advance(world, at(0s)); tick < kRecordWindowTicks; ++tick) {
-    world.receive(command_of(0, tick, {1, 0}), at(0s));
+    give(world, command_of(0, tick, {1, 0}), at(0s));
     if (advance(world, at(0s)).empty()) break;
   }
-  world.receive(stop_now(), at(1ms));
+  give(world, stop_now(), at(1ms));
   const auto states = states_after(world, at(1ms));
   ASSERT_EQ(states.size(), 2u);
   EXPECT_EQ(applied(states[0]), Eigen::Vector2d(1, 0)) << "it had moved so far";
@@ -175,18 +175,18 @@ TEST(WorldHalt, EndsAsSoonAsTheRecordIsComplete) {
   Mission mission = small_mission(1);
   mission.wait_for_logger = true;
   World world = running_world(mission);
-  world.receive(ack_of(-1), at(0s));
+  give(world, ack_of(-1), at(0s));
   advance(world, at(0s));
-  world.receive(stop_now(), at(1ms));
+  give(world, stop_now(), at(1ms));
   EXPECT_EQ(state_after(world, at(1ms)).header.tick, 1);
   EXPECT_FALSE(world.finished());
-  world.receive(ack_of(0), at(50ms));
+  give(world, ack_of(0), at(50ms));
   EXPECT_TRUE(world.finished());
 }
 
 TEST(WorldHalt, BeforeItHasBegunItJustEnds) {
   World world = world_of(small_mission(1));
-  world.receive(stop_now(), at(0s));
+  give(world, stop_now(), at(0s));
   EXPECT_TRUE(world.finished());
   EXPECT_TRUE(advance(world, at(0s)).empty());
 }
@@ -196,17 +196,17 @@ TEST(WorldHalt, AStopInOrderIsTheCoordinatorsToObey) {
   advance(world, at(0s));
   Stop in_order = stop_now();
   in_order.now = false;
-  world.receive(in_order, at(0s));
-  world.receive(command_of(0, 0, {1, 0}), at(0s));
+  give(world, in_order, at(0s));
+  give(world, command_of(0, 0, {1, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0)) << "it goes on";
 }
 
 TEST(WorldHalt, AnAgentMayStillSayThatItsVehicleIsToStand) {
   World world = running_world(small_mission(2));
   advance(world, at(0s));
-  world.receive(command_of(0, 0, {9, 0}), at(0s));
-  world.receive(command_of(0, 0, {0, 0}), at(0s));
-  world.receive(command_of(1, 0, {1, 0}), at(0s));
+  give(world, command_of(0, 0, {9, 0}), at(0s));
+  give(world, command_of(0, 0, {0, 0}), at(0s));
+  give(world, command_of(1, 0, {1, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(0, 0));
 }
 

@@ -20,9 +20,9 @@ TEST(WorldInLockstep, SaysNothingUntilTheMissionRunsThenAsksTheTeamAndThenSaysEv
   const Mission mission = small_mission(2);
   World world = world_of(mission);
   EXPECT_TRUE(advance(world, at(0s)).empty());
-  world.receive(mission_part(0, MissionState::kWaiting, roster_of(2)), at(0s));
+  give(world, mission_part(0, MissionState::kWaiting, roster_of(2)), at(0s));
   EXPECT_TRUE(advance(world, at(1s)).empty());
-  world.receive(mission_part(1, MissionState::kRunning, roster_of(2)), at(2s));
+  give(world, mission_part(1, MissionState::kRunning, roster_of(2)), at(2s));
   const Outbox question = advance(world, at(2s));
   ASSERT_EQ(question.size(), 1u);
   EXPECT_EQ(question[0].bus, Bus::kWorld);
@@ -52,8 +52,8 @@ TEST(WorldInLockstep, IntegratesEachCommandForOneStepAndSaysWhatItApplied) {
   World world = running_world(mission);
   advance(world, at(0s));
   const Eigen::Vector2d fast(9.87, -1.23), slow(0.1, 0.3);
-  world.receive(command_of(0, 0, fast), at(0s));
-  world.receive(command_of(1, 0, slow), at(0s));
+  give(world, command_of(0, 0, fast), at(0s));
+  give(world, command_of(1, 0, slow), at(0s));
   const WorldState state = state_after(world, at(0s));
   EXPECT_EQ(state.header.tick, 1);
   EXPECT_EQ(place(state, 0), mission.starts_m[0] + fast * 0.1) << "bit for bit";
@@ -66,7 +66,7 @@ TEST(WorldInLockstep, IntegratesEachCommandForOneStepAndSaysWhatItApplied) {
 TEST(WorldInLockstep, RepeatsATickUntilEverybodyHasAnswered) {
   World world = running_world(small_mission(2));
   const WorldState first = state_after(world, at(0s));
-  world.receive(command_of(0, 0, {1, 1}), at(1ms));
+  give(world, command_of(0, 0, {1, 1}), at(1ms));
   EXPECT_TRUE(advance(world, at(19ms)).empty());
   EXPECT_EQ(world.next_wakeup(), at(20ms));
   const WorldState again = state_after(world, at(20ms));
@@ -75,7 +75,7 @@ TEST(WorldInLockstep, RepeatsATickUntilEverybodyHasAnswered) {
   EXPECT_GT(again.header.sequence, first.header.sequence);
   EXPECT_TRUE(advance(world, at(59ms)).empty()) << "a slow team is not buried in repeats";
   EXPECT_EQ(state_after(world, at(60ms)).header.tick, 0);
-  world.receive(command_of(1, 0, {1, 1}), at(61ms));
+  give(world, command_of(1, 0, {1, 1}), at(61ms));
   EXPECT_EQ(state_after(world, at(61ms)).header.tick, 1) << "and goes on as soon as they have";
 }
 
@@ -83,9 +83,9 @@ TEST(WorldInLockstep, TakesTheFirstAnswerToATickAndNoOther) {
   const Mission mission = small_mission(2);
   World world = running_world(mission);
   advance(world, at(0s));
-  world.receive(command_of(0, 0, {1, 0}), at(0s));
-  world.receive(command_of(0, 0, {9, 9}), at(0s));
-  world.receive(command_of(1, 0, {0, 0}), at(0s));
+  give(world, command_of(0, 0, {1, 0}), at(0s));
+  give(world, command_of(0, 0, {9, 9}), at(0s));
+  give(world, command_of(1, 0, {0, 0}), at(0s));
   EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0));
 }
 
@@ -116,7 +116,7 @@ TEST(WorldMotion, ReflectsAtEveryEdge) {
     mission.starts_m[0] = c.start;
     World world = running_world(mission);
     advance(world, at(0s));
-    world.receive(command_of(0, 0, c.velocity), at(0s));
+    give(world, command_of(0, 0, c.velocity), at(0s));
     const WorldState state = state_after(world, at(0s));
     EXPECT_EQ(place(state), c.end);
     EXPECT_EQ(applied(state), c.velocity) << "the command, not what the edge made of it";
@@ -127,7 +127,7 @@ TEST(WorldMotion, StaysInTheDomainWhateverIsCommanded) {
   for (const double speed : {1e6, 1e17, 1e300}) {
     World world = running_world(small_mission(1));
     advance(world, at(0s));
-    world.receive(command_of(0, 0, {speed, -speed}), at(0s));
+    give(world, command_of(0, 0, {speed, -speed}), at(0s));
     EXPECT_TRUE(small_mission(1).domain.contains(place(state_after(world, at(0s))))) << speed;
   }
 }
@@ -139,7 +139,7 @@ TEST(WorldMotion, IsDisturbedOnlyIfTheScenarioSaysSoAndByAFunctionOfTheSeed) {
   advance(world, at(0s));
   Eigen::Vector2d expected = mission.starts_m[0];
   for (Tick tick = 0; tick < 5; ++tick) {
-    world.receive(command_of(0, tick, {1, 2}), at(0s));
+    give(world, command_of(0, tick, {1, 2}), at(0s));
     Eigen::Vector2d next = expected + Eigen::Vector2d(1, 2) * 0.1;
     next += 3 * std::sqrt(0.1) *
             normal_pair(mission.seed, Purpose::kDisturbance, 0, static_cast<std::uint64_t>(tick));
@@ -163,35 +163,35 @@ Mission recorded_mission() {
 /// Answers every tick at `now` until the world says nothing new.
 void run_while_it_goes(World& world, Instant now) {
   for (auto states = states_after(world, now); !states.empty(); states = states_after(world, now)) {
-    world.receive(command_of(0, world.tick(), {1, 0}), now);
+    give(world, command_of(0, world.tick(), {1, 0}), now);
   }
 }
 
 TEST(WorldRecord, WaitsForTheLoggersFirstWord) {
   World world = running_world(recorded_mission());
   EXPECT_TRUE(advance(world, at(1s)).empty());
-  world.receive(ack_of(-1), at(2s));
+  give(world, ack_of(-1), at(2s));
   EXPECT_EQ(state_after(world, at(2s)).header.tick, 0);
 }
 
 TEST(WorldRecord, RunsAtMostAWindowAheadOfWhatIsRecorded) {
   World world = running_world(recorded_mission());
-  world.receive(ack_of(-1), at(0s));
+  give(world, ack_of(-1), at(0s));
   run_while_it_goes(world, at(0s));
   EXPECT_EQ(world.tick(), 64) << "63, the last it may, is answered; 64 is not published";
-  world.receive(ack_of(10), at(1s));
+  give(world, ack_of(10), at(1s));
   run_while_it_goes(world, at(1s));
   EXPECT_EQ(world.tick(), 75);
-  world.receive(ack_of(3), at(1s));
+  give(world, ack_of(3), at(1s));
   run_while_it_goes(world, at(1s));
   EXPECT_EQ(world.tick(), 75) << "an old acknowledgement takes nothing back";
 }
 
 TEST(WorldRecord, RepeatsWhatTheLoggerLacks) {
   World world = running_world(recorded_mission());
-  world.receive(ack_of(-1), at(0s));
+  give(world, ack_of(-1), at(0s));
   run_while_it_goes(world, at(0s));
-  world.receive(ack_of(20), at(1s));
+  give(world, ack_of(20), at(1s));
   run_while_it_goes(world, at(1s));
   const auto states = states_after(world, at(2s));
   std::vector<Tick> ticks;
@@ -207,7 +207,7 @@ TEST(WorldRecord, RepeatsWhatTheLoggerLacks) {
 
 TEST(WorldRecord, GivesUpASilentLoggerAndSaysSo) {
   World world = running_world(recorded_mission());
-  world.receive(ack_of(-1), at(0s));
+  give(world, ack_of(-1), at(0s));
   run_while_it_goes(world, at(0s));
   // Half the team's patience, so that the coordinator blames nobody in the meantime.
   advance(world, at(5s));
@@ -234,10 +234,10 @@ TEST(WorldEnd, RepeatsTheLastStateForTwoSecondsAndIsDone) {
   mission.timing.tick_count = 1;
   World world = running_world(mission);
   advance(world, at(0s));
-  world.receive(command_of(0, 0, {1, 0}), at(1s));
+  give(world, command_of(0, 0, {1, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 1);
   advance(world, at(1s));
-  world.receive(command_of(0, 1, {1, 0}), at(1s));
+  give(world, command_of(0, 1, {1, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(2900ms)).header.tick, 1);
   EXPECT_FALSE(world.finished());
   advance(world, at(3001ms));
@@ -248,7 +248,7 @@ TEST(WorldEnd, RepeatsTheLastStateForTwoSecondsAndIsDone) {
 
 TEST(WorldEnd, TheMissionsEndAndItsProcessEndItAtOnce) {
   World by_mission = running_world(small_mission(1));
-  by_mission.receive(mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));
+  give(by_mission, mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));
   EXPECT_TRUE(by_mission.finished());
   EXPECT_EQ(by_mission.reason(), "agent 3 is late");
   EXPECT_TRUE(advance(by_mission, at(1s)).empty()) << "and it moves nobody any more";
@@ -261,7 +261,7 @@ TEST(WorldEnd, TheMissionsEndAndItsProcessEndItAtOnce) {
 
 TEST(WorldEnd, APlanItCannotReadEndsIt) {
   World world(kRun, kWorldLife, [](auto) { return "install another version"; });
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   EXPECT_TRUE(world.finished());
   EXPECT_TRUE(world.failed());
   EXPECT_EQ(world.reason(), "install another version");
@@ -273,9 +273,9 @@ TEST(WorldEnd, ByItselfOnceNeitherAgentNorCoordinatorCanStillCome) {
   World world = running_world(mission);
   advance(world, at(0s));
   const Command answer = command_of(0, 0, {1, 0});
-  world.receive(answer, at(5s));
+  give(world, answer, at(5s));
   advance(world, at(5s));
-  world.receive(answer, at(30s));  // a recording of it is nobody's word
+  give(world, answer, at(30s));  // a recording of it is nobody's word
   advance(world, at(45s));
   EXPECT_FALSE(world.finished()) << "10 s for a tick, and 30 s more";
   advance(world, at(45001ms));
@@ -287,7 +287,7 @@ TEST(WorldEnd, ByItselfAlsoIfNobodyHasAnsweredWhereTheTeamIs) {
   Mission mission = small_mission(1);
   mission.timing.lockstep_timeout_s = 10;
   World world = world_of(mission);
-  world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   advance(world, at(40s));
   EXPECT_FALSE(world.finished());
   advance(world, at(40001ms));

@@ -11,6 +11,7 @@
 #include "team/messages.h"
 #include "core/mission.h"
 #include "team/mission_follower.h"
+#include "team/subscriptions.h"
 
 namespace ergocast::test {
 
@@ -102,6 +103,28 @@ inline AgentStatus status_of(AgentId id, std::int64_t sequence, Tick answered_ti
   status.waiting_for = waiting_for;
   status.host = "elsewhere";
   return status;
+}
+
+/// On which bus a process of that role hears such a message.
+inline Bus bus_of(const Message& message, Role role) {
+  const bool asks = std::holds_alternative<Hello>(message) && header_of(message).sender == kWorld;
+  Bus bus = asks || std::holds_alternative<WorldState>(message) ? Bus::kWorld : Bus::kSwarm;
+  if (std::holds_alternative<Command>(message) || std::holds_alternative<RecordAck>(message)) {
+    bus = Bus::kCommand;
+  }
+  // MISSION and STOP are said on two buses.
+  return hears(subscriptions_of(role), bus, message) ? bus : Bus::kCommand;
+}
+
+/// Has `core` hear `message` from `transmitter`.
+template <class Core>
+void give(Core& core, const Message& message, Instant now, AgentId transmitter) {
+  core.receive(message, bus_of(message, Core::kRole), transmitter, now);
+}
+/// Has `core` hear `message` from its sender.
+template <class Core>
+void give(Core& core, const Message& message, Instant now) {
+  give(core, message, now, header_of(message).sender);
 }
 
 /// The messages of type M in `out`, in order.

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an agent does at a tick of the world: samples, broadcasts, answers; and helps its teammates.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "agent/agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kDigestPeriod = 1s;
+constexpr double kDigestMissionPeriod_s = 1.0;
+/// Who is told no tick for so long says what it has, and again after as long.
+constexpr auto kStallPeriod = 1s;
+
+}  // namespace
+
+void Agent::fly(InMission& flight, Instant now, Outbox& out) {
+  if (flight.pending && !begin_tick(flight, now, out)) return;
+  const Step& step = flight.step;
+  if (step.repeat_wanted) repeat(flight, out);
+  if (step.answered < step.tick && may_answer(flight)) answer(flight, out);
+  if (stalled(flight, now)) {
+    flight.stalled_said = now;
+    broadcast(flight, out);
+  }
+  if (!me_.cut_off(step.tick, now)) return;
+  finish(true, "neither the world nor the coordinator can be heard, and the mission must be over by "
+               "now: check this host's network");
+}
+
+/// Where the others are, as far as they are heard. Nobody drives a vehicle whose answers have stopped
+/// for as long as the world goes on with an old one; in lockstep the world waits for them.
+void Agent::note_places(InMission& flight, const WorldState& world) {
+  const Timing& timing = mission().timing;
+  const Tick tick = world.header.tick;
+  flight.state_parts.see(world);
+  const auto hold = static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
+  for (int i = 0; i < world.vehicle_count; ++i) {
+    const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    if (!radio_.hears(me_.id(), vehicle.id)) continue;
+    if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
+    flight.forecast->see(vehicle.id, tick, vehicle.position_m.head<2>());
+  }
+}
+
+/// False if the mission is over for us; `flight` is no more then.
+bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
+  const Mission& mission = me_.mission();
+  const WorldView view = *flight.pending;
+  Step& step = flight.step;
+  flight.pending.reset();
+  step.repeat_wanted = false;
+  if (view.tick >= mission.timing.tick_count) {
+    step.tick = view.tick;
+    finish(false, "mission complete");
+    return false;
+  }
+  if (const auto why = evicted(view.tick)) {
+    finish(true, *why);
+    return false;
+  }
+  if (step.tick >= 0) status_.missed_ticks += view.tick - step.tick - 1;
+  step.tick = view.tick;
+  step.begun = now;
+  step.roster_revision = view.roster_revision;
+  step.x_m = view.position_m.head<2>();
+  step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
+  // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
+  if (step.tick < flight.active_from) return true;
+  flight.table.add_sample(me_.author(), *step.basis_at);
+  if (step.tick >= flight.next_broadcast_tick) broadcast(flight, out);
+  return true;
+}
+
+/// Whether the ticks have stopped coming: then what we have is said now and then without waiting for
+/// more. In lockstep nobody may hear of a tick before the broadcast that was announced.
+bool Agent::stalled(const InMission& flight, Instant now) const {
+  return mission().timing.pace == Pace::kRealtime && flight.step.tick >= flight.active_from &&
+         now - std::max(flight.step.begun, flight.stalled_said) >= kStallPeriod;
+}
+
+void Agent::broadcast(InMission& flight, Outbox& out) {
+  const Tick tick = flight.step.tick;
+  flight.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick);
+  for (int b = 0; b < flight.table.block_count(); ++b) {
+    Contribution& block = flight.published[static_cast<std::size_t>(b)];
+    block = flight.table.block(me_.author(), b);
+    block.header.tick = tick;  // a repeat says it, too: forecasts count a block's age from it
+    block.next_broadcast_tick = flight.next_broadcast_tick;
+    me_.publish(Bus::kSwarm, block, tick, out);
+  }
+}
+
+void Agent::repeat(InMission& flight, Outbox& out) {
+  Step& step = flight.step;
+  step.repeat_wanted = false;
+  // The blocks as they were broadcast: newer sums would make a tick depend on what was lost.
+  for (const Contribution& block : flight.published) {
+    if (block.steps > 0) me_.publish(Bus::kSwarm, block, block.header.tick, out);
+  }
+  if (step.answered == step.tick) me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
+}
+
+bool Agent::may_answer(InMission& flight) const {
+  Step& step = flight.step;
+  step.waiting_for = kUnassigned;
+  if (mission().timing.pace == Pace::kRealtime) return true;
+  // What a command depends on is the same for whoever hears the world's state in another order.
+  const bool reckons = flight.forecast && mission().dead_reckoning && step.tick >= flight.active_from;
+  if (reckons && !flight.state_parts.complete(step.tick)) {
+    step.waiting_for = kWorld;
+    return false;
+  }
+  // Who takes part in a tick is what the world says, not who has heard of it first.
+  if (follower().revision() < step.roster_revision) return false;
+  for (const RosterEntry& entry : follower().roster()) {
+    if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;
+    if (!radio_.hears(me_.id(), entry.author.agent)) continue;
+    if (!flight.table.holds_due(entry.author, step.tick)) {
+      step.waiting_for = entry.author.agent;
+      return false;
+    }
+  }
+  return true;
+}
+
+void Agent::answer(InMission& flight, Outbox& out) {
+  Step& step = flight.step;
+  CoverageTable& table = flight.table;
+  // By the roster that the tick may have waited for.
+  for (const RosterEntry& entry : follower().roster()) {
+    // What we cover ourselves counts: we live, whatever the coordinator has heard.
+    const bool forgotten =
+        entry.author != me_.author() && entry.forgotten_at(step.tick, step.roster_revision);
+    forgotten ? table.forget(entry.author) : table.remember(entry.author);
+  }
+  if (flight.forecast) {
+    flight.forecast->look_ahead(table, follower().roster(), step.tick, flight.foreseen);
+  } else {
+    table.average(flight.foreseen);
+  }
+  flight.controller.see(flight.foreseen);
+  const Eigen::Vector2d velocity =
+      flight.controller.command(me_.id(), step.tick, step.x_m, *step.basis_at);
+  flight.command_before = flight.last_command;
+  flight.last_command.header.tick = step.tick;
+  flight.last_command.position_m << step.x_m, 0;
+  flight.last_command.velocity_mps << velocity, 0;
+  step.answered = step.tick;
+  me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
+}
+
+void Agent::help_others(InMission& flight, Instant now, Outbox& out) {
+  const Tick tick = flight.step.tick;
+  if (flight.world_asks) tell_world(flight, out);
+  for (const Contribution& block : flight.anti_entropy.answers_due(flight.table, now, tick)) {
+    me_.relay(Bus::kSwarm, block, out);
+  }
+  if (!flight.next_digest.due(now, tick)) return;
+  flight.next_digest =
+      Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, mission().timing.dt_s, tick);
+  for (const Digest& digest : AntiEntropy::digests(flight.table, follower().roster())) {
+    me_.publish(Bus::kSwarm, digest, std::max<Tick>(tick, 0), out);
+  }
+}
+
+void Agent::tell_world(InMission& flight, Outbox& out) {
+  for (Command command : {flight.command_before, flight.last_command}) {
+    command.asked_by = *flight.world_asks;
+    me_.publish(Bus::kCommand, command, command.header.tick, out);
+  }
+  flight.world_asks.reset();
+}
+
+}  // namespace ergocast

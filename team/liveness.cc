@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "team/liveness.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// TEAM_STATUS comes twice as often as an agent's status, MISSION each second.
+constexpr PacingClock::duration kTeamStatusHeartbeat = 250ms;
+constexpr PacingClock::duration kMissionHeartbeat = 1s;
+
+}  // namespace
+
+PacingClock::duration heartbeat_of(AgentId sender, CoordinatorSign sign, const Timing* timing) {
+  if (sender == kCoordinator) {
+    return sign == CoordinatorSign::kTeamStatus ? kTeamStatusHeartbeat : kMissionHeartbeat;
+  }
+  if (sender != kWorld || timing == nullptr || timing->pace == Pace::kLockstep) {
+    return kAgentStatusPeriod;
+  }
+  return std::max<PacingClock::duration>(kAgentStatusPeriod,
+                                         seconds(timing->dt_s / timing->realtime_factor));
+}
+
+PacingClock::duration silence_of(AgentId sender, CoordinatorSign sign, const Timing* timing) {
+  return kMissedHeartbeats * heartbeat_of(sender, sign, timing);
+}
+
+bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silence) {
+  const auto ticks_left = static_cast<double>(timing.tick_count - std::max<Tick>(newest, 0));
+  // In lockstep nobody knows how long it takes, but no tick may stay unanswered for longer.
+  const double plan_s = timing.pace == Pace::kLockstep
+                            ? timing.lockstep_timeout_s
+                            : ticks_left * timing.dt_s / timing.realtime_factor;
+  return std::chrono::duration<double>(silence).count() > plan_s + kFarewellPatience_s;
+}
+
+Liveness::Life* Liveness::find_or_add(const Author& life) {
+  const auto at = lives_.lower_bound(life);
+  if (at != lives_.end() && at->first == life) return &at->second;
+  if (lives_.size() >= kMostLives) return nullptr;
+  return &lives_.emplace_hint(at, life, Life{})->second;
+}
+
+bool Liveness::record(const Header& from, Bus bus, Instant now, bool is_sign) {
+  Life* const life = find_or_add({from.sender, from.incarnation});
+  if (life == nullptr) return false;
+  Heard& heard = life->on_bus[static_cast<std::size_t>(bus)];
+  const bool fresh = heard.count == 0 || from.sequence > heard.newest;
+  if (heard.count++ == 0) heard.first = from.sequence;
+  if (!fresh) return false;
+  heard.newest = from.sequence;
+  if (is_sign) life->sign = kinds_[kind_of(from.sender)] = now;
+  return true;
+}
+
+void Liveness::presume_alive(const Author& life, Instant now) {
+  if (Life* const known = find_or_add(life)) known->sign = now;
+}
+
+std::optional<Instant> Liveness::last_sign(const Author& life) const {
+  const auto at = lives_.find(life);
+  return at == lives_.end() ? std::nullopt : at->second.sign;
+}
+
+const Liveness::Heard* Liveness::heard_of(const Author& life, Bus bus) const {
+  const auto at = lives_.find(life);
+  if (at == lives_.end()) return nullptr;
+  const Heard& heard = at->second.on_bus[static_cast<std::size_t>(bus)];
+  return heard.count == 0 ? nullptr : &heard;
+}
+
+std::int64_t Liveness::newest(const Author& life, Bus bus) const {
+  const Heard* const heard = heard_of(life, bus);
+  return heard == nullptr ? -1 : heard->newest;
+}
+
+std::int64_t Liveness::lost(const Author& life, Bus bus) const {
+  const Heard* const heard = heard_of(life, bus);
+  if (heard == nullptr) return 0;
+  // A message that came before the first, or twice, makes up for one that did not come.
+  return std::max<std::int64_t>(0, heard->newest - heard->first + 1 - heard->count);
+}
+
+}  // namespace ergocast

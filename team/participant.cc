@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "team/participant.h"
+
+#include <algorithm>
+
+namespace ergocast {
+
+std::optional<Arrival> Participant::accept(const Message& message, Bus bus, AgentId transmitter,
+                                           Instant now) {
+  const Header& from = header_of(message);
+  if (!hears(subscriptions_of(role_), bus, message)) return std::nullopt;
+  // Multicast gives everybody their own words back.
+  if (self_.incarnation != 0 && from.incarnation == self_.incarnation) return std::nullopt;
+  if (self_.run != 0 && from.run != self_.run) {
+    count_refused(Refusal::kRun);
+    return std::nullopt;
+  }
+  ++received_;
+  Arrival arrival{from, transmitter, now};
+  const auto* part = std::get_if<MissionPart>(&message);
+  // Teammates repeat MISSION in the coordinator's name, also after its death.
+  const bool is_sign = part == nullptr || coordinator_sign() == CoordinatorSign::kMission;
+  // Who asks to be admitted is nobody yet, and a stranger could ask in any number of lives.
+  const bool asks = std::holds_alternative<Hello>(message) && from.sender >= kUnassigned;
+  const bool direct = transmitter == from.sender;
+  arrival.fresh = direct && !asks && liveness_.record(from, bus, now, is_sign);
+  if (part != nullptr) follow(*part, arrival);
+  return arrival;
+}
+
+void Participant::follow(const MissionPart& part, Arrival& arrival) {
+  if (self_.run == 0) self_.run = part.header.run;
+  const std::int64_t foreign_plans = follower_.foreign_plans();
+  arrival.mission_changed = follower_.receive(part);
+  if (arrival.fresh || arrival.mission_changed) mission_heard_ = arrival.now;
+  if (follower_.foreign_plans() != foreign_plans) count_refused(Refusal::kRange);
+}
+
+const RosterEntry* Participant::member(const Header& from) const {
+  const RosterEntry* entry = follower_.entry_of(from.incarnation);
+  return entry != nullptr && entry->author.agent == from.sender ? entry : nullptr;
+}
+
+CoordinatorSign Participant::coordinator_sign() const {
+  const MessageTypes heard = subscriptions_of(role_)[static_cast<std::size_t>(Bus::kSwarm)];
+  return (heard & kTypes<TeamStatus>) != 0 ? CoordinatorSign::kTeamStatus : CoordinatorSign::kMission;
+}
+
+bool Participant::silent(const Author& life, Instant now) const {
+  const auto sign = liveness_.last_sign(life);
+  const Timing* const timing = knows_mission() ? &mission().timing : nullptr;
+  return !sign || now - *sign >= silence_of(life.agent, coordinator_sign(), timing);
+}
+
+bool Participant::silent(AgentId process, Instant now, std::optional<Instant> since) const {
+  const auto sign = std::max(liveness_.last_sign_of_kind(process), since);  // nothing is the least
+  const Timing* const timing = knows_mission() ? &mission().timing : nullptr;
+  return !sign || now - *sign >= silence_of(process, coordinator_sign(), timing);
+}
+
+bool Participant::cut_off(Tick newest, Instant now) const {
+  if (follower_.state() != MissionState::kRunning || !knows_mission()) return false;
+  Instant last = mission_heard_;
+  const AgentId other = role_ == Role::kWorld ? 0 : kWorld;
+  for (const AgentId sender : {kCoordinator, other}) {
+    last = std::max(last, liveness_.last_sign_of_kind(sender).value_or(last));
+  }
+  return must_be_over(mission().timing, newest, now - last);
+}
+
+void Participant::relay(Bus bus, const Contribution& block, Outbox& out) const {
+  Outgoing& outgoing = out.emplace_back();
+  outgoing.bus = bus;
+  outgoing.relayer = self_.id;
+  outgoing.message.emplace<Contribution>(block).header.run = self_.run;
+}
+
+}  // namespace ergocast
