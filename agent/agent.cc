@@ -38,8 +38,7 @@ constexpr auto kRivalPatience = 5s;
 
 }  // namespace
 
-Agent::Agent(AgentIdentity identity, PlanDecoder decode_plan)
-    : identity_(std::move(identity)), follower_(std::move(decode_plan)) {
+Agent::Agent(AgentIdentity identity) : identity_(std::move(identity)) {
   ERGOCAST_REQUIRE(identity_.incarnation != 0);
   self_ = {identity_.requested_id, identity_.incarnation};
   last_command_.header.tick = command_before_.header.tick = -1;

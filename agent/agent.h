@@ -35,7 +35,7 @@ struct AgentIdentity {
 
 class Agent {
  public:
-  Agent(AgentIdentity identity, PlanDecoder decode_plan);
+  explicit Agent(AgentIdentity identity);
 
   /// Takes in a message. Harmless when late, repeated, out of order or untrue.
   /// @param transmitter  who it comes from: its sender, or an agent that repeats it

@@ -61,7 +61,7 @@ class Listener {
   void hear(const Message& message) {
     const RunId run = header_of(message).run;
     if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
-    runs_.try_emplace(run, run, decode_plan, since_, options_.seal.keyed()).first->second.receive(message, now());
+    runs_.try_emplace(run, run, since_, options_.seal.keyed()).first->second.receive(message, now());
   }
 
   const StatusOptions& options_;

@@ -37,10 +37,9 @@ std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
 
 }  // namespace
 
-TeamView::TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated)
+TeamView::TeamView(RunId run, Instant since, bool authenticated)
     : run_(run),
       authenticated_(authenticated),
-      follower_(std::move(decode_plan)),
       since_(since) {}
 
 void TeamView::receive(const Message& message, Instant now) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/require.h"
+#include "team/plan.h"
 
 namespace ergocast {
 namespace {
@@ -37,14 +38,13 @@ Presence Coordinator::presence(const RosterEntry& entry, Instant now) const {
   return alive(entry, now) ? Presence::kAlive : Presence::kSilent;
 }
 
-Coordinator::Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode_plan,
-                         std::vector<std::byte> plan, Takeover takeover)
+Coordinator::Coordinator(CoordinatorIdentity identity, std::vector<std::byte> plan,
+                         Takeover takeover)
     : run_(identity.run),
       incarnation_(identity.incarnation),
       host_(std::move(identity.host)),
       version_(std::move(identity.version)),
       plan_(std::move(plan)),
-      follower_(decode_plan),
       takeover_(takeover) {
   if (!plan_.empty()) mission_ = std::get<Mission>(decode_plan(plan_));
   ERGOCAST_REQUIRE(mission_ || takeover == Takeover::kMust);

@@ -43,11 +43,10 @@ bool Recorder::State::complete() const {
   return !parts.empty() && std::all_of(parts.begin(), parts.end(), [](bool part) { return part; });
 }
 
-Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
-                   std::ostream& trajectory, std::ostream& metrics)
+Recorder::Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory,
+                   std::ostream& metrics)
     : run_(run),
       incarnation_(incarnation),
-      follower_(std::move(decode_plan)),
       trajectory_(trajectory),
       metrics_(metrics) {
   ERGOCAST_REQUIRE(writing());
@@ -55,7 +54,8 @@ Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
   metrics_ << kMetricsHeader << '\n';
 }
 
-void Recorder::resume(RunData past) {
+void Recorder::resume(RunData past, std::vector<std::byte> plan) {
+  follower_.expect_plan(std::move(plan));
   resumed_ = true;
   for (const auto& [agent, track] : past.tracks) next_row_ = std::max(next_row_, track.back().tick);
   past_ = std::move(past);

@@ -5,7 +5,6 @@
 #include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
-#include "scenario/scenario.h"
 #include "sim/world.h"
 
 namespace ergocast {
@@ -13,7 +12,7 @@ namespace {
 
 int run(const NodeOptions& node) {
   StopSignals signals;
-  World world(node.run, random_identity(), decode_plan);
+  World world(node.run, random_identity());
   auto opened = Transport::open(
       node.url, node.run, node.seal, subscriptions_of(Role::kWorld),
       {.on_message = [&](const Message& message, AgentId) { world.receive(message, now()); }});

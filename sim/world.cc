@@ -31,8 +31,7 @@ constexpr auto kFarewell = 2s;
 
 }  // namespace
 
-World::World(RunId run, Incarnation incarnation, PlanDecoder decode_plan)
-    : run_(run), incarnation_(incarnation), follower_(std::move(decode_plan)) {}
+World::World(RunId run, Incarnation incarnation) : run_(run), incarnation_(incarnation) {}
 
 void World::receive(const Message& message, Instant now) {
   if (finished_) return;

@@ -22,7 +22,7 @@ namespace ergocast {
 
 class World {
  public:
-  World(RunId run, Incarnation incarnation, PlanDecoder decode_plan);
+  World(RunId run, Incarnation incarnation);
 
   void receive(const Message& message, Instant now);
   void advance(Instant now, Outbox& out);

@@ -5,11 +5,8 @@
 
 namespace ergocast::example {
 
-Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan)
-    : run_(run),
-      incarnation_(incarnation),
-      speed_limit_mps_(speed_limit_mps),
-      follower_(std::move(decode_plan)) {}
+Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps)
+    : run_(run), incarnation_(incarnation), speed_limit_mps_(speed_limit_mps) {}
 
 void Driver::receive(const Message& message, Instant now) {
   if (finished_ || (run_ != 0 && header_of(message).run != run_)) return;

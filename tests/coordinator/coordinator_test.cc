@@ -44,24 +44,24 @@ TEST(CoordinatorRepeats, TheHostItRunsOn) {
 }
 
 TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogether) {
-  const Mission mission = small_mission(30);
-  std::vector<std::byte> plan;
-  for (int i = 0; i < 1100; ++i) plan.push_back(static_cast<std::byte>(i * 31));
-  Coordinator coordinator({kRun, kCoordinatorLife, "here", kVersion}, decoder_of(mission), plan);
+  Mission mission = small_mission(30);
+  mission.domain.size_m.x() = 4000;
+  mission.basis.modes_x = 12;
+  mission.basis.modes_y = 10;
+  mission.target_coefficients = Coefficients::Zero(12, 10);
+  mission.target_coefficients(0, 0) = 1;
+  Coordinator coordinator = coordinator_of(mission);
   admit_all(coordinator, 30, at(0s));
   const auto parts = only<MissionPart>(advance(coordinator, at(0s)));
   ASSERT_EQ(parts.size(), 2u * 4u) << "four parts on two buses";
-  std::vector<std::byte> decoded;
-  MissionFollower follower([&](std::span<const std::byte> bytes) {
-    decoded.assign(bytes.begin(), bytes.end());
-    return mission;
-  });
+  MissionFollower follower;
   for (const MissionPart& part : parts) {
     EXPECT_LE(part.roster.size(), static_cast<std::size_t>(kMaxRosterEntriesPerMessage));
     EXPECT_LE(part.plan.size(), static_cast<std::size_t>(kMaxPlanBytesPerMessage));
     follower.receive(part);
   }
-  EXPECT_EQ(decoded, plan);
+  EXPECT_EQ(follower.plan(), encode_plan(mission));
+  EXPECT_TRUE(follower.mission());
   ASSERT_EQ(follower.roster().size(), 30u);
   for (AgentId id = 0; id < 30; ++id) EXPECT_NE(follower.entry_of(life_of(id)), nullptr) << id;
 }

@@ -60,7 +60,8 @@ class Flight {
 
  private:
   World begin(Incarnation life) const {
-    World world(kRun, life, decoder_of(mission_));
+    announce(mission_);
+    World world(kRun, life);
     world.receive(mission_part(0, MissionState::kRunning, roster_of(3)), now_);
     if (life == 1) nobody_has_moved(world, 3, now_, life);
     return world;
@@ -300,7 +301,8 @@ TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
 }
 
 TEST(WorldWithoutAMission, WaitsForTheFirstItHearsOfIfItKnowsNoRun) {
-  World world(0, kWorldLife, decoder_of(small_mission(1)));
+  announce(small_mission(1));
+  World world(0, kWorldLife);
   for (int second = 0; second < 10; ++second) EXPECT_TRUE(advance(world, at(second * 1s)).empty());
   EXPECT_EQ(world.next_wakeup(), Instant::max());
   world.receive(mission_part(0, MissionState::kRunning, roster_of(1)), at(10s));
