@@ -30,8 +30,7 @@ constexpr auto kFarewell = 2s;
 
 }  // namespace
 
-World::World(RunId run, Incarnation incarnation, PlanDecoder decode_plan)
-    : me_(kRole, {run, kWorld, incarnation}, std::move(decode_plan)) {}
+World::World(RunId run, Incarnation incarnation) : me_(kRole, {run, kWorld, incarnation}) {}
 
 void World::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (finished_) return;
@@ -90,7 +89,7 @@ void World::ask_team(Instant now, Outbox& out) {
   if (!heard) question_.since = now;
   // In lockstep a tick waits for everybody anyway. Whoever alone had heard our predecessor's last
   // tick would never answer an earlier one.
-  const bool may_begin_without = timing().pace == Pace::kRealtime &&
+  const bool may_begin_without = mission().timing.pace == Pace::kRealtime &&
                                  now - *question_.since >= kQuestionPatience;
   const AgentId unheard = first_unheard();
   if (unheard == kUnassigned || may_begin_without) return begin(now);
