@@ -48,8 +48,8 @@ Agent::InMission::InMission(const Mission& mission, const Author& self, Tick joi
   last_command.header.tick = command_before.header.tick = -1;
 }
 
-Agent::Agent(AgentIdentity identity, PlanDecoder decode_plan)
-    : me_(kRole, {identity.run, identity.requested_id, identity.incarnation}, std::move(decode_plan)),
+Agent::Agent(AgentIdentity identity)
+    : me_(kRole, {identity.run, identity.requested_id, identity.incarnation}),
       requested_id_(identity.requested_id),
       version_(std::move(identity.version)),
       mission_repeat_(identity.incarnation) {

@@ -40,7 +40,7 @@ class Agent {
  public:
   static constexpr Role kRole = Role::kAgent;
 
-  Agent(AgentIdentity identity, PlanDecoder decode_plan);
+  explicit Agent(AgentIdentity identity);
 
   /// Takes in a message. Harmless when late, repeated, out of order or untrue.
   /// @param bus  on which it came

@@ -10,7 +10,6 @@
 #include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
-#include "scenario/scenario.h"
 
 namespace ergocast {
 namespace {
@@ -33,7 +32,7 @@ class WaitingLog {
 
 int run(const NodeOptions& node, AgentId requested_id) {
   StopSignals signals;
-  Agent agent({node.run, requested_id, random_identity(), host_name(), version()}, decode_plan);
+  Agent agent({node.run, requested_id, random_identity(), host_name(), version()});
   auto opened = Transport::open(
       node.url, node.run, node.seal, subscriptions_of(Agent::kRole),
       {.on_message = [&agent](const Message& message, Bus bus, AgentId transmitter) {

@@ -7,6 +7,7 @@
 #include "cli/complain.h"
 #include "cli/run_directory.h"
 #include "runtime/node.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 
@@ -21,10 +22,11 @@ int check(const std::filesystem::path& file, bool print) {
     return kExitDone;
   }
   const Mission& mission = scenario->mission();
+  const std::vector<std::byte> plan = encode_plan(mission);
   std::printf("%s: no problems. %zu agents, %d x %d modes, %lld ticks of %g s, plan %s (%zu bytes)\n",
               file.c_str(), mission.starts_m.size(), mission.basis.modes_x, mission.basis.modes_y,
               static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
-              plan_hash(scenario->plan()).c_str(), scenario->plan().size());
+              plan_hash(plan).c_str(), plan.size());
   return kExitDone;
 }
 

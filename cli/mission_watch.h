@@ -29,7 +29,7 @@ class MissionWatch {
   static constexpr Role kRole = Role::kLauncher;
 
   MissionWatch(RunId run, const Timing& timing, ProgressDisplay& display)
-      : me_(kRole, {run, kUnassigned, 0}, decode_plan), timing_(timing), display_(display) {
+      : me_(kRole, {run, kUnassigned, 0}), timing_(timing), display_(display) {
     progress_.tick_count = timing.tick_count;
     progress_.dt_s = timing.dt_s;
   }

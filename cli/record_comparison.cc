@@ -13,11 +13,13 @@
 
 #include "cli/trajectory_comparison.h"
 #include "report/report.h"
+#include "logger/mission_text.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "report/target_density.h"
 #include "text/regular_file.h"
 #include "runtime/node.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -70,17 +72,18 @@ bool lacks_a_map(const std::vector<Problem>& problems) {
 }
 
 /// plan.binpb against the plan that the scenario compiles to.
-FileComparison compare_plan(const fs::path& run_dir, const Scenario& plan, const Scenario& scenario,
+FileComparison compare_plan(const fs::path& run_dir, const Mission& mission, const Scenario& scenario,
                             const FileComparison& hash) {
   const fs::path file = run_dir / kPlanFile;
   FileComparison plan_file = hash;
   plan_file.compared = "with the scenario, compiled anew";
-  if (!plan_file.difference.empty() || scenario.plan() == plan.plan()) return plan_file;
-  const auto at = std::mismatch(plan.plan().begin(), plan.plan().end(), scenario.plan().begin(),
-                                scenario.plan().end()).first - plan.plan().begin();
+  const std::vector<std::byte> recorded = encode_plan(mission), expected = encode_plan(scenario.mission());
+  if (!plan_file.difference.empty() || recorded == expected) return plan_file;
+  const auto at = std::mismatch(recorded.begin(), recorded.end(), expected.begin(), expected.end()).first -
+                  recorded.begin();
   plan_file.difference = file.string() + ": not what " + kScenarioFile + " compiles to, first at byte " +
-                         std::to_string(at) + "\nrecorded:  " + plan_hash(plan.plan()) +
-                         "\nexpected:  " + plan_hash(scenario.plan()) + '\n';
+                         std::to_string(at) + "\nrecorded:  " + plan_hash(recorded) +
+                         "\nexpected:  " + plan_hash(expected) + '\n';
   return plan_file;
 }
 
@@ -115,12 +118,12 @@ bool is_free(const std::string& pointer, const Json& recorded, const Expectation
   return names_one_of(kOfTheNetwork, pointer);
 }
 
-Json expected_summary(const Json& recorded, const Scenario& plan, const fs::path& run_dir,
+Json expected_summary(const Json& recorded, const Mission& mission, const fs::path& run_dir,
                       const Expectation& expectation) {
   RunContext context;
   context.run = expectation.recorder.run();
   context.version = version();
-  context.scenario_hash = plan_hash(plan.plan());
+  context.scenario_hash = plan_hash(encode_plan(mission));
   context.simulated = expectation.simulation;
   context.segments = std::max(1, segment_count(run_dir));
   Json summary = summarize(expectation.recorder, context);
@@ -140,12 +143,12 @@ std::string place_of(const fs::path& file, const std::string& pointer) {
 
 }  // namespace
 
-std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Scenario& plan,
+std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Mission& mission,
                                             const Json& summary) {
   FileComparison hash{kPlanFile, "", "", ""};
   if (summary.contains("scenario_hash")) {
     hash.compared = "with the summary's hash";
-    const std::string expected = plan_hash(plan.plan());
+    const std::string expected = plan_hash(encode_plan(mission));
     if (summary["scenario_hash"] != expected) {
       hash.difference = place_of(run_dir / kSummaryFile, "/scenario_hash") + "\nrecorded:  " +
                         summary["scenario_hash"].dump() + "\nexpected:  \"" + expected + "\" of " +
@@ -154,7 +157,7 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Scena
   }
   const auto text = text_of(run_dir / kScenarioFile);
   if (!text) return {hash, {kScenarioFile, "", "is not there", ""}};
-  if (*text == plan.print()) return {hash, {kScenarioFile, "all but the target, which it lacks", "", ""}};
+  if (*text == mission_text(mission)) return {hash, {kScenarioFile, "all but the target, which it lacks", "", ""}};
   const auto loaded = Scenario::load(run_dir / kScenarioFile);
   if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
     const std::string problem = to_string(problems->front());
@@ -165,7 +168,7 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Scena
     return {hash, {kScenarioFile, "", "", problem + '\n'}};
   }
   const Scenario& scenario = std::get<Scenario>(loaded);
-  return {compare_plan(run_dir, plan, scenario, hash),
+  return {compare_plan(run_dir, mission, scenario, hash),
           compare_text(run_dir, kScenarioFile, scenario.print(), "with the plan"),
           compare_text(run_dir, kTargetDensityFile, target_density_text(scenario.target_density()),
                        "with the scenario's target")};
@@ -208,9 +211,9 @@ FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expec
   return metrics;
 }
 
-FileComparison compare_summary(const fs::path& run_dir, const Scenario& plan, const Json& recorded,
+FileComparison compare_summary(const fs::path& run_dir, const Mission& mission, const Json& recorded,
                                const Expectation& expectation) {
-  const Json expected = expected_summary(recorded, plan, run_dir, expectation);
+  const Json expected = expected_summary(recorded, mission, run_dir, expectation);
   const Json left = recorded.flatten(), right = expected.flatten();
   FileComparison summary{kSummaryFile, "", "", ""};
   int compared = 0, free = 0;

@@ -34,9 +34,9 @@ struct Expectation {
 };
 
 /// scenario.textproto, plan.binpb and target_density.csv against each other and the summary's hash.
-/// @param plan     read from plan.binpb
+/// @param mission  read from plan.binpb
 /// @param summary  an object
-std::vector<FileComparison> compare_sources(const std::filesystem::path& run_dir, const Scenario& plan,
+std::vector<FileComparison> compare_sources(const std::filesystem::path& run_dir, const Mission& mission,
                                             const nlohmann::ordered_json& summary);
 
 /// metrics.csv, all segments.
@@ -44,7 +44,7 @@ FileComparison compare_metrics(const std::filesystem::path& run_dir, const Expec
 
 /// summary.json, value by value.
 /// @param recorded  an object
-FileComparison compare_summary(const std::filesystem::path& run_dir, const Scenario& plan,
+FileComparison compare_summary(const std::filesystem::path& run_dir, const Mission& mission,
                                const nlohmann::ordered_json& recorded,
                                const Expectation& expectation);
 

@@ -12,9 +12,9 @@
 namespace ergocast::cli {
 
 int report(const std::filesystem::path& run_dir) {
-  const auto scenario = recorded_plan_or_complain(run_dir);
-  if (!scenario) return kExitBadInput;
-  if (const auto problem = write_report(run_dir, scenario->mission())) {
+  const auto mission = recorded_mission_or_complain(run_dir);
+  if (!mission) return kExitBadInput;
+  if (const auto problem = write_report(run_dir, *mission)) {
     return complain(kExitBadInput, *problem);
   }
   std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());

@@ -16,6 +16,7 @@
 #include "runtime/node.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -59,7 +60,7 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
           {"version", version()},
           {"build", build_text()},
           {"scenario", scenario.name()},
-          {"scenario_hash", plan_hash(scenario.plan())},
+          {"scenario_hash", plan_hash(encode_plan(scenario.mission()))},
           {"seed", scenario.mission().seed},
           {"mode", timing.pace == Pace::kLockstep ? "lockstep" : "realtime"},
           {"dt_s", timing.dt_s},

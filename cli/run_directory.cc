@@ -16,6 +16,7 @@
 #include "report/target_density.h"
 #include "text/regular_file.h"
 #include "runtime/node.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -97,7 +98,7 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
   return std::nullopt;
 }
 
-std::optional<Scenario> recorded_plan_or_complain(const fs::path& run_dir) {
+std::optional<Mission> recorded_mission_or_complain(const fs::path& run_dir) {
   if (const auto why = why_not_regular(run_dir / kPlanFile)) {
     complain(kExitBadInput, (run_dir / kPlanFile).string() + ": " + *why);
     return std::nullopt;
@@ -108,8 +109,8 @@ std::optional<Scenario> recorded_plan_or_complain(const fs::path& run_dir) {
     complain(kExitBadInput, (run_dir / kPlanFile).string() + ": missing or not readable: is this a run directory?");
     return std::nullopt;
   }
-  auto read = Scenario::from_plan(std::as_bytes(std::span(plan)));
-  if (auto* scenario = std::get_if<Scenario>(&read)) return std::move(*scenario);
+  auto read = decode_plan(std::as_bytes(std::span(plan)));
+  if (auto* mission = std::get_if<Mission>(&read)) return std::move(*mission);
   complain(kExitBadInput, (run_dir / kPlanFile).string() + ": " + std::get<std::string>(read));
   return std::nullopt;
 }
@@ -126,8 +127,8 @@ std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted
   }
   fs::create_directories(folder / "log", error);
   if (error) return "--out " + folder.string() + ": " + error.message() + "; give another folder";
-  const std::string_view plan(reinterpret_cast<const char*>(scenario.plan().data()),
-                              scenario.plan().size());
+  const std::vector<std::byte> bytes = encode_plan(scenario.mission());
+  const std::string_view plan(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (auto problem = write_file(folder / kScenarioFile, scenario.print())) return *problem;
   if (auto problem = write_file(folder / kPlanFile, plan)) return *problem;
   if (auto problem = write_target_density(folder / kTargetDensityFile, scenario.target_density())) {

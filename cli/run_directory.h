@@ -16,7 +16,7 @@ std::optional<Scenario> load_or_complain(const std::filesystem::path& file,
                                          const Overrides& overrides);
 
 /// The mission of a run directory's plan.binpb, or a complaint on the standard error stream.
-std::optional<Scenario> recorded_plan_or_complain(const std::filesystem::path& run_dir);
+std::optional<Mission> recorded_mission_or_complain(const std::filesystem::path& run_dir);
 
 /// Makes the folder (`wanted`, or runs/<scenario>-<time> if empty) and writes scenario.textproto,
 /// plan.binpb and target_density.csv into it. An error if it cannot be written or is not empty.

@@ -13,6 +13,7 @@
 #include "logger/summary.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -33,7 +34,7 @@ nlohmann::ordered_json summary_of(const lab::Swarm& swarm, const Scenario& scena
   context.run = swarm.recorder().run();
   context.version = version();
   context.build = build_text();
-  context.scenario_hash = plan_hash(scenario.plan());
+  context.scenario_hash = plan_hash(encode_plan(scenario.mission()));
   context.simulated = true;
   context.wall_time_s = wall_time_s;
   context.cpu_has_fma = cpu_has_fma();
@@ -71,8 +72,7 @@ int simulate(const MissionOptions& options) {
   }
   RunRecord& record = *std::get<0>(created);
   lab::Options lab_options;
-  lab_options.plan = scenario->plan();
-  lab_options.decode_plan = decode_plan;
+  lab_options.plan = encode_plan(scenario->mission());
   lab_options.agents = static_cast<int>(scenario->mission().starts_m.size());
   lab_options.host = host_name();
   lab_options.version = version();

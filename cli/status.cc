@@ -64,8 +64,7 @@ class Listener {
   void hear(const Message& message, Bus bus, AgentId transmitter) {
     const RunId run = header_of(message).run;
     if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
-    TeamView& view =
-        runs_.try_emplace(run, run, decode_plan, since_, options_.seal.keyed()).first->second;
+    TeamView& view = runs_.try_emplace(run, run, since_, options_.seal.keyed()).first->second;
     view.receive(message, bus, transmitter, now());
   }
 

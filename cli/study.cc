@@ -17,6 +17,7 @@
 #include "lab/studies/study_run.h"
 #include "logger/run_record.h"
 #include "runtime/node.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -73,7 +74,7 @@ class Campaign {
  private:
   studies::StudyFigures fly_one(const Run& run) const {
     const Scenario scenario = points_.scenarios[run.first].with_seed(run.second);
-    return studies::fly_study_run(scenario.plan(), decode_plan);
+    return studies::fly_study_run(encode_plan(scenario.mission()));
   }
 
   void take(const Run& run, const studies::StudyFigures& figures) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runtime/node.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -130,7 +131,7 @@ class Compiler {
     const Timing& timing = scenario.mission().timing;
     point.duration_s = static_cast<double>(timing.tick_count) * timing.dt_s;
     // The seed is each run's.
-    const std::string hash = plan_hash(scenario.with_seed(0).plan());
+    const std::string hash = plan_hash(encode_plan(scenario.with_seed(0).mission()));
     const std::string text = file.string() + (fields.empty() ? "" : " with " + words_of(fields));
     const auto [twin, is_new] = plans_.emplace(hash, text);
     if (!is_new)

@@ -29,7 +29,7 @@ std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
                          {.on_message = std::move(hear)});
 }
 
-RunHeard::RunHeard(RunId run) : me_(kRole, {run, kUnassigned, 0}, decode_plan) {}
+RunHeard::RunHeard(RunId run) : me_(kRole, {run, kUnassigned, 0}) {}
 
 void RunHeard::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   const auto arrival = me_.accept(message, bus, transmitter, now);

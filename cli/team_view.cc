@@ -37,8 +37,8 @@ std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
 
 }  // namespace
 
-TeamView::TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated)
-    : me_(kRole, {run, kUnassigned, 0}, std::move(decode_plan)),
+TeamView::TeamView(RunId run, Instant since, bool authenticated)
+    : me_(kRole, {run, kUnassigned, 0}),
       authenticated_(authenticated),
       since_(since) {}
 

@@ -69,7 +69,7 @@ class TeamView {
 
   /// @param since  when the listening began
   /// @param authenticated  whether what it receives was checked with the team's key
-  TeamView(RunId run, PlanDecoder decode_plan, Instant since, bool authenticated = false);
+  TeamView(RunId run, Instant since, bool authenticated = false);
 
   /// @pre the message is of this view's run
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);

@@ -17,6 +17,7 @@
 #include "lab/trial.h"
 #include "logger/nowhere.h"
 #include "runtime/node.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -137,9 +138,9 @@ int trials(const TrialsOptions& options) {
   Nowhere nowhere;
   const auto fly = [&](std::uint64_t job) {
     const std::uint64_t seed = options.seeds.first + job;
-    const Scenario mission = scenario->with_seed(seed);
-    return report_of(lab::fly_trial({mission.plan(), decode_plan, (*faults)(seed), version()},
-                                    nowhere, nowhere));
+    const Mission mission = scenario->with_seed(seed).mission();
+    return report_of(
+        lab::fly_trial({encode_plan(mission), (*faults)(seed), version()}, nowhere, nowhere));
   };
   StopSignals signals;
   Desk desk(options, path.empty() ? static_cast<std::ostream&>(nowhere) : csv);

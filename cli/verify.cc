@@ -17,6 +17,7 @@
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "runtime/node.h"
+#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
@@ -28,14 +29,12 @@ constexpr int kTurnsBetweenComparisons = 256;
 
 /// The simulation of a plan, as the recorder in it writes it.
 struct Simulation {
-  explicit Simulation(const Scenario& scenario)
-      : swarm(options_of(scenario), trajectory, metrics) {}
+  explicit Simulation(const Mission& mission) : swarm(options_of(mission), trajectory, metrics) {}
 
-  static lab::Options options_of(const Scenario& scenario) {
+  static lab::Options options_of(const Mission& mission) {
     lab::Options options;
-    options.plan = scenario.plan();
-    options.decode_plan = decode_plan;
-    options.agents = static_cast<int>(scenario.mission().starts_m.size());
+    options.plan = encode_plan(mission);
+    options.agents = static_cast<int>(mission.starts_m.size());
     options.version = version();
     return options;
   }
@@ -57,7 +56,7 @@ struct Simulation {
 /// A recorder that has seen nothing but the recorded rows, and what it makes of them.
 struct Observer {
   Observer(RunData rows, const MissionFollower& heard)
-      : recorder(0, 1, decode_plan, trajectory, metrics) {
+      : recorder(0, 1, trajectory, metrics) {
     recorder.resume(std::move(rows));
     for (const MissionPart& part : heard.parts()) {
       recorder.receive(part, Bus::kSwarm, kCoordinator, Instant{});
@@ -162,7 +161,7 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
 }
 
 /// Everything else that follows from the trajectory that was compared.
-std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Scenario& plan, RunData rows,
+std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission, RunData rows,
                                              const Simulation& simulation,
                                              const TrajectoryComparison& comparison, const Json& summary) {
   const Recorder& simulated = simulation.swarm.recorder();
@@ -180,9 +179,9 @@ std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Scen
   std::vector<FileComparison> files{compare_metrics(run_dir, expectation)};
   if (!files.back().difference.empty()) return files;
   files.push_back(summary.empty() ? FileComparison{kSummaryFile, "", "is not there", ""}
-                                  : compare_summary(run_dir, plan, summary, expectation));
+                                  : compare_summary(run_dir, mission, summary, expectation));
   if (!files.back().difference.empty()) return files;
-  for (FileComparison& file : compare_report(run_dir, plan.mission())) files.push_back(std::move(file));
+  for (FileComparison& file : compare_report(run_dir, mission)) files.push_back(std::move(file));
   return files;
 }
 
@@ -205,8 +204,8 @@ int conclude_verification(const fs::path& run_dir, const TrajectoryComparison& c
 }  // namespace
 
 int verify(const fs::path& run_dir) {
-  const auto plan = recorded_plan_or_complain(run_dir);
-  if (!plan) return kExitBadInput;
+  const auto mission = recorded_mission_or_complain(run_dir);
+  if (!mission) return kExitBadInput;
   TrajectoryComparison comparison(run_dir);
   const TableLines metrics(run_dir, kMetricsFile, kMetricsHeader);
   for (const auto& problem : {comparison.problem(), metrics.problem()}) {
@@ -215,17 +214,17 @@ int verify(const fs::path& run_dir) {
   auto read = read_summary(run_dir);
   if (const auto* problem = std::get_if<std::string>(&read)) return complain(kExitBadInput, *problem);
   Json& summary = std::get<Json>(read);
-  Simulation simulation(*plan);
+  Simulation simulation(*mission);
   if (!summary.is_object()) {
     tell(run_dir.string() + ": no " + kSummaryFile +
          ", so nothing is known of restarts; comparing all the same");
     summary = Json::object();
   } else if (!is_simulated(summary, simulation.swarm.recorder())) {
-    const auto reason = why_not_repeatable(summary, plan->mission());
+    const auto reason = why_not_repeatable(summary, *mission);
     if (!reason.empty()) return complain(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
   }
 
-  std::vector<FileComparison> files = compare_sources(run_dir, *plan, summary);
+  std::vector<FileComparison> files = compare_sources(run_dir, *mission, summary);
   for (const FileComparison& file : files) {
     if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
   }
@@ -241,7 +240,7 @@ int verify(const fs::path& run_dir) {
   if (const auto* problem = std::get_if<std::string>(&rows)) {
     return report_difference(run_dir, *problem + '\n', summary);
   }
-  auto rest = compare_the_rest(run_dir, *plan, std::get<RunData>(std::move(rows)), simulation, comparison,
+  auto rest = compare_the_rest(run_dir, *mission, std::get<RunData>(std::move(rows)), simulation, comparison,
                                summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/require.h"
+#include "team/plan.h"
 
 namespace ergocast {
 namespace {
@@ -38,9 +39,9 @@ Presence Coordinator::presence(const RosterEntry& entry, Instant now) const {
   return alive(entry, now) ? Presence::kAlive : Presence::kSilent;
 }
 
-Coordinator::Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode_plan,
-                         std::vector<std::byte> plan, Takeover takeover)
-    : me_(kRole, {identity.run, kCoordinator, identity.incarnation}, decode_plan),
+Coordinator::Coordinator(CoordinatorIdentity identity, std::vector<std::byte> plan,
+                         Takeover takeover)
+    : me_(kRole, {identity.run, kCoordinator, identity.incarnation}),
       name_{std::move(identity.host), std::move(identity.version)},
       flown_{{}, std::move(plan)},
       search_{takeover, {}, {}} {

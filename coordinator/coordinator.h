@@ -43,8 +43,8 @@ class Coordinator {
   static constexpr Role kRole = Role::kCoordinator;
 
   /// @param plan  the compiled plan as it travels; may be empty with kMust: any mission's
-  Coordinator(CoordinatorIdentity identity, const PlanDecoder& decode_plan,
-              std::vector<std::byte> plan, Takeover takeover = Takeover::kNever);
+  Coordinator(CoordinatorIdentity identity, std::vector<std::byte> plan,
+              Takeover takeover = Takeover::kNever);
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);

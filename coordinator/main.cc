@@ -14,6 +14,7 @@
 #include "runtime/traffic_watch.h"
 #include "scenario/override_options.h"
 #include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast {
 namespace {
@@ -89,8 +90,8 @@ class MissionLog {
 
 int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover) {
   StopSignals signals;
-  Coordinator coordinator({node.run, random_identity(), host_name(), version()}, decode_plan,
-                          std::move(plan), takeover);
+  Coordinator coordinator({node.run, random_identity(), host_name(), version()}, std::move(plan),
+                          takeover);
   auto opened = Transport::open(
       node.url, node.run, node.seal, subscriptions_of(Coordinator::kRole),
       {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
@@ -165,5 +166,5 @@ int main(int argc, char** argv) {
     for (const Problem& problem : *problems) spdlog::error("{}", to_string(problem));
     return kExitBadInput;
   }
-  return run(node, std::get<Scenario>(loaded).plan(), takeover_of(node, resume));
+  return run(node, encode_plan(std::get<Scenario>(loaded).mission()), takeover_of(node, resume));
 }

@@ -8,6 +8,7 @@
 #include "core/noise.h"
 #include "lab/dice.h"
 #include "lcmtypes/codec.h"
+#include "team/plan.h"
 
 namespace ergocast::lab {
 namespace {
@@ -17,21 +18,12 @@ constexpr std::int64_t kMostMessagesPer_s = 100000;
 /// A stream of dice beside lab/faults.cc's.
 constexpr std::uint32_t kClocks = 16;
 
-/// The mission of a trial, decoded once; a plan with other bytes is another mission.
-PlanDecoder decoder_of(const Mission& mission, const TrialOptions& options) {
-  return [mission, &options](std::span<const std::byte> plan) {
-    if (!std::ranges::equal(plan, options.plan)) return options.decode_plan(plan);
-    return std::variant<Mission, std::string>(mission);
-  };
-}
-
 }  // namespace
 
 Flight::Flight(const TrialOptions& options, std::ostream& trajectory, std::ostream& metrics)
     : options_(options),
-      mission_(std::get<Mission>(options.decode_plan(options.plan))),
+      mission_(std::get<Mission>(decode_plan(options.plan))),
       seed_(mission_.seed),
-      decode_plan_(decoder_of(mission_, options)),
       run_(random_words(seed_, Purpose::kIncarnation, ~0U, 0).first | 1),
       agents_count_(static_cast<int>(mission_.starts_m.size())),
       seats_(agents_count_ + 3),
@@ -39,7 +31,7 @@ Flight::Flight(const TrialOptions& options, std::ostream& trajectory, std::ostre
       invariants_(mission_),
       processes_(static_cast<std::size_t>(seats_)),
       agents_(static_cast<std::size_t>(agents_count_)),
-      recorder_(run_, 1, decode_plan_, trajectory, metrics),
+      recorder_(run_, 1, trajectory, metrics),
       planned_s_(static_cast<double>(mission_.timing.tick_count) * mission_.timing.dt_s /
                  mission_.timing.realtime_factor),
       answered_(static_cast<std::size_t>(agents_count_), -1),
@@ -92,17 +84,17 @@ void Flight::start(Seat seat) {
   const Incarnation incarnation = incarnation_of(seat);
   if (seat < agents_count_) {
     agents_[static_cast<std::size_t>(seat)] = std::make_unique<Agent>(
-        AgentIdentity{run_, seat, incarnation, "laboratory", options_.version}, decode_plan_);
+        AgentIdentity{run_, seat, incarnation, "laboratory", options_.version});
     answered_[static_cast<std::size_t>(seat)] = -1;
     invariants_.born({seat, incarnation});
   } else if (seat == coordinator_seat()) {
     const bool first = process.life == 0;
     coordinator_ = std::make_unique<Coordinator>(
-        CoordinatorIdentity{run_, incarnation, "laboratory", options_.version}, decode_plan_,
+        CoordinatorIdentity{run_, incarnation, "laboratory", options_.version},
         first ? options_.plan : std::vector<std::byte>(),
         first ? Takeover::kNever : Takeover::kMust);
   } else if (seat == world_seat()) {
-    world_ = std::make_unique<World>(run_, incarnation, decode_plan_);
+    world_ = std::make_unique<World>(run_, incarnation);
     acknowledged_.reset();
     logger_lost_ = false;
   }

@@ -103,7 +103,6 @@ class Flight {
   const TrialOptions& options_;
   Mission mission_;
   std::uint64_t seed_;
-  PlanDecoder decode_plan_;
   RunId run_;
   int agents_count_, seats_;
   Network network_;

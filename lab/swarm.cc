@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/noise.h"
+#include "team/plan.h"
 #include "team/subscriptions.h"
 #include "lcmtypes/codec.h"
 
@@ -18,7 +19,7 @@ Incarnation incarnation_of(std::uint64_t seed, int seat) {
 }
 
 Mission decoded(const Options& options) {
-  return std::get<Mission>(options.decode_plan(options.plan));
+  return std::get<Mission>(decode_plan(options.plan));
 }
 
 }  // namespace
@@ -26,17 +27,15 @@ Mission decoded(const Options& options) {
 Swarm::Swarm(Options options, std::ostream& trajectory, std::ostream& metrics)
     : options_(std::move(options)),
       run_(incarnation_of(decoded(options_).seed, -1)),
-      world_(run_, incarnation_of(decoded(options_).seed, kWorldSeat), options_.decode_plan),
+      world_(run_, incarnation_of(decoded(options_).seed, kWorldSeat)),
       coordinator_({run_, incarnation_of(decoded(options_).seed, kCoordinatorSeat), options_.host,
                     options_.version},
-                   options_.decode_plan, options_.plan),
-      recorder_(run_, incarnation_of(decoded(options_).seed, kLoggerSeat), options_.decode_plan,
-                trajectory, metrics) {
+                   options_.plan),
+      recorder_(run_, incarnation_of(decoded(options_).seed, kLoggerSeat), trajectory, metrics) {
   const std::uint64_t seed = decoded(options_).seed;
   for (int i = 0; i < options_.agents; ++i) {
     agents_.push_back(std::make_unique<Agent>(
-        AgentIdentity{run_, i, incarnation_of(seed, i), options_.host, options_.version},
-        options_.decode_plan));
+        AgentIdentity{run_, i, incarnation_of(seed, i), options_.host, options_.version}));
   }
 }
 

@@ -26,7 +26,6 @@ inline constexpr int kWorldSeat = -3, kCoordinatorSeat = -2, kLoggerSeat = -4;
 
 struct Options {
   std::vector<std::byte> plan;  ///< compiled
-  PlanDecoder decode_plan;
   int agents = 0;
   std::string host = "laboratory";
   std::string version;

@@ -27,7 +27,6 @@ namespace ergocast::lab {
 
 struct TrialOptions {
   std::vector<std::byte> plan;  ///< compiled; its seed is the trial's
-  PlanDecoder decode_plan;
   Faults faults;
   std::string version;
   SubscriptionTable subscriptions = kSubscriptions;  ///< what tests take away is not heard

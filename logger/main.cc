@@ -4,9 +4,10 @@
 
 #include <chrono>
 #include <fstream>
-#include <iterator>
 #include <span>
+#include <vector>
 
+#include "logger/mission_text.h"
 #include "logger/recorder.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
@@ -16,7 +17,7 @@
 #include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
-#include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast {
 namespace {
@@ -31,7 +32,7 @@ bool is_original(Bus bus, std::string_view channel) {
 /// What a former process left in the run directory.
 struct Past {
   RunData rows;
-  std::string plan;  ///< empty: not known
+  std::vector<std::byte> plan;  ///< empty: not known
 };
 
 /// Its rows as far as they can be read. An error where nobody can tell which mission's they are.
@@ -40,9 +41,9 @@ std::variant<Past, std::string> read_past(const fs::path& folder) {
   if (segment_count(folder) == 0) return past;
   const auto damage = read_up_to_damage(folder, past.rows);
   std::ifstream plan(folder / kPlanFile, std::ios::binary);
-  past.plan.assign(std::istreambuf_iterator<char>(plan), {});
+  for (char c = 0; plan.get(c);) past.plan.push_back(static_cast<std::byte>(c));
   const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
-  const bool known = std::holds_alternative<Mission>(decode_plan(std::as_bytes(std::span(past.plan))));
+  const bool known = std::holds_alternative<Mission>(decode_plan(past.plan));
   if (!known && (begun || !past.plan.empty())) {
     return (folder / kPlanFile).string() + ": missing or not readable, so nobody can tell which mission's "
                                            "record this is; copy it back, or choose another folder with --out";
@@ -66,16 +67,20 @@ class RunLogger {
       : record_(record),
         events_(record.folder(), limits),
         resumed_(past.has_value()),
-        recorder_(run, random_identity(), decoder_of(past ? past->plan : ""), record.trajectory(),
-                  record.metrics()) {
-    if (past) recorder_.resume(std::move(past->rows));
+        recorder_(run, random_identity(), record.trajectory(), record.metrics()) {
+    if (!past) return;
+    plan_of_record_ = past->plan;
+    recorder_.resume(std::move(past->rows), std::move(past->plan));
   }
 
   Recorder& recorder() { return recorder_; }
   /// Whether something that should be in the files is not.
   bool failed() const { return stuck_; }
   /// Whether the mission that was heard is not the one whose record is here.
-  bool wrong_mission() const { return wrong_mission_; }
+  bool wrong_mission() const {
+    const std::vector<std::byte>& heard = recorder_.follower().plan();
+    return !plan_of_record_.empty() && !heard.empty() && heard != plan_of_record_;
+  }
   /// Whether there is nothing that a former process has not written better.
   bool idle() const { return resumed_ && !recorder_.follower().mission(); }
 
@@ -138,15 +143,6 @@ class RunLogger {
   }
 
  private:
-  /// Takes only the plan of the record, so that no other mission hears a word of this logger.
-  PlanDecoder decoder_of(std::string plan) {
-    return [this, plan = std::move(plan)](std::span<const std::byte> heard) {
-      wrong_mission_ = !plan.empty() && plan != text_of(heard);
-      if (wrong_mission_) return std::variant<Mission, std::string>("another mission");
-      return decode_plan(heard);
-    };
-  }
-
   bool has_room() const {
     std::error_code error;
     const auto space = fs::space(record_.folder(), error);
@@ -170,7 +166,7 @@ class RunLogger {
     if (auto problem = write_file(record_.folder() / kPlanFile, text_of(plan))) return problem;
     std::error_code ignored;
     if (!fs::exists(record_.folder() / kScenarioFile, ignored)) {
-      const std::string text = std::get<Scenario>(Scenario::from_plan(plan)).print();
+      const std::string text = mission_text(*recorder_.follower().mission());
       if (auto problem = write_file(record_.folder() / kScenarioFile, text)) return problem;
     }
     plan_written_ = true;
@@ -181,8 +177,9 @@ class RunLogger {
   RunRecord& record_;
   EventLog events_;
   const bool resumed_;
-  bool stuck_ = false, plan_written_ = false, wrong_mission_ = false, removal_said_ = false;
+  bool stuck_ = false, plan_written_ = false, removal_said_ = false;
   int interruptions_ = 0;
+  std::vector<std::byte> plan_of_record_;  // that it goes on with; empty: any
   Recorder recorder_;
   Tick seen_rows_ = 0;
   std::optional<Instant> first_row_, last_row_;

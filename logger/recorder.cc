@@ -45,9 +45,9 @@ bool Recorder::State::complete() const {
   return !parts.empty() && std::all_of(parts.begin(), parts.end(), [](bool part) { return part; });
 }
 
-Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
-                   std::ostream& trajectory, std::ostream& metrics)
-    : me_(kRole, {run, kLogger, incarnation}, std::move(decode_plan)),
+Recorder::Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory,
+                   std::ostream& metrics)
+    : me_(kRole, {run, kLogger, incarnation}),
       trajectory_(trajectory),
       metrics_(metrics) {
   ERGOCAST_REQUIRE(writing());
@@ -55,7 +55,8 @@ Recorder::Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan,
   metrics_ << kMetricsHeader << '\n';
 }
 
-void Recorder::resume(RunData past) {
+void Recorder::resume(RunData past, std::vector<std::byte> plan) {
+  me_.expect_plan(std::move(plan));
   former_.resumed = true;
   for (const auto& [agent, track] : past.tracks) next_row_ = std::max(next_row_, track.back().tick);
   former_.rows = std::move(past);

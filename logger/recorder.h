@@ -47,14 +47,14 @@ class Recorder {
   /// @param run  the run to record; 0: the run of the first mission heard
   /// @pre both streams are good: one that is bad from the beginning would never be written. Who
   /// wants no tables gives a Nowhere (logger/nowhere.h).
-  Recorder(RunId run, Incarnation incarnation, PlanDecoder decode_plan, std::ostream& trajectory,
-           std::ostream& metrics);
+  Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory, std::ostream& metrics);
 
   /// Goes on with the record that a former process left, all its segments, or none. Its rows are
   /// added to the observer's sums again in their order, with the roster that is heard now, so φ²
   /// goes on bit for bit; metrics rows that are due for them and missing are written.
+  /// @param plan  that of the record: any other mission that is heard is a plan_problem(); empty: any
   /// @pre nothing has been received
-  void resume(RunData past);
+  void resume(RunData past, std::vector<std::byte> plan = {});
 
   /// The streams that were bad are good again: what they were given is written. A world that has
   /// given this recorder up takes it back under its new incarnation.

@@ -13,25 +13,22 @@ namespace {
 
 using enum Absence;
 
-constexpr Range between(double low, double high) { return {low, high, false}; }
-constexpr Range above(double low, double high) { return {low, high, true}; }
+using limits::above;
+using limits::between;
 
-/// Far beyond any domain: keeps sums and squares of coordinates finite and exact enough.
-constexpr Range kCoordinate = {-1e13, 1e13, false, true};
-constexpr Range kModes = between(1, kMaxModesPerAxis);
-constexpr Range kIntensity = between(0, 1e6);
+constexpr Range kCoordinate = {limits::kCoordinate_m, true};
 /// A variance; the limits that matter follow from the domain.
-constexpr Range kVariance = above(0, 1e22);
-constexpr double kMaxWallTime_s = 86400;
+constexpr Limits kVariance = above(0, 1e22);
+constexpr Limits kWeight = above(0, 1e9);
 
 constexpr FieldRule kRules[] = {
     {"Domain", "origin_x_m", kCoordinate, kDefaulted, 0},
     {"Domain", "origin_y_m", kCoordinate, kDefaulted, 0},
-    {"Domain", "size_x_m", between(1e-3, 1e7), kRefused},
-    {"Domain", "size_y_m", between(1e-3, 1e7), kRefused},
+    {"Domain", "size_x_m", limits::kSize_m, kRefused},
+    {"Domain", "size_y_m", limits::kSize_m, kRefused},
 
     {"Target", "uniform_weight", between(0, 1e9), kDefaulted, 0},
-    {"Gaussian", "weight", above(0, 1e9), kDefaulted, 1},
+    {"Gaussian", "weight", kWeight, kDefaulted, 1},
     {"Gaussian", "mean_x_m", kCoordinate, kRefused},
     {"Gaussian", "mean_y_m", kCoordinate, kRefused},
     {"Gaussian", "sigma_m", above(0, 1e11), kLeft},
@@ -39,55 +36,51 @@ constexpr FieldRule kRules[] = {
     {"Covariance", "yy_m2", kVariance, kRefused},
     {"Covariance", "xy_m2", between(-1e22, 1e22), kDefaulted, 0},
 
-    {"Map", "weight", above(0, 1e9), kDefaulted, 1},
+    {"Map", "weight", kWeight, kDefaulted, 1},
     {"Map", "origin_x_m", kCoordinate, kLeft},
     {"Map", "origin_y_m", kCoordinate, kLeft},
     {"Map", "size_x_m", between(1e-3, 1e9), kLeft},
     {"Map", "size_y_m", between(1e-3, 1e9), kLeft},
-    {"Region", "weight", above(0, 1e9), kDefaulted, 1},
+    {"Region", "weight", kWeight, kDefaulted, 1},
     {"Vertex", "x_m", kCoordinate, kRefused},
     {"Vertex", "y_m", kCoordinate, kRefused},
 
-    {"Basis", "modes_x", kModes, kDefaulted, 16},
-    {"Basis", "modes_y", kModes, kDefaulted, 16},
-    {"Basis", "sobolev_exponent", above(0, 10), kDefaulted, 1.5},
+    {"Basis", "modes_x", limits::kModes, kDefaulted, 16},
+    {"Basis", "modes_y", limits::kModes, kDefaulted, 16},
+    {"Basis", "sobolev_exponent", limits::kSobolevExponent, kDefaulted, 1.5},
 
-    {"Law", "u_max_mps", above(0, 1e6), kRefused},
-    {"Law", "epsilon", kIntensity, kLeft},
-    {"Law", "noise_intensity", kIntensity, kLeft},
-    {"Law", "noise_ceiling", kIntensity, kLeft},
-    {"Law", "contraction_gain_per_s", between(0, 1e6), kLeft},
+    {"Law", "u_max_mps", limits::kSpeed_mps, kRefused},
+    {"Law", "epsilon", limits::kEpsilon, kLeft},
+    {"Law", "noise_intensity", limits::kIntensity, kLeft},
+    {"Law", "noise_ceiling", limits::kIntensity, kLeft},
+    {"Law", "contraction_gain_per_s", limits::kContractionGain_per_s, kLeft},
     {"Law", "contraction_x_m", kCoordinate, kLeft},
     {"Law", "contraction_y_m", kCoordinate, kLeft},
-    {"Law", "anticipation", between(0, 100), kLeft},
+    {"Law", "anticipation", limits::kAnticipation, kLeft},
 
-    {"Time", "dt_s", between(1e-6, 3600), kDefaulted, 0.1},
-    {"Time", "duration_s", above(0, 1e7), kRefused},
-    {"Time", "broadcast_period_ticks", between(1, 1000), kLeft},
-    {"Time", "realtime_factor", between(0.01, 1000), kDefaulted, 1},
-    {"Time", "lockstep_timeout_s", above(0, kMaxWallTime_s), kDefaulted, 10},
-    {"Time", "command_hold_s", between(0, 1e6), kDefaulted, 0.5},
-    {"Time", "admission_timeout_s", above(0, kMaxWallTime_s), kDefaulted, 30},
-    {"Time", "catch_up_limit_ticks", between(0, 1000), kDefaulted, 5},
+    {"Time", "dt_s", limits::kStep_s, kDefaulted, 0.1},
+    {"Time", "duration_s", limits::kDuration_s, kRefused},
+    {"Time", "broadcast_period_ticks", limits::kBroadcastPeriod_ticks, kLeft},
+    {"Time", "realtime_factor", limits::kRealtimeFactor, kDefaulted, 1},
+    {"Time", "lockstep_timeout_s", limits::kTimeout_s, kDefaulted, 10},
+    {"Time", "command_hold_s", limits::kCommandHold_s, kDefaulted, 0.5},
+    {"Time", "admission_timeout_s", limits::kTimeout_s, kDefaulted, 30},
+    {"Time", "catch_up_limit_ticks", limits::kCatchUp_ticks, kDefaulted, 5},
 
     {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
-    {"Agents", "quorum", between(1, kMaxAgents), kLeft},
-    {"Agents", "forget_silent_after_s", between(0, 1e6), kDefaulted, 0},
+    {"Agents", "quorum", limits::kTeam, kLeft},
+    {"Agents", "forget_silent_after_s", limits::kForgetting_s, kDefaulted, 0},
     {"Start", "x_m", kCoordinate, kRefused},
     {"Start", "y_m", kCoordinate, kRefused},
 
-    {"World", "disturbance_intensity", kIntensity, kDefaulted, 0},
-    {"World", "radio_range_m", between(0, 1e13), kDefaulted, 0},
-    {"World", "speed_limit_mps", above(0, 1e9), kLeft},
+    {"World", "disturbance_intensity", limits::kIntensity, kDefaulted, 0},
+    {"World", "radio_range_m", limits::kRadioRange_m, kDefaulted, 0},
+    {"World", "speed_limit_mps", limits::kSpeedLimit_mps, kLeft},
 
-    {"Scenario", "goal_ergodic_metric", above(0, 1e9), kLeft},
+    {"Scenario", "goal_ergodic_metric", limits::kGoal, kLeft},
 };
 
 }  // namespace
-
-bool Range::contains(double value) const {
-  return (low_excluded ? value > low : value >= low) && value <= high;
-}
 
 std::string Range::text() const {
   if (low_excluded) return "above " + shortest(low) + ", at most " + shortest(high);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One table of every number in a scenario: its default and its limits, as scenario.proto's comments
-// state them. What depends on more than one field is in validate.cc.
+// state them; the limits of what a mission has, too, are in core/mission_limits.h. What depends on more
+// than one field is in validate.cc.
 #pragma once
 
 #include <google/protobuf/descriptor.h>
@@ -9,15 +10,17 @@
 #include <string>
 #include <string_view>
 
+#include "core/mission_limits.h"
+
 namespace ergocast {
 
-/// Numbers allowed for a field; nan never is.
-struct Range {
-  double low, high;
-  bool low_excluded = false;
+/// Numbers allowed for a field, and how they are said.
+struct Range : Limits {
   bool coordinate = false;  ///< a place: what people should write follows from the domain
 
-  bool contains(double value) const;
+  constexpr Range(const Limits& limits, bool is_coordinate = false)
+      : Limits(limits), coordinate(is_coordinate) {}
+  bool contains(double value) const { return contain(value); }
   /// "0 to 10", or "above 0, at most 10".
   std::string text() const;
 };

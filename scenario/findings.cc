@@ -4,8 +4,6 @@
 #include "scenario/findings.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <string_view>
 
@@ -42,14 +40,6 @@ Step first_step(std::string_view& path) {
 
 std::string to_string(const Problem& problem) {
   return problem.where + ": " + problem.what + " (" + problem.remedy + ")";
-}
-
-std::string shortest(double value) {
-  // 100000 rather than 1e+05, where neither is hard to read.
-  const bool plain = value == 0 || (std::abs(value) >= 1e-4 && std::abs(value) < 1e10);
-  const auto format = plain ? std::chars_format::fixed : std::chars_format::general;
-  char text[64];
-  return {text, std::to_chars(text, text + sizeof text, value, format).ptr};
 }
 
 TextFormat::ParseLocation Findings::locate(const std::string& path) const {

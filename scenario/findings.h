@@ -13,11 +13,9 @@
 
 #include "scenario/salvage.h"
 #include "scenario/scenario.h"
+#include "text/shortest.h"
 
 namespace ergocast {
-
-/// The shortest text that reads back as `value`.
-std::string shortest(double value);
 
 /// Collects problems. Fields are named by paths such as "target.gaussians[2].sigma_m".
 class Findings {

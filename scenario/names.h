@@ -7,13 +7,7 @@
 
 namespace ergocast {
 
-inline constexpr int kMaxNameLength = 64;
-
-/// Whether `name` is 1 to kMaxNameLength letters, digits, '_', '-' or '.', the first of them not
-/// '-' or '.'.
-bool is_name(std::string_view name);
-
-/// `text` with '_' for whatever a name may not have.
+/// A name, is_name() of core/mission_limits.h: `text` with '_' for whatever a name may not have.
 std::string name_from(std::string_view text);
 
 }  // namespace ergocast

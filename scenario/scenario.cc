@@ -4,7 +4,6 @@
 #include "text/regular_file.h"
 #include "scenario/scenario.h"
 
-#include <algorithm>
 #include <fstream>
 #include <utility>
 
@@ -13,7 +12,6 @@
 #include "scenario/convert.h"
 #include "scenario/defaults.h"
 #include "scenario/findings.h"
-#include "scenario/plan.h"
 #include "scenario/scenario.pb.h"
 #include "scenario/text.h"
 #include "scenario/validate.h"
@@ -23,8 +21,6 @@ namespace ergocast {
 namespace {
 
 using Problems = std::vector<Problem>;
-
-constexpr const char* kOutOfMemory = "out of memory";
 
 /// The contents of `file`, or why there are none.
 std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
@@ -54,7 +50,6 @@ struct Scenario::State {
   proto::Scenario text;  ///< defaults filled in, starts listed
   DensityGrid target_density;
   Mission mission;
-  std::vector<std::byte> plan;
   int listed_starts;  ///< the others were drawn
   Problems warnings;
 
@@ -64,7 +59,6 @@ struct Scenario::State {
         mission(mission_of(text)),
         listed_starts(listed) {
     mission.target_coefficients = std::move(target.coefficients);
-    plan = encode_plan(text, mission.target_coefficients);
   }
 };
 
@@ -111,38 +105,6 @@ Scenario Scenario::with_seed(std::uint64_t seed) const {
       state_->listed_starts));
 }
 
-std::variant<Scenario, std::string> Scenario::from_plan(
-    std::span<const std::byte> plan) noexcept try {
-  auto parsed = parse_plan(plan);
-  if (auto* problem = std::get_if<std::string>(&parsed)) return std::move(*problem);
-  Plan& decoded = std::get<Plan>(parsed);
-  Findings findings("plan");
-  fill_in(decoded.scenario, "plan");
-  decoded.scenario.clear_target();
-  Checks checks(findings);
-  validate(decoded.scenario, checks);
-  if (!findings.empty()) return broken_plan();
-  const int listed_starts = decoded.scenario.agents().starts_size();
-  Scenario scenario(std::make_shared<State>(
-      std::move(decoded.scenario),
-      CompiledTarget{std::move(decoded.target_coefficients), DensityGrid()}, listed_starts));
-  // A plan has one spelling: what leaves something open, or adds something, was not compiled.
-  const bool canonical =
-      std::equal(plan.begin(), plan.end(), scenario.plan().begin(), scenario.plan().end());
-  if (!canonical || scenario.state_->text.agents().random_count() != 0) return broken_plan();
-  return scenario;
-} catch (...) {
-  return kOutOfMemory;
-}
-
-std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept try {
-  auto read = Scenario::from_plan(plan);
-  if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
-  return std::get<Scenario>(read).mission();
-} catch (...) {
-  return kOutOfMemory;
-}
-
 Scenario::Scenario(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 Scenario::Scenario(const Scenario&) = default;
 Scenario::Scenario(Scenario&&) noexcept = default;
@@ -163,6 +125,5 @@ std::vector<std::filesystem::path> Scenario::map_files() const {
 }
 const DensityGrid& Scenario::target_density() const { return state_->target_density; }
 const Mission& Scenario::mission() const { return state_->mission; }
-const std::vector<std::byte>& Scenario::plan() const { return state_->plan; }
 
 }  // namespace ergocast

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a person writes (scenario.proto, text format) and what the team gets (the compiled plan).
-// The only place that knows Protobuf; this header does not show it.
+// What a person writes (scenario.proto, text format), made a mission. The place that knows
+// Protobuf's text; this header does not show it.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -61,11 +59,6 @@ class Scenario {
                                                             const std::string& file,
                                                             const Overrides& overrides = {});
 
-  /// The scenario in a compiled plan, with the plan's μ and without description and target; of the
-  /// same bytes, if it is compiled again. A sentence if they are not a plan, are another version's, or
-  /// break a limit of the scenario: plans come from the network.
-  static std::variant<Scenario, std::string> from_plan(std::span<const std::byte> plan) noexcept;
-
   /// The same with another seed, random starts drawn anew: what load() would give with that seed.
   Scenario with_seed(std::uint64_t seed) const;
 
@@ -75,7 +68,7 @@ class Scenario {
   ~Scenario();
 
   /// Text that load() reads back to an equal scenario: every field with its value, maps with their
-  /// whole paths. That of a plan lacks the target, without which load() refuses it.
+  /// whole paths.
   std::string print() const;
 
   /// What it may do, but will hardly want. Only of what load() and parse() have read.
@@ -84,30 +77,21 @@ class Scenario {
   const std::string& name() const;
   const std::string& description() const;
 
-  /// Whole paths of the files its target needs besides its own. Empty for a plan.
+  /// Whole paths of the files its target needs besides its own.
   std::vector<std::filesystem::path> map_files() const;
 
   /// What is to be covered, in multiples of the uniform density, for people to look at: at most 256
-  /// cells along the longer side of the domain. Empty for a plan.
+  /// cells along the longer side of the domain.
   const DensityGrid& target_density() const;
 
-  /// The mission in the form the cores use. μ is computed once, here.
+  /// The mission in the form the cores use, within_limits() of core/mission_limits.h. μ is computed
+  /// once, here.
   const Mission& mission() const;
-
-  /// The compiled plan as the coordinator sends it: the mission with μ and all starts, no file
-  /// needed by who receives it. Equal scenarios of one version give equal bytes.
-  const std::vector<std::byte>& plan() const;
 
  private:
   struct State;
   explicit Scenario(std::shared_ptr<const State> state);
   std::shared_ptr<const State> state_;
 };
-
-/// The mission of from_plan(), or what is wrong with the plan.
-std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept;
-
-/// 32 hex digits that name a plan: XXH3-128 of its bytes.
-std::string plan_hash(std::span<const std::byte> plan);
 
 }  // namespace ergocast

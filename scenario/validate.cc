@@ -6,24 +6,23 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/ids.h"
+#include "core/mission_limits.h"
 #include "scenario/convert.h"
 #include "scenario/explain.h"
 #include "scenario/fields.h"
-#include "scenario/names.h"
 #include "scenario/utf8.h"
 #include "scenario/validate_target.h"
 
 namespace ergocast {
 namespace {
 
+using limits::kMaxOriginPerSize;
+using limits::kMaxTicks;
+using limits::kMinWallStep_s;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
 constexpr std::size_t kMaxDescriptionBytes = 2000;
-constexpr double kMaxOriginPerSize = 1e5;
-constexpr double kMaxTicks = 1e8;
-constexpr double kMinWallStep_s = 1e-4;
 
 double number_in(const Message& message, const FieldDescriptor& field) {
   const auto* reflection = message.GetReflection();
@@ -144,7 +143,7 @@ class Validator {
               double size_m) {
     if (!sound(path) || !sound(size_path)) return;
     const double limit_m = kMaxOriginPerSize * size_m;
-    in_range(path, origin_m, {-limit_m, limit_m});
+    in_range(path, origin_m, limits::between(-limit_m, limit_m));
   }
 
   void basis() {

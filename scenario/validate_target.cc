@@ -12,7 +12,7 @@
 namespace ergocast {
 namespace {
 
-constexpr Range kSigmaPerSide{1e-4, 1e4};
+constexpr Range kSigmaPerSide = limits::between(1e-4, 1e4);
 constexpr int kMaxGaussians = 64;
 constexpr int kMaxMaps = 16;
 constexpr int kMaxRegions = 64;
@@ -74,7 +74,7 @@ class TargetValidator {
   void deviation(const std::string& path, double sigma_m) {
     if (!checks_.sound(path) || longer_side_m_ == 0) return;
     checks_.in_range(path, sigma_m,
-                     {kSigmaPerSide.low * longer_side_m_, kSigmaPerSide.high * longer_side_m_});
+                     limits::between(kSigmaPerSide.low * longer_side_m_, kSigmaPerSide.high * longer_side_m_));
   }
 
   void covariance(const proto::Covariance& c, const std::string& path) {
@@ -94,7 +94,7 @@ class TargetValidator {
   void variance(const std::string& path, double variance_m2) {
     const double low_m = kSigmaPerSide.low * longer_side_m_;
     const double high_m = kSigmaPerSide.high * longer_side_m_;
-    checks_.in_range(path, variance_m2, {low_m * low_m, high_m * high_m});
+    checks_.in_range(path, variance_m2, limits::between(low_m * low_m, high_m * high_m));
   }
 
   // Maps.

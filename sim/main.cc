@@ -6,7 +6,6 @@
 #include "runtime/logging.h"
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
-#include "scenario/scenario.h"
 #include "sim/world.h"
 
 namespace ergocast {
@@ -14,7 +13,7 @@ namespace {
 
 int run(const NodeOptions& node) {
   StopSignals signals;
-  World world(node.run, random_identity(), decode_plan);
+  World world(node.run, random_identity());
   auto opened = Transport::open(
       node.url, node.run, node.seal, subscriptions_of(World::kRole),
       {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {

@@ -30,8 +30,7 @@ constexpr auto kFarewell = 2s;
 
 }  // namespace
 
-World::World(RunId run, Incarnation incarnation, PlanDecoder decode_plan)
-    : me_(kRole, {run, kWorld, incarnation}, std::move(decode_plan)) {}
+World::World(RunId run, Incarnation incarnation) : me_(kRole, {run, kWorld, incarnation}) {}
 
 void World::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (finished_) return;

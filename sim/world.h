@@ -24,7 +24,7 @@ class World {
  public:
   static constexpr Role kRole = Role::kWorld;
 
-  World(RunId run, Incarnation incarnation, PlanDecoder decode_plan);
+  World(RunId run, Incarnation incarnation);
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);

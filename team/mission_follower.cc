@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
+
+#include "team/plan.h"
 
 namespace ergocast {
 namespace {
@@ -54,7 +57,11 @@ bool MissionFollower::commit(std::int64_t revision, Parts& parts) {
     parts_.push_back(std::move(*part));
   }
   if (!first) return true;
-  auto decoded = decode_plan_(plan_);
+  if (!expected_plan_.empty() && plan_ != expected_plan_) {
+    plan_problem_ = "another mission";
+    return true;
+  }
+  auto decoded = decode_plan(plan_);
   if (auto* mission = std::get_if<Mission>(&decoded)) mission_ = std::move(*mission);
   if (auto* problem = std::get_if<std::string>(&decoded)) plan_problem_ = std::move(*problem);
   return true;

@@ -4,12 +4,9 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/ids.h"
@@ -18,13 +15,11 @@
 
 namespace ergocast {
 
-/// Turns the compiled plan's bytes into a checked Mission, or says in a sentence why it cannot.
-/// The plan's format belongs to scenario/, which the cores do not know.
-using PlanDecoder = std::function<std::variant<Mission, std::string>(std::span<const std::byte>)>;
-
 class MissionFollower {
  public:
-  explicit MissionFollower(PlanDecoder decode_plan) : decode_plan_(std::move(decode_plan)) {}
+  /// From now on takes no other plan than this one: a foreign one is a plan_problem().
+  /// @pre no part has been received
+  void expect_plan(std::vector<std::byte> plan) { expected_plan_ = std::move(plan); }
 
   /// Takes in one part, in any order. True if it completed a newer revision. A run has one plan: a
   /// revision that comes with another has no effect but on foreign_plans().
@@ -32,7 +27,8 @@ class MissionFollower {
 
   /// The mission, once a whole plan has arrived and decoded.
   const std::optional<Mission>& mission() const { return mission_; }
-  /// Why this program cannot read the plan that has arrived: it is another version's, or damaged.
+  /// Why this program cannot read the plan that has arrived: it is another version's, damaged,
+  /// or not the one that was expected.
   const std::optional<std::string>& plan_problem() const { return plan_problem_; }
   /// Complete revisions that were ignored because their plan is not this run's.
   std::int64_t foreign_plans() const { return foreign_plans_; }
@@ -54,7 +50,7 @@ class MissionFollower {
   const RosterEntry* entry_of(Incarnation incarnation) const;
 
  private:
-  PlanDecoder decode_plan_;
+  std::vector<std::byte> expected_plan_;  // empty: any
   std::optional<Mission> mission_;
   std::optional<std::string> plan_problem_;
   std::int64_t foreign_plans_ = 0;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/ids.h"
 #include "team/liveness.h"
@@ -38,8 +39,7 @@ struct Arrival {
 
 class Participant {
  public:
-  Participant(Role role, const Identity& self, PlanDecoder decode_plan)
-      : role_(role), self_(self), follower_(std::move(decode_plan)) {}
+  Participant(Role role, const Identity& self) : role_(role), self_(self) {}
 
   /// The checks that all processes share. Nothing if the message is of a type that our role does not
   /// hear on `bus`, our own, or of another run, which is counted as Refusal::kRun. While our run is
@@ -49,6 +49,9 @@ class Participant {
 
   // ---- the mission, as far as it is known ----------------------------------------------------------
   const MissionFollower& follower() const { return follower_; }
+  /// From now on takes no other plan than this one.
+  /// @pre no part of the mission has been received
+  void expect_plan(std::vector<std::byte> plan) { follower_.expect_plan(std::move(plan)); }
   /// @pre a whole plan has arrived and could be read
   const Mission& mission() const { return *follower_.mission(); }
   const Timing& timing() const { return mission().timing; }

@@ -8,8 +8,8 @@
 
 namespace ergocast::example {
 
-Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan)
-    : me_(kRole, {run, kWorld, incarnation}, std::move(decode_plan)), speed_limit_mps_(speed_limit_mps) {}
+Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps)
+    : me_(kRole, {run, kWorld, incarnation}), speed_limit_mps_(speed_limit_mps) {}
 
 void Driver::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (finished_) return;

@@ -26,7 +26,7 @@ class Driver {
 
   /// @param run              0: the first mission heard
   /// @param speed_limit_mps  of the robots
-  Driver(RunId run, Incarnation incarnation, double speed_limit_mps, PlanDecoder decode_plan);
+  Driver(RunId run, Incarnation incarnation, double speed_limit_mps);
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);

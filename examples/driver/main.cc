@@ -6,14 +6,13 @@
 #include "runtime/event_loop.h"
 #include "runtime/logging.h"
 #include "runtime/node.h"
-#include "scenario/scenario.h"
 
 namespace ergocast::example {
 namespace {
 
 int run(const NodeOptions& node, double speed_limit_mps) {
   StopSignals signals;
-  Driver driver(node.run, random_identity(), speed_limit_mps, decode_plan);
+  Driver driver(node.run, random_identity(), speed_limit_mps);
   auto opened = Transport::open(
       node.url, node.run, node.seal, subscriptions_of(Driver::kRole),
       {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {

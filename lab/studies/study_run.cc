@@ -13,6 +13,7 @@
 #include "lab/swarm.h"
 #include "logger/nowhere.h"
 #include "lab/studies/study_measure.h"
+#include "team/plan.h"
 
 namespace ergocast::studies {
 namespace {
@@ -113,12 +114,11 @@ StudyFigures fly_without_messages(const Mission& mission) {
   return figures;
 }
 
-StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
+StudyFigures fly_with_messages(std::span<const std::byte> plan) {
   const Mission mission = std::get<Mission>(decode_plan(plan));
   Observer observer(mission);
   lab::Options options;
   options.plan.assign(plan.begin(), plan.end());
-  options.decode_plan = decode_plan;
   options.agents = static_cast<int>(mission.starts_m.size());
   options.delivers = [&observer](const Message& message, int seat) {
     if (seat == lab::kLoggerSeat) observer.hear(message);
@@ -129,10 +129,10 @@ StudyFigures fly_with_messages(std::span<const std::byte> plan, const PlanDecode
   return observer.figures();
 }
 
-StudyFigures fly_study_run(std::span<const std::byte> plan, const PlanDecoder& decode_plan) {
+StudyFigures fly_study_run(std::span<const std::byte> plan) {
   const Mission mission = std::get<Mission>(decode_plan(plan));
   if (lab::IdealTeam::stands_for(mission)) return fly_without_messages(mission);
-  return fly_with_messages(plan, decode_plan);
+  return fly_with_messages(plan);
 }
 
 }  // namespace ergocast::studies

@@ -7,45 +7,45 @@ import java.nio.charset.StandardCharsets;
 import java.util.HashMap;
 import java.util.Map;
 
-/** What a picture needs of a compiled plan, message MissionPlan of scenario/plan.proto. */
+/** What a picture needs of a compiled plan, message Plan of team/plan.proto. */
 final class Plan {
   static final int MAX_MODES = 64;
+  static final long MAX_TICKS = 100000000;
 
   final String name;
   final double originX, originY, sizeX, sizeY; // [m]
   final double dt, duration; // [s]
+  final long lastTick;
   final int modesX, modesY;
   final double[] target; // mu, m * modesY + n
 
   /**
-   * Reads Protobuf's wire format; an example of it has the field numbers of scenario/*.proto.
+   * Reads Protobuf's wire format, with the field numbers of team/plan.proto. A number that is not there
+   * is 0.
    *
    * @throws RuntimeException for bytes that are no plan
    */
   Plan(byte[] bytes) {
     Map<Integer, ByteBuffer> plan = fields(ByteBuffer.wrap(bytes));
-    Map<Integer, ByteBuffer> scenario = fields(plan.get(2));
-    Map<Integer, ByteBuffer> domain = fields(scenario.get(4));
-    Map<Integer, ByteBuffer> basis = fields(scenario.get(6));
-    Map<Integer, ByteBuffer> time = fields(scenario.get(8));
-    name = StandardCharsets.UTF_8.decode(scenario.get(1)).toString();
+    Map<Integer, ByteBuffer> domain = fields(plan.get(4));
+    Map<Integer, ByteBuffer> basis = fields(plan.get(5));
+    Map<Integer, ByteBuffer> timing = fields(plan.get(8));
+    name = StandardCharsets.UTF_8.decode(plan.get(2)).toString();
     originX = number(domain, 1, -1e13, 1e13);
     originY = number(domain, 2, -1e13, 1e13);
     sizeX = number(domain, 3, 1e-6, 1e9);
     sizeY = number(domain, 4, 1e-6, 1e9);
     modesX = modes(basis, 1);
     modesY = modes(basis, 2);
-    dt = number(time, 1, 1e-9, 1e6);
-    duration = number(time, 2, dt / 2, 1e9);
-    ByteBuffer coefficients = plan.get(3);
+    dt = number(timing, 1, 1e-9, 1e6);
+    lastTick = varint(timing.get(2));
+    require(lastTick >= 1 && lastTick <= MAX_TICKS);
+    duration = lastTick * dt;
+    ByteBuffer coefficients = plan.get(6);
     require(name.length() <= 64 && coefficients.remaining() == 8 * modesX * modesY);
     target = new double[modesX * modesY];
     for (int k = 0; k < target.length; ++k)
       target[k] = within(coefficients.getDouble(), -1.001, 1.001);
-  }
-
-  long lastTick() {
-    return Math.round(duration / dt);
   }
 
   /** The values of a message's fields by number: the last of each, as bytes still to be read. */
@@ -84,7 +84,8 @@ final class Plan {
 
   private static double number(
       Map<Integer, ByteBuffer> message, int field, double low, double high) {
-    return within(message.get(field).getDouble(), low, high);
+    ByteBuffer value = message.get(field);
+    return within(value == null ? 0 : value.getDouble(), low, high);
   }
 
   private static double within(double value, double low, double high) {

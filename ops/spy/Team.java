@@ -153,7 +153,7 @@ final class Team {
 
   private boolean isUnderWay(ergocast.header_t header) {
     return isOfThisRun(header) && plan != null && header.tick >= 0
-        && header.tick <= plan.lastTick();
+        && header.tick <= plan.lastTick;
   }
 
   private boolean isSilent() {

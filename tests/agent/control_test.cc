@@ -175,7 +175,8 @@ TEST(AgentInLockstep, DoesNotWaitForWhatIsNotDue) {
 
 TEST(AgentInLockstep, DoesNotWaitForMembersWhoHaveLeftOrAreYetToCome) {
   const Mission mission = small_mission(3);
-  Agent agent(identity_of(0), decoder_of(mission));
+  announce(mission);
+  Agent agent(identity_of(0));
   std::vector<RosterEntry> roster = roster_of(3);
   roster[1].active_until = 0;
   roster[2].active_from = 5;

@@ -153,7 +153,7 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
       1, MissionState::kRunning, {{former, 0, 20}, {reborn, 20, -1}, {author_of(1), 0, -1}});
   AgentIdentity identity = identity_of(0);
   identity.incarnation = reborn.incarnation;
-  team.revive(0, Agent(identity, decoder_of(mission)));
+  team.revive(0, Agent(identity));
   team.tell(news, at(2s));
   EXPECT_EQ(team[0].coverage()->steps_held(former), std::nullopt);
   fly(team, 2, 20, 25);

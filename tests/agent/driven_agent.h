@@ -28,7 +28,8 @@ inline Mission two_block_mission(int agents) {
 
 /// Agent `id` of a team that has been told to run.
 inline Agent running_agent(const Mission& mission, AgentId id = 0) {
-  Agent agent(identity_of(id), decoder_of(mission));
+  announce(mission);
+  Agent agent(identity_of(id));
   const auto team = static_cast<int>(mission.starts_m.size());
   give(agent, mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));
   return agent;

@@ -138,7 +138,8 @@ TEST(AgentForesees, NothingFromWhatATeammateHasGainedSinceBeforeItTookPart) {
   const auto foreseen = [&](bool knows_more) {
     std::vector<RosterEntry> roster = roster_of(3);
     roster[0].active_from = 5;
-    Agent agent(identity_of(0), decoder_of(mission));
+    announce(mission);
+    Agent agent(identity_of(0));
     give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
     tell(agent, world_of(3, 4));
     if (knows_more) hear(agent, words_of(mission, 1, 3));
@@ -204,7 +205,8 @@ TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
   const std::vector<RosterEntry> roster{
       {author_of(0), 0, -1}, {author_of(1), 0, 5}, {reborn, 5, -1}};
   const auto foreseen = [&](const Eigen::Vector2d& before_m) {
-    Agent agent(identity_of(0), decoder_of(mission));
+    announce(mission);
+    Agent agent(identity_of(0));
     give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
     hear(agent, words_of(mission, 1, 2));
     for (Tick tick = 3; tick < 5; ++tick) tell(agent, with_vehicle_1(tick, before_m));

@@ -15,7 +15,8 @@ using namespace test;
 // ---- joining -------------------------------------------------------------------------------------
 
 TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
-  Agent agent(identity_of(3), decoder_of(small_mission(4)));
+  announce(small_mission(4));
+  Agent agent(identity_of(3));
   const auto hellos = only<Hello>(advance(agent, at(0s)));
   ASSERT_EQ(hellos.size(), 1u);
   EXPECT_EQ(hellos[0].requested_id, 3);
@@ -40,7 +41,8 @@ TEST(AgentJoining, TakesTheNumberThatTheRosterGivesItsIncarnation) {
   AgentIdentity anybody = identity_of(0);
   anybody.requested_id = kUnassigned;
   anybody.incarnation = life_of(2);
-  Agent agent(anybody, decoder_of(small_mission(3)));
+  announce(small_mission(3));
+  Agent agent(anybody);
   EXPECT_EQ(agent.id(), kUnassigned);
   give(agent, mission_part(0, MissionState::kRunning, roster_of(3)), at(0s));
   EXPECT_EQ(agent.id(), 2);
@@ -48,7 +50,8 @@ TEST(AgentJoining, TakesTheNumberThatTheRosterGivesItsIncarnation) {
 
 TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
   const Mission mission = small_mission(1);
-  Agent agent(identity_of(0), decoder_of(mission));
+  announce(mission);
+  Agent agent(identity_of(0));
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   const Outbox waiting = tell(agent, world_state(0, {{100, 500}}));
   EXPECT_TRUE(only<Command>(waiting).empty());
@@ -61,7 +64,8 @@ TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
 TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstItHearsOf) {
   AgentIdentity late = identity_of(0);
   late.run = 0;
-  Agent agent(late, decoder_of(small_mission(1)));
+  announce(small_mission(1));
+  Agent agent(late);
   give(agent, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   EXPECT_EQ(agent.run(), kRun);
   MissionPart other = mission_part(9, MissionState::kEnded, {});
@@ -71,7 +75,8 @@ TEST(AgentJoining, AnAgentWithoutARunJoinsTheFirstItHearsOf) {
 }
 
 TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
-  Agent agent(identity_of(1), decoder_of(small_mission(2)));
+  announce(small_mission(2));
+  Agent agent(identity_of(1));
   AgentStatus rival = status_of(1, 1);
   rival.header.incarnation = 77;
   for (std::int64_t sequence = 1; sequence <= 11; ++sequence) {
@@ -86,7 +91,8 @@ TEST(AgentJoining, StopsAndSaysWhyIfAnotherProcessLivesUnderItsNumber) {
 }
 
 TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
-  Agent agent(identity_of(1), decoder_of(small_mission(2)));
+  announce(small_mission(2));
+  Agent agent(identity_of(1));
   AgentStatus rival = status_of(1, 5);
   rival.header.incarnation = 77;
   auto when = 0s;
@@ -102,7 +108,8 @@ TEST(AgentJoining, RepeatedOldOrForeignStatusesDoNotScareIt) {
 TEST(AgentJoining, AnAgentThatAskedForNoNumberHasNoRival) {
   AgentIdentity anybody = identity_of(1);
   anybody.requested_id = kUnassigned;
-  Agent agent(anybody, decoder_of(small_mission(2)));
+  announce(small_mission(2));
+  Agent agent(anybody);
   for (int i = 1; i < 10; ++i) give(agent, status_of(0, i), at(0s));
   EXPECT_FALSE(agent.finished());
 }
@@ -118,16 +125,18 @@ TEST(AgentJoining, OnceAdmittedItDoesNotGiveWay) {
 }
 
 TEST(AgentJoining, RefusesAPlanItCannotReadAndSaysWhatToDo) {
-  Agent agent(identity_of(0), [](auto) { return "install another version"; });
+  Agent agent(identity_of(0));
+  announced_plan = kNoPlan;
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
-  EXPECT_EQ(agent.reason(), "install another version");
+  EXPECT_EQ(agent.reason(), why_no_plan());
 }
 
 TEST(AgentJoining, SaysWhatItWaitsFor) {
   const Mission mission = small_mission(2);
-  Agent agent(identity_of(1), decoder_of(mission));
+  announce(mission);
+  Agent agent(identity_of(1));
   EXPECT_EQ(agent.obstacle(), "no coordinator is heard");
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_EQ(agent.obstacle(), "waiting to be admitted");
@@ -223,7 +232,8 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
 }
 
 TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
-  Agent agent(identity_of(0), decoder_of(small_mission(2)));
+  announce(small_mission(2));
+  Agent agent(identity_of(0));
   const auto named = [&](Instant now) {
     const auto hellos = only<Hello>(advance(agent, now));
     return hellos.size() == 1 ? std::optional(hellos[0].revision) : std::nullopt;
@@ -245,7 +255,8 @@ TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
 
 /// Agent 0 in its second life, admitted from tick 7 on by a roster of revision 9.
 Agent successor_from_7(const Mission& mission) {
-  Agent agent(identity_of(0), decoder_of(mission));
+  announce(mission);
+  Agent agent(identity_of(0));
   std::vector<RosterEntry> roster{{{0, 55}, 0, 7}, {author_of(0), 7, -1}};
   give(agent, mission_part(9, MissionState::kRunning, roster), at(0s));
   give(agent, blocks_of(mission, {0, 55}, std::vector<Eigen::Vector2d>(7, {900, 900}), 7).front(), at(0s));
@@ -403,9 +414,10 @@ TEST(AgentEnd, ComesByItselfInLockstepOnceNoTickCouldHaveWaitedForIt) {
 TEST(AgentEnd, AnEvictedAgentStopsAtTheNamedTick) {
   std::vector<RosterEntry> roster = roster_of(2);
   roster[0].active_until = 3;
-  const MissionPart eviction = mission_part(1, MissionState::kRunning, roster);
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
+  announce(mission);
+  const MissionPart eviction = mission_part(1, MissionState::kRunning, roster);
 
   Agent there = running_agent(mission);
   tell(there, world_state(3, {{100, 500}}));

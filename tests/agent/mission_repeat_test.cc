@@ -23,14 +23,16 @@ std::array<MissionPart, 2> two_parts(std::int64_t revision) {
     part.header.sequence = 40 + p;
     part.header.tick = 17;
     part.part = p;
+    if (p > 0) part.plan.clear();
     part.parts = 2;
   }
   return parts;
 }
 
 /// Agent 0 of two, which knows revision 3.
-Agent informed_agent(Mission mission = small_mission(2)) {
-  Agent agent(identity_of(0), decoder_of(std::move(mission)));
+Agent informed_agent(const Mission& mission = small_mission(2)) {
+  announce(mission);
+  Agent agent(identity_of(0));
   for (const MissionPart& part : two_parts(3)) give(agent, part, at(0s));
   advance(agent, at(10s));
   return agent;
@@ -66,7 +68,8 @@ TEST(MissionRepeat, IsEveryPartAsItsCoordinatorSaidItOnBothBuses) {
 TEST(MissionRepeat, ComesAfterAWaitOfItsOwnWithin50Milliseconds) {
   std::vector<Instant> due;
   for (const AgentId id : {0, 1}) {
-    Agent agent(identity_of(id), decoder_of(small_mission(2)));
+    announce(small_mission(2));
+    Agent agent(identity_of(id));
     for (const MissionPart& part : two_parts(3)) give(agent, part, at(0s));
     advance(agent, at(10s));
     give(agent, question_of(kCoordinator, -1), at(10s));
@@ -95,7 +98,8 @@ TEST(MissionRepeat, IsNotForAnAgentThatJoins) {
 }
 
 TEST(MissionRepeat, IsNotGivenBeforeTheMissionIsKnown) {
-  Agent agent(identity_of(0), decoder_of(small_mission(2)));
+  announce(small_mission(2));
+  Agent agent(identity_of(0));
   give(agent, two_parts(3)[0], at(0s));
   EXPECT_EQ(repeated_after(agent, question_of(kCoordinator, -1)), 0u);
 }

@@ -71,7 +71,8 @@ class Reckoning : public ::testing::Test {
  protected:
   void begin(const Mission& mission, Tick active_from = 0) {
     mission_ = mission;
-    agent_.emplace(identity_of(0), decoder_of(mission));
+    announce(mission);
+    agent_.emplace(identity_of(0));
     std::vector<RosterEntry> roster = roster_of(2);
     roster[0].active_from = active_from;
     give(*agent_, mission_part(0, MissionState::kRunning, roster), at(0s));

@@ -11,14 +11,14 @@
 #include "lab/swarm.h"
 #include "logger/nowhere.h"
 #include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast::bench {
 namespace {
 
 lab::Options options_of(const Scenario& scenario) {
   lab::Options options;
-  options.plan = scenario.plan();
-  options.decode_plan = decode_plan;
+  options.plan = encode_plan(scenario.mission());
   options.agents = static_cast<int>(scenario.mission().starts_m.size());
   return options;
 }

@@ -107,7 +107,7 @@ class RefusalsCanBeSeen : public FlyingMission {
   }
 
   const std::filesystem::path coordinator_ = folder_ / "c.key", team_ = folder_ / "t.key", other_ = folder_ / "o.key";
-  MissionFollower follower_{&decode_plan};
+  MissionFollower follower_;
   std::unique_ptr<Stranger> babbler_;
 };
 

@@ -23,8 +23,9 @@ TeamStatus coordinator_at(Tick tick) {
 /// A listener since 0 s, and a team whose words it hears.
 class TeamViewTest : public ::testing::Test {
  protected:
-  explicit TeamViewTest(Mission mission = small_mission(4))
-      : view_(kRun, decoder_of(mission), at(0s)) {}
+  explicit TeamViewTest(const Mission& mission = small_mission(4)) : view_(kRun, at(0s)) {
+    announce(mission);
+  }
 
   void hear_mission(Instant now, std::vector<RosterEntry> roster = roster_of(4),
                     std::int64_t revision = 0, MissionState state = MissionState::kRunning,
@@ -221,7 +222,8 @@ TEST_F(TeamViewTest, WhoHasLeftForGoodIsGoneAndMissing) {
 
 TEST_F(TeamViewTest, AProcessThatFallsSilentIsTrouble) {
   for (const AgentId silent : {kCoordinator, kWorld, kLogger}) {
-    TeamView view(kRun, decoder_of(small_mission(1)), at(0s));
+    announce(small_mission(1));
+    TeamView view(kRun, at(0s));
     give(view, test::mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
     for (const auto time : {0s, 3s}) {
       give(view, status(0, sequence_of(at(time))), at(time));
@@ -282,7 +284,8 @@ TEST_F(TeamViewTest, IsOverWhenTheCoordinatorOrEverybodySaysSo) {
   }
   EXPECT_TRUE(view_.over());
 
-  TeamView other(kRun, decoder_of(small_mission(1)), at(0s));
+  announce(small_mission(1));
+  TeamView other(kRun, at(0s));
   give(other, test::mission_part(0, MissionState::kFailed, roster_of(1), "no agents"), at(0s));
   EXPECT_TRUE(other.over());
   EXPECT_EQ(other.picture(at(0s)).reason, "no agents");
@@ -303,10 +306,10 @@ TEST_F(TeamViewTest, IsOverWhenAllAreDoneButOneThatWasStruckFromTheRoster) {
 }
 
 TEST_F(TeamViewTest, APlanOfAnotherVersionIsTroubleWithItsReason) {
-  TeamView view(
-      kRun, [](auto) { return "too new"; }, at(0s));
+  TeamView view(kRun, at(0s));
+  announced_plan = kNoPlan;
   give(view, test::mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
-  EXPECT_EQ(view.picture(at(0s)).reason, "too new");
+  EXPECT_EQ(view.picture(at(0s)).reason, why_no_plan());
   EXPECT_TRUE(view.picture(at(0s)).trouble);
 }
 

@@ -203,11 +203,11 @@ TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheySpoke) {
 }
 
 TEST(CoordinatorAdmits, NobodyBySomethingSaidToItsPredecessor) {
-  Coordinator coordinator({0, 0xc1, "here", kVersion}, decoder_of(small_mission(2)), kPlan, Takeover::kMust);
+  announce(small_mission(2));
+  Coordinator coordinator({0, 0xc1, "here", kVersion}, announced_plan, Takeover::kMust);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   MissionPart memory = mission_part(7, MissionState::kRunning, roster_of(2));
-  memory.plan = kPlan;
   give(coordinator, memory, at(0s));
   const std::int64_t newest = newest_said(coordinator, at(1s));
   give(coordinator, hello_of(5, 99, 8), at(1s));

@@ -45,24 +45,24 @@ TEST(CoordinatorRepeats, TheHostItRunsOn) {
 }
 
 TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogether) {
-  const Mission mission = small_mission(30);
-  std::vector<std::byte> plan;
-  for (int i = 0; i < 1100; ++i) plan.push_back(static_cast<std::byte>(i * 31));
-  Coordinator coordinator({kRun, kCoordinatorLife, "here", kVersion}, decoder_of(mission), plan);
+  Mission mission = small_mission(30);
+  mission.domain.size_m.x() = 4000;
+  mission.basis.modes_x = 12;
+  mission.basis.modes_y = 10;
+  mission.target_coefficients = Coefficients::Zero(12, 10);
+  mission.target_coefficients(0, 0) = 1;
+  Coordinator coordinator = coordinator_of(mission);
   admit_all(coordinator, 30, at(0s));
   const auto parts = only<MissionPart>(advance(coordinator, at(0s)));
   ASSERT_EQ(parts.size(), 2u * 4u) << "four parts on two buses";
-  std::vector<std::byte> decoded;
-  MissionFollower follower([&](std::span<const std::byte> bytes) {
-    decoded.assign(bytes.begin(), bytes.end());
-    return mission;
-  });
+  MissionFollower follower;
   for (const MissionPart& part : parts) {
     EXPECT_LE(part.roster.size(), static_cast<std::size_t>(kMaxRosterEntriesPerMessage));
     EXPECT_LE(part.plan.size(), static_cast<std::size_t>(kMaxPlanBytesPerMessage));
     follower.receive(part);
   }
-  EXPECT_EQ(decoded, plan);
+  EXPECT_EQ(follower.plan(), encode_plan(mission));
+  EXPECT_TRUE(follower.mission());
   ASSERT_EQ(follower.roster().size(), 30u);
   for (AgentId id = 0; id < 30; ++id) EXPECT_NE(follower.entry_of(life_of(id)), nullptr) << id;
 }
@@ -158,10 +158,10 @@ Tick until(const Coordinator& coordinator, const Author& author) {
 TEST(CoordinatorTimeOut, StartsAgainWithAnAdmissionThatTheTickWaitsFor) {
   for (const OnTimeout on_timeout : {OnTimeout::kEndMission, OnTimeout::kEvict}) {
     Coordinator coordinator = running_coordinator(impatient(2, on_timeout));
-    coordinator.receive(world_where(5, {5, 4}), at(1s));
+    give(coordinator, world_where(5, {5, 4}), at(1s));
     all_alive(coordinator, {-1}, at(10s));
     advance(coordinator, at(10900ms));
-    coordinator.receive(hello_of(1, 99), at(10900ms));
+    give(coordinator, hello_of(1, 99), at(10900ms));
     all_alive(coordinator, {-1}, at(20800ms));
     advance(coordinator, at(20899ms));
     EXPECT_EQ(coordinator.state(), MissionState::kRunning) << "its time has only begun";
@@ -182,11 +182,11 @@ TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {
   for (const bool heard_a_world : {false, true}) {
     Coordinator coordinator = running_coordinator(impatient(3));
     // Its predecessor had the answers of all but another.
-    if (heard_a_world) coordinator.receive(world_where(5, {4, 5, 5}), at(0s));
+    if (heard_a_world) give(coordinator, world_where(5, {4, 5, 5}), at(0s));
     for (int tenths = 0; tenths <= 100; ++tenths) {
       const Instant now = at(tenths * 100ms);
       EXPECT_EQ(coordinator.state(), MissionState::kRunning);
-      coordinator.receive(question_of_world(kWorldLife + 1, 1), now);
+      give(coordinator, question_of_world(kWorldLife + 1, 1), now);
       all_alive(coordinator, {kWorld, kWorld, kWorld}, now);
       advance(coordinator, now);
     }
@@ -198,8 +198,8 @@ TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {
 
 TEST(CoordinatorTimeOut, BelievesTheWorldThatHasBegunOnceItSpeaks) {
   Coordinator coordinator = running_coordinator(impatient(2));
-  coordinator.receive(question_of_world(kWorldLife, 0), at(0s));
-  coordinator.receive(world_where(5, {5, 4}), at(500ms));
+  give(coordinator, question_of_world(kWorldLife, 0), at(0s));
+  give(coordinator, world_where(5, {5, 4}), at(500ms));
   all_alive(coordinator, {-1, -1}, at(10s));
   advance(coordinator, at(10500ms));
   EXPECT_NE(coordinator.reason().find("agent 1 has not answered tick 5"), std::string::npos)
@@ -208,12 +208,12 @@ TEST(CoordinatorTimeOut, BelievesTheWorldThatHasBegunOnceItSpeaks) {
 
 TEST(CoordinatorTimeOut, StartsAgainWithAWorldThatBeginsButNotWithARecordingOfOne) {
   Coordinator coordinator = running_coordinator(impatient(1));
-  coordinator.receive(world_where(5, {4}), at(0s));
+  give(coordinator, world_where(5, {4}), at(0s));
   const Hello question = question_of_world(kWorldLife + 1, 0);
-  coordinator.receive(question, at(9s));
+  give(coordinator, question, at(9s));
   for (int s = 9; s < 19; ++s) {
-    coordinator.receive(question, at(s * 1s));
-    coordinator.receive(question_of_world(kWorldLife + 1, 0), at(s * 1s));
+    give(coordinator, question, at(s * 1s));
+    give(coordinator, question_of_world(kWorldLife + 1, 0), at(s * 1s));
     advance(coordinator, at(s * 1s));
     EXPECT_EQ(coordinator.state(), MissionState::kRunning) << s << " s";
   }

@@ -168,9 +168,9 @@ TEST(Forgetting, IsNotRevokedBeforeItHasHappenedForAll) {
 
 TEST(Forgetting, IsNotRevokedByATakeover) {
   Mission mission = forgetful();
-  Coordinator coordinator({0, 0xc1, "here", kVersion}, decoder_of(mission), kPlan, Takeover::kMust);
+  announce(mission);
+  Coordinator coordinator({0, 0xc1, "here", kVersion}, announced_plan, Takeover::kMust);
   MissionPart memory = mission_part(7, MissionState::kRunning, {{author_of(0), 0, -1}, {author_of(1), 0, -1, true, 5, 3}});
-  memory.plan = kPlan;
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, memory, at(0s));

@@ -11,12 +11,10 @@
 
 namespace ergocast::test {
 
-inline const std::vector<std::byte> kPlan{std::byte{1}, std::byte{2}};
-
 inline const std::string kVersion = "1.2.3";
 
 inline Coordinator coordinator_of(const Mission& mission) {
-  return {{kRun, kCoordinatorLife, "here", kVersion}, decoder_of(mission), kPlan};
+  return {{kRun, kCoordinatorLife, "here", kVersion}, encode_plan(mission)};
 }
 
 /// Of somebody who has heard of every revision there can be.

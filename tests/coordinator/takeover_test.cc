@@ -14,10 +14,9 @@ using namespace test;
 
 constexpr Incarnation kSuccessorLife = 0xc1;
 
-Coordinator successor(Takeover takeover, RunId run = 0, Mission mission = small_mission(2),
-                      std::vector<std::byte> plan = kPlan) {
-  return {{run, kSuccessorLife, "here", kVersion}, decoder_of(std::move(mission)), std::move(plan),
-          takeover};
+Coordinator successor(Takeover takeover, RunId run = 0,
+                      std::vector<std::byte> plan = encode_plan(small_mission(2))) {
+  return {{run, kSuccessorLife, "here", kVersion}, std::move(plan), takeover};
 }
 
 /// What an agent remembers of the predecessor's word at `tick`.
@@ -25,13 +24,13 @@ MissionPart memory_of(std::int64_t revision, std::vector<RosterEntry> roster = r
                       Tick tick = 0, MissionState state = MissionState::kRunning) {
   MissionPart part = mission_part(revision, state, std::move(roster));
   part.header.tick = tick;
-  part.plan = kPlan;
+  part.plan = encode_plan(small_mission(2));
   return part;
 }
 
 /// A coordinator that has taken over `memory`, at 1 s.
-Coordinator taken_over(const MissionPart& memory, Mission mission = small_mission(2)) {
-  Coordinator coordinator = successor(Takeover::kIfFlying, 0, std::move(mission));
+Coordinator taken_over(const MissionPart& memory) {
+  Coordinator coordinator = successor(Takeover::kIfFlying, 0, memory.plan);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, memory, at(0s));
@@ -121,7 +120,7 @@ TEST(Takeover, OfAGivenRunAsksBeforeItHearsAnybody) {
 }
 
 TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
-  Coordinator coordinator = successor(Takeover::kMust, 0, small_mission(2), {});
+  Coordinator coordinator = successor(Takeover::kMust, 0, {});
   for (int second = 0; second < 30; ++second) {
     EXPECT_TRUE(advance(coordinator, at(second * 1s)).empty());
     EXPECT_FALSE(coordinator.finished());
@@ -215,7 +214,7 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   EXPECT_EQ(said.header.incarnation, kSuccessorLife);
   EXPECT_GT(said.revision, 7 + 100) << "the predecessor may have said more than was remembered";
   EXPECT_EQ(said.state, MissionState::kRunning);
-  EXPECT_EQ(said.plan, kPlan);
+  EXPECT_EQ(said.plan, encode_plan(small_mission(2)));
   ASSERT_EQ(said.roster.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(said.roster[i].author, roster[i].author);
@@ -228,26 +227,27 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
 }
 
 TEST(TakeoverMust, NeedsNoPlanOfItsOwn) {
-  Coordinator coordinator = successor(Takeover::kMust, 0, small_mission(2), {});
+  Coordinator coordinator = successor(Takeover::kMust, 0, {});
   EXPECT_EQ(coordinator.mission(), nullptr);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, memory_of(3), at(0s));
-  EXPECT_EQ(said_by(advance(coordinator, at(600ms))).plan, kPlan);
+  EXPECT_EQ(said_by(advance(coordinator, at(600ms))).plan, encode_plan(small_mission(2)));
   ASSERT_NE(coordinator.mission(), nullptr);
   EXPECT_EQ(coordinator.mission()->name, "small");
 }
 
 TEST(Takeover, OfAnotherVersionsPlanIsRefusedWithItsDecodersSentence) {
-  Coordinator coordinator({0, kSuccessorLife, "here", kVersion}, [](auto) { return "too new"; }, {},
-                          Takeover::kMust);
+  Coordinator coordinator = successor(Takeover::kMust, 0, {});
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
-  give(coordinator, memory_of(3), at(0s));
+  MissionPart memory = memory_of(3);
+  memory.plan = kNoPlan;
+  give(coordinator, memory, at(0s));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(600ms))).empty());
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
-  EXPECT_EQ(coordinator.reason(), "run 0000000000001234: too new");
+  EXPECT_EQ(coordinator.reason(), "run 0000000000001234: " + why_no_plan());
 }
 
 TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
@@ -256,7 +256,9 @@ TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
     advance(coordinator, at(0s));
     give(coordinator, status_of(0, 1), at(0s));
     MissionPart other = memory_of(3);
-    other.plan.push_back(std::byte{9});
+    Mission another = small_mission(2);
+    another.seed = 8;
+    other.plan = encode_plan(another);
     give(coordinator, other, at(0s));
     const Outbox out = advance(coordinator, at(600ms));
     EXPECT_TRUE(only<MissionPart>(out).empty());
@@ -269,7 +271,7 @@ TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
 
 TEST(Takeover, OfAMissionThatWaitsStartsItWhenTheQuorumIsThere) {
   Coordinator coordinator =
-      taken_over(memory_of(3, roster_of(1), 0, MissionState::kWaiting), small_mission(2));
+      taken_over(memory_of(3, roster_of(1), 0, MissionState::kWaiting));
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
   give(coordinator, status_of(0, 2), at(1s));
   give(coordinator, hello_of(1), at(1s));
@@ -287,9 +289,7 @@ TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
 // ---- afterwards ----------------------------------------------------------------------------------
 
 TEST(TookOver, EverybodyHasTimeToSpeakAndTheTickHasItsTimeAnew) {
-  Mission mission = small_mission(2);
-  mission.timing.lockstep_timeout_s = 10;
-  Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 7), mission);
+  Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 7));
   for (const RosterEntry& entry : coordinator.roster()) {
     EXPECT_EQ(coordinator.presence(entry, at(3999ms)), Presence::kAlive);
     EXPECT_EQ(coordinator.presence(entry, at(4s)), Presence::kSilent);
@@ -421,8 +421,8 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
   const auto both = [] {
     std::vector<Coordinator> two;
     for (const Incarnation life : {kSuccessorLife, kSuccessorLife + 1}) {
-      two.emplace_back(CoordinatorIdentity{0, life, "here", kVersion}, decoder_of(small_mission(2)),
-                       kPlan, Takeover::kIfFlying);
+      two.emplace_back(CoordinatorIdentity{0, life, "here", kVersion},
+                       encode_plan(small_mission(2)), Takeover::kIfFlying);
       advance(two.back(), at(0s));
       give(two.back(), status_of(0, 1), at(0s));
       give(two.back(), memory_of(5), at(0s));

@@ -22,7 +22,8 @@ Mission mission_of(Pace pace, double command_hold_s = 0.5) {
 
 /// A driver that has heard at 0 s that the mission of two agents runs.
 Driver running_driver(const Mission& mission, double speed_limit_mps = kSpeedLimit_mps) {
-  Driver driver(kRun, kWorldLife, speed_limit_mps, decoder_of(mission));
+  announce(mission);
+  Driver driver(kRun, kWorldLife, speed_limit_mps);
   give(driver, mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
   return driver;
 }
@@ -89,7 +90,8 @@ TEST(ExampleDriver, ARobotThatOvershootsIsSaidToBeAtTheEdge) {
 }
 
 TEST(ExampleDriver, GoesOnAtTheTickThatTheCoordinatorNames) {
-  Driver driver(kRun, kWorldLife, kSpeedLimit_mps, decoder_of(mission_of(Pace::kRealtime)));
+  announce(mission_of(Pace::kRealtime));
+  Driver driver(kRun, kWorldLife, kSpeedLimit_mps);
   MissionPart part = mission_part(7, MissionState::kRunning, roster_of(2));
   part.header.tick = 41;
   give(driver, part, at(3s));

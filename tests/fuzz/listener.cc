@@ -10,6 +10,7 @@
 #include "tests/fuzz/small_team.h"
 #include "tests/fuzz/target.h"
 #include "tests/fuzz/turns.h"
+#include "team/plan.h"
 #include "tests/support/team.h"
 
 namespace ergocast::fuzz {
@@ -50,7 +51,7 @@ Instant listen(Input input, Core& core, const Receive& receive) {
 }
 
 void agent_listens(Input input) {
-  Agent agent({test::kRun, 0, test::life_of(0), "here", "1"}, decoder_of(mission_with(input[0])));
+  Agent agent({test::kRun, 0, test::life_of(0), "here", "1"});
   listen(input, agent, [&agent](const Message& message, Instant now, AgentId transmitter) {
     test::give(agent, message, now, transmitter);
   });
@@ -60,7 +61,7 @@ void agent_listens(Input input) {
 void coordinator_listens(Input input) {
   const bool takes_over = (input[0] & kCoordinatorTakesOver) != 0;
   Coordinator coordinator({test::kRun, test::kCoordinatorLife, "base", "1"},
-                          decoder_of(mission_with(input[0])), kPlan,
+                          encode_plan(mission_with(input[0])),
                           takes_over ? Takeover::kIfFlying : Takeover::kNever);
   listen(input, coordinator, [&coordinator](const Message& message, Instant now, AgentId) {
     test::give(coordinator, message, now);
@@ -68,7 +69,7 @@ void coordinator_listens(Input input) {
 }
 
 void world_listens(Input input) {
-  World world(test::kRun, test::kWorldLife, decoder_of(mission_with(input[0])));
+  World world(test::kRun, test::kWorldLife);
   listen(input, world,
          [&world](const Message& message, Instant now, AgentId) { test::give(world, message, now); });
   ERGOCAST_REQUIRE(world.tick() >= 0);
@@ -76,8 +77,7 @@ void world_listens(Input input) {
 
 void recorder_listens(Input input) {
   std::ostringstream trajectory, metrics;
-  Recorder recorder(test::kRun, test::kLoggerLife, decoder_of(mission_with(input[0])), trajectory,
-                    metrics);
+  Recorder recorder(test::kRun, test::kLoggerLife, trajectory, metrics);
   listen(input, recorder, [&recorder](const Message& message, Instant now, AgentId) {
     test::give(recorder, message, now);
   });
@@ -92,7 +92,7 @@ struct Viewer : TeamView {
 };
 
 void viewer_listens(Input input) {
-  Viewer view(test::kRun, decoder_of(mission_with(input[0])), test::at(std::chrono::seconds(1)));
+  Viewer view(test::kRun, test::at(std::chrono::seconds(1)));
   const Instant now = listen(input, view, [&view](const Message& message, Instant at, AgentId) {
     test::give(view, message, at);
   });

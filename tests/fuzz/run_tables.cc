@@ -26,8 +26,8 @@ void check(const RunData& run) {
 /// A restarted logger goes on with such a record.
 void resume(RunData run) {
   std::ostringstream trajectory, metrics;
-  Recorder recorder(test::kRun, test::kLoggerLife, test::decoder_of(test::small_mission(2)),
-                    trajectory, metrics);
+  test::announce(test::small_mission(2));
+  Recorder recorder(test::kRun, test::kLoggerLife, trajectory, metrics);
   recorder.resume(std::move(run));
   const Instant now = test::at(std::chrono::seconds(1));
   test::give(recorder, test::mission_part(0, MissionState::kRunning, test::roster_of(2)), now);

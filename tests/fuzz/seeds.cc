@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the binary inputs that the corpora began with: fuzz-seeds DIRECTORY
-// To be run again when a message or the plan has changed its format.
+// To be run again when a message or the plan has changed its format, or the program its version, which is
+// in the plan.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "ops/doctor/peer_ledger.h"
 #include "lcmtypes/channels.h"
 #include "scenario/scenario.h"
+#include "team/plan.h"
 #include "tests/fuzz/small_team.h"
 #include "tests/lcmtypes/sample_messages.h"
 #include "tests/support/grey_png.h"
@@ -120,9 +122,9 @@ void plans(const Seeds& seeds) {
       "basis { modes_x: 3 modes_y: 3 } law { u_max_mps: 10 } time { duration_s: 10 } "
       "agents { random_count: 2 }";
   const auto minimal = Scenario::parse(small, "small");
-  seeds.add("plan", "small", text_of(std::get<Scenario>(minimal).plan()));
+  seeds.add("plan", "small", text_of(encode_plan(std::get<Scenario>(minimal).mission())));
   const auto shipped = Scenario::load(ERGOCAST_SCENARIO_DIR "/quadrimodal_corners.textproto");
-  seeds.add("plan", "quadrimodal_corners", text_of(std::get<Scenario>(shipped).plan()));
+  seeds.add("plan", "quadrimodal_corners", text_of(encode_plan(std::get<Scenario>(shipped).mission())));
 }
 
 void pictures(const Seeds& seeds) {

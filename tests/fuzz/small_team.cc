@@ -8,6 +8,7 @@
 #include "core/require.h"
 #include "lcmtypes/codec.h"
 #include "cli/team_text.h"
+#include "team/plan.h"
 #include "tests/support/team.h"
 
 namespace ergocast::fuzz {
@@ -47,16 +48,6 @@ Mission mission_with(std::uint8_t features) {
   return mission;
 }
 
-/// The one plan that these missions have; any other is no plan.
-const std::vector<std::byte> kPlan{std::byte{1}};
-
-PlanDecoder decoder_of(const Mission& mission) {
-  return [mission](std::span<const std::byte> plan) -> std::variant<Mission, std::string> {
-    if (std::equal(plan.begin(), plan.end(), kPlan.begin(), kPlan.end())) return mission;
-    return "this is no plan";
-  };
-}
-
 AgentId transmitter_in(const Message& message, AgentId transmitter) {
   const bool may_be_relayed = std::holds_alternative<Contribution>(message);
   return may_be_relayed && transmitter < kMaxAgents ? transmitter : header_of(message).sender;
@@ -83,14 +74,13 @@ void check_table(std::string_view table) {
 
 SmallTeam::SmallTeam(std::uint8_t features)
     : mission_(mission_with(features)),
-      world_(kRun, test::kWorldLife, decoder_of(mission_)),
-      coordinator_({kRun, test::kCoordinatorLife, "base", "1"}, decoder_of(mission_), kPlan,
+      world_(kRun, test::kWorldLife),
+      coordinator_({kRun, test::kCoordinatorLife, "base", "1"}, encode_plan(mission_),
                    features & kCoordinatorTakesOver ? Takeover::kIfFlying : Takeover::kNever),
-      recorder_(kRun, test::kLoggerLife, decoder_of(mission_), trajectory_, metrics_),
-      view_(kRun, decoder_of(mission_), now_) {
+      recorder_(kRun, test::kLoggerLife, trajectory_, metrics_),
+      view_(kRun, now_) {
   for (AgentId id = 0; id < kAgents; ++id) {
-    agents_.emplace_back(AgentIdentity{kRun, id, test::life_of(id), "here", "1"},
-                         decoder_of(mission_));
+    agents_.emplace_back(AgentIdentity{kRun, id, test::life_of(id), "here", "1"});
   }
 }
 

@@ -30,9 +30,6 @@ enum Features : std::uint8_t {
 
 /// A short mission that two agents fly, with these features.
 Mission mission_with(std::uint8_t features);
-/// The one plan that these missions have, and its decoder: any other is no plan.
-extern const std::vector<std::byte> kPlan;
-PlanDecoder decoder_of(const Mission& mission);
 
 /// Who `message` is heard from if `transmitter` claims to have sent it: only contributions are
 /// relayed.

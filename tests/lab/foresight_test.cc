@@ -16,6 +16,7 @@
 #include "lab/trial.h"
 #include "scenario/scenario.h"
 #include "tests/support/paper_team.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 namespace {
@@ -59,7 +60,7 @@ class LockstepForesight : public ::testing::TestWithParam<Telling> {
   std::string trajectory(const Faults& faults) const {
     std::ostringstream trajectory, metrics;
     const Scenario flown = scenario();
-    const auto result = lab::fly_trial({flown.with_seed(7).plan(), decode_plan, faults, "test"},
+    const auto result = lab::fly_trial({encode_plan(flown.with_seed(7).mission()), faults, "test"},
                                        trajectory, metrics);
     EXPECT_EQ(result.violation ? to_string(*result.violation) : "", "");
     EXPECT_FALSE(result.timed_out);
@@ -131,8 +132,7 @@ double metric_after_a_death(const std::string& law, const std::string& agents, s
   const Scenario scenario = scenario_of(text, overrides);
   const Mission& mission = scenario.mission();
   lab::Options options;
-  options.plan = scenario.plan();
-  options.decode_plan = decode_plan;
+  options.plan = encode_plan(scenario.mission());
   options.agents = 4;
   options.delivers = [](const Message& message, int) {
     return header_of(message).sender != 3 || header_of(message).tick < 1500;

@@ -13,6 +13,7 @@
 
 #include "lab/trial.h"
 #include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 namespace {
@@ -36,7 +37,7 @@ Scenario team(Pace pace, const std::string& from = "", const std::string& to = "
 TrialResult fly(const Scenario& scenario, std::uint64_t seed, const Faults& faults,
                 const SubscriptionTable& subscriptions = kSubscriptions) {
   std::ostringstream trajectory, metrics;
-  return lab::fly_trial({scenario.with_seed(seed).plan(), decode_plan, faults, "test", subscriptions},
+  return lab::fly_trial({encode_plan(scenario.with_seed(seed).mission()), faults, "test", subscriptions},
                         trajectory, metrics);
 }
 

@@ -12,6 +12,7 @@
 #include "lab/swarm.h"
 #include "lab/trial.h"
 #include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 namespace {
@@ -45,7 +46,7 @@ struct Flight {
 Flight fly(const Faults& faults, std::uint64_t seed, const Scenario& scenario = faulty_team()) {
   std::ostringstream trajectory, metrics;
   Flight flight;
-  flight.result = lab::fly_trial({scenario.with_seed(seed).plan(), decode_plan, faults, "test"},
+  flight.result = lab::fly_trial({encode_plan(scenario.with_seed(seed).mission()), faults, "test"},
                                  trajectory, metrics);
   flight.trajectory = trajectory.str();
   return flight;
@@ -96,8 +97,7 @@ TEST(Laboratory, WithoutFaultsItFliesWhatTheFastSimulationFlies) {
   const Scenario& scenario = in_lockstep();
   std::ostringstream trajectory, metrics;
   lab::Options options;
-  options.plan = scenario.plan();
-  options.decode_plan = decode_plan;
+  options.plan = encode_plan(scenario.mission());
   options.agents = static_cast<int>(scenario.mission().starts_m.size());
   lab::Swarm swarm(std::move(options), trajectory, metrics);
   swarm.run();

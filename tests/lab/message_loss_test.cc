@@ -12,6 +12,7 @@
 #include "core/noise.h"
 #include "lab/swarm.h"
 #include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 namespace {
@@ -43,8 +44,7 @@ Outcome fly(const Delivers& delivers, const std::string& text = kScenario) {
   const auto scenario = std::get<Scenario>(Scenario::parse(text, "loss"));
   std::ostringstream trajectory, metrics;
   lab::Options options;
-  options.plan = scenario.plan();
-  options.decode_plan = decode_plan;
+  options.plan = encode_plan(scenario.mission());
   options.agents = static_cast<int>(scenario.mission().starts_m.size());
   options.delivers = delivers;
   lab::Swarm swarm(std::move(options), trajectory, metrics);

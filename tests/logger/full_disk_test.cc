@@ -111,7 +111,7 @@ TEST(FullDisk, UntilTheEndOfTheMissionTheRecordIsWhatFitted) {
 TEST(FullDisk, NoStreamIsFullFromTheBeginning) {
   Nowhere nowhere;
   const auto record_to = [](std::ostream& trajectory, std::ostream& metrics) {
-    Recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
+    Recorder(kRun, kLoggerLife, trajectory, metrics);
   };
   record_to(nowhere, nowhere);
   EXPECT_TRUE(nowhere << 'x' << "a line\n" << std::flush);

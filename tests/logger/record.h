@@ -28,7 +28,8 @@ inline std::vector<std::string> rows_of(const std::string& table) {
 struct Record {
   /// @param past  what it resumes, if anything
   explicit Record(const Mission& mission, std::optional<RunData> past = {})
-      : recorder(kRun, kLoggerLife, decoder_of(mission), trajectory, metrics) {
+      : recorder(kRun, kLoggerLife, trajectory, metrics) {
+    announce(mission);
     if (past) recorder.resume(std::move(*past));
     const auto team = static_cast<int>(mission.starts_m.size());
     give(recorder, mission_part(0, MissionState::kRunning, roster_of(team)), at(0s));

@@ -105,7 +105,8 @@ TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
 
 TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
   std::ostringstream trajectory, metrics;
-  Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
+  announce(small_mission(1));
+  Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
   EXPECT_TRUE(advance(recorder, at(0s)).empty()) << "not before it knows the mission";
   give(recorder, mission_part(0, MissionState::kWaiting, {}), at(0s));
   EXPECT_EQ(acks(advance(recorder, at(0s))), (std::vector<Tick>{-1}));
@@ -401,12 +402,12 @@ TEST(RecordedStatuses, AreTheNewestWithTheWorstLagOfAll) {
 
 TEST(RecordEnd, APlanItCannotReadEndsItAtOnce) {
   std::ostringstream trajectory, metrics;
-  Recorder recorder(kRun, kLoggerLife, [](auto) { return "install another version"; }, trajectory,
-                    metrics);
+  Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
+  announced_plan = kNoPlan;
   give(recorder, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   EXPECT_TRUE(recorder.finished());
   EXPECT_STREQ(recorder.result(), "failed");
-  EXPECT_EQ(recorder.reason(), "install another version");
+  EXPECT_EQ(recorder.reason(), why_no_plan());
 }
 
 }  // namespace

@@ -159,7 +159,8 @@ TEST_F(Resume, CountsOfMessagesDoNotFallBack) {
 TEST_F(Resume, WhatIsAcknowledgedIsInTheFile) {
   auto record = std::get<0>(RunRecord::create(dir));
   const Mission mission = small_mission(1);
-  Recorder recorder(kRun, kLoggerLife, decoder_of(mission), record->trajectory(), record->metrics());
+  announce(mission);
+  Recorder recorder(kRun, kLoggerLife, record->trajectory(), record->metrics());
   give(recorder, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   int seen = 0;
   for (Tick tick = 0; tick <= 60; ++tick) {

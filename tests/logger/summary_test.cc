@@ -13,7 +13,8 @@ namespace {
 
 TEST(Summary, IsWrittenWhateverBytesTheNetworkBrought) {
   std::ostringstream trajectory, metrics;
-  Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
+  announce(small_mission(1));
+  Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
   give(recorder, mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
   give(recorder, Stop{{kRun, kOperator, 1, 1, 0}, true, "caf\xe9", true}, at(0s));
   const auto read = nlohmann::json::parse(to_text(summarize(recorder, {})));
@@ -26,7 +27,8 @@ nlohmann::ordered_json goal_after_a_tick(double goal_ergodic_metric) {
   Mission mission = small_mission(1);
   mission.goal_ergodic_metric = goal_ergodic_metric;
   std::ostringstream trajectory, metrics;
-  Recorder recorder(kRun, kLoggerLife, decoder_of(mission), trajectory, metrics);
+  announce(mission);
+  Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
   give(recorder, mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
   for (const Tick tick : {0, 1}) give(recorder, world_state(tick, {{100, 500}}), at(0s));
   advance(recorder, at(0s));
@@ -43,7 +45,8 @@ TEST(Summary, SaysWhetherTheGoalIsReachedIfThereIsOne) {
 
 TEST(Summary, SaysNothingOfWhatIsNotKnown) {
   std::ostringstream trajectory, metrics;
-  const Recorder recorder(kRun, kLoggerLife, decoder_of(small_mission(1)), trajectory, metrics);
+  announce(small_mission(1));
+  const Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
   const auto summary = summarize(recorder, {});
   EXPECT_EQ(summary["result"], "stopped");
   EXPECT_EQ(summary["ticks"], 0);

@@ -8,6 +8,7 @@
 #include "lab/swarm.h"
 #include "logger/recorder.h"
 #include "tests/support/paper_team.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 namespace {
@@ -37,8 +38,7 @@ void expect_same(const std::string& name, Overrides overrides = {}) {
   const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
   std::ostringstream trajectory, metrics;
   lab::Options options;
-  options.plan = scenario.plan();
-  options.decode_plan = decode_plan;
+  options.plan = encode_plan(scenario.mission());
   options.agents = static_cast<int>(scenario.mission().starts_m.size());
   lab::Swarm(std::move(options), trajectory, metrics).run();
 

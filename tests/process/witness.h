@@ -102,7 +102,7 @@ class Witness {
   }
 
   std::unique_ptr<Transport> transport_;
-  MissionFollower follower_{[](std::span<const std::byte>) { return "not needed"; }};
+  MissionFollower follower_;
   std::map<Author, std::pair<Tick, Tick>> status_ticks_;  // of its last two
   std::map<std::pair<Author, int>, Contribution> blocks_;
   std::map<Author, Tick> answered_;

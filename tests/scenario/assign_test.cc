@@ -35,8 +35,8 @@ TEST(Assign, SetsNumbersWordsTruthValuesAndListedFields) {
 }
 
 TEST(Assign, IsWhatTheFileWouldHaveSaid) {
-  EXPECT_EQ(good(kSmall, with("law.u_max_mps", "7")).plan(),
-            good(small_with("u_max_mps: 5", "u_max_mps: 7")).plan());
+  EXPECT_EQ(plan_of(good(kSmall, with("law.u_max_mps", "7"))),
+            plan_of(good(small_with("u_max_mps: 5", "u_max_mps: 7"))));
 }
 
 TEST(Assign, NamesUnknownFieldsWithWhatWasMeant) {
@@ -83,9 +83,9 @@ TEST(WithSeed, IsTheScenarioReadWithThatSeed) {
   const std::string text = small_with("agents { starts", "agents { random_count: 2 starts");
   Overrides other;
   other.seed = 77;
-  EXPECT_NE(good(text).plan(), good(text, other).plan());
-  EXPECT_EQ(good(text).with_seed(77).plan(), good(text, other).plan());
-  EXPECT_EQ(good(text).with_seed(5).with_seed(77).plan(), good(text, other).plan());
+  EXPECT_NE(plan_of(good(text)), plan_of(good(text, other)));
+  EXPECT_EQ(plan_of(good(text).with_seed(77)), plan_of(good(text, other)));
+  EXPECT_EQ(plan_of(good(text).with_seed(5).with_seed(77)), plan_of(good(text, other)));
 }
 
 }  // namespace

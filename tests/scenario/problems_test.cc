@@ -301,7 +301,7 @@ TEST(Text, AnyDamageIsNamedOrHarmless) {
     }
     const Loaded loaded = Scenario::parse(text, "f");
     if (const auto* scenario = std::get_if<Scenario>(&loaded)) {
-      EXPECT_EQ(good(Scenario::parse(scenario->print(), "f")).plan(), scenario->plan()) << text;
+      EXPECT_EQ(plan_of(good(Scenario::parse(scenario->print(), "f"))), plan_of(*scenario)) << text;
     } else {
       EXPECT_FALSE(std::get<std::vector<Problem>>(loaded).empty()) << text;
     }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 
@@ -63,6 +64,10 @@ inline Scenario good(Loaded loaded) {
 
 inline Scenario good(std::string_view text, const Overrides& overrides = {}) {
   return good(Scenario::parse(text, "small.textproto", overrides));
+}
+
+inline std::vector<std::byte> plan_of(const Scenario& scenario) {
+  return encode_plan(scenario.mission());
 }
 
 /// The problems of `text`, none if it has none.

@@ -77,9 +77,9 @@ TEST(Warnings, OfCoarseStepsForAgentsThatLookAhead) {
 TEST(Warnings, AreOfNoWeightForAPlan) {
   const Scenario scenario = good(limited("", "1"));
   ASSERT_EQ(scenario.warnings().size(), 1u);
-  const auto plan = Scenario::from_plan(scenario.plan());
-  ASSERT_TRUE(std::holds_alternative<Scenario>(plan));
-  EXPECT_EQ(std::get<Scenario>(plan).mission().speed_limit_mps, 1);
+  const auto read = decode_plan(plan_of(scenario));
+  ASSERT_TRUE(std::holds_alternative<Mission>(read));
+  EXPECT_EQ(std::get<Mission>(read).speed_limit_mps, 1);
 }
 
 }  // namespace

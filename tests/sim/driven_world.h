@@ -11,7 +11,10 @@
 
 namespace ergocast::test {
 
-inline World world_of(const Mission& mission) { return {kRun, kWorldLife, decoder_of(mission)}; }
+inline World world_of(const Mission& mission) {
+  announce(mission);
+  return {kRun, kWorldLife};
+}
 
 /// Every agent's answer to the question of this life of the world where it was.
 inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation life = kWorldLife) {

@@ -61,7 +61,8 @@ class Flight {
 
  private:
   World begin(Incarnation life) const {
-    World world(kRun, life, decoder_of(mission_));
+    announce(mission_);
+    World world(kRun, life);
     give(world, mission_part(0, MissionState::kRunning, roster_of(3)), now_);
     if (life == 1) nobody_has_moved(world, 3, now_, life);
     return world;
@@ -187,9 +188,9 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
 // knows.
 TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
   World world = asking_world(small_mission(2));
-  for (const Tick tick : {8, 9}) world.receive(command_from(0, tick, {300, 400}, {1, 0}), at(0s));
+  for (const Tick tick : {8, 9}) give(world, command_from(0, tick, {300, 400}, {1, 0}), at(0s));
   for (int s = 1; s <= 20; ++s) EXPECT_TRUE(states_after(world, at(s * 1s)).empty()) << s << " s";
-  for (const Tick tick : {9, 10}) world.receive(command_from(1, tick, {700, 500}, {0, 10}), at(21s));
+  for (const Tick tick : {9, 10}) give(world, command_from(1, tick, {700, 500}, {0, 10}), at(21s));
   const WorldState state = state_after(world, at(21s));
   EXPECT_EQ(state.header.tick, 10);
   EXPECT_EQ(place(state, 0), Eigen::Vector2d(300.1, 400)) << "a tick further, by its command";
@@ -202,18 +203,18 @@ TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
   EXPECT_EQ(asked_for(at(100ms)), 0);
   nobody_has_moved(world, 1, at(100ms));
   EXPECT_EQ(asked_for(at(200ms)), 1);
-  world.receive(command_from(1, 9, {301, 401}, {0, 1}), at(200ms));
+  give(world, command_from(1, 9, {301, 401}, {0, 1}), at(200ms));
   EXPECT_EQ(asked_for(at(300ms)), 1) << "that is half an answer";
-  world.receive(command_from(1, 8, {300, 400}, {1, 0}), at(300ms));
+  give(world, command_from(1, 8, {300, 400}, {1, 0}), at(300ms));
   EXPECT_EQ(asked_for(at(400ms)), 2);
 }
 
 TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
   World world = asking_world(small_mission(2));
-  for (const Tick tick : {8, 9}) world.receive(command_from(0, tick, {300, 400}, {1, 0}), at(0s));
+  for (const Tick tick : {8, 9}) give(world, command_from(0, tick, {300, 400}, {1, 0}), at(0s));
   auto roster = roster_of(2);
   roster[1].active_until = 9;
-  world.receive(mission_part(1, MissionState::kRunning, roster), at(5s));
+  give(world, mission_part(1, MissionState::kRunning, roster), at(5s));
   EXPECT_EQ(state_after(world, at(5s)).header.tick, 9);
 }
 
@@ -336,7 +337,8 @@ TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
 }
 
 TEST(WorldWithoutAMission, WaitsForTheFirstItHearsOfIfItKnowsNoRun) {
-  World world(0, kWorldLife, decoder_of(small_mission(1)));
+  announce(small_mission(1));
+  World world(0, kWorldLife);
   for (int second = 0; second < 10; ++second) EXPECT_TRUE(advance(world, at(second * 1s)).empty());
   EXPECT_EQ(world.next_wakeup(), Instant::max());
   give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(10s));

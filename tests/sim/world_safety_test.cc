@@ -82,6 +82,7 @@ TEST(WorldNumbers, WhateverFiniteCommandComesThePlacesStayInTheDomain) {
     Mission mission = limited_mission(limit_mps);
     mission.disturbance_intensity = 1e3;
     mission.domain.origin_m = {-2e8, 1e8};  // 100 000 sizes away
+    for (Eigen::Vector2d& x_m : mission.starts_m) x_m += mission.domain.origin_m;
     World world = running_world(mission);
     advance(world, at(0s));
     Tick tick = 0;

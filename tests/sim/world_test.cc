@@ -260,11 +260,12 @@ TEST(WorldEnd, TheMissionsEndAndItsProcessEndItAtOnce) {
 }
 
 TEST(WorldEnd, APlanItCannotReadEndsIt) {
-  World world(kRun, kWorldLife, [](auto) { return "install another version"; });
+  World world(kRun, kWorldLife);
+  announced_plan = kNoPlan;
   give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
   EXPECT_TRUE(world.finished());
   EXPECT_TRUE(world.failed());
-  EXPECT_EQ(world.reason(), "install another version");
+  EXPECT_EQ(world.reason(), why_no_plan());
 }
 
 TEST(WorldEnd, ByItselfOnceNeitherAgentNorCoordinatorCanStillCome) {

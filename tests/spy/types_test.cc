@@ -6,6 +6,7 @@
 #include "lcm_types.h"
 #include "scenario/scenario.h"
 #include "tests/spy/spy_desk.h"
+#include "team/plan.h"
 
 namespace ergocast {
 namespace {
@@ -22,7 +23,7 @@ class SpyJar : public WithProbe {
   Scenario plan_of(const std::string& name) {
     auto loaded = Scenario::load(scenario_file(name));
     const auto& scenario = std::get<Scenario>(loaded);
-    const auto plan = scenario.plan();
+    const auto plan = encode_plan(scenario.mission());
     std::ofstream(plan_file(), std::ios::binary)
         .write(reinterpret_cast<const char*>(plan.data()),
                static_cast<std::streamsize>(plan.size()));
@@ -81,7 +82,7 @@ TEST_F(SpyJar, TheMapHasXToTheRightAndYUpwards) {
                "target { gaussians { mean_x_m: 600 mean_y_m: 1600 sigma_m: 150 }");
   std::ofstream(folder_ / "one_bell.textproto") << text;
   auto loaded = Scenario::load(folder_ / "one_bell.textproto");
-  const auto plan = std::get<Scenario>(loaded).plan();
+  const auto plan = encode_plan(std::get<Scenario>(loaded).mission());
   std::ofstream(plan_file(), std::ios::binary)
       .write(reinterpret_cast<const char*>(plan.data()), static_cast<std::streamsize>(plan.size()));
 

@@ -3,15 +3,15 @@
 #pragma once
 
 #include <chrono>
-#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "team/messages.h"
 #include "core/mission.h"
 #include "team/mission_follower.h"
-#include "team/subscriptions.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 
@@ -44,10 +44,13 @@ inline Mission small_mission(int agents) {
   return mission;
 }
 
-/// A decoder that takes whatever bytes arrive for `mission`.
-inline PlanDecoder decoder_of(Mission mission) {
-  return [mission = std::move(mission)](std::span<const std::byte>) { return mission; };
-}
+/// The plan that mission_part() says: of the mission that announce() was given last.
+inline std::vector<std::byte> announced_plan;
+inline void announce(const Mission& mission) { announced_plan = encode_plan(mission); }
+
+/// A plan that nobody can read, and what everybody says of it.
+inline const std::vector<std::byte> kNoPlan{std::byte{1}};
+inline std::string why_no_plan() { return std::get<std::string>(decode_plan(kNoPlan)); }
 
 inline std::vector<RosterEntry> roster_of(int agents) {
   std::vector<RosterEntry> roster;
@@ -68,7 +71,7 @@ inline MissionPart mission_part(std::int64_t revision, MissionState state,
   part.revision = revision;
   part.state = state;
   part.roster = std::move(roster);
-  part.plan = {std::byte{1}};
+  part.plan = announced_plan;
   part.reason = std::move(reason);
   return part;
 }

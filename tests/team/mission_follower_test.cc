@@ -16,15 +16,20 @@ using namespace test;
 
 constexpr int kParts = 4;
 
-/// Part `p` of revision `revision`: agent 10·revision + p, and byte p of the plan.
+/// Part `p` of revision `revision`: agent 10·revision + p, and that part of the plan.
 MissionPart part_of(std::int64_t revision, int p, int parts = kParts,
                     MissionState state = MissionState::kWaiting) {
+  announce(small_mission(1));
   MissionPart part = mission_part(revision, state, {});
   const auto mark = static_cast<AgentId>(10 * revision + p);
   part.part = p;
   part.parts = parts;
   part.roster = {{author_of(mark), 0, -1}};
-  part.plan = {static_cast<std::byte>(p)};
+  const auto place = [&](int i) {
+    const auto share = static_cast<std::ptrdiff_t>(announced_plan.size()) / std::max(parts, 1);
+    return announced_plan.begin() + (i == parts ? announced_plan.end() - announced_plan.begin() : share * i);
+  };
+  if (0 <= p && p < parts) part.plan.assign(place(p), place(p + 1));
   return part;
 }
 
@@ -34,26 +39,23 @@ std::vector<AgentId> agents_of(const MissionFollower& follower) {
   return agents;
 }
 
-MissionFollower new_follower() { return MissionFollower(decoder_of(small_mission(1))); }
-
 TEST(MissionFollower, PutsThePartsTogetherInAnyOrder) {
   std::vector<int> order{0, 1, 2, 3};
   do {
-    MissionFollower follower = new_follower();
+    MissionFollower follower;
     for (int i = 0; i < kParts; ++i) {
       const bool complete = follower.receive(part_of(1, order[static_cast<std::size_t>(i)]));
       EXPECT_EQ(complete, i == kParts - 1) << "true once, for the part that completes it";
       EXPECT_EQ(follower.mission().has_value(), i == kParts - 1);
     }
     EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 11, 12, 13}));
-    EXPECT_EQ(follower.plan(), (std::vector<std::byte>{std::byte{0}, std::byte{1}, std::byte{2},
-                                                       std::byte{3}}));
+    EXPECT_EQ(follower.plan(), encode_plan(small_mission(1)));
     EXPECT_EQ(follower.revision(), 1);
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST(MissionFollower, RepeatedPartsCountOnce) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   for (const int p : {0, 0, 1, 0, 1, 2, 2}) EXPECT_FALSE(follower.receive(part_of(1, p)));
   EXPECT_TRUE(follower.receive(part_of(1, 3)));
   for (int p = 0; p < kParts; ++p) EXPECT_FALSE(follower.receive(part_of(1, p)));
@@ -61,7 +63,7 @@ TEST(MissionFollower, RepeatedPartsCountOnce) {
 }
 
 TEST(MissionFollower, ALostPartIsMadeUpForByTheNextRepeat) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   for (const int p : {0, 1, 3}) EXPECT_FALSE(follower.receive(part_of(1, p)));
   EXPECT_EQ(follower.revision(), -1);
   EXPECT_FALSE(follower.receive(part_of(1, 0)));
@@ -70,7 +72,7 @@ TEST(MissionFollower, ALostPartIsMadeUpForByTheNextRepeat) {
 }
 
 TEST(MissionFollower, NeverMixesTwoRevisions) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   follower.receive(part_of(1, 0));
   follower.receive(part_of(1, 1));
   follower.receive(part_of(2, 2));
@@ -84,7 +86,7 @@ TEST(MissionFollower, NeverMixesTwoRevisions) {
 }
 
 TEST(MissionFollower, APartOfARevisionThatNeverCompletesBlocksNoOlderOne) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   for (int revision = 10; revision < 100; ++revision) follower.receive(part_of(revision, 0));
   follower.receive(part_of(100, 0));
   for (int p = 0; p < kParts - 1; ++p) EXPECT_FALSE(follower.receive(part_of(98, p)));
@@ -92,7 +94,7 @@ TEST(MissionFollower, APartOfARevisionThatNeverCompletesBlocksNoOlderOne) {
 }
 
 TEST(MissionFollower, KeepsTheNewestFourUnfinishedRevisionsAndNoMore) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   for (int revision = 1; revision <= 5; ++revision) follower.receive(part_of(revision, 0));
   for (int p = 1; p < kParts; ++p) EXPECT_FALSE(follower.receive(part_of(1, p))) << "forgotten";
   for (int p = 1; p < kParts - 1; ++p) EXPECT_FALSE(follower.receive(part_of(2, p)));
@@ -100,7 +102,7 @@ TEST(MissionFollower, KeepsTheNewestFourUnfinishedRevisionsAndNoMore) {
 }
 
 TEST(MissionFollower, KeepsWhatItHasUntilANewerRevisionIsComplete) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   for (int p = 0; p < kParts; ++p) follower.receive(part_of(1, p));
   for (int p = 0; p < kParts - 1; ++p) {
     follower.receive(part_of(2, p, kParts, MissionState::kRunning));
@@ -113,7 +115,7 @@ TEST(MissionFollower, KeepsWhatItHasUntilANewerRevisionIsComplete) {
 }
 
 TEST(MissionFollower, AnOlderRevisionNeverComesBack) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   follower.receive(mission_part(5, MissionState::kEnded, roster_of(2), "enough"));
   EXPECT_FALSE(follower.receive(mission_part(4, MissionState::kRunning, roster_of(1))));
   EXPECT_FALSE(follower.receive(mission_part(5, MissionState::kRunning, roster_of(1))));
@@ -123,7 +125,7 @@ TEST(MissionFollower, AnOlderRevisionNeverComesBack) {
 }
 
 TEST(MissionFollower, PartsThatDisagreeAboutTheirNumberStartAfresh) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   follower.receive(part_of(1, 0, 2));
   EXPECT_FALSE(follower.receive(part_of(1, 1, 3))) << "two of two, but not of one message";
   EXPECT_FALSE(follower.receive(part_of(1, 0, 2)));
@@ -133,7 +135,7 @@ TEST(MissionFollower, PartsThatDisagreeAboutTheirNumberStartAfresh) {
 TEST(MissionFollower, HostileCountsHaveNoEffect) {
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
   constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   follower.receive(part_of(1, 0, 2));
   const std::pair<int, int> lies[] = {{0, 0},  {0, -1},    {-1, 2},       {2, 2},        {5, 2},
                                       {0, kLeast}, {kMost, kMost}, {0, kMost}, {kLeast, 2},
@@ -146,7 +148,7 @@ TEST(MissionFollower, HostileCountsHaveNoEffect) {
 }
 
 TEST(MissionFollower, OnlyTheCoordinatorIsBelieved) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   MissionPart forged = part_of(1, 0, 1);
   for (const AgentId sender : {0, 5, kUnassigned, kWorld, kLogger, kOperator}) {
     forged.header.sender = sender;
@@ -156,33 +158,40 @@ TEST(MissionFollower, OnlyTheCoordinatorIsBelieved) {
 }
 
 TEST(MissionFollower, DecodesThePlanOnce) {
-  int decoded = 0;
-  MissionFollower follower([&](std::span<const std::byte>) {
-    ++decoded;
-    return small_mission(1);
-  });
-  for (std::int64_t revision = 0; revision < 5; ++revision) follower.receive(part_of(revision, 0, 1));
-  EXPECT_EQ(decoded, 1);
+  MissionFollower follower;
+  follower.receive(part_of(0, 0, 1));
+  ASSERT_TRUE(follower.mission());
+  const double* decoded = follower.mission()->target_coefficients.data();
+  for (std::int64_t revision = 1; revision < 5; ++revision) follower.receive(part_of(revision, 0, 1));
+  EXPECT_EQ(follower.mission()->target_coefficients.data(), decoded) << "the very same";
   EXPECT_EQ(follower.revision(), 4);
 }
 
-TEST(MissionFollower, SaysThatAPlanIsUnreadableAndDoesNotTryAgain) {
-  int decoded = 0;
-  MissionFollower follower([&](std::span<const std::byte>) {
-    ++decoded;
-    return "it is in verse";
-  });
+TEST(MissionFollower, SaysThatAPlanIsUnreadable) {
+  MissionFollower follower;
   EXPECT_FALSE(follower.plan_problem());
   for (std::int64_t revision = 0; revision < 3; ++revision) {
-    EXPECT_TRUE(follower.receive(part_of(revision, 0, 1)));
-    EXPECT_EQ(follower.plan_problem(), "it is in verse");
+    MissionPart part = part_of(revision, 0, 1);
+    part.plan = kNoPlan;
+    EXPECT_TRUE(follower.receive(part));
+    EXPECT_EQ(follower.plan_problem(), why_no_plan());
     EXPECT_FALSE(follower.mission().has_value());
   }
-  EXPECT_EQ(decoded, 1);
+}
+
+TEST(MissionFollower, TakesNoPlanButTheOneThatItExpects) {
+  for (const bool expected : {true, false}) {
+    MissionFollower follower;
+    follower.expect_plan(encode_plan(small_mission(expected ? 1 : 2)));
+    EXPECT_TRUE(follower.receive(part_of(1, 0, 1)));
+    EXPECT_EQ(follower.mission().has_value(), expected);
+    EXPECT_EQ(follower.plan_problem().has_value(), !expected);
+    EXPECT_EQ(follower.plan(), encode_plan(small_mission(1))) << "what was heard";
+  }
 }
 
 TEST(MissionFollower, ARevisionWithAnotherPlanChangesNothing) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   for (int p = 0; p < kParts; ++p) follower.receive(part_of(1, p));
   for (int p = 0; p < kParts; ++p) {
     MissionPart other = part_of(2, p, kParts, MissionState::kFailed);
@@ -193,14 +202,14 @@ TEST(MissionFollower, ARevisionWithAnotherPlanChangesNothing) {
   EXPECT_EQ(follower.revision(), 1);
   EXPECT_EQ(follower.state(), MissionState::kWaiting);
   EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 11, 12, 13}));
-  EXPECT_EQ(follower.plan().size(), 4u);
+  EXPECT_EQ(follower.plan(), encode_plan(small_mission(1)));
   for (int p = 0; p < kParts; ++p) follower.receive(part_of(2, p));
   EXPECT_EQ(follower.revision(), 2) << "the same number with our plan is heard";
   EXPECT_EQ(follower.foreign_plans(), 1);
 }
 
 TEST(MissionFollower, FindsAnEntryByItsIncarnation) {
-  MissionFollower follower = new_follower();
+  MissionFollower follower;
   std::vector<RosterEntry> roster = roster_of(2);
   roster.push_back({{0, 99}, 4, 9});
   follower.receive(mission_part(0, MissionState::kRunning, roster));

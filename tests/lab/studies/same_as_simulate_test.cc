@@ -11,6 +11,7 @@
 #include "scenario/scenario.h"
 #include "lab/studies/study_run.h"
 #include "tests/support/drawn_scenario.h"
+#include "team/plan.h"
 
 namespace ergocast::test {
 namespace {
@@ -79,9 +80,9 @@ TEST(SameAsSimulate, WhateverTheScenarioSays) {
   for (int i = 0; i < kMissions; ++i) {
     const std::string text = drawn.next();
     const Mission& mission = drawn.compiled->mission();
-    const auto& plan = drawn.compiled->plan();
-    const StudyFigures simulated = studies::fly_with_messages(plan, decode_plan);
-    ASSERT_EQ(difference(studies::fly_study_run(plan, decode_plan), simulated), "") << text;
+    const auto plan = encode_plan(drawn.compiled->mission());
+    const StudyFigures simulated = studies::fly_with_messages(plan);
+    ASSERT_EQ(difference(studies::fly_study_run(plan), simulated), "") << text;
     if (lab::IdealTeam::stands_for(mission)) {
       ++stood_for;
       for (const std::string& field : fields_of(drawn.scenario)) unused.erase(field);

@@ -10,6 +10,7 @@
 
 #include "lab/studies/study_measure.h"
 #include "scenario/scenario.h"
+#include "team/plan.h"
 
 namespace ergocast::studies {
 namespace {
@@ -146,8 +147,8 @@ TEST(StudyRun, IsTheSameWithAndWithoutMessages) {
     const StudyFigures figures = fly_without_messages(scenario.mission());
     EXPECT_TRUE(figures.complete);
     EXPECT_GT(figures.messages, 0);
-    expect_same(figures, fly_with_messages(scenario.plan(), decode_plan));
-    expect_same(figures, fly_study_run(scenario.plan(), decode_plan));
+    expect_same(figures, fly_with_messages(encode_plan(scenario.mission())));
+    expect_same(figures, fly_study_run(encode_plan(scenario.mission())));
   }
 }
 
@@ -158,11 +159,11 @@ TEST(StudyRun, IsTheSameWithMoreAgentsThanOneWorldStateHolds) {
   const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / "quadrimodal_corners.textproto";
   const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
   expect_same(fly_without_messages(scenario.mission()),
-              fly_with_messages(scenario.plan(), decode_plan));
+              fly_with_messages(encode_plan(scenario.mission())));
 }
 
 TEST(StudyRun, FliesRealTimeMissionsInVirtualTime) {
-  const StudyFigures figures = fly_study_run(shipped("faulty_team", 20).plan(), decode_plan);
+  const StudyFigures figures = fly_study_run(encode_plan(shipped("faulty_team", 20).mission()));
   EXPECT_TRUE(figures.complete);
   EXPECT_GT(figures.messages, 0);
   EXPECT_GT(figures.metric_at[0], figures.metric);
@@ -170,8 +171,8 @@ TEST(StudyRun, FliesRealTimeMissionsInVirtualTime) {
 
 TEST(StudyRun, DiffersBySeed) {
   const Scenario scenario = shipped("quadrimodal_corners", 20);
-  EXPECT_NE(fly_study_run(scenario.with_seed(1).plan(), decode_plan).metric,
-            fly_study_run(scenario.with_seed(2).plan(), decode_plan).metric);
+  EXPECT_NE(fly_study_run(encode_plan(scenario.with_seed(1).mission())).metric,
+            fly_study_run(encode_plan(scenario.with_seed(2).mission())).metric);
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+// What a mission may say: the limits that scenario.proto's comments state. scenario/ holds what
+// people write against them, and names what breaks them; team/plan.cc holds what comes off the
+// network.
+#pragma once
+
+#include <string_view>
+
+#include "core/ids.h"
+#include "core/mission.h"
+
+namespace ergocast {
+
+/// Numbers allowed for a field; nan never is.
+struct Limits {
+  double low, high;
+  bool low_excluded = false;
+
+  constexpr bool contain(double value) const {
+    return (low_excluded ? value > low : value >= low) && value <= high;
+  }
+};
+
+namespace limits {
+
+constexpr Limits between(double low, double high) { return {low, high, false}; }
+constexpr Limits above(double low, double high) { return {low, high, true}; }
+
+/// Far beyond any domain: keeps sums and squares of coordinates finite and exact enough.
+inline constexpr Limits kCoordinate_m = between(-1e13, 1e13);
+inline constexpr Limits kSize_m = between(1e-3, 1e7);
+/// How far from 0 the domain may begin, as a multiple of its size.
+inline constexpr double kMaxOriginPerSize = 1e5;
+inline constexpr Limits kModes = between(1, kMaxModesPerAxis);
+inline constexpr Limits kSobolevExponent = above(0, 10);
+
+inline constexpr Limits kSpeed_mps = above(0, 1e6);
+inline constexpr Limits kEpsilon = between(0, 1e6);
+inline constexpr Limits kIntensity = between(0, 1e6);  ///< of any noise [m/√s]
+inline constexpr Limits kContractionGain_per_s = between(0, 1e6);
+inline constexpr Limits kAnticipation = between(0, 100);
+
+inline constexpr Limits kStep_s = between(1e-6, 3600);
+inline constexpr Limits kDuration_s = above(0, 1e7);
+inline constexpr double kMaxTicks = 1e8;
+inline constexpr Limits kBroadcastPeriod_ticks = between(1, 1000);
+inline constexpr Limits kRealtimeFactor = between(0.01, 1000);
+/// In real time, the least wall time of a step.
+inline constexpr double kMinWallStep_s = 1e-4;
+inline constexpr Limits kTimeout_s = above(0, 86400);
+inline constexpr Limits kCommandHold_s = between(0, 1e6);
+inline constexpr Limits kCatchUp_ticks = between(0, 1000);
+
+inline constexpr Limits kTeam = between(1, kMaxAgents);
+inline constexpr Limits kForgetting_s = between(0, 1e6);
+inline constexpr Limits kRadioRange_m = between(0, 1e13);
+inline constexpr Limits kSpeedLimit_mps = above(0, 1e9);  ///< of one that there is
+inline constexpr Limits kGoal = above(0, 1e9);            ///< of one that there is
+
+}  // namespace limits
+
+inline constexpr int kMaxNameLength = 64;
+
+/// Whether `name` is 1 to kMaxNameLength letters, digits, '_', '-' or '.', the first of them not
+/// '-' or '.': missions' names become names of folders.
+bool is_name(std::string_view name);
+
+/// How long the mission lasts: tick_count · dt_s, but no more than a scenario may say [s].
+double duration_s(const Timing& timing);
+
+/// Whether `mission` is one that a scenario can say: each number within its limits, and those
+/// beside each other fit together. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
+bool within_limits(const Mission& mission);
+
+}  // namespace ergocast

@@ -1,0 +1,47 @@
+// What the programs load: those of every robot read no scenario, no map and no picture.
+#include <array>
+#include <memory>
+
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+/// What `ldd` says of a program, also of what its libraries load.
+std::string loaded_by(const std::string& program) {
+  const std::string command = "LC_ALL=C ldd '" + (program_folder() / program).string() + "' 2>&1";
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), &pclose);
+  std::string said;
+  for (std::array<char, 512> part;
+       pipe && fgets(part.data(), part.size(), pipe.get()) != nullptr;) {
+    said += part.data();
+  }
+  return said;
+}
+bool loads(const std::string& said, const std::string& library) {
+  return said.find(library + ".so") != std::string::npos;
+}
+
+TEST(Libraries, ProgramsThatReadNoScenarioLoadNoParserAndNoPictures) {
+  for (const char* program : {"ergocast-agent", "ergocast-sim", "ergocast-logger"}) {
+    const std::string said = loaded_by(program);
+    EXPECT_TRUE(loads(said, "liblcm") && loads(said, "libprotobuf-lite")) << program << ":\n"
+                                                                          << said;
+    for (const char* library : {"libprotobuf", "libpng16", "libz"}) {
+      EXPECT_FALSE(loads(said, library)) << program << " loads " << library << ":\n" << said;
+    }
+  }
+}
+
+// They have the same symbols: a program with both would run in neither.
+TEST(Libraries, NoProgramLoadsBothOfProtobufs) {
+  for (const char* program :
+       {"ergocast", "ergocast-agent", "ergocast-coordinator", "ergocast-logger", "ergocast-sim"}) {
+    const std::string said = loaded_by(program);
+    EXPECT_NE(loads(said, "libprotobuf"), loads(said, "libprotobuf-lite")) << program << ":\n"
+                                                                           << said;
+  }
+}
+
+}  // namespace
+}  // namespace ergocast::test
