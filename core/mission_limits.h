@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a mission may say: the limits that scenario.proto's comments state. scenario/ holds what
 // people write against them, and names what breaks them; team/plan.cc holds what comes off the
 // network.

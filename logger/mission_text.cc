@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "logger/mission_text.h"
 
 #include "core/mission_limits.h"

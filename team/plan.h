@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The compiled plan: a Mission as bytes, from whoever starts it to everybody who takes part.
 #pragma once
 

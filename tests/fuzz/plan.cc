@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A compiled plan as it comes from the network: refused in a sentence, or a mission that a scenario
 // could have said.
 #include "team/plan.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the programs load: those of every robot read no scenario, no map and no picture.
 #include <array>
 #include <memory>

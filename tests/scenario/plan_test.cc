@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From a scenario to its plan and back to a scenario's text: both hold the same limits.
 #include "team/plan.h"
 

@@ -14,6 +14,7 @@ namespace {
 constexpr Incarnation kOwnLife = 4711;
 
 Participant participant(Role role, RunId run = kRun) {
+  announce(small_mission(2));
   return {role, {run, kUnassigned, kOwnLife}};
 }
 
@@ -65,6 +66,7 @@ TEST(Participant, RefusesItsOwnEcho) {
 }
 
 TEST(Participant, WhoNeverSpeaksHasNoEcho) {
+  announce(small_mission(2));
   Participant monitor(Role::kMonitor, {kRun, kUnassigned, 0});
   MissionPart part = mission_part(0, MissionState::kWaiting, {});
   part.header.incarnation = 0;
@@ -179,6 +181,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
   Mission mission = small_mission(1);
   mission.timing.pace = Pace::kRealtime;
   mission.timing.dt_s = 2;
+  announce(mission);
   Participant agent(Role::kAgent, {kRun, 0, kOwnLife});
   accept(agent, world_state(0, {{1, 1}}), at(10s));
   EXPECT_TRUE(agent.silent(kWorld, at(13s))) << "as far as is known";
@@ -193,6 +196,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
 Participant in_mission(Role role, MissionState state = MissionState::kRunning) {
   Mission mission = small_mission(2);
   mission.timing.lockstep_timeout_s = 5;
+  announce(mission);
   Participant one(role, {kRun, kUnassigned, kOwnLife});
   accept(one, mission_part(0, state, roster_of(2)), at(10s));
   return one;

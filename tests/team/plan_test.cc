@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The compiled plan: every field of a mission travels, and nothing that comes off the network is
 // taken for a plan unless it could have been encoded here.
 #include "team/plan.h"
