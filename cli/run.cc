@@ -113,7 +113,8 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display);
   auto opened = Transport::open(setup.url, setup.run, seal, subscriptions_of(MissionWatch::kRole),
-                                {.on_message = [&mission](const Message& message, Bus bus, AgentId transmitter) {
+                                {.on_message = [&mission](const Message& message, Bus bus,
+                                                          AgentId transmitter) {
                                   mission.receive(message, bus, transmitter, now());
                                 }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {

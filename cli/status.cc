@@ -41,9 +41,10 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
-      hear(message, bus, transmitter);
-    });
+    auto opened = listen_to_teams(
+        options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+          hear(message, bus, transmitter);
+        });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();

@@ -67,9 +67,9 @@ void RunHeard::on(const WorldState& world, const Arrival& arrival) {
 }
 
 bool RunHeard::unheard() const {
-  return agents_.empty() && !over_ && std::none_of(std::begin(kProcesses), std::end(kProcesses), [this](AgentId process) {
-    return heard(process);
-  });
+  return agents_.empty() && !over_ &&
+         std::none_of(std::begin(kProcesses), std::end(kProcesses),
+                      [this](AgentId process) { return heard(process); });
 }
 
 bool RunHeard::stands_still() const {

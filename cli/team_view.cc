@@ -47,8 +47,9 @@ void TeamView::receive(const Message& message, Bus bus, AgentId transmitter, Ins
   if (!arrival) return;
   tick_ = std::max(tick_, arrival->from.tick);
   // MISSION may be repeated by an agent long after the coordinator's death.
+  const Header& from = arrival->from;
   const bool first_hand = arrival->fresh && !std::holds_alternative<MissionPart>(message);
-  if (first_hand && arrival->from.sender < kUnassigned) processes_[arrival->from.sender] = arrival->from;
+  if (first_hand && from.sender < kUnassigned) processes_[from.sender] = from;
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
 }
 

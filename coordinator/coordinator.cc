@@ -25,7 +25,6 @@ constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 constexpr auto kFarewell = 1s;
 /// Real time: how long the team gets to hear of a change before it takes effect.
 constexpr double kNotice_s = 2;
-constexpr std::size_t kMaxStrangers = 64;
 
 }  // namespace
 
@@ -84,79 +83,6 @@ void Coordinator::on(const AgentStatus& status, const Arrival& arrival) {
   change();
 }
 
-// ---- admission -----------------------------------------------------------------------------------
-
-RosterEntry* Coordinator::active_entry(AgentId id) {
-  const auto at = std::find_if(roster_.begin(), roster_.end(), [id](const RosterEntry& entry) {
-    return entry.author.agent == id && entry.active_until < 0;
-  });
-  return at == roster_.end() ? nullptr : &*at;
-}
-
-/// Whether a member has said nothing since, and may be dead: soon its number may be free.
-bool Coordinator::doubtful(Instant since, Instant now) const {
-  return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
-    return alive(entry, now) && last_sign(entry.author) < since;
-  });
-}
-
-std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
-  // A process that was started again at once is the successor of one that still seems to live.
-  if (newcomers_.asked.size() >= kMaxRosterEntries) {
-    newcomers_.asked.erase(std::min_element(newcomers_.asked.begin(), newcomers_.asked.end(), [](const auto& a, const auto& b) {
-      return a.second < b.second;
-    }));
-  }
-  const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
-  if (doubtful(since, now)) return std::nullopt;
-  for (AgentId id = 0; id < kMaxAgents; ++id) {
-    const RosterEntry* holder = active_entry(id);
-    if (holder == nullptr || !alive(*holder, now)) return id;
-  }
-  return std::nullopt;
-}
-
-void Coordinator::on(const Hello& hello, const Arrival& arrival) {
-  const Instant now = arrival.now;
-  if (looking()) return;
-  if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
-  const Incarnation nonce = hello.header.incarnation;
-  if (hello.header.sender == kWorld) return on_question(hello, arrival);
-  if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
-  if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
-  if (hello.version != name_.version) {
-    if (newcomers_.strangers.size() < kMaxStrangers) newcomers_.strangers.emplace(hello.host, hello.version);
-    return;
-  }
-  const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
-    return entry.author.incarnation == nonce;
-  });
-  if (known) {
-    // It has not heard: say it again soon, but let nobody's hellos flood the bus.
-    said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
-    return;
-  }
-  note_silences(now);
-  if (hello.revision < revisions_.admits_from) {
-    // Said before the newest was: by somebody who has yet to hear of it, or a recording.
-    said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
-    return;
-  }
-  std::optional<AgentId> id = hello.requested_id;
-  if (*id == kUnassigned) id = free_id(nonce, now);
-  if (!id) return;  // not yet, or the team is full
-  if (const RosterEntry* holder = active_entry(*id)) {
-    if (alive(*holder, now)) return;  // the younger has to give way
-    // The silence of one concerns only who would take its number: where messages are late, members fall
-    // silent all the time, and nobody else's HELLO would ever be new enough.
-    if (hello.revision < members_[holder->author].silence_revision) {
-      said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
-      return;
-    }
-  }
-  admit({*id, nonce}, now);
-}
-
 /// A world that begins asks the team where it is, for which the tick has its time anew.
 void Coordinator::on_question(const Hello& question, const Arrival& arrival) {
   if (!arrival.fresh) return;
@@ -164,25 +90,6 @@ void Coordinator::on_question(const Hello& question, const Arrival& arrival) {
   world_.begun = question.header.incarnation;
   world_.unheard = question.requested_id;
   world_.asked = arrival.now;
-}
-
-void Coordinator::admit(const Author& author, Instant now) {
-  const auto lives = std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
-    return entry.author.agent == author.agent;
-  });
-  if (roster_.size() >= kMaxRosterEntries || lives >= kMaxIncarnationsPerAgent) return;
-  // The agents may be further than the last state that we heard of a world that is dead by now.
-  const Tick newest = std::max(world_.tick, team_tick_);
-  if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
-  const Tick from = state_ == MissionState::kRunning ? newest : 0;
-  roster_.push_back({author, from, -1});
-  std::sort(roster_.begin(), roster_.end(),
-            [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
-  members_[author];
-  me_.presume_alive(author, now);
-  newcomers_.asked.erase(author.incarnation);
-  world_.tick_since = now;  // the tick waits for the newcomer, too, which has its time for it
-  announce();
 }
 
 void Coordinator::on(const WorldState& world, const Arrival& arrival) {
@@ -379,6 +286,11 @@ void Coordinator::lead(Instant now, Outbox& out) {
     said_.next_mission = now + (ending_.since ? kMissionGap : kMissionPeriod);
   }
   ending_.finished = ending_.since && now - *ending_.since >= kFarewell;
+}
+
+/// Somebody has not heard; but nobody's hellos are to flood the bus.
+void Coordinator::repeat_mission_soon() {
+  said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
 }
 
 void Coordinator::publish_mission(Outbox& out) {

@@ -2,7 +2,8 @@
 // Admits agents, distributes the mission, starts, watches and ends it. Never steers.
 //
 // It repeats its whole state once a second, so that none of its messages needs an acknowledgement.
-// A restarted coordinator takes the mission over from the agents, which repeat it on request.
+// A restarted coordinator takes the mission over from the agents, which repeat it on request
+// (takeover.cc). Who may join is in admission.cc.
 #pragma once
 
 #include <map>
@@ -163,6 +164,7 @@ class Coordinator {
   void say_anew() { ++revisions_.current, said_.next_mission = Instant{}; }
   /// Anything but an admission: newcomers have to know of it, so that no recording of one gets in.
   void change() { announce(), revisions_.admits_from = revisions_.current; }
+  void repeat_mission_soon();
   void publish_mission(Outbox& out);
   void publish_team_status(Instant now, Outbox& out);
 

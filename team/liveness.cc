@@ -59,7 +59,7 @@ bool Liveness::record(const Header& from, Bus bus, Instant now, bool is_sign) {
 }
 
 void Liveness::presume_alive(const Author& life, Instant now) {
-  if (Life* const known = find_or_add(life)) known->sign = now;
+  lives_[life].sign = now;
 }
 
 std::optional<Instant> Liveness::last_sign(const Author& life) const {

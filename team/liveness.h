@@ -54,7 +54,8 @@ class Liveness {
   ///   on this bus. Of more than kMostLives lives, the later ones are never fresh.
   bool record(const Header& from, Bus bus, Instant now, bool is_sign = true);
 
-  /// Takes it that a life lives at `now`, as one that has just been admitted does.
+  /// Takes it that a life lives at `now`, as one that has just been admitted does. It has a place even
+  /// where strangers have filled the table; the caller bounds how many have.
   void presume_alive(const Author& life, Instant now);
 
   /// When the last sign of this life came.

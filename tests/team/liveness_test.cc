@@ -57,8 +57,6 @@ TEST(Liveness, RemembersNoMoreLivesThanItsLimit) {
   }
   EXPECT_FALSE(is_news(liveness, said(0, kMost + 1, 1)));
   EXPECT_FALSE(liveness.last_sign({0, kMost + 1}));
-  liveness.presume_alive({0, kMost + 1}, at(0s));
-  EXPECT_FALSE(liveness.last_sign({0, kMost + 1})) << "a full table takes nobody's word for it";
   EXPECT_TRUE(is_news(liveness, said(0, kMost, 2))) << "whom it knows, it still hears";
   EXPECT_TRUE(is_news(liveness, said(0, kMost, 4)));
   EXPECT_EQ(liveness.lost({0, kMost}, Bus::kSwarm), 1) << "of those it goes on";
@@ -98,6 +96,16 @@ TEST(Liveness, WhoIsPresumedAliveWasNotHeard) {
   EXPECT_FALSE(liveness.last_sign_of_kind(3));
   EXPECT_EQ(liveness.lost({3, 7}, Bus::kSwarm), 0);
   EXPECT_TRUE(is_news(liveness, said(3, 7, 1)));
+}
+
+TEST(Liveness, WhoIsPresumedAliveHasAPlaceInAFullTable) {
+  Liveness liveness;
+  for (Incarnation life = 1; life <= Liveness::kMostLives; ++life) is_news(liveness, said(0, life, 1));
+  const Author admitted{3, Liveness::kMostLives + 7};
+  liveness.presume_alive(admitted, at(1s));
+  EXPECT_EQ(liveness.last_sign(admitted), at(1s));
+  EXPECT_TRUE(liveness.record(said(3, admitted.incarnation, 1), Bus::kSwarm, at(2s)));
+  EXPECT_EQ(liveness.last_sign(admitted), at(2s));
 }
 
 TEST(Liveness, CountsWhatIsMissingInASequence) {

@@ -242,7 +242,9 @@ TEST(Participant, SequencesGrowByOneOnEachBus) {
   Outbox out;
   for (int i = 0; i < 3; ++i) agent.publish(Bus::kSwarm, AgentStatus{}, 7, out);
   agent.publish(Bus::kCommand, Command{}, 8, out);
-  ASSERT_EQ(out.size(), 4u);
+  agent.publish(Bus::kSwarm, AgentStatus{}, 9, out);
+  ASSERT_EQ(out.size(), 5u);
+  EXPECT_EQ(header_of(out[4].message).sequence, 4);
   for (std::size_t i = 0; i < 4; ++i) {
     const Header& header = header_of(out[i].message);
     EXPECT_EQ(header.run, kRun);
@@ -253,7 +255,7 @@ TEST(Participant, SequencesGrowByOneOnEachBus) {
     EXPECT_EQ(out[i].bus, i < 3 ? Bus::kSwarm : Bus::kCommand);
     EXPECT_EQ(out[i].relayer, kUnassigned);
   }
-  EXPECT_EQ(agent.sent(), 4);
+  EXPECT_EQ(agent.sent(), 5);
 }
 
 TEST(Participant, ARelayedBlockKeepsItsAuthor) {

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Decides who may join the team, and under which number.
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/coordinator.h"
+
+namespace ergocast {
+namespace {
+
+constexpr std::size_t kMaxStrangers = 64;
+
+}  // namespace
+
+RosterEntry* Coordinator::active_entry(AgentId id) {
+  const auto at = std::find_if(roster_.begin(), roster_.end(), [id](const RosterEntry& entry) {
+    return entry.author.agent == id && entry.active_until < 0;
+  });
+  return at == roster_.end() ? nullptr : &*at;
+}
+
+/// Whether a member has said nothing since, and may be dead: soon its number may be free.
+bool Coordinator::doubtful(Instant since, Instant now) const {
+  return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+    return alive(entry, now) && last_sign(entry.author) < since;
+  });
+}
+
+std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
+  // A process that was started again at once is the successor of one that still seems to live.
+  if (newcomers_.asked.size() >= kMaxRosterEntries) {
+    auto& asked = newcomers_.asked;
+    asked.erase(std::min_element(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
+      return a.second < b.second;
+    }));
+  }
+  const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
+  if (doubtful(since, now)) return std::nullopt;
+  for (AgentId id = 0; id < kMaxAgents; ++id) {
+    const RosterEntry* holder = active_entry(id);
+    if (holder == nullptr || !alive(*holder, now)) return id;
+  }
+  return std::nullopt;
+}
+
+void Coordinator::on(const Hello& hello, const Arrival& arrival) {
+  const Instant now = arrival.now;
+  if (looking()) return;
+  if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
+  const Incarnation nonce = hello.header.incarnation;
+  if (hello.header.sender == kWorld) return on_question(hello, arrival);
+  if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
+  if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
+  if (hello.version != name_.version) {
+    auto& strangers = newcomers_.strangers;
+    if (strangers.size() < kMaxStrangers) strangers.emplace(hello.host, hello.version);
+    return;
+  }
+  const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
+    return entry.author.incarnation == nonce;
+  });
+  if (known) return repeat_mission_soon();
+  note_silences(now);
+  // Said before the newest was: by somebody who has yet to hear of it, or a recording.
+  if (hello.revision < revisions_.admits_from) return repeat_mission_soon();
+  std::optional<AgentId> id = hello.requested_id;
+  if (*id == kUnassigned) id = free_id(nonce, now);
+  if (!id) return;  // not yet, or the team is full
+  if (const RosterEntry* holder = active_entry(*id)) {
+    if (alive(*holder, now)) return;  // the younger has to give way
+    // The silence of one concerns only who would take its number: where messages are late, members fall
+    // silent all the time, and nobody else's HELLO would ever be new enough.
+    if (hello.revision < members_[holder->author].silence_revision) return repeat_mission_soon();
+  }
+  admit({*id, nonce}, now);
+}
+
+void Coordinator::admit(const Author& author, Instant now) {
+  const auto lives = std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+    return entry.author.agent == author.agent;
+  });
+  if (roster_.size() >= kMaxRosterEntries || lives >= kMaxIncarnationsPerAgent) return;
+  // The agents may be further than the last state that we heard of a world that is dead by now.
+  const Tick newest = std::max(world_.tick, team_tick_);
+  if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
+  const Tick from = state_ == MissionState::kRunning ? newest : 0;
+  roster_.push_back({author, from, -1});
+  std::sort(roster_.begin(), roster_.end(),
+            [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
+  members_[author];
+  me_.presume_alive(author, now);
+  newcomers_.asked.erase(author.incarnation);
+  world_.tick_since = now;  // the tick waits for the newcomer, too, which has its time for it
+  announce();
+}
+
+}  // namespace ergocast
