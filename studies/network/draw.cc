@@ -48,6 +48,7 @@ struct Series {
 const Study kStudies[] = {
     {"period", "broadcast period [s]", {"1", "4", "10", "16", "50"}, 0.5, true},
     {"period30", "broadcast period [s], 30 % lost", {"1", "4", "10", "16", "50"}, 0.5, true},
+    {"period10", "broadcast period [s], 10 % lost on all buses", {"1", "4", "10", "50"}, 0.5, true},
     {"loss", "broadcasts lost [%]", {"0", "0.01", "0.05", "0.1", "0.3", "0.6", "0.8"}, 100},
     {"everywhere", "messages lost on all buses [%]", {"0.01", "0.05", "0.1", "0.3"}, 100},
     {"delay", "mean delay [s]", {"0.2", "0.5", "1", "2", "5"}, 1},
