@@ -43,13 +43,13 @@ const StudyRuns& named(const Points& points, const std::vector<std::string>& nam
   throw std::runtime_error("no runs of " + joined(names));
 }
 
-/// Geometric mean of φ² against another's, seed by seed as far as both go.
+/// Geometric mean of φ² against another's, seed by seed.
 Estimate against(const StudyRuns& ours, const StudyRuns& theirs) {
-  std::vector<double> a = ours.of(kMetric), b = theirs.of(kMetric);
-  const std::size_t count = std::min(a.size(), b.size());
-  a.resize(count);
-  b.resize(count);
-  return ratio_of(a, b);
+  if (ours.of("seed") != theirs.of("seed")) {
+    throw std::runtime_error("other seeds of " + joined(ours.names) + " and " +
+                             joined(theirs.names));
+  }
+  return ratio_of(ours.of(kMetric), theirs.of(kMetric));
 }
 
 std::string text(const Estimate& e) {
@@ -99,15 +99,15 @@ std::string label(const Group& group, const StudyRuns& runs) {
   return joined(names);
 }
 
+Points points_of(const fs::path& folder, const Group& group, const Law& law) {
+  return read_study(folder / (std::string(group.study) + "-" + law.folder) / "study.csv");
+}
+
 void print_rows(const fs::path& folder, const Group& group) {
   std::vector<Points> laws;
-  for (const Law& law : kLaws) {
-    laws.push_back(
-        read_study(folder / (std::string(group.study) + "-" + law.folder) / "study.csv"));
-  }
+  for (const Law& law : kLaws) laws.push_back(points_of(folder, group, law));
   for (const StudyRuns& ours : laws[0]) {
-    std::printf("| %s | %zu, %zu", label(group, ours).c_str(), ours.of(kMetric).size(),
-                named(laws[1], ours.names).of(kMetric).size());
+    std::printf("| %s | %zu", label(group, ours).c_str(), ours.of(kMetric).size());
     for (const int law : {0, 1, 2})
       std::printf(" | %s", spread(named(laws[law], ours.names)).c_str());
     std::printf(" | %.1e", geometric_mean(named(laws[3], ours.names).of(kMetric)));
@@ -119,8 +119,7 @@ void print_rows(const fs::path& folder, const Group& group) {
 
 void print_laws(const fs::path& folder, const std::vector<Group>& groups) {
   std::printf(
-      "| | runs: default, others | the default | version 0.1.0 | classical | the paper's | default "
-      "against 0.1.0 "
+      "| | runs | the default | version 0.1.0 | classical | the paper's | default against 0.1.0 "
       "| default against classical |\n|---|---|---|---|---|---|---|---|\n");
   for (const Group& group : groups) print_rows(folder, group);
   std::printf("\n");
@@ -259,13 +258,19 @@ void print_choice(const std::string& choice, const Points& points) {
   std::printf("\n");
 }
 
-void print_uniform(const Points& points) {
-  std::printf("| agents | runs | φ²(200 s) | slope |\n|---|---|---|---|\n");
-  for (const StudyRuns& runs : points) {
-    const Estimate slope = median_of(runs.of("slope"));
-    std::printf("| %s | %zu | %.3g | %.2f (%.2f to %.2f) |\n", runs.names.at(1).c_str(),
-                runs.of(kMetric).size(), median_of(runs.of(kMetric)).value, slope.value, slope.low,
-                slope.high);
+/// The power of t that fits φ² over the last decade of time.
+void print_slopes(const fs::path& folder, const Group& group) {
+  std::printf(
+      "| | runs | the default: slope | version 0.1.0 | classical |\n|---|---|---|---|---|\n");
+  std::vector<Points> laws;
+  for (const int law : {0, 1, 2}) laws.push_back(points_of(folder, group, kLaws[law]));
+  for (const StudyRuns& ours : laws[0]) {
+    std::printf("| %s | %zu", label(group, ours).c_str(), ours.of(kMetric).size());
+    for (const Points& points : laws) {
+      const Estimate slope = median_of(named(points, ours.names).of("slope"));
+      std::printf(" | %.2f (%.2f to %.2f)", slope.value, slope.low, slope.high);
+    }
+    std::printf(" |\n");
   }
   std::printf("\n");
 }
@@ -275,19 +280,23 @@ void run(const fs::path& folder, const fs::path& images) {
     return read_study(folder / name / "study.csv");
   };
   const std::vector<std::string> timed{"", " s"}, sized{"", " s", " agents"},
-      stepped{"", " s", " s a step"};
+      stepped{"", " s", " s a step"}, squared{"", " agents"};
   print_laws(folder, {{"promised", timed},
                       {"short", timed},
                       {"later", timed},
                       {"long", timed},
                       {"sixteen", sized}});
-  print_laws(folder, {{"sizes", sized}, {"large", sized}, {"starts", timed}});
-  print_laws(
-      folder,
-      {{"targets", timed}, {"far", timed}, {"modes", {"", " s", " modes along x", " along y"}}});
-  print_laws(folder, {{"steps", stepped},
+  print_laws(folder, {{"sizes", sized}, {"crowd", timed}, {"starts", timed}});
+  print_laws(folder, {{"targets", timed},
+                      {"divided", sized},
+                      {"far", timed},
+                      {"modes", {"", " s", " modes along x", " along y"}}});
+  print_laws(folder, {{"fine", stepped},
+                      {"steps", stepped},
                       {"steps-16", stepped},
                       {"steps-48", {"", " s", " s a step", " modes along x", " along y"}}});
+  print_laws(folder, {{"published", squared}});
+  print_slopes(folder, {"published", squared});
   draw_decay(folder, "long", images);
   print_escapes(study("escape-default"), study("escape-old"), study("escape-paper"));
   for (const Ladder& ladder : kLadders) {
@@ -297,7 +306,6 @@ void run(const fs::path& folder, const fs::path& images) {
   }
   print_choice("`paired_pushes`; start, T [s]", study("pairs"));
   print_choice("`ends_with_plan`; start, T [s]", study("ends"));
-  print_uniform(study("uniform"));
 }
 
 }  // namespace
