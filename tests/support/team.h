@@ -8,10 +8,11 @@
 #include <variant>
 #include <vector>
 
-#include "team/messages.h"
 #include "core/mission.h"
+#include "team/messages.h"
 #include "team/mission_follower.h"
 #include "team/plan.h"
+#include "team/subscriptions.h"
 
 namespace ergocast::test {
 
