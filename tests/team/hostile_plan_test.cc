@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Nothing that comes off the network is taken for a plan unless it could have been encoded here.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/mission_limits.h"
+#include "team/messages.h"
+#include "team/plan.h"
+#include "tests/team/rich_mission.h"
+
+namespace ergocast {
+namespace {
+
+using test::rich_mission;
+using Bytes = std::vector<std::byte>;
+
+/// The mission in a plan, if there is one.
+std::optional<Mission> decoded(std::span<const std::byte> plan) {
+  auto read = decode_plan(plan);
+  auto* mission = std::get_if<Mission>(&read);
+  return mission == nullptr ? std::nullopt : std::optional(std::move(*mission));
+}
+bool is_taken(const Mission& mission) { return decoded(encode_plan(mission)).has_value(); }
+
+std::string problem_of(std::span<const std::byte> plan) {
+  const auto read = decode_plan(plan);
+  const auto* problem = std::get_if<std::string>(&read);
+  return problem == nullptr ? "nothing" : *problem;
+}
+bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+/// Every double of a mission but those of μ.
+std::vector<double*> numbers_of(Mission& m) {
+  std::vector<double*> all{&m.domain.origin_m.x(),
+                           &m.domain.origin_m.y(),
+                           &m.domain.size_m.x(),
+                           &m.domain.size_m.y(),
+                           &m.basis.sobolev_exponent,
+                           &m.law.u_max_mps,
+                           &m.law.epsilon,
+                           &m.law.noise_intensity,
+                           &m.law.noise_ceiling,
+                           &m.law.contraction_gain_per_s,
+                           &m.law.contraction_center_m.x(),
+                           &m.law.contraction_center_m.y(),
+                           &m.law.anticipation,
+                           &m.timing.dt_s,
+                           &m.timing.realtime_factor,
+                           &m.timing.lockstep_timeout_s,
+                           &m.timing.command_hold_s,
+                           &m.timing.admission_timeout_s,
+                           &m.forget_silent_after_s,
+                           &m.goal_ergodic_metric,
+                           &m.disturbance_intensity,
+                           &m.radio_range_m,
+                           &m.speed_limit_mps};
+  for (Eigen::Vector2d& x_m : m.starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y()});
+  return all;
+}
+
+TEST(HostilePlan, CutShortIsRefused) {
+  const Bytes plan = encode_plan(rich_mission());
+  for (std::size_t length = 0; length < plan.size(); ++length) {
+    EXPECT_FALSE(decoded(std::span(plan).first(length))) << length;
+  }
+}
+
+TEST(HostilePlan, OfRandomBytesIsRefusedOrWithinLimits) {
+  std::mt19937 random(1);
+  const Bytes plan = encode_plan(rich_mission());
+  for (int i = 0; i < 20000; ++i) {
+    Bytes noisy = plan;
+    if (i % 2 == 0) noisy.resize(random() % plan.size());
+    for (int changes = 1 + i % 8; changes > 0 && !noisy.empty(); --changes) {
+      noisy[random() % noisy.size()] = std::byte{static_cast<unsigned char>(random())};
+    }
+    const auto mission = decoded(noisy);
+    EXPECT_TRUE(!mission || encode_plan(*mission) == noisy);
+  }
+}
+
+TEST(HostilePlan, WithANumberThatIsNoneOrHugeIsRefused) {
+  Mission mission = rich_mission();
+  const std::size_t count = numbers_of(mission).size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const double bad : {std::nan(""), double{INFINITY}, -double{INFINITY}, -1e300, 1e300}) {
+      Mission broken = rich_mission();
+      *numbers_of(broken)[i] = bad;
+      EXPECT_FALSE(is_taken(broken)) << i << ": " << bad;
+    }
+  }
+}
+
+TEST(HostilePlan, WithACoefficientThatCannotBeIsRefused) {
+  for (const double bad :
+       {1.001, -1.001, std::nan(""), -std::nan(""), double{INFINITY}, -double{INFINITY}}) {
+    Mission mission = rich_mission();
+    mission.target_coefficients(2, 1) = bad;
+    EXPECT_FALSE(is_taken(mission)) << bad;
+  }
+  Mission mission = rich_mission();
+  mission.target_coefficients(0, 0) = 0.999;
+  EXPECT_FALSE(is_taken(mission));
+}
+
+/// A domain in which nothing is too fast, and nothing pulls.
+void widen(Mission& m) {
+  m.domain.size_m = {1e7, 1e7};
+  m.law.contraction_gain_per_s = 0;
+}
+/// One more mode than there may be, μ as large.
+void refine(Mission& m, int modes_x, int modes_y) {
+  m.basis.modes_x = modes_x;
+  m.basis.modes_y = modes_y;
+  m.target_coefficients.setZero(modes_x, modes_y);
+  m.target_coefficients(0, 0) = 1;
+}
+/// Half a step of contraction beyond the centre, for which the input is strong enough.
+void pull(Mission& m) {
+  m.domain.size_m = {52, 52};
+  m.law.contraction_center_m = m.domain.center_m();
+  m.law.contraction_gain_per_s = 9.6;
+  m.law.u_max_mps = 360;
+}
+
+// Each breaks one limit, and as few others as can be.
+TEST(HostilePlan, ThatBreaksALimitIsRefused) {
+  using Change = void (*)(Mission&);
+  constexpr Change kBroken[] = {
+      [](Mission& m) { m.name = ""; },
+      [](Mission& m) { m.name = "../up"; },
+      [](Mission& m) { m.name = "a/b"; },
+      [](Mission& m) { m.name = std::string(kMaxNameLength + 1, 'x'); },
+      [](Mission& m) {  // 1e5 times the size away
+        m.law.contraction_gain_per_s = 0;
+        m.domain.origin_m.x() = -1.02e7;
+        m.starts_m.assign(2, m.domain.center_m());
+      },
+      [](Mission& m) { widen(m), m.domain.size_m.y() = 1.1e7; },
+      [](Mission& m) {
+        m.domain.size_m.y() = 1e-4;
+        m.domain.origin_m = {0, 0};
+        m.law = {.u_max_mps = 1e-4};
+        m.disturbance_intensity = 0;
+        m.starts_m.assign(2, m.domain.center_m());
+      },
+      [](Mission& m) { m.basis.modes_x = 0; },
+      [](Mission& m) { m.basis.modes_x = -3, m.basis.modes_y = -2; },
+      [](Mission& m) { refine(m, kMaxModesPerAxis + 1, 2); },
+      [](Mission& m) { refine(m, 3, kMaxModesPerAxis + 1); },
+      [](Mission& m) { m.basis.modes_y = 3; },  // μ has less
+      [](Mission& m) { refine(m, 1, 1); },
+      [](Mission& m) { m.basis.sobolev_exponent = 0; },
+      [](Mission& m) { m.basis.sobolev_exponent = 10.1; },
+      [](Mission& m) { m.law.contraction_gain_per_s = m.law.u_max_mps = 0; },
+      [](Mission& m) { widen(m), m.law.u_max_mps = 1.1e6; },
+      [](Mission& m) { m.law.u_max_mps = 417; },  // longer steps than the domain
+      [](Mission& m) { m.law.epsilon = -0.1; },
+      [](Mission& m) { m.law.noise_intensity = -0.1; },
+      [](Mission& m) { m.law.noise_intensity = 1.6; },  // above the ceiling
+      [](Mission& m) { m.law.noise_ceiling = 148; },    // longer steps than the domain
+      [](Mission& m) { widen(m), m.law.noise_ceiling = 1.1e6; },
+      [](Mission& m) { m.law.perturbation = Perturbation::kConstant; },  // has no ceiling
+      [](Mission& m) { m.law.contraction_gain_per_s = 0.5; },            // too strong at the corner
+      [](Mission& m) { m.law.contraction_gain_per_s = -0.1; },
+      [](Mission& m) { pull(m); },
+      [](Mission& m) { m.law.contraction_gain_per_s = 0, m.law.contraction_center_m.x() = 1.1e13; },
+      [](Mission& m) { m.law.contraction_gain_per_s = 0, m.law.contraction_center_m.y() = 1.1e13; },
+      [](Mission& m) { m.law.anticipation = 100.1; },
+      [](Mission& m) { m.timing.pace = Pace::kLockstep, m.timing.dt_s = 9e-7; },
+      [](Mission& m) { widen(m), m.timing.dt_s = 3601; },
+      [](Mission& m) { m.timing.tick_count = 0; },
+      [](Mission& m) { m.timing.tick_count = -1; },
+      [](Mission& m) { m.timing.tick_count = 80'000'001; },  // 1e7 s
+      [](Mission& m) { m.timing.dt_s = 0.01, m.timing.tick_count = 100'000'001; },
+      [](Mission& m) { m.timing.tick_count = std::numeric_limits<Tick>::max(); },
+      [](Mission& m) { m.timing.broadcast_period_ticks = 0; },
+      [](Mission& m) { m.timing.broadcast_period_ticks = 1001; },
+      [](Mission& m) { m.timing.realtime_factor = 0.009; },
+      [](Mission& m) { m.timing.dt_s = 1e-3, m.timing.realtime_factor = 11; },  // 0.09 ms a step
+      [](Mission& m) { m.timing.lockstep_timeout_s = 0; },
+      [](Mission& m) { m.timing.admission_timeout_s = 86401; },
+      [](Mission& m) { m.timing.command_hold_s = -1; },
+      [](Mission& m) { m.timing.catch_up_limit_ticks = -1; },
+      [](Mission& m) { m.timing.catch_up_limit_ticks = 1001; },
+      [](Mission& m) { m.starts_m[1].x() = 98.1; },  // outside
+      [](Mission& m) { m.starts_m.clear(); },
+      [](Mission& m) {
+        m.starts_m.assign(kMaxAgents + 1, {17, 20});
+      },
+      [](Mission& m) { m.quorum = 0; },
+      [](Mission& m) { m.quorum = 3; },
+      [](Mission& m) { m.forget_silent_after_s = -1; },
+      [](Mission& m) { m.goal_ergodic_metric = -1; },
+      [](Mission& m) { m.disturbance_intensity = -1; },
+      [](Mission& m) { m.disturbance_intensity = 148; },  // longer steps than the domain
+      [](Mission& m) { widen(m), m.disturbance_intensity = 1.1e6; },
+      [](Mission& m) { m.radio_range_m = -1; },
+      [](Mission& m) { m.speed_limit_mps = -1; },
+  };
+  for (std::size_t i = 0; i < std::size(kBroken); ++i) {
+    Mission mission = rich_mission();
+    kBroken[i](mission);
+    EXPECT_FALSE(within_limits(mission)) << "change " << i;
+    EXPECT_TRUE(has(problem_of(encode_plan(mission)), "breaks that version's rules"))
+        << "change " << i;
+  }
+  Mission wide = rich_mission();
+  widen(wide);
+  EXPECT_TRUE(is_taken(wide));
+}
+
+TEST(HostilePlan, OfAnotherVersionIsRefusedWithBothVersionsNamed) {
+  Bytes plan = encode_plan(rich_mission());
+  ASSERT_EQ(plan[0], std::byte{0x0A});  // the version comes first
+  const auto length = static_cast<std::size_t>(plan[1]);
+  const std::string ours(reinterpret_cast<const char*>(plan.data()) + 2, length);
+  std::string theirs = ours;
+  theirs.back() = theirs.back() == '7' ? '8' : '7';
+  plan[1 + length] = std::byte{static_cast<unsigned char>(theirs.back())};
+  const std::string sentence = "the mission's plan is of version " + theirs + ", this program is " +
+                               ours + ": install the same version on every host";
+  EXPECT_EQ(problem_of(plan), sentence);
+  // What follows may be written in a way that we cannot even take apart.
+  plan.resize(2 + length + 1);
+  EXPECT_EQ(problem_of(plan), sentence);
+}
+
+TEST(HostilePlan, WithoutAVersionIsDamagedOrMuchNewer) {
+  EXPECT_TRUE(has(problem_of({}), "damaged or of a much newer version"));
+  for (const int byte : {0x1b, 0xff}) {  // no word of a stranger moves the cursor of a terminal
+    Bytes plan = encode_plan(rich_mission());
+    plan[3] = static_cast<std::byte>(byte);
+    EXPECT_TRUE(has(problem_of(plan), "damaged or of a much newer version"));
+  }
+}
+
+// Protobuf would read these: unknown fields, a field given twice, padding.
+TEST(HostilePlan, WithASpellingOfItsOwnIsRefused) {
+  const Bytes plan = encode_plan(rich_mission());
+  const auto appended = [&](std::initializer_list<int> bytes) {
+    Bytes longer = plan;
+    for (const int byte : bytes) longer.push_back(std::byte{static_cast<unsigned char>(byte)});
+    return longer;
+  };
+  EXPECT_FALSE(decoded(appended({0xf8, 0x01, 0x01})));  // field 31
+  EXPECT_FALSE(decoded(appended({0x22, 0x00})));        // an empty domain to be merged
+  EXPECT_FALSE(decoded(appended({0x18, 0x09})));        // another seed
+  EXPECT_FALSE(decoded(appended({0x00})));
+  Bytes twice = plan;
+  twice.insert(twice.end(), plan.begin(), plan.end());
+  EXPECT_FALSE(decoded(twice));
+  EXPECT_FALSE(decoded(Bytes(std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage + 1)));
+}
+
+}  // namespace
+}  // namespace ergocast
