@@ -100,10 +100,8 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   }
   world_.heard = true;
   if (world.roster_revision > revisions_.current) {
-    // A predecessor said it, and of all who live the world alone has heard it: the team waits for
-    // that roster, or for a newer one.
-    revisions_.current = world.roster_revision;
-    change();
+    world_.newest_revision = std::max(world_.newest_revision, world.roster_revision);
+    if (!world_.newer_since) world_.newer_since = now;
   }
   if (world.header.tick < world_.tick) return;
   if (world.header.tick > world_.tick) world_.tick_since = now;
@@ -267,6 +265,7 @@ void Coordinator::advance(Instant now, Outbox& out) {
 void Coordinator::lead(Instant now, Outbox& out) {
   if (!said_.first) said_.first = now;
   note_silences(now);
+  speak_above_the_dead(now);
   if (state_ == MissionState::kRunning) review_coverage(now);
   if (state_ == MissionState::kWaiting) check_admission(now);
   if (state_ == MissionState::kRunning && timing().pace == Pace::kLockstep) check_tick(now);

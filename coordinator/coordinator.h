@@ -109,6 +109,8 @@ class Coordinator {
     Tick tick = 0;
     Instant tick_since{};
     std::int64_t revision = 0;  // of the roster that the tick is flown by
+    std::int64_t newest_revision = 0;    // of any state, …
+    std::optional<Instant> newer_since;  // … and since when it is newer than ours
     std::int64_t missed_deadlines = 0;
     std::map<AgentId, Tick> answered;
     Incarnation begun = 0;         // the life that asked last where the team is, …
@@ -151,6 +153,7 @@ class Coordinator {
   std::string led_by_rival() const;
   void leave(std::string reason, Instant now);
   void begin_own();
+  void speak_above_the_dead(Instant now);
   void lead(Instant now, Outbox& out);
   void note_silences(Instant now);
   void review_coverage(Instant now);

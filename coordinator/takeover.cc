@@ -37,6 +37,17 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
   change();
 }
 
+/// A predecessor may have said a revision that the world alone has heard: the team waits for that
+/// roster, or for a newer one. A coordinator that took over from us and lives says it, too, and the
+/// world may be the first to name it. So that one has time to be heard.
+void Coordinator::speak_above_the_dead(Instant now) {
+  if (world_.newest_revision <= revisions_.current) return world_.newer_since.reset();
+  if (rival_lives(now) || now - *world_.newer_since <= silence_of(kCoordinator)) return;
+  revisions_.current = world_.newest_revision;
+  world_.newer_since.reset();
+  change();
+}
+
 void Coordinator::on(const TeamStatus& theirs, const Arrival& arrival) {
   if (arrival.fresh) rival_ = theirs;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Holds a mission against its limits, field by field.
 #include "core/mission_limits.h"
 
 #include <algorithm>

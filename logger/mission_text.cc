@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Writes a mission as Protobuf's text format, in the order of scenario.proto.
 #include "logger/mission_text.h"
 
 #include "core/mission_limits.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Follows what the logger acknowledges, and keeps the states that it may still lack.
 #include "sim/record_window.h"
 
 #include <utility>

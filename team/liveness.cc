@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Numbers how long each kind of process may be silent.
 #include "team/liveness.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Decides which message counts, and counts those that do not.
 #include "team/participant.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Encodes a mission with Protobuf lite, and checks every field of what the network brings.
 #include "team/plan.h"
 
 #include <xxhash.h>

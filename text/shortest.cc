@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Writes a number with the fewest digits that read back as it.
 #include "text/shortest.h"
 
 #include <charconv>

@@ -391,9 +391,26 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanWhatTheWorldAloneHasHeardOfTheDead) 
   WorldState world = world_where(0, {0, 0});
   world.roster_revision = before + 8;
   give(coordinator, world, at(2s));
-  EXPECT_GT(said_by(advance(coordinator, at(2s))).revision, before + 8);
-  give(coordinator, world, at(2100ms));
-  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(2100ms))).empty()) << "once is enough";
+  EXPECT_EQ(said_by(advance(coordinator, at(3s))).revision, before) << "who said it may live";
+  EXPECT_GT(said_by(advance(coordinator, at(3600ms))).revision, before + 8);
+  give(coordinator, world, at(3700ms));
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(3700ms))).empty()) << "once is enough";
+}
+
+TEST(TakenOver, ACoordinatorYieldsThoughTheWorldIsTheFirstToNameTheNewersRevision) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  WorldState world = world_where(0, {0, 0});
+  world.roster_revision = 1000;
+  give(coordinator, world, at(1s));
+  for (auto now = 1100ms; now < 4s; now += 200ms) {
+    const Outbox out = advance(coordinator, at(now));
+    for (const auto& part : only<MissionPart>(out)) ASSERT_LT(part.revision, 1000);
+    give(coordinator, alive(kSuccessorLife, now.count()), at(now));
+  }
+  MissionPart newer = memory_of(1000);
+  newer.header.incarnation = kSuccessorLife;
+  give(coordinator, newer, at(4s));
+  EXPECT_EQ(coordinator.reason(), "another coordinator has taken the mission over");
 }
 
 TEST(TakenOver, ARecordedSignOfLifeIsNone) {
