@@ -6,10 +6,10 @@
 #include <exception>
 #include <stdexcept>
 
-#include "report/figures.h"
-#include "report/statistics.h"
 #include "lab/studies/panels.h"
 #include "lab/studies/table.h"
+#include "report/figures.h"
+#include "report/statistics.h"
 
 namespace ergocast::studies {
 namespace {
@@ -169,7 +169,7 @@ void draw_decay(const fs::path& folder, const std::string& group, const fs::path
 
 // ---- one constant varied ----
 
-/// A constant, and the default that it is compared with.
+/// A constant, and the value that the others are compared with: the default or next to it.
 struct Ladder {
   const char *study, *title, *usual;
 };
@@ -186,23 +186,19 @@ const StudyRuns& usual(const Ladder& ladder, const Points& points, const StudyRu
   return named(points, names);
 }
 
-void print_ladder(const Ladder& ladder, const Points& points) {
+/// All constants in one table, in the order of kLadders.
+void print_ladders(const std::vector<Points>& studies) {
   std::printf(
-      "| %s | start, time [s] | runs | φ² | against its value at %s | left within 15 s | mean "
-      "speed [m/s] "
-      "|\n|---|---|---|---|---|---|---|\n",
-      ladder.title, ladder.usual);
-  for (const StudyRuns& runs : points) {
-    const std::vector<double> times_s = runs.escape_times_s();
-    char left[32] = "";
-    if (!times_s.empty()) {
-      std::snprintf(left, sizeof left, "%.1f %%", 100 * share_within(times_s, kSoon_s));
+      "| constant | value | start, T [s] | runs | φ² | against the usual value | mean speed [m/s] "
+      "|\n|---|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    for (const StudyRuns& runs : studies[i]) {
+      std::printf("| %s | %s | %s, %s | %zu | %.2e | %s | %.1f |\n", kLadders[i].title,
+                  runs.names.at(1).c_str(), runs.names.front().c_str(), runs.names.at(2).c_str(),
+                  runs.of(kMetric).size(), geometric_mean(runs.of(kMetric)),
+                  text(against(runs, usual(kLadders[i], studies[i], runs))).c_str(),
+                  mean(runs.of("speed_mean_mps")));
     }
-    std::printf("| %s | %s, %s | %zu | %.2e | %s | %s | %.1f |\n", runs.names.at(1).c_str(),
-                runs.names.front().c_str(), runs.names.at(2).c_str(), runs.of(kMetric).size(),
-                geometric_mean(runs.of(kMetric)),
-                text(against(runs, usual(ladder, points, runs))).c_str(), left,
-                mean(runs.of("speed_mean_mps")));
   }
   std::printf("\n");
 }
@@ -243,19 +239,23 @@ void draw_ladder(const Ladder& ladder, const Points& points, const fs::path& ima
   write_figure(images / (name + ".svg"), figure(name, ladder.title, key, {panel}));
 }
 
-/// What is off or on.
-void print_choice(const std::string& choice, const Points& points) {
-  std::printf("| %s | runs | off | on | on against off |\n|---|---|---|---|---|\n", choice.c_str());
+/// A field that is off or on.
+struct Choice {
+  const char *study, *field;
+};
+constexpr Choice kChoices[] = {{"pairs", "`paired_pushes`"}, {"ends", "`ends_with_plan`"}};
+
+void print_choice(const Choice& choice, const Points& points) {
   for (const StudyRuns& off : points) {
     if (off.names.at(1) != "false") continue;
     std::vector<std::string> names = off.names;
     names[1] = "true";
     const StudyRuns& on = named(points, names);
     names.erase(names.begin() + 1);
-    std::printf("| %s | %zu | %s | %s | %s |\n", joined(names).c_str(), on.of(kMetric).size(),
-                spread(off).c_str(), spread(on).c_str(), text(against(on, off)).c_str());
+    std::printf("| %s | %s | %zu | %s | %s | %s |\n", choice.field, joined(names).c_str(),
+                on.of(kMetric).size(), spread(off).c_str(), spread(on).c_str(),
+                text(against(on, off)).c_str());
   }
-  std::printf("\n");
 }
 
 /// The power of t that fits φ² over the last decade of time.
@@ -299,13 +299,14 @@ void run(const fs::path& folder, const fs::path& images) {
   print_slopes(folder, {"published", squared});
   draw_decay(folder, "long", images);
   print_escapes(study("escape-default"), study("escape-old"), study("escape-paper"));
-  for (const Ladder& ladder : kLadders) {
-    const Points points = study(ladder.study);
-    print_ladder(ladder, points);
-    if (&ladder == kLadders) draw_ladder(ladder, points, images);
-  }
-  print_choice("`paired_pushes`; start, T [s]", study("pairs"));
-  print_choice("`ends_with_plan`; start, T [s]", study("ends"));
+  std::vector<Points> ladders;
+  for (const Ladder& ladder : kLadders) ladders.push_back(study(ladder.study));
+  print_ladders(ladders);
+  draw_ladder(kLadders[0], ladders[0], images);
+  std::printf(
+      "| field | start, T [s] | runs | off | on | on against off |\n|---|---|---|---|---|---|\n");
+  for (const Choice& choice : kChoices) print_choice(choice, study(choice.study));
+  std::printf("\n");
 }
 
 }  // namespace
