@@ -36,7 +36,7 @@ Agent::InMission::InMission(const Mission& mission, const Author& self, Tick joi
       table(mission.basis, mission.timing.dt_s, joined),
       controller(mission),
       anti_entropy(self, mission.seed, mission.timing.dt_s),
-      foreseen(Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y)),
+      foreseen(Coefficients::Zero(mission.basis.mode_count())),
       team_coverage(foreseen) {
   if (mission.law.anticipation > 0) {
     forecast.emplace(mission, self);
@@ -182,7 +182,7 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
     if (vehicle.id != me_.id()) continue;
     // From before we were admitted, repeated for the logger: our predecessor drove then.
     if (world.header.tick < flight->active_from && vehicle.answered_tick > step.answered) return;
-    if (!mission().domain.contains(vehicle.position_m.head<2>())) {
+    if (!mission().domain.contains(vehicle.position_m)) {
       return count_refused(Refusal::kRange);
     }
     const Tick newest = flight->pending ? flight->pending->tick : step.tick;
@@ -242,7 +242,7 @@ void Agent::finish(bool failed, std::string reason, bool stand_still) {
   Finished end{failed, std::move(reason), {}, {}};
   if (InMission* const flight = in_mission()) {
     if (stand_still) {  // the last word to the vehicle, whose driver may know no STOP
-      flight->last_command.position_m << flight->step.x_m, 0;
+      flight->last_command.position_m = flight->step.x_m;
       flight->last_command.velocity_mps.setZero();
       me_.publish(Bus::kCommand, flight->last_command, flight->step.tick, end.last_words);
     }

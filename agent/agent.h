@@ -100,7 +100,7 @@ class Agent {
   struct Step {
     Tick tick = -1, answered = -1;
     std::int64_t roster_revision = 0;  // of the world, at `tick`
-    Eigen::Vector2d x_m{0, 0};
+    Eigen::Vector3d x_m{0, 0, 0};
     std::optional<BasisAt> basis_at;
     Instant begun{};
     bool repeat_wanted = false;

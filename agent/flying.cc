@@ -43,7 +43,7 @@ void Agent::note_places(InMission& flight, const WorldState& world) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (!radio_.hears(me_.id(), vehicle.id)) continue;
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
-    flight.forecast->see(vehicle.id, tick, vehicle.position_m.head<2>());
+    flight.forecast->see(vehicle.id, tick, vehicle.position_m);
   }
 }
 
@@ -67,7 +67,7 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   step.tick = view.tick;
   step.begun = now;
   step.roster_revision = view.roster_revision;
-  step.x_m = view.position_m.head<2>();
+  step.x_m = view.position_m;
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
   if (step.tick < flight.active_from) return true;
@@ -144,12 +144,11 @@ void Agent::answer(InMission& flight, Outbox& out) {
     table.average(flight.foreseen);
   }
   flight.controller.see(flight.foreseen);
-  const Eigen::Vector2d velocity =
-      flight.controller.command(me_.id(), step.tick, step.x_m, *step.basis_at);
   flight.command_before = flight.last_command;
   flight.last_command.header.tick = step.tick;
-  flight.last_command.position_m << step.x_m, 0;
-  flight.last_command.velocity_mps << velocity, 0;
+  flight.last_command.position_m = step.x_m;
+  flight.last_command.velocity_mps =
+      flight.controller.command(me_.id(), step.tick, step.x_m, *step.basis_at);
   step.answered = step.tick;
   me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
 }

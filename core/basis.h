@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cosine basis (2) on a rectangle, its gradient, and the weights that compare coefficients.
+// The cosine basis (2) on a box, its gradient, and the weights that compare coefficients.
+//
+// Places have three coordinates. A plane has one mode along z, f_lmn = f_mn for l = 0, and its
+// numbers are bit for bit those of the two-dimensional sums.
 //
 // Equation numbers are those of Lee & Martinez, "Breaking Symmetry-Induced Degeneracy in
 // Multi-Agent Ergodic Coverage via Stochastic Spectral Control".
@@ -13,36 +16,55 @@
 
 namespace ergocast {
 
-/// One number per mode, modes_x × modes_y; row m, column n belongs to f_mn. Row-major, so that
-/// data()[m · modes_y + n] is the order of the wire.
-using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+/// One number per mode in the order of the wire: f_lmn at (l · modes_x + m) · modes_y + n, where l
+/// counts half waves along z, m along x and n along y.
+using Coefficients = Eigen::VectorXd;
+
+/// Numbers of a plane's modes; row m, column n belongs to f_mn.
+using PlaneCoefficients = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 enum class SobolevForm {
   kSquaredNorm,  ///< λ = (1 + |k|²)^−s
   kNorm,         ///< λ = (1 + |k|)^−s
 };
 
-/// Which modes are used and how they are weighed; |k|² = m² + n².
+/// Which modes are used and how they are weighed; |k|² = l² + m² + n².
 struct Basis {
   int modes_x = 1;
   int modes_y = 1;
+  int modes_z = 1;  ///< of a plane 1
   SobolevForm sobolev_form = SobolevForm::kSquaredNorm;
   double sobolev_exponent = 1.5;
-  /// Whether f is divided by h_k = sqrt(Π L_i · (1/2)^[k_i > 0]) where coefficients are compared.
+  /// Whether f is divided by h_k = sqrt(Π L_i · (1/2)^[k_i > 0]) where coefficients are compared;
+  /// the product is over x and y in a plane.
   bool normalized = false;
 
-  int mode_count() const { return modes_x * modes_y; }
+  int mode_count() const { return modes_x * modes_y * modes_z; }
+  bool planar() const { return modes_z == 1; }
 };
 
-/// Cosines of every mode along both axes at one point: all that f needs.
+/// The numbers of the modes l = 0 as a matrix: in a plane all of them.
+inline Eigen::Map<const PlaneCoefficients> in_plane(const Coefficients& coefficients,
+                                                    const Basis& basis) {
+  return {coefficients.data(), basis.modes_x, basis.modes_y};
+}
+inline Eigen::Map<PlaneCoefficients> in_plane(Coefficients& coefficients, const Basis& basis) {
+  return {coefficients.data(), basis.modes_x, basis.modes_y};
+}
+/// A plane's numbers in the order of the wire.
+inline Coefficients in_wire_order(const PlaneCoefficients& coefficients) {
+  return coefficients.reshaped<Eigen::RowMajor>();
+}
+
+/// Cosines of every mode along each axis at one point: all that f needs.
 struct CosinesAt {
   using Table = std::array<double, kMaxModesPerAxis>;
-  Table cos_x, cos_y;  ///< cos(mπx/Lx), cos(nπy/Ly)
+  Table cos_x, cos_y, cos_z;  ///< cos(mπx/Lx), cos(nπy/Ly), cos(lπz/Lz); of one mode {1}
 
-  /// @pre x_m is finite; up to kMaxModesPerAxis modes an axis.
-  /// Outside the domain f continues, even about each edge and periodic.
-  /// By recurrence from one cosine and sine an axis: |cos| may exceed 1 by about 1e-15 · modes.
-  CosinesAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
+  /// @pre x_m is finite; up to kMaxModesPerAxis modes an axis, one along z if the domain is a
+  /// plane. Outside the domain f continues, even about each side and periodic. By recurrence from
+  /// one cosine and sine an axis: |cos| may exceed 1 by about 1e-15 · modes.
+  CosinesAt(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis);
 
  protected:
   CosinesAt() = default;
@@ -50,39 +72,40 @@ struct CosinesAt {
 
 /// With their derivatives: all that f and ∇f need.
 struct BasisAt : CosinesAt {
-  Table slope_x, slope_y;  ///< −(mπ/Lx) sin(mπx/Lx) …  [1/m]
+  Table slope_x, slope_y, slope_z;  ///< −(mπ/Lx) sin(mπx/Lx) …  [1/m]; of one mode {0}
 
   /// @pre as for CosinesAt, whose bits it has.
-  BasisAt(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
+  BasisAt(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis);
 };
 
-/// f_mn(x) of every mode, (2): not divided by h_k.
-Coefficients basis_values(const Eigen::Vector2d& x_m, const Rectangle& domain, const Basis& basis);
+/// f_lmn(x) of every mode, (2): not divided by h_k.
+Coefficients basis_values(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis);
 
-/// sums(m,n) = f_mn · dt_s. `sums` points to mode_count() doubles.
+/// sums(l,m,n) = f_lmn · dt_s. `sums` points to mode_count() doubles.
 void set_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums);
 
-/// sums(m,n) += f_mn · dt_s, for the running sums of (4). `sums` points to mode_count() doubles.
+/// sums(l,m,n) += f_lmn · dt_s, for the running sums of (4). `sums` points to mode_count() doubles.
 void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums);
 
-/// Σ_mn weights(m,n) ∇f_mn: (6) when weights are λ_mn (c_mn − μ_mn) [unit of weights per metre].
+/// Σ weights(l,m,n) ∇f_lmn: (6) when weights are λ_k (c_k − μ_k) [unit of weights per metre].
 /// `weights` points to mode_count() doubles. The order of the sum is the same on every processor.
-Eigen::Vector2d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights);
+/// In a plane the part along z is 0.
+Eigen::Vector3d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights);
 
-/// weighted_gradient() and its Jacobian, Σ_mn weights(m,n) ∂²f_mn [its unit per metre].
+/// weighted_gradient() and its Jacobian, Σ weights(l,m,n) ∂²f_lmn [its unit per metre].
 struct FieldAt {
-  Eigen::Vector2d gradient{0, 0};                        ///< bit for bit weighted_gradient()
-  Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();     ///< symmetric
+  Eigen::Vector3d gradient{0, 0, 0};                  ///< bit for bit weighted_gradient()
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  ///< symmetric; in a plane 0 along z
 };
-FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Rectangle& domain,
+FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Box& domain,
                        const double* weights);
 
-/// λ_mn, divided by h_mn² where the basis is normalised: the one weight of both φ² and (6).
-Coefficients sobolev_weights(const Basis& basis, const Rectangle& domain);
+/// λ_k, divided by h_k² where the basis is normalised: the one weight of both φ² and (6).
+Coefficients sobolev_weights(const Basis& basis, const Box& domain);
 
-/// g_mn with  mean over the domain of ‖Σ a_mn ∇f_mn‖² = Σ a_mn² g_mn  (Parseval) [1/m²]:
-/// [(mπ/Lx)² η_n + (nπ/Ly)² η_m] / 2, η_0 = 1, else ½.
-Coefficients gradient_energies(const Basis& basis, const Rectangle& domain);
+/// g_k with  mean over the domain of ‖Σ a_k ∇f_k‖² = Σ a_k² g_k  (Parseval) [1/m²]:
+/// [(mπ/Lx)² η_n η_l + (nπ/Ly)² η_m η_l + (lπ/Lz)² η_m η_n] / 2, η_0 = 1, else ½.
+Coefficients gradient_energies(const Basis& basis, const Box& domain);
 
 /// φ² = Σ λ_k (c_k − μ_k)² / h_k², `weights` as sobolev_weights() gives them.
 double ergodic_metric(const Coefficients& coverage, const Coefficients& target,

@@ -12,12 +12,13 @@
 
 namespace ergocast {
 
-Eigen::Vector2d smooth_input(const Eigen::Vector2d& spectral_gradient, double epsilon,
+Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
                              double u_max_mps) {
   // hypot, because B is 1e-4 and falling: its square would lose the smallest residuals.
-  const double length =
-      std::hypot(std::hypot(spectral_gradient.x(), spectral_gradient.y()), epsilon);
-  if (length == 0) return {0, 0};
+  const double b_z = spectral_gradient.z();
+  const double length = std::hypot(std::hypot(spectral_gradient.x(), spectral_gradient.y()),
+                                   b_z == 0 ? epsilon : std::hypot(b_z, epsilon));
+  if (length == 0) return {0, 0, 0};
   // Divided first: u_max / length overflows where B is next to nothing.
   return spectral_gradient / length * -u_max_mps;
 }
@@ -32,7 +33,7 @@ Controller::Controller(const Mission& mission)
       target_(mission.target_coefficients),
       weights_(sobolev_weights(mission.basis, mission.domain)),
       energies_(gradient_energies(mission.basis, mission.domain)),
-      residual_(Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y)) {
+      residual_(Coefficients::Zero(mission.basis.mode_count())) {
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
 }
 
@@ -64,7 +65,7 @@ double Controller::set_residual(const Coefficients& coverage) {
   return std::sqrt((partial[0] + partial[1]) + (partial[2] + partial[3]));
 }
 
-Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m,
+Eigen::Vector3d Controller::command(AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
                                     const BasisAt& at) {
   FieldAt field;
   if (law_.perturbation == Perturbation::kAdaptive) {
@@ -73,28 +74,29 @@ Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vecto
     field.gradient = weighted_gradient(at, basis_, residual_.data());
   }
   spectral_gradient_ = field.gradient;
-  Eigen::Vector2d velocity = smooth_input(field.gradient, epsilon_, law_.u_max_mps) -
+  Eigen::Vector3d velocity = smooth_input(field.gradient, epsilon_, law_.u_max_mps) -
                              law_.contraction_gain_per_s * (x_m - law_.contraction_center_m);
+  if (domain_.planar()) velocity.z() = 0;  // instead of −0
   if (law_.greatest_noise() > 0) {
-    const Eigen::Vector2d xi =
-        normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
-                    static_cast<std::uint64_t>(tick));
-    const Eigen::Vector2d eta = push(agent, tick / push_ticks_);
+    const Eigen::Vector3d xi =
+        normal_in(domain_, seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
+                  static_cast<std::uint64_t>(tick));
+    const Eigen::Vector3d eta = push(agent, tick / push_ticks_);
     velocity += perturbation(scale_, epsilon_, field, xi, eta);
   }
   return velocity;
 }
 
 /// η of one stretch of push_ticks_ ticks.
-Eigen::Vector2d Controller::push(AgentId agent, Tick stretch) {
+Eigen::Vector3d Controller::push(AgentId agent, Tick stretch) {
   const AgentId drawn = law_.paired_pushes ? agent - agent % 2 : agent;
   Push& last = pushes_[static_cast<std::uint32_t>(drawn) % pushes_.size()];
   if (last.drawn != drawn || last.stretch != stretch) {
     last = {drawn, stretch,
-            normal_pair(seed_, Purpose::kPush, static_cast<std::uint32_t>(drawn),
-                        static_cast<std::uint64_t>(stretch))};
+            normal_in(domain_, seed_, Purpose::kPush, static_cast<std::uint32_t>(drawn),
+                      static_cast<std::uint64_t>(stretch))};
   }
-  return drawn == agent ? last.eta : Eigen::Vector2d(-last.eta);
+  return drawn == agent ? last.eta : Eigen::Vector3d(-last.eta);
 }
 
 double Controller::metric(const Coefficients& coverage) const {

@@ -14,7 +14,7 @@ namespace ergocast {
 
 /// u = −u_max B / √(‖B‖² + ε²), (8); for ε = 0 the classical law (5), whose limit we set to u = 0
 /// where B = 0.  ‖u‖ ≤ u_max up to rounding.
-Eigen::Vector2d smooth_input(const Eigen::Vector2d& spectral_gradient, double epsilon,
+Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
                              double u_max_mps);
 
 /// What one agent does with the team's coverage. Holds the mission's constant tables and a
@@ -29,11 +29,12 @@ class Controller {
 
   /// The velocity command of (10) at position `x_m`:
   ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.
+  /// In a plane v_z is 0.
   /// @param at  the basis at `x_m`
-  Eigen::Vector2d command(AgentId agent, Tick tick, const Eigen::Vector2d& x_m, const BasisAt& at);
+  Eigen::Vector3d command(AgentId agent, Tick tick, const Eigen::Vector3d& x_m, const BasisAt& at);
 
   /// B of (6) for the last command() [1/m].
-  const Eigen::Vector2d& spectral_gradient() const { return spectral_gradient_; }
+  const Eigen::Vector3d& spectral_gradient() const { return spectral_gradient_; }
   /// The ε that belongs to the last coverage seen.
   double epsilon() const { return epsilon_; }
 
@@ -45,21 +46,21 @@ class Controller {
   struct Push {
     AgentId drawn = kUnassigned;
     Tick stretch = -1;
-    Eigen::Vector2d eta{0, 0};
+    Eigen::Vector3d eta{0, 0, 0};
   };
 
-  Eigen::Vector2d push(AgentId agent, Tick stretch);
+  Eigen::Vector3d push(AgentId agent, Tick stretch);
   /// Sets the residual λ (c − μ); returns the RMS over the domain of ‖Σ λ (c − μ) ∇f‖ [1/m].
   double set_residual(const Coefficients& coverage);
 
-  Rectangle domain_;
+  Box domain_;
   Basis basis_;
   ControlLaw law_;
   std::uint64_t seed_;
   PerturbationScale scale_;
   Tick push_ticks_;
   Coefficients target_, weights_, energies_, residual_;
-  Eigen::Vector2d spectral_gradient_{0, 0};
+  Eigen::Vector3d spectral_gradient_{0, 0, 0};
   double epsilon_ = 0;
   std::array<Push, kMaxAgents> pushes_;  // the last of each agent: one is held for many ticks
 };

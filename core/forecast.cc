@@ -14,16 +14,24 @@ namespace {
 using Modes = Forecast::Modes;
 
 // What these functions call sum is a running sum over rows, `before` what it was before this row:
-// it may be the same table. All tables begin with the mode 0, 0.
+// it may be the same table. All tables begin with the first mode.
 
 /// Calls each(k, f dt) for every k of the modes, at the place of these cosines.
 template <class Each>
-ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, int modes_y, double dt_s, Modes modes,
-                                        const Each& each) {
-  const int end = modes.first + modes.count;
-  for (int m = modes.first / modes_y, k = modes.first; k < end; ++m) {
-    const int row = m * modes_y, row_end = std::min(row + modes_y, end);
-    const double along_x = at.cos_x[m] * dt_s;
+ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, const Basis& basis, double dt_s,
+                                        Modes modes, const Each& each) {
+  const int modes_y = basis.modes_y, end = modes.first + modes.count;
+  int l = 0, m = modes.first / modes_y;
+  int row = m * modes_y;
+  for (; m >= basis.modes_x; m -= basis.modes_x) ++l;
+  double along_z = at.cos_z[l] * dt_s;
+  for (int k = modes.first; k < end; ++m, row += modes_y) {
+    if (m == basis.modes_x) {  // the next slab
+      m = 0;
+      along_z = at.cos_z[++l] * dt_s;
+    }
+    const int row_end = std::min(row + modes_y, end);
+    const double along_x = at.cos_x[m] * along_z;
     ERGOCAST_INDEPENDENT
     for (int n = k - row; n < row_end - row; ++n) each(row + n, along_x * at.cos_y[n]);
     k = row_end;
@@ -32,8 +40,8 @@ ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, int modes_y, double
 
 /// S += f dt.
 ERGOCAST_VECTORIZED
-void add_gain(const CosinesAt& at, int modes_y, double dt_s, Modes modes, double* sums) {
-  for_gains(at, modes_y, dt_s, modes, [=](int k, double gain) { sums[k] += gain; });
+void add_gain(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes, double* sums) {
+  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { sums[k] += gain; });
 }
 
 /// sum = before + S.
@@ -55,17 +63,17 @@ void add_gaining(const double* sums, const double* gains, double share, Modes mo
 
 /// sum = before + S + share · f dt.
 ERGOCAST_VECTORIZED
-void add_staying(const CosinesAt& at, int modes_y, double dt_s, const double* sums, double share,
-                 Modes modes, const double* before, double* sum) {
-  for_gains(at, modes_y, dt_s, modes,
+void add_staying(const CosinesAt& at, const Basis& basis, double dt_s, const double* sums,
+                 double share, Modes modes, const double* before, double* sum) {
+  for_gains(at, basis, dt_s, modes,
             [=](int k, double gain) { sum[k] = before[k] + (sums[k] + share * gain); });
 }
 
 /// S += f dt, and then sum = before + S + share · f dt.
 ERGOCAST_VECTORIZED
-void add_arriving(const CosinesAt& at, int modes_y, double dt_s, double* sums, double share,
+void add_arriving(const CosinesAt& at, const Basis& basis, double dt_s, double* sums, double share,
                   Modes modes, const double* before, double* sum) {
-  for_gains(at, modes_y, dt_s, modes, [=](int k, double gain) {
+  for_gains(at, basis, dt_s, modes, [=](int k, double gain) {
     sums[k] += gain;
     sum[k] = before[k] + (sums[k] + share * gain);
   });
@@ -113,7 +121,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       earlier_(nothing_),
       later_(nothing_) {}
 
-void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
+void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   if (!reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
   if (!domain_.contains(x_m)) return;
   auto& places = tracks_[agent].places;
@@ -188,8 +196,7 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
 void Forecast::add_what_is_due(Track& track) const {
   for (std::size_t b = 0; b < track.due.size(); ++b) {
     if (!track.due[b]) continue;
-    add_gain(*track.newest, basis_.modes_y, dt_s_, modes_of(static_cast<int>(b), 1),
-             track.sums.data());
+    add_gain(*track.newest, basis_, dt_s_, modes_of(static_cast<int>(b), 1), track.sums.data());
     track.due[b] = 0;
   }
 }
@@ -279,13 +286,12 @@ void Forecast::add(const Term& term, Modes modes, const double* before, double* 
   Track* track = term.track;
   const auto block = modes.first / kBlockSize;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
-    add_arriving(*track->newest, basis_.modes_y, dt_s_, track->sums.data(), term.share, modes,
-                 before, sum);
+    add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before, sum);
     std::fill_n(track->due.begin() + block, (modes.count + kBlockSize - 1) / kBlockSize, 0);
   } else if (term.share == 0) {
     add_sums(term.sums, modes, before, sum);
   } else if (track != nullptr) {
-    add_staying(*track->newest, basis_.modes_y, dt_s_, term.sums, term.share, modes, before, sum);
+    add_staying(*track->newest, basis_, dt_s_, term.sums, term.share, modes, before, sum);
   } else {
     add_gaining(term.sums, term.gains, term.share, modes, before, sum);
   }

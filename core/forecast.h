@@ -45,7 +45,7 @@ class Forecast {
 
   /// A vehicle was at `x_m` at `tick`. Without effect: without dead reckoning, for our own vehicle,
   /// for a tick that is already known, outside the domain.
-  void see(AgentId agent, Tick tick, const Eigen::Vector2d& x_m);
+  void see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
 
   /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if its author
   /// is active in the roster without a newer incarnation, the row counts, and its gains are
@@ -57,7 +57,7 @@ class Forecast {
  private:
   struct Place {
     Tick tick;
-    Eigen::Vector2d x_m;
+    Eigen::Vector3d x_m;
   };
   /// A row since its last blocks. Places belong to the vehicle, not to an incarnation.
   struct Track {
@@ -73,7 +73,7 @@ class Forecast {
   };
   /// One row's part in one block.
   struct Term {
-    const double *sums, *gains;        // from the mode 0, 0 on
+    const double *sums, *gains;        // from the first mode on
     Track* track;                      // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
@@ -93,7 +93,7 @@ class Forecast {
   Modes modes_of(int block, int count) const;
 
   Author self_;
-  Rectangle domain_;
+  Box domain_;
   Basis basis_;
   double dt_s_;
   LookAhead look_ahead_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Folds a coordinate back into its side, so that an edge reflects any number of crossings at
+// Folds each coordinate back into its interval, so that a side reflects any number of crossings at
 // once.
 #include "core/geometry.h"
 
@@ -22,22 +22,38 @@ double reflect_along(double x, double low, double length) {
 
 }  // namespace
 
-bool Rectangle::contains(const Eigen::Vector2d& x_m) const {
-  const Eigen::Vector2d high_m = origin_m + size_m;
-  return x_m.x() >= origin_m.x() && x_m.x() <= high_m.x() && x_m.y() >= origin_m.y() &&
-         x_m.y() <= high_m.y();
+bool Box::contains(const Eigen::Vector3d& x_m) const {
+  const Eigen::Vector3d high_m = origin_m + size_m;
+  const auto within = [&](int axis) {
+    return x_m[axis] >= origin_m[axis] && x_m[axis] <= high_m[axis];
+  };
+  return within(0) && within(1) && (planar() || within(2));
 }
 
-double Rectangle::farthest_distance_m(const Eigen::Vector2d& point_m) const {
-  const Eigen::Vector2d high_m = origin_m + size_m;
-  return std::hypot(std::max(std::abs(origin_m.x() - point_m.x()), std::abs(high_m.x() - point_m.x())),
-                    std::max(std::abs(origin_m.y() - point_m.y()), std::abs(high_m.y() - point_m.y())));
+double Box::shortest_side_m() const {
+  const double in_plane_m = std::min(size_m.x(), size_m.y());
+  return planar() ? in_plane_m : std::min(in_plane_m, size_m.z());
 }
 
-Eigen::Vector2d reflect(const Eigen::Vector2d& x_m, const Rectangle& domain) {
+double Box::content() const {
+  const double area_m2 = size_m.x() * size_m.y();
+  return planar() ? area_m2 : area_m2 * size_m.z();
+}
+
+double Box::farthest_distance_m(const Eigen::Vector3d& point_m) const {
+  const Eigen::Vector3d high_m = origin_m + size_m;
+  const Eigen::Vector3d away_m =
+      (origin_m - point_m).cwiseAbs().cwiseMax((high_m - point_m).cwiseAbs());
+  const double in_plane_m = std::hypot(away_m.x(), away_m.y());
+  return planar() ? in_plane_m : std::hypot(in_plane_m, away_m.z());
+}
+
+Eigen::Vector3d reflect(const Eigen::Vector3d& x_m, const Box& domain) {
   ERGOCAST_REQUIRE(x_m.allFinite());
-  return {reflect_along(x_m.x(), domain.origin_m.x(), domain.size_m.x()),
-          reflect_along(x_m.y(), domain.origin_m.y(), domain.size_m.y())};
+  const auto along = [&](int axis) {
+    return reflect_along(x_m[axis], domain.origin_m[axis], domain.size_m[axis]);
+  };
+  return {along(0), along(1), domain.planar() ? domain.origin_m.z() : along(2)};
 }
 
 }  // namespace ergocast

@@ -1,27 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The domain: a rectangle with its own origin, whose edges reflect.
+// The domain: a box with its own origin, whose sides reflect. A plane is a box of height 0.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace ergocast {
 
-/// Axis-parallel rectangle [origin, origin + size] in metres.
-struct Rectangle {
-  Eigen::Vector2d origin_m{0, 0};
-  Eigen::Vector2d size_m{1, 1};
+/// Axis-parallel box [origin, origin + size] in metres. A box of height 0 is a plane. Nothing moves
+/// along z there: contains() does not look at z, and reflect() returns the plane's.
+struct Box {
+  Eigen::Vector3d origin_m{0, 0, 0};
+  Eigen::Vector3d size_m{1, 1, 0};
 
-  bool contains(const Eigen::Vector2d& x_m) const;
-  Eigen::Vector2d center_m() const { return origin_m + 0.5 * size_m; }
+  bool planar() const { return size_m.z() == 0; }
+  bool contains(const Eigen::Vector3d& x_m) const;
+  Eigen::Vector3d center_m() const { return origin_m + 0.5 * size_m; }
 
-  /// Largest distance from `point_m` to a point of the rectangle: one of the corners.
-  double farthest_distance_m(const Eigen::Vector2d& point_m) const;
+  /// The shortest of the sides along which something moves.
+  double shortest_side_m() const;
+  /// Area of a plane [m²], volume of any other box [m³].
+  double content() const;
+  /// Largest distance from `point_m` to a point of the box: one of the corners.
+  double farthest_distance_m(const Eigen::Vector3d& point_m) const;
 };
 
-/// `x_m` folded back into `domain` at its edges: below the low edge, 2·low − x; above the high
-/// edge, 2·high − x; repeated for steps longer than the domain. Points inside are returned bit for
-/// bit, so that an agent a rounding error away from an edge is not captured by it.
+/// (x, y, 0): a place in the plane z = 0.
+inline Eigen::Vector3d on_ground(const Eigen::Vector2d& x_m) { return {x_m.x(), x_m.y(), 0}; }
+
+/// `x_m` folded back into `domain` at its sides: below the low side, 2·low − x; above the high
+/// side, 2·high − x; repeated for steps longer than the domain. Points inside are returned bit for
+/// bit, so that an agent a rounding error away from a side is not captured by it.
 /// @pre x_m is finite.
-Eigen::Vector2d reflect(const Eigen::Vector2d& x_m, const Rectangle& domain);
+Eigen::Vector3d reflect(const Eigen::Vector3d& x_m, const Box& domain);
 
 }  // namespace ergocast

@@ -16,20 +16,14 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
       edges_(edges),
       table_(mission_.basis, mission_.timing.dt_s),
       look_ahead_(mission_),
-      coverage_(Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y)),
+      coverage_(Coefficients::Zero(mission_.basis.mode_count())),
       earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
       controller_(mission_) {
-  for (const Eigen::Vector2d& start_m : mission_.starts_m) {
+  for (const Eigen::Vector3d& start_m : mission_.starts_m) {
     const Author author{static_cast<AgentId>(agents_.size()), 1};
     table_.add_row(author);
-    agents_.push_back({author,
-                       start_m,
-                       {0, 0},
-                       {0, 0},
-                       BasisAt(start_m, mission_.domain, mission_.basis),
-                       earlier_,
-                       earlier_,
-                       earlier_});
+    agents_.push_back(
+        {author, start_m, {0, 0, 0}, {0, 0, 0}, std::nullopt, earlier_, earlier_, earlier_});
   }
 }
 
@@ -52,7 +46,7 @@ void IdealTeam::step() {
   for (Agent& agent : agents_) {
     if (look_ahead_.any()) foresee(agent);
     agent.v_mps = within_speed_limit(
-        mission_, controller_.command(agent.author.agent, tick_, agent.x_m, agent.at));
+        mission_, controller_.command(agent.author.agent, tick_, agent.x_m, *agent.at));
     agent.b = controller_.spectral_gradient();
   }
   for (Agent& agent : agents_) {
@@ -65,11 +59,11 @@ void IdealTeam::step() {
 /// Everybody's sums of this tick, and what they gained since the last.
 void IdealTeam::sample() {
   for (Agent& agent : agents_) {
-    agent.at = BasisAt(agent.x_m, mission_.domain, mission_.basis);
-    table_.add_sample(agent.author, agent.at);
+    agent.at.emplace(agent.x_m, mission_.domain, mission_.basis);
+    table_.add_sample(agent.author, *agent.at);
     if (!look_ahead_.any()) continue;
     if (mission_.dead_reckoning) {
-      set_basis(agent.at, mission_.basis, mission_.timing.dt_s, agent.gain.data());
+      set_basis(*agent.at, mission_.basis, mission_.timing.dt_s, agent.gain.data());
       continue;
     }
     const double* sums = table_.sums_of(agent.author);
@@ -118,7 +112,7 @@ void IdealTeam::foresee(const Agent& agent) {
 }
 
 Coefficients IdealTeam::coverage() const {
-  Coefficients known = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+  Coefficients known = Coefficients::Zero(mission_.basis.mode_count());
   table_.average(known);
   return known;
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/control.h"
@@ -43,11 +44,11 @@ class IdealTeam {
   double t_s() const { return static_cast<double>(tick_) * mission_.timing.dt_s; }
   std::size_t size() const { return agents_.size(); }
   /// Where an agent is now.
-  const Eigen::Vector2d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
+  const Eigen::Vector3d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
   /// Its velocity in the last step: the command, cut to the speed limit.
-  const Eigen::Vector2d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
+  const Eigen::Vector3d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
-  const Eigen::Vector2d& b(std::size_t agent) const { return agents_[agent].b; }
+  const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }
   /// c_k of the last step, and its φ².
   Coefficients coverage() const;
   double metric() const { return controller_.metric(coverage()); }
@@ -55,8 +56,8 @@ class IdealTeam {
  private:
   struct Agent {
     Author author;
-    Eigen::Vector2d x_m{0, 0}, v_mps{0, 0}, b{0, 0};
-    BasisAt at;
+    Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, b{0, 0, 0};
+    std::optional<BasisAt> at;  // x_m
     std::vector<double> said;   // its sums a tick ago
     std::vector<double> gain;   // since then
     std::vector<double> later;  // what all later agents will have covered

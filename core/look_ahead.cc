@@ -28,16 +28,23 @@ double unit_variance(int modes, const Mu& mu) {
 
 }  // namespace
 
-double target_spread_m(const Coefficients& target, const Rectangle& domain) {
-  const double along_x = unit_variance(static_cast<int>(target.rows()), [&](int m) { return target(m, 0); });
-  const double along_y = unit_variance(static_cast<int>(target.cols()), [&](int n) { return target(0, n); });
-  return std::hypot(domain.size_m.x() * std::sqrt(along_x), domain.size_m.y() * std::sqrt(along_y));
+double target_spread_m(const Coefficients& target, const Basis& basis, const Box& domain) {
+  // From a mode along one axis to the next, in the order of the wire.
+  const int step_x = basis.modes_y, step_z = basis.modes_x * basis.modes_y;
+  const auto deviation_m = [&](int axis, int modes, int step) {
+    return domain.size_m[axis] *
+           std::sqrt(unit_variance(modes, [&](int mode) { return target[mode * step]; }));
+  };
+  const double in_plane_m =
+      std::hypot(deviation_m(0, basis.modes_x, step_x), deviation_m(1, basis.modes_y, 1));
+  return std::hypot(in_plane_m, deviation_m(2, basis.modes_z, step_z));
 }
 
 LookAhead::LookAhead(const Mission& mission)
     : dt_s_(mission.timing.dt_s),
       alone_s_(mission.law.anticipation *
-               target_spread_m(mission.target_coefficients, mission.domain) / mission.law.u_max_mps),
+               target_spread_m(mission.target_coefficients, mission.basis, mission.domain) /
+               mission.law.u_max_mps),
       end_tick_(mission.law.ends_with_plan ? mission.timing.tick_count
                                            : std::numeric_limits<Tick>::max()),
       longest_period_(mission.timing.broadcast_period_ticks) {}

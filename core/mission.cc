@@ -9,25 +9,27 @@
 
 namespace ergocast {
 
-Eigen::Vector2d within_speed_limit(const Mission& mission, const Eigen::Vector2d& v_mps) {
-  if (mission.speed_limit_mps <= 0) return v_mps;
+Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d& v_mps) {
+  Eigen::Vector3d possible_mps = v_mps;
+  if (mission.domain.planar()) possible_mps.z() = 0;
+  if (mission.speed_limit_mps <= 0) return possible_mps;
   // Divided first, so that no length overflows.
-  const double greatest_mps = v_mps.cwiseAbs().maxCoeff();
-  if (greatest_mps == 0) return v_mps;
-  const Eigen::Vector2d share = v_mps / greatest_mps;
-  const double length = std::hypot(share.x(), share.y());
-  if (length * greatest_mps <= mission.speed_limit_mps) return v_mps;
+  const double greatest_mps = possible_mps.cwiseAbs().maxCoeff();
+  if (greatest_mps == 0) return possible_mps;
+  const Eigen::Vector3d share = possible_mps / greatest_mps;
+  const double length = std::hypot(std::hypot(share.x(), share.y()), share.z());
+  if (length * greatest_mps <= mission.speed_limit_mps) return possible_mps;
   return share / length * mission.speed_limit_mps;
 }
 
-Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector2d& x_m,
-                      const Eigen::Vector2d& v_mps) {
+Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
+                      const Eigen::Vector3d& v_mps) {
   const double dt_s = mission.timing.dt_s;
-  Eigen::Vector2d next_m = x_m + v_mps * dt_s;
+  Eigen::Vector3d next_m = x_m + v_mps * dt_s;
   if (mission.disturbance_intensity > 0) {
     next_m += mission.disturbance_intensity * std::sqrt(dt_s) *
-              normal_pair(mission.seed, Purpose::kDisturbance, static_cast<std::uint32_t>(id),
-                          static_cast<std::uint64_t>(tick));
+              normal_in(mission.domain, mission.seed, Purpose::kDisturbance,
+                        static_cast<std::uint32_t>(id), static_cast<std::uint64_t>(tick));
   }
   return next_m;
 }
@@ -39,16 +41,14 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick) {
   return tick + period - (tick - turn + period) % period;
 }
 
-Eigen::Vector2d start_of(const Mission& mission, AgentId id) {
+Eigen::Vector3d start_of(const Mission& mission, AgentId id) {
   const auto at = static_cast<std::size_t>(id);
   return at < mission.starts_m.size() ? mission.starts_m[at]
                                       : random_start(mission.domain, mission.seed, id);
 }
 
-Eigen::Vector2d random_start(const Rectangle& domain, std::uint64_t seed, AgentId id) {
-  const Eigen::Vector2d share =
-      uniform_pair(seed, Purpose::kStart, static_cast<std::uint32_t>(id), 0);
-  return domain.origin_m + share.cwiseProduct(domain.size_m);
+Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id) {
+  return uniform_in(domain, seed, Purpose::kStart, static_cast<std::uint32_t>(id), 0);
 }
 
 }  // namespace ergocast

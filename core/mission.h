@@ -31,7 +31,7 @@ struct ControlLaw {
   double noise_intensity = 0;                 ///< σ [m/√s]; adaptive: its least value
   double noise_ceiling = 0;                   ///< adaptive: its greatest value [m/√s]
   double contraction_gain_per_s = 0;          ///< k
-  Eigen::Vector2d contraction_center_m{0, 0};
+  Eigen::Vector3d contraction_center_m{0, 0, 0};
   double anticipation = 0;     ///< a of core/look_ahead.h; 0: agents answer to the known coverage c
   bool ends_with_plan = false; ///< no agent looks beyond the mission's end
   bool paired_pushes = false;  ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
@@ -61,12 +61,12 @@ struct Timing {
 struct Mission {
   std::string name;
   std::uint64_t seed = 0;
-  Rectangle domain;
+  Box domain;
   Basis basis;
   Coefficients target_coefficients;  ///< μ
   ControlLaw law;
   Timing timing;
-  std::vector<Eigen::Vector2d> starts_m;  ///< where agent i begins; one per planned agent
+  std::vector<Eigen::Vector3d> starts_m;  ///< where agent i begins; one per planned agent
   int quorum = 1;                         ///< agents that must be admitted before the start
   double forget_silent_after_s = 0;       ///< wall time; 0: a silent agent's coverage counts for ever
   double goal_ergodic_metric = 0;         ///< the goal for φ²; 0: none
@@ -78,22 +78,22 @@ struct Mission {
 };
 
 /// The velocity that a vehicle executes for the command `v_mps`: the command, bit for bit, or the
-/// speed limit in its direction.
+/// speed limit in its direction. In a plane nothing is executed of v_z.
 /// @pre v_mps is finite.
-Eigen::Vector2d within_speed_limit(const Mission& mission, const Eigen::Vector2d& v_mps);
+Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d& v_mps);
 
 /// Where a vehicle at `x_m` with velocity `v_mps` is one step of `tick` later, edges not yet
 /// considered: x + v dt + disturbance_intensity √dt ξ.
-Eigen::Vector2d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector2d& x_m,
-                      const Eigen::Vector2d& v_mps);
+Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
+                      const Eigen::Vector3d& v_mps);
 
 /// The first tick after `tick` at which agent `id` broadcasts: the planned agents take turns within
 /// the period.
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick);
 
 /// The start of agent `id`: as planned, or beyond the plan drawn from the seed.
-Eigen::Vector2d start_of(const Mission& mission, AgentId id);
+Eigen::Vector3d start_of(const Mission& mission, AgentId id);
 /// The draw itself: uniform in the domain.
-Eigen::Vector2d random_start(const Rectangle& domain, std::uint64_t seed, AgentId id);
+Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id);
 
 }  // namespace ergocast

@@ -14,14 +14,17 @@ bool may_lead(char c) {
 }
 bool may_follow(char c) { return may_lead(c) || c == '-' || c == '.'; }
 
-bool is_place(const Eigen::Vector2d& x_m) {
-  return limits::kCoordinate_m.contain(x_m.x()) && limits::kCoordinate_m.contain(x_m.y());
+bool is_place(const Eigen::Vector3d& x_m) {
+  return limits::kCoordinate_m.contain(x_m.x()) && limits::kCoordinate_m.contain(x_m.y()) &&
+         x_m.z() == 0;
 }
 
 /// Whether a limit that 0 takes away is none or a possible one.
 bool is_none_or(const Limits& limits, double value) { return value == 0 || limits.contain(value); }
 
-bool fits(const Rectangle& domain) {
+/// No scenario and no plan can say a height yet.
+bool fits(const Box& domain) {
+  if (!domain.planar() || domain.origin_m.z() != 0) return false;
   for (int axis = 0; axis < 2; ++axis) {
     if (!limits::kSize_m.contain(domain.size_m[axis])) return false;
     if (!(std::abs(domain.origin_m[axis]) <= limits::kMaxOriginPerSize * domain.size_m[axis]))
@@ -33,16 +36,16 @@ bool fits(const Rectangle& domain) {
 /// A single mode tells no two places apart.
 bool fits(const Basis& basis) {
   return limits::kModes.contain(basis.modes_x) && limits::kModes.contain(basis.modes_y) &&
-         basis.mode_count() >= 2 && limits::kSobolevExponent.contain(basis.sobolev_exponent);
+         basis.planar() && basis.mode_count() >= 2 &&
+         limits::kSobolevExponent.contain(basis.sobolev_exponent);
 }
 
 /// |∫ f ρ| ≤ 1, but for the rounding of the quadrature.
 bool is_coefficient(double value) { return std::abs(value) <= 1 + 1e-9; }
 
 bool is_target(const Coefficients& target, const Basis& basis) {
-  if (target.rows() != basis.modes_x || target.cols() != basis.modes_y) return false;
-  const auto values = target.reshaped();
-  return target(0, 0) == 1 && std::all_of(values.begin(), values.end(), is_coefficient);
+  if (target.size() != basis.mode_count()) return false;
+  return target[0] == 1 && std::all_of(target.begin(), target.end(), is_coefficient);
 }
 
 bool fits(const ControlLaw& law) {
@@ -73,9 +76,9 @@ bool fits(const Timing& timing) {
 /// No step of input, noise or contraction is longer than the domain, and the input holds its own
 /// against the contraction everywhere.
 /// @pre each of them is within its own limits
-bool fit_together(const ControlLaw& law, double disturbance_intensity, const Rectangle& domain,
+bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box& domain,
                   double dt_s) {
-  const double side_m = domain.size_m.minCoeff();
+  const double side_m = domain.shortest_side_m();
   const double reach_m = domain.farthest_distance_m(law.contraction_center_m);
   const auto noise_fits = [&](double intensity) { return intensity * std::sqrt(dt_s) <= side_m; };
   return law.u_max_mps * dt_s <= side_m && noise_fits(law.noise_intensity) &&
@@ -87,7 +90,9 @@ bool fit_together(const ControlLaw& law, double disturbance_intensity, const Rec
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
-  const auto inside = [&](const Eigen::Vector2d& x_m) { return mission.domain.contains(x_m); };
+  const auto inside = [&](const Eigen::Vector3d& x_m) {
+    return x_m.z() == 0 && mission.domain.contains(x_m);
+  };
   return limits::kTeam.contain(size) && limits::kTeam.contain(mission.quorum) &&
          mission.quorum <= size && std::all_of(starts_m.begin(), starts_m.end(), inside);
 }

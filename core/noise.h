@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "core/geometry.h"
+
 namespace ergocast {
 
 enum class Purpose : std::uint32_t {
@@ -31,5 +33,15 @@ Eigen::Vector2d uniform_pair(std::uint64_t seed, Purpose purpose, std::uint32_t 
 /// Two independent standard normal numbers (Box–Muller).
 Eigen::Vector2d normal_pair(std::uint64_t seed, Purpose purpose, std::uint32_t who,
                             std::uint64_t step);
+
+/// A place in `domain`, uniform.
+Eigen::Vector3d uniform_in(const Box& domain, std::uint64_t seed, Purpose purpose,
+                           std::uint32_t who, std::uint64_t step);
+
+/// An independent standard normal number for each axis along which something moves in `domain`. x
+/// and y are those of normal_pair(), in every domain; in a plane z is 0, and no third number is
+/// drawn.
+Eigen::Vector3d normal_in(const Box& domain, std::uint64_t seed, Purpose purpose, std::uint32_t who,
+                          std::uint64_t step);
 
 }  // namespace ergocast

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Diagonalises the curvature of the field in closed form and scales a push along each principal
-// direction.
+// Diagonalises the curvature of the field, in a plane in closed form, and scales a push along each
+// principal direction.
 #include "core/perturbation.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +24,31 @@ Eigen::Vector2d steepest_bend(const Eigen::Vector2d& difference, double spread) 
   const double cos_twice = spread > 0 ? difference.x() / spread : 1;
   return {std::sqrt(std::max(0.0, 0.5 * (1 + cos_twice))),
           std::copysign(std::sqrt(std::max(0.0, 0.5 * (1 - cos_twice))), difference.y())};
+}
+
+/// Σ √s (v·η) v over the two principal directions in the plane.
+Eigen::Vector2d push_in_plane(double epsilon, const Eigen::Matrix2d& hessian,
+                              const Eigen::Vector2d& gradient, const Eigen::Vector2d& eta) {
+  // H = mean·1 + spread·(v vᵀ − w wᵀ) with its principal directions v and w, spread ≥ 0.
+  const double mean = 0.5 * (hessian(0, 0) + hessian(1, 1));
+  const Eigen::Vector2d difference(0.5 * (hessian(0, 0) - hessian(1, 1)), hessian(0, 1));
+  const double spread = std::hypot(difference.x(), difference.y());
+  const Eigen::Vector2d v = steepest_bend(difference, spread), w(-v.y(), v.x());
+  const double along_v = share_along(epsilon, mean + spread, gradient.dot(v));
+  const double along_w = share_along(epsilon, mean - spread, gradient.dot(w));
+  return along_v * eta.dot(v) * v + along_w * eta.dot(w) * w;
+}
+
+/// The same over the three principal directions in space.
+Eigen::Vector3d push_in_space(double epsilon, const FieldAt& field, const Eigen::Vector3d& eta) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(field.hessian);
+  Eigen::Vector3d push(0, 0, 0);
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d v = principal.eigenvectors().col(i);
+    const double curvature = principal.eigenvalues()[i];
+    push += share_along(epsilon, curvature, field.gradient.dot(v)) * eta.dot(v) * v;
+  }
+  return push;
 }
 
 }  // namespace
@@ -50,19 +76,20 @@ PerturbationScale::PerturbationScale(const ControlLaw& law, double dt_s)
       noise_mps(law.noise_intensity / std::sqrt(dt_s)),
       push_mps(is_adaptive ? greatest_push_mps(law, dt_s) : 0) {}
 
-Eigen::Vector2d perturbation(const PerturbationScale& scale, double epsilon, const FieldAt& field,
-                             const Eigen::Vector2d& xi, const Eigen::Vector2d& eta) {
-  const Eigen::Vector2d noise_mps = scale.noise_mps * xi;
-  if (!scale.is_adaptive) return noise_mps;
-  // H = mean·1 + spread·(v vᵀ − w wᵀ) with its principal directions v and w, spread ≥ 0.
-  const Eigen::Matrix2d& hessian = field.hessian;
-  const double mean = 0.5 * (hessian(0, 0) + hessian(1, 1));
-  const Eigen::Vector2d difference(0.5 * (hessian(0, 0) - hessian(1, 1)), hessian(0, 1));
-  const double spread = std::hypot(difference.x(), difference.y());
-  const Eigen::Vector2d v = steepest_bend(difference, spread), w(-v.y(), v.x());
-  const double along_v = share_along(epsilon, mean + spread, field.gradient.dot(v));
-  const double along_w = share_along(epsilon, mean - spread, field.gradient.dot(w));
-  return noise_mps + scale.push_mps * (along_v * eta.dot(v) * v + along_w * eta.dot(w) * w);
+Eigen::Vector3d perturbation(const PerturbationScale& scale, double epsilon, const FieldAt& field,
+                             const Eigen::Vector3d& xi, const Eigen::Vector3d& eta) {
+  Eigen::Vector3d velocity_mps = scale.noise_mps * xi;
+  if (!scale.is_adaptive) return velocity_mps;
+  // Where H has no part along z, the other two principal directions lie in the plane, and nothing
+  // is pushed along z.
+  if (field.hessian.col(2).isZero(0)) {
+    const Eigen::Matrix2d hessian = field.hessian.topLeftCorner<2, 2>();
+    velocity_mps.head<2>() +=
+        scale.push_mps * push_in_plane(epsilon, hessian, field.gradient.head<2>(), eta.head<2>());
+  } else {
+    velocity_mps += scale.push_mps * push_in_space(epsilon, field, eta);
+  }
+  return velocity_mps;
 }
 
 }  // namespace ergocast

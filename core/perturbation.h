@@ -37,7 +37,7 @@ struct PerturbationScale {
 
 /// The velocity that stands for σ dW over one step [m/s].
 ///
-/// Constant: σ ξ / √dt, the paper's. Adaptive: besides, along each of the two principal directions v
+/// Constant: σ ξ / √dt, the paper's. Adaptive: besides, along each of the principal directions v
 /// of H, which are orthogonal, a push of
 ///   √(s (σ_max² − σ²) / T) · v·η,   s = ε² / (ε² + (v·B)²) where U bends down, vᵀHv < 0, else 0
 /// with σ = noise_intensity, σ_max = noise_ceiling and T the time for which η is held. It is strong
@@ -45,9 +45,9 @@ struct PerturbationScale {
 /// Over times longer than T the sum along v spreads like σ_v dW with
 /// σ_v² = σ² + s (σ_max² − σ²), which lies between σ² and σ_max².
 /// @param field  B, in the unit of ε, and H; H is not read by the constant law
-/// @param xi     two independent standard normal numbers of this step
-/// @param eta    two of the push_ticks() steps that it belongs to
-Eigen::Vector2d perturbation(const PerturbationScale& scale, double epsilon, const FieldAt& field,
-                             const Eigen::Vector2d& xi, const Eigen::Vector2d& eta);
+/// @param xi     independent standard normal numbers of this step, along z 0 in a plane
+/// @param eta    those of the push_ticks() steps that it belongs to
+Eigen::Vector3d perturbation(const PerturbationScale& scale, double epsilon, const FieldAt& field,
+                             const Eigen::Vector3d& xi, const Eigen::Vector3d& eta);
 
 }  // namespace ergocast

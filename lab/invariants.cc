@@ -67,7 +67,7 @@ void Invariants::check(double t_s, const WorldState& world) {
   last_tick_ = std::max(last_tick_, world.header.tick);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    if (mission_.domain.contains(vehicle.position_m.head<2>())) continue;
+    if (mission_.domain.contains(vehicle.position_m)) continue;
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
   }
@@ -76,7 +76,7 @@ void Invariants::check(double t_s, const WorldState& world) {
 void Invariants::note_positions(double t_s, const WorldState& world) {
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    positions_m_[vehicle.id] = vehicle.position_m.head<2>();
+    positions_m_[vehicle.id] = vehicle.position_m;
   }
   for (auto a = positions_m_.begin(); a != positions_m_.end(); ++a) {
     for (auto b = std::next(a); b != positions_m_.end(); ++b) {
@@ -89,24 +89,24 @@ void Invariants::note_positions(double t_s, const WorldState& world) {
 void Invariants::check(double t_s, const Command& command) {
   if (command.header.tick < 0) return;
   const ControlLaw& law = mission_.law;
-  const Eigen::Vector2d contraction_mps =
-      law.contraction_gain_per_s *
-      (command.position_m.head<2>() - law.contraction_center_m);
+  const Eigen::Vector3d contraction_mps =
+      law.contraction_gain_per_s * (command.position_m - law.contraction_center_m);
   const double root_dt = std::sqrt(mission_.timing.dt_s);
   const auto sender = static_cast<std::uint32_t>(command.header.sender);
-  const Eigen::Vector2d xi = normal_pair(mission_.seed, Purpose::kPerturbation, sender,
-                                         static_cast<std::uint64_t>(command.header.tick));
-  const Eigen::Vector2d noise_mps = law.noise_intensity / root_dt * xi;
+  const Eigen::Vector3d xi = normal_in(mission_.domain, mission_.seed, Purpose::kPerturbation,
+                                       sender, static_cast<std::uint64_t>(command.header.tick));
+  const Eigen::Vector3d noise_mps = law.noise_intensity / root_dt * xi;
   // What an adaptive law may add to that, in a direction that only the agent knows.
   double push_mps = 0;
   if (law.perturbation == Perturbation::kAdaptive) {
     const double dt_s = mission_.timing.dt_s;
     push_mps = greatest_push_mps(law, dt_s) *
-               normal_pair(mission_.seed, Purpose::kPush, law.paired_pushes ? sender & ~1U : sender,
-                           static_cast<std::uint64_t>(command.header.tick / push_ticks(law, dt_s)))
+               normal_in(mission_.domain, mission_.seed, Purpose::kPush,
+                         law.paired_pushes ? sender & ~1U : sender,
+                         static_cast<std::uint64_t>(command.header.tick / push_ticks(law, dt_s)))
                    .norm();
   }
-  const Eigen::Vector2d v_mps = command.velocity_mps.head<2>();
+  const Eigen::Vector3d v_mps = command.velocity_mps;
   const double u_mps = (v_mps + contraction_mps - noise_mps).norm();
   // Each of the three was rounded when v was put together.
   const double margin_mps =

@@ -217,7 +217,7 @@ class Invariants {
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, Shadow> shadows_;  // of each life of an agent
   std::map<Author, std::int64_t> relays_allowed_;
-  std::map<AgentId, Eigen::Vector2d> positions_m_;                // with a radio range only, as what follows
+  std::map<AgentId, Eigen::Vector3d> positions_m_;  // with a radio range only, as what follows
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first
   struct Memory {
     double t_s;

@@ -64,7 +64,7 @@ void Invariants::check_average(double t_s, const Holder& holder) {
   // Before its own first tick, where a restarted world may stand, a newcomer covers nothing itself.
   const RosterEntry* own = entry_of(*holder.roster, holder.self);
   if (own != nullptr && holder.answered < own->active_from) return;
-  const double c_00 = (*holder.coverage)(0, 0);
+  const double c_00 = (*holder.coverage)[0];
   if (std::abs(c_00 - 1) > rounding(last_tick_)) {
     violate(t_s, Invariant::kZerothIsOne, name_of(holder.self), text("c_00 = ", c_00));
   }
@@ -103,7 +103,7 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
 
 /// (4) from the blocks alone, weighted by the time each covers.
 Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& rows) const {
-  Coefficients c = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+  Coefficients c = Coefficients::Zero(mission_.basis.mode_count());
   for (int k = 0; k < mission_.basis.mode_count(); ++k) {
     double sum_s = 0;
     std::int64_t steps = 0;
@@ -173,7 +173,7 @@ void Invariants::check_view(double t_s, const Holder& holder,
     stale_s += static_cast<double>(2 * period + 2) * mission_.timing.dt_s;
   }
   // Of what it holds now: an agent whose ticks do not come computes no c_k.
-  Coefficients c = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+  Coefficients c = Coefficients::Zero(mission_.basis.mode_count());
   holder.table->average(c);
   const double error = (c - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s || error <= 2 * stale_s / (covered_s - stale_s)) return;

@@ -41,22 +41,22 @@ ManifoldKind crossing_of(const std::vector<Manifold>& lines) {
 
 }  // namespace
 
-double Manifold::distance_m(const Eigen::Vector2d& x_m) const {
-  const Eigen::Vector2d off_m = x_m - point_m;
+double Manifold::distance_m(const Eigen::Vector3d& x_m) const {
+  const Eigen::Vector2d off_m = x_m.head<2>() - point_m;
   return normal.isZero() ? off_m.norm() : std::abs(off_m.dot(normal));
 }
 
-std::optional<Manifold> manifold_at(const Eigen::Vector2d& x_m, const Rectangle& domain) {
-  const Eigen::Vector2d share = (x_m - domain.origin_m).cwiseQuotient(domain.size_m);
+std::optional<Manifold> manifold_at(const Eigen::Vector3d& x_m, const Box& domain) {
+  const Eigen::Vector2d place_m = x_m.head<2>();
+  const Eigen::Vector2d share =
+      (place_m - domain.origin_m.head<2>()).cwiseQuotient(domain.size_m.head<2>());
   const bool square = near(domain.size_m.x() / domain.size_m.y(), 1);
-  const std::vector<Manifold> lines = lines_at(share, x_m, square);
+  const std::vector<Manifold> lines = lines_at(share, place_m, square);
   if (lines.empty()) return std::nullopt;
   if (lines.size() == 1) return lines.front();
-  return Manifold{crossing_of(lines), x_m, {0, 0}};
+  return Manifold{crossing_of(lines), place_m, {0, 0}};
 }
 
-double escape_distance_m(const Rectangle& domain) {
-  return kEscapedShare * domain.size_m.minCoeff();
-}
+double escape_distance_m(const Box& domain) { return kEscapedShare * domain.shortest_side_m(); }
 
 }  // namespace ergocast::lab

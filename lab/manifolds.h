@@ -23,14 +23,15 @@ struct Manifold {
   Eigen::Vector2d point_m;  ///< on it
   Eigen::Vector2d normal;   ///< of length 1; (0, 0) if the set is the point alone
 
-  double distance_m(const Eigen::Vector2d& x_m) const;
+  double distance_m(const Eigen::Vector3d& x_m) const;
 };
 
-/// The smallest of these sets that `x_m` lies on, up to 1e-9 of the domain's sides; none for a point
-/// in general position. Where two lines cross, the set is the point.
-std::optional<Manifold> manifold_at(const Eigen::Vector2d& x_m, const Rectangle& domain);
+/// The smallest of these sets that `x_m` lies on, up to 1e-9 of the domain's sides; none for a
+/// point in general position. Where two lines cross, the set is the point. Of a place in space it
+/// is that of x and y.
+std::optional<Manifold> manifold_at(const Eigen::Vector3d& x_m, const Box& domain);
 
 /// Farther off than 1 % of the shorter side counts as escaped.
-double escape_distance_m(const Rectangle& domain);
+double escape_distance_m(const Box& domain);
 
 }  // namespace ergocast::lab

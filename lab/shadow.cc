@@ -32,10 +32,15 @@ double marginal_variance(double length_m, int modes, const Mu& mu) {
 /// h for a team of n: a s / (u_max √n), and at most what is left where the plan says so.
 double horizon_s(const Mission& mission, int n, Tick tick) {
   const Coefficients& mu = mission.target_coefficients;
-  const Eigen::Vector2d size_m = mission.domain.size_m;
-  const double spread_m = std::sqrt(
-      marginal_variance(size_m.x(), mission.basis.modes_x, [&](int m) { return mu(m, 0); }) +
-      marginal_variance(size_m.y(), mission.basis.modes_y, [&](int m) { return mu(0, m); }));
+  const auto [modes_x, modes_y, modes_z] =
+      std::tuple(mission.basis.modes_x, mission.basis.modes_y, mission.basis.modes_z);
+  // The modes along an axis are so far from each other in the order of the wire.
+  const auto variance_m2 = [&](int axis, int modes, int apart) {
+    return marginal_variance(mission.domain.size_m[axis], modes,
+                             [&](int mode) { return mu[mode * apart]; });
+  };
+  const double in_plane_m2 = variance_m2(0, modes_x, modes_y) + variance_m2(1, modes_y, 1);
+  const double spread_m = std::sqrt(in_plane_m2 + variance_m2(2, modes_z, modes_x * modes_y));
   const double h_s = mission.law.anticipation * spread_m / mission.law.u_max_mps / std::sqrt(n);
   if (!mission.law.ends_with_plan) return h_s;
   const Tick left = std::max<Tick>(0, mission.timing.tick_count - tick);
@@ -53,16 +58,25 @@ double weight_s(const Mission& mission, double h_s, Tick span, Tick age, Tick pe
 }
 
 /// f(x) dt of every mode, straight from (2).
-Coefficients gain_at(const Mission& mission, const Eigen::Vector2d& x_m) {
-  const Eigen::Array2d phase =
-      std::numbers::pi * (x_m - mission.domain.origin_m).array() / mission.domain.size_m.array();
-  const auto cosines = [](int modes, double angle) {
-    Eigen::VectorXd values(modes);
-    for (int m = 0; m < modes; ++m) values[m] = std::cos(m * angle);
+Coefficients gain_at(const Mission& mission, const Eigen::Vector3d& x_m) {
+  const auto cosines = [&](int axis, int modes) {
+    const double inside_m = x_m[axis] - mission.domain.origin_m[axis];
+    const double angle = std::numbers::pi * inside_m / mission.domain.size_m[axis];
+    Eigen::VectorXd values = Eigen::VectorXd::Ones(modes);
+    for (int m = 1; m < modes; ++m) values[m] = std::cos(m * angle);
     return values;
   };
-  return mission.timing.dt_s * cosines(mission.basis.modes_x, phase.x()) *
-         cosines(mission.basis.modes_y, phase.y()).transpose();
+  const Eigen::VectorXd along_x = cosines(0, mission.basis.modes_x);
+  const Eigen::VectorXd along_y = cosines(1, mission.basis.modes_y);
+  const Eigen::VectorXd along_z = cosines(2, mission.basis.modes_z);
+  Coefficients gain(mission.basis.mode_count());
+  Eigen::Index k = 0;
+  for (const double z : along_z) {
+    for (const double x : along_x) {
+      for (const double y : along_y) gain[k++] = mission.timing.dt_s * x * y * z;
+    }
+  }
+  return gain;
 }
 
 /// One block of `all`, and zeros beyond the last mode.
@@ -118,7 +132,7 @@ void Shadow::note_places(const Mission& mission, const Holder& agent, const Worl
   const Tick tick = world.header.tick;
   for (int i = 0; i < world.vehicle_count && tick >= positions_tick_; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    positions_m_[vehicle.id] = vehicle.position_m.head<2>();
+    positions_m_[vehicle.id] = vehicle.position_m;
   }
   positions_tick_ = std::max(positions_tick_, tick);
   if (!active_from_ || tick < *active_from_) return;
@@ -134,7 +148,7 @@ void Shadow::note_places(const Mission& mission, const Holder& agent, const Worl
     if (!in_range(mission, agent.self.agent, vehicle.id)) continue;
     std::deque<Place>& places = places_[vehicle.id];
     if (!places.empty() && tick <= places.back().tick) continue;
-    places.push_back({tick, vehicle.position_m.head<2>()});
+    places.push_back({tick, vehicle.position_m});
     if (places.size() > most) places.pop_front();
   }
 }
@@ -232,7 +246,7 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
 
 Coefficients Shadow::foreseen(const Mission& mission, const Holder& agent) const {
   const double dt_s = mission.timing.dt_s;
-  Coefficients c = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  Coefficients c = Coefficients::Zero(mission.basis.mode_count());
   const auto team = this->team(mission, agent);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const auto at = static_cast<std::size_t>(b);
@@ -254,7 +268,7 @@ Coefficients Shadow::foreseen(const Mission& mission, const Holder& agent) const
     const int first = b * kBlockSize,
               count = std::min(kBlockSize, mission.basis.mode_count() - first);
     for (int k = 0; k < count && time_s > 0; ++k)
-      c.data()[first + k] = sums[static_cast<std::size_t>(k)] / time_s;
+      c[first + k] = sums[static_cast<std::size_t>(k)] / time_s;
   }
   return c;
 }

@@ -35,7 +35,7 @@ class Shadow {
  private:
   struct Place {
     Tick tick;
-    Eigen::Vector2d x_m;
+    Eigen::Vector3d x_m;
   };
   struct Said {
     std::int64_t steps = 0;
@@ -69,7 +69,7 @@ class Shadow {
   std::optional<Tick> active_from_;
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest go
-  std::map<AgentId, Eigen::Vector2d> positions_m_;  // for the radio range, of the newest …
+  std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …
   Tick positions_tick_ = -1;                        // … world state
 };
 

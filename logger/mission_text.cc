@@ -23,7 +23,7 @@ class Block {
   void put(const char* field, const Block& block) {
     text_ += indent_ + field + " {\n" + block.text_ + indent_ + "}\n";
   }
-  void put_point(const char* field, const Eigen::Vector2d& x_m) {
+  void put_point(const char* field, const Eigen::Vector3d& x_m) {
     text_ +=
         indent_ + field + " { x_m: " + shortest(x_m.x()) + " y_m: " + shortest(x_m.y()) + " }\n";
   }
@@ -33,7 +33,7 @@ class Block {
   std::string indent_, text_;
 };
 
-Block block_of(const Rectangle& domain) {
+Block block_of(const Box& domain) {
   Block block("  ");
   block.put("origin_x_m", domain.origin_m.x());
   block.put("origin_y_m", domain.origin_m.y());
@@ -52,17 +52,15 @@ Block block_of(const Basis& basis) {
   return block;
 }
 
-void put_contraction_center(const Eigen::Vector2d& center_m, const Rectangle& domain,
-                            Block& block) {
+void put_contraction_center(const Eigen::Vector3d& center_m, const Box& domain, Block& block) {
   if (center_m == domain.center_m()) return block.put("contraction_center", "DOMAIN_CENTER");
-  if (center_m == Eigen::Vector2d(0, 0))
-    return block.put("contraction_center", "COORDINATE_ORIGIN");
+  if (center_m.isZero(0)) return block.put("contraction_center", "COORDINATE_ORIGIN");
   block.put("contraction_center", "POINT");
   block.put("contraction_x_m", center_m.x());
   block.put("contraction_y_m", center_m.y());
 }
 
-Block block_of(const ControlLaw& law, const Rectangle& domain) {
+Block block_of(const ControlLaw& law, const Box& domain) {
   const bool relative = law.regularization == Regularization::kRelative;
   const bool adaptive = law.perturbation == Perturbation::kAdaptive;
   Block block("  ");
@@ -97,7 +95,7 @@ Block block_of(const Timing& timing) {
 
 Block block_of_the_team(const Mission& mission) {
   Block block("  ");
-  for (const Eigen::Vector2d& x_m : mission.starts_m) block.put_point("starts", x_m);
+  for (const Eigen::Vector3d& x_m : mission.starts_m) block.put_point("starts", x_m);
   block.put("random_count", 0);
   block.put("quorum", mission.quorum);
   block.put("forget_silent_after_s", mission.forget_silent_after_s);

@@ -12,12 +12,12 @@ class Observer {
   /// Nothing is covered yet.
   void begin(const Mission& mission) {
     weights_ = sobolev_weights(mission.basis, mission.domain);
-    sums_s_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+    sums_s_ = Coefficients::Zero(mission.basis.mode_count());
   }
   bool begun() const { return weights_.size() > 0; }
 
   /// A member was at `x_m` for a tick. Places outside of the domain cover nothing.
-  void see(const Mission& mission, const Eigen::Vector2d& x_m) {
+  void see(const Mission& mission, const Eigen::Vector3d& x_m) {
     if (!mission.domain.contains(x_m)) return;
     accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis, mission.timing.dt_s,
                      sums_s_.data());

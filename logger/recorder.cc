@@ -128,7 +128,7 @@ void Recorder::replay(const RunData& past) {
       vehicles = 0;
       ++facts_.ticks;
     }
-    observe(id, row.x_m);
+    observe(id, on_ground(row.x_m));
     ++vehicles;
     former_.end = {row.tick, id};
   });
@@ -312,7 +312,7 @@ void Recorder::write_trajectory(const State& now, const State& next) {
   for (const auto& [id, vehicle] : now.vehicles) {
     const auto after = next.vehicles.find(id);
     if (after == next.vehicles.end() || std::pair(next_row_, id) <= former_.end) continue;
-    observe(id, vehicle.position_m.head<2>());
+    observe(id, vehicle.position_m);
     line += std::to_string(next_row_) + ',';
     append_number(line, t_s);
     line += ',' + std::to_string(id);
@@ -333,7 +333,7 @@ bool Recorder::is_member(AgentId id) const {
   });
 }
 
-void Recorder::observe(AgentId id, const Eigen::Vector2d& x_m) {
+void Recorder::observe(AgentId id, const Eigen::Vector3d& x_m) {
   if (is_member(id)) observer_.see(mission(), x_m);
 }
 

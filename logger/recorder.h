@@ -138,7 +138,7 @@ class Recorder {
   void write_trajectory(const State& now, const State& next);
   /// Whether somebody drives that vehicle at the row's tick: others stand still and cover nothing.
   bool is_member(AgentId id) const;
-  void observe(AgentId id, const Eigen::Vector2d& x_m);
+  void observe(AgentId id, const Eigen::Vector3d& x_m);
   void write_due_metrics();
   void write_metrics(double metric);
 

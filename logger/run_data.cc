@@ -153,13 +153,13 @@ std::optional<PowerLaw> fit_last_decade(const RunData& run) {
 }
 
 Coefficients coverage_of(const RunData& run, const Mission& mission) {
-  Coefficients sums = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  Coefficients sums = Coefficients::Zero(mission.basis.mode_count());
   double samples = 0;
   for (const auto& [agent, track] : run.tracks) {
     for (const TrackPoint& point : track) {
-      if (!mission.domain.contains(point.x_m)) continue;
-      accumulate_basis(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
-                       sums.data());
+      const Eigen::Vector3d x_m = on_ground(point.x_m);
+      if (!mission.domain.contains(x_m)) continue;
+      accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis, 1, sums.data());
       ++samples;
     }
   }

@@ -130,7 +130,7 @@ std::vector<AxisMark> marks(const Axis& axis, int count) {
   return labelled >= 3 || axis.high > 10 * axis.low ? result : marks_within_a_decade(axis, count);
 }
 
-Plot::Plot(Svg& svg, const Box& area, Axis x, Axis y)
+Plot::Plot(Svg& svg, const Area& area, Axis x, Axis y)
     : svg_(svg), area_(area), x_(std::move(x)), y_(std::move(y)) {}
 
 Eigen::Vector2d Plot::at(double x, double y) const {
@@ -194,8 +194,8 @@ void Plot::say(std::string_view message) {
             message);
 }
 
-void color_bar(Svg& svg, const Box& area, const ColorScale& colors, const Axis& axis) {
-  const Box bar{area.right() + 16, area.top, 12, area.height};
+void color_bar(Svg& svg, const Area& area, const ColorScale& colors, const Axis& axis) {
+  const Area bar{area.right() + 16, area.top, 12, area.height};
   svg.image(bar, png_data_uri(Eigen::RowVectorXd::LinSpaced(256, 0, 1), colors), false);
   svg.rect(bar, "class=\"frame\"");
   for (const AxisMark& mark : marks(axis, kY)) {

@@ -50,9 +50,9 @@ std::vector<AxisMark> marks(const Axis& axis, int count);
 /// A rectangle of a drawing with two axes.
 class Plot {
  public:
-  Plot(Svg& svg, const Box& area, Axis x, Axis y);
+  Plot(Svg& svg, const Area& area, Axis x, Axis y);
 
-  const Box& area() const { return area_; }
+  const Area& area() const { return area_; }
   Eigen::Vector2d at(double x, double y) const;
   Eigen::Vector2d at(const Eigen::Vector2d& point) const { return at(point.x(), point.y()); }
 
@@ -69,11 +69,11 @@ class Plot {
 
  private:
   Svg& svg_;
-  Box area_;
+  Area area_;
   Axis x_, y_;
 };
 
 /// A strip of colours right of `area`, with labels, and its title above.
-void color_bar(Svg& svg, const Box& area, const ColorScale& colors, const Axis& axis);
+void color_bar(Svg& svg, const Area& area, const ColorScale& colors, const Axis& axis);
 
 }  // namespace ergocast

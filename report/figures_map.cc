@@ -6,6 +6,7 @@
 #include "report/axes.h"
 #include "report/figures.h"
 #include "report/markup.h"
+#include "target/rectangle.h"
 
 namespace ergocast {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kFewestCells = kMaxModesPerAxis;  // so that no mode is mistake
 
 /// The largest box of the proportions of `size` in kSide × `width`; never thinner than what can
 /// carry labels.
-Box fitted(double top, double width, const Eigen::Vector2d& size) {
+Area fitted(double top, double width, const Eigen::Vector2d& size) {
   constexpr double kThinnest = 60;
   const double scale = std::min(width / size.x(), kSide / size.y());
   return {kRoomLeft, top, std::max(size.x() * scale, kThinnest),
@@ -29,7 +30,7 @@ Box fitted(double top, double width, const Eigen::Vector2d& size) {
 /// Maps of long domains get a row of their own.
 bool long_domain(const Rectangle& domain) { return domain.size_m.x() > 2 * domain.size_m.y(); }
 
-Box map_area(double top, const Rectangle& domain) {
+Area map_area(double top, const Rectangle& domain) {
   return fitted(top, long_domain(domain) ? kWholeRow : kSide, domain.size_m);
 }
 
@@ -59,12 +60,14 @@ Field sample(const Rectangle& domain, const Value& value) {
 }
 
 /// Σ a_k f_k / mean(f_k²): what the coefficients say of the density, in multiples of uniform.
-Field reconstruction(const Coefficients& coefficients, const Mission& mission) {
-  Coefficients weights = coefficients;
+Field reconstruction(Coefficients coefficients, const Mission& mission) {
+  auto weights = in_plane(coefficients, mission.basis);
   weights.bottomRows(weights.rows() - 1) *= 2;  // mean(cos²) = ½ along each axis that varies
   weights.rightCols(weights.cols() - 1) *= 2;
-  return sample(mission.domain, [&](const Eigen::Vector2d& x_m) {
-    return basis_values(x_m, mission.domain, mission.basis).cwiseProduct(weights).sum();
+  return sample(base_of(mission.domain), [&](const Eigen::Vector2d& x_m) {
+    return basis_values(on_ground(x_m), mission.domain, mission.basis)
+        .cwiseProduct(coefficients)
+        .sum();
   });
 }
 
@@ -105,13 +108,13 @@ DrawnTracks draw_tracks(const RunData& run, const Plot& plot) {
 }
 
 /// Lines this wide cover at most about half of the ground together.
-double stroke_width(double length, const Box& area) {
+double stroke_width(double length, const Area& area) {
   constexpr double kInk = 0.5;
   return std::clamp(kInk * area.width * area.height / std::max(length, 1.0), 0.4, 1.6);
 }
 
 /// Lines along the edges, where classical agents are caught, are drawn in full.
-void draw_lines(Svg& svg, const DrawnTracks& tracks, const Box& area) {
+void draw_lines(Svg& svg, const DrawnTracks& tracks, const Area& area) {
   const std::string width = fixed(stroke_width(tracks.length, area), 2);
   svg.begin_clip({area.left - 1, area.top - 1, area.width + 2, area.height + 2});
   for (const auto& [agent, line] : tracks.lines) {
@@ -176,7 +179,7 @@ std::string trajectories_caption(const RunData& run, double from_s) {
 
 // --- coverage and coefficients ---
 
-void draw_field(Svg& svg, const Box& area, const Field& field, double brightest,
+void draw_field(Svg& svg, const Area& area, const Field& field, double brightest,
                 const Rectangle& domain, std::string_view title) {
   Plot plot(svg, area, x_axis(domain), y_axis(domain));
   plot.image(field / brightest, viridis(), true);
@@ -189,13 +192,13 @@ Axis mode_axis(const std::string& title, int modes) {
 }
 
 /// log |c − μ| between the decades `low` and `high`, as 0 … 1.
-Field log_levels(const Coefficients& difference, const Axis& colors) {
+Field log_levels(const PlaneCoefficients& difference, const Axis& colors) {
   return difference.unaryExpr(
       [&](double value) { return value > colors.low ? colors.position(value) : 0.0; });
 }
 
 /// The three decades below the largest difference.
-Axis difference_axis(const Coefficients& difference) {
+Axis difference_axis(const PlaneCoefficients& difference) {
   const double largest = difference.maxCoeff();
   return log_axis("|cₖ − μₖ|", largest / 1000, largest);
 }
@@ -203,9 +206,10 @@ Axis difference_axis(const Coefficients& difference) {
 }  // namespace
 
 Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target) {
-  const Box area = map_area(kLegend, mission.domain);
+  const Rectangle domain = base_of(mission.domain);
+  const Area area = map_area(kLegend, domain);
   Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "trajectories", "Trajectories");
-  Plot plot(svg, area, x_axis(mission.domain), y_axis(mission.domain));
+  Plot plot(svg, area, x_axis(domain), y_axis(domain));
 
   const Field ground =
       target.size() > 0 ? target : reconstruction(mission.target_coefficients, mission);
@@ -222,25 +226,26 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
   if (!run.empty()) draw_signs(svg, area.right() + kBar - 8, 4);
   color_bar(svg, area, pencil(), range_axis("density, × uniform", "", 0, densest));
   return {"trajectories", "Where the agents went", trajectories_caption(run, tracks.from_s),
-          svg.str(), long_domain(mission.domain)};
+          svg.str(), long_domain(domain)};
 }
 
 Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
   constexpr double kGap = 84;
+  const Rectangle domain = base_of(mission.domain);
   const Field target = reconstruction(mission.target_coefficients, mission);
   const Field achieved = reconstruction(coverage, mission);
   // Some room above the target's own peak, for coverage that is too dense somewhere.
   const double peak = target.maxCoeff();
   const double brightest = std::clamp(achieved.maxCoeff(), peak, 1.5 * peak);
 
-  const Box first = map_area(kTitled, mission.domain);
-  const Box second = long_domain(mission.domain)
-                         ? Box{first.left, first.bottom() + kGap, first.width, first.height}
-                         : Box{first.right() + kGap, first.top, first.width, first.height};
+  const Area first = map_area(kTitled, domain);
+  const Area second = long_domain(domain)
+                          ? Area{first.left, first.bottom() + kGap, first.width, first.height}
+                          : Area{first.right() + kGap, first.top, first.width, first.height};
   Svg svg(second.right() + kBar, second.bottom() + kRoomBelow, "coverage",
           "Coverage beside the target");
-  draw_field(svg, first, achieved, brightest, mission.domain, "achieved: Σ cₖ fₖ");
-  draw_field(svg, second, target, brightest, mission.domain, "target: Σ μₖ fₖ");
+  draw_field(svg, first, achieved, brightest, domain, "achieved: Σ cₖ fₖ");
+  draw_field(svg, second, target, brightest, domain, "target: Σ μₖ fₖ");
   color_bar(svg, second, viridis(), range_axis("time spent, × uniform", "", 0, brightest));
 
   std::string caption =
@@ -255,14 +260,15 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
 }
 
 Figure coefficients_figure(const Coefficients& coverage, const Mission& mission) {
-  const Coefficients difference = (coverage - mission.target_coefficients).cwiseAbs();
+  const Coefficients all = (coverage - mission.target_coefficients).cwiseAbs();
+  const PlaneCoefficients difference = in_plane(all, mission.basis);
   const Axis colors = difference_axis(difference);
   const Eigen::Vector2d modes(mission.basis.modes_x, mission.basis.modes_y);
-  const Box area = fitted(kTitled, kSide, modes);
+  const Area area = fitted(kTitled, kSide, modes);
   Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "coefficients", "Differences by mode");
   Plot plot(svg, area, mode_axis("m (half waves along x)", mission.basis.modes_x),
             mode_axis("n (half waves along y)", mission.basis.modes_y));
-  if (coverage(0, 0) == 0) {
+  if (coverage[0] == 0) {
     plot.say("no position was recorded");
   } else {
     plot.image(log_levels(difference, colors), viridis(), false);

@@ -157,7 +157,7 @@ struct Panel {
   Polyline points;
 };
 
-void draw_panel(Svg& svg, const Box& area, const Axis& time, const Panel& panel) {
+void draw_panel(Svg& svg, const Area& area, const Axis& time, const Panel& panel) {
   svg.text({area.left, area.top - 9}, "class=\"head\"", panel.title);
   Plot plot(svg, area, time, amount_axis("", panel.unit, largest(panel.points)));
   plot.grid();

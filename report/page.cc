@@ -206,7 +206,7 @@ std::string law_text(const ControlLaw& law) {
   text += " m/√s";
   text += ", k = " + readable(law.contraction_gain_per_s) + " /s";
   if (law.contraction_gain_per_s == 0) return text;
-  return text + " towards " + point_text(law.contraction_center_m) + " m";
+  return text + " towards " + point_text(law.contraction_center_m.head<2>()) + " m";
 }
 
 std::string weights_text(const Basis& basis) {

@@ -28,7 +28,7 @@ std::string attribute(std::string_view name, double value) {
   return ' ' + std::string(name) + "=\"" + pixels(value) + '"';
 }
 
-std::string box_attributes(const Box& box) {
+std::string box_attributes(const Area& box) {
   return attribute("x", box.left) + attribute("y", box.top) + attribute("width", box.width) +
          attribute("height", box.height);
 }
@@ -56,7 +56,7 @@ void Svg::line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
            attribute("x2", to.x()) + attribute("y2", to.y()) + spaced(attributes) + "/>\n";
 }
 
-void Svg::rect(const Box& box, std::string_view attributes) {
+void Svg::rect(const Area& box, std::string_view attributes) {
   body_ += "<rect" + box_attributes(box) + spaced(attributes) + "/>\n";
 }
 
@@ -75,13 +75,13 @@ void Svg::text(const Eigen::Vector2d& at, std::string_view attributes, std::stri
            escape(content) + "</text>\n";
 }
 
-void Svg::image(const Box& box, std::string_view data_uri, bool smooth) {
+void Svg::image(const Area& box, std::string_view data_uri, bool smooth) {
   body_ += "<image" + box_attributes(box) + " preserveAspectRatio=\"none\"" +
            (smooth ? "" : " style=\"image-rendering:pixelated\"") + " href=\"" +
            std::string(data_uri) + "\"/>\n";
 }
 
-void Svg::begin_clip(const Box& box) {
+void Svg::begin_clip(const Area& box) {
   const std::string id = name_ + "-clip" + std::to_string(clips_++);
   body_ += "<clipPath id=\"" + id + "\"><rect" + box_attributes(box) + "/></clipPath>\n";
   body_ += "<g clip-path=\"url(#" + id + ")\">\n";

@@ -10,7 +10,7 @@
 namespace ergocast {
 
 /// A rectangle of the drawing, in pixels, y downwards.
-struct Box {
+struct Area {
   double left = 0, top = 0, width = 0, height = 0;
   double right() const { return left + width; }
   double bottom() const { return top + height; }
@@ -26,16 +26,16 @@ class Svg {
   Svg(double width, double height, std::string name, std::string_view description);
 
   void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, std::string_view attributes);
-  void rect(const Box& box, std::string_view attributes);
+  void rect(const Area& box, std::string_view attributes);
   void circle(const Eigen::Vector2d& center, double radius, std::string_view attributes);
   void path(std::string_view data, std::string_view attributes);
   /// `at` is on the base line.
   void text(const Eigen::Vector2d& at, std::string_view attributes, std::string_view content);
   /// A picture stretched over `box`; `smooth` blends its cells into each other.
-  void image(const Box& box, std::string_view data_uri, bool smooth);
+  void image(const Area& box, std::string_view data_uri, bool smooth);
 
   /// All that follows until end_clip() is cut off at the edge of `box`.
-  void begin_clip(const Box& box);
+  void begin_clip(const Area& box);
   void end_clip();
 
   /// The finished document.

@@ -38,7 +38,7 @@ class TargetCompiler {
   TargetCompiler(const proto::Scenario& scenario, Checks& checks)
       : written_(scenario.target()),
         checks_(checks),
-        domain_(domain_of(scenario.domain())),
+        domain_(base_of(domain_of(scenario.domain()))),
         basis_(basis_of(scenario.basis())),
         target_(target_of(written_)) {
     const Eigen::Vector2d cells =
@@ -59,7 +59,7 @@ class TargetCompiler {
     if (!checks_.nothing_found()) return {};
     const DensityGrid picture = density_picture(target_, maps_, domain_);
     const double scale = domain_.size_m.prod() / sum_.values(0, 0);
-    return CompiledTarget{normalized(sum_).values, scale * picture};
+    return CompiledTarget{in_wire_order(normalized(sum_).values), scale * picture};
   }
 
  private:

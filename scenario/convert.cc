@@ -24,12 +24,12 @@ Ring ring_of(const Vertices& vertices) {
   return ring;
 }
 
-Eigen::Vector2d contraction_center_of(const proto::Law& law, const Rectangle& domain) {
+Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain) {
   switch (law.contraction_center()) {
     case proto::Law::COORDINATE_ORIGIN:
-      return {0, 0};
+      return {0, 0, 0};
     case proto::Law::POINT:
-      return {law.contraction_x_m(), law.contraction_y_m()};
+      return {law.contraction_x_m(), law.contraction_y_m(), 0};
     default:
       return domain.center_m();
   }
@@ -37,8 +37,8 @@ Eigen::Vector2d contraction_center_of(const proto::Law& law, const Rectangle& do
 
 }  // namespace
 
-Rectangle domain_of(const proto::Domain& domain) {
-  return {{domain.origin_x_m(), domain.origin_y_m()}, {domain.size_x_m(), domain.size_y_m()}};
+Box domain_of(const proto::Domain& domain) {
+  return {{domain.origin_x_m(), domain.origin_y_m(), 0}, {domain.size_x_m(), domain.size_y_m(), 0}};
 }
 
 Polygon polygon_of(const proto::Polygon& polygon) {
@@ -76,7 +76,7 @@ Basis basis_of(const proto::Basis& basis) {
           .normalized = basis.normalized()};
 }
 
-ControlLaw law_of(const proto::Law& law, const Rectangle& domain) {
+ControlLaw law_of(const proto::Law& law, const Box& domain) {
   return {.u_max_mps = law.u_max_mps(),
           .regularization = law.regularization() == proto::Law::ABSOLUTE
                                 ? Regularization::kAbsolute
@@ -116,7 +116,7 @@ Mission mission_of(const proto::Scenario& scenario) {
   mission.law = law_of(scenario.law(), mission.domain);
   mission.timing = timing_of(scenario.time());
   for (const proto::Start& start : scenario.agents().starts()) {
-    mission.starts_m.emplace_back(start.x_m(), start.y_m());
+    mission.starts_m.emplace_back(start.x_m(), start.y_m(), 0);
   }
   mission.quorum = scenario.agents().quorum();
   mission.forget_silent_after_s = scenario.agents().forget_silent_after_s();

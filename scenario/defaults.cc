@@ -89,12 +89,12 @@ void fill_foresight(proto::Scenario& scenario) {
 
 /// Defaults that follow from speed and domain, so that a law scales with them. What is itself
 /// outside its limits gives no default: validate() names it.
-void fill_law(const Rectangle& domain, proto::Law& law) {
+void fill_law(const Box& domain, proto::Law& law) {
   if (!law.has_epsilon()) {
     const double relative = law.anticipation() > 0 ? kEpsilon : kEpsilonWithoutAnticipation;
     law.set_epsilon(law.regularization() == proto::Law::RELATIVE ? relative : 0);
   }
-  const double side_m = domain.size_m.minCoeff();
+  const double side_m = domain.shortest_side_m();
   if (!(law.u_max_mps() > 0) || !(side_m > 0) || !domain.size_m.allFinite()) return;
   // The diffusion that crosses this length in the time the input needs for it.
   const double ceiling = std::sqrt(law.u_max_mps() * kPushShare * side_m);
@@ -176,10 +176,10 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
 }
 
 void draw_starts(proto::Scenario& scenario) {
-  const Rectangle domain = domain_of(scenario.domain());
+  const Box domain = domain_of(scenario.domain());
   proto::Agents& agents = *scenario.mutable_agents();
   for (; agents.random_count() > 0; agents.set_random_count(agents.random_count() - 1)) {
-    const Eigen::Vector2d x_m = random_start(domain, scenario.seed(), agents.starts_size());
+    const Eigen::Vector3d x_m = random_start(domain, scenario.seed(), agents.starts_size());
     proto::Start& start = *agents.add_starts();
     start.set_x_m(x_m.x());
     start.set_y_m(x_m.y());

@@ -215,8 +215,8 @@ class Validator {
               "write at most " + shortest(rounded_down(1 / dt_s)));
     }
     if (!sound("law.u_max_mps")) return;
-    const Rectangle domain = domain_of(scenario_.domain());
-    const Eigen::Vector2d center_m = law_of(law, domain).contraction_center_m;
+    const Box domain = domain_of(scenario_.domain());
+    const Eigen::Vector3d center_m = law_of(law, domain).contraction_center_m;
     const double needed_mps = gain_per_s * domain.farthest_distance_m(center_m);
     if (law.u_max_mps() >= needed_mps) return;
     problem("law.u_max_mps",

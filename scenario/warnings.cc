@@ -51,7 +51,7 @@ void warn_of_speed_limit(const Mission& mission, Findings& findings) {
 
 /// What a teammate did in the last step says little of the next if it crosses the domain in a few.
 void warn_of_coarse_steps(const Mission& mission, Findings& findings) {
-  const double longest_s = kLongestStep * mission.domain.size_m.minCoeff() / mission.law.u_max_mps;
+  const double longest_s = kLongestStep * mission.domain.shortest_side_m() / mission.law.u_max_mps;
   if (mission.law.anticipation <= 0 || mission.timing.dt_s <= longest_s) return;
   findings.add(
       "time.dt_s",

@@ -127,12 +127,11 @@ void World::begin(Instant now) {
 void World::recall(AgentId id, Body& body) {
   if (body.answered() < 0) return;
   const bool hold = mission().timing.pace == Pace::kRealtime;
-  body.x_m = body.command->position_m.head<2>();
+  body.x_m = body.command->position_m;
   const bool in_a_row =
       body.command_before && body.command_before->header.tick + 1 == body.answered();
   if (in_a_row) {
-    body.applied_mps =
-        within_speed_limit(mission(), body.command_before->velocity_mps.head<2>());
+    body.applied_mps = within_speed_limit(mission(), body.command_before->velocity_mps);
   }
   for (Tick tick = body.answered(); tick < tick_; ++tick) move(id, body, tick, hold);
 }
@@ -166,12 +165,12 @@ void World::on(const Command& command, const Arrival&) {
   if (question_.since && command.asked_by != me_.incarnation()) return;
   Body& body = at->second;
   const Mission& mission = me_.mission();
-  const Eigen::Vector2d step_m = command.velocity_mps.head<2>() * mission.timing.dt_s;
+  const Eigen::Vector3d step_m = command.velocity_mps * mission.timing.dt_s;
   // Numbers that only overflow here are no velocities; and nobody answers a tick that was not said.
   const Tick newest = question_.since ? mission.timing.tick_count : tick_;
   // A command of no tick yet is the answer of an agent that knows no position.
   const bool somewhere = question_.since && command.header.tick >= 0;
-  const bool outside = somewhere && !mission.domain.contains(command.position_m.head<2>());
+  const bool outside = somewhere && !mission.domain.contains(command.position_m);
   if (!step_m.allFinite() || command.header.tick > newest || outside) {
     me_.count_refused(Refusal::kRange);
     return;
@@ -284,12 +283,12 @@ std::string World::why_over() const {
   return follower().over() ? follower().reason() : "mission complete";
 }
 
-Eigen::Vector2d World::command_of(const Body& body, Tick tick, bool hold_old_commands) const {
-  if (body.answered() < 0 || body.author.incarnation == 0) return {0, 0};
+Eigen::Vector3d World::command_of(const Body& body, Tick tick, bool hold_old_commands) const {
+  if (body.answered() < 0 || body.author.incarnation == 0) return {0, 0, 0};
   const Timing& timing = mission().timing;
   const double age_s = static_cast<double>(tick - body.answered()) * timing.dt_s;
-  if (age_s > (hold_old_commands ? timing.command_hold_s : 0)) return {0, 0};
-  return body.command->velocity_mps.head<2>();
+  if (age_s > (hold_old_commands ? timing.command_hold_s : 0)) return {0, 0, 0};
+  return body.command->velocity_mps;
 }
 
 void World::step(bool hold_old_commands) {
@@ -316,8 +315,8 @@ std::vector<WorldState> World::snapshot() const {
     Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(state.vehicle_count++)];
     vehicle.id = id;
     vehicle.answered_tick = body.answered();
-    vehicle.position_m << body.x_m, 0;
-    vehicle.velocity_mps << body.applied_mps, 0;
+    vehicle.position_m = body.x_m;
+    vehicle.velocity_mps = body.applied_mps;
   }
   for (std::size_t part = 0; part < parts; ++part) {
     states[part].part = static_cast<std::int32_t>(part);

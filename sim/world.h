@@ -57,8 +57,8 @@ class World {
  private:
   struct Body {
     Author author;
-    Eigen::Vector2d x_m{0, 0};
-    Eigen::Vector2d applied_mps{0, 0};
+    Eigen::Vector3d x_m{0, 0, 0};
+    Eigen::Vector3d applied_mps{0, 0, 0};
     std::optional<Command> command, command_before;
     Tick answered() const { return command ? command->header.tick : -1; }
   };
@@ -100,7 +100,7 @@ class World {
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
   void step(bool hold_old_commands);
-  Eigen::Vector2d command_of(const Body& body, Tick tick, bool hold_old_commands) const;
+  Eigen::Vector3d command_of(const Body& body, Tick tick, bool hold_old_commands) const;
   std::vector<WorldState> snapshot() const;
   void publish(const std::vector<WorldState>& states, Outbox& out);
   void remember_and_publish(Instant now, Outbox& out);

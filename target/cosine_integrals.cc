@@ -33,7 +33,7 @@ struct Multiples {
 
 /// What the edge from `a` to `b` adds to the integrals round the polygon.
 void add_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double density,
-              const Eigen::Vector2d& size_m, Coefficients& sums) {
+              const Eigen::Vector2d& size_m, PlaneCoefficients& sums) {
   const Eigen::Vector2d wave = std::numbers::pi * size_m.cwiseInverse();  // of the first modes
   const Eigen::Vector2d middle = wave.cwiseProduct(0.5 * (a + b));
   const Eigen::Vector2d half = wave.cwiseProduct(0.5 * (b - a));
@@ -74,7 +74,7 @@ Eigen::VectorXd cosine_integrals(double low, double high, double length, int mod
 }
 
 double add_polygon(std::span<const Eigen::Vector2d> corners, double density,
-                   const Eigen::Vector2d& size_m, Coefficients& sums) {
+                   const Eigen::Vector2d& size_m, PlaneCoefficients& sums) {
   double perimeter_m = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % corners.size()];

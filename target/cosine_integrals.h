@@ -24,6 +24,6 @@ Eigen::VectorXd cosine_integrals(double low, double high, double length, int mod
 /// @param size_m   of the domain
 /// @return         how far any sum may be off by rounding, in the unit of `sums`
 double add_polygon(std::span<const Eigen::Vector2d> corners, double density,
-                   const Eigen::Vector2d& size_m, Coefficients& sums);
+                   const Eigen::Vector2d& size_m, PlaneCoefficients& sums);
 
 }  // namespace ergocast

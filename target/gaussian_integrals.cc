@@ -87,8 +87,8 @@ Rule panel_rule(const Interval& over, int panels) {
   return rule;
 }
 
-Coefficients correlated_at(const Gaussian& g, const Rectangle& domain, const Basis& basis,
-                           int panels) {
+PlaneCoefficients correlated_at(const Gaussian& g, const Rectangle& domain, const Basis& basis,
+                                int panels) {
   const Interval over_x = reached(g.mean_m.x(), std::sqrt(g.covariance_m2(0, 0)),
                                   domain.origin_m.x(), domain.size_m.x());
   const Interval over_y = reached(g.mean_m.y(), std::sqrt(g.covariance_m2(1, 1)),
@@ -112,7 +112,7 @@ TargetCoefficients correlated(const Gaussian& g, const Rectangle& domain, const 
   TargetCoefficients result{correlated_at(g, domain, basis, panels), 1};
   while (result.error_bound > kTolerance && panels < kMaxPanels) {
     panels *= 2;
-    Coefficients finer = correlated_at(g, domain, basis, panels);
+    PlaneCoefficients finer = correlated_at(g, domain, basis, panels);
     result.error_bound = (finer - result.values).cwiseAbs().maxCoeff();
     result.values = std::move(finer);
   }
@@ -176,7 +176,7 @@ Rule panels_on(const Interval& over, double scale, int refinement) {
 }
 
 void add_piece(const AcrossAt& across, const Trapezoid& piece, const Rectangle& domain,
-               int refinement, Coefficients& sums) {
+               int refinement, PlaneCoefficients& sums) {
   const Interval over_y = across.reached_y(piece.low, piece.high);
   if (!(over_y.length() > 0)) return;
   const Eigen::Vector2d wave = std::numbers::pi * domain.size_m.cwiseInverse();
@@ -205,10 +205,10 @@ void add_piece(const AcrossAt& across, const Trapezoid& piece, const Rectangle& 
   }
 }
 
-Coefficients over_pieces(const Gaussian& g, std::span<const Trapezoid> pieces,
-                         const Rectangle& domain, const Basis& basis, int refinement) {
+PlaneCoefficients over_pieces(const Gaussian& g, std::span<const Trapezoid> pieces,
+                              const Rectangle& domain, const Basis& basis, int refinement) {
   const AcrossAt across(g, g.mean_m - domain.origin_m);
-  Coefficients sums = Coefficients::Zero(basis.modes_x, basis.modes_y);
+  PlaneCoefficients sums = PlaneCoefficients::Zero(basis.modes_x, basis.modes_y);
   for (const Trapezoid& piece : pieces) add_piece(across, piece, domain, refinement, sums);
   return sums;
 }
@@ -233,7 +233,7 @@ TargetCoefficients integrals_over(const Gaussian& g, std::span<const Trapezoid> 
   TargetCoefficients result{over_pieces(g, pieces, domain, basis, refinement), 1};
   while (result.error_bound > kTolerance && refinement < kMostRefined) {
     refinement *= 2;
-    Coefficients finer = over_pieces(g, pieces, domain, basis, refinement);
+    PlaneCoefficients finer = over_pieces(g, pieces, domain, basis, refinement);
     // The rules' agreement says nothing of the rounding that they share.
     result.error_bound = (finer - result.values).cwiseAbs().maxCoeff() + 1e-14;
     result.values = std::move(finer);

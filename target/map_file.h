@@ -11,7 +11,7 @@
 #include <string>
 #include <variant>
 
-#include "core/geometry.h"
+#include "target/rectangle.h"
 
 namespace ergocast {
 

@@ -51,7 +51,7 @@ RasterIntegral::RasterIntegral(const RasterGrid& grid, const Rectangle& domain, 
       along_x_(Eigen::MatrixXd::Zero(
           (basis.modes_x + kModesAtOnce - 1) / kModesAtOnce * kModesAtOnce, grid.columns)),
       free_(std::move(free)),
-      sums_(Coefficients::Zero(basis.modes_x, basis.modes_y)) {
+      sums_(PlaneCoefficients::Zero(basis.modes_x, basis.modes_y)) {
   ERGOCAST_REQUIRE(grid.columns >= 1 && grid.rows >= 1);
   for (int column = 0; column < grid.columns; ++column) {
     const double low = origin_m_.x() + column * cell_m_.x();

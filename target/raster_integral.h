@@ -52,7 +52,7 @@ class RasterIntegral {
   std::vector<double> low_, high_;  // of each column, clipped to the domain
   Eigen::MatrixXd along_x_;     // modes_x, and zeros to a round number, × columns
   std::vector<Trapezoid> free_;
-  Coefficients sums_;
+  PlaneCoefficients sums_;
   double whole_ = 0, rounding_ = 0;
 };
 

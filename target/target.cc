@@ -29,7 +29,7 @@ void add(double weight, const TargetCoefficients& part, TargetCoefficients& sum)
 /// The uniform part and the Gaussians.
 TargetCoefficients smooth_parts(const TargetDensity& target, const Rectangle& domain,
                                 const Basis& basis) {
-  TargetCoefficients sum{Coefficients::Zero(basis.modes_x, basis.modes_y), 0};
+  TargetCoefficients sum{PlaneCoefficients::Zero(basis.modes_x, basis.modes_y), 0};
   if (target.keep_outs.empty()) {
     sum.values(0, 0) = target.uniform_weight;
     for (const Gaussian& g : target.gaussians) {
@@ -49,7 +49,7 @@ TargetCoefficients smooth_parts(const TargetDensity& target, const Rectangle& do
 
 TargetCoefficients region_integrals(const Region& region, const TargetDensity& target,
                                     const Rectangle& domain, const Basis& basis) {
-  TargetCoefficients sum{Coefficients::Zero(basis.modes_x, basis.modes_y), 0};
+  TargetCoefficients sum{PlaneCoefficients::Zero(basis.modes_x, basis.modes_y), 0};
   add_pieces(free_area_within(region.polygon, domain, target.keep_outs),
              1 / area_m2(region.polygon), domain, sum);
   return sum;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/basis.h"
-#include "core/geometry.h"
 #include "target/polygon.h"
+#include "target/rectangle.h"
 
 namespace ergocast {
 
@@ -37,7 +37,7 @@ struct TargetDensity {
 };
 
 struct TargetCoefficients {
-  Coefficients values;     ///< μ_mn; values(0,0) = 1
+  PlaneCoefficients values;  ///< μ_mn; values(0,0) = 1
   double error_bound = 0;  ///< how far any entry may be off
 };
 

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry.h"
 #include "target/polygon.h"
+#include "target/rectangle.h"
 
 namespace ergocast {
 

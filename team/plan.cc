@@ -42,14 +42,14 @@ bool is_version(const std::string& text) {
 
 // Each part of a mission there and back.
 
-void write(const Rectangle& domain, proto::Plan::Domain& out) {
+void write(const Box& domain, proto::Plan::Domain& out) {
   out.set_origin_x_m(domain.origin_m.x());
   out.set_origin_y_m(domain.origin_m.y());
   out.set_size_x_m(domain.size_m.x());
   out.set_size_y_m(domain.size_m.y());
 }
-Rectangle read(const proto::Plan::Domain& in) {
-  return {{in.origin_x_m(), in.origin_y_m()}, {in.size_x_m(), in.size_y_m()}};
+Box read(const proto::Plan::Domain& in) {
+  return {{in.origin_x_m(), in.origin_y_m(), 0}, {in.size_x_m(), in.size_y_m(), 0}};
 }
 
 void write(const Basis& basis, proto::Plan::Basis& out) {
@@ -91,7 +91,7 @@ ControlLaw read(const proto::Plan::Law& in) {
           .noise_intensity = in.noise_intensity(),
           .noise_ceiling = in.noise_ceiling(),
           .contraction_gain_per_s = in.contraction_gain_per_s(),
-          .contraction_center_m = {in.contraction_center_x_m(), in.contraction_center_y_m()},
+          .contraction_center_m = {in.contraction_center_x_m(), in.contraction_center_y_m(), 0},
           .anticipation = in.anticipation(),
           .ends_with_plan = in.ends_with_plan(),
           .paired_pushes = in.paired_pushes()};
@@ -134,12 +134,12 @@ std::optional<Mission> read(const proto::Plan& in) {
       in.target_coefficients_size() != mission.basis.mode_count() || in.starts_m_size() % 2 != 0) {
     return std::nullopt;
   }
-  mission.target_coefficients = Eigen::Map<const Coefficients>(
-      in.target_coefficients().data(), mission.basis.modes_x, mission.basis.modes_y);
+  mission.target_coefficients =
+      Eigen::Map<const Coefficients>(in.target_coefficients().data(), mission.basis.mode_count());
   mission.law = read(in.law());
   mission.timing = read(in.timing());
   for (int i = 0; i < in.starts_m_size(); i += 2) {
-    mission.starts_m.emplace_back(in.starts_m(i), in.starts_m(i + 1));
+    mission.starts_m.emplace_back(in.starts_m(i), in.starts_m(i + 1), 0);
   }
   mission.quorum = in.quorum();
   mission.forget_silent_after_s = in.forget_silent_after_s();
@@ -165,7 +165,7 @@ std::vector<std::byte> encode_plan(const Mission& mission) {
   plan.mutable_target_coefficients()->Add(target.data(), target.data() + target.size());
   write(mission.law, *plan.mutable_law());
   write(mission.timing, *plan.mutable_timing());
-  for (const Eigen::Vector2d& x_m : mission.starts_m) {
+  for (const Eigen::Vector3d& x_m : mission.starts_m) {
     plan.add_starts_m(x_m.x());
     plan.add_starts_m(x_m.y());
   }

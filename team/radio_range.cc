@@ -9,7 +9,7 @@ void RadioRange::on(const WorldState& world) {
   tick_ = world.header.tick;
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    positions_m_[vehicle.id] = vehicle.position_m.head<2>();
+    positions_m_[vehicle.id] = vehicle.position_m;
   }
 }
 

@@ -23,7 +23,7 @@ class RadioRange {
  private:
   double range_m_;
   Tick tick_ = -1;
-  std::map<AgentId, Eigen::Vector2d> positions_m_;
+  std::map<AgentId, Eigen::Vector3d> positions_m_;
 };
 
 }  // namespace ergocast

@@ -63,12 +63,11 @@ void Driver::on(const Command& command, const Arrival&) {
   Drive& drive = at->second;
   // Standing still is the one second thought that an agent may have of a tick.
   const bool halt = command.header.tick == drive.answered && command.velocity_mps.isZero(0);
-  if (halt) drive.robot.drive({0, 0});
+  if (halt) drive.robot.drive({0, 0, 0});
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
   drive.answered = command.header.tick;
-  const Eigen::Vector2d wanted_mps = command.velocity_mps.head<2>();
-  const Eigen::Vector2d allowed_mps = within_speed_limit(me_.mission(), wanted_mps);
-  if (allowed_mps != wanted_mps) ++clamped_commands_;
+  const Eigen::Vector3d allowed_mps = within_speed_limit(me_.mission(), command.velocity_mps);
+  if (allowed_mps != command.velocity_mps) ++clamped_commands_;
   drive.robot.drive(allowed_mps);
 }
 
@@ -95,14 +94,14 @@ void Driver::pass_tick() {
     const bool driven = drive.author.incarnation != 0;
     const double age_s = static_cast<double>(tick_ - drive.answered) * timing.dt_s;
     if (driven && drive.answered < tick_) ++missed_deadlines_;
-    if (finished_ || !driven || age_s > timing.command_hold_s) drive.robot.drive({0, 0});
+    if (finished_ || !driven || age_s > timing.command_hold_s) drive.robot.drive({0, 0, 0});
     drive.robot.move(timing.dt_s);
   }
   ++tick_;
 }
 
 void Driver::say_where(Outbox& out) {
-  const Rectangle& domain = me_.mission().domain;
+  const Box& domain = me_.mission().domain;
   const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
   auto drive = drives_.begin();
   for (std::size_t part = 0; part < parts; ++part) {
@@ -118,10 +117,10 @@ void Driver::say_where(Outbox& out) {
       vehicle.id = id;
       vehicle.answered_tick = one.answered;
       // Agents refuse a place outside of the domain; a robot that overshoots is at the edge.
-      vehicle.position_m << one.robot.position_m()
-                                .cwiseMax(domain.origin_m)
-                                .cwiseMin(domain.origin_m + domain.size_m), 0;
-      vehicle.velocity_mps << one.robot.velocity_mps(), 0;
+      vehicle.position_m = one.robot.position_m()
+                               .cwiseMax(domain.origin_m)
+                               .cwiseMin(domain.origin_m + domain.size_m);
+      vehicle.velocity_mps = one.robot.velocity_mps();
     }
     me_.publish(Bus::kWorld, state, tick_, out);
   }
@@ -130,7 +129,7 @@ void Driver::say_where(Outbox& out) {
 void Driver::stop(std::string reason) {
   finished_ = true;
   reason_ = std::move(reason);
-  for (auto& [id, drive] : drives_) drive.robot.drive({0, 0});
+  for (auto& [id, drive] : drives_) drive.robot.drive({0, 0, 0});
 }
 
 }  // namespace ergocast::example

@@ -14,7 +14,7 @@ constexpr double kTurnLimit_radps = 2;
 
 void Robot::move(double dt_s) {
   if (wanted_mps_.isZero()) {
-    velocity_mps_ = {0, 0};
+    velocity_mps_.setZero();
     return;
   }
   const double wanted_heading_rad = std::atan2(wanted_mps_.y(), wanted_mps_.x());
@@ -24,7 +24,7 @@ void Robot::move(double dt_s) {
   // Forwards only as far as it already looks where it is to go.
   const double speed_mps =
       std::min(wanted_mps_.norm(), speed_limit_mps_) * std::max(0.0, std::cos(error_rad));
-  velocity_mps_ = speed_mps * Eigen::Vector2d(std::cos(heading_rad_), std::sin(heading_rad_));
+  velocity_mps_ = speed_mps * Eigen::Vector3d(std::cos(heading_rad_), std::sin(heading_rad_), 0);
   position_m_ += velocity_mps_ * dt_s;
 }
 

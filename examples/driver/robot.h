@@ -7,25 +7,25 @@
 
 namespace ergocast::example {
 
-/// Turns on the spot at most at 2 rad/s and drives forwards at most at `speed_limit_mps`. Unlike a
-/// vehicle of ergocast-sim it cannot do at once what it is told.
+/// Stays on its plane, turns on the spot at most at 2 rad/s and drives forwards at most at
+/// `speed_limit_mps`. Unlike a vehicle of ergocast-sim it cannot do at once what it is told.
 class Robot {
  public:
-  Robot(const Eigen::Vector2d& position_m, double speed_limit_mps)
+  Robot(const Eigen::Vector3d& position_m, double speed_limit_mps)
       : position_m_(position_m), speed_limit_mps_(speed_limit_mps) {}
 
   /// The velocity to drive at from now on; zero: stop.
-  void drive(const Eigen::Vector2d& velocity_mps) { wanted_mps_ = velocity_mps; }
+  void drive(const Eigen::Vector3d& velocity_mps) { wanted_mps_ = velocity_mps; }
 
-  Eigen::Vector2d position_m() const { return position_m_; }
-  Eigen::Vector2d velocity_mps() const { return velocity_mps_; }
+  Eigen::Vector3d position_m() const { return position_m_; }
+  Eigen::Vector3d velocity_mps() const { return velocity_mps_; }
 
   /// Lets `dt_s` pass. A real robot moves by itself.
   void move(double dt_s);
 
  private:
-  Eigen::Vector2d position_m_;
-  Eigen::Vector2d velocity_mps_{0, 0}, wanted_mps_{0, 0};
+  Eigen::Vector3d position_m_;
+  Eigen::Vector3d velocity_mps_{0, 0, 0}, wanted_mps_{0, 0, 0};
   double heading_rad_ = 0;
   double speed_limit_mps_;
 };

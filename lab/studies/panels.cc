@@ -39,7 +39,7 @@ double draw_key(Svg& svg, const std::vector<KeyEntry>& key, double width) {
   return y;
 }
 
-void draw_panel(Svg& svg, const Box& area, const Panel& panel) {
+void draw_panel(Svg& svg, const Area& area, const Panel& panel) {
   svg.text({area.left, area.top - 10}, "class=\"head\"", panel.title);
   Plot plot(svg, area, panel.x, panel.y);
   plot.grid();

@@ -39,9 +39,10 @@ std::vector<Tick> decade_ticks(Tick last) {
   return ticks;
 }
 
-double distance_to_edge_m(const Eigen::Vector2d& x_m, const Rectangle& domain) {
-  const Eigen::Vector2d low = x_m - domain.origin_m;
-  return std::min(low.minCoeff(), (domain.size_m - low).minCoeff());
+double distance_to_edge_m(const Eigen::Vector3d& x_m, const Box& domain) {
+  const Eigen::Vector3d low = x_m - domain.origin_m, high = domain.size_m - low;
+  const Eigen::Vector3d nearest = low.cwiseMin(high);
+  return domain.planar() ? nearest.head<2>().minCoeff() : nearest.minCoeff();
 }
 
 }  // namespace
@@ -49,7 +50,7 @@ double distance_to_edge_m(const Eigen::Vector2d& x_m, const Rectangle& domain) {
 StudyMeasure::StudyMeasure(const Mission& mission)
     : mission_(mission),
       escape_distance_m_(lab::escape_distance_m(mission.domain)),
-      at_edge_m_(kAtEdgeShare * mission.domain.size_m.minCoeff()),
+      at_edge_m_(kAtEdgeShare * mission.domain.shortest_side_m()),
       ladder_(ladder_ticks(mission.timing.dt_s, mission.timing.tick_count - 1)),
       decade_(decade_ticks(mission.timing.tick_count - 1)) {
   std::merge(ladder_.begin(), ladder_.end(), decade_.begin(), decade_.end(),
@@ -65,7 +66,7 @@ StudyMeasure::StudyMeasure(const Mission& mission)
   }
 }
 
-void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector2d& x_m) {
+void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
   ++positions_;
   const double offset2_m2 = (x_m - mission_.law.contraction_center_m).squaredNorm();
   offset2_sum_m2_ += offset2_m2;
@@ -77,7 +78,7 @@ void StudyMeasure::position(std::size_t agent, Tick tick, const Eigen::Vector2d&
   }
 }
 
-void StudyMeasure::command(const Eigen::Vector2d& v_mps) {
+void StudyMeasure::command(const Eigen::Vector3d& v_mps) {
   ++commands_;
   speed_sum_mps_ += v_mps.norm();
 }

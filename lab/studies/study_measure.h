@@ -16,9 +16,9 @@ class StudyMeasure {
   explicit StudyMeasure(const Mission& mission);
 
   /// Agent `agent` was at `x_m` at `tick`. Ticks of one agent ascend.
-  void position(std::size_t agent, Tick tick, const Eigen::Vector2d& x_m);
+  void position(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m);
   /// One command of one agent, as its vehicle does it.
-  void command(const Eigen::Vector2d& v_mps);
+  void command(const Eigen::Vector3d& v_mps);
   /// Whether φ² at `tick` is of interest: then it is expected.
   bool wants_metric(Tick tick) const { return next_ < ticks_.size() && tick >= ticks_[next_]; }
   void metric(Tick tick, double metric);

@@ -37,7 +37,7 @@ class Observer {
         measure_(mission),
         controller_(mission),
         table_(mission.basis, mission.timing.dt_s),
-        coverage_(Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y)),
+        coverage_(Coefficients::Zero(mission.basis.mode_count())),
         vehicles_(mission.starts_m.size()) {
     for (std::size_t i = 0; i < vehicles_.size(); ++i) table_.add_row(author(i));
   }
@@ -76,9 +76,9 @@ class Observer {
     tick_ = tick;
     const bool ended = tick >= mission_.timing.tick_count;
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-      if (tick > 0) measure_.command(vehicles_[i].velocity_mps.head<2>());
+      if (tick > 0) measure_.command(vehicles_[i].velocity_mps);
       if (ended) continue;
-      const Eigen::Vector2d x_m = vehicles_[i].position_m.head<2>();
+      const Eigen::Vector3d& x_m = vehicles_[i].position_m;
       measure_.position(i, tick, x_m);
       table_.add_sample(author(i), BasisAt(x_m, mission_.domain, mission_.basis));
     }

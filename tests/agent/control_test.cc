@@ -17,13 +17,13 @@ using namespace test;
 TEST(AgentTick, FirstSampleIsWhereItStandsAtTheStart) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
+  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0].steps, 1);
   EXPECT_EQ(said[0].elapsed_s, 0.1);
   EXPECT_EQ(said[0].mode_count, 20);
   EXPECT_EQ(said[0].author(), author_of(0));
-  const Contribution expected = block_of(mission, 0, {{100, 500}}, 1);
+  const Contribution expected = block_of(mission, 0, {{100, 500, 0}}, 1);
   EXPECT_EQ(said[0].sums, expected.sums);
   EXPECT_EQ(said[0].next_broadcast_tick, 1);
 }
@@ -34,21 +34,21 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
   mission.law.contraction_gain_per_s = 1e-3;
   mission.law.epsilon = 1e-4;
   Agent agent = running_agent(mission);
-  const Contribution theirs = block_of(mission, 1, {{700, 900}}, 1);
+  const Contribution theirs = block_of(mission, 1, {{700, 900, 0}}, 1);
   give(agent, theirs, at(0s));
-  const auto commands = only<Command>(tell(agent, world_state(0, {{100, 500}, {700, 900}})));
+  const auto commands = only<Command>(tell(agent, world_state(0, {{100, 500, 0}, {700, 900, 0}})));
   ASSERT_EQ(commands.size(), 1u);
 
   CoverageTable table(mission.basis, mission.timing.dt_s);
-  const BasisAt here({100, 500}, mission.domain, mission.basis);
+  const BasisAt here({100, 500, 0}, mission.domain, mission.basis);
   table.add_sample(author_of(0), here);
   table.merge(theirs, 10);
-  Coefficients team = Coefficients::Zero(5, 4);
+  Coefficients team = Coefficients::Zero(20);
   table.average(team);
   Controller controller(mission);
   controller.see(team);
-  const Eigen::Vector2d expected = controller.command(0, 0, {100, 500}, here);
-  EXPECT_EQ(commands[0].velocity_mps.head<2>(), expected) << "bit for bit";
+  const Eigen::Vector3d expected = controller.command(0, 0, {100, 500, 0}, here);
+  EXPECT_EQ(commands[0].velocity_mps, expected) << "bit for bit";
   EXPECT_EQ(commands[0].velocity_mps.z(), 0);
   EXPECT_EQ(commands[0].position_m, Eigen::Vector3d(100, 500, 0));
   EXPECT_EQ(commands[0].header.tick, 0);
@@ -58,7 +58,7 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
 
 TEST(AgentTick, SpeaksOnTheBusesOfTheProtocol) {
   Agent agent = running_agent(small_mission(1));
-  for (const Outgoing& outgoing : tell(agent, world_state(0, {{100, 500}}))) {
+  for (const Outgoing& outgoing : tell(agent, world_state(0, {{100, 500, 0}}))) {
     const bool command = std::holds_alternative<Command>(outgoing.message);
     EXPECT_EQ(outgoing.bus, command ? Bus::kCommand : Bus::kSwarm);
   }
@@ -67,9 +67,9 @@ TEST(AgentTick, SpeaksOnTheBusesOfTheProtocol) {
 TEST(AgentTick, ContributionsAreCumulative) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  std::vector<Eigen::Vector2d> path;
+  std::vector<Eigen::Vector3d> path;
   for (Tick tick = 0; tick < 5; ++tick) {
-    path.push_back({100.0 + 7 * static_cast<double>(tick), 500});
+    path.push_back({100.0 + 7 * static_cast<double>(tick), 500, 0});
     const auto said = only<Contribution>(tell(agent, world_state(tick, {path.back()})));
     ASSERT_EQ(said.size(), 1u);
     EXPECT_EQ(said[0].steps, tick + 1);
@@ -87,7 +87,7 @@ TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
     Tick announced = 0;
     for (Tick tick = 0; tick < 40; ++tick) {
       const auto said = only<Contribution>(
-          tell(agent, world_state(tick, {{1, 1}, {2, 2}, {3, 3}, {4, 4}})));
+          tell(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}})));
       ASSERT_EQ(said.size(), tick == announced ? 1u : 0u) << "agent " << id << " at " << tick;
       if (said.empty()) continue;
       if (tick == 0) second_broadcast.push_back(said[0].next_broadcast_tick);
@@ -105,7 +105,7 @@ TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
 TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const Outbox out = tell(agent, world_state(mission.timing.tick_count, {{100, 500}}));
+  const Outbox out = tell(agent, world_state(mission.timing.tick_count, {{100, 500, 0}}));
   EXPECT_TRUE(agent.finished());
   EXPECT_FALSE(agent.failed());
   EXPECT_EQ(agent.reason(), "mission complete");
@@ -118,7 +118,7 @@ TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
 TEST(AgentInLockstep, AnswersOnlyWhenEveryDueBlockOfEveryTeammateIsThere) {
   const Mission mission = two_block_mission(3);
   Agent agent = running_agent(mission);
-  const std::vector<Eigen::Vector2d> places{{100, 500}, {200, 500}, {300, 500}};
+  const std::vector<Eigen::Vector3d> places{{100, 500, 0}, {200, 500, 0}, {300, 500, 0}};
   const auto one = blocks_of(mission, author_of(1), {places[1]}, 1);
   const auto two = blocks_of(mission, author_of(2), {places[2]}, 1);
   ASSERT_EQ(one.size(), 2u);
@@ -138,12 +138,12 @@ TEST(AgentInLockstep, AnswersOnlyWhenEveryDueBlockOfEveryTeammateIsThere) {
 TEST(AgentInLockstep, StatusNamesTheTeammateItWaitsFor) {
   const Mission mission = small_mission(3);
   Agent agent = running_agent(mission);
-  give(agent, block_of(mission, 1, {{200, 500}}, 1), at(0s));
-  tell(agent, world_state(0, {{100, 500}, {200, 500}, {300, 500}}));
+  give(agent, block_of(mission, 1, {{200, 500, 0}}, 1), at(0s));
+  tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}, {300, 500, 0}}));
   const AgentStatus waiting = status_after(agent, at(0s));
   EXPECT_EQ(waiting.waiting_for, 2);
   EXPECT_EQ(waiting.answered_tick, -1);
-  tell(agent, block_of(mission, 2, {{300, 500}}, 1), at(500ms));
+  tell(agent, block_of(mission, 2, {{300, 500, 0}}, 1), at(500ms));
   const AgentStatus answered = status_after(agent, at(500ms));
   EXPECT_EQ(answered.waiting_for, kUnassigned);
   EXPECT_EQ(answered.answered_tick, 0);
@@ -151,7 +151,7 @@ TEST(AgentInLockstep, StatusNamesTheTeammateItWaitsFor) {
 
 TEST(AgentInLockstep, StatusNamesTheWorldOnceItHasBeenSilentForThreeSeconds) {
   Agent agent = running_agent(small_mission(2));
-  const auto world = [] { return world_state(0, {{100, 500}, {200, 500}}); };
+  const auto world = [] { return world_state(0, {{100, 500, 0}, {200, 500, 0}}); };
   const WorldState first = world();
   tell(agent, first, at(5s));
   EXPECT_EQ(status_after(agent, at(5s)).waiting_for, 1) << "whose block the tick waits for";
@@ -166,11 +166,11 @@ TEST(AgentInLockstep, StatusNamesTheWorldOnceItHasBeenSilentForThreeSeconds) {
 TEST(AgentInLockstep, DoesNotWaitForWhatIsNotDue) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  give(agent, block_of(mission, 1, {{200, 500}}, 3), at(0s));
+  give(agent, block_of(mission, 1, {{200, 500, 0}}, 3), at(0s));
   for (Tick tick = 0; tick < 3; ++tick) {
-    EXPECT_EQ(only<Command>(tell(agent, world_state(tick, {{100, 500}}))).size(), 1u) << tick;
+    EXPECT_EQ(only<Command>(tell(agent, world_state(tick, {{100, 500, 0}}))).size(), 1u) << tick;
   }
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(3, {{100, 500}}))).empty());
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(3, {{100, 500, 0}}))).empty());
 }
 
 TEST(AgentInLockstep, DoesNotWaitForMembersWhoHaveLeftOrAreYetToCome) {
@@ -181,14 +181,14 @@ TEST(AgentInLockstep, DoesNotWaitForMembersWhoHaveLeftOrAreYetToCome) {
   roster[1].active_until = 0;
   roster[2].active_from = 5;
   give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
-  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500}}))).size(), 1u);
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(5, {{100, 500}}))).empty());
+  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500, 0}}))).size(), 1u);
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(5, {{100, 500, 0}}))).empty());
 }
 
 TEST(AgentInLockstep, GoesOnWhenARosterRevisionRemovesTheOneItWaitedFor) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, {{100, 500}}))).empty());
+  EXPECT_TRUE(only<Command>(tell(agent, world_state(0, {{100, 500, 0}}))).empty());
   std::vector<RosterEntry> roster = roster_of(2);
   roster[1].active_until = 0;
   EXPECT_EQ(only<Command>(tell(agent, mission_part(1, MissionState::kRunning, roster))).size(), 1u);
@@ -197,8 +197,8 @@ TEST(AgentInLockstep, GoesOnWhenARosterRevisionRemovesTheOneItWaitedFor) {
 TEST(AgentInLockstep, ARepeatedTickIsAnsweredAgainWithTheSameBlocksAndCommand) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const Outbox first = tell(agent, world_state(0, {{100, 500}}));
-  const Outbox again = tell(agent, world_state(0, {{100, 500}}), at(20ms));
+  const Outbox first = tell(agent, world_state(0, {{100, 500, 0}}));
+  const Outbox again = tell(agent, world_state(0, {{100, 500, 0}}), at(20ms));
   ASSERT_EQ(only<Command>(again).size(), 1u);
   EXPECT_EQ(only<Command>(again)[0].velocity_mps, only<Command>(first)[0].velocity_mps);
   EXPECT_EQ(only<Command>(again)[0].header.tick, 0);
@@ -213,9 +213,9 @@ TEST(AgentInLockstep, BetweenBroadcastsARepeatSaysWhatTheLastBroadcastSaid) {
   Mission mission = small_mission(1);
   mission.timing.broadcast_period_ticks = 4;
   Agent agent = running_agent(mission);
-  const auto broadcast = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
-  tell(agent, world_state(1, {{150, 500}}));
-  const auto repeated = only<Contribution>(tell(agent, world_state(1, {{150, 500}}), at(20ms)));
+  const auto broadcast = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
+  tell(agent, world_state(1, {{150, 500, 0}}));
+  const auto repeated = only<Contribution>(tell(agent, world_state(1, {{150, 500, 0}}), at(20ms)));
   ASSERT_EQ(repeated.size(), 1u);
   EXPECT_EQ(repeated[0].steps, 1) << "newer sums would make a tick depend on what was lost";
   EXPECT_EQ(repeated[0].sums, broadcast[0].sums);
@@ -223,7 +223,7 @@ TEST(AgentInLockstep, BetweenBroadcastsARepeatSaysWhatTheLastBroadcastSaid) {
 
 TEST(AgentInLockstep, AReplayedTickIsNotAnsweredAgain) {
   Agent agent = running_agent(small_mission(1));
-  const WorldState world = world_state(0, {{100, 500}});
+  const WorldState world = world_state(0, {{100, 500, 0}});
   EXPECT_FALSE(only<Command>(tell(agent, world)).empty());
   for (int i = 0; i < 10; ++i) {
     const Outbox again = tell(agent, world, at(20ms));
@@ -233,17 +233,17 @@ TEST(AgentInLockstep, AReplayedTickIsNotAnsweredAgain) {
 
 TEST(AgentInLockstep, ARepeatedTickThatWaitsRepeatsOnlyTheBlocks) {
   Agent agent = running_agent(small_mission(2));
-  tell(agent, world_state(0, {{100, 500}}));
-  const Outbox again = tell(agent, world_state(0, {{100, 500}}), at(20ms));
+  tell(agent, world_state(0, {{100, 500, 0}}));
+  const Outbox again = tell(agent, world_state(0, {{100, 500, 0}}), at(20ms));
   EXPECT_EQ(only<Contribution>(again).size(), 1u);
   EXPECT_TRUE(only<Command>(again).empty());
 }
 
 TEST(AgentInLockstep, OldTicksOfTheWorldHaveNoEffect) {
   Agent agent = running_agent(small_mission(1));
-  tell(agent, world_state(0, {{100, 500}}));
-  tell(agent, world_state(1, {{110, 500}}));
-  const Outbox out = tell(agent, world_state(0, {{1900, 500}}));
+  tell(agent, world_state(0, {{100, 500, 0}}));
+  tell(agent, world_state(1, {{110, 500, 0}}));
+  const Outbox out = tell(agent, world_state(0, {{1900, 500, 0}}));
   EXPECT_TRUE(only<Command>(out).empty());
   EXPECT_TRUE(only<Contribution>(out).empty());
   EXPECT_EQ(agent.tick(), 1);
@@ -253,8 +253,8 @@ TEST(AgentInLockstep, OldTicksOfTheWorldHaveNoEffect) {
 TEST(AgentInLockstep, LateOldBlocksChangeNothing) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  const Contribution old_block = block_of(mission, 1, {{200, 500}}, 1);
-  give(agent, block_of(mission, 1, {{200, 500}, {210, 500}}, 2), at(0s));
+  const Contribution old_block = block_of(mission, 1, {{200, 500, 0}}, 1);
+  give(agent, block_of(mission, 1, {{200, 500, 0}, {210, 500, 0}}, 2), at(0s));
   give(agent, old_block, at(0s));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 2);
   EXPECT_EQ(status_after(agent, at(0s)).refused, RefusalCounts{}) << "stale is not refused";
@@ -266,17 +266,17 @@ TEST(AgentInRealTime, AnswersWithWhatItHas) {
   Mission mission = small_mission(4);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500}}))).size(), 1u);
+  EXPECT_EQ(only<Command>(tell(agent, world_state(0, {{100, 500, 0}}))).size(), 1u);
 }
 
 TEST(AgentInRealTime, CountsTheTicksThatWentByWithoutIt) {
   Mission mission = small_mission(1);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(3, {{100, 500}}));
+  tell(agent, world_state(3, {{100, 500, 0}}));
   EXPECT_EQ(status_after(agent, at(0s)).missed_ticks, 0) << "it was not there before";
-  tell(agent, world_state(4, {{100, 500}}));
-  tell(agent, world_state(9, {{100, 500}}));
+  tell(agent, world_state(4, {{100, 500, 0}}));
+  tell(agent, world_state(9, {{100, 500, 0}}));
   EXPECT_EQ(status_after(agent, at(2h)).missed_ticks, 4);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 3) << "and covers only what it saw";
 }
@@ -285,8 +285,8 @@ TEST(AgentInRealTime, TakesTheNewestOfSeveralStatesThatArriveTogether) {
   Mission mission = small_mission(1);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  give(agent, world_state(2, {{300, 500}}), at(0s));
-  give(agent, world_state(1, {{200, 500}}), at(0s));
+  give(agent, world_state(2, {{300, 500, 0}}), at(0s));
+  give(agent, world_state(1, {{200, 500, 0}}), at(0s));
   const auto commands = only<Command>(advance(agent, at(0s)));
   ASSERT_EQ(commands.size(), 1u);
   EXPECT_EQ(commands[0].header.tick, 2);

@@ -12,13 +12,13 @@ namespace {
 using namespace test;
 
 /// Where agent `id` is at `tick`: nobody is twice at one place, nor where a teammate was.
-Eigen::Vector2d place(AgentId id, Tick tick) {
+Eigen::Vector3d place(AgentId id, Tick tick) {
   return {100.0 + 300.0 * id + 3.0 * static_cast<double>(tick),
-          200.0 + 7.0 * static_cast<double>(tick)};
+          200.0 + 7.0 * static_cast<double>(tick), 0};
 }
 
-std::vector<Eigen::Vector2d> path_of(AgentId id, Tick from, Tick until) {
-  std::vector<Eigen::Vector2d> path;
+std::vector<Eigen::Vector3d> path_of(AgentId id, Tick from, Tick until) {
+  std::vector<Eigen::Vector3d> path;
   for (Tick tick = from; tick < until; ++tick) path.push_back(place(id, tick));
   return path;
 }
@@ -34,7 +34,7 @@ Mission realtime(int agents) {
 Outbox fly(LiveTeam& team, int agents, Tick from, Tick until) {
   Outbox said;
   for (Tick tick = from; tick < until; ++tick) {
-    std::vector<Eigen::Vector2d> places;
+    std::vector<Eigen::Vector3d> places;
     for (AgentId id = 0; id < agents; ++id) places.push_back(place(id, tick));
     for (Outgoing& word : team.tell(world_state(tick, places), at(tick * 100ms))) {
       said.push_back(std::move(word));
@@ -44,15 +44,14 @@ Outbox fly(LiveTeam& team, int agents, Tick from, Tick until) {
 }
 
 Coefficients average_of(const Mission& mission, const CoverageTable& table) {
-  Coefficients average = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  Coefficients average = Coefficients::Zero(mission.basis.mode_count());
   table.average(average);
   return average;
 }
 
 /// c_k of these lives, straight from where they were.
-Coefficients average_of(
-    const Mission& mission,
-    const std::vector<std::pair<Author, std::vector<Eigen::Vector2d>>>& lives) {
+Coefficients average_of(const Mission& mission,
+                        const std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>>& lives) {
   CoverageTable table(mission.basis, mission.timing.dt_s);
   for (const auto& [author, path] : lives) {
     for (const Contribution& block : blocks_of(mission, author, path, 0)) table.merge(block, 1000);
@@ -132,7 +131,7 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   fly(team, 4, 20, 22);
   team.wait(at(2200ms), 3s);
 
-  std::vector<std::pair<Author, std::vector<Eigen::Vector2d>>> lives;
+  std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>> lives;
   for (AgentId id = 0; id < 4; ++id) {
     lives.emplace_back(author_of(id), path_of(id, 0, id == 3 ? 20 : 22));
   }

@@ -21,8 +21,8 @@ inline AgentIdentity identity_of(AgentId id) { return {kRun, id, life_of(id), "h
 inline Mission two_block_mission(int agents) {
   Mission mission = small_mission(agents);
   mission.basis.modes_x = mission.basis.modes_y = 12;
-  mission.target_coefficients = Coefficients::Zero(12, 12);
-  mission.target_coefficients(0, 0) = 1;
+  mission.target_coefficients = Coefficients::Zero(144);
+  mission.target_coefficients[0] = 1;
   return mission;
 }
 
@@ -37,10 +37,10 @@ inline Agent running_agent(const Mission& mission, AgentId id = 0) {
 
 /// What `author` says after it has been at these places, one a tick.
 inline std::vector<Contribution> blocks_of(const Mission& mission, const Author& author,
-                                    const std::vector<Eigen::Vector2d>& path_m,
-                                    Tick next_broadcast_tick) {
+                                           const std::vector<Eigen::Vector3d>& path_m,
+                                           Tick next_broadcast_tick) {
   CoverageTable table(mission.basis, mission.timing.dt_s);
-  for (const Eigen::Vector2d& x_m : path_m) {
+  for (const Eigen::Vector3d& x_m : path_m) {
     table.add_sample(author, BasisAt(x_m, mission.domain, mission.basis));
   }
   std::vector<Contribution> blocks;
@@ -55,8 +55,8 @@ inline std::vector<Contribution> blocks_of(const Mission& mission, const Author&
   return blocks;
 }
 
-inline Contribution block_of(const Mission& mission, AgentId id, const std::vector<Eigen::Vector2d>& path_m,
-                      Tick next_broadcast_tick) {
+inline Contribution block_of(const Mission& mission, AgentId id,
+                             const std::vector<Eigen::Vector3d>& path_m, Tick next_broadcast_tick) {
   return blocks_of(mission, author_of(id), path_m, next_broadcast_tick).front();
 }
 

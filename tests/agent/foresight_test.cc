@@ -24,12 +24,12 @@ Mission looking_ahead(int agents, bool dead_reckoning, Pace pace = Pace::kRealti
 }
 
 /// Where agent `id` is at `tick`: nobody is twice at one place, nor where a teammate was.
-Eigen::Vector2d whereabouts(AgentId id, Tick tick) {
+Eigen::Vector3d whereabouts(AgentId id, Tick tick) {
   return {150.0 + 83.0 * id + 3.0 * static_cast<double>(tick % 100),
-          200.0 + 7.0 * static_cast<double>(tick % 90)};
+          200.0 + 7.0 * static_cast<double>(tick % 90), 0};
 }
-std::vector<Eigen::Vector2d> all_whereabouts(int agents, Tick tick) {
-  std::vector<Eigen::Vector2d> places_m;
+std::vector<Eigen::Vector3d> all_whereabouts(int agents, Tick tick) {
+  std::vector<Eigen::Vector3d> places_m;
   for (AgentId id = 0; id < agents; ++id) places_m.push_back(whereabouts(id, tick));
   return places_m;
 }
@@ -41,7 +41,7 @@ WorldState world_of(int agents, Tick tick) {
 /// What agent `id` says at `tick`.
 std::vector<Contribution> words_of(const Mission& mission, AgentId id, Tick tick,
                                    Tick period = 10) {
-  std::vector<Eigen::Vector2d> path_m;
+  std::vector<Eigen::Vector3d> path_m;
   for (Tick before = 0; before <= tick; ++before) path_m.push_back(whereabouts(id, before));
   return blocks_of(mission, author_of(id), path_m, tick + period);
 }
@@ -55,11 +55,11 @@ TEST(AgentForesees, ItsCommandAnswersToWhatItForeseesAndItsStatusTellsWhatItKnow
   for (const bool dead_reckoning : {false, true}) {
     Mission mission = looking_ahead(3, dead_reckoning);
     mission.law.epsilon = 1e-4;
-    mission.target_coefficients(2, 1) = 0.4;
+    mission.target_coefficients[25] = 0.4;
     Agent agent = running_agent(mission);
     CoverageTable table(mission.basis, mission.timing.dt_s);
     Forecast forecast(mission, author_of(0));
-    Coefficients foreseen(12, 12), known(12, 12);
+    Coefficients foreseen(144), known(144);
     Controller controller(mission);
     for (Tick tick = 0; tick < 25; ++tick) {
       if (tick % 10 == 3) {
@@ -77,7 +77,7 @@ TEST(AgentForesees, ItsCommandAnswersToWhatItForeseesAndItsStatusTellsWhatItKnow
       ASSERT_EQ(agent.foreseen_coverage(), foreseen) << tick;
       ASSERT_EQ(agent.team_coverage(), known) << tick;
       controller.see(foreseen);
-      ASSERT_EQ(commands.at(0).velocity_mps.head<2>(),
+      ASSERT_EQ(commands.at(0).velocity_mps,
                 controller.command(0, tick, whereabouts(0, tick), here))
           << tick;
     }
@@ -95,8 +95,7 @@ TEST(AgentForesees, NothingWithoutAnticipation) {
   Controller controller(mission);
   controller.see(agent.team_coverage());
   const BasisAt here(whereabouts(0, 1), mission.domain, mission.basis);
-  EXPECT_EQ(commands.at(0).velocity_mps.head<2>(),
-            controller.command(0, 1, whereabouts(0, 1), here));
+  EXPECT_EQ(commands.at(0).velocity_mps, controller.command(0, 1, whereabouts(0, 1), here));
 }
 
 // ---- the tick of a block -----------------------------------------------------------------------
@@ -172,7 +171,7 @@ std::vector<Eigen::Vector3d> commands_in_lockstep(Mission mission, int period, i
 
 TEST(AgentReckons, SoThatALockstepTeamFliesTheSameHoweverSeldomItTells) {
   Mission mission = looking_ahead(4, true, Pace::kLockstep);
-  mission.target_coefficients(1, 2) = 0.3;
+  mission.target_coefficients[14] = 0.3;
   const auto often = commands_in_lockstep(mission, 1, 60);
   EXPECT_EQ(commands_in_lockstep(mission, 3, 60), often) << "bit for bit";
   EXPECT_EQ(commands_in_lockstep(mission, 20, 60), often) << "bit for bit";
@@ -180,21 +179,21 @@ TEST(AgentReckons, SoThatALockstepTeamFliesTheSameHoweverSeldomItTells) {
   EXPECT_NE(commands_in_lockstep(mission, 20, 60), commands_in_lockstep(mission, 1, 60));
 }
 
-WorldState with_vehicle_1(Tick tick, const Eigen::Vector2d& x_m) {
+WorldState with_vehicle_1(Tick tick, const Eigen::Vector3d& x_m) {
   return world_state(tick, {whereabouts(0, tick), x_m}, tick - 1);
 }
 
 TEST(AgentReckons, NotByAVehicleOutsideTheDomain) {
-  const auto foreseen = [](bool dead_reckoning, const Eigen::Vector2d& x_m) {
+  const auto foreseen = [](bool dead_reckoning, const Eigen::Vector3d& x_m) {
     const Mission mission = looking_ahead(3, dead_reckoning);
     Agent agent = running_agent(mission);
     hear(agent, words_of(mission, 1, 2));
     tell(agent, with_vehicle_1(6, x_m));
     return agent.foreseen_coverage();
   };
-  const Coefficients blind = foreseen(false, {1900, 300});
-  EXPECT_NE(foreseen(true, {1900, 300}), blind);
-  EXPECT_EQ(foreseen(true, {2001, 300}), blind);
+  const Coefficients blind = foreseen(false, {1900, 300, 0});
+  EXPECT_NE(foreseen(true, {1900, 300, 0}), blind);
+  EXPECT_EQ(foreseen(true, {2001, 300, 0}), blind);
 }
 
 TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
@@ -204,19 +203,19 @@ TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
   const Author reborn{1, life_of(1) + 7};
   const std::vector<RosterEntry> roster{
       {author_of(0), 0, -1}, {author_of(1), 0, 5}, {reborn, 5, -1}};
-  const auto foreseen = [&](const Eigen::Vector2d& before_m) {
+  const auto foreseen = [&](const Eigen::Vector3d& before_m) {
     announce(mission);
     Agent agent(identity_of(0));
     give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
     hear(agent, words_of(mission, 1, 2));
     for (Tick tick = 3; tick < 5; ++tick) tell(agent, with_vehicle_1(tick, before_m));
-    auto words = blocks_of(mission, reborn, {{700, 300}}, 15);
+    auto words = blocks_of(mission, reborn, {{700, 300, 0}}, 15);
     for (Contribution& block : words) block.header.tick = 5;
     hear(agent, words);
-    for (Tick tick = 5; tick < 8; ++tick) tell(agent, with_vehicle_1(tick, {700, 300}));
+    for (Tick tick = 5; tick < 8; ++tick) tell(agent, with_vehicle_1(tick, {700, 300, 0}));
     return agent.foreseen_coverage();
   };
-  EXPECT_EQ(foreseen({1900, 900}), foreseen({700, 300}));
+  EXPECT_EQ(foreseen({1900, 900, 0}), foreseen({700, 300, 0}));
 }
 
 TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
@@ -266,7 +265,7 @@ std::vector<WorldState> parts_of_twenty(Tick tick) {
       Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
       vehicle.id = 16 * part + i;
       vehicle.answered_tick = tick - 1;
-      vehicle.position_m << whereabouts(vehicle.id, tick), 0;
+      vehicle.position_m = whereabouts(vehicle.id, tick);
     }
   }
   return parts;
@@ -337,14 +336,14 @@ TEST(AgentForesees, NothingOfATeammateThatHasBeenSilentForLongerThanItLooksAhead
       } else if (silent_s > horizon_s + 0.05) {
         // What it is known to have done since its last words counts; nothing is expected of it.
         CoverageTable table(mission.basis, mission.timing.dt_s);
-        std::vector<Eigen::Vector2d> path_m, own_m;
+        std::vector<Eigen::Vector3d> path_m, own_m;
         for (Tick t = 0; t <= 25; ++t) path_m.push_back(whereabouts(1, t));
         for (Tick t = 0; t <= tick; ++t) own_m.push_back(whereabouts(0, t));
         for (const Contribution& b : blocks_of(mission, author_of(1), path_m, 0))
           table.merge(b, 1000);
         for (const Contribution& b : blocks_of(mission, author_of(0), own_m, 0))
           table.merge(b, 1000);
-        Coefficients known(12, 12);
+        Coefficients known(144);
         table.average(known);
         EXPECT_LT((agent.foreseen_coverage() - known).cwiseAbs().maxCoeff(), 1e-12) << tick;
       }

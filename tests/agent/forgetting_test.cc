@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-const std::vector<Eigen::Vector2d> kGone{{900, 900}, {910, 900}};
+const std::vector<Eigen::Vector3d> kGone{{900, 900, 0}, {910, 900, 0}};
 
 /// The plan's roster of two, where 1 has left at tick 2 and is forgotten from `tick` on.
 MissionPart forgetting_from(Tick tick, std::int64_t revision = 1) {
@@ -18,7 +18,7 @@ MissionPart forgetting_from(Tick tick, std::int64_t revision = 1) {
 }
 
 WorldState world_at(Tick tick, std::int64_t revision = 0) {
-  WorldState world = world_state(tick, {{100.0 + static_cast<double>(tick), 500}});
+  WorldState world = world_state(tick, {{100.0 + static_cast<double>(tick), 500, 0}});
   world.roster_revision = revision;
   return world;
 }
@@ -27,8 +27,8 @@ WorldState world_at(Tick tick, std::int64_t revision = 0) {
 bool steered_alone(const Agent& agent, const Mission& mission, Tick ticks) {
   CoverageTable own(mission.basis, mission.timing.dt_s);
   for (Tick tick = 0; tick < ticks; ++tick) {
-    own.add_sample(author_of(0), BasisAt({100.0 + static_cast<double>(tick), 500}, mission.domain,
-                                         mission.basis));
+    own.add_sample(author_of(0), BasisAt({100.0 + static_cast<double>(tick), 500, 0},
+                                         mission.domain, mission.basis));
   }
   Coefficients alone = agent.team_coverage();
   own.average(alone);
@@ -101,7 +101,7 @@ TEST(AgentForgets, NeverItself) {
   give(agent, mission_part(1, MissionState::kRunning,
                              {{author_of(0), 0, -1, true, 0}, {author_of(1), 0, 0}}), at(0s));
   EXPECT_EQ(only<Command>(tell(agent, world_at(0))).size(), 1u);
-  EXPECT_EQ(agent.team_coverage()(0, 0), 1) << "it lives, whatever the coordinator has heard";
+  EXPECT_EQ(agent.team_coverage()[0], 1) << "it lives, whatever the coordinator has heard";
 }
 
 TEST(AgentForgets, ButPassesItOn) {

@@ -19,7 +19,7 @@ void expect_refused(const Contribution& lie, Refusal why) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500}}));
+  tell(agent, world_state(0, {{100, 500, 0}}));
   tell(agent, lie);
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "only its own";
   RefusalCounts expected{};
@@ -29,7 +29,7 @@ void expect_refused(const Contribution& lie, Refusal why) {
 
 TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
   const Mission mission = small_mission(2);
-  const Contribution honest = block_of(mission, 1, {{200, 500}}, 1);
+  const Contribution honest = block_of(mission, 1, {{200, 500, 0}}, 1);
   Contribution lie = honest;
   lie.sums[3] = kNan;
   expect_refused(lie, Refusal::kRange);
@@ -50,7 +50,7 @@ TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
 TEST(AgentRefuses, CoverageFromTheFuture) {
   // A minute of lead is allowed, since clocks of several hosts may differ; beyond it would win for ever.
   const Mission mission = small_mission(2);
-  Contribution future = block_of(mission, 1, {{200, 500}}, 1);
+  Contribution future = block_of(mission, 1, {{200, 500, 0}}, 1);
   const auto claim = [&future](std::int64_t steps) {
     future.steps = steps;
     future.elapsed_s = 0.1 * static_cast<double>(steps);
@@ -62,7 +62,7 @@ TEST(AgentRefuses, CoverageFromTheFuture) {
   claim(std::numeric_limits<std::int64_t>::max());
   expect_refused(future, Refusal::kRange);
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500}}));
+  tell(agent, world_state(0, {{100, 500, 0}}));
   claim(601);
   tell(agent, future);
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 601);
@@ -70,7 +70,7 @@ TEST(AgentRefuses, CoverageFromTheFuture) {
 
 TEST(AgentRefuses, APlaceOutsideTheDomain) {
   Agent agent = running_agent(small_mission(1));
-  const Outbox out = tell(agent, world_state(0, {{-1, 500}}));
+  const Outbox out = tell(agent, world_state(0, {{-1, 500, 0}}));
   EXPECT_TRUE(only<Command>(out).empty());
   EXPECT_EQ(agent.tick(), -1);
   EXPECT_EQ(status_after(agent, at(0s)).refused[static_cast<std::size_t>(Refusal::kRange)], 1);
@@ -91,7 +91,7 @@ TEST(AgentRefuses, ItsOwnEcho) {
   // Multicast gives everybody their own words back.
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
+  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
   tell(agent, said.at(0));
   const AgentStatus status = status_after(agent, at(0s));
   EXPECT_EQ(status.contributions_received, 0);
@@ -103,7 +103,7 @@ TEST(AgentRefuses, ItsOwnEcho) {
 TEST(AgentStatusReport, CountsGapsInATeammatesSequenceAsLost) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  Contribution theirs = block_of(mission, 1, {{200, 500}}, 1);
+  Contribution theirs = block_of(mission, 1, {{200, 500, 0}}, 1);
   for (const std::int64_t sequence : {11, 12, 15, 14}) {
     theirs.header.sequence = sequence;
     give(agent, theirs, at(0s));
@@ -117,11 +117,11 @@ TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
   Mission mission = small_mission(3);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500}}));
-  give(agent, block_of(mission, 1, {{200, 500}}, 1), at(0s));
-  give(agent, block_of(mission, 2, {{300, 500}}, 1), at(0s));
-  tell(agent, world_state(9, {{100, 500}}));
-  give(agent, block_of(mission, 1, {{200, 500}, {200, 500}, {200, 500}}, 3), at(0s));
+  tell(agent, world_state(0, {{100, 500, 0}}));
+  give(agent, block_of(mission, 1, {{200, 500, 0}}, 1), at(0s));
+  give(agent, block_of(mission, 2, {{300, 500, 0}}, 1), at(0s));
+  tell(agent, world_state(9, {{100, 500, 0}}));
+  give(agent, block_of(mission, 1, {{200, 500, 0}, {200, 500, 0}, {200, 500, 0}}, 3), at(0s));
   // Teammate 2 was last heard of at tick 0. How many samples the others gave does not matter: a
   // teammate that was held up once is not out of date for ever.
   EXPECT_DOUBLE_EQ(status_after(agent, at(0s)).max_staleness_s, 0.9);
@@ -130,9 +130,9 @@ TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
 TEST(AgentStatusReport, ShowsPhiSquaredOfTheTeamAsItKnowsIt) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500}}));
-  const double expected = Controller(mission).metric(
-      basis_values({100, 500}, mission.domain, mission.basis));
+  tell(agent, world_state(0, {{100, 500, 0}}));
+  const double expected =
+      Controller(mission).metric(basis_values({100, 500, 0}, mission.domain, mission.basis));
   EXPECT_NEAR(status_after(agent, at(0s)).ergodic_metric, expected, 1e-14 * expected);
 }
 
@@ -145,7 +145,7 @@ TEST(AgentStatusReport, ComesTwiceASecondAndOnceAMissionSecond) {
   int statuses = 0;
   for (Tick tick = 0; tick < 40; ++tick) {
     statuses += static_cast<int>(
-        only<AgentStatus>(tell(agent, world_state(tick, {{100, 500}}), at(501ms))).size());
+        only<AgentStatus>(tell(agent, world_state(tick, {{100, 500, 0}}), at(501ms))).size());
   }
   EXPECT_EQ(statuses, 4) << "40 ticks of 0.1 s without any time on the clock";
 }
@@ -153,8 +153,8 @@ TEST(AgentStatusReport, ComesTwiceASecondAndOnceAMissionSecond) {
 TEST(AgentStatusReport, CountsItsOwnMessages) {
   Agent agent = running_agent(small_mission(1));
   std::size_t sent = advance(agent, at(0s)).size();
-  sent += tell(agent, world_state(0, {{100, 500}})).size();
-  sent += tell(agent, world_state(0, {{100, 500}})).size();
+  sent += tell(agent, world_state(0, {{100, 500, 0}})).size();
+  sent += tell(agent, world_state(0, {{100, 500, 0}})).size();
   const AgentStatus status = status_after(agent, at(0s));
   EXPECT_EQ(status.messages_sent, static_cast<std::int64_t>(sent));
   EXPECT_EQ(status.messages_received, 3) << "the mission and two states";
@@ -164,7 +164,8 @@ TEST(AgentStatusReport, SequencesGrowByOneOnEachBus) {
   Agent agent = running_agent(small_mission(1));
   std::int64_t last[kBusCount] = {0, 0, 0};
   for (Tick tick = 0; tick < 20; ++tick) {
-    for (const Outgoing& out : tell(agent, world_state(tick / 2, {{100, 500}}), at(tick * 200ms))) {
+    for (const Outgoing& out :
+         tell(agent, world_state(tick / 2, {{100, 500, 0}}), at(tick * 200ms))) {
       EXPECT_EQ(header_of(out.message).sequence, ++last[static_cast<std::size_t>(out.bus)]);
     }
   }

@@ -53,7 +53,7 @@ TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
   announce(mission);
   Agent agent(identity_of(0));
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
-  const Outbox waiting = tell(agent, world_state(0, {{100, 500}}));
+  const Outbox waiting = tell(agent, world_state(0, {{100, 500, 0}}));
   EXPECT_TRUE(only<Command>(waiting).empty());
   EXPECT_TRUE(only<Contribution>(waiting).empty());
   EXPECT_EQ(agent.tick(), -1);
@@ -180,13 +180,13 @@ TEST(AgentHears, CoverageOfMembersOnly) {
   Agent agent = running_agent(mission);
   // More lives of our own number than a table holds, and one of a teammate: none is in the roster.
   for (Incarnation life = 1; life <= 20; ++life) {
-    give(agent, blocks_of(mission, {0, life}, {{900, 900}}, 1).front(), at(0s));
-    give(agent, blocks_of(mission, {1, life}, {{900, 900}}, 1).front(), at(0s));
+    give(agent, blocks_of(mission, {0, life}, {{900, 900, 0}}, 1).front(), at(0s));
+    give(agent, blocks_of(mission, {1, life}, {{900, 900, 0}}, 1).front(), at(0s));
   }
   // A member's name with another's life is nobody's either.
-  give(agent, blocks_of(mission, {0, life_of(1)}, {{900, 900}}, 1).front(), at(0s));
+  give(agent, blocks_of(mission, {0, life_of(1)}, {{900, 900, 0}}, 1).front(), at(0s));
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
-  tell(agent, world_state(0, {{100, 500}, {200, 500}}));
+  tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
 }
 
@@ -195,9 +195,10 @@ TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
   Agent agent = running_agent(mission);
   give(agent, mission_part(5, MissionState::kRunning,
                              {{author_of(0), 0, -1}, {author_of(1), 0, 2}}), at(0s));
-  tell(agent, world_state(9, {{100, 500}, {200, 500}}));
+  tell(agent, world_state(9, {{100, 500, 0}, {200, 500, 0}}));
   const auto hear = [&](std::size_t steps) {
-    give(agent, block_of(mission, 1, std::vector<Eigen::Vector2d>(steps, {200, 500}), 1), at(0s));
+    give(agent, block_of(mission, 1, std::vector<Eigen::Vector3d>(steps, {200, 500, 0}), 1),
+         at(0s));
     return *agent.coverage()->steps_held(author_of(1));
   };
   // The ticks 0, 1 and 2, and the lead that everybody is granted: who evicted it may not have heard
@@ -209,7 +210,7 @@ TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
 TEST(AgentInLockstep, WaitsForTheRosterThatTheWorldGoesBy) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
-  WorldState world = world_state(0, {{100, 500}});
+  WorldState world = world_state(0, {{100, 500, 0}});
   world.roster_revision = 3;
   EXPECT_TRUE(only<Command>(tell(agent, world)).empty());
   EXPECT_EQ(only<Command>(tell(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(),
@@ -223,8 +224,8 @@ TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   auto roster = roster_of(1);
   roster.push_back({former, 0, 3});
   give(agent, mission_part(9, MissionState::kRunning, roster), at(0s));
-  give(agent, blocks_of(mission, former, {{900, 900}, {910, 900}}, 2).front(), at(0s));
-  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));
+  give(agent, blocks_of(mission, former, {{900, 900, 0}, {910, 900, 0}}, 2).front(), at(0s));
+  const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0].steps, 1) << "the old sum is never added into the new";
   EXPECT_EQ(agent.coverage()->row_count(), 2u);
@@ -259,14 +260,16 @@ Agent successor_from_7(const Mission& mission) {
   Agent agent(identity_of(0));
   std::vector<RosterEntry> roster{{{0, 55}, 0, 7}, {author_of(0), 7, -1}};
   give(agent, mission_part(9, MissionState::kRunning, roster), at(0s));
-  give(agent, blocks_of(mission, {0, 55}, std::vector<Eigen::Vector2d>(7, {900, 900}), 7).front(), at(0s));
+  give(agent,
+       blocks_of(mission, {0, 55}, std::vector<Eigen::Vector3d>(7, {900, 900, 0}), 7).front(),
+       at(0s));
   return agent;
 }
 
 TEST(AgentRestarted, DoesNotCoverAgainWhatTheWorldOnlyRepeatsForTheLogger) {
   const Mission mission = small_mission(1);
   Agent agent = successor_from_7(mission);
-  WorldState repeated = world_state(6, {{100, 500}}, 5);
+  WorldState repeated = world_state(6, {{100, 500, 0}}, 5);
   repeated.roster_revision = 8;
   EXPECT_TRUE(only<Command>(tell(agent, repeated)).empty());
   EXPECT_EQ(agent.tick(), -1);
@@ -275,13 +278,13 @@ TEST(AgentRestarted, DoesNotCoverAgainWhatTheWorldOnlyRepeatsForTheLogger) {
 TEST(AgentRestarted, CoversNothingOfATickBeforeItsFirstThatARestartedWorldStandsAt) {
   const Mission mission = small_mission(1);
   Agent agent = successor_from_7(mission);
-  WorldState behind = world_state(6, {{100, 500}});
+  WorldState behind = world_state(6, {{100, 500, 0}});
   behind.roster_revision = 9;
   const Outbox said = tell(agent, behind);
   EXPECT_EQ(only<Command>(said).size(), 1u) << "the world waits for it";
   EXPECT_TRUE(only<Contribution>(said).empty()) << "its predecessor has covered the tick";
   EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 0);
-  const auto covered = only<Contribution>(tell(agent, world_state(7, {{100, 500}})));
+  const auto covered = only<Contribution>(tell(agent, world_state(7, {{100, 500, 0}})));
   ASSERT_EQ(covered.size(), 1u);
   EXPECT_EQ(covered[0].steps, 1);
 }
@@ -290,7 +293,7 @@ TEST(AgentRestarted, SaysNothingOfACoverageThatHasNotBegunWhileTheWorldIsSilent)
   Mission mission = small_mission(1);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = successor_from_7(mission);
-  WorldState behind = world_state(6, {{100, 500}});
+  WorldState behind = world_state(6, {{100, 500, 0}});
   behind.roster_revision = 9;
   tell(agent, behind);
   EXPECT_TRUE(only<Contribution>(advance(agent, at(10s))).empty());
@@ -307,7 +310,7 @@ TEST(AgentEnd, AStopAtOnceEndsItAndTheLastStatusSaysSoOnce) {
     EXPECT_EQ(agent.reason(), "enough");
     ASSERT_EQ(last.size(), 1u);
     EXPECT_EQ(last[0].phase, AgentPhase::kFinished);
-    EXPECT_TRUE(tell(agent, world_state(0, {{100, 500}}), at(1h)).empty()) << "final";
+    EXPECT_TRUE(tell(agent, world_state(0, {{100, 500, 0}}), at(1h)).empty()) << "final";
   }
 }
 
@@ -327,12 +330,12 @@ TEST(AgentEnd, ItsLastCommandAfterAStopAtOnceIsToStandStill) {
   for (const bool had_answered : {false, true}) {
     Agent agent = running_agent(small_mission(2));
     advance(agent, at(0s));
-    tell(agent, world_state(0, {{100, 500}, {200, 500}}));
+    tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
     if (had_answered) {
       Agent teammate = running_agent(small_mission(2), 1);
       advance(teammate, at(0s));
       for (const Contribution& block :
-           only<Contribution>(tell(teammate, world_state(0, {{100, 500}, {200, 500}})))) {
+           only<Contribution>(tell(teammate, world_state(0, {{100, 500, 0}, {200, 500, 0}})))) {
         tell(agent, block);
       }
     }
@@ -371,7 +374,7 @@ TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   mission.timing.pace = Pace::kRealtime;
   mission.timing.realtime_factor = 2;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(40, {{100, 500}}), at(5s));  // 60 ticks of 0.05 s are left
+  tell(agent, world_state(40, {{100, 500, 0}}), at(5s));  // 60 ticks of 0.05 s are left
   give(agent, status_of(1, 1), at(37s));  // a teammate may be cut off as we are
   advance(agent, at(38s));
   EXPECT_FALSE(agent.finished());
@@ -394,7 +397,7 @@ TEST(AgentEnd, IsNotThereForAsLongAsTheWorldOrTheCoordinatorSpeaks) {
     EXPECT_FALSE(agent.finished());
   }
   for (auto now = 1h + 0s; now < 2h; now += 35s) {
-    give(agent, world_state(7, {{100, 500}}), at(now));
+    give(agent, world_state(7, {{100, 500, 0}}), at(now));
     advance(agent, at(now + 34s));
     EXPECT_FALSE(agent.finished());
   }
@@ -404,7 +407,7 @@ TEST(AgentEnd, ComesByItselfInLockstepOnceNoTickCouldHaveWaitedForIt) {
   Mission mission = small_mission(1);
   mission.timing.lockstep_timeout_s = 600;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500}}), at(5s));
+  tell(agent, world_state(0, {{100, 500, 0}}), at(5s));
   advance(agent, at(635s));
   EXPECT_FALSE(agent.finished());
   advance(agent, at(636s));
@@ -420,17 +423,17 @@ TEST(AgentEnd, AnEvictedAgentStopsAtTheNamedTick) {
   const MissionPart eviction = mission_part(1, MissionState::kRunning, roster);
 
   Agent there = running_agent(mission);
-  tell(there, world_state(3, {{100, 500}}));
+  tell(there, world_state(3, {{100, 500, 0}}));
   give(there, eviction, at(0s));
   EXPECT_TRUE(there.finished());
   EXPECT_TRUE(there.failed());
   EXPECT_EQ(there.reason(), "evicted from the roster at tick 3");
 
   Agent behind = running_agent(mission);
-  tell(behind, world_state(1, {{100, 500}}));
+  tell(behind, world_state(1, {{100, 500, 0}}));
   give(behind, eviction, at(0s));
-  EXPECT_EQ(only<Command>(tell(behind, world_state(2, {{100, 500}}))).size(), 1u);
-  EXPECT_TRUE(only<Command>(tell(behind, world_state(3, {{100, 500}}))).empty());
+  EXPECT_EQ(only<Command>(tell(behind, world_state(2, {{100, 500, 0}}))).size(), 1u);
+  EXPECT_TRUE(only<Command>(tell(behind, world_state(3, {{100, 500, 0}}))).empty());
   EXPECT_TRUE(behind.finished());
   EXPECT_EQ(behind.reason(), "evicted from the roster at tick 3");
 }

@@ -158,7 +158,7 @@ TEST(WorldQuestion, GetsTheLastTwoCommandsWithTheirTicksAndPlaces) {
   std::vector<Command> given;
   for (Tick tick = 0; tick < 3; ++tick) {
     const double x_m = 100.0 + static_cast<double>(tick);
-    for (const Command& command : only<Command>(tell(agent, world_state(tick, {{x_m, 500}})))) {
+    for (const Command& command : only<Command>(tell(agent, world_state(tick, {{x_m, 500, 0}})))) {
       given.push_back(command);
     }
   }
@@ -193,7 +193,7 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   Agent agent = running_agent(mission);
-  tell(agent, world_state(0, {{100, 500}}), at(1s));
+  tell(agent, world_state(0, {{100, 500, 0}}), at(1s));
   EXPECT_TRUE(only<Hello>(advance(agent, at(10s))).empty());
 
   // A coordinator that took over from a memory in which agent 0 was not yet a member.
@@ -205,7 +205,8 @@ TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   EXPECT_TRUE(only<Hello>(advance(agent, at(11s + 249ms))).empty());
   EXPECT_EQ(only<Hello>(advance(agent, at(11s + 250ms))).size(), 1u);
   EXPECT_LE(agent.next_wakeup(), at(11s + 500ms));
-  EXPECT_EQ(only<Command>(tell(agent, world_state(1, {{101, 500}}), at(11s + 300ms))).size(), 1u);
+  EXPECT_EQ(only<Command>(tell(agent, world_state(1, {{101, 500, 0}}), at(11s + 300ms))).size(),
+            1u);
 
   auto roster = roster_of(2);
   roster[0].active_from = 1;

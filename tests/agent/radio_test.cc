@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 
 /// 1 is in reach of 0 and of 2, which do not reach each other.
-const std::vector<Eigen::Vector2d> kLine{{100, 500}, {500, 500}, {900, 500}};
+const std::vector<Eigen::Vector3d> kLine{{100, 500, 0}, {500, 500, 0}, {900, 500, 0}};
 
 Mission short_range(Pace pace) {
   Mission mission = small_mission(3);
@@ -48,7 +48,7 @@ TEST(AgentRadio, HearsAgainWhoComesCloser) {
   const Mission mission = short_range(Pace::kRealtime);
   Agent agent = running_agent(mission);
   tell(agent, world_state(0, kLine));
-  tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500}}));
+  tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500, 0}}));
   give(agent, block_of(mission, 2, {kLine[2]}, 1), at(0s));
   EXPECT_EQ(agent.coverage()->steps_held(author_of(2)), 1);
 }
@@ -65,8 +65,9 @@ TEST(AgentRadio, LockstepWaitsForWhoHasComeIntoReach) {
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, {kLine[1]}, 9), at(0s));
   EXPECT_EQ(only<Command>(tell(agent, world_state(0, kLine))).size(), 1u);
-  EXPECT_TRUE(only<Command>(tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500}}))).empty());
-  const Contribution theirs = block_of(mission, 2, {kLine[2], {400, 500}}, 2);
+  EXPECT_TRUE(
+      only<Command>(tell(agent, world_state(1, {kLine[0], kLine[1], {400, 500, 0}}))).empty());
+  const Contribution theirs = block_of(mission, 2, {kLine[2], {400, 500, 0}}, 2);
   EXPECT_EQ(only<Command>(tell(agent, theirs)).size(), 1u);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-using Path = std::vector<Eigen::Vector2d>;
+using Path = std::vector<Eigen::Vector3d>;
 
 constexpr Tick kPeriod = 40;
 
@@ -26,8 +26,8 @@ Mission reckoning_mission(Pace pace = Pace::kLockstep) {
   return mission;
 }
 
-Eigen::Vector2d own_place(Tick tick) { return {100.0 + 7 * static_cast<double>(tick), 500}; }
-Eigen::Vector2d their_place(Tick tick) { return {900, 600.0 + 9 * static_cast<double>(tick)}; }
+Eigen::Vector3d own_place(Tick tick) { return {100.0 + 7 * static_cast<double>(tick), 500, 0}; }
+Eigen::Vector3d their_place(Tick tick) { return {900, 600.0 + 9 * static_cast<double>(tick), 0}; }
 
 Path their_path(Tick from, Tick until) {
   Path path;
@@ -37,8 +37,8 @@ Path their_path(Tick from, Tick until) {
 
 /// Σ f(x) dt.
 Coefficients sums_of(const Mission& mission, const Path& path_m) {
-  Coefficients sums = Coefficients::Zero(5, 4);
-  for (const Eigen::Vector2d& x_m : path_m) {
+  Coefficients sums = Coefficients::Zero(20);
+  for (const Eigen::Vector3d& x_m : path_m) {
     accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis, mission.timing.dt_s,
                      sums.data());
   }
@@ -51,7 +51,7 @@ Coefficients foreseen(const Mission& mission, Tick own_from, Tick tick, const Pa
                       std::size_t gained, Tick age) {
   const double dt_s = mission.timing.dt_s;
   const double h_s = mission.law.anticipation *
-                     target_spread_m(mission.target_coefficients, mission.domain) /
+                     target_spread_m(mission.target_coefficients, mission.basis, mission.domain) /
                      mission.law.u_max_mps / std::sqrt(2.0);
   const double weight_s = h_s + static_cast<double>(static_cast<Tick>(gained) + age) * dt_s;
   Path own;
@@ -113,7 +113,8 @@ TEST_F(Reckoning, TheNextBlockReplacesWhatWasReckoned) {
   begin(reckoning_mission());
   hear_block(their_path(0, 1));
   fly(0, 6);
-  Path truth{{300, 300}, {310, 300}, {320, 300}, {330, 300}};  // as only its author knows
+  Path truth{
+      {300, 300, 0}, {310, 300, 0}, {320, 300, 0}, {330, 300, 0}};  // as only its author knows
   hear_block(truth);
   fly(6, 8);
   for (Tick tick = 4; tick < 8; ++tick) truth.push_back(their_place(tick));
@@ -140,7 +141,7 @@ TEST_F(Reckoning, APlaceFromBeforeItTookPartIsNone) {
   hear_block(their_path(0, 1));
   fly(0, 5);
   Path known = their_path(0, 1);
-  for (const Eigen::Vector2d& x_m : their_path(3, 5)) known.push_back(x_m);
+  for (const Eigen::Vector3d& x_m : their_path(3, 5)) known.push_back(x_m);
   expect_foreseen(foreseen(mission_, 3, 4, known, 1, 0));
 }
 
@@ -150,8 +151,9 @@ TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
   begin(mission);
   hear_block(their_path(0, 1));
   const auto tell_of = [&](Tick tick, double away_m) {
-    tell(*agent_, world_state(tick, {own_place(tick), their_place(tick) + Eigen::Vector2d(away_m, 0)},
-                              tick - 1));
+    tell(*agent_,
+         world_state(tick, {own_place(tick), their_place(tick) + Eigen::Vector3d(away_m, 0, 0)},
+                     tick - 1));
   };
   tell_of(0, 0);
   tell_of(1, 900);

@@ -14,8 +14,8 @@ namespace {
 
 using namespace test;
 
-std::vector<Eigen::Vector2d> path_of(std::int64_t steps) {
-  return std::vector<Eigen::Vector2d>(static_cast<std::size_t>(steps), {700, 300});
+std::vector<Eigen::Vector3d> path_of(std::int64_t steps) {
+  return std::vector<Eigen::Vector3d>(static_cast<std::size_t>(steps), {700, 300, 0});
 }
 
 /// Agent 0's table and its readiness to repair, in a team of five.
@@ -130,7 +130,7 @@ TEST(AgentDigests, AndEachMissionSecondHoweverFastTheClockOfTheMission) {
   Agent agent = running_agent(small_mission(1));
   int digests = 0;
   for (Tick tick = 0; tick < 40; ++tick) {
-    for (const Outgoing& outgoing : tell(agent, world_state(tick, {{100, 500}}), at(0s))) {
+    for (const Outgoing& outgoing : tell(agent, world_state(tick, {{100, 500, 0}}), at(0s))) {
       const auto* digest = std::get_if<Digest>(&outgoing.message);
       if (digest == nullptr) continue;
       EXPECT_EQ(outgoing.bus, Bus::kSwarm);

@@ -68,7 +68,7 @@ void ControlStep(benchmark::State& state, Sight sight) {
       team.teammates_step();
       team.merge_news();
       floor.take(team.news());
-      Eigen::Vector2d ours, theirs;
+      Eigen::Vector3d ours, theirs;
       step.add([&] { ours = team.step(); });
       floor_step.add([&] { theirs = floor.step(team.tick(), team.places_m()); });
       nothing.add([] {});

@@ -261,8 +261,9 @@ void StepFloor::take(const std::vector<Contribution>& news) {
 }
 
 /// Where teammates are in this tick.
-void StepFloor::see(Tick tick, const std::vector<Eigen::Vector2d>& places_m) {
-  const Eigen::Vector2d wave_numbers = std::numbers::pi * mission_.domain.size_m.cwiseInverse();
+void StepFloor::see(Tick tick, const std::vector<Eigen::Vector3d>& places_m) {
+  const Eigen::Vector2d wave_numbers =
+      std::numbers::pi * mission_.domain.size_m.head<2>().cwiseInverse();
   for (std::size_t i = 1; i < mates_.size(); ++i) {
     Mate& mate = mates_[i];
     waves(places_m[i].x(), wave_numbers.x(), stride_, mate.along_x);
@@ -294,8 +295,9 @@ double StepFloor::per_second(Tick tick) {
 }
 
 /// The pass over the modes at agent 0's place.
-Totals StepFloor::totals(const Eigen::Vector2d& x_m, double per_second) {
-  const Eigen::Vector2d wave_numbers = std::numbers::pi * mission_.domain.size_m.cwiseInverse();
+Totals StepFloor::totals(const Eigen::Vector3d& x_m, double per_second) {
+  const Eigen::Vector2d wave_numbers =
+      std::numbers::pi * mission_.domain.size_m.head<2>().cwiseInverse();
   const Tables tables{agents_,        modes_,         stride_,        sums_.data(), gains_.data(),
                       target_.data(), weight_.data(), energy_.data(), mates_.data()};
   // Also behind the last mode, where the weights are zero and nothing counts.
@@ -308,22 +310,23 @@ Totals StepFloor::totals(const Eigen::Vector2d& x_m, double per_second) {
   return over(tables, along_x, along_y, mission_.timing.dt_s, per_second);
 }
 
-Eigen::Vector2d StepFloor::step(Tick tick, const std::vector<Eigen::Vector2d>& places_m) {
+Eigen::Vector3d StepFloor::step(Tick tick, const std::vector<Eigen::Vector3d>& places_m) {
   if (ahead_ == Ahead::kPlaces) see(tick, places_m);
-  const Eigen::Vector2d& x_m = places_m.front();
+  const Eigen::Vector3d& x_m = places_m.front();
   const Totals totals = this->totals(x_m, per_second(tick));
 
   const ControlLaw& law = mission_.law;
   FieldAt field;
-  field.gradient << totals.x, totals.y;
-  field.hessian << totals.xx, totals.xy, totals.xy, totals.yy;
+  field.gradient.head<2>() << totals.x, totals.y;
+  field.hessian.topLeftCorner<2, 2>() << totals.xx, totals.xy, totals.xy, totals.yy;
   const double epsilon = law.epsilon * std::sqrt(totals.power);
   const double length = std::sqrt(field.gradient.squaredNorm() + epsilon * epsilon);
-  const Eigen::Vector2d xi =
-      normal_pair(mission_.seed, Purpose::kPerturbation, 0, static_cast<std::uint64_t>(tick));
+  const Eigen::Vector3d xi = normal_in(mission_.domain, mission_.seed, Purpose::kPerturbation, 0,
+                                       static_cast<std::uint64_t>(tick));
   if (const Tick push = tick / push_ticks_; push != push_) {  // held meanwhile
     push_ = push;
-    eta_ = normal_pair(mission_.seed, Purpose::kPush, 0, static_cast<std::uint64_t>(push));
+    eta_ = normal_in(mission_.domain, mission_.seed, Purpose::kPush, 0,
+                     static_cast<std::uint64_t>(push));
   }
   return -law.u_max_mps / length * field.gradient -
          law.contraction_gain_per_s * (x_m - law.contraction_center_m) +

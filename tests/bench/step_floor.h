@@ -23,7 +23,7 @@ class StepFloor {
 
   /// Agent 0's command, everybody's places [m] known if the mission says so; the same as Agent's
   /// but for rounding.
-  Eigen::Vector2d step(Tick tick, const std::vector<Eigen::Vector2d>& places_m);
+  Eigen::Vector3d step(Tick tick, const std::vector<Eigen::Vector3d>& places_m);
 
   /// One axis: cos(m·k·x) for every mode m, its first derivative and its second.
   struct Waves {
@@ -55,8 +55,8 @@ class StepFloor {
 
  private:
   double per_second(Tick tick);
-  void see(Tick tick, const std::vector<Eigen::Vector2d>& places_m);
-  Totals totals(const Eigen::Vector2d& x_m, double per_second);
+  void see(Tick tick, const std::vector<Eigen::Vector3d>& places_m);
+  Totals totals(const Eigen::Vector3d& x_m, double per_second);
 
   Mission mission_;
   LookAhead look_ahead_;
@@ -66,7 +66,7 @@ class StepFloor {
   std::vector<Mate> mates_;
   PerturbationScale scale_;
   Tick push_ticks_, push_ = -1;
-  Eigen::Vector2d eta_{0, 0};
+  Eigen::Vector3d eta_{0, 0, 0};
 };
 
 }  // namespace ergocast::bench

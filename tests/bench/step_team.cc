@@ -13,9 +13,9 @@ namespace {
 Mission full_mission(int modes_per_axis, Sight sight) {
   Mission mission;
   mission.seed = 7;
-  mission.domain.size_m = {2000, 2000};
+  mission.domain.size_m = {2000, 2000, 0};
   mission.basis.modes_x = mission.basis.modes_y = modes_per_axis;
-  mission.target_coefficients = basis_values({500, 700}, mission.domain, mission.basis);
+  mission.target_coefficients = basis_values({500, 700, 0}, mission.domain, mission.basis);
   mission.law.u_max_mps = 20;
   mission.law.regularization = Regularization::kRelative;
   mission.law.epsilon = 0.05;
@@ -23,7 +23,7 @@ Mission full_mission(int modes_per_axis, Sight sight) {
   mission.law.noise_intensity = 1;
   mission.law.noise_ceiling = 20;
   mission.law.contraction_gain_per_s = 1e-4;
-  mission.law.contraction_center_m = {1000, 1000};
+  mission.law.contraction_center_m = {1000, 1000, 0};
   mission.law.anticipation = sight == Sight::kKnown ? 0 : 2;
   mission.dead_reckoning = sight == Sight::kReckoned;
   const bool told_each_tick = sight == Sight::kKnown || sight == Sight::kToldEachTick;
@@ -34,9 +34,9 @@ Mission full_mission(int modes_per_axis, Sight sight) {
 Author author_of(AgentId id) { return {id, 1000 + static_cast<Incarnation>(id)}; }
 
 /// Along a path through most of the domain that never closes.
-Eigen::Vector2d place(AgentId id, Tick tick) {
+Eigen::Vector3d place(AgentId id, Tick tick) {
   const double angle = 0.01 * static_cast<double>(tick) + id;
-  return {1000 + 900 * std::cos(angle), 1000 + 900 * std::sin(1.618 * angle)};
+  return {1000 + 900 * std::cos(angle), 1000 + 900 * std::sin(1.618 * angle), 0};
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ StepTeam::StepTeam(int modes_per_axis, int agents, Sight sight)
       own_(mission_.basis, mission_.timing.dt_s),
       controller_(mission_),
       forecast_(mission_, author_of(0)),
-      coverage_(Coefficients::Zero(modes_per_axis, modes_per_axis)),
+      coverage_(Coefficients::Zero(modes_per_axis * modes_per_axis)),
       teammates_(static_cast<std::size_t>(agents - 1),
                  CoverageTable(mission_.basis, mission_.timing.dt_s)),
       places_m_(static_cast<std::size_t>(agents)) {
@@ -61,7 +61,7 @@ void StepTeam::teammates_step() {
   AgentId id = 0;
   for (CoverageTable& theirs : teammates_) {
     const Author author = author_of(++id);
-    const Eigen::Vector2d& x_m = places_m_[static_cast<std::size_t>(id)] = place(id, tick_);
+    const Eigen::Vector3d& x_m = places_m_[static_cast<std::size_t>(id)] = place(id, tick_);
     theirs.add_sample(author, BasisAt(x_m, mission_.domain, mission_.basis));
     if ((tick_ + id) % period != 0 && tick_ > 0) continue;
     for (int b = 0; b < theirs.block_count(); ++b) {
@@ -81,7 +81,7 @@ void StepTeam::merge_news() {
   }
 }
 
-Eigen::Vector2d StepTeam::step() {
+Eigen::Vector3d StepTeam::step() {
   const BasisAt at(places_m_[0], mission_.domain, mission_.basis);
   own_.add_sample(author_of(0), at);
   if (mission_.law.anticipation > 0) {

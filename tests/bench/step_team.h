@@ -26,7 +26,7 @@ class StepTeam {
   const Mission& mission() const { return mission_; }
   Tick tick() const { return tick_; }
   /// Where everybody is at tick(), agent 0 first.
-  const std::vector<Eigen::Vector2d>& places_m() const { return places_m_; }
+  const std::vector<Eigen::Vector3d>& places_m() const { return places_m_; }
   /// Every block that teammates say at tick().
   const std::vector<Contribution>& news() const { return news_; }
 
@@ -35,7 +35,7 @@ class StepTeam {
   /// Agent 0 takes in the news, and where everybody is.
   void merge_news();
   /// What agent 0 does between knowing where it is and saying how it moves.
-  Eigen::Vector2d step();
+  Eigen::Vector3d step();
 
  private:
   Mission mission_;
@@ -46,7 +46,7 @@ class StepTeam {
   std::vector<RosterEntry> roster_;
   std::vector<CoverageTable> teammates_;
   std::vector<Contribution> news_;
-  std::vector<Eigen::Vector2d> places_m_;
+  std::vector<Eigen::Vector3d> places_m_;
   Tick tick_ = -1;
 };
 

@@ -45,9 +45,9 @@ void StudyRun(benchmark::State& state) {
 void StudyFloor(benchmark::State& state) {
   const Mission mission = mission_of(4, false);
   for (auto _ : state) {
-    for (const Eigen::Vector2d& start_m : mission.starts_m) {
+    for (const Eigen::Vector3d& start_m : mission.starts_m) {
       StepFloor floor(mission, 1);
-      std::vector<Eigen::Vector2d> x_m = {start_m};
+      std::vector<Eigen::Vector3d> x_m = {start_m};
       for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
         x_m[0] = reflect(x_m[0] + mission.timing.dt_s * floor.step(tick, x_m), mission.domain);
       }

@@ -38,15 +38,15 @@ constexpr Tick kUnderWay = 100;
 }  // namespace
 
 // clang-format off
-WRAPPED(Eigen::Vector2d, command, "_ZN8ergocast10Controller7commandEilRKN5Eigen6MatrixIdLi2ELi1ELi0ELi2ELi1EEERKNS_7BasisAtE", Controller*, AgentId, Tick, const Eigen::Vector2d&, const BasisAt&)
-WRAPPED(Eigen::Vector2d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi2ELi1ELi0ELi2ELi1EEERKNS_9RectangleE", const Eigen::Vector2d&, const Rectangle&)
+WRAPPED(Eigen::Vector3d, command, "_ZN8ergocast10Controller7commandEilRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_7BasisAtE", Controller*, AgentId, Tick, const Eigen::Vector3d&, const BasisAt&)
+WRAPPED(Eigen::Vector3d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_3BoxE", const Eigen::Vector3d&, const Box&)
 WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
 WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtE", CoverageTable*, const Author&, const BasisAt&)
 WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
 WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi", const CoverageTable*, const Author&, int)
-WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELin1ELi1ELin1ELin1EEE", const CoverageTable*, Coefficients&)
+WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
-WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELin1ELi1ELin1ELin1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
+WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
 WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
 WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
 WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
@@ -61,14 +61,14 @@ WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm1844674407370955
 
 // ---- control and world ---------------------------------------------------------------------------
 
-Eigen::Vector2d bug_command(Controller* self, AgentId agent, Tick tick, const Eigen::Vector2d& x_m,
+Eigen::Vector3d bug_command(Controller* self, AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
                             const BasisAt& at) {
-  const Eigen::Vector2d v_mps = real_command(self, agent, tick, x_m, at);
+  const Eigen::Vector3d v_mps = real_command(self, agent, tick, x_m, at);
   return bug("the input is not cut") ? 20 * v_mps : v_mps;
 }
 
-Eigen::Vector2d bug_reflect(const Eigen::Vector2d& x_m, const Rectangle& domain) {
-  const Eigen::Vector2d back_m = real_reflect(x_m, domain);
+Eigen::Vector3d bug_reflect(const Eigen::Vector3d& x_m, const Box& domain) {
+  const Eigen::Vector3d back_m = real_reflect(x_m, domain);
   if (!bug("the edges push outwards")) return back_m;
   return back_m + (back_m - domain.center_m());
 }
@@ -150,7 +150,7 @@ Contribution bug_block(const CoverageTable* self, const Author& author, int bloc
 
 void bug_average(const CoverageTable* self, Coefficients& coverage) {
   real_average(self, coverage);
-  if (bug("the average is off")) coverage(1, 2) += 1e-6;
+  if (bug("the average is off")) coverage[2] += 1e-6;
 }
 
 // ---- forecasts -----------------------------------------------------------------------------------

@@ -34,7 +34,7 @@ class TeamViewTest : public ::testing::Test {
   }
   void hear_processes(Instant now, Tick tick = 0) {
     give(view_, coordinator_at(tick), now);
-    give(view_, world_state(tick, {{1, 1}}), now);
+    give(view_, world_state(tick, {{1, 1, 0}}), now);
     give(view_, RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), tick}}, now);
   }
   AgentStatus status(AgentId id, std::int64_t sequence, Tick tick = 0) const {
@@ -182,7 +182,7 @@ TEST_F(TeamViewTest, ASlowLoopIsLate) {
 TEST_F(TeamViewRealtime, WhoIsHalfASecondBehindTheWorldIsLate) {
   hear_mission(at(0s));
   // dt 0.1 s at twice the speed: ten ticks are half a second, and one is on its way.
-  give(view_, world_state(51, {{1, 1}}), at(0s));
+  give(view_, world_state(51, {{1, 1, 0}}), at(0s));
   give(view_, status(0, 1, 41), at(0s));
   give(view_, status(1, 1, 40), at(0s));
   EXPECT_EQ(condition(0, at(0s)), Condition::kOk);
@@ -228,7 +228,7 @@ TEST_F(TeamViewTest, AProcessThatFallsSilentIsTrouble) {
     for (const auto time : {0s, 3s}) {
       give(view, status(0, sequence_of(at(time))), at(time));
       if (silent != kCoordinator || time == 0s) give(view, coordinator_at(0), at(time));
-      if (silent != kWorld || time == 0s) give(view, world_state(0, {{1, 1}}), at(time));
+      if (silent != kWorld || time == 0s) give(view, world_state(0, {{1, 1, 0}}), at(time));
       if (silent != kLogger || time == 0s)
         give(view, RecordAck{{kRun, kLogger, kLoggerLife, next_sequence(), 0}}, at(time));
     }

@@ -49,8 +49,8 @@ TEST(CoordinatorRepeats, PlansAndRostersOfAnySizeInPartsThatAFollowerPutsTogethe
   mission.domain.size_m.x() = 4000;
   mission.basis.modes_x = 12;
   mission.basis.modes_y = 10;
-  mission.target_coefficients = Coefficients::Zero(12, 10);
-  mission.target_coefficients(0, 0) = 1;
+  mission.target_coefficients = Coefficients::Zero(120);
+  mission.target_coefficients[0] = 1;
   Coordinator coordinator = coordinator_of(mission);
   admit_all(coordinator, 30, at(0s));
   const auto parts = only<MissionPart>(advance(coordinator, at(0s)));

@@ -41,7 +41,7 @@ inline Coordinator running_coordinator(const Mission& mission, Instant now = at(
 
 /// The world at `tick`, where agent i has answered `answered[i]`.
 inline WorldState world_where(Tick tick, const std::vector<Tick>& answered) {
-  WorldState state = world_state(tick, std::vector<Eigen::Vector2d>(answered.size(), {1, 1}));
+  WorldState state = world_state(tick, std::vector<Eigen::Vector3d>(answered.size(), {1, 1, 0}));
   for (std::size_t i = 0; i < answered.size(); ++i) state.vehicles[i].answered_tick = answered[i];
   return state;
 }

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -89,18 +90,21 @@ TEST(Allocations, AreCountedWhateverTheWay) {
   EXPECT_EQ(allocations_in([] { g_seen = std::make_unique<Line>().get(); }), 1u);
   EXPECT_EQ(allocations_in([] { g_seen = std::vector<double>(100, 1.0).data(); }), 1u);
   EXPECT_EQ(allocations_in([] {
-              const Coefficients coefficients = Coefficients::Constant(20, 20, 1);
+              const Coefficients coefficients = Coefficients::Constant(400, 1);
               g_seen = coefficients.data();
-            }), 1u);
+            }),
+            1u);
   EXPECT_EQ(allocations_in([] { g_seen = nullptr; }), 0u);
 }
 
-/// K = 400 modes, four agents, every feature of the law on.
-Mission full_mission(Regularization regularization, Perturbation perturbation) {
+/// 20 × 20 modes, four agents, every feature of the law on; in a plane or in space.
+Mission full_mission(Regularization regularization, Perturbation perturbation, int modes_z) {
   Mission mission = test::small_mission(4);
   mission.basis.modes_x = mission.basis.modes_y = 20;
-  mission.target_coefficients = Coefficients::Zero(20, 20);
-  mission.target_coefficients(0, 0) = 1;
+  mission.basis.modes_z = modes_z;
+  if (modes_z > 1) mission.domain.size_m.z() = 300;
+  mission.target_coefficients = Coefficients::Zero(mission.basis.mode_count());
+  mission.target_coefficients[0] = 1;
   mission.law.regularization = regularization;
   mission.law.epsilon = 0.1;
   mission.law.perturbation = perturbation;
@@ -111,17 +115,20 @@ Mission full_mission(Regularization regularization, Perturbation perturbation) {
 }
 
 TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
-  const std::pair<Regularization, Perturbation> laws[] = {
-      {Regularization::kAbsolute, Perturbation::kConstant},
-      {Regularization::kRelative, Perturbation::kAdaptive}};
-  for (const auto& [regularization, perturbation] : laws) {
-    const Mission mission = full_mission(regularization, perturbation);
+  const std::tuple<Regularization, Perturbation, int> laws[] = {
+      {Regularization::kAbsolute, Perturbation::kConstant, 1},
+      {Regularization::kRelative, Perturbation::kAdaptive, 1},
+      {Regularization::kAbsolute, Perturbation::kConstant, 3},
+      {Regularization::kRelative, Perturbation::kAdaptive, 3}};
+  for (const auto& [regularization, perturbation, modes_z] : laws) {
+    const Mission mission = full_mission(regularization, perturbation, modes_z);
     Controller controller(mission);
     CoverageTable own(mission.basis, mission.timing.dt_s);
-    Coefficients coverage = Coefficients::Zero(20, 20);
+    Coefficients coverage = Coefficients::Zero(mission.basis.mode_count());
     std::vector<CoverageTable> teammates(3, CoverageTable(mission.basis, mission.timing.dt_s));
     const auto step = [&](Tick tick) {
-      const Eigen::Vector2d x_m(100 + static_cast<double>(tick), 500);
+      const Eigen::Vector3d x_m(100 + static_cast<double>(tick), 500,
+                                0.5 * mission.domain.size_m.z());
       const BasisAt at(x_m, mission.domain, mission.basis);
       own.add_sample(test::author_of(0), at);
       for (AgentId id = 1; id < 4; ++id) {
@@ -144,19 +151,21 @@ TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
 }
 
 TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
-  for (const bool dead_reckoning : {false, true}) {
-    Mission mission = full_mission(Regularization::kRelative, Perturbation::kAdaptive);
+  const std::pair<bool, int> missions[] = {{false, 1}, {true, 1}, {false, 3}, {true, 3}};
+  for (const auto& [dead_reckoning, modes_z] : missions) {
+    Mission mission = full_mission(Regularization::kRelative, Perturbation::kAdaptive, modes_z);
     mission.law.anticipation = 2;
     mission.dead_reckoning = dead_reckoning;
     mission.timing.broadcast_period_ticks = 5;
     const std::vector<RosterEntry> roster = test::roster_of(4);
     Forecast forecast(mission, test::author_of(0));
     CoverageTable own(mission.basis, mission.timing.dt_s);
-    Coefficients foreseen = Coefficients::Zero(20, 20);
+    Coefficients foreseen = Coefficients::Zero(mission.basis.mode_count());
     std::vector<CoverageTable> teammates(3, CoverageTable(mission.basis, mission.timing.dt_s));
     const auto step = [&](Tick tick) {
       for (AgentId id = 0; id < 4; ++id) {
-        const Eigen::Vector2d x_m(100 + 30 * id + static_cast<double>(tick), 500);
+        const Eigen::Vector3d x_m(100 + 30 * id + static_cast<double>(tick), 500,
+                                  0.5 * mission.domain.size_m.z());
         const BasisAt at(x_m, mission.domain, mission.basis);
         forecast.see(id, tick, x_m);
         CoverageTable& theirs = id == 0 ? own : teammates[static_cast<std::size_t>(id - 1)];
@@ -171,7 +180,7 @@ TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
         }
       }
       forecast.look_ahead(own, roster, tick, foreseen);
-      ASSERT_NEAR(foreseen(0, 0), 1, 1e-12);
+      ASSERT_NEAR(foreseen[0], 1, 1e-12);
     };
     EXPECT_GT(allocations_in([&] { step(0); }), 0u) << "the first one makes the rows";
     // For longer than places are kept.

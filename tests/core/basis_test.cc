@@ -17,7 +17,7 @@ constexpr double kRounding = 0x1p-53;
 /// first cosine and sine off by 2, and the first angle ≤ π off by 3 relative roundings: 3π < 10.
 double cosine_bound(int mode) { return 16 * (mode + 1) * kRounding; }
 
-const Rectangle kDomain{{-30, 500}, {200, 70}};
+const Box kDomain{{-30, 500, 0}, {200, 70, 0}};
 
 Basis basis_of(int modes_x, int modes_y) {
   Basis basis;
@@ -33,29 +33,30 @@ double exact_cosine(int mode, double x, double length) {
 }
 
 /// Points in the middle, on edges, in corners and next to them.
-std::vector<Eigen::Vector2d> telling_points() {
-  return {{-30, 500},    {170, 570},  {-30, 570},           {70, 535},      {-12.34, 501.5},
-          {169.99, 500}, {0, 569.25}, {-30 + 1e-12, 569.9}, {103.25, 544.5}};
+std::vector<Eigen::Vector3d> telling_points() {
+  return {{-30, 500, 0},  {170, 570, 0},           {-30, 570, 0},
+          {70, 535, 0},   {-12.34, 501.5, 0},      {169.99, 500, 0},
+          {0, 569.25, 0}, {-30 + 1e-12, 569.9, 0}, {103.25, 544.5, 0}};
 }
 
 /// Weights without any pattern, of order 1.
 Coefficients uneven_weights(int modes_x, int modes_y) {
-  Coefficients weights(modes_x, modes_y);
+  PlaneCoefficients weights(modes_x, modes_y);
   for (int m = 0; m < modes_x; ++m) {
     for (int n = 0; n < modes_y; ++n) weights(m, n) = std::sin(1.0 + 3.7 * m + 1.3 * n * n);
   }
-  return weights;
+  return in_wire_order(weights);
 }
 
 TEST(Basis, ValuesAreProductsOfCosinesUpToTheErrorOfTheRecurrence) {
   const Basis basis = basis_of(64, 64);
-  for (const Eigen::Vector2d& x_m : telling_points()) {
-    const Eigen::Vector2d inside = x_m - kDomain.origin_m;
+  for (const Eigen::Vector3d& x_m : telling_points()) {
+    const Eigen::Vector3d inside = x_m - kDomain.origin_m;
     const Coefficients values = basis_values(x_m, kDomain, basis);
     for (int m = 0; m < 64; ++m) {
       for (int n = 0; n < 64; ++n) {
         const double exact = exact_cosine(m, inside.x(), 200) * exact_cosine(n, inside.y(), 70);
-        EXPECT_NEAR(values(m, n), exact, cosine_bound(m) + cosine_bound(n))
+        EXPECT_NEAR(values[64 * m + n], exact, cosine_bound(m) + cosine_bound(n))
             << m << "," << n << " at " << x_m.transpose();
       }
     }
@@ -63,7 +64,7 @@ TEST(Basis, ValuesAreProductsOfCosinesUpToTheErrorOfTheRecurrence) {
 }
 
 TEST(Basis, SlopesAreTheDerivativesOfTheCosines) {
-  const BasisAt at({-12.34, 501.5}, kDomain, basis_of(64, 64));
+  const BasisAt at({-12.34, 501.5, 0}, kDomain, basis_of(64, 64));
   const double x = -12.34 - -30.0, k = std::numbers::pi / 200;
   for (int m = 0; m < 64; ++m) {
     EXPECT_NEAR(at.slope_x[m], -m * k * std::sin(m * k * x), 2 * m * k * cosine_bound(m)) << m;
@@ -72,7 +73,7 @@ TEST(Basis, SlopesAreTheDerivativesOfTheCosines) {
 
 TEST(Basis, ExceedsOneByFarLessThanContributionsAreAllowedTo) {
   // CoverageTable::merge allows 1e-9; cosine_bound(63) is 1.1e-13.
-  for (const Eigen::Vector2d& x_m : telling_points()) {
+  for (const Eigen::Vector3d& x_m : telling_points()) {
     const Coefficients values = basis_values(x_m, kDomain, basis_of(64, 64));
     EXPECT_LE(values.cwiseAbs().maxCoeff(), 1 + 2 * cosine_bound(63));
   }
@@ -91,20 +92,20 @@ TEST(Basis, HasNoSlopeAcrossTheLowEdgeAndOnlyRoundingAcrossTheHighOne) {
 
 TEST(Basis, AccumulatesTheIntegralOfEveryMode) {
   const Basis basis = basis_of(7, 5);
-  Coefficients sums = Coefficients::Zero(7, 5), expected = Coefficients::Zero(7, 5);
-  for (const Eigen::Vector2d& x_m : telling_points()) {
+  Coefficients sums = Coefficients::Zero(35), expected = Coefficients::Zero(35);
+  for (const Eigen::Vector3d& x_m : telling_points()) {
     accumulate_basis(BasisAt(x_m, kDomain, basis), basis, 0.25, sums.data());
     expected += 0.25 * basis_values(x_m, kDomain, basis);
   }
   // dt is a power of two, so only the additions round: 9 of them, on sums of at most 9/4.
   EXPECT_LE((sums - expected).cwiseAbs().maxCoeff(), 9 * 2.25 * kRounding);
-  EXPECT_EQ(sums(0, 0), 9 * 0.25) << "f_00 = 1, so S_00 is the time covered";
+  EXPECT_EQ(sums[0], 9 * 0.25) << "f_00 = 1, so S_00 is the time covered";
 }
 
 /// Bounds |central difference − weighted_gradient| along an axis with wave numbers k = mode·π/L:
 /// h²/6 of the third derivative, the values' rounding over h, the gradient's own rounding.
-double difference_bound(const Coefficients& weights, double unit_x, double unit_y, bool along_x,
-                        double h) {
+double difference_bound(const PlaneCoefficients& weights, double unit_x, double unit_y,
+                        bool along_x, double h) {
   double bound = 0;
   for (int m = 0; m < weights.rows(); ++m) {
     for (int n = 0; n < weights.cols(); ++n) {
@@ -123,14 +124,15 @@ TEST(Basis, WeightedGradientIsTheSlopeOfTheWeightedSum) {
   const Coefficients weights = uneven_weights(15, 12);
   const double h = 0x1p-12, unit_x = std::numbers::pi / 200, unit_y = std::numbers::pi / 70;
   const auto sum_at = [&](double x, double y) {
-    return basis_values({x, y}, kDomain, basis).cwiseProduct(weights).sum();
+    return basis_values({x, y, 0}, kDomain, basis).cwiseProduct(weights).sum();
   };
   // Dyadic points, so that x ± h is exact.
-  for (const Eigen::Vector2d& x : {Eigen::Vector2d{-12.375, 501.5}, {103.25, 544.5}, {1, 569.5}}) {
-    const Eigen::Vector2d gradient =
+  for (const Eigen::Vector3d& x :
+       {Eigen::Vector3d{-12.375, 501.5, 0}, {103.25, 544.5, 0}, {1, 569.5, 0}}) {
+    const Eigen::Vector3d gradient =
         weighted_gradient(BasisAt(x, kDomain, basis), basis, weights.data());
-    const double bound_x = difference_bound(weights, unit_x, unit_y, true, h);
-    const double bound_y = difference_bound(weights, unit_x, unit_y, false, h);
+    const double bound_x = difference_bound(in_plane(weights, basis), unit_x, unit_y, true, h);
+    const double bound_y = difference_bound(in_plane(weights, basis), unit_x, unit_y, false, h);
     ASSERT_LT(bound_x, 1e-3 * gradient.cwiseAbs().maxCoeff()) << "the comparison is worth it";
     ASSERT_LT(bound_y, 1e-3 * gradient.cwiseAbs().maxCoeff());
     EXPECT_NEAR(gradient.x(), (sum_at(x.x() + h, x.y()) - sum_at(x.x() - h, x.y())) / (2 * h),
@@ -142,13 +144,13 @@ TEST(Basis, WeightedGradientIsTheSlopeOfTheWeightedSum) {
 
 TEST(SobolevWeights, FollowTheirTwoForms) {
   Basis basis = basis_of(3, 4);
-  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)(0, 0), 1);
-  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)(1, 2), std::pow(6.0, -1.5));
-  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)(2, 0), std::pow(5.0, -1.5));
+  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)[0], 1);
+  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)[6], std::pow(6.0, -1.5));
+  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)[8], std::pow(5.0, -1.5));
   basis.sobolev_form = SobolevForm::kNorm;
   basis.sobolev_exponent = 2;
-  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)(0, 0), 1);
-  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)(1, 2), std::pow(1 + std::sqrt(5.0), -2));
+  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)[0], 1);
+  EXPECT_DOUBLE_EQ(sobolev_weights(basis, kDomain)[6], std::pow(1 + std::sqrt(5.0), -2));
 }
 
 TEST(SobolevWeights, CarryTheNormOfEachModeWhereTheBasisIsNormalized) {
@@ -157,10 +159,10 @@ TEST(SobolevWeights, CarryTheNormOfEachModeWhereTheBasisIsNormalized) {
   basis.normalized = true;
   const Coefficients normalized = sobolev_weights(basis, kDomain);
   const double area_m2 = 200 * 70;
-  EXPECT_DOUBLE_EQ(normalized(0, 0), plain(0, 0) / area_m2);
-  EXPECT_DOUBLE_EQ(normalized(1, 0), plain(1, 0) / (area_m2 / 2));
-  EXPECT_DOUBLE_EQ(normalized(0, 1), plain(0, 1) / (area_m2 / 2));
-  EXPECT_DOUBLE_EQ(normalized(1, 1), plain(1, 1) / (area_m2 / 4));
+  EXPECT_DOUBLE_EQ(normalized[0], plain[0] / area_m2);
+  EXPECT_DOUBLE_EQ(normalized[2], plain[2] / (area_m2 / 2));
+  EXPECT_DOUBLE_EQ(normalized[1], plain[1] / (area_m2 / 2));
+  EXPECT_DOUBLE_EQ(normalized[3], plain[3] / (area_m2 / 4));
 }
 
 TEST(SobolevWeights, NormAgreesWithTheMeanSquareOfTheMode) {
@@ -170,11 +172,11 @@ TEST(SobolevWeights, NormAgreesWithTheMeanSquareOfTheMode) {
   normalized.normalized = true;
   const Coefficients squared_norm =
       sobolev_weights(basis, kDomain).cwiseQuotient(sobolev_weights(normalized, kDomain));
-  Coefficients mean = Coefficients::Zero(4, 3);
+  Coefficients mean = Coefficients::Zero(12);
   constexpr int kPoints = 16;
   for (int i = 0; i < kPoints; ++i) {
     for (int j = 0; j < kPoints; ++j) {
-      const Eigen::Vector2d x_m{-30 + 200 * (i + 0.5) / kPoints, 500 + 70 * (j + 0.5) / kPoints};
+      const Eigen::Vector3d x_m{-30 + 200 * (i + 0.5) / kPoints, 500 + 70 * (j + 0.5) / kPoints, 0};
       mean += basis_values(x_m, kDomain, basis).cwiseAbs2() / (kPoints * kPoints);
     }
   }
@@ -191,7 +193,7 @@ TEST(GradientEnergies, GiveTheMeanSquareOfTheGradientByParseval) {
   double mean = 0;
   for (int i = 0; i < kPoints; ++i) {
     for (int j = 0; j < kPoints; ++j) {
-      const Eigen::Vector2d x_m{-30 + 200 * (i + 0.5) / kPoints, 500 + 70 * (j + 0.5) / kPoints};
+      const Eigen::Vector3d x_m{-30 + 200 * (i + 0.5) / kPoints, 500 + 70 * (j + 0.5) / kPoints, 0};
       mean += weighted_gradient(BasisAt(x_m, kDomain, basis), basis, weights.data()).squaredNorm();
     }
   }
@@ -203,8 +205,8 @@ TEST(GradientEnergies, GiveTheMeanSquareOfTheGradientByParseval) {
 }
 
 TEST(ErgodicMetric, IsTheWeightedSquareOfTheDifference) {
-  const Coefficients coverage{{1, 0.5}, {-0.25, 0}}, target{{1, 0}, {0.25, 0.5}};
-  const Coefficients weights{{1, 2}, {4, 8}};
+  const Coefficients coverage{{1, 0.5, -0.25, 0}}, target{{1, 0, 0.25, 0.5}};
+  const Coefficients weights{{1, 2, 4, 8}};
   EXPECT_DOUBLE_EQ(ergodic_metric(coverage, target, weights), 2 * 0.25 + 4 * 0.25 + 8 * 0.25);
   EXPECT_EQ(ergodic_metric(target, target, weights), 0);
 }
@@ -213,16 +215,17 @@ TEST(Basis, HessianIsTheSlopeOfTheGradient) {
   const Basis basis = basis_of(9, 6);
   const Coefficients weights = uneven_weights(9, 6);
   constexpr double kStep_m = 1e-3;
-  const auto gradient = [&](const Eigen::Vector2d& x_m) {
+  const auto gradient = [&](const Eigen::Vector3d& x_m) {
     return weighted_gradient(BasisAt(x_m, kDomain, basis), basis, weights.data());
   };
-  for (const Eigen::Vector2d& x_m : {Eigen::Vector2d(-12.34, 501.5), {70, 535}, {103.25, 544.5}}) {
+  for (const Eigen::Vector3d& x_m :
+       {Eigen::Vector3d(-12.34, 501.5, 0), {70, 535, 0}, {103.25, 544.5, 0}}) {
     const auto [at, hessian] =
         weighted_field(BasisAt(x_m, kDomain, basis), basis, kDomain, weights.data());
     EXPECT_EQ(at, gradient(x_m)) << "bit for bit";
     for (const int axis : {0, 1}) {
-      const Eigen::Vector2d step_m = kStep_m * Eigen::Vector2d::Unit(axis);
-      const Eigen::Vector2d slope =
+      const Eigen::Vector3d step_m = kStep_m * Eigen::Vector3d::Unit(axis);
+      const Eigen::Vector3d slope =
           (gradient(x_m + step_m) - gradient(x_m - step_m)) / (2 * kStep_m);
       EXPECT_LT((hessian.col(axis) - slope).norm(), 1e-6 * hessian.norm()) << x_m.transpose();
     }
@@ -231,13 +234,13 @@ TEST(Basis, HessianIsTheSlopeOfTheGradient) {
 
 TEST(Basis, OutsideTheDomainItIsEvenAndPeriodic) {
   const Basis basis = basis_of(9, 6);
-  const Coefficients inside = basis_values({0, 520}, kDomain, basis);
-  EXPECT_LT((basis_values({-60, 480}, kDomain, basis) - inside).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_LT((basis_values({400, 660}, kDomain, basis) - inside).cwiseAbs().maxCoeff(), 1e-13);
+  const Coefficients inside = basis_values({0, 520, 0}, kDomain, basis);
+  EXPECT_LT((basis_values({-60, 480, 0}, kDomain, basis) - inside).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((basis_values({400, 660, 0}, kDomain, basis) - inside).cwiseAbs().maxCoeff(), 1e-13);
 }
 
 TEST(BasisDeathTest, StopsACallerThatIsNowhere) {
-  EXPECT_DEATH(BasisAt({std::nan(""), 510}, kDomain, basis_of(2, 2)), "broken precondition");
+  EXPECT_DEATH(BasisAt({std::nan(""), 510, 0}, kDomain, basis_of(2, 2)), "broken precondition");
 }
 
 }  // namespace

@@ -24,28 +24,28 @@ constexpr double kTiniest = std::numeric_limits<double>::denorm_min();
 /// A mission on a domain with its own origin and unequal sides; μ without any pattern.
 Mission uneven_mission() {
   Mission mission = test::small_mission(1);
-  mission.domain = {{-300, 50}, {2000, 1200}};
+  mission.domain = {{-300, 50, 0}, {2000, 1200, 0}};
   mission.basis.modes_x = 9;
   mission.basis.modes_y = 7;
-  mission.target_coefficients = Coefficients::Zero(9, 7);
+  mission.target_coefficients = Coefficients::Zero(63);
   for (int m = 0; m < 9; ++m) {
     for (int n = 0; n < 7; ++n) {
-      mission.target_coefficients(m, n) = std::cos(1.0 + 2.3 * m + 0.7 * n * n) / (1 + m + n);
+      mission.target_coefficients[7 * m + n] = std::cos(1.0 + 2.3 * m + 0.7 * n * n) / (1 + m + n);
     }
   }
-  mission.target_coefficients(0, 0) = 1;
+  mission.target_coefficients[0] = 1;
   mission.law.u_max_mps = 12;
   mission.timing.dt_s = 0.125;
   return mission;
 }
 
-Eigen::Vector2d place_in(const Rectangle& domain, std::uint64_t i) {
-  return domain.origin_m + uniform_pair(5, Purpose::kStart, 0, i).cwiseProduct(domain.size_m);
+Eigen::Vector3d place_in(const Box& domain, std::uint64_t i) {
+  return uniform_in(domain, 5, Purpose::kStart, 0, i);
 }
 
 /// c_k of a path of `steps` places.
 Coefficients coverage_of(const Mission& mission, int steps) {
-  Coefficients sum = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  Coefficients sum = Coefficients::Zero(mission.basis.mode_count());
   for (int i = 0; i < steps; ++i) {
     sum += basis_values(place_in(mission.domain, static_cast<std::uint64_t>(i)), mission.domain,
                         mission.basis);
@@ -53,8 +53,9 @@ Coefficients coverage_of(const Mission& mission, int steps) {
   return sum / steps;
 }
 
-Eigen::Vector2d command_at(Controller& controller, const Mission& mission, const Eigen::Vector2d& x_m,
-                           const Coefficients& coverage, AgentId agent = 0, Tick tick = 0) {
+Eigen::Vector3d command_at(Controller& controller, const Mission& mission,
+                           const Eigen::Vector3d& x_m, const Coefficients& coverage,
+                           AgentId agent = 0, Tick tick = 0) {
   controller.see(coverage);
   return controller.command(agent, tick, x_m, BasisAt(x_m, mission.domain, mission.basis));
 }
@@ -63,26 +64,26 @@ Eigen::Vector2d command_at(Controller& controller, const Mission& mission, const
 
 TEST(SmoothInput, IsEquation8) {
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const Eigen::Vector2d b = normal_pair(1, Purpose::kStart, 0, i) * 1e-4;
+    const Eigen::Vector3d b = on_ground(normal_pair(1, Purpose::kStart, 0, i) * 1e-4);
     const double epsilon = 1e-4 * uniform_pair(1, Purpose::kStart, 1, i).x();
-    const Eigen::Vector2d expected = -12 * b / std::sqrt(b.squaredNorm() + epsilon * epsilon);
+    const Eigen::Vector3d expected = -12 * b / std::sqrt(b.squaredNorm() + epsilon * epsilon);
     // Fewer than ten roundings on either side, of numbers of at most 12.
     EXPECT_LE((smooth_input(b, epsilon, 12) - expected).norm(), 20 * 12 * kRounding);
   }
 }
 
 TEST(SmoothInput, WithoutEpsilonIsTheClassicalLaw) {
-  EXPECT_EQ(smooth_input({3e-5, 0}, 0, 12), Eigen::Vector2d(-12, 0));
-  EXPECT_EQ(smooth_input({0, -1e-9}, 0, 12), Eigen::Vector2d(0, 12));
-  const Eigen::Vector2d u = smooth_input({3, -4}, 0, 10);
+  EXPECT_EQ(smooth_input({3e-5, 0, 0}, 0, 12), Eigen::Vector3d(-12, 0, 0));
+  EXPECT_EQ(smooth_input({0, -1e-9, 0}, 0, 12), Eigen::Vector3d(0, 12, 0));
+  const Eigen::Vector3d u = smooth_input({3, -4, 0}, 0, 10);
   EXPECT_DOUBLE_EQ(u.x(), -6);
   EXPECT_DOUBLE_EQ(u.y(), 8);
 }
 
 TEST(SmoothInput, OfNoGradientIsNoInputAndNeverNan) {
   for (const double epsilon : {0.0, kTiniest, 1e-300, 1e-3}) {
-    for (const Eigen::Vector2d& b : {Eigen::Vector2d(0, 0), Eigen::Vector2d(-0.0, 0.0)}) {
-      EXPECT_EQ(smooth_input(b, epsilon, 12), Eigen::Vector2d(0, 0)) << epsilon;
+    for (const Eigen::Vector3d& b : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-0.0, 0.0, 0)}) {
+      EXPECT_EQ(smooth_input(b, epsilon, 12), Eigen::Vector3d(0, 0, 0)) << epsilon;
     }
   }
 }
@@ -90,9 +91,9 @@ TEST(SmoothInput, OfNoGradientIsNoInputAndNeverNan) {
 TEST(SmoothInput, OfNextToNoGradientIsADirectionAndNeverInfinite) {
   // An agent 1e-308 m off an edge feels a gradient like that.
   for (const double tiny : {1e-150, 1e-300, 1e-307, 1e-310, 1e-320, kTiniest}) {
-    EXPECT_EQ(smooth_input({tiny, 0}, 0, 12), Eigen::Vector2d(-12, 0)) << tiny;
-    EXPECT_EQ(smooth_input({0, -tiny}, 0, 12), Eigen::Vector2d(0, 12)) << tiny;
-    EXPECT_LE(smooth_input({tiny, tiny}, 1e-3, 12).norm(), 12 * 2 * tiny / 1e-3) << tiny;
+    EXPECT_EQ(smooth_input({tiny, 0, 0}, 0, 12), Eigen::Vector3d(-12, 0, 0)) << tiny;
+    EXPECT_EQ(smooth_input({0, -tiny, 0}, 0, 12), Eigen::Vector3d(0, 12, 0)) << tiny;
+    EXPECT_LE(smooth_input({tiny, tiny, 0}, 1e-3, 12).norm(), 12 * 2 * tiny / 1e-3) << tiny;
   }
 }
 
@@ -100,9 +101,10 @@ TEST(SmoothInput, NeverExceedsItsLimit) {
   for (std::uint64_t i = 0; i < 100000; ++i) {
     // Every magnitude from 1e-300 to 1e+300, and ε as well.
     const Eigen::Vector2d u = uniform_pair(2, Purpose::kStart, 0, i);
-    const Eigen::Vector2d b = normal_pair(2, Purpose::kStart, 1, i) * std::pow(10, 600 * u.x() - 300);
+    const Eigen::Vector3d b =
+        on_ground(normal_pair(2, Purpose::kStart, 1, i) * std::pow(10, 600 * u.x() - 300));
     const double epsilon = i % 4 == 0 ? 0 : std::pow(10, 600 * u.y() - 300);
-    const Eigen::Vector2d input = smooth_input(b, epsilon, 12);
+    const Eigen::Vector3d input = smooth_input(b, epsilon, 12);
     ASSERT_TRUE(input.allFinite()) << b.transpose() << ", " << epsilon;
     // A square root and two divisions round.
     ASSERT_LE(input.norm(), 12 * (1 + 8 * kRounding)) << b.transpose() << ", " << epsilon;
@@ -112,10 +114,10 @@ TEST(SmoothInput, NeverExceedsItsLimit) {
 // ---- the command, (6), (8) and (10), written out ---------------------------------------------------
 
 /// B, term by term, with the library's cosines and sines.
-Eigen::Vector2d reference_gradient(const Mission& mission, const Eigen::Vector2d& x_m,
+Eigen::Vector3d reference_gradient(const Mission& mission, const Eigen::Vector3d& x_m,
                                    const Coefficients& coverage) {
-  Eigen::Vector2d b(0, 0);
-  const Eigen::Vector2d x = x_m - mission.domain.origin_m, size = mission.domain.size_m;
+  Eigen::Vector3d b(0, 0, 0);
+  const Eigen::Vector3d x = x_m - mission.domain.origin_m, size = mission.domain.size_m;
   for (int m = 0; m < mission.basis.modes_x; ++m) {
     for (int n = 0; n < mission.basis.modes_y; ++n) {
       const double kx = m * std::numbers::pi / size.x(), ky = n * std::numbers::pi / size.y();
@@ -125,7 +127,8 @@ Eigen::Vector2d reference_gradient(const Mission& mission, const Eigen::Vector2d
       if (mission.basis.normalized) {
         lambda /= size.x() * (m > 0 ? 0.5 : 1) * size.y() * (n > 0 ? 0.5 : 1);
       }
-      const double a = lambda * (coverage(m, n) - mission.target_coefficients(m, n));
+      const double a = lambda * (in_plane(coverage, mission.basis)(m, n) -
+                                 in_plane(mission.target_coefficients, mission.basis)(m, n));
       b.x() -= a * kx * std::sin(kx * x.x()) * std::cos(ky * x.y());
       b.y() -= a * ky * std::cos(kx * x.x()) * std::sin(ky * x.y());
     }
@@ -139,27 +142,29 @@ double reference_rms(const Mission& mission, const Coefficients& coverage) {
   double sum = 0;
   for (int i = 0; i < kPoints; ++i) {
     for (int j = 0; j < kPoints; ++j) {
-      const Eigen::Vector2d share((i + 0.5) / kPoints, (j + 0.5) / kPoints);
-      const Eigen::Vector2d x_m = mission.domain.origin_m + share.cwiseProduct(mission.domain.size_m);
+      const Eigen::Vector3d share((i + 0.5) / kPoints, (j + 0.5) / kPoints, 0);
+      const Eigen::Vector3d x_m =
+          mission.domain.origin_m + share.cwiseProduct(mission.domain.size_m);
       sum += reference_gradient(mission, x_m, coverage).squaredNorm();
     }
   }
   return std::sqrt(sum) / kPoints;
 }
 
-Eigen::Vector2d reference_command(const Mission& mission, AgentId agent, Tick tick,
-                                  const Eigen::Vector2d& x_m, const Coefficients& coverage,
+Eigen::Vector3d reference_command(const Mission& mission, AgentId agent, Tick tick,
+                                  const Eigen::Vector3d& x_m, const Coefficients& coverage,
                                   double rms) {
   const ControlLaw& law = mission.law;
-  const Eigen::Vector2d b = reference_gradient(mission, x_m, coverage);
+  const Eigen::Vector3d b = reference_gradient(mission, x_m, coverage);
   const bool relative = law.regularization == Regularization::kRelative;
   const double epsilon = law.epsilon * (relative ? rms : 1);
   const double length = std::sqrt(b.squaredNorm() + epsilon * epsilon);
-  Eigen::Vector2d v = length == 0 ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(-law.u_max_mps * b / length);
+  Eigen::Vector3d v =
+      length == 0 ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(-law.u_max_mps * b / length);
   v -= law.contraction_gain_per_s * (x_m - law.contraction_center_m);
   v += law.noise_intensity / std::sqrt(mission.timing.dt_s) *
-       normal_pair(mission.seed, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
-                   static_cast<std::uint64_t>(tick));
+       on_ground(normal_pair(mission.seed, Purpose::kPerturbation,
+                             static_cast<std::uint32_t>(agent), static_cast<std::uint64_t>(tick)));
   return v;
 }
 
@@ -178,7 +183,7 @@ std::vector<Mission> every_law() {
           mission.law.epsilon =
               how == Regularization::kRelative ? epsilon : epsilon * (normalized ? 1e-9 : 1e-3);
           mission.law.contraction_gain_per_s = 2e-3;
-          mission.law.contraction_center_m = {40, 700};
+          mission.law.contraction_center_m = {40, 700, 0};
           mission.law.noise_intensity = 0.5;
           missions.push_back(mission);
         }
@@ -194,10 +199,10 @@ TEST(Command, IsThePapersLawTermByTerm) {
     const Coefficients coverage = coverage_of(mission, 50);
     const double rms = reference_rms(mission, coverage);
     for (std::uint64_t i = 0; i < 20; ++i) {
-      const Eigen::Vector2d x_m = place_in(mission.domain, 1000 + i);
+      const Eigen::Vector3d x_m = place_in(mission.domain, 1000 + i);
       const auto tick = static_cast<Tick>(i);
-      const Eigen::Vector2d v = command_at(controller, mission, x_m, coverage, 3, tick);
-      const Eigen::Vector2d b = reference_gradient(mission, x_m, coverage);
+      const Eigen::Vector3d v = command_at(controller, mission, x_m, coverage, 3, tick);
+      const Eigen::Vector3d b = reference_gradient(mission, x_m, coverage);
       // B is a sum of 63 terms of at most a few RMS, each with 20 roundings of its cosines; where
       // the terms nearly cancel, its direction is that much less certain.
       const double bound = 63 * 20 * kRounding * (1 + rms / b.norm());
@@ -215,17 +220,17 @@ TEST(Command, GradientIsTheSlopeOfPhiSquaredInTheNewestSample) {
     Controller controller(mission);
     constexpr int kBefore = 7;
     const Coefficients before = coverage_of(mission, kBefore) * kBefore;
-    const auto coverage_with = [&](const Eigen::Vector2d& x_m) -> Coefficients {
+    const auto coverage_with = [&](const Eigen::Vector3d& x_m) -> Coefficients {
       return (before + basis_values(x_m, mission.domain, mission.basis)) / (kBefore + 1);
     };
-    const auto metric_with = [&](const Eigen::Vector2d& x_m) {
+    const auto metric_with = [&](const Eigen::Vector3d& x_m) {
       return controller.metric(coverage_with(x_m));
     };
-    const Eigen::Vector2d x_m(512.5, 640.25);  // dyadic, so that x ± h is exact
+    const Eigen::Vector3d x_m(512.5, 640.25, 0);  // dyadic, so that x ± h is exact
     const double h = 0.0625;
     const Coefficients coverage = coverage_with(x_m);
     command_at(controller, mission, x_m, coverage);
-    const Eigen::Vector2d slope = 2 * controller.spectral_gradient() / (kBefore + 1);
+    const Eigen::Vector3d slope = 2 * controller.spectral_gradient() / (kBefore + 1);
 
     // h²/6 of the third derivative, ≤ Σ λ (2 |c − μ| k³ + 6 k³)/8 with |c| changing by at most 1/8
     // for each k; and the rounding of φ², 63 terms, over h.
@@ -234,15 +239,16 @@ TEST(Command, GradientIsTheSlopeOfPhiSquaredInTheNewestSample) {
     for (int m = 0; m < 9; ++m) {
       for (int n = 0; n < 7; ++n) {
         const double k = std::hypot(m * std::numbers::pi / 2000, n * std::numbers::pi / 1200);
-        third += weights(m, n) * k * k * k *
-                 (2 * std::abs(coverage(m, n) - mission.target_coefficients(m, n)) + 6.0 / 8) / 8;
+        const int i = 7 * m + n;
+        third += weights[i] * k * k * k *
+                 (2 * std::abs(coverage[i] - mission.target_coefficients[i]) + 6.0 / 8) / 8;
       }
     }
     const double bound =
         h * h / 6 * third + 63 * 20 * kRounding * controller.metric(coverage) / h;
     ASSERT_LT(bound, 1e-4 * slope.norm()) << "the comparison is worth it";
     for (int axis = 0; axis < 2; ++axis) {
-      const Eigen::Vector2d step = h * Eigen::Vector2d::Unit(axis);
+      const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(axis);
       EXPECT_NEAR(slope[axis], (metric_with(x_m + step) - metric_with(x_m - step)) / (2 * h), bound);
     }
   }
@@ -252,12 +258,12 @@ TEST(Command, LowersPhiSquaredOfTheNextSample) {
   Mission mission = uneven_mission();
   Controller controller(mission);
   const Coefficients before = coverage_of(mission, 10) * 10;
-  const Eigen::Vector2d x_m(512.5, 640.25);
-  const auto metric_after = [&](const Eigen::Vector2d& next_m) {
+  const Eigen::Vector3d x_m(512.5, 640.25, 0);
+  const auto metric_after = [&](const Eigen::Vector3d& next_m) {
     return controller.metric((before + basis_values(next_m, mission.domain, mission.basis)) / 11);
   };
   const Coefficients now = (before + basis_values(x_m, mission.domain, mission.basis)) / 11;
-  const Eigen::Vector2d step = command_at(controller, mission, x_m, now) * mission.timing.dt_s;
+  const Eigen::Vector3d step = command_at(controller, mission, x_m, now) * mission.timing.dt_s;
   EXPECT_LT(metric_after(x_m + step), metric_after(x_m));
   EXPECT_GT(metric_after(x_m - step), metric_after(x_m));
 }
@@ -269,7 +275,8 @@ TEST(Command, OfTheClassicalLawIsExactlyZeroAtTheOriginsCorner) {
   Mission mission = uneven_mission();
   Controller controller(mission);
   const Coefficients coverage = coverage_of(mission, 5);
-  EXPECT_EQ(command_at(controller, mission, mission.domain.origin_m, coverage), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(command_at(controller, mission, mission.domain.origin_m, coverage),
+            Eigen::Vector3d(0, 0, 0));
 }
 
 TEST(Command, OfAnyLawIsExactlyZeroWhereNothingIsLeftToDo) {
@@ -279,9 +286,9 @@ TEST(Command, OfAnyLawIsExactlyZeroWhereNothingIsLeftToDo) {
       mission.law.regularization = how;
       mission.law.epsilon = epsilon;
       Controller controller(mission);
-      const Eigen::Vector2d v =
-          command_at(controller, mission, {100, 600}, mission.target_coefficients);
-      EXPECT_EQ(v, Eigen::Vector2d(0, 0)) << epsilon;
+      const Eigen::Vector3d v =
+          command_at(controller, mission, {100, 600, 0}, mission.target_coefficients);
+      EXPECT_EQ(v, Eigen::Vector3d(0, 0, 0)) << epsilon;
       EXPECT_EQ(controller.metric(mission.target_coefficients), 0);
     }
   }
@@ -289,13 +296,13 @@ TEST(Command, OfAnyLawIsExactlyZeroWhereNothingIsLeftToDo) {
 
 TEST(Command, NextToAnEdgeIsFiniteHoweverClose) {
   Mission mission = uneven_mission();
-  mission.domain.origin_m = {0, 0};
+  mission.domain.origin_m = {0, 0, 0};
   Controller controller(mission);
   const Coefficients coverage = coverage_of(mission, 5);
   for (const double tiny : {1e-13, 1e-100, 1e-300, 1e-306, 1e-308, 1e-312, kTiniest}) {
-    for (const Eigen::Vector2d& x_m : {Eigen::Vector2d(tiny, 0), Eigen::Vector2d(0, tiny),
-                                       Eigen::Vector2d(tiny, tiny)}) {
-      const Eigen::Vector2d v = command_at(controller, mission, x_m, coverage);
+    for (const Eigen::Vector3d& x_m : {Eigen::Vector3d(tiny, 0, 0), Eigen::Vector3d(0, tiny, 0),
+                                       Eigen::Vector3d(tiny, tiny, 0)}) {
+      const Eigen::Vector3d v = command_at(controller, mission, x_m, coverage);
       EXPECT_TRUE(v.allFinite()) << tiny;
       EXPECT_LE(v.norm(), 12 * 1.5) << tiny;  // the last denormals round by half of themselves
     }
@@ -310,7 +317,7 @@ TEST(RelativeEpsilon, IsAShareOfTheResidualGradientsRms) {
     mission.law.epsilon = 0.2;
     Controller controller(mission);
     const Coefficients coverage = coverage_of(mission, 30);
-    command_at(controller, mission, {100, 600}, coverage);
+    command_at(controller, mission, {100, 600, 0}, coverage);
     // 576 squares of 63 terms, 20 roundings each.
     const double expected = 0.2 * reference_rms(mission, coverage);
     EXPECT_NEAR(controller.epsilon(), expected, (576 + 63 * 20) * kRounding * expected);
@@ -326,7 +333,7 @@ TEST(RelativeEpsilon, KeepsTheInputAsTheResidualShrinksWhereAnAbsoluteOneThrottl
     Controller controller(mission);
     // Powers of two, so that scaling rounds nothing in the residual beyond μ's own bits.
     const Coefficients coverage = mission.target_coefficients + scale * residual;
-    return command_at(controller, mission, {100, 600}, coverage).norm();
+    return command_at(controller, mission, {100, 600, 0}, coverage).norm();
   };
   const double full = speed(Regularization::kRelative, 0.2, 1);
   // c − μ keeps 53 − 20 of its bits.
@@ -338,7 +345,7 @@ TEST(AbsoluteEpsilon, IsWhatTheScenarioSays) {
   Mission mission = uneven_mission();
   mission.law.epsilon = 1.5e-3;
   Controller controller(mission);
-  command_at(controller, mission, {100, 600}, coverage_of(mission, 3));
+  command_at(controller, mission, {100, 600, 0}, coverage_of(mission, 3));
   EXPECT_EQ(controller.epsilon(), 1.5e-3);
 }
 
@@ -354,8 +361,8 @@ TEST(Command, AddsTheNoiseOfItsAgentAndTickAsAVelocity) {
       const Eigen::Vector2d xi = normal_pair(mission.seed, Purpose::kPerturbation,
                                              static_cast<std::uint32_t>(agent),
                                              static_cast<std::uint64_t>(tick));
-      const Eigen::Vector2d v = command_at(noisy, mission, {100, 600}, coverage, agent, tick);
-      EXPECT_EQ(v, (0.75 / std::sqrt(0.125)) * xi);
+      const Eigen::Vector3d v = command_at(noisy, mission, {100, 600, 0}, coverage, agent, tick);
+      EXPECT_EQ(v, on_ground((0.75 / std::sqrt(0.125)) * xi));
     }
   }
 }
@@ -367,7 +374,7 @@ TEST(Command, PushesTwoOfAPairInOppositeWays) {
   mission.law.perturbation = Perturbation::kAdaptive;
   mission.law.noise_ceiling = 10;
   const Coefficients coverage = coverage_of(mission, 50);
-  const Eigen::Vector2d x_m = mission.domain.origin_m;  // a corner, where B vanishes
+  const Eigen::Vector3d x_m = mission.domain.origin_m;  // a corner, where B vanishes
   const auto pushed = [&](AgentId agent, Tick tick, bool paired) {
     mission.law.paired_pushes = paired;
     Controller controller(mission);
@@ -386,38 +393,39 @@ TEST(Command, PushesTwoOfAPairInOppositeWays) {
 TEST(Command, PullsTowardsTheCentreOfContraction) {
   Mission mission = uneven_mission();
   mission.law.contraction_gain_per_s = 0.5;
-  mission.law.contraction_center_m = {20, 100};
+  mission.law.contraction_center_m = {20, 100, 0};
   Controller controller(mission);
-  EXPECT_EQ(command_at(controller, mission, {100, 600}, mission.target_coefficients),
-            Eigen::Vector2d(-40, -250));
+  EXPECT_EQ(command_at(controller, mission, {100, 600, 0}, mission.target_coefficients),
+            Eigen::Vector3d(-40, -250, 0));
 }
 
 // ---- symmetry ------------------------------------------------------------------------------------
 
 /// Four agents, mirrored in both midlines, under a target that is mirrored too.
-using Team = std::array<Eigen::Vector2d, 4>;
+using Team = std::array<Eigen::Vector3d, 4>;
 
 TEST(Symmetry, OfPlacesIsKeptUnderASymmetricTarget) {
   Mission mission = test::small_mission(4);
   mission.basis.modes_x = mission.basis.modes_y = 15;
   mission.basis.sobolev_exponent = 1;
-  mission.target_coefficients = Coefficients::Zero(15, 15);
+  mission.target_coefficients = Coefficients::Zero(225);
   for (int m = 0; m < 15; m += 2) {
     for (int n = 0; n < 15; n += 2) {
-      mission.target_coefficients(m, n) = std::cos(1.0 * m * n) / (1 + m * m + n * n);
+      mission.target_coefficients[15 * m + n] = std::cos(1.0 * m * n) / (1 + m * m + n * n);
     }
   }
-  mission.target_coefficients(0, 0) = 1;
+  mission.target_coefficients[0] = 1;
   mission.law.epsilon = 1e-3;
   Controller controller(mission);
   const double size = 2000, dt_s = mission.timing.dt_s;
   const double x = 310, y = 420;
-  Team team{{{x, y}, {size - x, y}, {x, size - y}, {size - x, size - y}}};
+  Team team{{{x, y, 0}, {size - x, y, 0}, {x, size - y, 0}, {size - x, size - y, 0}}};
   const Team start = team;
-  Coefficients sums = Coefficients::Zero(15, 15);
+  Coefficients sums = Coefficients::Zero(225);
   constexpr int kTicks = 200;
   for (int tick = 0; tick < kTicks; ++tick) {
-    for (const Eigen::Vector2d& x_m : team) sums += basis_values(x_m, mission.domain, mission.basis) / 4;
+    for (const Eigen::Vector3d& x_m : team)
+      sums += basis_values(x_m, mission.domain, mission.basis) / 4;
     Team next;
     for (std::size_t i = 0; i < 4; ++i) {
       next[i] = team[i] + dt_s * command_at(controller, mission, team[i], sums / (tick + 1));
@@ -428,14 +436,14 @@ TEST(Symmetry, OfPlacesIsKeptUnderASymmetricTarget) {
   // A step's rounding, at most 1e-12 m (a few ulps of 2000 m), is carried on by u's slope: the
   // largest gradient of u is u_max |∇B|/ε ≤ 10·1e-5/1e-3 = 0.1/s, so at most e^(0.1·20 s) = 8 times.
   const double bound = kTicks * 1e-12 * 8;
-  EXPECT_LE((team[1] - Eigen::Vector2d(size - team[0].x(), team[0].y())).norm(), bound);
-  EXPECT_LE((team[2] - Eigen::Vector2d(team[0].x(), size - team[0].y())).norm(), bound);
-  EXPECT_LE((team[3] - Eigen::Vector2d(size - team[0].x(), size - team[0].y())).norm(), bound);
+  EXPECT_LE((team[1] - Eigen::Vector3d(size - team[0].x(), team[0].y(), 0)).norm(), bound);
+  EXPECT_LE((team[2] - Eigen::Vector3d(team[0].x(), size - team[0].y(), 0)).norm(), bound);
+  EXPECT_LE((team[3] - Eigen::Vector3d(size - team[0].x(), size - team[0].y(), 0)).norm(), bound);
 }
 
 TEST(ControllerDeathTest, StopsACallerWhoseTargetHasAnotherSize) {
   Mission mission = uneven_mission();
-  mission.target_coefficients = Coefficients::Zero(3, 3);
+  mission.target_coefficients = Coefficients::Zero(9);
   EXPECT_DEATH(Controller{mission}, "broken precondition");
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDt = 0.1;
 constexpr std::int64_t kManySteps = 1000000;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const Rectangle kDomain{{0, 0}, {2000, 1000}};
+const Box kDomain{{0, 0, 0}, {2000, 1000, 0}};
 
 /// 15 × 15 modes: two blocks, the second with 97 modes and 31 zeros.
 Basis basis_of(int modes_per_axis = 15) {
@@ -28,10 +28,9 @@ Basis basis_of(int modes_per_axis = 15) {
 
 CoverageTable table_of(int modes_per_axis = 15) { return {basis_of(modes_per_axis), kDt}; }
 
-Eigen::Vector2d place(AgentId agent, std::int64_t step) {
-  const Eigen::Vector2d u = uniform_pair(3, Purpose::kStart, static_cast<std::uint32_t>(agent),
-                                         static_cast<std::uint64_t>(step));
-  return u.cwiseProduct(kDomain.size_m);
+Eigen::Vector3d place(AgentId agent, std::int64_t step) {
+  return uniform_in(kDomain, 3, Purpose::kStart, static_cast<std::uint32_t>(agent),
+                    static_cast<std::uint64_t>(step));
 }
 
 /// An agent's own blocks after `steps` samples of its path.
@@ -48,7 +47,7 @@ std::vector<Contribution> blocks_of(const Author& author, std::int64_t steps) {
 /// Everything a table holds of these authors, and the average.
 struct Held {
   std::vector<Contribution> blocks;
-  Coefficients average = Coefficients::Zero(15, 15);
+  Coefficients average = Coefficients::Zero(225);
   std::size_t rows = 0;
 };
 Held held(const CoverageTable& table, const std::vector<Author>& authors) {
@@ -179,9 +178,9 @@ TEST(CoverageTable, LivesOfOneAgentAreRowsOfTheirOwn) {
 
 TEST(CoverageTable, OneSampleGivesTheLimitOf4AtTheStart) {
   CoverageTable table = table_of();
-  const Eigen::Vector2d x_m(123.4, 567.8);
+  const Eigen::Vector3d x_m(123.4, 567.8, 0);
   table.add_sample({0, 1}, BasisAt(x_m, kDomain, basis_of()));
-  Coefficients average = Coefficients::Zero(15, 15);
+  Coefficients average = Coefficients::Zero(225);
   table.average(average);
   const Coefficients f = basis_values(x_m, kDomain, basis_of());
   // ·dt, /dt: two roundings of numbers of at most 1.
@@ -196,15 +195,15 @@ TEST(CoverageTable, AverageWeighsEachRowByTheTimeItCoversBlockByBlock) {
   table.merge(one_new[0], kManySteps);
   table.merge(one_old[1], kManySteps);
   table.merge(two[1], kManySteps);
-  Coefficients average = Coefficients::Constant(15, 15, 77);
+  Coefficients average = Coefficients::Constant(225, 77);
   table.average(average);
 
-  Coefficients expected = Coefficients::Zero(15, 15);
+  Coefficients expected = Coefficients::Zero(225);
   const auto add = [&](AgentId agent, std::int64_t steps, int block, double total_steps) {
     for (std::int64_t step = 0; step < steps; ++step) {
       const Coefficients f = basis_values(place(agent, step), kDomain, basis_of());
       for (int k = 128 * block; k < std::min(128 * (block + 1), 225); ++k) {
-        expected.data()[k] += f.data()[k] / total_steps;
+        expected[k] += f[k] / total_steps;
       }
     }
   };
@@ -213,14 +212,14 @@ TEST(CoverageTable, AverageWeighsEachRowByTheTimeItCoversBlockByBlock) {
   add(2, 3, 1, 5);
   // At most 9 additions and 3 products of numbers of at most 1, on either side.
   EXPECT_LE((average - expected).cwiseAbs().maxCoeff(), 2 * 12 * 0x1p-53);
-  EXPECT_DOUBLE_EQ(average(0, 0), 1) << "S_00 is the time covered";
+  EXPECT_DOUBLE_EQ(average[0], 1) << "S_00 is the time covered";
 }
 
 TEST(CoverageTable, BlocksThatNobodyHasCoveredAreZero) {
   CoverageTable table = table_of();
-  Coefficients average = Coefficients::Constant(15, 15, kNan);
+  Coefficients average = Coefficients::Constant(225, kNan);
   table.average(average);
-  EXPECT_EQ(average, Coefficients::Zero(15, 15)) << "no row at all";
+  EXPECT_EQ(average, Coefficients::Zero(225)) << "no row at all";
   table.merge(blocks_of({1, 5}, 2)[0], kManySteps);
   average.setConstant(kNan);
   table.average(average);

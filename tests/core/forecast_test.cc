@@ -27,11 +27,11 @@ const Author kSelf{0, 9};
 /// 12 × 12 modes: two blocks, the second not full.
 Mission mission_of(bool dead_reckoning) {
   Mission mission;
-  mission.domain = {{-100, 30}, {2000, 1000}};
+  mission.domain = {{-100, 30, 0}, {2000, 1000, 0}};
   mission.basis.modes_x = mission.basis.modes_y = 12;
-  mission.target_coefficients = Coefficients::Zero(12, 12);
-  mission.target_coefficients(0, 0) = 1;
-  mission.target_coefficients(2, 0) = -0.3;
+  mission.target_coefficients = Coefficients::Zero(144);
+  mission.target_coefficients[0] = 1;
+  mission.target_coefficients[24] = -0.3;
   mission.law.u_max_mps = 100;
   mission.law.anticipation = 2;
   mission.timing.dt_s = kDt;
@@ -58,10 +58,9 @@ class Dice {
 };
 
 /// Where the vehicle of `agent` is.
-Eigen::Vector2d place(AgentId agent, Tick tick, const Mission& mission) {
-  const Eigen::Vector2d share = uniform_pair(11, Purpose::kStart, static_cast<std::uint32_t>(agent),
-                                             static_cast<std::uint64_t>(tick));
-  return mission.domain.origin_m + share.cwiseProduct(mission.domain.size_m);
+Eigen::Vector3d place(AgentId agent, Tick tick, const Mission& mission) {
+  return uniform_in(mission.domain, 11, Purpose::kStart, static_cast<std::uint32_t>(agent),
+                    static_cast<std::uint64_t>(tick));
 }
 
 /// Somebody who covers where its vehicle is, tick by tick, and speaks when it is asked to.
@@ -110,7 +109,7 @@ Coefficients foreseen(const Known& known, const Mission& mission) {
   for (const auto& [agent, ticks] : known.seen) {
     for (const Tick tick : ticks) forecast.see(agent, tick, place(agent, tick, mission));
   }
-  Coefficients coverage = Coefficients::Constant(12, 12, 77);
+  Coefficients coverage = Coefficients::Constant(144, 77);
   forecast.look_ahead(table_of(known, mission), known.roster, known.tick, coverage);
   return coverage;
 }
@@ -189,8 +188,9 @@ double weight_s(const Row& row, double horizon_s, Tick now) {
 }
 
 Coefficients by_the_formula(const Known& known, const Mission& mission) {
-  const double spread_m = target_spread_m(mission.target_coefficients, mission.domain);
-  Coefficients foreseen = Coefficients::Zero(12, 12);
+  const double spread_m =
+      target_spread_m(mission.target_coefficients, mission.basis, mission.domain);
+  Coefficients foreseen = Coefficients::Zero(144);
   auto rows = rows_of(known);
   for (int b = 0; b < 2; ++b) {
     int n = 1;
@@ -316,7 +316,7 @@ TEST_P(Foreseen, IsTheFormula) {
     const Coefficients expected = by_the_formula(known, mission_),
                        actual = foreseen(known, mission_);
     ASSERT_LT((actual - expected).cwiseAbs().maxCoeff(), 1e-12);
-    Coefficients average(12, 12);
+    Coefficients average(144);
     table_of(known, mission_).average(average);
     largest = std::max(largest, (actual - average).cwiseAbs().maxCoeff());
   });
@@ -340,7 +340,7 @@ TEST_P(Foreseen, IsWhatIsKnownWhereTheLawDoesNotLookAhead) {
   mission_.dead_reckoning = false;
   in_every_history([&](Known known, Dice&) {
     known.roster.clear();
-    Coefficients average(12, 12);
+    Coefficients average(144);
     table_of(known, mission_).average(average);
     ASSERT_LT((foreseen(known, mission_) - average).cwiseAbs().maxCoeff(), 1e-15);
   });
@@ -472,7 +472,7 @@ TEST(ForecastCounts, AGainThatIsJustPossible) {
             1e-12);
   EXPECT_NE(foreseen(known, mission), foreseen(without_hope_for_1(known), mission));
   last.sums[3] = said_before[0].sums[3] + 1.001 * kDt;
-  EXPECT_EQ(foreseen(known, mission)(0, 3), foreseen(without_hope_for_1(known), mission)(0, 3));
+  EXPECT_EQ(foreseen(known, mission)[3], foreseen(without_hope_for_1(known), mission)[3]);
 }
 
 TEST(ForecastCounts, WhoHasBeenSilentForTooLongInTheTeamsNumberOnly) {
@@ -590,7 +590,7 @@ TEST(DeadReckoning, RowsAreAsGoodAsIfTheyWereToldEachTickBitForBit) {
     hear(reckoned, seldom, tick, true);
     see_all(by_words, 4, tick, mission);
     see_all(by_places, 4, tick, mission);
-    Coefficients words(12, 12), places(12, 12);
+    Coefficients words(144), places(144);
     by_words.look_ahead(told, often.roster, tick, words);
     by_places.look_ahead(reckoned, seldom.roster, tick, places);
     ASSERT_EQ(words, places) << tick;
@@ -616,7 +616,7 @@ TEST(DeadReckoning, DoesNotDependOnWhenPlacesAndBlocksComeNorOnWhenOneLooks) {
     CoverageTable table(mission.basis, kDt);
     auto block = team.heard.begin();
     std::map<AgentId, Tick> next;
-    Coefficients coverage(12, 12);
+    Coefficients coverage(144);
     bool more = true;
     while (more) {
       if (block != team.heard.end() && dice.one_in(3)) table.merge(*block++, kManySteps);
@@ -638,7 +638,7 @@ Coefficients with_a_place(const Mission& mission, const Known& told,
                           const std::function<void(Forecast&)>& seen) {
   Forecast forecast(mission, kSelf);
   seen(forecast);
-  Coefficients coverage(12, 12);
+  Coefficients coverage(144);
   forecast.look_ahead(table_of(told, mission), told.roster, 30, coverage);
   return coverage;
 }
@@ -661,11 +661,11 @@ TEST(DeadReckoning, UsesNoPlacesThatAreNone) {
       {"our own", [&](Forecast& f) { f.see(0, 30, here); }},
       {"outside",
        [&](Forecast& f) {
-         f.see(1, 30, {-101, 100});
+         f.see(1, 30, {-101, 100, 0});
        }},
       {"nowhere",
        [&](Forecast& f) {
-         f.see(1, 30, {nan, 100});
+         f.see(1, 30, {nan, 100, 0});
        }},
       {"a stranger's", [&](Forecast& f) { f.see(7, 30, here); }},
       {"nobody's",
@@ -706,7 +706,7 @@ TEST(DeadReckoning, UsesNoPlaceOfAFormerAuthorsTime) {
   for (const Contribution& block : reborn.speak(23)) told.heard.push_back(block);
   const auto see_from = [&](Tick first) {
     return with_a_place(mission, told, [&](Forecast& forecast) {
-      Coefficients looked(12, 12);
+      Coefficients looked(144);
       for (Tick tick = first; tick <= 30; ++tick) {
         forecast.see(1, tick, place(1, tick, mission));
         // While the former author was the newest, its row was reckoned on the same track.
@@ -728,7 +728,7 @@ TEST(DeadReckoning, LeavesWhatIsKnownAndPassedOnAsItWas) {
   const CoverageTable before = table_of(told, mission);
   CoverageTable table = before;
   Forecast forecast(mission, kSelf);
-  Coefficients foreseen(12, 12), known(12, 12), known_before(12, 12);
+  Coefficients foreseen(144), known(144), known_before(144);
   before.average(known_before);
   for (Tick tick = 21; tick < kEnd; ++tick) {
     see_all(forecast, 3, tick, mission);

@@ -12,11 +12,12 @@
 namespace ergocast {
 namespace {
 
-Mission mission_of(const TargetDensity& target, const Rectangle& domain, int modes = 16) {
+Mission mission_of(const TargetDensity& target, const Box& domain, int modes = 16) {
   Mission mission;
   mission.domain = domain;
   mission.basis.modes_x = mission.basis.modes_y = modes;
-  mission.target_coefficients = target_coefficients(target, domain, mission.basis).values;
+  mission.target_coefficients =
+      in_wire_order(target_coefficients(target, base_of(domain), mission.basis).values);
   mission.law.u_max_mps = 20;
   mission.law.anticipation = 2;
   mission.timing.dt_s = 0.1;
@@ -32,6 +33,10 @@ TargetDensity bells(const std::vector<Gaussian>& gaussians, double uniform_weigh
 }
 
 Eigen::Matrix2d round(double sigma_m) { return sigma_m * sigma_m * Eigen::Matrix2d::Identity(); }
+
+double spread_m(const Mission& mission) {
+  return target_spread_m(mission.target_coefficients, mission.basis, mission.domain);
+}
 
 /// From the definition: the density on a grid of 1000 × 1000 midpoints.
 double integrated_spread_m(const TargetDensity& target, const Rectangle& domain) {
@@ -56,11 +61,11 @@ double integrated_spread_m(const TargetDensity& target, const Rectangle& domain)
 struct Case {
   const char* name;
   TargetDensity target;
-  Rectangle domain;
+  Box domain;
 };
 
 std::vector<Case> smooth_targets() {
-  const Rectangle square{{0, 0}, {2000, 2000}}, slab{{-300, 70}, {4000, 500}};
+  const Box square{{0, 0, 0}, {2000, 2000, 0}}, slab{{-300, 70, 0}, {4000, 500, 0}};
   const Eigen::Matrix2d oblique = (Eigen::Matrix2d() << 9e4, 3e4, 3e4, 4e4).finished();
   return {
       {"uniform", bells({}, 1), square},
@@ -82,44 +87,58 @@ std::vector<Case> smooth_targets() {
 TEST(TargetSpread, IsTheRmsDistanceFromTheMean) {
   for (const auto& [name, target, domain] : smooth_targets()) {
     const Mission mission = mission_of(target, domain, 24);
-    const double expected_m = integrated_spread_m(target, domain);
-    EXPECT_NEAR(target_spread_m(mission.target_coefficients, domain), expected_m, 1e-3 * expected_m)
-        << name;
+    const double expected_m = integrated_spread_m(target, base_of(domain));
+    EXPECT_NEAR(spread_m(mission), expected_m, 1e-3 * expected_m) << name;
   }
 }
 
 TEST(TargetSpread, OfAUniformTargetIsTheRectangles) {
-  const Rectangle slab{{5, 5}, {4000, 500}};
+  const Box slab{{5, 5, 0}, {4000, 500, 0}};
   const Mission mission = mission_of(bells({}, 1), slab, 3);
-  EXPECT_NEAR(target_spread_m(mission.target_coefficients, slab),
-              std::hypot(4000, 500) / std::sqrt(12), 1e-9);
+  EXPECT_NEAR(spread_m(mission), std::hypot(4000, 500) / std::sqrt(12), 1e-9);
+}
+
+TEST(TargetSpread, InSpaceCountsEachAxis) {
+  // ρ = (1 + a cos(πx/L)) / L along each axis: μ_1 = a/2, and the variance is L² (1/12 − 4a²/π⁴).
+  const Box box{{-3, 5, 40}, {300, 200, 80}};
+  const Basis basis{.modes_x = 2, .modes_y = 3, .modes_z = 4};
+  const auto deviation = [](double a) {
+    return std::sqrt(1.0 / 12 - 4 * a * a / std::pow(std::numbers::pi, 4));
+  };
+  Coefficients target = Coefficients::Zero(basis.mode_count());
+  target[0] = 1;
+  target[3] = 0.3 / 2;   // m = 1
+  target[1] = -0.6 / 2;  // n = 1
+  target[6] = 0.9 / 2;   // l = 1
+  EXPECT_NEAR(target_spread_m(target, basis, box),
+              std::hypot(300 * deviation(0.3), 200 * deviation(0.6), 80 * deviation(0.9)), 1e-10);
 }
 
 // A place so small that all modes see it as a point: what the modes leave out is all there is.
 TEST(TargetSpread, IsOffByWhatTheModesLeaveOutAndNoMore) {
-  const Rectangle square{{0, 0}, {2000, 2000}};
+  const Box square{{0, 0, 0}, {2000, 2000, 0}};
   for (const int modes : {2, 4, 16, 64}) {
     for (const Eigen::Vector2d& at_m :
          {Eigen::Vector2d(3, 5), Eigen::Vector2d(700, 1311), Eigen::Vector2d(1000, 1000)}) {
       const Mission mission = mission_of(bells({{1, at_m, round(1)}}), square, modes);
-      const double spread_m = target_spread_m(mission.target_coefficients, square);
-      ASSERT_TRUE(std::isfinite(spread_m));
+      const double actual_m = spread_m(mission);
+      ASSERT_TRUE(std::isfinite(actual_m));
       // Of the mean square once, of the squared mean at most 2 + tail times.
       const double tail = 4 / (std::numbers::pi * std::numbers::pi * (modes - 0.5));
-      EXPECT_LE(spread_m * spread_m, 2 * 2000 * 2000 * tail * (3 + tail) + 2) << modes << " modes";
+      EXPECT_LE(actual_m * actual_m, 2 * 2000 * 2000 * tail * (3 + tail) + 2) << modes << " modes";
     }
   }
 }
 
 TEST(TargetSpread, OfOneModeIsTheUniformTargets) {
-  const Rectangle square{{0, 0}, {2000, 2000}};
+  const Box square{{0, 0, 0}, {2000, 2000, 0}};
   const Mission mission = mission_of(bells({{1, {300, 400}, round(100)}}), square, 1);
-  EXPECT_NEAR(target_spread_m(mission.target_coefficients, square), 2000 / std::sqrt(6), 1e-9);
+  EXPECT_NEAR(spread_m(mission), 2000 / std::sqrt(6), 1e-9);
 }
 
 // ---- h -----------------------------------------------------------------------------------------
 
-const Rectangle kSquare{{0, 0}, {2000, 2000}};
+const Box kSquare{{0, 0, 0}, {2000, 2000, 0}};
 /// s / u_max of a uniform target on kSquare at 20 m/s.
 const double kCrossing_s = 2000 / std::sqrt(6) / 20;
 

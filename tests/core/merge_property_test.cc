@@ -18,7 +18,7 @@ namespace {
 constexpr double kDt = 0.1;
 constexpr std::int64_t kManySteps = 1000;
 constexpr std::uint64_t kHistories = 40;
-const Rectangle kDomain{{0, 0}, {2000, 1000}};
+const Box kDomain{{0, 0, 0}, {2000, 1000, 0}};
 const std::vector<Author> kLives{{0, 9}, {0, 7}, {1, 5}, {2, 1}, {2, 0xffffffffffffffff}, {5, 3}};
 
 /// 12 × 12 modes: two blocks.
@@ -55,10 +55,10 @@ std::vector<Contribution> everything_said(std::uint64_t history) {
     const auto ticks = static_cast<Tick>(1 + dice.below(12));
     const Tick born = static_cast<Tick>(dice.below(50));
     for (Tick tick = born; tick < born + ticks; ++tick) {
-      const Eigen::Vector2d u = uniform_pair(history, Purpose::kStart,
-                                             static_cast<std::uint32_t>(author.agent),
-                                             author.incarnation + static_cast<std::uint64_t>(tick));
-      own.add_sample(author, BasisAt(u.cwiseProduct(kDomain.size_m), kDomain, basis()));
+      const Eigen::Vector3d x_m =
+          uniform_in(kDomain, history, Purpose::kStart, static_cast<std::uint32_t>(author.agent),
+                     author.incarnation + static_cast<std::uint64_t>(tick));
+      own.add_sample(author, BasisAt(x_m, kDomain, basis()));
       if (dice.below(3) == 0) continue;
       for (int b = 0; b < 2; ++b) {
         said.push_back(own.block(author, b));
@@ -98,7 +98,7 @@ void pass_on(const CoverageTable& from, CoverageTable& to) {
 }
 
 Coefficients average_of(const CoverageTable& table) {
-  Coefficients average = Coefficients::Constant(12, 12, 7);
+  Coefficients average = Coefficients::Constant(144, 7);
   table.average(average);
   return average;
 }

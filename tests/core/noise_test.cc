@@ -125,5 +125,37 @@ TEST(Noise, IsUncorrelatedBetweenStepsAgentsSeedsAndPurposes) {
   EXPECT_NEAR(purposes, 0, error);
 }
 
+const Box kPlane{{-3, 4, 0}, {20, 10, 0}}, kSpace{{-3, 4, 50}, {20, 10, 8}};
+
+TEST(Noise, OfAPlaneIsThePairAndNothingAlongZ) {
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const Eigen::Vector2d pair = normal_pair(5, Purpose::kPush, 3, i);
+    EXPECT_EQ(normal_in(kPlane, 5, Purpose::kPush, 3, i), on_ground(pair));
+    EXPECT_EQ(normal_in(kSpace, 5, Purpose::kPush, 3, i).head<2>(), pair) << "the same in space";
+    const Eigen::Vector3d flat = uniform_in(kPlane, 5, Purpose::kStart, 3, i);
+    EXPECT_EQ(flat.z(), 0);
+    EXPECT_EQ(uniform_in(kSpace, 5, Purpose::kStart, 3, i).head<2>(), flat.head<2>());
+    EXPECT_TRUE(kSpace.contains(uniform_in(kSpace, 5, Purpose::kStart, 3, i)));
+  }
+}
+
+TEST(Noise, AlongZIsAThirdIndependentStandardNormal) {
+  Eigen::Vector3d mean(0, 0, 0);
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  double uniform = 0;
+  for (std::uint64_t i = 0; i < kDraws; ++i) {
+    const Eigen::Vector3d xi = normal_in(kSpace, 42, Purpose::kPerturbation, 0, i);
+    mean += xi / kDraws;
+    second += xi * xi.transpose() / kDraws;
+    uniform += (uniform_in(kSpace, 42, Purpose::kStart, 0, i).z() - 50) / 8 / kDraws;
+  }
+  const double error = kErrors / std::sqrt(static_cast<double>(kDraws));
+  EXPECT_NEAR(mean.z(), 0, error);
+  EXPECT_NEAR(second(2, 2), 1, error * std::sqrt(2.0));
+  EXPECT_NEAR(second(0, 2), 0, error);
+  EXPECT_NEAR(second(1, 2), 0, error);
+  EXPECT_NEAR(uniform, 0.5, error / std::sqrt(12.0));
+}
+
 }  // namespace
 }  // namespace ergocast

@@ -29,8 +29,8 @@ ControlLaw adaptive() {
 
 FieldAt field(const Eigen::Vector2d& gradient, double xx, double xy, double yy) {
   FieldAt at;
-  at.gradient = gradient;
-  at.hessian << xx, xy, xy, yy;
+  at.gradient.head<2>() = gradient;
+  at.hessian.topLeftCorner<2, 2>() << xx, xy, xy, yy;
   return at;
 }
 
@@ -41,7 +41,10 @@ const double kStep_s = std::pow(kCeiling / kSpeed_mps, 2);
 /// one step a second.
 Eigen::Matrix2d intensities(const FieldAt& at, double epsilon = kEpsilon) {
   const auto response = [&](const Eigen::Vector2d& xi, const Eigen::Vector2d& eta) {
-    return (perturbation({adaptive(), kStep_s}, epsilon, at, xi, eta) * std::sqrt(kStep_s)).eval();
+    const Eigen::Vector3d push =
+        perturbation({adaptive(), kStep_s}, epsilon, at, on_ground(xi), on_ground(eta));
+    EXPECT_EQ(push.z(), 0);
+    return (push.head<2>() * std::sqrt(kStep_s)).eval();
   };
   Eigen::Matrix<double, 2, 4> all;
   all << response({1, 0}, {0, 0}), response({0, 1}, {0, 0}), response({0, 0}, {1, 0}),
@@ -58,8 +61,8 @@ void expect_near(const Eigen::Matrix2d& sigma, double along_x, double along_y) {
 TEST(Perturbation, ItsGreatestDeviationIsThatOfAStepWhereTheFieldIsWhollyOpen) {
   for (const double dt_s : {0.1, kStep_s}) {  // a push held for many steps, and for one
     const auto along_x = [&](double xi, double eta) {
-      return perturbation({adaptive(), dt_s}, kEpsilon, field({0, 0}, -1e-7, 0, -2e-7), {xi, 0},
-                          {eta, 0})
+      return perturbation({adaptive(), dt_s}, kEpsilon, field({0, 0}, -1e-7, 0, -2e-7), {xi, 0, 0},
+                          {eta, 0, 0})
           .x();
     };
     EXPECT_NEAR(greatest_deviation_mps(adaptive(), dt_s), std::hypot(along_x(1, 0), along_x(0, 1)),
@@ -104,8 +107,9 @@ TEST(Perturbation, TurnsWithTheField) {
         Eigen::Rotation2D<double>(step * std::numbers::pi / 12).toRotationMatrix();
     FieldAt at = field({kEpsilon, 1e-3}, -4e-7, 0, 1e-7);
     const Eigen::Matrix2d straight = intensities(at);
-    at.gradient = turn * at.gradient;
-    at.hessian = turn * at.hessian * turn.transpose();
+    at.gradient.head<2>() = (turn * at.gradient.head<2>()).eval();
+    auto hessian = at.hessian.topLeftCorner<2, 2>();
+    hessian = (turn * hessian * turn.transpose()).eval();
     const Eigen::Matrix2d expected = turn * straight * turn.transpose();
     EXPECT_LT((intensities(at) - expected).norm(), 1e-6) << step;
   }
@@ -140,8 +144,8 @@ TEST(Perturbation, SurvivesResidualsWhoseSquaresVanish) {
 TEST(Perturbation, ConstantIsSigmaWhateverTheField) {
   ControlLaw law;
   law.noise_intensity = 0.75;
-  const Eigen::Vector2d xi(0.3, -2);
-  EXPECT_EQ(perturbation({law, 0.125}, 0, field({1, 2}, -1, 0, -1), xi, {5, 7}),
+  const Eigen::Vector3d xi(0.3, -2, 0);
+  EXPECT_EQ(perturbation({law, 0.125}, 0, field({1, 2}, -1, 0, -1), xi, {5, 7, 0}),
             0.75 / std::sqrt(0.125) * xi);
 }
 
@@ -165,14 +169,82 @@ TEST(Perturbation, SpreadsLikeItsCeilingOverManyPushes) {
       const auto step = static_cast<std::uint64_t>(n);
       const auto push = static_cast<std::uint64_t>(n / push_ticks(adaptive(), kDt_s));
       x_m += kDt_s * perturbation({adaptive(), kDt_s}, kEpsilon, ridge,
-                                  normal_pair(1, Purpose::kPerturbation, walk, step),
-                                  normal_pair(1, Purpose::kPush, walk, push))
+                                  on_ground(normal_pair(1, Purpose::kPerturbation, walk, step)),
+                                  on_ground(normal_pair(1, Purpose::kPush, walk, push)))
                          .x();
     }
     square_m2 += x_m * x_m / kWalks;
   }
   // A variance from 4000 walks is known to 2.2 % (one standard deviation).
   EXPECT_NEAR(square_m2, kCeiling * kCeiling * kTicks * kDt_s, 0.12 * square_m2);
+}
+
+// ---- in space
+// --------------------------------------------------------------------------------------
+
+/// A field with these principal directions, the columns of `turn`, curvatures and parts of B.
+FieldAt field_along(const Eigen::Matrix3d& turn, const Eigen::Vector3d& curvatures,
+                    const Eigen::Vector3d& parts) {
+  return {turn * parts, turn * curvatures.asDiagonal() * turn.transpose()};
+}
+
+Eigen::Matrix3d some_turn(std::uint64_t i) {
+  const Eigen::Vector2d a = normal_pair(3, Purpose::kStart, 0, i),
+                        b = normal_pair(3, Purpose::kStart, 1, i);
+  return Eigen::Quaterniond(a.x(), a.y(), b.x(), b.y()).normalized().toRotationMatrix();
+}
+
+Eigen::Vector3d normals(std::uint32_t who, std::uint64_t i) {
+  return normal_in({{0, 0, 0}, {1, 1, 1}}, 5, Purpose::kStart, who, i);
+}
+
+/// The sum over known directions, written out.
+Eigen::Vector3d pushed(const Eigen::Matrix3d& turn, const Eigen::Vector3d& curvatures,
+                       const Eigen::Vector3d& parts, const Eigen::Vector3d& xi,
+                       const Eigen::Vector3d& eta) {
+  Eigen::Vector3d velocity = kFloor / std::sqrt(kStep_s) * xi;
+  for (int i = 0; i < 3; ++i) {
+    if (curvatures[i] >= 0) continue;
+    const double s = kEpsilon * kEpsilon / (kEpsilon * kEpsilon + parts[i] * parts[i]);
+    velocity +=
+        std::sqrt(s) * greatest_push_mps(adaptive(), kStep_s) * turn.col(i).dot(eta) * turn.col(i);
+  }
+  return velocity;
+}
+
+TEST(Perturbation, InSpacePushesAlongThePrincipalDirections) {
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    const Eigen::Matrix3d turn = some_turn(i);
+    // Apart from each other, so that the directions are certain.
+    const Eigen::Vector3d curvatures = Eigen::Vector3d(-3e-7, -1e-7, 2e-7) * (i % 2 == 0 ? 1 : -1);
+    const Eigen::Vector3d parts = kEpsilon * normals(0, i), xi = normals(1, i), eta = normals(2, i);
+    const Eigen::Vector3d v_mps = perturbation({adaptive(), kStep_s}, kEpsilon,
+                                               field_along(turn, curvatures, parts), xi, eta);
+    ASSERT_LT((v_mps - pushed(turn, curvatures, parts, xi, eta)).norm(), 1e-11) << i;
+  }
+}
+
+TEST(Perturbation, OfAFieldThatIsLevelAlongZIsThatOfThePlane) {
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d b = normals(0, i) * kEpsilon, h = normals(1, i) * 1e-7;
+    const Eigen::Vector3d xi = normals(2, i), eta = normals(3, i);
+    FieldAt level = field(b.head<2>(), h.x(), h.y(), h.z());
+    const PerturbationScale scale{adaptive(), kStep_s};
+    const Eigen::Vector3d plane = perturbation(scale, kEpsilon, level, xi, eta);
+    EXPECT_EQ(plane.z(), scale.noise_mps * xi.z());
+    level.hessian(2, 2) = 1e-300;  // next to nothing, but the way through space
+    const Eigen::Vector3d space = perturbation(scale, kEpsilon, level, xi, eta);
+    ASSERT_LT((plane - space).norm(), 1e-9) << i;
+  }
+}
+
+TEST(Perturbation, InSpaceWhereBVanishesOnAPeakIsStrongAllRound) {
+  const Eigen::Vector3d eta(0.3, -0.7, 1.1);
+  FieldAt peak;
+  peak.hessian = -4e-7 * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d v_mps =
+      perturbation({adaptive(), kStep_s}, kEpsilon, peak, Eigen::Vector3d::Zero(), eta);
+  EXPECT_LT((v_mps - greatest_push_mps(adaptive(), kStep_s) * eta).norm(), 1e-12);
 }
 
 }  // namespace

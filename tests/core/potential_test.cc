@@ -32,17 +32,17 @@ class FreshTeam {
     last_tick_ = 1 + static_cast<Tick>(60 * number());
     for (std::size_t i = 0; i < agents; ++i) draw_life(author_of(i));
     weights_ = sobolev_weights(mission_.basis, mission_.domain);
-    residual_ = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+    residual_ = Coefficients::Zero(mission_.basis.mode_count());
     table_->average(residual_);
     residual_ = covered_s() * residual_ - ahead_s() * mission_.target_coefficients;
   }
 
   std::size_t size() const { return x_m_.size(); }
-  const std::vector<Eigen::Vector2d>& x_m() const { return x_m_; }
+  const std::vector<Eigen::Vector3d>& x_m() const { return x_m_; }
   double ahead_s() const { return covered_s() + (static_cast<double>(size()) - 1) * weight_s(); }
 
   /// E at other places than theirs, all that they have covered being the same [s], by its formula.
-  double potential(const std::vector<Eigen::Vector2d>& x_m) const {
+  double potential(const std::vector<Eigen::Vector3d>& x_m) const {
     double sum = 0;
     for (std::size_t i = 0; i < x_m.size(); ++i) {
       const Coefficients f = basis_values(x_m[i], mission_.domain, mission_.basis);
@@ -56,10 +56,10 @@ class FreshTeam {
 
   /// E as the φ² that the team foresees of itself: (‖S − T_a μ + wF‖² − ‖S − T_a μ‖²) / 2w less the
   /// agents' own share, w/2 Σ G(x_i, x_i), F = Σ f(x_i).
-  double potential_by_metric(const std::vector<Eigen::Vector2d>& x_m) const {
+  double potential_by_metric(const std::vector<Eigen::Vector3d>& x_m) const {
     Coefficients foreseen = residual_;
     double own = 0;
-    for (const Eigen::Vector2d& x : x_m) {
+    for (const Eigen::Vector3d& x : x_m) {
       const Coefficients f = basis_values(x, mission_.domain, mission_.basis);
       foreseen += weight_s() * f;
       own += product(f, f);
@@ -69,12 +69,12 @@ class FreshTeam {
   }
 
   /// B of an agent by the law as it flies: rows, forecast, control step.
-  Eigen::Vector2d b(std::size_t agent) const {
+  Eigen::Vector3d b(std::size_t agent) const {
     Forecast forecast(mission_, author_of(agent));
     for (std::size_t j = 0; j < size(); ++j) {
       forecast.see(static_cast<AgentId>(j), last_tick_, x_m_[j]);
     }
-    Coefficients foreseen(mission_.basis.modes_x, mission_.basis.modes_y);
+    Coefficients foreseen(mission_.basis.mode_count());
     forecast.look_ahead(*table_, roster_, last_tick_, foreseen);
     Controller controller(mission_);
     controller.see(foreseen);
@@ -85,13 +85,13 @@ class FreshTeam {
 
  private:
   double number() { return uniform_pair(seed_, Purpose::kStart, 1, ++draws_).x(); }
-  Eigen::Vector2d anywhere() {
-    const Eigen::Vector2d share(number(), number());
+  Eigen::Vector3d anywhere() {
+    const Eigen::Vector3d share(number(), number(), 0);
     return mission_.domain.origin_m + share.cwiseProduct(mission_.domain.size_m);
   }
 
   void draw_mission() {
-    mission_.domain = {{-50, 20}, {300 + 3000 * number(), 300 + 1000 * number()}};
+    mission_.domain = {{-50, 20, 0}, {300 + 3000 * number(), 300 + 1000 * number(), 0}};
     Basis& basis = mission_.basis;
     basis.modes_x = 2 + static_cast<int>(16 * number());
     basis.modes_y = 2 + static_cast<int>(16 * number());
@@ -102,9 +102,10 @@ class FreshTeam {
     for (int bells = 0; bells < 3; ++bells) {
       const double sigma_m = 30 + 200 * number();
       target.gaussians.push_back(
-          {number(), anywhere(), sigma_m * sigma_m * Eigen::Matrix2d::Identity()});
+          {number(), anywhere().head<2>(), sigma_m * sigma_m * Eigen::Matrix2d::Identity()});
     }
-    mission_.target_coefficients = target_coefficients(target, mission_.domain, basis).values;
+    mission_.target_coefficients =
+        in_wire_order(target_coefficients(target, base_of(mission_.domain), basis).values);
     mission_.law.u_max_mps = 20;
     mission_.law.anticipation = 0.2 + 4 * number();
     mission_.timing.dt_s = kDt;
@@ -132,7 +133,8 @@ class FreshTeam {
   double covered_s() const { return table_->covered_s(); }
   /// What each teammate's gains are taken to go on for: h, and the tick that they took.
   double weight_s() const {
-    const double spread_m = target_spread_m(mission_.target_coefficients, mission_.domain);
+    const double spread_m =
+        target_spread_m(mission_.target_coefficients, mission_.basis, mission_.domain);
     return mission_.law.anticipation * spread_m /
                (mission_.law.u_max_mps * std::sqrt(static_cast<double>(size()))) +
            kDt;
@@ -145,7 +147,7 @@ class FreshTeam {
   Mission mission_;
   std::optional<CoverageTable> table_;
   std::vector<RosterEntry> roster_;
-  std::vector<Eigen::Vector2d> x_m_;
+  std::vector<Eigen::Vector3d> x_m_;
   Tick last_tick_ = 0;
   Coefficients weights_, residual_;  // λ; S − T_a μ [s]
 };
@@ -157,7 +159,7 @@ TEST(Potential, SlopesByEachAgentsBTimesTheTimeForeseen) {
     const FreshTeam team(seed);
     double scale = 0, error = 0;
     for (std::size_t i = 0; i < team.size(); ++i) {
-      const Eigen::Vector2d expected = team.ahead_s() * team.b(i);
+      const Eigen::Vector3d expected = team.ahead_s() * team.b(i);
       for (int axis = 0; axis < 2; ++axis) {
         auto ahead_m = team.x_m(), behind_m = team.x_m();
         ahead_m[i][axis] += kStep_m;
@@ -188,7 +190,7 @@ TEST(Potential, FallsByWhatItsSlopeSaysWhenEachAgentTakesAStepAlongMinusB) {
     auto all_m = team.x_m();
     double slope = 0;
     for (std::size_t i = 0; i < team.size(); ++i) {
-      const Eigen::Vector2d b = team.b(i);
+      const Eigen::Vector3d b = team.b(i);
       auto alone_m = team.x_m();
       alone_m[i] -= kStep_m * b.normalized();
       all_m[i] = alone_m[i];

@@ -43,7 +43,7 @@ TEST(ExampleDriver, SaysEachTickWhereItsRobotsAre) {
   EXPECT_EQ(first.vehicles[1].answered_tick, -1);
   EXPECT_EQ(driver.next_wakeup(), at(100ms));
   EXPECT_TRUE(advance(driver, at(99ms)).empty());
-  give(driver, command_of(1, 0, {4, 0}), at(99ms));
+  give(driver, command_of(1, 0, {4, 0, 0}), at(99ms));
   const WorldState second = state_at(driver, at(100ms));
   EXPECT_EQ(second.header.tick, 1);
   EXPECT_EQ(second.vehicles[1].answered_tick, 0);
@@ -57,20 +57,20 @@ TEST(ExampleDriver, ObeysOnlyTheAgentOfTheRobotAndNothingOld) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
   advance(driver, at(100ms));
-  Command stranger = command_of(0, 1, {5, 0});
+  Command stranger = command_of(0, 1, {5, 0, 0});
   stranger.header.incarnation = 99;
   give(driver, stranger, at(101ms));
-  give(driver, command_of(0, 2, {5, 0}), at(102ms));  // of a tick that is yet to come
+  give(driver, command_of(0, 2, {5, 0, 0}), at(102ms));  // of a tick that is yet to come
   EXPECT_EQ(state_at(driver, at(200ms)).vehicles[0].position_m.x(), 100);
-  give(driver, command_of(0, 2, {5, 0}), at(201ms));
-  give(driver, command_of(0, 1, {0, 0}), at(202ms));  // overtaken
+  give(driver, command_of(0, 2, {5, 0, 0}), at(201ms));
+  give(driver, command_of(0, 1, {0, 0, 0}), at(202ms));  // overtaken
   EXPECT_NEAR(state_at(driver, at(300ms)).vehicles[0].position_m.x(), 100.5, 1e-9);
 }
 
 TEST(ExampleDriver, StopsARobotWhoseCommandsDoNotComeAnyMore) {
   Driver driver = running_driver(mission_of(Pace::kRealtime, 0.25));
   advance(driver, at(0s));
-  give(driver, command_of(0, 0, {5, 0}), at(0s));
+  give(driver, command_of(0, 0, {5, 0, 0}), at(0s));
   for (int tick = 1; tick <= 6; ++tick) {
     const WorldState state = state_at(driver, at(tick * 100ms));
     EXPECT_EQ(state.vehicles[0].velocity_mps.x(), tick <= 3 ? 5 : 0) << tick;
@@ -81,7 +81,7 @@ TEST(ExampleDriver, ARobotThatOvershootsIsSaidToBeAtTheEdge) {
   Driver driver = running_driver(mission_of(Pace::kRealtime), 50);
   WorldState state = state_at(driver, at(0s));
   for (int tick = 1; tick <= 60; ++tick) {
-    give(driver, command_of(0, tick - 1, {-1e6, 0}), at(tick * 1s));
+    give(driver, command_of(0, tick - 1, {-1e6, 0, 0}), at(tick * 1s));
     state = state_at(driver, at(tick * 1s));
     EXPECT_GE(state.vehicles[0].position_m.x(), 0);
   }
@@ -102,7 +102,7 @@ TEST(ExampleDriver, GoesOnAtTheTickThatTheCoordinatorNames) {
 TEST(ExampleDriver, EndsWithTheMissionAndStopsItsRobots) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
-  give(driver, command_of(0, 0, {5, 0}), at(0s));
+  give(driver, command_of(0, 0, {5, 0, 0}), at(0s));
   give(driver, mission_part(2, MissionState::kEnded, roster_of(2), "mission complete"), at(1s));
   EXPECT_TRUE(driver.finished());
   EXPECT_FALSE(driver.failed());
@@ -112,7 +112,7 @@ TEST(ExampleDriver, EndsWithTheMissionAndStopsItsRobots) {
 TEST(ExampleDriver, AStopAtOnceStopsItsRobotsAndItSaysWhereTheyAre) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
-  give(driver, command_of(0, 0, {5, 0}), at(0s));
+  give(driver, command_of(0, 0, {5, 0, 0}), at(0s));
   Stop stop{{kRun, kOperator, 1, 1, 0}, false, "enough"};
   give(driver, stop, at(1ms));
   EXPECT_FALSE(driver.finished()) << "in order, the coordinator ends the mission";
@@ -130,9 +130,9 @@ TEST(ExampleDriver, AStopAtOnceStopsItsRobotsAndItSaysWhereTheyAre) {
 TEST(ExampleDriver, AnAgentMayTakeItsAnswerBackToStandStill) {
   Driver driver = running_driver(mission_of(Pace::kRealtime));
   advance(driver, at(0s));
-  give(driver, command_of(0, 0, {5, 0}), at(1ms));
-  give(driver, command_of(0, 0, {4, 0}), at(2ms));
-  give(driver, command_of(0, 0, {0, 0}), at(3ms));
+  give(driver, command_of(0, 0, {5, 0, 0}), at(1ms));
+  give(driver, command_of(0, 0, {4, 0, 0}), at(2ms));
+  give(driver, command_of(0, 0, {0, 0, 0}), at(3ms));
   EXPECT_EQ(state_at(driver, at(100ms)).vehicles[0].velocity_mps, Eigen::Vector3d(0, 0, 0));
 }
 
@@ -141,7 +141,7 @@ TEST(ExampleDriver, ObeysTheScenariosSpeedLimitToo) {
   mission.speed_limit_mps = 2;
   Driver driver = running_driver(mission);
   advance(driver, at(0s));
-  give(driver, command_of(0, 0, {4, 0}), at(1ms));
+  give(driver, command_of(0, 0, {4, 0, 0}), at(1ms));
   const WorldState state = state_at(driver, at(100ms));
   EXPECT_EQ(state.vehicles[0].velocity_mps, Eigen::Vector3d(2, 0, 0));
   EXPECT_EQ(state.clamped_commands, 1);
@@ -154,8 +154,8 @@ TEST(ExampleDriver, RefusesAMissionInLockstep) {
 }
 
 TEST(ExampleRobot, TurnsBeforeItDrivesAndNeverExceedsItsSpeed) {
-  Robot robot({0, 0}, kSpeedLimit_mps);
-  robot.drive({-100, 0});
+  Robot robot({0, 0, 0}, kSpeedLimit_mps);
+  robot.drive({-100, 0, 0});
   robot.move(0.1);
   EXPECT_EQ(robot.velocity_mps().norm(), 0) << "it looks the other way";
   for (int i = 0; i < 40; ++i) {
@@ -163,10 +163,10 @@ TEST(ExampleRobot, TurnsBeforeItDrivesAndNeverExceedsItsSpeed) {
     EXPECT_LE(robot.velocity_mps().norm(), kSpeedLimit_mps * (1 + 1e-12));
   }
   EXPECT_NEAR(robot.velocity_mps().x(), -kSpeedLimit_mps, 1e-9);
-  robot.drive({0, 0});
+  robot.drive({0, 0, 0});
   for (int i = 0; i < 40; ++i) robot.move(0.1);
   EXPECT_EQ(robot.velocity_mps().norm(), 0);
-  robot.drive({-1, 0});
+  robot.drive({-1, 0, 0});
   robot.move(0.1);
   EXPECT_NEAR(robot.velocity_mps().x(), -1, 1e-9) << "it looks where it looked when it stopped";
 }

@@ -21,9 +21,9 @@ void merge(const Contribution& theirs) {
   CoverageTable table(Basis{.modes_x = 5, .modes_y = 4}, 0.1);
   const Merge merged = table.merge(theirs, Tick{1} << 40);
   ERGOCAST_REQUIRE(table.row_count() == (merged == Merge::kNewer ? 1U : 0U));
-  Coefficients coverage = Coefficients::Zero(5, 4);
+  Coefficients coverage = Coefficients::Zero(20);
   table.average(coverage);
-  for (const double c : coverage.reshaped()) ERGOCAST_REQUIRE(std::abs(c) <= 1 + 1e-6);
+  for (const double c : coverage) ERGOCAST_REQUIRE(std::abs(c) <= 1 + 1e-6);
 }
 
 void check_accepted(const Message& message, std::string_view channel,

@@ -42,8 +42,8 @@ Mission mission_with(std::uint8_t features) {
   mission.wait_for_logger = (features & kWaitsForLogger) != 0;
   if (features & kTwoBlocks) {
     mission.basis.modes_x = mission.basis.modes_y = 12;
-    mission.target_coefficients = Coefficients::Zero(12, 12);
-    mission.target_coefficients(0, 0) = 1;
+    mission.target_coefficients = Coefficients::Zero(144);
+    mission.target_coefficients[0] = 1;
   }
   return mission;
 }

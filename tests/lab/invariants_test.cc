@@ -26,14 +26,14 @@ class InvariantsTest : public ::testing::Test {
       team_.born(author);
       roster_.push_back({author, 0, author == kLeft ? 10 : -1});
     }
-    team_.sent(0, world(99, {5, 5}), nullptr);
+    team_.sent(0, world(99, {5, 5, 0}), nullptr);
   }
 
   static Mission mission() {
     Mission m;
-    m.domain = {{0, 0}, {10, 10}};
+    m.domain = {{0, 0, 0}, {10, 10, 0}};
     m.basis.modes_x = m.basis.modes_y = 12;
-    m.target_coefficients = Coefficients::Zero(12, 12);
+    m.target_coefficients = Coefficients::Zero(144);
     m.law.u_max_mps = 2;
     m.timing.dt_s = 0.1;
     m.timing.tick_count = 100;
@@ -42,11 +42,11 @@ class InvariantsTest : public ::testing::Test {
     return m;
   }
 
-  static Outgoing world(Tick tick, const Eigen::Vector2d& x_m) {
+  static Outgoing world(Tick tick, const Eigen::Vector3d& x_m) {
     WorldState state;
     state.header.tick = tick;
     state.vehicle_count = 1;
-    state.vehicles[0].position_m << x_m, 0;
+    state.vehicles[0].position_m = x_m;
     return {Bus::kWorld, state};
   }
   static Outgoing command(double speed_mps) {
@@ -57,12 +57,12 @@ class InvariantsTest : public ::testing::Test {
   }
   void cover(CoverageTable& table, const Author& author, int steps, double x_m = 3) {
     for (int i = 0; i < steps; ++i) {
-      table.add_sample(author, BasisAt({x_m, 4}, mission_.domain, mission_.basis));
+      table.add_sample(author, BasisAt({x_m, 4, 0}, mission_.domain, mission_.basis));
     }
   }
   /// An agent that knows of everybody.
   Holder holder(const CoverageTable& table, Coefficients& c, const Author& self = kOne) {
-    c = Coefficients::Zero(12, 12);
+    c = Coefficients::Zero(144);
     table.average(c);
     return {self, &table, &c, &roster_, 88};
   }
@@ -72,7 +72,7 @@ class InvariantsTest : public ::testing::Test {
     Invariants team(mission_);
     team.born(kOne);
     team.born(kTwo);
-    team.sent(0, world(99, {5, 5}), nullptr);
+    team.sent(0, world(99, {5, 5, 0}), nullptr);
     CoverageTable table(mission_.basis, 0.1), other(mission_.basis, 0.1);
     Forecast forecast(mission_, kOne);
     Holder one = holder(table, c_one_);
@@ -91,15 +91,15 @@ class InvariantsTest : public ::testing::Test {
     hear(83, 51);
     cover(other, kTwo, 3, 9);
     hear(86, 55);
-    const Outgoing seen = world(88, {7, 3});
+    const Outgoing seen = world(88, {7, 3, 0});
     WorldState state = std::get<WorldState>(seen.message);
     state.vehicles[0].id = kTwo.agent;
     team.received(one, state);
-    forecast.see(kTwo.agent, 88, {7, 3});
+    forecast.see(kTwo.agent, 88, {7, 3, 0});
     one = holder(table, c_one_);
-    c_two_ = Coefficients::Zero(12, 12);
+    c_two_ = Coefficients::Zero(144);
     forecast.look_ahead(table, roster_, one.answered, c_two_);
-    c_two_(3, 11) += off;
+    c_two_[47] += off;
     one.foreseen = &c_two_;
     team.answered(1, one);
     return violated_by(team);
@@ -114,7 +114,7 @@ class InvariantsTest : public ::testing::Test {
 
 TEST_F(InvariantsTest, PositionsAreInTheDomain) {
   EXPECT_EQ(violated(), "");
-  team_.sent(1, world(1, {10.1, 5}), nullptr);
+  team_.sent(1, world(1, {10.1, 5, 0}), nullptr);
   EXPECT_EQ(violated(), "positions are in the domain");
 }
 
@@ -211,7 +211,7 @@ TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {
   const Holder right = holder(table, c_one_);
   team_.answered(1, right);
   EXPECT_EQ(violated(), "");
-  Coefficients a = Coefficients::Zero(12, 12), b = a;
+  Coefficients a = Coefficients::Zero(144), b = a;
   one.average(a);
   two.average(b);
   c_one_ = (a + b) / 2;
@@ -220,7 +220,7 @@ TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {
 }
 
 TEST_F(InvariantsTest, WhatIsForeseenFollowsFromWhatIsKnown) {
-  mission_.target_coefficients(0, 0) = 1;
+  mission_.target_coefficients[0] = 1;
   for (const bool reckons : {false, true}) {
     mission_.dead_reckoning = reckons;
     mission_.law.anticipation = 2;
@@ -308,7 +308,7 @@ TEST_F(InvariantsTest, TheMissionEndsWell) {
   const auto said = [&](const std::string& running, const std::string& failure, Tick tick,
                         double metric, Tick recorded = 100, Tick excused = 0) {
     Invariants team(mission_);
-    team.sent(0, world(tick, {1, 1}), nullptr);
+    team.sent(0, world(tick, {1, 1, 0}), nullptr);
     RunFacts facts;
     facts.ergodic_metric_last = metric;
     facts.ticks = recorded;

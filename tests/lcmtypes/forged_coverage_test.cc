@@ -41,7 +41,7 @@ void expect_no_effect(const Contribution& lie) {
   CoverageTable table(basis(), kDt);
   EXPECT_EQ(merged_from_bytes(lie, table), Merge::kRefusedRange);
   EXPECT_EQ(table.row_count(), 0u);
-  Coefficients average = Coefficients::Ones(15, 15);
+  Coefficients average = Coefficients::Ones(225);
   table.average(average);
   EXPECT_EQ(average.cwiseAbs().maxCoeff(), 0);
 }

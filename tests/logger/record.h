@@ -58,14 +58,15 @@ inline double number(const std::string& row, std::size_t column) {
 }
 
 /// Agent 0 at `tick`, after a step with `applied_mps`.
-inline WorldState state_of(Tick tick, const Eigen::Vector2d& x_m, const Eigen::Vector2d& applied_mps) {
+inline WorldState state_of(Tick tick, const Eigen::Vector3d& x_m,
+                           const Eigen::Vector3d& applied_mps) {
   WorldState state = world_state(tick, {x_m});
-  state.vehicles[0].velocity_mps << applied_mps, 0;
+  state.vehicles[0].velocity_mps = applied_mps;
   return state;
 }
 /// Agent 0 on a straight line, a metre a tick.
 inline WorldState state_of(Tick tick) {
-  return state_of(tick, {100 + static_cast<double>(tick), 500}, {10, 0});
+  return state_of(tick, {100 + static_cast<double>(tick), 500, 0}, {10, 0, 0});
 }
 
 inline std::vector<Tick> acks(const Outbox& out) {

@@ -18,10 +18,10 @@ using namespace test;
 
 TEST(Trajectory, RowNHoldsThePlaceOfTickNAndTheCommandAppliedThere) {
   Record record(small_mission(1));
-  record.tell(state_of(0, {100, 500}, {0, 0}));
+  record.tell(state_of(0, {100, 500, 0}, {0, 0, 0}));
   EXPECT_TRUE(record.trajectory_rows().empty()) << "the command of tick 0 is not known yet";
-  record.tell(state_of(1, {101, 502}, {10, 20}));
-  record.tell(state_of(2, {104, 506}, {30, 40}));
+  record.tell(state_of(1, {101, 502, 0}, {10, 20, 0}));
+  record.tell(state_of(2, {104, 506, 0}, {30, 40, 0}));
   EXPECT_EQ(record.trajectory.str(),
             "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps\n"
             "0,0,0,100,500,10,20\n"
@@ -32,12 +32,12 @@ TEST(Trajectory, EveryNumberReadsBackBitForBit) {
   Mission mission = small_mission(1);
   mission.timing.tick_count = 300;
   Record record(mission);
-  std::vector<Eigen::Vector2d> places, commands;
+  std::vector<Eigen::Vector3d> places, commands;
   for (Tick tick = 0; tick <= 200; ++tick) {
     const auto step = static_cast<std::uint64_t>(tick);
     const double scale = std::pow(10, -static_cast<double>(tick % 20));
-    places.push_back(2000 * uniform_pair(1, Purpose::kStart, 0, step) * scale);
-    commands.push_back(normal_pair(1, Purpose::kStart, 1, step) * scale);
+    places.push_back(on_ground(2000 * uniform_pair(1, Purpose::kStart, 0, step) * scale));
+    commands.push_back(on_ground(normal_pair(1, Purpose::kStart, 1, step) * scale));
     record.tell(state_of(tick, places.back(), commands.back()));
   }
   const auto rows = record.trajectory_rows();
@@ -94,8 +94,8 @@ TEST(Trajectory, EndsWithTheLastTicksRow) {
 
 TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
   Record record(small_mission(1));
-  record.tell(state_of(1025, {1, 1}, {0, 0}));
-  record.tell(state_of(Tick{1} << 48, {1, 1}, {0, 0}));
+  record.tell(state_of(1025, {1, 1, 0}, {0, 0, 0}));
+  record.tell(state_of(Tick{1} << 48, {1, 1, 0}, {0, 0, 0}));
   record.tell(state_of(0));
   record.tell(state_of(1));
   EXPECT_EQ(record.trajectory_rows().size(), 1u);
@@ -220,12 +220,12 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   Mission mission = small_mission(1);
   mission.timing.tick_count = 25;
   Record record(mission);
-  Coefficients sums = Coefficients::Zero(5, 4);
+  Coefficients sums = Coefficients::Zero(20);
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   std::vector<double> expected;
   for (Tick tick = 0; tick <= 25; ++tick) {
     record.tell(state_of(tick));
-    const Eigen::Vector2d x_m(100 + static_cast<double>(tick), 500);
+    const Eigen::Vector3d x_m(100 + static_cast<double>(tick), 500, 0);
     sums += 0.1 * basis_values(x_m, mission.domain, mission.basis);
     if (tick == 0 || tick == 10 || tick == 20 || tick == 24) {
       const Coefficients coverage = sums / (0.1 * static_cast<double>(tick + 1));

@@ -21,12 +21,14 @@ constexpr Incarnation kNextWorldLife = kWorldLife + 1;
 
 /// Three agents that jump about, each with digits to the last place.
 WorldState team_at(Tick tick) {
-  WorldState state = world_state(tick, {{0, 0}, {0, 0}, {0, 0}});
+  WorldState state = world_state(tick, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
   for (AgentId id = 0; id < 3; ++id) {
     Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(id)];
     const auto step = static_cast<std::uint64_t>(tick);
-    vehicle.position_m << 2000 * uniform_pair(1, Purpose::kStart, static_cast<std::uint32_t>(id), step), 0;
-    vehicle.velocity_mps << normal_pair(2, Purpose::kStart, static_cast<std::uint32_t>(id), step), 0;
+    vehicle.position_m =
+        on_ground(2000 * uniform_pair(1, Purpose::kStart, static_cast<std::uint32_t>(id), step));
+    vehicle.velocity_mps =
+        on_ground(normal_pair(2, Purpose::kStart, static_cast<std::uint32_t>(id), step));
   }
   return state;
 }
@@ -275,8 +277,8 @@ TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
     Record record(mission);
     for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
     // It does not know which velocities led there.
-    record.tell(of_world(kNextWorldLife, state_of(8, {108, 500}, {0, 0})), at(1s));
-    record.tell(of_world(kNextWorldLife, state_of(10, {110, 500}, {0, 0})), at(1s));
+    record.tell(of_world(kNextWorldLife, state_of(8, {108, 500, 0}, {0, 0, 0})), at(1s));
+    record.tell(of_world(kNextWorldLife, state_of(10, {110, 500, 0}, {0, 0, 0})), at(1s));
     for (Tick tick = 11; tick <= 20; ++tick) {
       record.tell(of_world(kNextWorldLife, state_of(tick)), at(1s));
     }
@@ -290,7 +292,7 @@ TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
 TEST_F(Resume, AStateThatIsHeldIsNotReplacedByANewWorldsRepeat) {
   Record record(small_mission(1));
   for (const Tick tick : {0, 1, 3, 4}) record.tell(state_of(tick));
-  record.tell(of_world(kNextWorldLife, state_of(4, {104, 500}, {0, 0})), at(1s));
+  record.tell(of_world(kNextWorldLife, state_of(4, {104, 500, 0}, {0, 0, 0})), at(1s));
   advance(record.recorder, at(2s));
   const auto rows = record.trajectory_rows();
   ASSERT_EQ(rows.size(), 2u);
@@ -301,7 +303,7 @@ TEST_F(Resume, AStateThatIsHeldIsNotReplacedByANewWorldsRepeat) {
 TEST_F(Resume, PartsOfTwoWorldsMakeNoState) {
   Record record(small_mission(2));
   const auto part_of = [](Incarnation world, Tick tick, int part) {
-    WorldState state = of_world(world, world_state(tick, {{100, 500}}));
+    WorldState state = of_world(world, world_state(tick, {{100, 500, 0}}));
     state.vehicles[0].id = part;
     state.part = part;
     state.parts = 2;

@@ -30,7 +30,7 @@ nlohmann::ordered_json goal_after_a_tick(double goal_ergodic_metric) {
   announce(mission);
   Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
   give(recorder, mission_part(1, MissionState::kRunning, roster_of(1)), at(0s));
-  for (const Tick tick : {0, 1}) give(recorder, world_state(tick, {{100, 500}}), at(0s));
+  for (const Tick tick : {0, 1}) give(recorder, world_state(tick, {{100, 500, 0}}), at(0s));
   advance(recorder, at(0s));
   const auto summary = summarize(recorder, {});
   return summary.contains("goal") ? summary["goal"] : nlohmann::ordered_json();

@@ -20,8 +20,8 @@ class Fig1a : public ::testing::Test {
 
 TEST_F(Fig1a, AgentAtTheOriginNeverMovesAtAll) {
   team_.run_until(150, [this] {
-    ASSERT_EQ(team_.x_m(0), Eigen::Vector2d(0, 0));
-    ASSERT_EQ(team_.v_mps(0), Eigen::Vector2d(0, 0));
+    ASSERT_EQ(team_.x_m(0), Eigen::Vector3d(0, 0, 0));
+    ASSERT_EQ(team_.v_mps(0), Eigen::Vector3d(0, 0, 0));
   });
 }
 
@@ -39,12 +39,12 @@ TEST_F(Fig1a, AgentsOnTheEdgesStayOnThemAndEndNearTheFirstPeak) {
 TEST_F(Fig1a, AgentAtTheFarCornerRunsDownTheDiagonalToItsPeak) {
   double farthest_off_m = 0;
   team_.run_until(70, [this, &farthest_off_m] {
-    const Eigen::Vector2d x_m = team_.x_m(3);
+    const Eigen::Vector3d x_m = team_.x_m(3);
     farthest_off_m = std::max(farthest_off_m, std::abs(x_m.x() - x_m.y()));
   });
   EXPECT_LT(farthest_off_m, 1e-6);
   team_.run_until(150);
-  EXPECT_LT((team_.x_m(3) - Eigen::Vector2d(1450, 1450)).norm(), 200);
+  EXPECT_LT((team_.x_m(3) - Eigen::Vector3d(1450, 1450, 0)).norm(), 200);
 }
 
 // Remark 1 says that such agents end in "only minute oscillations". They keep to their edge for ever,

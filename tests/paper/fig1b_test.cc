@@ -14,8 +14,8 @@ namespace {
 constexpr double kMidline_m = 1000;
 
 /// Where each agent was when it was first `distance_m` off the midline.
-std::vector<std::optional<Eigen::Vector2d>> departures(PaperTeam& team, double distance_m) {
-  std::vector<std::optional<Eigen::Vector2d>> found(team.size());
+std::vector<std::optional<Eigen::Vector3d>> departures(PaperTeam& team, double distance_m) {
+  std::vector<std::optional<Eigen::Vector3d>> found(team.size());
   team.run_until(150, [&] {
     for (std::size_t i = 0; i < team.size(); ++i) {
       const bool off = std::abs(team.x_m(i).y() - kMidline_m) > distance_m;

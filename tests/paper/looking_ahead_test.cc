@@ -31,7 +31,7 @@ class Witness {
   explicit Witness(const Mission& mission)
       : mission_(mission),
         weights_(sobolev_weights(mission.basis, mission.domain)),
-        sums_(Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y)) {
+        sums_(Coefficients::Zero(mission.basis.mode_count())) {
     const double n = static_cast<double>(mission.starts_m.size());
     weight_s_ = LookAhead(mission).horizon_s(static_cast<int>(n), 0) + mission.timing.dt_s;
   }
@@ -59,7 +59,7 @@ class Witness {
 
   /// ⟨F − Nμ, F⟩: what time adds, for whatever is covered meanwhile.
   double inflow(const lab::IdealTeam& team) const {
-    Coefficients all = Coefficients::Zero(sums_.rows(), sums_.cols());
+    Coefficients all = Coefficients::Zero(sums_.size());
     for (const Coefficients& f : values(team)) all += f;
     return product(all - static_cast<double>(team.size()) * mission_.target_coefficients, all);
   }
@@ -87,7 +87,8 @@ TEST(LookingAhead, ThePotentialFallsByTheTeamsDescentAndRisesByWhatTimeAdds) {
   double worst[2];
   for (const int finer : {0, 1}) {
     Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.2);
-    mission.starts_m = {{310, 420}, {900, 1500}, {1333, 222}, {1700, 1650}, {1000, 930}};
+    mission.starts_m = {
+        {310, 420, 0}, {900, 1500, 0}, {1333, 222, 0}, {1700, 1650, 0}, {1000, 930, 0}};
     mission.timing.dt_s = finer ? 1e-3 : 1e-2;
     PaperTeam team(mission, lab::Edges::kNone);
     Witness witness(mission);
@@ -119,16 +120,16 @@ TEST(LookingAhead, ThePotentialFallsByTheTeamsDescentAndRisesByWhatTimeAdds) {
 /// A reflection of the square.
 struct Mirror {
   const char* name;
-  Eigen::Vector2d (*image)(const Eigen::Vector2d& x_m, double side_m);
+  Eigen::Vector3d (*image)(const Eigen::Vector3d& x_m, double side_m);
 };
 const Mirror kMirrors[] = {
     {"midline x",
-     [](const Eigen::Vector2d& x, double side) { return Eigen::Vector2d(side - x.x(), x.y()); }},
+     [](const Eigen::Vector3d& x, double side) { return Eigen::Vector3d(side - x.x(), x.y(), 0); }},
     {"midline y",
-     [](const Eigen::Vector2d& x, double side) { return Eigen::Vector2d(x.x(), side - x.y()); }},
-    {"diagonal", [](const Eigen::Vector2d& x, double) { return Eigen::Vector2d(x.y(), x.x()); }},
-    {"antidiagonal", [](const Eigen::Vector2d& x,
-                        double side) { return Eigen::Vector2d(side - x.y(), side - x.x()); }},
+     [](const Eigen::Vector3d& x, double side) { return Eigen::Vector3d(x.x(), side - x.y(), 0); }},
+    {"diagonal", [](const Eigen::Vector3d& x, double) { return Eigen::Vector3d(x.y(), x.x(), 0); }},
+    {"antidiagonal", [](const Eigen::Vector3d& x,
+                        double side) { return Eigen::Vector3d(side - x.y(), side - x.x(), 0); }},
 };
 
 TEST(LookingAhead, AMirroredTeamStaysMirroredAndItsAgentsOnTheMirrorStayOnIt) {
@@ -136,10 +137,10 @@ TEST(LookingAhead, AMirroredTeamStaysMirroredAndItsAgentsOnTheMirrorStayOnIt) {
     for (std::uint64_t place = 1; place <= 20; ++place) {
       Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.2);
       const double side_m = mission.domain.size_m.x();
-      const auto anywhere = [&](std::uint32_t who) -> Eigen::Vector2d {
-        return side_m * uniform_pair(place, Purpose::kStart, who, 0);
+      const auto anywhere = [&](std::uint32_t who) -> Eigen::Vector3d {
+        return on_ground(side_m * uniform_pair(place, Purpose::kStart, who, 0));
       };
-      const Eigen::Vector2d one = anywhere(0), two = anywhere(1), aside = anywhere(2);
+      const Eigen::Vector3d one = anywhere(0), two = anywhere(1), aside = anywhere(2);
       mission.starts_m = {one, mirror.image(one, side_m), two, mirror.image(two, side_m),
                           0.5 * (aside + mirror.image(aside, side_m))};
       PaperTeam team(mission);
@@ -159,18 +160,18 @@ TEST(LookingAhead, AMirroredTeamStaysMirroredAndItsAgentsOnTheMirrorStayOnIt) {
 
 TEST(LookingAhead, TheAxesHoldAnyTeamExactly) {
   Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.2);
-  mission.starts_m = {{700, 0}, {0, 1234.5}, {321, 1777}, {0, 0}};
+  mission.starts_m = {{700, 0, 0}, {0, 1234.5, 0}, {321, 1777, 0}, {0, 0, 0}};
   PaperTeam team(mission);
   team.run_until(60, [&team] {
     ASSERT_EQ(team.x_m(0).y(), 0);
     ASSERT_EQ(team.x_m(1).x(), 0);
-    ASSERT_EQ(team.x_m(3), Eigen::Vector2d(0, 0));
+    ASSERT_EQ(team.x_m(3), Eigen::Vector3d(0, 0, 0));
   });
 }
 
 TEST(LookingAhead, AgentsAtOnePlaceStayTogetherWithoutNoise) {
   Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.2);
-  mission.starts_m = {{700, 811}, {700, 811}, {1500, 300}};
+  mission.starts_m = {{700, 811, 0}, {700, 811, 0}, {1500, 300, 0}};
   PaperTeam team(mission);
   team.run_until(5, [&team] { ASSERT_LT((team.x_m(0) - team.x_m(1)).norm(), 1e-6); });
   EXPECT_GT((team.x_m(0) - mission.starts_m[0]).norm(), 1);
@@ -178,7 +179,7 @@ TEST(LookingAhead, AgentsAtOnePlaceStayTogetherWithoutNoise) {
 
 TEST(LookingAhead, WithoutTheMirrorsPremiseAnAgentLeavesIt) {
   Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.2);
-  mission.starts_m = {{1000, 700}, {321, 1777}};
+  mission.starts_m = {{1000, 700, 0}, {321, 1777, 0}};
   PaperTeam team(mission);
   team.run_until(5);
   EXPECT_GT(std::abs(team.x_m(0).x() - 1000), 1);
@@ -191,21 +192,21 @@ TEST(LookingAhead, NoInputExceedsItsLimitAndEveryStepKeepsCorollary1) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.05);
     const double k = mission.law.contraction_gain_per_s = 0.5;
-    const Eigen::Vector2d center_m = mission.law.contraction_center_m = mission.domain.center_m();
+    const Eigen::Vector3d center_m = mission.law.contraction_center_m = mission.domain.center_m();
     mission.law.anticipation = 0.1 * static_cast<double>(seed);
     mission.starts_m.clear();
     for (std::uint32_t i = 0; i < 5; ++i) {
-      mission.starts_m.push_back(2000 * uniform_pair(seed, Purpose::kStart, i, 0));
+      mission.starts_m.push_back(on_ground(2000 * uniform_pair(seed, Purpose::kStart, i, 0)));
     }
     PaperTeam team(mission, lab::Edges::kNone);
     const double q = 1 - k * mission.timing.dt_s;
-    std::vector<Eigen::Vector2d> x_m = mission.starts_m;
+    std::vector<Eigen::Vector3d> x_m = mission.starts_m;
     std::vector<double> bound_m;
-    for (const Eigen::Vector2d& start_m : mission.starts_m)
+    for (const Eigen::Vector3d& start_m : mission.starts_m)
       bound_m.push_back((start_m - center_m).norm());
     team.run_until(60, [&] {
       for (std::size_t i = 0; i < team.size(); ++i) {
-        const Eigen::Vector2d u_mps = team.v_mps(i) + k * (x_m[i] - center_m);
+        const Eigen::Vector3d u_mps = team.v_mps(i) + k * (x_m[i] - center_m);
         ASSERT_LE(u_mps.norm(), mission.law.u_max_mps * (1 + 1e-12));
         bound_m[i] = q * bound_m[i] + mission.law.u_max_mps * mission.timing.dt_s;
         x_m[i] = team.x_m(i);

@@ -27,7 +27,7 @@ using studies::normal_residual;
 constexpr std::uint64_t kPlaces = 300;
 
 /// The quadrimodal square of Fig. 1 under the classical law, with other starts.
-Mission classical(std::vector<Eigen::Vector2d> starts_m) {
+Mission classical(std::vector<Eigen::Vector3d> starts_m) {
   Mission mission = shipped_mission("paper_fig1a");
   mission.starts_m = std::move(starts_m);
   return mission;
@@ -105,9 +105,9 @@ INSTANTIATE_TEST_SUITE_P(Proposition1, InexactSet,
                          ::testing::Values("far-corner", "far-edge-x", "midline-x", "diagonal"), letters);
 
 TEST(Proposition1, SinesOfMultiplesOfPiAreWhatMovesTheFarCorners) {
-  const Mission mission = classical({{2000, 2000}});
+  const Mission mission = classical({{2000, 2000, 0}});
   const BasisAt far(mission.starts_m[0], mission.domain, mission.basis);
-  const BasisAt origin({0, 0}, mission.domain, mission.basis);
+  const BasisAt origin({0, 0, 0}, mission.domain, mission.basis);
   for (int m = 1; m < mission.basis.modes_x; ++m) {
     const double wave = m * std::numbers::pi / 2000;
     EXPECT_EQ(origin.slope_x[m], 0);
@@ -117,7 +117,7 @@ TEST(Proposition1, SinesOfMultiplesOfPiAreWhatMovesTheFarCorners) {
 }
 
 TEST(Proposition1, LowerAndLeftEdgeHoldAnyTeamExactly) {
-  PaperTeam team(classical({{700, 0}, {0, 1234.5}, {321, 1777}}));
+  PaperTeam team(classical({{700, 0, 0}, {0, 1234.5, 0}, {321, 1777, 0}}));
   team.run_until(30, [&team] {
     ASSERT_EQ(team.b(0).y(), 0);
     ASSERT_EQ(team.x_m(0).y(), 0);
@@ -127,35 +127,36 @@ TEST(Proposition1, LowerAndLeftEdgeHoldAnyTeamExactly) {
 }
 
 TEST(Proposition1, OriginIsAnEquilibriumOfAnyTeam) {
-  PaperTeam team(classical({{0, 0}, {321, 1777}}));
+  PaperTeam team(classical({{0, 0, 0}, {321, 1777, 0}}));
   team.run_until(30, [&team] {
-    ASSERT_EQ(team.b(0), Eigen::Vector2d(0, 0));
-    ASSERT_EQ(team.x_m(0), Eigen::Vector2d(0, 0));
+    ASSERT_EQ(team.b(0), Eigen::Vector3d(0, 0, 0));
+    ASSERT_EQ(team.x_m(0), Eigen::Vector3d(0, 0, 0));
   });
 }
 
 TEST(Proposition1, DiagonalsNeedATargetThatIsTheSameWithXAndYExchanged) {
   // Two peaks on the midline y = 1000: symmetric about both midlines, but not about a diagonal.
-  Mission mission = classical({{300, 300}});
+  Mission mission = classical({{300, 300, 0}});
   TargetDensity two_peaks;
   const Eigen::Matrix2d covariance_m2 = 1e4 * Eigen::Matrix2d::Identity();
   two_peaks.gaussians = {{1, {500, 1000}, covariance_m2}, {1, {1500, 1000}, covariance_m2}};
-  mission.target_coefficients = target_coefficients(two_peaks, mission.domain, mission.basis).values;
+  mission.target_coefficients =
+      in_wire_order(target_coefficients(two_peaks, base_of(mission.domain), mission.basis).values);
   PaperTeam team(mission);
   team.step();
-  const Eigen::Vector2d normal = Eigen::Vector2d(1, -1).normalized();
+  const Eigen::Vector3d normal = Eigen::Vector3d(1, -1, 0).normalized();
   EXPECT_GT(std::abs(team.b(0).dot(normal)), 0.01 * team.b(0).norm());
   team.run_until(60);
-  EXPECT_GT(std::abs((team.x_m(0) - Eigen::Vector2d(300, 300)).dot(normal)), 100);
+  EXPECT_GT(std::abs((team.x_m(0) - Eigen::Vector3d(300, 300, 0)).dot(normal)), 100);
 }
 
 TEST(Proposition1, DiagonalsNeedASquare) {
-  Mission mission = classical({{200, 100}});
-  mission.domain.size_m = {2000, 1000};
+  Mission mission = classical({{200, 100, 0}});
+  mission.domain.size_m = {2000, 1000, 0};
   PaperTeam team(mission);
   team.step();
   // On the diagonal of a rectangle B does not point along it.
-  const Eigen::Vector2d normal = Eigen::Vector2d(1, -2).normalized();
+  const Eigen::Vector3d normal = Eigen::Vector3d(1, -2, 0).normalized();
   EXPECT_GT(std::abs(team.b(0).dot(normal)), 1e-3 * team.b(0).norm());
 }
 

@@ -14,8 +14,8 @@ namespace ergocast::test {
 namespace {
 
 /// Positions by tick and agent from a trajectory table.
-std::vector<std::vector<Eigen::Vector2d>> positions(const std::string& table) {
-  std::vector<std::vector<Eigen::Vector2d>> found;
+std::vector<std::vector<Eigen::Vector3d>> positions(const std::string& table) {
+  std::vector<std::vector<Eigen::Vector3d>> found;
   std::istringstream lines(table);
   std::string line;
   std::getline(lines, line);
@@ -27,7 +27,7 @@ std::vector<std::vector<Eigen::Vector2d>> positions(const std::string& table) {
     fields >> tick >> comma >> t_s >> comma >> agent >> comma >> x_m >> comma >> y_m;
     if (found.size() <= tick) found.resize(tick + 1);
     EXPECT_EQ(found[tick].size(), agent);
-    found[tick].emplace_back(x_m, y_m);
+    found[tick].emplace_back(x_m, y_m, 0);
   }
   return found;
 }

@@ -153,7 +153,7 @@ TEST(Theorem1, WithoutNoiseOrContractionTheOriginHolds) {
   mission.law.contraction_gain_per_s = 0;
   PaperTeam team(mission);
   team.run_until(120);
-  EXPECT_EQ(team.x_m(0), Eigen::Vector2d(0, 0));
+  EXPECT_EQ(team.x_m(0), Eigen::Vector3d(0, 0, 0));
 }
 
 TEST(Theorem1, RecommendedLawFreesATeamOfFourFromTheCorners) {
@@ -163,8 +163,10 @@ TEST(Theorem1, RecommendedLawFreesATeamOfFourFromTheCorners) {
     std::vector<bool> escaped(team.size(), false);
     team.run_until(120, [&] {
       for (std::size_t i = 0; i < team.size(); ++i) {
-        const Eigen::Vector2d from_edge_m = team.x_m(i).cwiseMin(mission.domain.size_m - team.x_m(i));
-        if (from_edge_m.minCoeff() > lab::escape_distance_m(mission.domain)) escaped[i] = true;
+        const Eigen::Vector3d from_edges_m =
+            team.x_m(i).cwiseMin(mission.domain.size_m - team.x_m(i));
+        if (from_edges_m.head<2>().minCoeff() > lab::escape_distance_m(mission.domain))
+          escaped[i] = true;
       }
     });
     EXPECT_EQ(std::count(escaped.begin(), escaped.end(), true), 4) << "seed " << mission.seed;

@@ -84,7 +84,7 @@ TEST(Theorem2, ReflectionMovesNobodyAwayFromACentreInside) {
   for (mission.seed = 1; mission.seed <= 20; ++mission.seed) {
     PaperTeam team(mission, Edges::kNone);
     team.run_until(20, [&] {
-      const Eigen::Vector2d center_m = mission.law.contraction_center_m;
+      const Eigen::Vector3d center_m = mission.law.contraction_center_m;
       EXPECT_LE((reflect(team.x_m(0), mission.domain) - center_m).norm(), (team.x_m(0) - center_m).norm() + 1e-9);
     });
   }

@@ -84,7 +84,7 @@ class Report : public testing::Test {
     fs::create_directories(dir);
     mission.name = "two circles";
     mission.seed = 18446744073709551615u;
-    mission.domain.size_m = {2000, 1000};
+    mission.domain.size_m = {2000, 1000, 0};
     mission.basis.modes_x = 8;
     mission.basis.modes_y = 6;
     mission.law.u_max_mps = 10;
@@ -94,7 +94,8 @@ class Report : public testing::Test {
   ~Report() override { fs::remove_all(dir); }
 
   void cover(const TargetDensity& target) {
-    mission.target_coefficients = target_coefficients(target, mission.domain, mission.basis).values;
+    mission.target_coefficients =
+        in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values);
   }
 
   /// Agents on noisy circles, φ² falling like 1/t.
@@ -292,7 +293,7 @@ TEST_F(Report, WhatCannotBeWrittenIsNamed) {
 
 TEST_F(Report, UniformTargetAndExtremeDomainsAreDrawn) {
   for (const auto& [width_m, height_m] : {std::pair(1e5, 1.0), {1.0, 1e5}, {1.0, 1.0}}) {
-    mission.domain.size_m = {width_m, height_m};
+    mission.domain.size_m = {width_m, height_m, 0};
     cover({{}, 1});
     record(3, 200);  // mostly outside: an observer takes what the files say
     ASSERT_EQ(report(), std::nullopt);

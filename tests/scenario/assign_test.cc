@@ -30,7 +30,7 @@ TEST(Assign, SetsNumbersWordsTruthValuesAndListedFields) {
             Regularization::kAbsolute);
   EXPECT_TRUE(good(kSmall, with("basis.normalized", "true")).mission().basis.normalized);
   EXPECT_EQ(good(kSmall, with("agents.starts[0].x_m", "33")).mission().starts_m[0],
-            Eigen::Vector2d(33, 20));
+            Eigen::Vector3d(33, 20, 0));
   EXPECT_EQ(good(kSmall, with("agents.random_count", "3")).mission().starts_m.size(), 4U);
 }
 

@@ -24,7 +24,7 @@ std::string without_block(std::string text, const std::string& name) {
 /// What a scenario says of a mission: all but μ, which its target decides, and wait_for_logger.
 Mission as_scenarios_know_it(Mission mission) {
   mission.target_coefficients.setZero();
-  mission.target_coefficients(0, 0) = 1;
+  mission.target_coefficients[0] = 1;
   mission.wait_for_logger = true;
   return mission;
 }

@@ -22,8 +22,8 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_EQ(mission.name, "small");
   EXPECT_EQ(scenario.description(), "");
   EXPECT_EQ(mission.seed, 1u);
-  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector2d(0, 0));
-  EXPECT_EQ(mission.domain.size_m, Eigen::Vector2d(100, 50));
+  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(mission.domain.size_m, Eigen::Vector3d(100, 50, 0));
   EXPECT_EQ(mission.basis.modes_x, 16);
   EXPECT_EQ(mission.basis.modes_y, 16);
   EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kSquaredNorm);
@@ -40,7 +40,7 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_DOUBLE_EQ(mission.law.noise_ceiling, std::sqrt(5 * 0.5));
   EXPECT_DOUBLE_EQ(mission.law.noise_intensity, 0.05 * std::sqrt(5 * 0.5));
   EXPECT_DOUBLE_EQ(mission.law.contraction_gain_per_s, 0.05 / std::hypot(50, 25));
-  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(50, 25));
+  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector3d(50, 25, 0));
   EXPECT_EQ(mission.timing.dt_s, 0.1);
   EXPECT_EQ(mission.timing.tick_count, 600);
   EXPECT_EQ(mission.timing.broadcast_period_ticks, 10);
@@ -51,7 +51,7 @@ TEST(Defaults, FillWhateverIsLeftOut) {
   EXPECT_EQ(mission.timing.command_hold_s, 0.5);
   EXPECT_EQ(mission.timing.admission_timeout_s, 30);
   EXPECT_EQ(mission.timing.catch_up_limit_ticks, 5);
-  EXPECT_EQ(mission.starts_m, std::vector<Eigen::Vector2d>{Eigen::Vector2d(10, 20)});
+  EXPECT_EQ(mission.starts_m, std::vector<Eigen::Vector3d>{Eigen::Vector3d(10, 20, 0)});
   EXPECT_EQ(mission.quorum, 1);
   EXPECT_EQ(mission.disturbance_intensity, 0);
   EXPECT_EQ(mission.forget_silent_after_s, 0);
@@ -142,12 +142,12 @@ TEST(Reading, TakesEverySpellingOfEveryField) {
     goal_ergodic_metric: 0.01
   )")
                               .mission();
-  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector2d(-10, 5));
+  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector3d(-10, 5, 0));
   EXPECT_EQ(mission.basis.modes_x, 3);
   EXPECT_EQ(mission.basis.modes_y, 4);
   EXPECT_TRUE(mission.basis.normalized);
   EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kNorm);
-  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(1, 6));
+  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector3d(1, 6, 0));
   EXPECT_EQ(mission.timing.pace, Pace::kRealtime);
   EXPECT_EQ(mission.timing.on_timeout, OnTimeout::kEvict);
   EXPECT_EQ(mission.starts_m.size(), 3u);
@@ -166,8 +166,9 @@ TEST(Reading, TargetAndItsCoefficientsBelongTogether) {
   const TargetDensity target{
       {{1, {20, 30}, (Eigen::Matrix2d() << 25, -4, -4, 16).finished()}}, 0};
   const Mission& mission = scenario.mission();
-  EXPECT_EQ(mission.target_coefficients,
-            target_coefficients(target, mission.domain, mission.basis).values);
+  EXPECT_EQ(
+      mission.target_coefficients,
+      in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values));
 }
 
 TEST(Reading, ByteOrderMarkAndWindowsLineEndsDoNoHarm) {
@@ -178,15 +179,15 @@ TEST(Reading, ByteOrderMarkAndWindowsLineEndsDoNoHarm) {
 
 TEST(RandomStarts, AreInsideRepeatAndBelongToTheAgentsNumber) {
   const std::string text = small_with("agents {", "seed: 9 agents { random_count: 127");
-  const std::vector<Eigen::Vector2d> starts = good(text).mission().starts_m;
+  const std::vector<Eigen::Vector3d> starts = good(text).mission().starts_m;
   ASSERT_EQ(starts.size(), 128u);
-  EXPECT_EQ(starts[0], Eigen::Vector2d(10, 20));
-  const Rectangle domain = good(text).mission().domain;
-  for (const Eigen::Vector2d& x_m : starts) EXPECT_TRUE(domain.contains(x_m));
+  EXPECT_EQ(starts[0], Eigen::Vector3d(10, 20, 0));
+  const Box domain = good(text).mission().domain;
+  for (const Eigen::Vector3d& x_m : starts) EXPECT_TRUE(domain.contains(x_m));
 
   EXPECT_EQ(good(text).mission().starts_m, starts);
   EXPECT_EQ(good(text, {.agents = 5}).mission().starts_m,
-            std::vector<Eigen::Vector2d>(starts.begin(), starts.begin() + 5));
+            std::vector<Eigen::Vector3d>(starts.begin(), starts.begin() + 5));
   EXPECT_NE(good(text, {.seed = 10}).mission().starts_m[1], starts[1]);
 }
 
@@ -219,7 +220,7 @@ TEST(Overrides, AgentsCutTheTeamAndItsQuorum) {
       "agents {", "agents { starts { x_m: 1 y_m: 2 } starts { x_m: 3 y_m: 4 } quorum: 3");
   const Mission smaller = good(text, {.agents = 2}).mission();
   ASSERT_EQ(smaller.starts_m.size(), 2u);
-  EXPECT_EQ(smaller.starts_m[1], Eigen::Vector2d(3, 4));
+  EXPECT_EQ(smaller.starts_m[1], Eigen::Vector3d(3, 4, 0));
   EXPECT_EQ(smaller.quorum, 2);
 
   const Mission larger = good(text, {.agents = 6}).mission();
@@ -304,15 +305,16 @@ TEST(Print, KeepsEveryBitOfANumber) {
 // The values that reproduce the paper's figures.
 void expect_paper(const Scenario& scenario, bool stochastic) {
   const Mission& mission = scenario.mission();
-  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector2d(0, 0));
-  EXPECT_EQ(mission.domain.size_m, Eigen::Vector2d(2000, 2000));
+  EXPECT_EQ(mission.domain.origin_m, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(mission.domain.size_m, Eigen::Vector3d(2000, 2000, 0));
   TargetDensity target;
   for (const Eigen::Vector2d& mean_m :
        {Eigen::Vector2d(500, 500), {500, 1500}, {1500, 500}, {1500, 1500}}) {
     target.gaussians.push_back({1, mean_m, 1e4 * Eigen::Matrix2d::Identity()});
   }
-  EXPECT_EQ(mission.target_coefficients,
-            target_coefficients(target, mission.domain, mission.basis).values);
+  EXPECT_EQ(
+      mission.target_coefficients,
+      in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values));
   EXPECT_EQ(mission.basis.modes_x, 15);
   EXPECT_EQ(mission.basis.modes_y, 15);
   EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kSquaredNorm);
@@ -325,15 +327,15 @@ void expect_paper(const Scenario& scenario, bool stochastic) {
   EXPECT_EQ(mission.law.noise_intensity, stochastic ? 1e-5 : 0);
   EXPECT_EQ(mission.law.contraction_gain_per_s, stochastic ? 1e-3 : 0);
   if (stochastic) {
-    EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(0, 0));
+    EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector3d(0, 0, 0));
   }
   EXPECT_EQ(mission.timing.dt_s, 0.1);
   EXPECT_EQ(mission.timing.tick_count, 1500);
   EXPECT_EQ(mission.disturbance_intensity, 0);
 }
 
-const std::vector<Eigen::Vector2d> kCorners{{0, 0}, {2000, 0}, {0, 2000}, {2000, 2000}};
-const std::vector<Eigen::Vector2d> kMidline{{100, 1000}, {300, 1000}, {1300, 1000}};
+const std::vector<Eigen::Vector3d> kCorners{{0, 0, 0}, {2000, 0, 0}, {0, 2000, 0}, {2000, 2000, 0}};
+const std::vector<Eigen::Vector3d> kMidline{{100, 1000, 0}, {300, 1000, 0}, {1300, 1000, 0}};
 
 TEST(ShippedValues, PaperFigures) {
   for (const auto& [name, stochastic, starts] :
@@ -356,12 +358,12 @@ TEST(ShippedValues, QuadrimodalCornersIsTheRecommendedLawFromTheWorstStarts) {
   EXPECT_EQ(mission.law.noise_intensity, 1);
   EXPECT_EQ(mission.law.noise_ceiling, 20);
   EXPECT_EQ(mission.law.contraction_gain_per_s, 1e-4);
-  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector2d(1000, 1000));
+  EXPECT_EQ(mission.law.contraction_center_m, Eigen::Vector3d(1000, 1000, 0));
 }
 
 TEST(ShippedValues, UniformSquareIsThePublishedCase) {
   const Mission mission = good(Scenario::load(shipped("uniform_square"))).mission();
-  EXPECT_EQ(mission.domain.size_m, Eigen::Vector2d(1, 1));
+  EXPECT_EQ(mission.domain.size_m, Eigen::Vector3d(1, 1, 0));
   EXPECT_EQ(mission.basis.mode_count(), 2500);
   EXPECT_TRUE(mission.basis.normalized);
   EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kSquaredNorm);

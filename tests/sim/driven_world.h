@@ -19,7 +19,7 @@ inline World world_of(const Mission& mission) {
 /// Every agent's answer to the question of this life of the world where it was.
 inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation life = kWorldLife) {
   for (AgentId id = 0; id < agents; ++id) {
-    Command answer = command_of(id, -1, {0, 0});
+    Command answer = command_of(id, -1, {0, 0, 0});
     answer.asked_by = life;
     give(world, answer, now);
   }
@@ -45,11 +45,11 @@ inline WorldState state_after(World& world, Instant now) {
   return states.empty() ? WorldState{} : states.back();
 }
 
-inline Eigen::Vector2d place(const WorldState& state, int vehicle = 0) {
-  return state.vehicles[static_cast<std::size_t>(vehicle)].position_m.head<2>();
+inline Eigen::Vector3d place(const WorldState& state, int vehicle = 0) {
+  return state.vehicles[static_cast<std::size_t>(vehicle)].position_m;
 }
-inline Eigen::Vector2d applied(const WorldState& state, int vehicle = 0) {
-  return state.vehicles[static_cast<std::size_t>(vehicle)].velocity_mps.head<2>();
+inline Eigen::Vector3d applied(const WorldState& state, int vehicle = 0) {
+  return state.vehicles[static_cast<std::size_t>(vehicle)].velocity_mps;
 }
 
 inline RecordAck ack_of(Tick tick) { return {{kRun, kLogger, kLoggerLife, tick + 2, tick}}; }

@@ -17,22 +17,22 @@ using namespace test;
 TEST(WorldRefuses, CommandsThatAreNotAnAnswerOfAMemberToThisTick) {
   World world = running_world(small_mission(1));
   advance(world, at(0s));
-  Command stranger = command_of(0, 0, {1, 1});
+  Command stranger = command_of(0, 0, {1, 1, 0});
   stranger.header.incarnation = 99;
-  Command foreign = command_of(0, 0, {1, 1});
+  Command foreign = command_of(0, 0, {1, 1, 0});
   foreign.header.run = kRun + 1;
-  const Command lies[] = {command_of(3, 0, {1, 1}), stranger, foreign, command_of(0, 1, {1, 1}),
-                          command_of(0, Tick{1} << 48, {1, 1})};
+  const Command lies[] = {command_of(3, 0, {1, 1, 0}), stranger, foreign,
+                          command_of(0, 1, {1, 1, 0}), command_of(0, Tick{1} << 48, {1, 1, 0})};
   for (const Command& lie : lies) {
     give(world, lie, at(0s));
     EXPECT_TRUE(advance(world, at(0s)).empty());
   }
   EXPECT_EQ(world.tick(), 0);
   // None of them stands in the way of the real answer.
-  give(world, command_of(0, 0, {2, 0}), at(0s));
-  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(2, 0));
+  give(world, command_of(0, 0, {2, 0, 0}), at(0s));
+  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector3d(2, 0, 0));
   // An old one does not count as an answer to the new tick.
-  give(world, command_of(0, 0, {9, 9}), at(0s));
+  give(world, command_of(0, 0, {9, 9, 0}), at(0s));
   EXPECT_TRUE(advance(world, at(0s)).empty());
 }
 
@@ -40,39 +40,39 @@ TEST(WorldRefuses, TheCommandsOfAnEvictedAgentWhichStandsStill) {
   const Mission mission = small_mission(2);
   World world = running_world(mission);
   advance(world, at(0s));
-  give(world, command_of(0, 0, {1, 0}), at(0s));
-  give(world, command_of(1, 0, {1, 0}), at(0s));
+  give(world, command_of(0, 0, {1, 0, 0}), at(0s));
+  give(world, command_of(1, 0, {1, 0, 0}), at(0s));
   advance(world, at(0s));
   std::vector<RosterEntry> roster = roster_of(2);
   roster[1].active_until = 1;
   give(world, mission_part(1, MissionState::kRunning, roster), at(0s));
-  give(world, command_of(1, 1, {5, 5}), at(0s));
-  give(world, command_of(0, 1, {1, 0}), at(0s));
+  give(world, command_of(1, 1, {5, 5, 0}), at(0s));
+  give(world, command_of(0, 1, {1, 0, 0}), at(0s));
   const WorldState state = state_after(world, at(0s));
   EXPECT_EQ(state.header.tick, 2) << "nobody waits for it any more";
-  EXPECT_EQ(applied(state, 1), Eigen::Vector2d(0, 0));
-  EXPECT_EQ(place(state, 1), mission.starts_m[1] + Eigen::Vector2d(1, 0) * 0.1);
+  EXPECT_EQ(applied(state, 1), Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(place(state, 1), mission.starts_m[1] + Eigen::Vector3d(1, 0, 0) * 0.1);
 }
 
 TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
   const Mission mission = small_mission(1);
   World world = running_world(mission);
   advance(world, at(0s));
-  give(world, command_of(0, 0, {10, 0}), at(0s));
+  give(world, command_of(0, 0, {10, 0, 0}), at(0s));
   advance(world, at(0s));
   std::vector<RosterEntry> roster = roster_of(1);
   roster[0].active_until = 1;
   roster.push_back({{0, 2000}, 1, -1});
   give(world, mission_part(1, MissionState::kRunning, roster), at(0s));
-  give(world, command_of(0, 1, {-9, 0}), at(0s));
+  give(world, command_of(0, 1, {-9, 0, 0}), at(0s));
   EXPECT_TRUE(advance(world, at(0s)).empty());
   EXPECT_EQ(world.tick(), 1);
-  Command reborn = command_of(0, 1, {0, 10});
+  Command reborn = command_of(0, 1, {0, 10, 0});
   reborn.header.incarnation = 2000;
   give(world, reborn, at(0s));
   const WorldState state = state_after(world, at(0s));
   EXPECT_EQ(state.header.tick, 2);
-  EXPECT_EQ(place(state), Eigen::Vector2d(101, 501));
+  EXPECT_EQ(place(state), Eigen::Vector3d(101, 501, 0));
 }
 
 TEST(WorldRefuses, ToRunOnWithNobodyLeft) {
@@ -113,14 +113,14 @@ TEST(WorldAdmits, ALateAgentAtItsOwnStart) {
   nobody_has_moved(world, 1, at(0s));
   EXPECT_EQ(state_after(world, at(0s)).vehicle_count, 1);
   give(world, mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
-  give(world, command_of(0, 0, {0, 0}), at(0s));
+  give(world, command_of(0, 0, {0, 0, 0}), at(0s));
   EXPECT_TRUE(advance(world, at(1ms)).empty()) << "the tick is the newcomer's too";
   const WorldState again = state_after(world, at(20ms));
   EXPECT_EQ(again.header.tick, 0);
   EXPECT_EQ(again.roster_revision, 0) << "a tick is flown by one roster";
   ASSERT_EQ(again.vehicle_count, 2) << "which has to see where it is";
   EXPECT_EQ(place(again, 1), mission.starts_m[1]);
-  give(world, command_of(1, 0, {0, 0}), at(20ms));
+  give(world, command_of(1, 0, {0, 0, 0}), at(20ms));
   const WorldState state = state_after(world, at(20ms));
   EXPECT_EQ(state.header.tick, 1);
   EXPECT_EQ(state.roster_revision, 1);
@@ -132,14 +132,14 @@ TEST(WorldAdmits, ALateAgentInTheMiddleOfATickWhichItThenWaitsFor) {
   World world = running_world(small_mission(2));
   EXPECT_EQ(state_after(world, at(0s)).vehicle_count, 2);
   give(world, mission_part(2, MissionState::kRunning, roster_of(3)), at(1ms));
-  give(world, command_of(0, 0, {1, 1}), at(2ms));
-  give(world, command_of(1, 0, {1, 1}), at(2ms));
+  give(world, command_of(0, 0, {1, 1, 0}), at(2ms));
+  give(world, command_of(1, 0, {1, 1, 0}), at(2ms));
   const WorldState again = state_after(world, at(20ms));
   EXPECT_EQ(again.header.tick, 0);
   ASSERT_EQ(again.vehicle_count, 3) << "else it would never learn that it is waited for";
   EXPECT_EQ(again.vehicles[1].answered_tick, 0);
   EXPECT_EQ(again.vehicles[2].answered_tick, -1);
-  give(world, command_of(2, 0, {1, 1}), at(21ms));
+  give(world, command_of(2, 0, {1, 1, 0}), at(21ms));
   EXPECT_EQ(state_after(world, at(21ms)).header.tick, 1);
 }
 

@@ -37,12 +37,12 @@ TEST(WorldInRealTime, GoesByTheClockTimesAFactor) {
 TEST(WorldInRealTime, CountsAndShowsEveryMissedDeadline) {
   World world = running_world(realtime_mission());
   advance(world, at(0s));
-  give(world, command_of(0, 0, {1, 0}), at(99ms));
+  give(world, command_of(0, 0, {1, 0, 0}), at(99ms));
   EXPECT_EQ(state_after(world, at(100ms)).missed_deadlines, 0);
   EXPECT_EQ(state_after(world, at(200ms)).missed_deadlines, 1);
-  give(world, command_of(0, 1, {1, 0}), at(201ms));
+  give(world, command_of(0, 1, {1, 0, 0}), at(201ms));
   EXPECT_EQ(state_after(world, at(300ms)).missed_deadlines, 2) << "an answer to 1 is none to 2";
-  give(world, command_of(0, 3, {1, 0}), at(301ms));
+  give(world, command_of(0, 3, {1, 0, 0}), at(301ms));
   EXPECT_EQ(state_after(world, at(400ms)).missed_deadlines, 2);
   EXPECT_EQ(world.missed_deadlines(), 2);
 }
@@ -52,11 +52,12 @@ TEST(WorldInRealTime, HoldsAnOldCommandForALimitAndThenStops) {
   mission.timing.command_hold_s = 0.35;
   World world = running_world(mission);
   advance(world, at(0s));
-  give(world, command_of(0, 0, {10, 0}), at(0s));
+  give(world, command_of(0, 0, {10, 0, 0}), at(0s));
   for (int tick = 1; tick <= 8; ++tick) {
     const WorldState state = state_after(world, at(tick * 100ms));
     // The step from tick n uses a command that is n·0.1 s old: 0, 0.1, 0.2, 0.3, and no more.
-    EXPECT_EQ(applied(state), tick <= 4 ? Eigen::Vector2d(10, 0) : Eigen::Vector2d(0, 0)) << tick;
+    EXPECT_EQ(applied(state), tick <= 4 ? Eigen::Vector3d(10, 0, 0) : Eigen::Vector3d(0, 0, 0))
+        << tick;
     EXPECT_NEAR(place(state).x(), 100 + std::min(tick, 4), 1e-9);
   }
 }

@@ -97,7 +97,7 @@ class Flight {
 /// Speaks every fourth tick, so that some may answer a tick that others have not heard of.
 Mission lively_mission(double disturbance) {
   Mission mission = small_mission(3);
-  mission.target_coefficients(1, 0) = 0.3;
+  mission.target_coefficients[4] = 0.3;
   mission.law.noise_intensity = 2;
   mission.timing.broadcast_period_ticks = 4;
   mission.disturbance_intensity = disturbance;
@@ -136,9 +136,10 @@ INSTANTIATE_TEST_SUITE_P(Disturbance, WorldRestarted, ::testing::Values(0.0, 3.0
 // ---- what the team's answers mean ----------------------------------------------------------------
 
 /// One of an agent's two answers to the question.
-Command command_from(AgentId id, Tick tick, const Eigen::Vector2d& x_m, const Eigen::Vector2d& v_mps) {
+Command command_from(AgentId id, Tick tick, const Eigen::Vector3d& x_m,
+                     const Eigen::Vector3d& v_mps) {
   Command command = command_of(id, tick, v_mps);
-  command.position_m << x_m, 0;
+  command.position_m = x_m;
   command.asked_by = kWorldLife;
   return command;
 }
@@ -172,15 +173,15 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
   World world = asking_world(mission);
-  give(world, command_from(0, 8, {300, 400}, {1, 0}), at(0s));
-  give(world, command_from(0, 9, {301, 401}, {0, 1}), at(0s));
+  give(world, command_from(0, 8, {300, 400, 0}, {1, 0, 0}), at(0s));
+  give(world, command_from(0, 9, {301, 401, 0}, {0, 1, 0}), at(0s));
   EXPECT_TRUE(only<WorldState>(advance(world, at(1999ms))).empty());
   const auto states = only<WorldState>(advance(world, at(2s)));
   ASSERT_EQ(states.size(), 1u);
   EXPECT_EQ(world.begun_at(), 9);
   EXPECT_EQ(states[0].header.tick, 9);
-  EXPECT_EQ(place(states[0], 0), Eigen::Vector2d(301, 401));
-  EXPECT_EQ(applied(states[0], 0), Eigen::Vector2d(1, 0)) << "in the step that led here";
+  EXPECT_EQ(place(states[0], 0), Eigen::Vector3d(301, 401, 0));
+  EXPECT_EQ(applied(states[0], 0), Eigen::Vector3d(1, 0, 0)) << "in the step that led here";
   EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
 }
 
@@ -188,13 +189,15 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
 // knows.
 TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
   World world = asking_world(small_mission(2));
-  for (const Tick tick : {8, 9}) give(world, command_from(0, tick, {300, 400}, {1, 0}), at(0s));
+  for (const Tick tick : {8, 9})
+    give(world, command_from(0, tick, {300, 400, 0}, {1, 0, 0}), at(0s));
   for (int s = 1; s <= 20; ++s) EXPECT_TRUE(states_after(world, at(s * 1s)).empty()) << s << " s";
-  for (const Tick tick : {9, 10}) give(world, command_from(1, tick, {700, 500}, {0, 10}), at(21s));
+  for (const Tick tick : {9, 10})
+    give(world, command_from(1, tick, {700, 500, 0}, {0, 10, 0}), at(21s));
   const WorldState state = state_after(world, at(21s));
   EXPECT_EQ(state.header.tick, 10);
-  EXPECT_EQ(place(state, 0), Eigen::Vector2d(300.1, 400)) << "a tick further, by its command";
-  EXPECT_EQ(place(state, 1), Eigen::Vector2d(700, 500));
+  EXPECT_EQ(place(state, 0), Eigen::Vector3d(300.1, 400, 0)) << "a tick further, by its command";
+  EXPECT_EQ(place(state, 1), Eigen::Vector3d(700, 500, 0));
 }
 
 TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
@@ -203,15 +206,16 @@ TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
   EXPECT_EQ(asked_for(at(100ms)), 0);
   nobody_has_moved(world, 1, at(100ms));
   EXPECT_EQ(asked_for(at(200ms)), 1);
-  give(world, command_from(1, 9, {301, 401}, {0, 1}), at(200ms));
+  give(world, command_from(1, 9, {301, 401, 0}, {0, 1, 0}), at(200ms));
   EXPECT_EQ(asked_for(at(300ms)), 1) << "that is half an answer";
-  give(world, command_from(1, 8, {300, 400}, {1, 0}), at(300ms));
+  give(world, command_from(1, 8, {300, 400, 0}, {1, 0, 0}), at(300ms));
   EXPECT_EQ(asked_for(at(400ms)), 2);
 }
 
 TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
   World world = asking_world(small_mission(2));
-  for (const Tick tick : {8, 9}) give(world, command_from(0, tick, {300, 400}, {1, 0}), at(0s));
+  for (const Tick tick : {8, 9})
+    give(world, command_from(0, tick, {300, 400, 0}, {1, 0, 0}), at(0s));
   auto roster = roster_of(2);
   roster[1].active_until = 9;
   give(world, mission_part(1, MissionState::kRunning, roster), at(5s));
@@ -221,9 +225,9 @@ TEST(WorldAsks, InLockstepNobodyWhoHasLeftTheRosterMeanwhile) {
 // Agents that have not been anywhere answer with (0, 0), which may lie outside.
 TEST(WorldAsks, BeginsAtOnceInADomainFarFromTheOrigin) {
   Mission mission = small_mission(2);
-  const Eigen::Vector2d far_m(512300, 5403700);
+  const Eigen::Vector3d far_m(512300, 5403700, 0);
   mission.domain.origin_m += far_m;
-  for (Eigen::Vector2d& start_m : mission.starts_m) start_m += far_m;
+  for (Eigen::Vector3d& start_m : mission.starts_m) start_m += far_m;
   World world = asking_world(mission);
   nobody_has_moved(world, 2, at(0s));
   const WorldState state = state_after(world, at(1ms));
@@ -239,45 +243,46 @@ WorldState begun_with(const std::vector<Command>& told) {
 }
 
 TEST(WorldAsks, TheOrderOfTheAnswersDoesNotMatter) {
-  const Command before = command_from(0, 8, {300, 400}, {1, 0});
-  const Command last = command_from(0, 9, {301, 401}, {0, 1});
+  const Command before = command_from(0, 8, {300, 400, 0}, {1, 0, 0});
+  const Command last = command_from(0, 9, {301, 401, 0}, {0, 1, 0});
   for (const auto& told : {std::vector{before, last}, std::vector{last, before}}) {
     const WorldState state = begun_with(told);
     EXPECT_EQ(state.header.tick, 9);
-    EXPECT_EQ(place(state), Eigen::Vector2d(301, 401));
-    EXPECT_EQ(applied(state), Eigen::Vector2d(1, 0));
+    EXPECT_EQ(place(state), Eigen::Vector3d(301, 401, 0));
+    EXPECT_EQ(applied(state), Eigen::Vector3d(1, 0, 0));
   }
 }
 
 TEST(WorldAsks, OneOfTwoCommandsIsHalfAnAnswer) {
   World world = asking_world(small_mission(1));
-  give(world, command_from(0, 9, {301, 401}, {0, 1}), at(0s));
+  give(world, command_from(0, 9, {301, 401, 0}, {0, 1, 0}), at(0s));
   EXPECT_TRUE(only<WorldState>(advance(world, at(1ms))).empty());
   EXPECT_EQ(only<Hello>(advance(world, at(100ms))).size(), 1u) << "it asks again";
-  give(world, command_from(0, 8, {300, 400}, {1, 0}), at(101ms));
-  EXPECT_EQ(applied(state_after(world, at(101ms))), Eigen::Vector2d(1, 0));
+  give(world, command_from(0, 8, {300, 400, 0}, {1, 0, 0}), at(101ms));
+  EXPECT_EQ(applied(state_after(world, at(101ms))), Eigen::Vector3d(1, 0, 0));
 }
 
 TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
   World world = asking_world(small_mission(1));
   for (const Incarnation asked_by : {Incarnation{0}, kWorldLife - 1}) {
     for (const Tick tick : {4, 5}) {
-      Command recording = command_from(0, tick, {300, 400}, {1, 0});
+      Command recording = command_from(0, tick, {300, 400, 0}, {1, 0, 0});
       recording.asked_by = asked_by;
       give(world, recording, at(0s));
     }
   }
   EXPECT_TRUE(states_after(world, at(1ms)).empty()) << "what was said before does not say where it is";
-  for (const Tick tick : {8, 9}) give(world, command_from(0, tick, {301, 401}, {0, 1}), at(1s));
+  for (const Tick tick : {8, 9})
+    give(world, command_from(0, tick, {301, 401, 0}, {0, 1, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
 }
 
 TEST(WorldAsks, NobodyForTicksOrPlacesThatCannotBe) {
   const Mission mission = small_mission(1);
   World world = asking_world(mission);
-  give(world, command_from(0, mission.timing.tick_count + 1, {300, 400}, {0, 0}), at(0s));
-  give(world, command_from(0, 50, {-1, 400}, {0, 0}), at(0s));
-  Command stranger = command_from(0, 50, {300, 400}, {0, 0});
+  give(world, command_from(0, mission.timing.tick_count + 1, {300, 400, 0}, {0, 0, 0}), at(0s));
+  give(world, command_from(0, 50, {-1, 400, 0}, {0, 0, 0}), at(0s));
+  Command stranger = command_from(0, 50, {300, 400, 0}, {0, 0, 0});
   stranger.header.incarnation = 99;
   give(world, stranger, at(0s));
   EXPECT_TRUE(states_after(world, at(2s)).empty()) << "nobody has answered";
@@ -306,14 +311,16 @@ TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
     mission.timing.pace = Pace::kRealtime;
     mission.timing.command_hold_s = hold_s;
     World world = asking_world(mission);
-    for (const Tick tick : {9, 10}) give(world, command_from(0, tick, {500, 500}, {10, 0}), at(0s));
-    for (const Tick tick : {6, 7}) give(world, command_from(1, tick, {700, 500}, {0, 10}), at(0s));
+    for (const Tick tick : {9, 10})
+      give(world, command_from(0, tick, {500, 500, 0}, {10, 0, 0}), at(0s));
+    for (const Tick tick : {6, 7})
+      give(world, command_from(1, tick, {700, 500, 0}, {0, 10, 0}), at(0s));
     const WorldState state = state_after(world, at(5ms));
     EXPECT_EQ(state.header.tick, 10);
-    EXPECT_EQ(place(state, 0), Eigen::Vector2d(500, 500));
+    EXPECT_EQ(place(state, 0), Eigen::Vector3d(500, 500, 0));
     // From 7 to 10 in three steps of 1 m; with a hold of 0.1 s the third has no command.
-    EXPECT_EQ(place(state, 1), Eigen::Vector2d(700, hold_s > 1 ? 503 : 502));
-    EXPECT_EQ(applied(state, 1), Eigen::Vector2d(0, hold_s > 1 ? 10 : 0));
+    EXPECT_EQ(place(state, 1), Eigen::Vector3d(700, hold_s > 1 ? 503 : 502, 0));
+    EXPECT_EQ(applied(state, 1), Eigen::Vector3d(0, hold_s > 1 ? 10 : 0, 0));
     EXPECT_EQ(state_after(world, at(105ms)).header.tick, 11) << "and the clock goes on from here";
   }
 }
@@ -360,7 +367,7 @@ TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   World world = running_world(mission);
   const auto run_while_it_goes = [&](Instant now) {
     while (!states_after(world, now).empty()) {
-      give(world, command_of(0, world.tick(), {1, 0}), now);
+      give(world, command_of(0, world.tick(), {1, 0, 0}), now);
     }
   };
   give(world, ack_of(10), at(0s));
@@ -396,7 +403,7 @@ TEST(WorldRecord, WordsOfADeadLoggerSaidAgainDoNotKeepTheTeamWaiting) {
   give(world, alive, at(0s));
   for (int i = 0; i < 200 && world.tick() <= 64; ++i) {
     states_after(world, at(0s));
-    give(world, command_of(0, world.tick(), {1, 0}), at(0s));
+    give(world, command_of(0, world.tick(), {1, 0, 0}), at(0s));
   }
   for (int tenths = 0; tenths < 60; ++tenths) {
     const Instant now = at(tenths * 100ms);

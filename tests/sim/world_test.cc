@@ -43,7 +43,7 @@ TEST(WorldInLockstep, SaysNothingUntilTheMissionRunsThenAsksTheTeamAndThenSaysEv
     EXPECT_EQ(state.vehicles[static_cast<std::size_t>(i)].id, i);
     EXPECT_EQ(state.vehicles[static_cast<std::size_t>(i)].answered_tick, -1);
     EXPECT_EQ(place(state, i), mission.starts_m[static_cast<std::size_t>(i)]);
-    EXPECT_EQ(applied(state, i), Eigen::Vector2d(0, 0));
+    EXPECT_EQ(applied(state, i), Eigen::Vector3d(0, 0, 0));
   }
 }
 
@@ -51,7 +51,7 @@ TEST(WorldInLockstep, IntegratesEachCommandForOneStepAndSaysWhatItApplied) {
   const Mission mission = small_mission(2);
   World world = running_world(mission);
   advance(world, at(0s));
-  const Eigen::Vector2d fast(9.87, -1.23), slow(0.1, 0.3);
+  const Eigen::Vector3d fast(9.87, -1.23, 0), slow(0.1, 0.3, 0);
   give(world, command_of(0, 0, fast), at(0s));
   give(world, command_of(1, 0, slow), at(0s));
   const WorldState state = state_after(world, at(0s));
@@ -66,7 +66,7 @@ TEST(WorldInLockstep, IntegratesEachCommandForOneStepAndSaysWhatItApplied) {
 TEST(WorldInLockstep, RepeatsATickUntilEverybodyHasAnswered) {
   World world = running_world(small_mission(2));
   const WorldState first = state_after(world, at(0s));
-  give(world, command_of(0, 0, {1, 1}), at(1ms));
+  give(world, command_of(0, 0, {1, 1, 0}), at(1ms));
   EXPECT_TRUE(advance(world, at(19ms)).empty());
   EXPECT_EQ(world.next_wakeup(), at(20ms));
   const WorldState again = state_after(world, at(20ms));
@@ -75,7 +75,7 @@ TEST(WorldInLockstep, RepeatsATickUntilEverybodyHasAnswered) {
   EXPECT_GT(again.header.sequence, first.header.sequence);
   EXPECT_TRUE(advance(world, at(59ms)).empty()) << "a slow team is not buried in repeats";
   EXPECT_EQ(state_after(world, at(60ms)).header.tick, 0);
-  give(world, command_of(1, 0, {1, 1}), at(61ms));
+  give(world, command_of(1, 0, {1, 1, 0}), at(61ms));
   EXPECT_EQ(state_after(world, at(61ms)).header.tick, 1) << "and goes on as soon as they have";
 }
 
@@ -83,10 +83,10 @@ TEST(WorldInLockstep, TakesTheFirstAnswerToATickAndNoOther) {
   const Mission mission = small_mission(2);
   World world = running_world(mission);
   advance(world, at(0s));
-  give(world, command_of(0, 0, {1, 0}), at(0s));
-  give(world, command_of(0, 0, {9, 9}), at(0s));
-  give(world, command_of(1, 0, {0, 0}), at(0s));
-  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector2d(1, 0));
+  give(world, command_of(0, 0, {1, 0, 0}), at(0s));
+  give(world, command_of(0, 0, {9, 9, 0}), at(0s));
+  give(world, command_of(1, 0, {0, 0, 0}), at(0s));
+  EXPECT_EQ(applied(state_after(world, at(0s))), Eigen::Vector3d(1, 0, 0));
 }
 
 TEST(WorldInLockstep, PublishesLargeTeamsInParts) {
@@ -105,12 +105,12 @@ TEST(WorldInLockstep, PublishesLargeTeamsInParts) {
 
 TEST(WorldMotion, ReflectsAtEveryEdge) {
   const struct {
-    Eigen::Vector2d start, velocity, end;
-  } cases[] = {{{0.5, 500}, {-10, 0}, {0.5, 500}},
-               {{1999.75, 500}, {10, 0}, {1999.25, 500}},
-               {{500, 0.25}, {0, -10}, {500, 0.75}},
-               {{500, 2000}, {0, 10}, {500, 1999}},
-               {{0, 0}, {-10, -10}, {1, 1}}};
+    Eigen::Vector3d start, velocity, end;
+  } cases[] = {{{0.5, 500, 0}, {-10, 0, 0}, {0.5, 500, 0}},
+               {{1999.75, 500, 0}, {10, 0, 0}, {1999.25, 500, 0}},
+               {{500, 0.25, 0}, {0, -10, 0}, {500, 0.75, 0}},
+               {{500, 2000, 0}, {0, 10, 0}, {500, 1999, 0}},
+               {{0, 0, 0}, {-10, -10, 0}, {1, 1, 0}}};
   for (const auto& c : cases) {
     Mission mission = small_mission(1);
     mission.starts_m[0] = c.start;
@@ -127,7 +127,7 @@ TEST(WorldMotion, StaysInTheDomainWhateverIsCommanded) {
   for (const double speed : {1e6, 1e17, 1e300}) {
     World world = running_world(small_mission(1));
     advance(world, at(0s));
-    give(world, command_of(0, 0, {speed, -speed}), at(0s));
+    give(world, command_of(0, 0, {speed, -speed, 0}), at(0s));
     EXPECT_TRUE(small_mission(1).domain.contains(place(state_after(world, at(0s))))) << speed;
   }
 }
@@ -137,16 +137,17 @@ TEST(WorldMotion, IsDisturbedOnlyIfTheScenarioSaysSoAndByAFunctionOfTheSeed) {
   mission.disturbance_intensity = 3;
   World world = running_world(mission);
   advance(world, at(0s));
-  Eigen::Vector2d expected = mission.starts_m[0];
+  Eigen::Vector3d expected = mission.starts_m[0];
   for (Tick tick = 0; tick < 5; ++tick) {
-    give(world, command_of(0, tick, {1, 2}), at(0s));
-    Eigen::Vector2d next = expected + Eigen::Vector2d(1, 2) * 0.1;
+    give(world, command_of(0, tick, {1, 2, 0}), at(0s));
+    Eigen::Vector3d next = expected + Eigen::Vector3d(1, 2, 0) * 0.1;
     next += 3 * std::sqrt(0.1) *
-            normal_pair(mission.seed, Purpose::kDisturbance, 0, static_cast<std::uint64_t>(tick));
+            on_ground(normal_pair(mission.seed, Purpose::kDisturbance, 0,
+                                  static_cast<std::uint64_t>(tick)));
     expected = reflect(next, mission.domain);
     const WorldState state = state_after(world, at(0s));
     EXPECT_EQ(place(state), expected);
-    EXPECT_EQ(applied(state), Eigen::Vector2d(1, 2)) << "the command is what the agent gave";
+    EXPECT_EQ(applied(state), Eigen::Vector3d(1, 2, 0)) << "the command is what the agent gave";
   }
 }
 
@@ -163,7 +164,7 @@ Mission recorded_mission() {
 /// Answers every tick at `now` until the world says nothing new.
 void run_while_it_goes(World& world, Instant now) {
   for (auto states = states_after(world, now); !states.empty(); states = states_after(world, now)) {
-    give(world, command_of(0, world.tick(), {1, 0}), now);
+    give(world, command_of(0, world.tick(), {1, 0, 0}), now);
   }
 }
 
@@ -234,10 +235,10 @@ TEST(WorldEnd, RepeatsTheLastStateForTwoSecondsAndIsDone) {
   mission.timing.tick_count = 1;
   World world = running_world(mission);
   advance(world, at(0s));
-  give(world, command_of(0, 0, {1, 0}), at(1s));
+  give(world, command_of(0, 0, {1, 0, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 1);
   advance(world, at(1s));
-  give(world, command_of(0, 1, {1, 0}), at(1s));
+  give(world, command_of(0, 1, {1, 0, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(2900ms)).header.tick, 1);
   EXPECT_FALSE(world.finished());
   advance(world, at(3001ms));
@@ -273,7 +274,7 @@ TEST(WorldEnd, ByItselfOnceNeitherAgentNorCoordinatorCanStillCome) {
   mission.timing.lockstep_timeout_s = 10;
   World world = running_world(mission);
   advance(world, at(0s));
-  const Command answer = command_of(0, 0, {1, 0});
+  const Command answer = command_of(0, 0, {1, 0, 0});
   give(world, answer, at(5s));
   advance(world, at(5s));
   give(world, answer, at(30s));  // a recording of it is nobody's word

@@ -32,16 +32,16 @@ inline Mission small_mission(int agents) {
   Mission mission;
   mission.name = "small";
   mission.seed = 7;
-  mission.domain.size_m = {2000, 2000};
+  mission.domain.size_m = {2000, 2000, 0};
   mission.basis.modes_x = 5;
   mission.basis.modes_y = 4;
-  mission.target_coefficients = Coefficients::Zero(5, 4);
-  mission.target_coefficients(0, 0) = 1;
+  mission.target_coefficients = Coefficients::Zero(20);
+  mission.target_coefficients[0] = 1;
   mission.law.u_max_mps = 10;
   mission.timing.tick_count = 100;
   mission.quorum = agents;
   mission.wait_for_logger = false;
-  for (int i = 0; i < agents; ++i) mission.starts_m.push_back({100.0 * (i + 1), 500});
+  for (int i = 0; i < agents; ++i) mission.starts_m.push_back({100.0 * (i + 1), 500, 0});
   return mission;
 }
 
@@ -78,7 +78,7 @@ inline MissionPart mission_part(std::int64_t revision, MissionState state,
 }
 
 /// The world at `tick` as one part; agent i of `positions_m` is vehicle i.
-inline WorldState world_state(Tick tick, const std::vector<Eigen::Vector2d>& positions_m,
+inline WorldState world_state(Tick tick, const std::vector<Eigen::Vector3d>& positions_m,
                               std::int64_t answered_tick = -1) {
   WorldState state;
   state.header = {kRun, kWorld, kWorldLife, next_sequence(), tick};
@@ -86,15 +86,15 @@ inline WorldState world_state(Tick tick, const std::vector<Eigen::Vector2d>& pos
   for (std::size_t i = 0; i < positions_m.size(); ++i) {
     state.vehicles[i].id = static_cast<AgentId>(i);
     state.vehicles[i].answered_tick = answered_tick;
-    state.vehicles[i].position_m << positions_m[i], 0;
+    state.vehicles[i].position_m = positions_m[i];
   }
   return state;
 }
 
-inline Command command_of(AgentId id, Tick tick, const Eigen::Vector2d& velocity_mps) {
+inline Command command_of(AgentId id, Tick tick, const Eigen::Vector3d& velocity_mps) {
   Command command;
   command.header = {kRun, id, life_of(id), tick + 2, tick};
-  command.velocity_mps << velocity_mps, 0;
+  command.velocity_mps = velocity_mps;
   return command;
 }
 

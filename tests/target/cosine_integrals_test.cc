@@ -16,8 +16,8 @@ const Basis kBasis{.modes_x = 14, .modes_y = 11};
 /// The reference's own sums of 60 000 terms are good to 1e-13 of an area of at most 240.
 constexpr double kTolerance = 240e-13;
 
-Coefficients closed_form(const Ring& ring, double density = 1) {
-  Coefficients sums = Coefficients::Zero(kBasis.modes_x, kBasis.modes_y);
+PlaneCoefficients closed_form(const Ring& ring, double density = 1) {
+  PlaneCoefficients sums = PlaneCoefficients::Zero(kBasis.modes_x, kBasis.modes_y);
   add_polygon(ring, density, kDomain.size_m, sums);
   return sums;
 }
@@ -52,7 +52,7 @@ TEST(PolygonIntegrals, AreThoseOfQuadrature) {
       {{3, 3}, {3 + 12.0 / 7 * 4, 3 + 4}, {3, 8}},
   };
   for (const Ring& ring : rings) {
-    const Coefficients expected = over_ring(ring, one, kDomain, kBasis, 50);
+    const PlaneCoefficients expected = over_ring(ring, one, kDomain, kBasis, 50);
     EXPECT_LE(largest_difference(closed_form(ring), expected), kTolerance);
     EXPECT_LE(largest_difference(closed_form(ring, 3), 3 * expected), 3 * kTolerance);
   }
@@ -70,7 +70,7 @@ TEST(PolygonIntegrals, HaveNoPoleWhereAnEdgeFollowsAWave) {
 
 TEST(PolygonIntegrals, OfASmallPolygonAreWithinTheirStatedError) {
   const Ring ring{{10, 6}, {10.001, 6}, {10.0005, 6.0008}};
-  Coefficients sums = Coefficients::Zero(kBasis.modes_x, kBasis.modes_y);
+  PlaneCoefficients sums = PlaneCoefficients::Zero(kBasis.modes_x, kBasis.modes_y);
   const double bound = add_polygon(ring, 1, kDomain.size_m, sums);
   EXPECT_LE(largest_difference(sums, over_ring(ring, one, kDomain, kBasis, 1)), bound);
   EXPECT_LE(bound, 1e-15 * 1000);  // of an area of 4e-7

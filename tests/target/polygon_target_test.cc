@@ -29,7 +29,9 @@ Gaussian bell(double x_m, double y_m, double deviation_x_m, double deviation_y_m
   return g;
 }
 
-Coefficients area_reference(const Ring& ring) { return over_ring(ring, one, kDomain, kBasis, 40); }
+PlaneCoefficients area_reference(const Ring& ring) {
+  return over_ring(ring, one, kDomain, kBasis, 40);
+}
 
 TEST(Regions, WithHolesAreUniformInside) {
   const Ring outline{{0, 100}, {900, 200}, {1100, 900}, {400, 600}, {-100, 1000}};
@@ -39,7 +41,7 @@ TEST(Regions, WithHolesAreUniformInside) {
     if (clockwise) std::reverse(polygon.holes[0].begin(), polygon.holes[0].end());
     if (clockwise) std::reverse(polygon.outline.begin(), polygon.outline.end());
     const TargetCoefficients ours = target_coefficients({{}, 0, {{3, polygon}}}, kDomain, kBasis);
-    const Coefficients expected = area_reference(outline) - area_reference(hole);
+    const PlaneCoefficients expected = area_reference(outline) - area_reference(hole);
     EXPECT_LE(largest_difference(ours.values, expected / expected(0, 0)), 1e-12);
     EXPECT_LE(ours.error_bound, 1e-10);
   }
@@ -49,16 +51,16 @@ TEST(Regions, WeighTheirWholeMassAlsoWhatIsOutside) {
   const Polygon half{box(-400, 100, 200, 50), {}}, whole{box(500, 500, 100, 100), {}};
   const TargetDensity target{{}, 0.25, {{1, half}, {2, whole}}};
   EXPECT_NEAR(mass_inside(target, kDomain), 0.5 + 2 + 0.25, 1e-13);
-  const Coefficients mu = target_coefficients(target, kDomain, kBasis).values;
-  Coefficients expected = area_reference(box(-300, 100, 100, 50)) / 10000 +
-                          2 * area_reference(box(500, 500, 100, 100)) / 10000;
+  const PlaneCoefficients mu = target_coefficients(target, kDomain, kBasis).values;
+  PlaneCoefficients expected = area_reference(box(-300, 100, 100, 50)) / 10000 +
+                               2 * area_reference(box(500, 500, 100, 100)) / 10000;
   expected(0, 0) += 0.25;
   EXPECT_LE(largest_difference(mu, expected / 2.75), 1e-12);
 }
 
 TEST(Regions, OfTheWholeDomainAreTheUniformTarget) {
   const Polygon domain{box(-300, 50, 2000, 1200), {}};
-  Coefficients expected = Coefficients::Zero(12, 9);
+  PlaneCoefficients expected = PlaneCoefficients::Zero(12, 9);
   expected(0, 0) = 1;
   EXPECT_LE(largest_difference(target_coefficients({{}, 0, {{1, domain}}}, kDomain, kBasis).values,
                                expected), 1e-14);
@@ -68,7 +70,7 @@ TEST(Regions, OfTheWholeDomainAreTheUniformTarget) {
 TEST(KeepOuts, ThatOverlapTakeAwayTheirUnion) {
   const Ring first = box(200, 300, 300, 300), second = box(400, 500, 300, 300);
   const TargetDensity target{{}, 1, {}, {{first, {}}, {second, {}}}};
-  Coefficients expected = Coefficients::Zero(12, 9);
+  PlaneCoefficients expected = PlaneCoefficients::Zero(12, 9);
   expected(0, 0) = 2000 * 1200;
   expected += area_reference(box(400, 500, 100, 100)) - area_reference(first) - area_reference(second);
   const TargetCoefficients ours = target_coefficients(target, kDomain, kBasis);
@@ -81,7 +83,7 @@ TEST(KeepOuts, CutRegionsToo) {
   const TargetDensity target{{}, 0, {{1, {region, {}}}}, {{keep_out, {}}}};
   // The triangle's tip lies below the region, which takes away what is above y = 100.
   const Ring inside{{450, 100}, {550, 100}, {800, 350}, {200, 350}};
-  const Coefficients expected = area_reference(region) - area_reference(inside);
+  const PlaneCoefficients expected = area_reference(region) - area_reference(inside);
   EXPECT_LE(largest_difference(target_coefficients(target, kDomain, kBasis).values,
                                expected / expected(0, 0)), 1e-12);
 }
@@ -92,8 +94,8 @@ TEST(KeepOuts, OverGaussiansAreWithinTheStatedError) {
   for (const Gaussian& g : {bell(700, 650, 150, 100), bell(700, 650, 120, 150, 0.9),
                             bell(700, 650, 120, 150, -0.99), bell(640, 700, 15, 25, 0.5)}) {
     const TargetDensity alone{{g}, 0};
-    const Coefficients whole = target_integrals(alone, kDomain, kBasis).values;
-    const Coefficients taken = over_ring(
+    const PlaneCoefficients whole = target_integrals(alone, kDomain, kBasis).values;
+    const PlaneCoefficients taken = over_ring(
         triangle, [&](const Eigen::Vector2d& x_m) { return density_unscaled(alone, kDomain, x_m); },
         kDomain, kBasis, 60);
     const TargetCoefficients ours = target_integrals({{g}, 0, {}, {{triangle, {}}}}, kDomain, kBasis);

@@ -46,8 +46,8 @@ Ring clipped(Ring ring) {
 }
 
 /// Each cell, clipped to the domain, by quadrature.
-Coefficients reference(const RasterGrid& grid) {
-  Coefficients sum = Coefficients::Zero(kBasis.modes_x, kBasis.modes_y);
+PlaneCoefficients reference(const RasterGrid& grid) {
+  PlaneCoefficients sum = PlaneCoefficients::Zero(kBasis.modes_x, kBasis.modes_y);
   double whole = 0;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
@@ -81,7 +81,7 @@ TEST(RasterIntegral, IsExactForCellsOfConstantDensity) {
 TEST(RasterIntegral, ACellIsWhereItsCentreIs) {
   const RasterGrid grid{kDomain, 10, 8};  // cells of 20 × 15 m; (3, 5) has its centre at (40, 87.5)
   const auto only = [](int column, int row) { return column == 3 && row == 5 ? 2.5 : 0.0; };
-  const Coefficients mu = shares_of(grid, {}, only).values;
+  const PlaneCoefficients mu = shares_of(grid, {}, only).values;
   const double x = std::numbers::pi * 70 / 200, y = std::numbers::pi * 82.5 / 120;
   const double half_x = std::numbers::pi * 10 / 200, half_y = std::numbers::pi * 7.5 / 120;
   EXPECT_NEAR(mu(0, 0), 1, 1e-15);
@@ -96,7 +96,7 @@ TEST(RasterIntegral, OfAMirroredMapHasNoOddModes) {
   const auto mirrored = [](int column, int row) {
     return value_at(std::min(column, 7 - column), std::min(row, 5 - row));
   };
-  const Coefficients mu = shares_of(grid, {}, mirrored).values;
+  const PlaneCoefficients mu = shares_of(grid, {}, mirrored).values;
   for (int m = 0; m < kBasis.modes_x; ++m) {
     for (int n = 0; n < kBasis.modes_y; ++n) {
       if (m % 2 == 1 || n % 2 == 1) {
@@ -108,8 +108,8 @@ TEST(RasterIntegral, OfAMirroredMapHasNoOddModes) {
 
 TEST(RasterIntegral, TurningAMapByHalfATurnChangesTheSignOfOddModes) {
   const RasterGrid grid{kDomain, 8, 6};
-  const Coefficients mu = shares_of(grid).values;
-  const Coefficients turned =
+  const PlaneCoefficients mu = shares_of(grid).values;
+  const PlaneCoefficients turned =
       shares_of(grid, {}, [](int column, int row) { return value_at(7 - column, 5 - row); }).values;
   for (int m = 0; m < kBasis.modes_x; ++m) {
     for (int n = 0; n < kBasis.modes_y; ++n) {
@@ -119,7 +119,7 @@ TEST(RasterIntegral, TurningAMapByHalfATurnChangesTheSignOfOddModes) {
 }
 
 TEST(RasterIntegral, OfAUniformMapIsTheUniformTarget) {
-  Coefficients expected = Coefficients::Zero(kBasis.modes_x, kBasis.modes_y);
+  PlaneCoefficients expected = PlaneCoefficients::Zero(kBasis.modes_x, kBasis.modes_y);
   expected(0, 0) = 1;
   for (const auto& [columns, rows] : {std::pair(1, 1), {7, 5}, {300, 200}}) {
     const TargetCoefficients ours =
@@ -159,7 +159,7 @@ TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
         whole += mass;
       }
     }
-    const Coefficients expected = target_integrals(cells, kDomain, kBasis).values / whole;
+    const PlaneCoefficients expected = target_integrals(cells, kDomain, kBasis).values / whole;
     const TargetCoefficients ours = shares_of(grid, keep_outs());
     EXPECT_LE(largest_difference(ours.values, expected), 1e-13);
     EXPECT_LE(ours.error_bound, 1e-11);

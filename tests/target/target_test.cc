@@ -63,8 +63,8 @@ double axis_integral(int mode, double mean, double deviation, double low, double
   return static_cast<double>(row.back());
 }
 
-Coefficients separable_reference(const TargetDensity& target, const Basis& basis) {
-  Coefficients sum = Coefficients::Zero(basis.modes_x, basis.modes_y);
+PlaneCoefficients separable_reference(const TargetDensity& target, const Basis& basis) {
+  PlaneCoefficients sum = PlaneCoefficients::Zero(basis.modes_x, basis.modes_y);
   sum(0, 0) = target.uniform_weight;
   for (const Gaussian& g : target.gaussians) {
     Eigen::VectorXd along_x(basis.modes_x), along_y(basis.modes_y);
@@ -82,8 +82,8 @@ Coefficients separable_reference(const TargetDensity& target, const Basis& basis
 }
 
 /// For a bell that does not feel the edges: E cos(aX)cos(bY) by the characteristic function.
-Coefficients unbounded_reference(const Gaussian& g, const Basis& basis) {
-  Coefficients mu(basis.modes_x, basis.modes_y);
+PlaneCoefficients unbounded_reference(const Gaussian& g, const Basis& basis) {
+  PlaneCoefficients mu(basis.modes_x, basis.modes_y);
   const Eigen::Vector2d mean = g.mean_m - kDomain.origin_m;
   for (int m = 0; m < basis.modes_x; ++m) {
     for (int n = 0; n < basis.modes_y; ++n) {
@@ -115,7 +115,7 @@ void gauss5(double low, double length, int panels, Eigen::VectorXd& x, Eigen::Ve
 }
 
 /// ∫ f_mn ρ over the domain by brute force over density_unscaled(); not divided by the mass.
-Coefficients brute_force(const TargetDensity& target, const Basis& basis, int panels) {
+PlaneCoefficients brute_force(const TargetDensity& target, const Basis& basis, int panels) {
   Eigen::VectorXd x, y, weight_x, weight_y;
   gauss5(kDomain.origin_m.x(), kDomain.size_m.x(), panels, x, weight_x);
   gauss5(kDomain.origin_m.y(), kDomain.size_m.y(), panels, y, weight_y);
@@ -137,7 +137,7 @@ Coefficients brute_force(const TargetDensity& target, const Basis& basis, int pa
   return cos_x * mass * cos_y.transpose();
 }
 
-double largest_error(const Coefficients& a, const Coefficients& b) {
+double largest_error(const PlaneCoefficients& a, const PlaneCoefficients& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
@@ -174,7 +174,7 @@ TEST(TargetCoefficients, OfATailThatReachesInFromOutsideAreRenormalised) {
 }
 
 TEST(TargetCoefficients, OfAUniformTargetAreZeroButTheFirst) {
-  Coefficients expected = Coefficients::Zero(6, 7);
+  PlaneCoefficients expected = PlaneCoefficients::Zero(6, 7);
   expected(0, 0) = 1;
   EXPECT_EQ(target_coefficients({{}, 0.3}, kDomain, basis_of(6, 7)).values, expected);
 }
@@ -182,7 +182,7 @@ TEST(TargetCoefficients, OfAUniformTargetAreZeroButTheFirst) {
 TEST(TargetCoefficients, OfAMirroredTargetHaveNoOddModes) {
   // A density sampled at cell corners but transformed as cell centres would be off by half a cell.
   const TargetDensity mirrored{{bell(1, 700 - 321, 650, 80, 90), bell(1, 700 + 321, 650, 80, 90)}, 0};
-  const Coefficients mu = target_coefficients(mirrored, kDomain, basis_of(15, 15)).values;
+  const PlaneCoefficients mu = target_coefficients(mirrored, kDomain, basis_of(15, 15)).values;
   for (int m = 0; m < 15; ++m) {
     for (int n = 0; n < 15; ++n) {
       if (m % 2 == 1 || n % 2 == 1) {
@@ -206,9 +206,9 @@ TEST(TargetCoefficients, WeighEachBellByItsWeightAndWhatTheDomainLeavesOfIt) {
   // Half of the first bell is inside.
   const Gaussian halved = bell(1, -300, 650, 100, 100), whole = bell(1, 900, 650, 50, 60);
   const Basis basis = basis_of(8, 8);
-  const Coefficients first = target_coefficients({{halved}, 0}, kDomain, basis).values;
-  const Coefficients second = target_coefficients({{whole}, 0}, kDomain, basis).values;
-  const Coefficients both = target_coefficients({{halved, whole}, 0}, kDomain, basis).values;
+  const PlaneCoefficients first = target_coefficients({{halved}, 0}, kDomain, basis).values;
+  const PlaneCoefficients second = target_coefficients({{whole}, 0}, kDomain, basis).values;
+  const PlaneCoefficients both = target_coefficients({{halved, whole}, 0}, kDomain, basis).values;
   // The whole bell loses less than 1e-14 in 6 deviations and more; 650 is 6 of 100 from the edges.
   EXPECT_LE(largest_error(both, (0.5 * first + second) / 1.5), 1e-8);
   EXPECT_GT(largest_error(both, (first + second) / 2), 1e-2);
@@ -240,7 +240,7 @@ TEST(TargetCoefficients, OfACorrelatedBellCutByTheEdgesAgreeWithBruteForce) {
   const TargetDensity target{{bell(1, -250, 100, 200, 150, 0.7), bell(0.5, 1600, 900, 120, 260, -0.8)},
                              0.25};
   const TargetCoefficients ours = target_coefficients(target, kDomain, basis);
-  const Coefficients brute = brute_force(target, basis, 160);
+  const PlaneCoefficients brute = brute_force(target, basis, 160);
   // Panels of a fifth of the narrowest width: the five-point rule is exact to rounding there.
   EXPECT_LE(largest_error(ours.values, brute / brute(0, 0)), ours.error_bound + 1e-13);
   EXPECT_LE(ours.error_bound, 1e-11);

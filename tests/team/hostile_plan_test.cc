@@ -57,7 +57,7 @@ std::vector<double*> numbers_of(Mission& m) {
                            &m.disturbance_intensity,
                            &m.radio_range_m,
                            &m.speed_limit_mps};
-  for (Eigen::Vector2d& x_m : m.starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y()});
+  for (Eigen::Vector3d& x_m : m.starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y()});
   return all;
 }
 
@@ -98,29 +98,50 @@ TEST(HostilePlan, WithACoefficientThatCannotBeIsRefused) {
   for (const double bad :
        {1.001, -1.001, std::nan(""), -std::nan(""), double{INFINITY}, -double{INFINITY}}) {
     Mission mission = rich_mission();
-    mission.target_coefficients(2, 1) = bad;
+    mission.target_coefficients[5] = bad;
     EXPECT_FALSE(is_taken(mission)) << bad;
   }
   Mission mission = rich_mission();
-  mission.target_coefficients(0, 0) = 0.999;
+  mission.target_coefficients[0] = 0.999;
   EXPECT_FALSE(is_taken(mission));
+}
+
+// A plan that forgot the height would fly another mission.
+TEST(HostilePlan, SaysNoHeightSoThatAMissionWithOneIsOutsideTheLimits) {
+  ASSERT_TRUE(within_limits(rich_mission()));
+  constexpr void (*kHigh[])(Mission&) = {
+      [](Mission& m) { m.domain.size_m.z() = 5; },
+      [](Mission& m) { m.domain.origin_m.z() = 5; },
+      [](Mission& m) { m.law.contraction_center_m.z() = 5; },
+      [](Mission& m) { m.starts_m[1].z() = 5; },
+      [](Mission& m) {
+        m.basis.modes_z = 2;
+        m.target_coefficients.setZero(m.basis.mode_count());
+        m.target_coefficients[0] = 1;
+      },
+  };
+  for (const auto change : kHigh) {
+    Mission mission = rich_mission();
+    change(mission);
+    EXPECT_FALSE(within_limits(mission));
+  }
 }
 
 /// A domain in which nothing is too fast, and nothing pulls.
 void widen(Mission& m) {
-  m.domain.size_m = {1e7, 1e7};
+  m.domain.size_m = {1e7, 1e7, 0};
   m.law.contraction_gain_per_s = 0;
 }
 /// One more mode than there may be, μ as large.
 void refine(Mission& m, int modes_x, int modes_y) {
   m.basis.modes_x = modes_x;
   m.basis.modes_y = modes_y;
-  m.target_coefficients.setZero(modes_x, modes_y);
-  m.target_coefficients(0, 0) = 1;
+  m.target_coefficients.setZero(modes_x * modes_y);
+  m.target_coefficients[0] = 1;
 }
 /// Half a step of contraction beyond the centre, for which the input is strong enough.
 void pull(Mission& m) {
-  m.domain.size_m = {52, 52};
+  m.domain.size_m = {52, 52, 0};
   m.law.contraction_center_m = m.domain.center_m();
   m.law.contraction_gain_per_s = 9.6;
   m.law.u_max_mps = 360;
@@ -142,7 +163,7 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { widen(m), m.domain.size_m.y() = 1.1e7; },
       [](Mission& m) {
         m.domain.size_m.y() = 1e-4;
-        m.domain.origin_m = {0, 0};
+        m.domain.origin_m = {0, 0, 0};
         m.law = {.u_max_mps = 1e-4};
         m.disturbance_intensity = 0;
         m.starts_m.assign(2, m.domain.center_m());
@@ -189,7 +210,7 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m.starts_m[1].x() = 98.1; },  // outside
       [](Mission& m) { m.starts_m.clear(); },
       [](Mission& m) {
-        m.starts_m.assign(kMaxAgents + 1, {17, 20});
+        m.starts_m.assign(kMaxAgents + 1, {17, 20, 0});
       },
       [](Mission& m) { m.quorum = 0; },
       [](Mission& m) { m.quorum = 3; },

@@ -34,7 +34,7 @@ std::optional<Arrival> accept(Participant& one, const Message& message, Instant 
 }
 
 TEST(Participant, AcceptsWhatItsRoleHearsOnThatBus) {
-  const Message state = world_state(0, {{1, 1}});
+  const Message state = world_state(0, {{1, 1, 0}});
   Participant agent = participant(Role::kAgent);
   EXPECT_TRUE(agent.accept(state, Bus::kWorld, kWorld, at(0s)));
   EXPECT_FALSE(agent.accept(state, Bus::kSwarm, kWorld, at(0s))) << "not there";
@@ -85,7 +85,7 @@ TEST(Participant, RefusesAndCountsOtherRuns) {
 
 TEST(Participant, TakesTheRunOfTheFirstMissionIfItHasNone) {
   Participant world = participant(Role::kWorld, 0);
-  Command command = command_of(1, 0, {0, 0});
+  Command command = command_of(1, 0, {0, 0, 0});
   command.header.run = 99;
   EXPECT_TRUE(accept(world, command)) << "of whatever run";
   EXPECT_EQ(world.run(), 0u);
@@ -134,7 +134,7 @@ TEST(Participant, WhoWasNotToSpeakYetIsNotSilent) {
   EXPECT_TRUE(agent.silent(kWorld, at(10s)));
   EXPECT_FALSE(agent.silent(kWorld, at(12999ms), at(10s)));
   EXPECT_TRUE(agent.silent(kWorld, at(13s), at(10s)));
-  accept(agent, world_state(0, {{1, 1}}), at(11s));
+  accept(agent, world_state(0, {{1, 1, 0}}), at(11s));
   EXPECT_FALSE(agent.silent(kWorld, at(13999ms), at(10s)));
 }
 
@@ -183,7 +183,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
   mission.timing.dt_s = 2;
   announce(mission);
   Participant agent(Role::kAgent, {kRun, 0, kOwnLife});
-  accept(agent, world_state(0, {{1, 1}}), at(10s));
+  accept(agent, world_state(0, {{1, 1, 0}}), at(10s));
   EXPECT_TRUE(agent.silent(kWorld, at(13s))) << "as far as is known";
   accept(agent, mission_part(0, MissionState::kRunning, {}), at(13s));
   EXPECT_FALSE(agent.silent(kWorld, at(21999ms)));
@@ -206,7 +206,7 @@ TEST(Participant, IsCutOffWhenNobodyWhoCouldTellTheEndHasSpokenForLong) {
   Participant agent = in_mission(Role::kAgent);
   EXPECT_FALSE(agent.cut_off(3, at(45s))) << "35 s after MISSION";
   EXPECT_TRUE(agent.cut_off(3, at(45001ms)));
-  accept(agent, world_state(3, {{1, 1}}), at(20s));
+  accept(agent, world_state(3, {{1, 1, 0}}), at(20s));
   EXPECT_FALSE(agent.cut_off(3, at(55s)));
   EXPECT_TRUE(agent.cut_off(3, at(55001ms)));
   accept(agent, status_of(1, 1), at(30s));
@@ -217,7 +217,7 @@ TEST(Participant, IsCutOffWhenNobodyWhoCouldTellTheEndHasSpokenForLong) {
 
 TEST(Participant, AWorldIsCutOffWithoutAgentsAndCoordinator) {
   Participant world = in_mission(Role::kWorld);
-  accept(world, command_of(1, 0, {0, 0}), at(20s));
+  accept(world, command_of(1, 0, {0, 0, 0}), at(20s));
   EXPECT_FALSE(world.cut_off(3, at(55s)));
   EXPECT_TRUE(world.cut_off(3, at(55001ms)));
 }

@@ -45,23 +45,24 @@ class Fields {
   requires std::is_integral_v<T> || std::is_enum_v<T>
   void add(T value) { texts.push_back(std::to_string(static_cast<std::uint64_t>(value))); }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  void add(const Eigen::Vector2d& x_m) { add_all(x_m.x(), x_m.y()); }
-  void add(const std::vector<Eigen::Vector2d>& places_m) {
+  // A plan says no z yet.
+  void add(const Eigen::Vector3d& x_m) { add_all(x_m.x(), x_m.y()); }
+  void add(const std::vector<Eigen::Vector3d>& places_m) {
     std::string all;
-    for (const Eigen::Vector2d& x_m : places_m) all += text_of(x_m.x()) + text_of(x_m.y());
+    for (const Eigen::Vector3d& x_m : places_m) all += text_of(x_m.x()) + text_of(x_m.y());
     texts.push_back(all);
   }
   void add(const Coefficients& values) {
-    std::string all = std::to_string(values.rows());
-    for (const double value : values.reshaped<Eigen::RowMajor>()) all += text_of(value);
+    std::string all = std::to_string(values.size());
+    for (const double value : values) all += text_of(value);
     texts.push_back(all);
   }
-  void add(const Rectangle& rectangle) {
-    const auto& [origin, size] = rectangle;
+  void add(const Box& box) {
+    const auto& [origin, size] = box;
     add_all(origin, size);
   }
   void add(const Basis& basis) {
-    const auto& [modes_x, modes_y, form, exponent, normalized] = basis;
+    const auto& [modes_x, modes_y, modes_z, form, exponent, normalized] = basis;
     add_all(modes_x, modes_y, form, exponent, normalized);
   }
   void add(const ControlLaw& law) {
@@ -116,10 +117,10 @@ TEST(Plan, CarriesEachSwitchByItself) {
 
 TEST(Plan, CarriesZerosOfEitherSign) {
   Mission mission = rich_mission();
-  mission.domain.origin_m = {0, -0.0};
-  mission.starts_m[0] = {-0.0, 0};
+  mission.domain.origin_m = {0, -0.0, 0};
+  mission.starts_m[0] = {-0.0, 0, 0};
   mission.radio_range_m = mission.speed_limit_mps = mission.goal_ergodic_metric = 0;
-  mission.target_coefficients(1, 1) = -0.0;
+  mission.target_coefficients[3] = -0.0;
   expect_travels(mission);
 }
 
@@ -136,9 +137,9 @@ TEST(Plan, OfTheLargestMissionFitsItsMessages) {
   Mission mission = rich_mission();
   mission.name = std::string(kMaxNameLength, 'x');
   mission.basis.modes_x = mission.basis.modes_y = kMaxModesPerAxis;
-  mission.target_coefficients = Coefficients::Constant(kMaxModesPerAxis, kMaxModesPerAxis, 0.7);
-  mission.target_coefficients(0, 0) = 1;
-  mission.starts_m.assign(kMaxAgents, {17.5, 20.5});
+  mission.target_coefficients = Coefficients::Constant(kMaxModesPerAxis * kMaxModesPerAxis, 0.7);
+  mission.target_coefficients[0] = 1;
+  mission.starts_m.assign(kMaxAgents, {17.5, 20.5, 0});
   mission.quorum = kMaxAgents;
   mission.timing.tick_count = 80'000'000;
   mission.timing.broadcast_period_ticks = mission.timing.catch_up_limit_ticks = 1000;

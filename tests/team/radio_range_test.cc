@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-const std::vector<Eigen::Vector2d> kPlaces{{0, 0}, {300, 400}, {300, 401}};
+const std::vector<Eigen::Vector3d> kPlaces{{0, 0, 0}, {300, 400, 0}, {300, 401, 0}};
 
 RadioRange radio_of(double range_m) {
   RadioRange radio(range_m);
@@ -51,7 +51,7 @@ TEST(RadioRange, HidesNobodyWhosePlaceIsNotKnown) {
 
 TEST(RadioRange, GoesByTheNewestPlaces) {
   RadioRange radio = radio_of(500);
-  radio.on(world_state(6, {{0, 0}, {0, 900}, {0, 10}}));
+  radio.on(world_state(6, {{0, 0, 0}, {0, 900, 0}, {0, 10, 0}}));
   EXPECT_FALSE(radio.hears(0, 1));
   EXPECT_TRUE(radio.hears(0, 2));
   radio.on(world_state(5, kPlaces));
@@ -60,7 +60,7 @@ TEST(RadioRange, GoesByTheNewestPlaces) {
 
 TEST(RadioRange, TakesAWorldInParts) {
   RadioRange radio(500);
-  WorldState first = world_state(7, {{0, 0}}), second = world_state(7, {{0, 600}});
+  WorldState first = world_state(7, {{0, 0, 0}}), second = world_state(7, {{0, 600, 0}});
   second.vehicles[0].id = 16;
   radio.on(second);
   radio.on(first);

@@ -11,13 +11,13 @@ inline Mission rich_mission() {
   Mission mission;
   mission.name = "rich";
   mission.seed = ~std::uint64_t{0};
-  mission.domain = {{-3, 4}, {101, 52}};
+  mission.domain = {{-3, 4, 0}, {101, 52, 0}};
   mission.basis = {.modes_x = 3,
                    .modes_y = 2,
                    .sobolev_form = SobolevForm::kNorm,
                    .sobolev_exponent = 1.75,
                    .normalized = true};
-  mission.target_coefficients = Coefficients(3, 2);
+  mission.target_coefficients = Coefficients(6);
   mission.target_coefficients << 1, 0.1, -0.2, 0.3, -0.4, 0.55;
   mission.law = {.u_max_mps = 5.5,
                  .regularization = Regularization::kRelative,
@@ -26,7 +26,7 @@ inline Mission rich_mission() {
                  .noise_intensity = 0.75,
                  .noise_ceiling = 1.5,
                  .contraction_gain_per_s = 0.0002,
-                 .contraction_center_m = {33, 34},
+                 .contraction_center_m = {33, 34, 0},
                  .anticipation = 3.5,
                  .ends_with_plan = true,
                  .paired_pushes = true};
@@ -40,7 +40,7 @@ inline Mission rich_mission() {
                     .admission_timeout_s = 31,
                     .catch_up_limit_ticks = 6,
                     .on_timeout = OnTimeout::kEvict};
-  mission.starts_m = {{17, 20}, {18, 21}};
+  mission.starts_m = {{17, 20, 0}, {18, 21, 0}};
   mission.quorum = 2;
   mission.forget_silent_after_s = 12;
   mission.goal_ergodic_metric = 0.03;

@@ -49,15 +49,15 @@ class Whole {
   double operator()(const Paths& velocities, Paths& slope) const {
     const double dt_s = mission_.timing.dt_s;
     std::vector<BasisAt> places;
-    Coefficients coverage = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
-    std::vector<Eigen::Vector2d> x_m = mission_.starts_m;
+    Coefficients coverage = Coefficients::Zero(mission_.basis.mode_count());
+    std::vector<Eigen::Vector3d> x_m = mission_.starts_m;
     const double share = 1.0 / static_cast<double>(velocities.size() * x_m.size());
     places.reserve(velocities.size() * x_m.size());
     for (const Eigen::Matrix2Xd& v_mps : velocities) {
       for (std::size_t i = 0; i < x_m.size(); ++i) {
         places.emplace_back(x_m[i], mission_.domain, mission_.basis);
         accumulate_basis(places.back(), mission_.basis, share, coverage.data());
-        x_m[i] += v_mps.col(static_cast<Eigen::Index>(i)) * dt_s;
+        x_m[i].head<2>() += v_mps.col(static_cast<Eigen::Index>(i)) * dt_s;
       }
     }
     const Coefficients residual = weights_.cwiseProduct(coverage - mission_.target_coefficients);
@@ -68,7 +68,8 @@ class Whole {
       for (std::size_t i = 0; i < x_m.size(); ++i) {
         later.col(static_cast<Eigen::Index>(i)) +=
             2 * share * dt_s *
-            weighted_gradient(places[t * x_m.size() + i], mission_.basis, residual.data());
+            weighted_gradient(places[t * x_m.size() + i], mission_.basis, residual.data())
+                .head<2>();
       }
     }
     return ergodic_metric(coverage, mission_.target_coefficients, weights_);
@@ -126,7 +127,7 @@ std::pair<Paths, double> flight_of_the_law(const Mission& mission) {
 
 /// Another velocity for each agent every L / u_max / 10.
 Paths random_flight(const Mission& mission) {
-  const double held_s = mission.domain.size_m.minCoeff() / mission.law.u_max_mps / 10;
+  const double held_s = mission.domain.shortest_side_m() / mission.law.u_max_mps / 10;
   const auto held = std::max<Tick>(1, std::llround(held_s / mission.timing.dt_s));
   const auto agents = static_cast<Eigen::Index>(mission.starts_m.size());
   Paths velocities;

@@ -31,22 +31,22 @@ class Draw {
   }
   double decades(double low, double high) { return std::pow(10, between(std::log10(low), std::log10(high))); }
   int whole(int low, int high) { return std::min(high, static_cast<int>(between(low, high + 1))); }
-  Eigen::Vector2d in(const Rectangle& domain) {
+  Eigen::Vector3d in(const Box& domain) {
     const double x = between(0, domain.size_m.x()), y = between(0, domain.size_m.y());
-    return domain.origin_m + Eigen::Vector2d(x, y);
+    return domain.origin_m + Eigen::Vector3d(x, y, 0);
   }
 
  private:
   std::uint64_t seed_, step_ = 0;
 };
 
-TargetDensity random_target(Draw& draw, const Rectangle& domain) {
+TargetDensity random_target(Draw& draw, const Box& domain) {
   TargetDensity target;
   target.uniform_weight = draw.between(0, 1);
   for (int count = draw.whole(0, 4); count > 0; --count) {
-    const double sigma_m = draw.between(0.03, 0.3) * domain.size_m.minCoeff();
-    target.gaussians.push_back(
-        {draw.between(0.1, 1), draw.in(domain), sigma_m * sigma_m * Eigen::Matrix2d::Identity()});
+    const double sigma_m = draw.between(0.03, 0.3) * domain.shortest_side_m();
+    target.gaussians.push_back({draw.between(0.1, 1), draw.in(domain).head<2>(),
+                                sigma_m * sigma_m * Eigen::Matrix2d::Identity()});
   }
   return target;
 }
@@ -105,12 +105,11 @@ Mission driven_outward(const ControlLaw& law, double dt_s, double duration_s) {
   mission.law.epsilon = 0;
   // u points along x for as long as c_1 > −1 = μ_1 and 0 < x < Lx: the domain is wide enough for both.
   const double reach = reach_m(law) + 20 * law.noise_intensity / std::sqrt(law.contraction_gain_per_s);
-  mission.domain.size_m = Eigen::Vector2d::Constant(8 * reach);
-  mission.law.contraction_center_m = {3 * reach, 4 * reach};
+  mission.domain.size_m = {8 * reach, 8 * reach, 0};
+  mission.law.contraction_center_m = {3 * reach, 4 * reach, 0};
   mission.starts_m = {mission.law.contraction_center_m};
   mission.basis.modes_x = 2;
-  mission.target_coefficients = Coefficients(2, 1);
-  mission.target_coefficients << 1, -1;
+  mission.target_coefficients = Coefficients{{1, -1}};
   mission.timing.dt_s = dt_s;
   mission.timing.tick_count = std::lround(duration_s / dt_s);
   return mission;
@@ -128,7 +127,7 @@ double continuous_bound_m(const Mission& mission, double start_m, Tick n) {
 
 Contraction contraction_of(const Mission& mission, lab::Edges edges) {
   constexpr double kUnitsPerStep = 8;
-  const Eigen::Vector2d center_m = mission.law.contraction_center_m;
+  const Eigen::Vector3d center_m = mission.law.contraction_center_m;
   lab::IdealTeam team(mission, edges);
   Contraction result;
   double largest_m = std::max(center_m.cwiseAbs().maxCoeff(), 1.0);
@@ -153,13 +152,14 @@ Mission random_mission(std::uint64_t seed) {
   Draw draw(seed);
   Mission mission;
   mission.seed = seed;
-  mission.domain.size_m = {draw.decades(10, 5000), draw.decades(10, 5000)};
-  mission.domain.origin_m = {draw.between(-1000, 1000), draw.between(-1000, 1000)};
+  mission.domain.size_m = {draw.decades(10, 5000), draw.decades(10, 5000), 0};
+  mission.domain.origin_m = {draw.between(-1000, 1000), draw.between(-1000, 1000), 0};
   mission.basis.modes_x = draw.whole(1, 12);
   mission.basis.modes_y = draw.whole(1, 12);
   mission.basis.sobolev_exponent = draw.between(0.5, 2);
+  const TargetDensity target = random_target(draw, mission.domain);
   mission.target_coefficients =
-      target_coefficients(random_target(draw, mission.domain), mission.domain, mission.basis).values;
+      in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values);
   mission.timing.dt_s = draw.decades(0.01, 1);
   mission.timing.tick_count = 500;
   ControlLaw& law = mission.law;

@@ -23,13 +23,13 @@ double share_within(double r, int dimensions) {
 
 std::span<const Start> starts() {
   static const Start kStarts[] = {
-      {"corner", "origin", {0, 0}, {0, 0}},
-      {"axis-x", "axis x = 0", {0, 300}, {0, 0}},
-      {"axis-y", "axis y = 0", {300, 0}, {0, 0}},
-      {"midline-x", "midline x = Lx/2", {1000, 300}, {1000, 1000}},
-      {"midline-y", "midline y = Ly/2", {300, 1000}, {1000, 1000}},
-      {"diagonal", "diagonal y = x", {300, 300}, {0, 0}},
-      {"antidiagonal", "diagonal y = Lx − x", {300, 1700}, {1000, 1000}},
+      {"corner", "origin", {0, 0, 0}, {0, 0, 0}},
+      {"axis-x", "axis x = 0", {0, 300, 0}, {0, 0, 0}},
+      {"axis-y", "axis y = 0", {300, 0, 0}, {0, 0, 0}},
+      {"midline-x", "midline x = Lx/2", {1000, 300, 0}, {1000, 1000, 0}},
+      {"midline-y", "midline y = Ly/2", {300, 1000, 0}, {1000, 1000, 0}},
+      {"diagonal", "diagonal y = x", {300, 300, 0}, {0, 0, 0}},
+      {"antidiagonal", "diagonal y = Lx − x", {300, 1700, 0}, {1000, 1000, 0}},
   };
   return kStarts;
 }

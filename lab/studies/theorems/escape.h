@@ -16,7 +16,7 @@ namespace ergocast::studies {
 struct Start {
   std::string name;
   std::string set;  ///< as Proposition 1 writes it
-  Eigen::Vector2d x_m, center_m;
+  Eigen::Vector3d x_m, center_m;
 };
 /// On each set of Proposition 1, in the square of the paper's figures.
 std::span<const Start> starts();

@@ -87,7 +87,11 @@ std::span<const InvariantSet> invariant_sets() {
 
 Mission classical(const InvariantSet& set, Mission mission, std::uint64_t seed) {
   mission.law.epsilon = mission.law.noise_intensity = mission.law.contraction_gain_per_s = 0;
-  mission.starts_m = set.team(uniform_pair(seed, Purpose::kStart, 0, 0), mission.domain);
+  mission.starts_m.clear();
+  const Share share = uniform_pair(seed, Purpose::kStart, 0, 0);
+  for (const Eigen::Vector2d& x_m : set.team(share, base_of(mission.domain))) {
+    mission.starts_m.push_back(on_ground(x_m));
+  }
   return mission;
 }
 
@@ -97,17 +101,20 @@ NormalResidual normal_residual(const Mission& mission, Tick tick) {
   lab::IdealTeam team(mission);
   while (team.tick() <= tick) team.step();
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
+  const Coefficients difference = team.coverage() - mission.target_coefficients;
   const Eigen::Vector2d across = set->normal.isZero() ? Eigen::Vector2d(1, 1) : set->normal.cwiseAbs();
-  const Eigen::Vector2d wave = std::numbers::pi * across.cwiseQuotient(mission.domain.size_m);
+  const Eigen::Vector2d wave =
+      std::numbers::pi * across.cwiseQuotient(mission.domain.size_m.head<2>());
   double size = 0;
   for (int m = 0; m < mission.basis.modes_x; ++m) {
     for (int n = 0; n < mission.basis.modes_y; ++n) {
-      size += std::abs(weights(m, n) * (team.coverage()(m, n) - mission.target_coefficients(m, n))) *
-              (m * wave.x() + n * wave.y());
+      const int k = m * mission.basis.modes_y + n;
+      size += std::abs(weights[k] * difference[k]) * (m * wave.x() + n * wave.y());
     }
   }
-  const double b = team.b(0).norm();
-  const double normal = set->normal.isZero() ? b : std::abs(team.b(0).dot(set->normal));
+  const Eigen::Vector2d field = team.b(0).head<2>();
+  const double b = field.norm();
+  const double normal = set->normal.isZero() ? b : std::abs(field.dot(set->normal));
   return {normal / (0x1p-53 * size), b > 0 ? normal / b : 0};
 }
 

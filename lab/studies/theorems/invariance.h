@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/mission.h"
+#include "target/rectangle.h"
 
 namespace ergocast::studies {
 

@@ -25,10 +25,6 @@ Eigen::VectorXd slopes_along(const Eigen::Vector2d& normal, const BasisAt& at, c
   return slopes;
 }
 
-Eigen::VectorXd weights_of(const Mission& mission) {
-  return sobolev_weights(mission.basis, mission.domain).reshaped<Eigen::RowMajor>();
-}
-
 }  // namespace
 
 Normal normal_of(const Mission& mission) {
@@ -42,38 +38,39 @@ Normal normal_of(const Mission& mission) {
 
 std::vector<LinearStep> linearised(const Mission& mission, Tick steps) {
   const Eigen::Vector2d normal = normal_of(mission).direction;
-  const Eigen::Vector2d start_m = mission.starts_m.front();
+  const Eigen::Vector3d start_m = mission.starts_m.front();
   Mission noise_free = mission;
   noise_free.law.noise_intensity = 0;
   const double dt_s = mission.timing.dt_s;
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
-  Coefficients sums = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  Coefficients sums = Coefficients::Zero(mission.basis.mode_count());
   Controller controller(noise_free);
-  Eigen::Vector2d x_m = start_m;
+  Eigen::Vector3d x_m = start_m;
   std::vector<LinearStep> result;
   for (Tick tick = 0; tick < steps; ++tick) {
     const BasisAt at(x_m, mission.domain, mission.basis);
     accumulate_basis(at, mission.basis, 1, sums.data());
     const Coefficients coverage = sums / static_cast<double>(tick + 1);
     controller.see(coverage);
-    const Eigen::Vector2d v_mps = controller.command(0, tick, x_m, at);
+    const Eigen::Vector3d v_mps = controller.command(0, tick, x_m, at);
     const double length = std::hypot(controller.spectral_gradient().norm(), controller.epsilon());
     const Coefficients residual = weights.cwiseProduct(coverage - mission.target_coefficients);
     const Eigen::Matrix2d hessian =
-        weighted_field(at, mission.basis, mission.domain, residual.data()).hessian;
+        weighted_field(at, mission.basis, mission.domain, residual.data())
+            .hessian.topLeftCorner<2, 2>();
     const double gain = mission.law.u_max_mps / length;
     result.push_back({-gain * normal.dot(hessian * normal) - mission.law.contraction_gain_per_s,
                       gain * dt_s / static_cast<double>(tick + 1),
                       slopes_along(normal, at, mission.basis)});
     x_m = reflect(x_m + v_mps * dt_s, mission.domain);
-    x_m -= normal * normal.dot(x_m - start_m);
+    x_m.head<2>() -= normal * normal.dot((x_m - start_m).head<2>());
   }
   return result;
 }
 
 std::vector<double> spread(const std::vector<LinearStep>& steps, const Mission& mission, Past past) {
   const double dt_s = mission.timing.dt_s;
-  const Eigen::VectorXd weights = weights_of(mission);
+  const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   // Covariances of δ and of the sums D_k = Σ g_ik δ_i.
   double variance = 0;
   Eigen::VectorXd with_sums = Eigen::VectorXd::Zero(weights.size());
@@ -107,7 +104,7 @@ std::vector<double> spread(const std::vector<LinearStep>& steps, const Mission& 
 std::vector<double> deviation(const std::vector<LinearStep>& steps, const Mission& mission) {
   const double dt_s = mission.timing.dt_s;
   const Eigen::Vector2d normal = normal_of(mission).direction;
-  const Eigen::VectorXd weights = weights_of(mission);
+  const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(weights.size());
   double off_m = 0;
   std::vector<double> result = {off_m};

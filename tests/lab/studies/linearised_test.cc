@@ -25,8 +25,8 @@ Mission noisy(const Start& start, std::uint64_t seed) {
   return mission;
 }
 
-double off_set(const Mission& mission, const Eigen::Vector2d& x_m) {
-  return (x_m - mission.starts_m.front()).dot(normal_of(mission).direction);
+double off_set(const Mission& mission, const Eigen::Vector3d& x_m) {
+  return (x_m - mission.starts_m.front()).head<2>().dot(normal_of(mission).direction);
 }
 
 class FromEverySet : public ::testing::TestWithParam<int> {

@@ -26,24 +26,24 @@ Scenario shipped(const std::string& name, double duration_s) {
 Mission hand_made() {
   Mission mission;
   mission.seed = 9;
-  mission.domain = {{0, 0}, {100, 200}};
+  mission.domain = {{0, 0, 0}, {100, 200, 0}};
   mission.timing.dt_s = 1;
   mission.timing.tick_count = 11;
-  mission.law.contraction_center_m = {50, 100};
-  mission.starts_m = {{50, 30}, {31, 17}};
+  mission.law.contraction_center_m = {50, 100, 0};
+  mission.starts_m = {{50, 30, 0}, {31, 17, 0}};
   return mission;
 }
 
 TEST(StudyMeasure, MeasuresOffsetsEdgesAndSpeeds) {
   const Mission mission = hand_made();
   StudyMeasure measure(mission);
-  measure.position(0, 0, {50, 30});       // 70 m off the centre
-  measure.position(1, 0, {50, 100});      // on it
-  measure.position(0, 1, {0.0999, 100});  // nearer to the left edge than 0.1 m
-  measure.position(1, 1, {50, 199.89});   // not so near to the upper one
-  measure.command({3, 4});
-  measure.command({0, 0});
-  measure.command({0, 1});
+  measure.position(0, 0, {50, 30, 0});       // 70 m off the centre
+  measure.position(1, 0, {50, 100, 0});      // on it
+  measure.position(0, 1, {0.0999, 100, 0});  // nearer to the left edge than 0.1 m
+  measure.position(1, 1, {50, 199.89, 0});   // not so near to the upper one
+  measure.command({3, 4, 0});
+  measure.command({0, 0, 0});
+  measure.command({0, 1, 0});
   const StudyFigures figures = measure.figures();
   EXPECT_EQ(figures.seed, 9U);
   EXPECT_EQ(figures.agents, 2);
@@ -60,8 +60,8 @@ TEST(StudyMeasure, EscapeIsTheFirstTimeFartherThanOnePercentOfTheShorterSide) {
   StudyMeasure measure(mission);
   const double x_m[] = {50, 51, 51.0001, 50, 60};
   for (Tick tick = 0; tick < 5; ++tick) {
-    measure.position(0, tick, {x_m[tick], 30 + 10.0 * static_cast<double>(tick)});
-    measure.position(1, tick, {x_m[tick], 17});
+    measure.position(0, tick, {x_m[tick], 30 + 10.0 * static_cast<double>(tick), 0});
+    measure.position(1, tick, {x_m[tick], 17, 0});
   }
   EXPECT_EQ(measure.figures().escape_time_s[0], 2);
   EXPECT_TRUE(std::isnan(measure.figures().escape_time_s[1])) << "its start lies on no manifold";
@@ -71,8 +71,8 @@ TEST(StudyMeasure, EscapeIsTheFirstTimeFartherThanOnePercentOfTheShorterSide) {
 TEST(StudyMeasure, WhoStaysOnTheManifoldHasNotEscaped) {
   const Mission mission = hand_made();
   StudyMeasure measure(mission);
-  measure.position(0, 0, {50, 30});
-  measure.position(0, 1, {50.9, 180});
+  measure.position(0, 0, {50, 30, 0});
+  measure.position(0, 1, {50.9, 180, 0});
   EXPECT_EQ(measure.figures().escape_time_s[0], std::numeric_limits<double>::infinity());
 }
 
@@ -82,7 +82,7 @@ TEST(StudyMeasure, NotesTheMetricAtTheFirstTickOfEachStepOfTheLadderAndAtTheEnd)
   mission.timing.tick_count = 51;  // up to 15 s
   StudyMeasure measure(mission);
   for (Tick tick = 0; tick < 51; ++tick) {
-    measure.position(0, tick, {50, 30});
+    measure.position(0, tick, {50, 30, 0});
     if (measure.wants_metric(tick)) measure.metric(tick, 100 + static_cast<double>(tick));
   }
   const StudyFigures figures = measure.figures();
@@ -100,7 +100,7 @@ TEST(StudyMeasure, ATimeThatTheStepDividesIsThatTick) {
   mission.timing.dt_s = 0.1;
   mission.timing.tick_count = 10001;
   StudyMeasure measure(mission);
-  measure.position(0, 0, {50, 30});
+  measure.position(0, 0, {50, 30, 0});
   for (Tick tick = 0; tick < 10001; ++tick) {
     if (measure.wants_metric(tick)) measure.metric(tick, static_cast<double>(tick));
   }
@@ -114,7 +114,7 @@ TEST(StudyMeasure, SlopeIsThePowerOfTheLastDecade) {
   StudyMeasure measure(mission);
   int asked = 0;
   for (Tick tick = 0; tick < 1001; ++tick) {
-    measure.position(0, tick, {50, 30});
+    measure.position(0, tick, {50, 30, 0});
     if (!measure.wants_metric(tick)) continue;
     const auto t = static_cast<double>(tick);
     measure.metric(tick, t < 100 ? 1 : std::pow(t / 100, -1.5));
