@@ -52,8 +52,7 @@ class Liveness {
   /// Records a message that its sender has transmitted itself.
   /// @param is_sign  whether it is a sign of life if it is fresh
   /// @return whether it is fresh: its sender has sent neither this nor a later message in this
-  /// incarnation
-  ///   on this bus. Beyond kMostLives incarnations, messages of further ones are never fresh.
+  ///   incarnation on this bus. Messages of incarnations beyond kMostLives are never fresh.
   bool record(const Header& from, Bus bus, Instant now, bool is_sign = true);
 
   /// Counts an incarnation as alive at `now`, for example after its admission. It gets a place even
