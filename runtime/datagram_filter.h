@@ -25,11 +25,8 @@ inline constexpr std::uint32_t kShareThatPasses = 32;
 /// at once; a dropped datagram would be counted as lost for want of buffer space. Needs no
 /// privileges. False if the kernel cannot do it: the old filter then stays.
 /// @param flooded  messages of these incarnations up to their newest sequences are dropped, except
-///                 for a
-///                 share. The kernel counts them as lost for want of buffer space. Incarnations are
-///                 compared by 32 of their bits.
-///                 The kernel counts that as lost for want of buffer space. Lives are told apart by 32
-///                 of their bits.
+///                 for a share. The kernel counts them as lost for want of buffer space.
+///                 Incarnations are compared by 32 of their bits.
 bool admit_only_our_channels(int socket, std::span<const Repeated> flooded = {});
 
 }  // namespace ergocast
