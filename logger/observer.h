@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// φ² of the team as an outside observer sees it: from where the vehicles really were.
+// φ² of the team for an outside observer, computed from the true positions of the vehicles.
 #pragma once
 
 #include "core/basis.h"
@@ -9,14 +9,14 @@ namespace ergocast {
 
 class Observer {
  public:
-  /// Nothing is covered yet.
+  /// Begins with no coverage.
   void begin(const Mission& mission) {
     weights_ = sobolev_weights(mission.basis, mission.domain);
     sums_s_ = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
   }
   bool begun() const { return weights_.size() > 0; }
 
-  /// A member was at `x_m` for a tick. Places outside of the domain cover nothing.
+  /// Adds a member at `x_m` for one tick. Positions outside the domain cover nothing.
   void see(const Mission& mission, const Eigen::Vector2d& x_m) {
     if (!mission.domain.contains(x_m)) return;
     accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis, mission.timing.dt_s,
@@ -25,7 +25,7 @@ class Observer {
   }
   bool has_seen_any() const { return covered_s_ > 0; }
 
-  /// φ² of what was covered. @pre has_seen_any()
+  /// φ² of the coverage so far. @pre has_seen_any()
   double metric(const Mission& mission) const {
     return ergodic_metric(sums_s_ / covered_s_, mission.target_coefficients, weights_);
   }
