@@ -15,10 +15,9 @@ constexpr double kTitled = 30, kLegend = 48;  // room above it
 constexpr double kSide = 424;                 // of a map that shares its row with another
 constexpr double kWholeRow = 990;
 constexpr double kMostCells = 128;                 // along the longer side of a field
-constexpr double kFewestCells = kMaxModesPerAxis;  // so that no mode is mistaken for another
+constexpr double kFewestCells = kMaxModesPerAxis;  // so that modes do not alias
 
-/// The largest box of the proportions of `size` in kSide × `width`; never thinner than what can
-/// carry labels.
+/// The largest box with the proportions of `size` in kSide × `width`, but wide enough for labels.
 Box fitted(double top, double width, const Eigen::Vector2d& size) {
   constexpr double kThinnest = 60;
   const double scale = std::min(width / size.x(), kSide / size.y());
@@ -58,7 +57,7 @@ Field sample(const Rectangle& domain, const Value& value) {
   return field;
 }
 
-/// Σ a_k f_k / mean(f_k²): what the coefficients say of the density, in multiples of uniform.
+/// Σ a_k f_k / mean(f_k²): the density of the coefficients, in multiples of uniform.
 Field reconstruction(const Coefficients& coefficients, const Mission& mission) {
   Coefficients weights = coefficients;
   weights.bottomRows(weights.rows() - 1) *= 2;  // mean(cos²) = ½ along each axis that varies
@@ -71,11 +70,11 @@ Field reconstruction(const Coefficients& coefficients, const Mission& mission) {
 // --- trajectories ---
 
 constexpr std::size_t kMostTrackPoints = 50'000;  // together; about 7 bytes each
-constexpr double kUnseen = 0.15;                  // a deviation in pixels that nobody sees
+constexpr double kUnseen = 0.15;                  // an invisible deviation in pixels
 
 struct DrawnTracks {
   std::map<AgentId, Polyline> lines;
-  double from_s = 0;  ///< what came before is left out
+  double from_s = 0;  ///< earlier points are left out
   std::size_t points = 0;
   double length = 0;
 };
@@ -96,7 +95,7 @@ DrawnTracks draw_tracks(const RunData& run, const Plot& plot, double from_s) {
   return drawn;
 }
 
-/// All of the tracks, or of very long ones as much of the end as fits.
+/// All tracks; of very long ones only the end, as much as the limit allows.
 DrawnTracks draw_tracks(const RunData& run, const Plot& plot) {
   DrawnTracks drawn = draw_tracks(run, plot, 0);
   if (drawn.points <= kMostTrackPoints) return drawn;
@@ -104,13 +103,13 @@ DrawnTracks draw_tracks(const RunData& run, const Plot& plot) {
   return draw_tracks(run, plot, run.end_s() * (1 - kept));
 }
 
-/// Lines this wide cover at most about half of the ground together.
+/// At this width all lines together cover at most about half of the area.
 double stroke_width(double length, const Box& area) {
   constexpr double kInk = 0.5;
   return std::clamp(kInk * area.width * area.height / std::max(length, 1.0), 0.4, 1.6);
 }
 
-/// Lines along the edges, where classical agents are caught, are drawn in full.
+/// Lines along the edges, which classical agents follow, are drawn at full width.
 void draw_lines(Svg& svg, const DrawnTracks& tracks, const Box& area) {
   const std::string width = fixed(stroke_width(tracks.length, area), 2);
   svg.begin_clip({area.left - 1, area.top - 1, area.width + 2, area.height + 2});
@@ -140,8 +139,8 @@ void draw_ends(Svg& svg, const RunData& run, const Plot& plot) {
   }
 }
 
-/// Numbers beside the circles where colours alone do not tell the agents apart, as long as there
-/// is room for them.
+/// Draws numbers beside the circles if colours alone do not distinguish the agents, unless there
+/// are too many.
 void draw_numbers(Svg& svg, const RunData& run, const Plot& plot) {
   constexpr std::size_t kMostNumbers = 24;
   if (run.tracks.size() <= kAgentColors || run.tracks.size() > kMostNumbers) return;
@@ -209,7 +208,7 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
 
   const Field ground =
       target.size() > 0 ? target : reconstruction(mission.target_coefficients, mission);
-  // A uniform target is to look like paper, not like its own peak.
+  // A uniform target is drawn light, and not as dark as a peak.
   const double densest = std::max(2.0, ground.maxCoeff());
   plot.image(ground / densest, pencil(), true);
 
@@ -229,7 +228,7 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
   constexpr double kGap = 84;
   const Field target = reconstruction(mission.target_coefficients, mission);
   const Field achieved = reconstruction(coverage, mission);
-  // Some room above the target's own peak, for coverage that is too dense somewhere.
+  // Leaves room above the target's own peak, for coverage that is too dense in places.
   const double peak = target.maxCoeff();
   const double brightest = std::clamp(achieved.maxCoeff(), peak, 1.5 * peak);
 
