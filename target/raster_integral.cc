@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Adds the integrals of whole cells by columns, and cuts only the cells that a slanted side crosses.
+// Adds the integrals of whole cells by columns, and cuts only cells that a slanted side crosses.
 #include "target/raster_integral.h"
 
 #include <algorithm>

@@ -60,8 +60,8 @@ std::vector<double> levels_of(const std::vector<Edge>& edges, double height) {
   return levels;
 }
 
-/// Tracks which polygons a walk from left to right is inside of. A point is free if it is inside the
-/// first `wanted` polygons and outside the others.
+/// Tracks which polygons a walk from left to right is inside of. A point is free if it is inside
+/// the first `wanted` polygons and outside the others.
 class Walk {
  public:
   Walk(std::size_t polygons, std::size_t wanted) : inside_(polygons), wanted_(wanted) {}
