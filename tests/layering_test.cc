@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads every #include of the tree and holds it against the one table of who may know whom.
+// Reads every #include of the tree and compares it with the one table of allowed dependencies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ enum class Outside {
 };
 using enum Outside;
 
-/// Who may include what: a folder, or one file where it differs from its folder.
+/// The allowed includes of a folder, or of one file that differs from its folder.
 struct Rule {
   std::string_view who;
   std::set<std::string_view> folders;

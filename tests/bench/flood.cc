@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a flood of repeats costs a keyed team that flies in real time: somebody without the key
-// keeps what the team says and sends it again, word for word, so many times a second.
+// Measures what a flood of repeats costs a keyed team in real time: a process without the key
+// records the team's messages and sends them again, unchanged, so many times a second.
 //
-// Lateness depends on the machine and on what else runs there, so that a person reads it here and
-// no test decides by it. What must hold on any machine is counted in tests/process/flood_test.cc.
+// Lateness depends on the machine and its load, so a person reads it here and no test depends on
+// it. tests/process/flood_test.cc counts what must hold on any machine.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 #include <sys/resource.h>

@@ -18,11 +18,11 @@
 namespace ergocast::bench {
 namespace {
 
-/// What a real world, agent and logger do when a datagram was lost: say it again.
+/// What a real world, agent and logger do when a datagram was lost: they send it again.
 constexpr int kRepeat_ms = 20;
 constexpr int kRepeatAck_ms = 100;
 constexpr Tick kAckEveryTicks = 16;
-/// Until then everybody has opened its sockets and touched its memory.
+/// By then every process has opened its sockets and touched its memory.
 constexpr Tick kWarmUpTicks = 200;
 
 std::size_t size_of(const Message& message) {
@@ -76,7 +76,7 @@ class RawAgent {
 
   AgentId id_;
   Traffic traffic_;
-  std::vector<Tick> held_;  // newest tick of every block of everybody
+  std::vector<Tick> held_;  // newest tick of every block of every agent
   Tick tick_ = -1;
   bool answered_ = true;
   std::string contribution_, command_;

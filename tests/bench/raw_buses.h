@@ -36,7 +36,7 @@ class RawBuses {
                                         const std::vector<Bus>& listening, Handler handler);
   virtual ~RawBuses() = default;
 
-  /// Datagrams of one size, whoever carries them: a name and `bytes` bytes.
+  /// Sends a datagram of one size by any carrier: a name and `bytes` bytes.
   virtual void publish(Bus bus, const std::string& channel, const Stamp& stamp,
                        std::size_t bytes) = 0;
   /// Handles all that is there, once something is. False if nothing came for so long.

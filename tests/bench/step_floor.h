@@ -18,11 +18,11 @@ class StepFloor {
  public:
   StepFloor(const Mission& mission, int agents);
 
-  /// What teammates say: all blocks of some of them, agent after agent.
+  /// The teammates' messages: all blocks of some of them, agent after agent.
   void take(const std::vector<Contribution>& news);
 
-  /// Agent 0's command, everybody's places [m] known if the mission says so; the same as Agent's
-  /// but for rounding.
+  /// Agent 0's command, with all agents' places [m] known if the mission requires it; the same as
+  /// Agent's except for rounding.
   Eigen::Vector2d step(Tick tick, const std::vector<Eigen::Vector2d>& places_m);
 
   /// One axis: cos(m·k·x) for every mode m, its first derivative and its second.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agent 0 of a team, with what its teammates say at hand, for timing what it does with it.
+// Agent 0 of a team, with its teammates' messages prepared, for timing how it processes them.
 #pragma once
 
 #include <vector>
@@ -25,16 +25,16 @@ class StepTeam {
 
   const Mission& mission() const { return mission_; }
   Tick tick() const { return tick_; }
-  /// Where everybody is at tick(), agent 0 first.
+  /// The place of each agent at tick(), agent 0 first.
   const std::vector<Eigen::Vector2d>& places_m() const { return places_m_; }
-  /// Every block that teammates say at tick().
+  /// Every block that teammates send at tick().
   const std::vector<Contribution>& news() const { return news_; }
 
-  /// The next tick: everybody moves; the teammates add their samples and make the news.
+  /// The next tick: all agents move; the teammates add their samples and prepare their messages.
   void teammates_step();
-  /// Agent 0 takes in the news, and where everybody is.
+  /// Agent 0 takes in the teammates' messages and the places of all agents.
   void merge_news();
-  /// What agent 0 does between knowing where it is and saying how it moves.
+  /// The work of agent 0 between receiving its position and sending its command.
   Eigen::Vector2d step();
 
  private:

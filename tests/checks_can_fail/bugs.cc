@@ -88,7 +88,7 @@ void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at
 
 namespace {
 
-/// Who hears a message now, and whether a teammate repeats it.
+/// The agent that receives a message now, and whether a teammate repeats it.
 const Agent* listener;
 bool is_relayed;
 
@@ -244,7 +244,7 @@ void bug_advance(Agent* self, Instant now, Outbox& out) {
     }
   }
   if (bug("an agent repeats unasked")) relay(*self, out);
-  // As an answer to what it has heard since its last, though nobody lacked anything.
+  // As an answer to the messages since its last one, although no block was missing.
   if (bug("an agent repeats what all have") && std::any_of(out.begin(), out.end(), speaks_digest)) {
     relay(*self, out);
   }

@@ -28,7 +28,7 @@ time { duration_s: 60 }
 agents { starts { x_m: 10 y_m: 20 } }
 )";
 
-/// One mistake put into kGood, and how what is said of it begins; the line is that of `from`.
+/// One mistake put into kGood, and the beginning of its error text; the line is that of `from`.
 struct Mistake {
   std::string from, to, said;
   bool has_line = true;
@@ -264,7 +264,7 @@ class Scenarios : public OwnHost {
                        << output().substr(0, 2000);
   }
 
-  /// Keeps what was said, line by line.
+  /// Keeps the output, line by line.
   std::vector<std::string> note(const std::string& text) {
     std::istringstream lines(text);
     std::vector<std::string> all;
@@ -481,7 +481,7 @@ TEST_F(CheckCanFail, InEachOfItsFindings) {
   plant_in_the_text();
   plant_outside_the_text();
   plant_warnings();
-  // Of override_options.cc the words are those of --help.
+  // The texts of override_options.cc are those of --help.
   std::vector<std::string> sources =
       sources_in("scenario", {"scenario/assign.cc", "scenario/override_options.cc"});
   for (const std::string& file : sources_in("target")) sources.push_back(file);

@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr const char* kTeamsGroup = "239.255.76.67";
 
-/// Somebody on another host who says something again and again while the doctor listens.
+/// A sender on another host that sends repeatedly while the doctor listens.
 using Speaker = std::function<void()>;
 
 /// A host that answers the doctor's probes in its own way.
@@ -37,7 +37,7 @@ class PretendedPeer {
     std::uint32_t most = doctor::kMaxProbes;                            ///< probes it sends
     std::function<bool(std::uint32_t)> leaves_out = [](auto) { return false; };  ///< by sequence
     bool twice = false;
-    bool gossips = false;  ///< of somebody whom the doctor never hears
+    bool gossips = false;  ///< of a peer that the doctor never receives
   };
   PretendedPeer(int port, Manners manners)
       : manners_(std::move(manners)), to_(address_of(kTeamsGroup, port)), socket_(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) {
@@ -92,9 +92,9 @@ struct Plant {
   std::string set_up = "";                 ///< a shell's command on the host
   std::string url_options = "ttl=1";
   std::vector<std::string> arguments = {};
-  std::string wrapper = "";                ///< a shell's words before the program's
+  std::string wrapper = "";                ///< a shell's command before the program's
   std::vector<int> held_ports = {};        ///< by a socket of the test's, after the URL's port
-  bool alone = false;                      ///< which shares them with nobody
+  bool alone = false;                      ///< which has them for itself
   std::function<Speaker(int port)> speaker = {};  ///< made on another host
   int agents = 0;                                 ///< of ours at the same ports, that wait for a mission
   bool as_nobody = false, on_a_terminal = false;
@@ -165,7 +165,7 @@ class DoctorCanFail : public OnHosts {
     EXPECT_EQ(bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   }
 
-  /// Lets the others speak until every doctor has ended.
+  /// Lets the senders send until every doctor has ended.
   void wait_for_all() {
     EXPECT_TRUE(eventually([this] {
       for (const Speaker& speak : speakers_) speak();
@@ -319,7 +319,7 @@ TEST_F(DoctorCanFail, InEachOfItsFindings) {
   for (const char* name : {"ours", "other"}) {
     ASSERT_EQ(write_key_file(key_file(name), key_text(make_mission_key(), false)), std::nullopt);
   }
-  // Where nobody but root may look, the build may be, too.
+  // If only root may read the folder, the build may be in such a folder, too.
   fs::permissions(folder_, fs::perms::group_exec | fs::perms::others_exec, fs::perm_options::add);
   fs::copy_file(program_folder() / "ergocast", folder_ / "ergocast");
   // A host without nft, whose iptables drops.

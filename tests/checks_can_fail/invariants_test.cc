@@ -17,7 +17,7 @@ using lab::Invariant;
 
 struct Plant {
   Invariant broken;
-  const char* bug;            ///< "": none but what the options say
+  const char* bug;            ///< "": only the one in the options
   std::string faults = "";    ///< a fault file's lines
   std::string scenario = "";  ///< lines added to faulty_team's
   std::string says = "";      ///< which of several reports under that name
@@ -133,8 +133,8 @@ TEST_F(InvariantsCanFail, EachOfThem) {
   }
 }
 
-/// Plants that have the same said reach one place; another that reports under the same name needs one
-/// of its own.
+/// Plants with the same report reach one place; another place with the same report needs its own
+/// plant.
 TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   std::string sources;
   for (const std::string& file : sources_in("lab")) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each reason for which a message is refused: somebody says such a message to a team that flies, whose
-// agents count it by name, as `ergocast status` shows and their logs say.
+// Each reason for a refusal: a test process sends such a message to a flying team. The agents count
+// it by name, and `ergocast status` and their logs show it.
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
@@ -29,7 +29,7 @@ class RefusalsCanBeSeen : public FlyingMission {
     return Seal(std::get<MissionKey>(read_key_file(file)));
   }
 
-  /// Hears the mission's parts, which say its run, too.
+  /// Receives the mission's parts, which also contain its run.
   void learn_mission() {
     const auto ear = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, seal(team_), {kTypes<MissionPart>, 0, 0},
@@ -69,8 +69,8 @@ class RefusalsCanBeSeen : public FlyingMission {
     }
   }
 
-  /// More former lives of one agent than a table has rows for, and a word of each. Whoever has the
-  /// coordinator's key can say that.
+  /// More former incarnations of one agent than a table has rows for, and a message of each. The
+  /// coordinator's key is enough to send that.
   void crowd() {
     constexpr int kLives = kMaxIncarnationsPerAgent + 1;
     constexpr AgentId kMany = 99;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each thing that `ergocast verify` can say, by a record that has been falsified so.
+// Each result that `ergocast verify` can report, produced by a record that was falsified for it.
 #include <functional>
 #include <span>
 #include <sstream>
@@ -159,7 +159,7 @@ std::vector<Lie> lies_of_the_sources() {
       {"report.html:", 1, [](const fs::path& run) { edit(run / "report.html", [](std::string& text) { text += "!"; }); }},
       {"scenario.textproto           is not there", 0,
        [](const fs::path& run) { fs::remove(run / "scenario.textproto"); }},
-      // As a logger by hand leaves it, which has heard the plan and no more.
+      // As a manually started logger leaves it, which has received only the plan.
       {"all but the target, which it lacks", 0,
        [](const fs::path& run) {
          write(run / "scenario.textproto", mission_text(plan_in(run)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small tokenizer of C++ collects the texts that a function puts together, and looks for them
-// in what was said.
+// A small tokenizer of C++ collects the texts that a function puts together, and searches for them
+// in the output.
 #include "tests/checks_can_fail/words.h"
 
 #include <algorithm>
@@ -121,7 +121,7 @@ class Branches {
   int depth_ = 1000, begun_ = -1;  // a statement may end in more blocks than it began in
 };
 
-/// One file, and who says what in it.
+/// One file, and the texts of each function in it.
 struct Reader {
   std::string path;
   Tokens tokens;
@@ -171,7 +171,7 @@ struct Reader {
     }
   }
 
-  /// Whether what stands at `i` only is looked for, not said.
+  /// Whether the text at `i` is only searched for, and not printed.
   bool is_asked_for(std::size_t i) const {
     static const std::set<std::string> kAsking = {"starts_with", "ends_with", "find",  "contains",
                                                   "sound",       "getenv",    "at",    "value",
@@ -245,7 +245,7 @@ std::map<std::string, std::vector<Saying>> words_by_function(const std::vector<R
   return lists;
 }
 
-/// Calls that pass nothing but a name to a function that speaks: the name has to be in what it says.
+/// Calls that pass only a name to a function with texts: the name must be in its output.
 std::vector<Saying> sayings_of_calls(const Reader& reader,
                                      const std::map<std::string, std::vector<Saying>>& words) {
   std::vector<Saying> sayings;

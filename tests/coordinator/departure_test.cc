@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents that leave, and coverage that is forgotten: what the roster says of those who are gone.
+// Agents that leave, and coverage that is forgotten: the roster entries of former members.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -80,7 +80,7 @@ Mission forgetful(Pace pace = Pace::kRealtime) {
   return mission;
 }
 
-/// One agent is heard at `now`; nobody else is.
+/// Only one agent sends a status at `now`.
 void speaks(Coordinator& coordinator, const Author& author, Instant now) {
   AgentStatus status = status_of(author.agent, now.time_since_epoch().count() + 1);
   status.header.incarnation = author.incarnation;
@@ -95,7 +95,7 @@ WorldState flown_by(std::int64_t revision, Tick tick) {
   return world;
 }
 
-/// A coordinator whose agent 1 has been silent for 20 s at tick 50; the newest revision is said.
+/// A coordinator whose agent 1 has been silent for 20 s at tick 50; the newest revision was sent.
 Coordinator with_1_forgotten(Pace pace = Pace::kRealtime) {
   Coordinator coordinator = running_coordinator(forgetful(pace));
   give(coordinator, flown_by(1, 50), at(1s));

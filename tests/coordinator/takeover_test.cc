@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A coordinator that finds a mission already flying: it listens, takes over what the agents
-// remember, and never speaks against another.
+// A coordinator that finds a mission already under way: it listens, takes over what the agents
+// know, and never competes with another coordinator.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -320,7 +320,7 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
     advance(coordinator, at(700ms));
     ASSERT_TRUE(coordinator.took_over());
     EXPECT_EQ(coordinator.tick(), 12);
-    // The restarted agent's former life covered twelve ticks, not none.
+    // The restarted agent's former incarnation covered twelve ticks, not none.
     give(coordinator, hello_of(1, 99), at(5s));
     ASSERT_EQ(coordinator.roster().size(), 3u);
     const auto former = std::find_if(coordinator.roster().begin(), coordinator.roster().end(),

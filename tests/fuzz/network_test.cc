@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team that flies in real time while somebody throws damaged datagrams at its buses: nobody dies,
+// An adversary sends damaged datagrams to the buses of a team in real time: no process dies,
 // nothing is accepted, and the mission is flown to its end.
 //
 // A short run asserts no time. A long one, which prints how many deadlines were missed with and

@@ -31,7 +31,7 @@ enum Features : std::uint8_t {
 /// A short mission that two agents fly, with these features.
 Mission mission_with(std::uint8_t features);
 
-/// Who `message` is heard from if `transmitter` claims to have sent it: only contributions are
+/// The transmitter of `message` if `transmitter` claims to have sent it: only contributions are
 /// relayed.
 AgentId transmitter_in(const Message& message, AgentId transmitter);
 
@@ -45,12 +45,12 @@ class SmallTeam {
  public:
   explicit SmallTeam(std::uint8_t features);
 
-  /// A stranger's datagram, as the transport would hand it on.
+  /// An attacker's datagram, as the transport would pass it on.
   void hear(std::span<const std::byte> datagram, AgentId transmitter);
-  /// Time goes on, and everybody does what is due and hears the others.
+  /// Time passes; every process does its due work and receives the others' messages.
   void pass(std::chrono::nanoseconds time);
 
-  /// Aborts if what anybody holds or has written cannot be.
+  /// Aborts if any process holds or has written something impossible.
   void check() const;
 
   /// Sees every datagram that the team sends.

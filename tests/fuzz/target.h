@@ -21,7 +21,7 @@ using Input = std::span<const std::uint8_t>;
 struct Target {
   const char* name;
   void (*run)(Input);
-  /// Changes the first `size` of `space` bytes as only who knows the format can; the new size.
+  /// Changes the first `size` of `space` bytes with knowledge of the format; returns the new size.
   std::size_t (*mutate)(std::span<std::uint8_t> space, std::size_t size,
                         std::uint64_t seed) = nullptr;
 };

@@ -62,7 +62,7 @@ void Vandal::take(int bus, std::span<const std::uint8_t> datagram) {
   if (sent_ == 0 && heard_.size() < kMostKept) heard_.push_back(std::move(packet));
 }
 
-/// The packet with one to four things changed, so that it is not what anybody has said.
+/// The packet with one to four changes, so that it differs from all recorded ones.
 Vandal::Packet Vandal::damaged(const Packet& original) {
   Packet packet = original;
   const std::size_t size = packet.message.size();
@@ -73,7 +73,7 @@ Vandal::Packet Vandal::damaged(const Packet& original) {
   }
   packet.message.resize(now);
   if (packet.message == original.message) packet.message[dice_.below(now)] ^= 1;
-  // Whoever has no key can make the right tag of somebody without a key.
+  // An attacker without a key can compute the tag of a team without a key.
   if (seal_.keyed() && now >= kHeaderBytes && dice_.below(2) == 0) retag(packet.message);
   if (dice_.below(8) == 0) packet.channel = heard_[dice_.below(heard_.size())].channel;
   if (dice_.below(64) == 0) packet.channel += static_cast<char>('0' + dice_.below(10));

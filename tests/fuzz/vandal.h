@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the network of a team who keeps what it says and sends it back damaged.
+// An adversary on a team's network: it records messages and sends them back damaged.
 #pragma once
 
 #include <cstdint>

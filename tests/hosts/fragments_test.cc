@@ -49,7 +49,7 @@ class Fragments : public FlyingMission {
     FlyingMission::TearDown();
   }
 
-  /// Fragments for everybody who listens to anything; how many.
+  /// Sends fragments to all listening ports; returns how many.
   static int send_to_everybody() {
     int sent = 0;
     for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
@@ -82,7 +82,7 @@ class Fragments : public FlyingMission {
 TEST_F(Fragments, CrashAnAgentOnceWhoIsStartedAgainAndGetsItsSumBack) {
   take_socket_filters_away();
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
-  // What is sent to this host alone goes to whoever listens to a port last.
+  // A datagram to this host alone reaches the socket that was bound last.
   kill_next(agent(2));
   ASSERT_TRUE(logs("agent-2", ": running", 2)) << said();
   Witness witness(kUrl);

@@ -62,7 +62,7 @@ class ThreeHosts : public OnHosts {
     OnHosts::TearDown();
   }
   Radio& radio(int host) { return radios_[static_cast<std::size_t>(host)]; }
-  /// Who hears what `from` says now, as "01": host 0 and host 1.
+  /// The hosts that receive a message of `from`, as "01": host 0 and host 1.
   std::string hearers(int from) {
     radio(from).send();
     std::string who;

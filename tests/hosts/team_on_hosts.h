@@ -82,7 +82,7 @@ class TeamOnHosts : public OnHosts {
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   }
 
-  /// Everybody ends by itself, in order.
+  /// All processes end by themselves, in order.
   void expect_all_to_end() {
     for (Program* program : {coordinator_, world_, logger_}) {
       EXPECT_EQ(wait_for(program->child), 0) << program->said();

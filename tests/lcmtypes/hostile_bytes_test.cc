@@ -324,7 +324,8 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
   EXPECT_EQ(verdict(Message(status)), "range");
 }
 
-// Whoever leaps ahead in its numbering makes others count what never was; they are to be heard still.
+// A jump in a sender's numbering makes others count losses that never happened; others must still
+// accept their messages.
 TEST(Codec, MoreLossesThanThereCanBeAreSaidAsTheMostThatIsAccepted) {
   AgentStatus status = agent_status();
   status.contributions_lost = std::int64_t{1} << 57;

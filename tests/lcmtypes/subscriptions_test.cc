@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who hears what, as team/subscriptions.h says it, on LCM's channels and in README.md.
+// The subscriptions of team/subscriptions.h, on LCM's channels and in README.md.
 #include "team/subscriptions.h"
 
 #include <gtest/gtest.h>

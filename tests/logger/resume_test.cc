@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A logger that was killed and goes on: nothing twice, nothing changed, and only what nobody can
-// repeat is missing.
+// A logger that was killed and continues: nothing is written twice or changed, and only rows that
+// no process can repeat are missing.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -22,7 +22,7 @@ TEST(Summary, IsWrittenWhateverBytesTheNetworkBrought) {
   EXPECT_EQ(read["reason"], "caf\xef\xbf\xbd") << "the replacement character";
 }
 
-/// What is said of the goal after one recorded tick.
+/// The summary's text on the goal after one recorded tick.
 nlohmann::ordered_json goal_after_a_tick(double goal_ergodic_metric) {
   Mission mission = small_mission(1);
   mission.goal_ergodic_metric = goal_ergodic_metric;

@@ -36,7 +36,7 @@ class Witness {
     weight_s_ = LookAhead(mission).horizon_s(static_cast<int>(n), 0) + mission.timing.dt_s;
   }
 
-  /// Everybody is there for a step.
+  /// Adds one step of all agents at their places.
   void sample(const lab::IdealTeam& team) {
     for (const Coefficients& f : values(team)) sums_ += mission_.timing.dt_s * f;
     covered_s_ += mission_.timing.dt_s * static_cast<double>(team.size());

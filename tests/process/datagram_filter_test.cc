@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the kernel passes on to a socket of ours, with real sockets: our messages always, a share of
-// what is said again while there is a flood, nothing else.
+// the repeats during a flood, nothing else.
 #include "runtime/datagram_filter.h"
 
 #include "lcmtypes/channels.h"

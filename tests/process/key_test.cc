@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team with a mission key beside somebody who hears everything, repeats it and forges more.
+// A team with a mission key beside an attacker that receives everything, repeats it and forges
+// more.
 #include <sys/stat.h>
 
 #include <array>
@@ -15,8 +16,8 @@
 namespace ergocast::test {
 namespace {
 
-/// Somebody on the network without the key: keeps what is said, says it again, and says in the name
-/// of those it has heard what they have not said.
+/// An attacker on the network without the key. It records and repeats messages, and forges others
+/// in the name of their senders.
 class Outsider {
  public:
   explicit Outsider(const LcmUrl& url)

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> kLoggerProgram{"ergocast-logger"};
 
-/// In lockstep: what moves on has everybody back.
+/// In lockstep: a mission that continues has all its processes back.
 class Launch : public FlyingMission {
  protected:
   void TearDown() override {

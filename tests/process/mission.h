@@ -16,7 +16,7 @@
 
 namespace ergocast::test {
 
-/// Process ids on this host whose command line contains all of `words`.
+/// Ids of the processes on this host whose command line contains all of `words`.
 inline std::vector<pid_t> pids(const std::vector<std::string>& words) {
   std::vector<pid_t> found;
   for (const std::string& process : processes_on_own_host()) {
@@ -95,8 +95,8 @@ class FlyingMission : public OwnHost {
   }
   static void release() { signal_to(agent(0), SIGCONT); }
 
-  /// Of the programs that are started from now on, the first that is about to say something on that
-  /// channel at that tick, or later, is stopped.
+  /// Stops the first of the programs started from now on that is about to send a message on that
+  /// channel at that tick or later.
   void hold_next(const std::string& channel, Tick tick) const {
     const auto once = folder_ / "hold";
     std::ofstream(once).close();
@@ -118,7 +118,7 @@ class FlyingMission : public OwnHost {
     return stat.substr(stat.rfind(')') + 1).starts_with(" T");
   }
 
-  /// What `ergocast run` has said, and what one of its processes.
+  /// The output of `ergocast run`, and that of one of its processes.
   std::string said() const { return text_of(mission_log_); }
   bool said(const std::string& part) const { return said().find(part) != std::string::npos; }
   std::string log_of(const std::string& process) const {

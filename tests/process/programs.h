@@ -70,8 +70,8 @@ class OwnHost : public ::testing::Test {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
-  /// A test that has failed may have left its mission flying: what the processes say then is all
-  /// there is to know of them, and they are ended here.
+  /// A failed test may leave its mission running. The output of its processes is the only
+  /// information on them; they are ended here.
   void TearDown() override {
     if (HasFailure()) {
       tell_logs();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the network of a team who keeps its datagrams and sends them again, word for word.
+// An attacker on a team's network: it records its datagrams and sends them again, unchanged.
 #pragma once
 
 #include <cstddef>

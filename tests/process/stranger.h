@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the buses who says what a test wants him to.
+// A foreign sender on the buses that sends what a test asks for.
 #pragma once
 
 #include <cstdint>

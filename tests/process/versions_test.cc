@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts with different versions of Ergocast: nobody takes part in a mission it may misunderstand,
-// and both sides say so.
+// Hosts with different versions of Ergocast: no process takes part in a mission that it may
+// misunderstand, and both sides report it.
 #include "runtime/node.h"
 #include "tests/process/mission.h"
 #include "tests/process/stranger.h"

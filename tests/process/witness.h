@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the buses of a mission who only listens: what the team says of itself.
+// A listening process on the buses of a mission: it collects what the team reports of itself.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ class Witness {
   const RosterEntry* entry(const Author& author) const {
     return follower_.entry_of(author.incarnation);
   }
-  /// Steps of `whose` coverage that `who` holds, as its newest digest says; 0 if it says nothing.
+  /// Steps of `whose` coverage that `who` holds, by its newest digest; 0 if it holds nothing.
   std::int64_t held(const Author& who, const Author& whose) const {
     const auto digest = held_.find({who, whose});
     return digest == held_.end() ? 0 : digest->second;

@@ -294,7 +294,7 @@ TEST_F(Report, UniformTargetAndExtremeDomainsAreDrawn) {
   for (const auto& [width_m, height_m] : {std::pair(1e5, 1.0), {1.0, 1e5}, {1.0, 1.0}}) {
     mission.domain.size_m = {width_m, height_m};
     cover({{}, 1});
-    record(3, 200);  // mostly outside: an observer takes what the files say
+    record(3, 200);  // mostly outside: an observer takes what the files have
     ASSERT_EQ(report(), std::nullopt);
     expect_sound();
   }

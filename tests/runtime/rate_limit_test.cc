@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nobody who does what the mission asks is ever limited; whoever babbles soon is.
+// An agent that does what the mission asks is never limited; one that exceeds its budget soon is.
 #include "runtime/rate_limit.h"
 
 #include <gtest/gtest.h>

@@ -60,8 +60,8 @@ TEST(MissionText, IsThatOfItsScenarioWithoutDescriptionAndTarget) {
   }
 }
 
-// The limits stand in two places: what the plan's reader takes, a scenario can say, and the same
-// mission comes of it.
+// The limits are in two places: a plan that the reader accepts can be written as a scenario, which
+// gives the same mission.
 TEST(HostilePlan, WithAnyBitFlippedIsRefusedOrOfAMissionThatAScenarioSays) {
   Bytes plan = plan_of(good(R"(
     name: "small"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of a scenario that cannot be flown: everything that is wrong, at once, with its
-// place, the limit it breaks and the remedy.
+// The problems of an invalid scenario: every error at once, with its place, the limit it breaks and
+// the remedy.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ agents {
       "f:21:3: agents.quorum: 3 is above the limit, the team's size 1 (write 1 to 1)\n");
 }
 
-/// One mistake put into kSmall, and what must be said of it: that alone.
+/// One mistake put into kSmall, and its only problem.
 struct Mistake {
   const char* from;
   const char* to;
@@ -353,7 +353,7 @@ TEST_F(File, ThatHasNoEndIsRefused) {
 }
 
 TEST_F(File, ThatCannotBeReadIsNamed) {
-  // Opens for everybody, root included, but gives an error where reading begins.
+  // Every user can open it, root included, but reading fails.
   EXPECT_TRUE(has(said_of("/proc/self/mem"), "cannot be read"));
 }
 

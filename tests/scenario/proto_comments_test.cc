@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What scenario.proto's comments say of a number is what the table of fields holds it to.
+// The numbers in scenario.proto's comments are those of the table of fields.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -119,7 +119,7 @@ TEST(ProtoComments, SayWhatIsRequired) {
   each_number([&](const std::string& name, const FieldRule& rule) {
     if (rule.absence != Absence::kRefused || name.starts_with("Vertex.") ||
         name.starts_with("Start.")) {
-      return;  // those two say it of the whole message
+      return;  // those two have it in the comment of the message
     }
     EXPECT_NE(lower(comments.at(name)).find("required"), std::string::npos) << name;
   });

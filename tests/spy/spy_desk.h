@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A screen that nobody sees, with LCM's viewer on it.
+// A virtual screen with LCM's viewer on it.
 #pragma once
 
 #include <cstdint>
@@ -90,7 +90,7 @@ class WithProbe : public FlyingMission {
     log_ = folder_ / ("tool-" + std::to_string(++begun_));
     return std::get<Child>(Child::start({command, log_, SIGKILL}));
   }
-  /// Runs one to its end; what it said.
+  /// Runs one to its end; returns its output.
   std::string said_by(const std::vector<std::string>& command) {
     Child child = begin(command);
     EXPECT_TRUE(eventually([&child] { return !child.running(); })) << command.front();

@@ -44,7 +44,7 @@ class Lan {
   explicit Lan(int count);
   int hosts() const { return static_cast<int>(hosts_.size()); }
 
-  /// While it lives, this thread is on that host: what it opens or starts stays there.
+  /// While it exists, this thread is on that host: sockets and processes that it starts stay there.
   class Visit {
    public:
     Visit(const Namespaces& host, const Namespaces& home) : home_(home) { host.enter(); }
@@ -71,7 +71,7 @@ class Lan {
 
   /// Of all links.
   void set_mtu(int bytes);
-  /// A second interface, eth1, into a network in which nobody is.
+  /// A second interface, eth1, into a network without other hosts.
   void add_interface(int host);
   /// Sends that host's multicast to one of its interfaces; "": to none.
   void route_multicast(int host, const std::string& interface);

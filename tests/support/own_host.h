@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host of the test's own: a network namespace with multicast on its loopback, so that tests
-// that open sockets neither hear nor disturb anybody, and can see which processes they left.
+// A host of the test's own: a network namespace with multicast on its loopback, so that tests with
+// open sockets neither receive from nor disturb other programs, and can see which processes they
+// left.
 #pragma once
 
 #include <set>
@@ -16,7 +17,7 @@ void enter_own_host();
 /// Whether it was root's process that moved.
 bool is_root();
 
-/// Whether mounting is possible there without anybody else seeing it.
+/// Whether mounting is possible there, invisible to other processes.
 bool may_mount();
 
 /// "agent (pid 12)" of every process in one of these network namespaces (as /proc/PID/ns/net shows

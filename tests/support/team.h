@@ -49,7 +49,7 @@ inline Mission small_mission(int agents) {
 inline std::vector<std::byte> announced_plan;
 inline void announce(const Mission& mission) { announced_plan = encode_plan(mission); }
 
-/// A plan that nobody can read, and what everybody says of it.
+/// An invalid plan, and the error that every process reports for it.
 inline const std::vector<std::byte> kNoPlan{std::byte{1}};
 inline std::string why_no_plan() { return std::get<std::string>(decode_plan(kNoPlan)); }
 
@@ -59,7 +59,7 @@ inline std::vector<RosterEntry> roster_of(int agents) {
   return roster;
 }
 
-/// Above all that a test has said before: what is said twice is no news.
+/// Higher than all former ones in a test: a repeated message is not fresh.
 inline std::int64_t next_sequence() {
   static std::int64_t last = 0;
   return ++last;
@@ -116,7 +116,7 @@ inline Bus bus_of(const Message& message, Role role) {
   if (std::holds_alternative<Command>(message) || std::holds_alternative<RecordAck>(message)) {
     bus = Bus::kCommand;
   }
-  // MISSION and STOP are said on two buses.
+  // MISSION and STOP are sent on two buses.
   return hears(subscriptions_of(role), bus, message) ? bus : Bus::kCommand;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What maps say is read as it stands, and what cannot be one is refused with a remedy.
+// The content of maps is read exactly, and a file that cannot be a map is refused with a remedy.
 #include "target/map_file.h"
 
 #include <gtest/gtest.h>

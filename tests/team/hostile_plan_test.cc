@@ -231,7 +231,7 @@ TEST(HostilePlan, OfAnotherVersionIsRefusedWithBothVersionsNamed) {
 
 TEST(HostilePlan, WithoutAVersionIsDamagedOrMuchNewer) {
   EXPECT_TRUE(has(problem_of({}), "damaged or of a much newer version"));
-  for (const int byte : {0x1b, 0xff}) {  // no word of a stranger moves the cursor of a terminal
+  for (const int byte : {0x1b, 0xff}) {  // no received text moves the cursor of a terminal
     Bytes plan = encode_plan(rich_mission());
     plan[3] = static_cast<std::byte>(byte);
     EXPECT_TRUE(has(problem_of(plan), "damaged or of a much newer version"));

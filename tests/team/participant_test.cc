@@ -192,7 +192,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
 
 // ---- cut off -------------------------------------------------------------------------------------
 
-/// A lockstep mission with a patience of 5 s, and 30 s for whoever may come back.
+/// A lockstep mission with a time-out of 5 s, and 30 s for a process that may come back.
 Participant in_mission(Role role, MissionState state = MissionState::kRunning) {
   Mission mission = small_mission(2);
   mission.timing.lockstep_timeout_s = 5;

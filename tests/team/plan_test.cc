@@ -16,8 +16,8 @@ namespace {
 using test::rich_mission;
 using Bytes = std::vector<std::byte>;
 
-/// Every field as a text, to the last bit. Who adds a field to a mission does not come past here:
-/// the names of all are listed.
+/// Every field as a text, to the last bit. A new field of a mission must be added here: the names
+/// of all are listed.
 class Fields {
  public:
   explicit Fields(const Mission& mission) {

@@ -112,7 +112,7 @@ TEST_F(DeployFiles, TheSshScriptGivesEveryProcessItsOwnKey) {
 }
 
 TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
-  // An ssh that says what it would do.
+  // An ssh that prints what it would do.
   const std::string ssh =
       "ssh() { if [ \"$1\" = -n ]; then echo \"$2: $3\"; else echo \"$1: $2\"; cat; fi; }\n";
   std::string script = systemd_files(hosts_, mission_)[0].text;

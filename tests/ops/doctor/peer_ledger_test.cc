@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Two hosts that probe in turn; what is between them is said by two functions of the sequence.
+/// Two hosts that probe in turn; two functions of the sequence define the network between them.
 struct Pair {
   PeerLedger a{1, "alpha", "0.1.0"}, b{2, "beta", "0.1.0", 77};
   Instant at{1h};
