@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a team knows in the end whose members could not all hear each other, or died: everything,
-// once, in its authors' own words.
+// The final coverage of a team whose members were disconnected or died: each member holds
+// everything once, as its authors sent it.
 #include <gtest/gtest.h>
 
 #include "tests/agent/live_team.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-/// Where agent `id` is at `tick`: nobody is twice at one place, nor where a teammate was.
+/// The place of agent `id` at `tick`: no agent is twice at one place, or where a teammate was.
 Eigen::Vector2d place(AgentId id, Tick tick) {
   return {100.0 + 300.0 * id + 3.0 * static_cast<double>(tick),
           200.0 + 7.0 * static_cast<double>(tick)};
@@ -49,7 +49,7 @@ Coefficients average_of(const Mission& mission, const CoverageTable& table) {
   return average;
 }
 
-/// c_k of these lives, straight from where they were.
+/// c_k of these incarnations, computed from their places.
 Coefficients average_of(
     const Mission& mission,
     const std::vector<std::pair<Author, std::vector<Eigen::Vector2d>>>& lives) {
@@ -123,7 +123,7 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   team.hear_by([](AgentId a, AgentId b) { return a / 2 == b / 2; });
   fly(team, 4, 0, 20);
   EXPECT_EQ(team[0].coverage()->row_count(), 2u) << "its half";
-  // 3 dies while only 2 has heard of it; then the halves meet.
+  // 3 dies after only 2 has received its blocks; then the halves meet.
   team.kill(3);
   auto roster = roster_of(4);
   roster[3].active_until = 20;

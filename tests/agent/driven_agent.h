@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An agent driven by hand, and what its teammates would say.
+// An agent driven by hand, and the messages of its teammates.
 #pragma once
 
 #include <gtest/gtest.h>

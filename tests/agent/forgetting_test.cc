@@ -50,7 +50,7 @@ TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, forgetting_from(0), at(0s));
-  // While the tick waits for another revision, a teammate passes on what 1 had said.
+  // While the tick waits for another revision, a teammate relays a block of 1.
   EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 2))).empty());
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
   EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0, 2))).size(), 1u);
@@ -58,7 +58,7 @@ TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
 }
 
 TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
-  // All must forget at the same tick, whoever hears of it first.
+  // All agents must forget at the same tick, whichever receives the revision first.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));

@@ -88,7 +88,7 @@ TEST(AgentRefuses, AndShowsWhatTheTransportRefused) {
 }
 
 TEST(AgentRefuses, ItsOwnEcho) {
-  // Multicast gives everybody their own words back.
+  // Multicast returns an agent's own messages to it.
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
   const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500}})));

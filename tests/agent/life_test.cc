@@ -178,12 +178,13 @@ TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
 TEST(AgentHears, CoverageOfMembersOnly) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  // More lives of our own number than a table holds, and one of a teammate: none is in the roster.
+  // More incarnations of our own number than a table holds, and one of a teammate: none is in the
+  // roster.
   for (Incarnation life = 1; life <= 20; ++life) {
     give(agent, blocks_of(mission, {0, life}, {{900, 900}}, 1).front(), at(0s));
     give(agent, blocks_of(mission, {1, life}, {{900, 900}}, 1).front(), at(0s));
   }
-  // A member's name with another's life is nobody's either.
+  // A member's number with another member's incarnation is no member either.
   give(agent, blocks_of(mission, {0, life_of(1)}, {{900, 900}}, 1).front(), at(0s));
   EXPECT_EQ(agent.coverage()->row_count(), 1u) << "its own";
   tell(agent, world_state(0, {{100, 500}, {200, 500}}));
@@ -200,8 +201,8 @@ TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
     give(agent, block_of(mission, 1, std::vector<Eigen::Vector2d>(steps, {200, 500}), 1), at(0s));
     return *agent.coverage()->steps_held(author_of(1));
   };
-  // The ticks 0, 1 and 2, and the lead that everybody is granted: who evicted it may not have heard
-  // of its last ticks. A member of tick 9 might have 610.
+  // The ticks 0, 1 and 2, and the lead granted to all: the coordinator that evicted it may not have
+  // received its last ticks. A member of tick 9 might have 610.
   EXPECT_EQ(hear(603), 603) << "it still covers, but is no member";
   EXPECT_EQ(hear(604), 603);
 }
@@ -253,7 +254,7 @@ TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
   EXPECT_EQ(named(at(111ms)), 99);
 }
 
-/// Agent 0 in its second life, admitted from tick 7 on by a roster of revision 9.
+/// Agent 0 in its second incarnation, admitted from tick 7 on by a roster of revision 9.
 Agent successor_from_7(const Mission& mission) {
   announce(mission);
   Agent agent(identity_of(0));

@@ -25,16 +25,16 @@ class LiveTeam {
   Agent& operator[](AgentId id) { return agents_.at(id); }
   void hear_by(Hears hears) { hears_ = std::move(hears); }
   void kill(AgentId id) { agents_.erase(id); }
-  /// Another life of an agent that was killed.
+  /// Another incarnation of an agent that was killed.
   void revive(AgentId id, Agent agent) { agents_.emplace(id, std::move(agent)); }
 
-  /// The world or the coordinator says something to everybody; returns all that this leads to.
+  /// The world or the coordinator sends a message to all agents; returns all that follow from it.
   Outbox tell(const Message& message, Instant now) {
     for (auto& [id, agent] : agents_) give(agent, message, now);
     return settle(now);
   }
 
-  /// Everybody speaks and hears until nobody has more to say at `now`; returns what was said.
+  /// All agents send and receive until none has more to send at `now`; returns the messages.
   Outbox settle(Instant now) {
     Outbox said;
     for (std::size_t before = std::size_t(-1); before != said.size();) {
@@ -48,7 +48,7 @@ class LiveTeam {
     return said;
   }
 
-  /// Time passes and nothing comes from outside; returns what was said.
+  /// Time passes and nothing comes from outside; returns the messages.
   Outbox wait(Instant from, std::chrono::nanoseconds duration) {
     Outbox said;
     for (Instant now = from; now <= from + duration; now += 10ms) {

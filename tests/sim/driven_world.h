@@ -16,7 +16,7 @@ inline World world_of(const Mission& mission) {
   return {kRun, kWorldLife};
 }
 
-/// Every agent's answer to the question of this life of the world where it was.
+/// Every agent's answer to the question of this incarnation of the world for its place.
 inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation life = kWorldLife) {
   for (AgentId id = 0; id < agents; ++id) {
     Command answer = command_of(id, -1, {0, 0});

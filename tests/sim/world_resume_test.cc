@@ -47,7 +47,7 @@ class Flight {
         if (death.heard[id]) give(team_[id], state, now_);
       }
     }
-    team_.settle(now_);  // whatever they say, no world hears it
+    team_.settle(now_);  // their messages reach no world
     world_ = begin(++lives_);
     while (!world_.begun_at()) {
       now_ += 10ms;
@@ -94,7 +94,8 @@ class Flight {
   Told told_;
 };
 
-/// Speaks every fourth tick, so that some may answer a tick that others have not heard of.
+/// Broadcasts every fourth tick, so that some agents may answer a tick that others have not
+/// received.
 Mission lively_mission(double disturbance) {
   Mission mission = small_mission(3);
   mission.target_coefficients(1, 0) = 0.3;
@@ -184,8 +185,8 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
   EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
 }
 
-// Only that one may have heard the last tick of the world's predecessor, and where it is nobody else
-// knows.
+// Only that agent may have received the last tick of the former world, and no other process knows
+// its place.
 TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9}) give(world, command_from(0, tick, {300, 400}, {1, 0}), at(0s));
