@@ -33,8 +33,8 @@ std::vector<std::string> sources_in(const std::string& folder,
 /// breaks are ignored.
 std::vector<std::string> never_said(const std::vector<Saying>& sayings, std::vector<std::string> said);
 
-/// "place and place: text" where two statements have the same text of two words or more, so that the
-/// output does not tell them apart.
+/// "place and place: text" where two statements have the same text of two words or more, so that
+/// the output does not tell them apart.
 std::vector<std::string> said_twice(const std::vector<Saying>& sayings);
 
 /// For the test of the reader itself.
