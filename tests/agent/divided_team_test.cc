@@ -30,7 +30,7 @@ Mission realtime(int agents) {
   return mission;
 }
 
-/// The world's ticks [from, until), 0.1 s each; all that the team says.
+/// The world's ticks [from, until), 0.1 s each; returns all messages of the team.
 Outbox fly(LiveTeam& team, int agents, Tick from, Tick until) {
   Outbox said;
   for (Tick tick = from; tick < until; ++tick) {
@@ -71,7 +71,7 @@ TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
     const AgentId other = 2 - end;
     const auto held = team[end].coverage()->steps_held(author_of(other));
     ASSERT_GE(held.value_or(0), 28) << "30 ticks, and two broadcasts are tolerated";
-    // Not something like the other's sums: its sums.
+    // The same sums as the other's, bit for bit.
     const auto words = blocks_of(mission, author_of(other), path_of(other, 0, *held), 0);
     for (int b = 0; b < 2; ++b) {
       EXPECT_EQ(team[end].coverage()->block(author_of(other), b).sums,
@@ -170,7 +170,8 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
 }
 
 TEST(LostBroadcast, IsMendedByATeammateWhoHeardIt) {
-  // In real time the next broadcast mends it anyway; the last one of an agent has no next.
+  // In real time the next broadcast repairs a loss anyway, but an agent's last broadcast has no
+  // next one.
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   fly(team, 3, 0, 10);

@@ -38,7 +38,7 @@ WorldState world_of(int agents, Tick tick) {
   return world_state(tick, all_whereabouts(agents, tick), tick - 1);
 }
 
-/// What agent `id` says at `tick`.
+/// The blocks that agent `id` broadcasts at `tick`.
 std::vector<Contribution> words_of(const Mission& mission, AgentId id, Tick tick,
                                    Tick period = 10) {
   std::vector<Eigen::Vector2d> path_m;

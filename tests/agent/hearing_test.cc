@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent believes of what it hears, and what its status says of it.
+// Which messages an agent accepts, and how its status reports them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace test;
 
 // ---- what is refused -----------------------------------------------------------------------------
 
-/// Feeds one untrue contribution and expects: no row, no block, one more refusal for `why`.
+/// Sends one false contribution and expects: no row, no block, one more refusal for `why`.
 void expect_refused(const Contribution& lie, Refusal why) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
@@ -48,7 +48,8 @@ TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
 }
 
 TEST(AgentRefuses, CoverageFromTheFuture) {
-  // A minute of lead is allowed, since clocks of several hosts may differ; beyond it would win for ever.
+  // A lead of a minute is allowed, because clocks of several hosts may differ; a larger one would
+  // win for ever.
   const Mission mission = small_mission(2);
   Contribution future = block_of(mission, 1, {{200, 500}}, 1);
   const auto claim = [&future](std::int64_t steps) {
@@ -122,8 +123,8 @@ TEST(AgentStatusReport, MeasuresStalenessByTheOldestTeammate) {
   give(agent, block_of(mission, 2, {{300, 500}}, 1), at(0s));
   tell(agent, world_state(9, {{100, 500}}));
   give(agent, block_of(mission, 1, {{200, 500}, {200, 500}, {200, 500}}, 3), at(0s));
-  // Teammate 2 was last heard of at tick 0. How many samples the others gave does not matter: a
-  // teammate that was held up once is not out of date for ever.
+  // The last message of teammate 2 was at tick 0. The numbers of samples of the others do not
+  // matter: a teammate with one delay is not out of date for ever.
   EXPECT_DOUBLE_EQ(status_after(agent, at(0s)).max_staleness_s, 0.9);
 }
 

@@ -27,7 +27,7 @@ TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
   EXPECT_EQ(agent.next_wakeup(), at(250ms));
   EXPECT_EQ(only<Hello>(advance(agent, at(250ms))).size(), 1u);
 
-  // A roster that names only others changes nothing.
+  // A roster without us changes nothing.
   EXPECT_EQ(only<Hello>(tell(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
                 .size(), 1u);
   EXPECT_EQ(agent.phase(), AgentPhase::kJoining);
@@ -373,7 +373,7 @@ TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   mission.timing.realtime_factor = 2;
   Agent agent = running_agent(mission);
   tell(agent, world_state(40, {{100, 500}}), at(5s));  // 60 ticks of 0.05 s are left
-  give(agent, status_of(1, 1), at(37s));  // a teammate may be cut off as we are
+  give(agent, status_of(1, 1), at(37s));  // a teammate may be disconnected as we are
   advance(agent, at(38s));
   EXPECT_FALSE(agent.finished());
   const auto last = only<AgentStatus>(advance(agent, at(38s + 1ms)));

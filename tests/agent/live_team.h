@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several agents in one hand: what one says on the swarm bus, the others hear at once, if they can.
+// Several agents driven together: each receives the others' messages on the swarm bus at once, if
+// in range.
 #pragma once
 
 #include <functional>
@@ -15,7 +16,7 @@ using Hears = std::function<bool(AgentId listener, AgentId transmitter)>;
 
 class LiveTeam {
  public:
-  /// Every planned agent, told to run; all hear all until told otherwise.
+  /// Every planned agent, with a running mission; all receive all until a test changes it.
   explicit LiveTeam(const Mission& mission) {
     for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
       agents_.emplace(id, running_agent(mission, id));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents as the mission's memory: they repeat it to a coordinator or a world that has just started,
-// tell the world where they were, and ask anew when the roster has lost them.
+// Agents store the mission: they repeat it to a restarted coordinator or world, report their places
+// to the world, and ask for admission again when the roster has lost them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// A mission in two parts, as a coordinator says it.
+/// A mission in two parts, as a coordinator sends it.
 std::array<MissionPart, 2> two_parts(std::int64_t revision) {
   std::array<MissionPart, 2> parts;
   for (std::int32_t p = 0; p < 2; ++p) {

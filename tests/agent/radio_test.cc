@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents whose radios reach only so far: what they do not hear, hear through others, and wait for.
+// Agents with a limited radio range: what they do not receive, receive through others, and wait
+// for.
 #include <gtest/gtest.h>
 
 #include "tests/agent/driven_agent.h"

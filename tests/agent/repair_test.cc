@@ -36,7 +36,7 @@ class Repair : public ::testing::Test {
     }
   }
 
-  /// `from` says in its next digest that it holds only `steps` of `author`.
+  /// `from` reports in its next digest that it holds only `steps` of `author`.
   void complain(AgentId from, const Author& author, std::int64_t steps, Instant now) {
     Digest digest;
     digest.header = {kRun, from, life_of(from), ++sequence, 0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bare world and bare agents exchange datagrams of the sizes that a real tick has, and repeat
-// lost ones.
+// A bare world and bare agents exchange datagrams of the sizes of a real tick, and repeat lost
+// ones.
 #include "tests/bench/ping_pong.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ class RawAgent {
     if (!repeated) answered_ = false;
     if (repeated && answered_) answer();
   }
-  /// Our own blocks come back to us, too.
+  /// We also receive our own blocks.
   bool hears_everybody() const {
     return std::all_of(held_.begin(), held_.end(), [this](Tick tick) { return tick >= tick_; });
   }
@@ -154,7 +154,7 @@ std::optional<double> ping_pong(Carrier carrier, const Traffic& traffic, Tick ti
   url.base_port = ports->base_port();
   if (why_unreachable(url)) return std::nullopt;
 
-  // Before this process has threads of LCM's.
+  // Before LCM starts threads in this process.
   std::vector<Forked> others;
   others.emplace_back([&] { live_as_logger(carrier, traffic, url); });
   for (AgentId id = 0; id < traffic.agents; ++id) {

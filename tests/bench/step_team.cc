@@ -33,7 +33,7 @@ Mission full_mission(int modes_per_axis, Sight sight) {
 
 Author author_of(AgentId id) { return {id, 1000 + static_cast<Incarnation>(id)}; }
 
-/// Along a path through most of the domain that never closes.
+/// A place on a path through most of the domain that never closes.
 Eigen::Vector2d place(AgentId id, Tick tick) {
   const double angle = 0.01 * static_cast<double>(tick) + id;
   return {1000 + 900 * std::cos(angle), 1000 + 900 * std::sin(1.618 * angle)};

@@ -11,12 +11,12 @@
 
 namespace ergocast::bench {
 
-/// What agent 0 answers to, and from what it knows it.
+/// The coverage that agent 0 uses, and its source.
 enum class Sight {
-  kKnown,            ///< c, of rows told each tick
-  kToldEachTick,     ///< ĉ, of rows told each tick
-  kToldEach10Ticks,  ///< ĉ, of rows told every ten ticks, in turns
-  kReckoned,         ///< likewise, and of where teammates are
+  kKnown,            ///< c, of rows broadcast each tick
+  kToldEachTick,     ///< ĉ, of rows broadcast each tick
+  kToldEach10Ticks,  ///< ĉ, of rows broadcast every ten ticks, in turns
+  kReckoned,         ///< likewise, with the teammates' places
 };
 
 class StepTeam {

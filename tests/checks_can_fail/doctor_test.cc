@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each finding of `ergocast doctor` on a host that has it: some thirty hosts on one network, each with
-// a fault of its own, are examined at once.
+// Each finding of `ergocast doctor` on a host that has it: some thirty hosts on one network, each
+// with a fault of its own, are examined at once.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -48,7 +48,7 @@ class PretendedPeer {
     EXPECT_EQ(setsockopt(socket_.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership), 0);
   }
 
-  /// Answers each probe of the doctor's with one of its own.
+  /// Answers each probe of the doctor with its own probe.
   void turn() {
     std::array<std::byte, 2048> buffer;
     for (ssize_t size; (size = recv(socket_.fd(), buffer.data(), buffer.size(), 0)) > 0;) {
@@ -93,10 +93,10 @@ struct Plant {
   std::string url_options = "ttl=1";
   std::vector<std::string> arguments = {};
   std::string wrapper = "";                ///< a shell's command before the program's
-  std::vector<int> held_ports = {};        ///< by a socket of the test's, after the URL's port
+  std::vector<int> held_ports = {};        ///< by a socket of the test, after the URL's port
   bool alone = false;                      ///< which has them for itself
   std::function<Speaker(int port)> speaker = {};  ///< made on another host
-  int agents = 0;                                 ///< of ours at the same ports, that wait for a mission
+  int agents = 0;                                 ///< ours, at the same ports, without a mission
   bool as_nobody = false, on_a_terminal = false;
   int port = 0;                                   ///< if it matters
 };
@@ -117,7 +117,7 @@ class DoctorCanFail : public OnHosts {
   std::filesystem::path key_file(const char* name) const { return folder_ / name; }
   Seal seal(const char* name) const { return Seal(std::get<MissionKey>(read_key_file(key_file(name)))); }
 
-  /// Says `message` for as long as the doctor listens.
+  /// Sends `message` while the doctor listens.
   template <class M>
   std::function<Speaker(int)> says(M message, const Seal& seal = {}) {
     return [message, seal](int port) -> Speaker {
@@ -296,7 +296,7 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
       plant("peer stranger", ", lost: ", "warning", {.leaves_out = every_fifth}, test),
       plant("peer stranger", "probes came twice", "note", {.twice = true}, test),
       plant("peers", "1 more heard by others, but not here", "problem", {.gossips = true}, test),
-      // What is for people, on a terminal.
+      // The output for people, on a terminal.
       {.arguments = {"--peer", "1"}, .wrapper = "env NO_COLOR=1", .on_a_terminal = true},
   };
 }

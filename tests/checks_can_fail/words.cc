@@ -80,7 +80,7 @@ Tokens tokens_of(const std::string& source) {
   return tokens;
 }
 
-/// With one space where there are several, or a line's end.
+/// Replaces several spaces, or a line's end, by one space.
 std::string on_one_line(const std::string& text) {
   static const std::regex kSpaces("\\s+");
   return std::regex_replace(text, kSpaces, " ");
@@ -96,7 +96,7 @@ std::vector<std::string> pieces_of(const std::string& text) {
   return pieces;
 }
 
-/// Whether it has a letter and a space, conversions aside.
+/// Whether it has a letter and a space outside conversions.
 bool is_words(const std::string& text) {
   static const std::regex kWords("[A-Za-z][^A-Za-z]* | [^A-Za-z]*[A-Za-z]");
   const std::vector<std::string> pieces = pieces_of(text);
@@ -104,7 +104,8 @@ bool is_words(const std::string& text) {
                      [](const std::string& piece) { return std::regex_search(piece, kWords); });
 }
 
-/// Where `condition ? one : other` begins and ends; the branches of one within another count as its own.
+/// The begin and end of `condition ? one : other`; the branches of a nested one are branches of
+/// their own.
 class Branches {
  public:
   void pass(const std::string& sign, std::vector<std::vector<std::string>>& alternatives) {
@@ -215,7 +216,7 @@ struct Reader {
   }
 };
 
-/// What each function says itself or through those it calls. Functions of one name count as one.
+/// The texts of each function and of those it calls. Functions of one name count as one.
 std::map<std::string, std::vector<Saying>> words_by_function(const std::vector<Reader>& readers) {
   std::map<std::string, std::map<std::string, Saying>> words;  // by function and place
   std::set<std::pair<std::string, std::string>> calls;         // caller, callee

@@ -12,12 +12,12 @@ namespace ergocast::test {
 struct Saying {
   std::string place;               ///< "scenario/validate.cc:101"
   std::vector<std::string> parts;  ///< always printed, in this order, with values in between
-  /// What it says one or the other of: the branches of `condition ? … : …`, each in parts.
+  /// Alternative texts: the branches of `condition ? … : …`, each in parts.
   std::vector<std::vector<std::string>> alternatives;
   /// For a call without a text of its own: the texts of the called function, besides the parts.
   std::vector<Saying> or_else;
 
-  /// Whether `text` says it, in one of its ways.
+  /// Whether `text` contains it, in one of its alternatives.
   bool in(const std::string& text) const;
 };
 
@@ -25,7 +25,7 @@ struct Saying {
 /// files and keys are none. Statements of success ("Level::kOk") do not count.
 std::vector<Saying> sayings_of(const std::vector<std::string>& files);
 
-/// The .cc files of a folder of the tree, but for those in `without`.
+/// The .cc files of a folder of the tree, except those in `without`.
 std::vector<std::string> sources_in(const std::string& folder,
                                     const std::vector<std::string>& without = {});
 

@@ -101,7 +101,7 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
 }
 
 TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
-  // The world's last state was lost to the coordinator, and the world died with it.
+  // The coordinator did not receive the world's last state, and the world died.
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, world_where(7, {6, 6}), at(1s));
   AgentStatus status = status_of(1, 1);
@@ -152,7 +152,7 @@ TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
 
 // ---- what a newcomer knows ----
 
-/// The newest revision that it says until `now`.
+/// The newest revision that it sends until `now`.
 std::int64_t newest_said(Coordinator& coordinator, Instant now) {
   for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) return part.revision;
   ADD_FAILURE() << "it says no MISSION";

@@ -181,7 +181,7 @@ Hello question_of_world(Incarnation life, AgentId whom) {
 TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {
   for (const bool heard_a_world : {false, true}) {
     Coordinator coordinator = running_coordinator(impatient(3));
-    // Its predecessor had the answers of all but another.
+    // The former world had the answers of all agents but another one.
     if (heard_a_world) give(coordinator, world_where(5, {4, 5, 5}), at(0s));
     for (int tenths = 0; tenths <= 100; ++tenths) {
       const Instant now = at(tenths * 100ms);
@@ -252,7 +252,7 @@ TEST(CoordinatorTimeOut, DoesNotBlameWhoWaitsForATeammate) {
 }
 
 TEST(CoordinatorTimeOut, BlamesTheSilentFirstAndAmongThemTheOneSilentForLongest) {
-  // 0 waits for 1 and says so; 1 was heard 2 s ago, 2 has not been heard since the start.
+  // 0 reports that it waits for 1; the last message of 1 is 2 s old, that of 2 from the start.
   Coordinator coordinator = running_coordinator(impatient(3));
   give(coordinator, world_where(5, {4, 4, 4}), at(1s));
   give(coordinator, status_of(1, 1, 4), at(9s));

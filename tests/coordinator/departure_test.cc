@@ -18,7 +18,7 @@ RosterEntry entry_of(const Coordinator& coordinator, const Author& author) {
   return at == coordinator.roster().end() ? RosterEntry{} : *at;
 }
 
-/// The revision it says at `now`, or nothing.
+/// The revision it sends at `now`, or nothing.
 std::optional<std::int64_t> said_revision(Coordinator& coordinator, Instant now) {
   const auto parts = only<MissionPart>(advance(coordinator, now));
   return parts.empty() ? std::nullopt : std::optional(parts[0].revision);
@@ -88,7 +88,7 @@ void speaks(Coordinator& coordinator, const Author& author, Instant now) {
 }
 void only_0_speaks(Coordinator& coordinator, Instant now) { speaks(coordinator, author_of(0), now); }
 
-/// The world at `tick`, which it flies by roster `revision`.
+/// The world at `tick`, which uses roster `revision`.
 WorldState flown_by(std::int64_t revision, Tick tick) {
   WorldState world = world_where(tick, {tick - 1, tick - 1});
   world.roster_revision = revision;
@@ -199,7 +199,7 @@ TEST(Forgetting, NobodyByACoordinatorThatHearsNobody) {
 }
 
 TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
-  // The successor has its predecessor's place and goes on with its work.
+  // The successor takes the former agent's place and continues its work.
   Coordinator coordinator = running_coordinator(forgetful());
   advance(coordinator, at(3s));
   give(coordinator, hello_of(1, 99), at(3s));

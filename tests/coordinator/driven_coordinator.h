@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A coordinator driven by hand, and what agents and the world tell it.
+// A coordinator driven by hand, and the messages of agents and world.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -60,7 +60,7 @@ TEST(ExampleDriver, ObeysOnlyTheAgentOfTheRobotAndNothingOld) {
   Command stranger = command_of(0, 1, {5, 0});
   stranger.header.incarnation = 99;
   give(driver, stranger, at(101ms));
-  give(driver, command_of(0, 2, {5, 0}), at(102ms));  // of a tick that is yet to come
+  give(driver, command_of(0, 2, {5, 0}), at(102ms));  // of a future tick
   EXPECT_EQ(state_at(driver, at(200ms)).vehicles[0].position_m.x(), 100);
   give(driver, command_of(0, 2, {5, 0}), at(201ms));
   give(driver, command_of(0, 1, {0, 0}), at(202ms));  // overtaken

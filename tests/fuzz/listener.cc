@@ -16,7 +16,7 @@
 namespace ergocast::fuzz {
 namespace {
 
-/// Whatever was heard, what a core says is accepted by its own.
+/// A core's messages are valid, whatever it received.
 void check_said(const Outbox& said) {
   static std::vector<std::byte> bytes;
   for (const Outgoing& outgoing : said) {
@@ -85,7 +85,7 @@ void recorder_listens(Input input) {
   check_table(metrics.view());
 }
 
-/// `ergocast status` as a core that says nothing.
+/// `ergocast status` as a core that sends nothing.
 struct Viewer : TeamView {
   using TeamView::TeamView;
   void advance(Instant, Outbox&) {}

@@ -22,7 +22,7 @@ const Folder& folder_with_maps() {
   return folder;
 }
 
-/// Correlated Gaussians take seconds here, and long texts hide nothing that short ones do not show.
+/// Correlated Gaussians take seconds here, and long texts find no more than short ones.
 bool too_costly(std::string_view text) {
   return text.size() > 2048 || text.find("xy_m2") != text.npos;
 }

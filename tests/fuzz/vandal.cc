@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps recent datagrams, changes one to four things in a copy, and sends the copy in LCM's
-// form.
+// Records recent datagrams, changes one to four things in a copy, and sends the copy in LCM's
+// format.
 #include "tests/fuzz/vandal.h"
 
 #include <algorithm>
@@ -102,7 +102,7 @@ void Vandal::strike() {
   if (what == 1) datagram.resize(dice_.below(datagram.size()));  // cut off
   if (what == 2) datagram[dice_.below(kLcmHeaderBytes)] = static_cast<std::uint8_t>(dice_.next());
   if (what == 3) std::replace(datagram.begin(), datagram.end(), std::uint8_t{0}, std::uint8_t{1});
-  // The header of a fragment makes LCM itself crash, which no program that uses it can prevent.
+  // The header of a fragment makes LCM itself crash, which no program with LCM can prevent.
   if (datagram.size() >= 4 && std::memcmp(datagram.data(), "LC03", 4) == 0) datagram[3] = '4';
   const sockaddr_in to = address_of(url_.group, url_.base_port + packet.bus);
   sendto(mouth_.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A network that loses frames at random: lockstep makes up for every one of them, real time goes on
-// without.
+// A network that loses frames at random: lockstep repeats every lost message, real time continues
+// without them.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {

@@ -15,7 +15,7 @@ std::vector<std::string> hosts_of(const nlohmann::json& summary) {
 
 class Team : public TeamOnHosts {
  protected:
-  /// Agents that are told a URL and nothing else.
+  /// Agents that get a URL and no number.
   void start_with_nameless_agents(const std::filesystem::path& scenario) {
     start_all_but_agents(scenario);
     for (const int host : {0, 1, 2, 2}) agents_.push_back(&on(host, "ergocast-agent"));

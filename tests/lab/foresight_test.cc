@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Teams that look ahead, in the laboratory: in lockstep nothing that happens to messages,
-// coordinator or world changes what is foreseen; in real time a dead teammate is not counted on for
-// ever.
+// Teams with a forecast, in the laboratory: in lockstep no fault of messages, coordinator or world
+// changes the forecast; in real time a dead teammate does not count for ever.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -95,7 +95,7 @@ TEST(Seal, ARepeatUnderAnotherNameIsRefused) {
   for (const char* channel : {"ERGOCAST_CONTRIBUTION_4", "ERGOCAST_CONTRIBUTION", ""}) {
     EXPECT_EQ(opened(bytes, kMemberSeal, channel), "tag") << channel;
   }
-  // A teammate says it again under its own name, which takes the key.
+  // A teammate relays it under its own name, which needs the key.
   EXPECT_EQ(opened(sealed(contribution(), kMemberSeal, 4), kMemberSeal, "ERGOCAST_CONTRIBUTION_4"),
             "accepted");
 }
@@ -144,7 +144,7 @@ TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
   KnownSignatures known;
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "unsigned");
   EXPECT_EQ(verdict(decode(bytes, kRun, kMemberSeal, channel, &known)), "accepted");
-  // Were it checked, it would be refused as before.
+  // A check would refuse it as before.
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "accepted");
 }
 
@@ -171,7 +171,7 @@ TEST(KnownSignatures, AKnownTagMakesNoOtherBytesAcceptable) {
     bad[at] ^= std::byte{1};
     EXPECT_NE(verdict(decode(bad, kRun, kMemberSeal, channel, &known)), "accepted") << at;
   }
-  // Of a former run it is still none of ours.
+  // The message of a former run is still refused.
   EXPECT_EQ(verdict(decode(good, kRun + 1, kMemberSeal, channel, &known)), "run");
 }
 

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr Incarnation kNextWorldLife = kWorldLife + 1;
 
-/// Three agents that jump about, each with digits to the last place.
+/// Three agents that jump between places, each with digits to the last place.
 WorldState team_at(Tick tick) {
   WorldState state = world_state(tick, {{0, 0}, {0, 0}, {0, 0}});
   for (AgentId id = 0; id < 3; ++id) {
@@ -36,7 +36,7 @@ WorldState of_world(Incarnation incarnation, WorldState state) {
   return state;
 }
 
-/// The first columns, which do not depend on when statuses came.
+/// The first columns, which do not depend on the arrival of statuses.
 std::vector<std::string> observed(const std::vector<std::string>& metrics_rows) {
   std::vector<std::string> rows;
   for (const std::string& row : metrics_rows) {
@@ -68,7 +68,7 @@ class Resume : public testing::Test {
     std::ifstream in(dir / file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  /// What a recorder finds that comes after a killed one with these files.
+  /// The data that a resumed recorder finds after a killed one with these files.
   RunData past(const std::string& trajectory, const std::string& metrics) const {
     write("trajectory.csv", trajectory);
     write("metrics.csv", metrics);
@@ -94,7 +94,7 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
   ASSERT_EQ(lived.trajectory_rows().size(), 300u);
   const std::string trajectory = killed.trajectory.str(), metrics = killed.metrics.str();
   for (std::size_t cut = 0; cut < trajectory.size(); cut += 71) {
-    // Either table may have come further than the other.
+    // One table may be longer than the other.
     const std::string rows = trajectory.substr(0, cut);
     const std::string values = metrics.substr(0, cut * 13 % metrics.size());
     Record resumed(mission, past(rows, values));
@@ -274,7 +274,7 @@ TEST_F(Resume, ANewWorldThatRepeatsWhatIsRecordedChangesNothing) {
   for (Mission mission : {small_mission(1), realtime_mission()}) {
     Record record(mission);
     for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
-    // It does not know which velocities led there.
+    // It does not know the velocities that led there.
     record.tell(of_world(kNextWorldLife, state_of(8, {108, 500}, {0, 0})), at(1s));
     record.tell(of_world(kNextWorldLife, state_of(10, {110, 500}, {0, 0})), at(1s));
     for (Tick tick = 11; tick <= 20; ++tick) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The summary is valid JSON for any bytes, and says of the mission's goal only what is known.
+// The summary is valid JSON for any bytes, and its text on the mission's goal has only known facts.
 #include "logger/summary.h"
 
 #include <gtest/gtest.h>

@@ -48,7 +48,7 @@ TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
                               {"--lcm-url", "udpm://239.255.76.67:24699?ttl=0&recv_buf_size=20000"});
   signal_to({"ergocast-logger"}, SIGSTOP);
   release();
-  // The world goes on without it when its patience is over, to the end.
+  // The world continues without it after its time-out, to the end.
   ASSERT_TRUE(logs("coordinator", "mission ended")) << said();
   EXPECT_NE(log_of("sim").find("going on without"), std::string::npos);
   signal_to({"ergocast-logger"}, SIGCONT);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Floods on the buses of a team that goes on flying.
+// Floods on the buses of a team, which continues its mission.
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
@@ -113,7 +113,7 @@ class Babbler {
 
 class Babble : public Flood {
  protected:
-  /// What `ergocast status` says of the agents.
+  /// The agents' part of `ergocast status`.
   nlohmann::json agents() {
     ergocast({"status", "--json", "--lcm-url", kUrl});
     return nlohmann::json::parse(output())["agents"];
@@ -180,8 +180,8 @@ class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const 
   const std::filesystem::path key_file_ = folder_ / "c.key";
 };
 
-/// Without recognising them every one would be taken in: neither the world nor the coordinator has a
-/// budget. How fast the machine is decides how long it takes, and nothing else.
+/// Without detection every repeat would be accepted: neither the world nor the coordinator has a
+/// budget. The speed of the machine only affects the duration.
 TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
   constexpr std::int64_t kEnough = 50000;
   constexpr std::size_t kAtOnce = 200;  // every 5 ms at the most: 40 000 a second

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 const std::vector<std::string> kSimProcess{"ergocast-sim"}, kLoggerProcess{"ergocast-logger"},
     kCoordinatorProcess{"ergocast-coordinator"};
 
-/// How many events an event log holds up to where it was cut off.
+/// The number of events in an event log, up to an incomplete one.
 int events_in(const std::filesystem::path& file) {
   lcm::LogFile log(file, "r");
   int events = 0;
@@ -30,13 +30,13 @@ Tick last_tick(const std::filesystem::path& table) {
 
 class Restart : public FlyingMission {
  protected:
-  /// What only a killed world knew may be missing in the record; nothing else may be.
+  /// States that only a killed world had may be missing in the record; nothing else may be.
   void expect_identical_to_its_simulation(bool complete = true) {
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
     EXPECT_NE(output().find("identical"), std::string::npos) << output();
     EXPECT_TRUE(!complete || output().find("missing") == std::string::npos) << output();
   }
-  /// Once more than it is started again.
+  /// Kills it once more than it is restarted.
   void kill_for_good(const std::vector<std::string>& words) {
     for (int death = 0; death <= 3; ++death) kill_next(words);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A record in several segments, as a logger leaves it that was killed and started again.
+// A record in several segments, as a logger that was killed and restarted leaves it.
 #include "runtime/event_log.h"
 #include "tests/process/programs.h"
 

@@ -20,7 +20,7 @@ class StopCommand : public ByHand {
   }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
 
-  /// Whether the record says so, whatever it adds about late commands.
+  /// Whether the record has that reason, possibly with a remark on late commands.
   bool was_ended(const std::string& reason) const {
     return summary()["reason"].get<std::string>().starts_with(reason);
   }
@@ -38,7 +38,7 @@ class StopCommand : public ByHand {
       all.push_back(&hand("ergocast-agent", {"--id", id}));
     return all;
   }
-  /// And under way.
+  /// Also waits until the mission is under way.
   std::vector<Program*> fly(const std::filesystem::path& scenario) {
     const auto all = start_all(scenario);
     EXPECT_TRUE(recorded(30000)) << all[2]->said();

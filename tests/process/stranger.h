@@ -25,7 +25,7 @@ class Stranger {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);
     transport_->publish({bus, message});
   }
-  /// Bytes as they are.
+  /// Sends bytes unchanged.
   void say(Bus bus, const std::string& channel, const std::vector<std::byte>& bytes) {
     lcm::LCM raw(url_.of(bus));
     raw.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));

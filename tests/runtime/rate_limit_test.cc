@@ -54,7 +54,7 @@ int refused(const Mission& mission, int messages_per_tick, double ticks_per_seco
   return refused;
 }
 
-/// Two blocks and a command; a status and a digest now and then round up.
+/// Two blocks and a command; an occasional status or digest rounds up.
 constexpr int kHonest = 4;
 
 TEST(RateLimit, DoesNotMeetAnHonestAgentHoweverFastTheTeamIs) {

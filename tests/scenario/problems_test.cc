@@ -245,7 +245,7 @@ TEST(Limits, TooLongADescription) {
                   "2001 bytes are above the limit 2000"));
 }
 
-// What cannot be read is unknown, not missing: it must not draw a second problem after it.
+// An unreadable field is unknown, not missing: it must not cause a second problem.
 TEST(Salvage, UnreadableFieldsAreNotMissingAsWell) {
   for (const char* text : {"domain { size_x_m: a size_y_m: b }", "domain: 5", "domain 5"}) {
     const std::string said =
@@ -287,7 +287,7 @@ TEST(Text, HostileTextIsRefusedQuickly) {
   EXPECT_FALSE(problems_of(std::string(100, '\0')).empty());
 }
 
-// Whatever a file holds, it is a scenario that survives printing, or there is a reason.
+// Any file is a scenario that survives printing, or has a problem.
 TEST(Text, AnyDamageIsNamedOrHarmless) {
   std::mt19937 random(1);
   const std::string whole = good(Scenario::load(shipped("quadrimodal_corners"))).print();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenario texts for tests, and the two ways their reading can end.
+// Scenario texts for tests, and the two possible results of reading them.
 #pragma once
 
 #include <gtest/gtest.h>

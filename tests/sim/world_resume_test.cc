@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world that dies and is started again goes on where the team was, by what the agents tell it:
-// in lockstep as if nothing had happened, bit for bit, at whatever moment it died.
+// A world that dies and is restarted continues where the team was, from the agents' answers: in
+// lockstep without any difference, bit for bit, at whatever moment it died.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,14 +16,14 @@ using namespace test;
 
 // ---- lockstep, with real agents ------------------------------------------------------------------
 
-/// Which of three agents still heard the tick at which the world died; none of their answers
-/// reached it.
+/// Which of three agents received the tick at which the world died; none of their answers reached
+/// it.
 struct Death {
   Tick tick;
   bool heard[3];
 };
 
-/// A lockstep flight of three agents. Checks that no tick is ever told in two ways.
+/// A lockstep flight of three agents. Checks that no tick is sent with two contents.
 class Flight {
  public:
   using Told = std::map<Tick, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>>;
@@ -372,7 +372,7 @@ TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   give(world, successors, at(1s));
   std::vector<Tick> repeated;
   for (const WorldState& state : states_after(world, at(2s))) repeated.push_back(state.header.tick);
-  // The next row that it lacks, and the state after it; what is no longer remembered is a gap.
+  // The next row that it lacks, and the state after it; a state that is no longer stored is a gap.
   ASSERT_FALSE(repeated.empty());
   EXPECT_EQ(repeated.front(), 74);
   give(world, ack_of(3), at(2s));

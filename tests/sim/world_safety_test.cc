@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated world, driven by hand: what keeps vehicles slow, finite and still.
+// The simulated world, driven by hand: its limits keep vehicles slow, finite and still.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -160,7 +160,7 @@ Mission recorded_mission() {
   return mission;
 }
 
-/// Answers every tick at `now` until the world says nothing new.
+/// Answers every tick at `now` until the world sends nothing new.
 void run_while_it_goes(World& world, Instant now) {
   for (auto states = states_after(world, now); !states.empty(); states = states_after(world, now)) {
     give(world, command_of(0, world.tick(), {1, 0}), now);

@@ -40,7 +40,7 @@ std::string bytes_of(const msghdr& message) {
   return bytes;
 }
 
-/// The tick of a message on the channel that is waited for; nothing of any other.
+/// The tick of a message on the selected channel; nothing for any other.
 std::optional<std::int64_t> tick_of(const std::string& datagram) {
   constexpr std::size_t kName = 8, kTick = 36;  // after LCM's own header; in our message
   const std::size_t at = kName + hold().channel.size() + 1 + kTick;

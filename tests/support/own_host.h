@@ -10,11 +10,11 @@
 
 namespace ergocast::test {
 
-/// Moves this process into new namespaces: network, mounts and the host's name; as an ordinary user
-/// in a new user namespace. Throws std::runtime_error with the reason where the system forbids it.
+/// Moves this process into new namespaces: network, mounts and host name; an ordinary user also
+/// gets a new user namespace. Throws std::runtime_error with the reason if the system forbids it.
 void enter_own_host();
 
-/// Whether it was root's process that moved.
+/// Whether the process was root's.
 bool is_root();
 
 /// Whether mounting is possible there, invisible to other processes.

@@ -45,7 +45,7 @@ inline Mission small_mission(int agents) {
   return mission;
 }
 
-/// The plan that mission_part() says: of the mission that announce() was given last.
+/// The plan in mission_part(): that of the last announce().
 inline std::vector<std::byte> announced_plan;
 inline void announce(const Mission& mission) { announced_plan = encode_plan(mission); }
 
@@ -109,7 +109,7 @@ inline AgentStatus status_of(AgentId id, std::int64_t sequence, Tick answered_ti
   return status;
 }
 
-/// On which bus a process of that role hears such a message.
+/// The bus on which a process of that role receives such a message.
 inline Bus bus_of(const Message& message, Role role) {
   const bool asks = std::holds_alternative<Hello>(message) && header_of(message).sender == kWorld;
   Bus bus = asks || std::holds_alternative<WorldState>(message) ? Bus::kWorld : Bus::kSwarm;
@@ -120,12 +120,12 @@ inline Bus bus_of(const Message& message, Role role) {
   return hears(subscriptions_of(role), bus, message) ? bus : Bus::kCommand;
 }
 
-/// Has `core` hear `message` from `transmitter`.
+/// Gives `message` to `core`, from `transmitter`.
 template <class Core>
 void give(Core& core, const Message& message, Instant now, AgentId transmitter) {
   core.receive(message, bus_of(message, Core::kRole), transmitter, now);
 }
-/// Has `core` hear `message` from its sender.
+/// Gives `message` to `core`, from its sender.
 template <class Core>
 void give(Core& core, const Message& message, Instant now) {
   give(core, message, now, header_of(message).sender);
@@ -141,7 +141,7 @@ std::vector<M> only(const Outbox& out) {
   return found;
 }
 
-/// What `core` publishes at `now`.
+/// The messages that `core` publishes at `now`.
 template <class Core>
 Outbox advance(Core& core, Instant now) {
   Outbox out;

@@ -54,7 +54,7 @@ class Maps : public ::testing::Test {
     }
     return std::get<Rows>(result);
   }
-  /// What is wrong with `file`; empty if nothing is.
+  /// The problem of `file`; empty if there is none.
   std::string said_of(const fs::path& file) {
     const auto result = read(file);
     const auto* problem = std::get_if<MapProblem>(&result);

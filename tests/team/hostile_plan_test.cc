@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing that comes off the network is taken for a plan unless it could have been encoded here.
+// Bytes from the network are accepted as a plan only if this program could have encoded them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -106,7 +106,7 @@ TEST(HostilePlan, WithACoefficientThatCannotBeIsRefused) {
   EXPECT_FALSE(is_taken(mission));
 }
 
-/// A domain in which nothing is too fast, and nothing pulls.
+/// A domain in which nothing is too fast, without contraction.
 void widen(Mission& m) {
   m.domain.size_m = {1e7, 1e7};
   m.law.contraction_gain_per_s = 0;
@@ -126,7 +126,7 @@ void pull(Mission& m) {
   m.law.u_max_mps = 360;
 }
 
-// Each breaks one limit, and as few others as can be.
+// Each breaks one limit, and as few others as possible.
 TEST(HostilePlan, ThatBreaksALimitIsRefused) {
   using Change = void (*)(Mission&);
   constexpr Change kBroken[] = {
@@ -224,7 +224,7 @@ TEST(HostilePlan, OfAnotherVersionIsRefusedWithBothVersionsNamed) {
   const std::string sentence = "the mission's plan is of version " + theirs + ", this program is " +
                                ours + ": install the same version on every host";
   EXPECT_EQ(problem_of(plan), sentence);
-  // What follows may be written in a way that we cannot even take apart.
+  // The rest may be in a format that we cannot parse.
   plan.resize(2 + length + 1);
   EXPECT_EQ(problem_of(plan), sentence);
 }

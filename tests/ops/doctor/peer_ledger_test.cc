@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two ledgers probe each other over links that lose, delay or repeat, and both know what
-// happened.
+// Two ledgers probe each other over links that lose, delay or repeat, and both compute the right
+// losses.
 #include "ops/doctor/peer_ledger.h"
 
 #include <gtest/gtest.h>
