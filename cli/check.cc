@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast check`: loads a scenario, prints its warnings, and then one line about it or its
-// whole text with defaults.
+// `ergocast check`: loads a scenario, prints its warnings, and then prints either one line about it
+// or its whole text with all defaults.
 #include <cstdio>
 
 #include "cli/commands.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `ergocast` can do, one function a command. Each returns the program's exit code.
+// The commands of `ergocast`, one function for each command. Each function returns the program's
+// exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,25 +18,25 @@
 
 namespace ergocast::cli {
 
-/// What the command line asks for; returns the program's exit code. A command that says what its
-/// options are (`add_…`) puts it here when it is the one that was typed.
+/// Runs the command that the command line selects; returns the program's exit code. A command that
+/// declares its own options (`add_…`) stores its action here when it was selected.
 using Action = std::function<int()>;
 
-/// What `run` and `simulate` are told.
+/// The options of `run` and `simulate`.
 struct MissionOptions {
   std::filesystem::path scenario;
   std::filesystem::path out;     ///< empty: runs/<scenario>-<time>
   Overrides overrides;
-  std::optional<LcmUrl> url;     ///< nothing: this host only, on ports of the run's own
+  std::optional<LcmUrl> url;     ///< nothing: this host only, on ports that the run reserves
   Seal seal;
-  std::string key_file;          ///< whence its key is; empty: none
+  std::string key_file;          ///< the file of the key in `seal`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
 };
 
-/// The mission as processes over LCM on this host.
+/// Runs the mission as processes over LCM on this host.
 int run(const MissionOptions& options);
 
-/// The mission in this process, in virtual time.
+/// Runs the mission in this process, in virtual time.
 int simulate(const MissionOptions& options);
 
 struct Seeds {
@@ -43,7 +44,7 @@ struct Seeds {
   std::uint64_t count() const { return last - first + 1; }
 };
 
-/// What `simulate --seeds` is told besides.
+/// The options of `simulate --seeds`.
 struct TrialsOptions {
   MissionOptions mission;  ///< `out` is a CSV file here; empty: none
   std::string faults;      ///< a file, "swarm", or empty: none
@@ -51,16 +52,16 @@ struct TrialsOptions {
   int jobs = 1;
 };
 
-/// One mission under faults for each seed.
+/// Runs one mission under faults for each seed.
 int trials(const TrialsOptions& options);
 
-/// A field and the values it takes one after the other.
+/// A field and the values that the study gives it.
 struct Variation {
   std::string path;
   std::vector<std::string> values;
 };
 
-/// What `study` is told.
+/// The options of `study`.
 struct StudyOptions {
   std::vector<std::filesystem::path> scenarios;
   std::vector<Variation> variations;
@@ -70,31 +71,31 @@ struct StudyOptions {
   std::filesystem::path out;
 };
 
-/// Scenarios × variations × seeds, each flown once.
+/// Simulates each combination of scenario, variation and seed once.
 int study(const StudyOptions& options);
 
-/// What a team that is flying looks like, from any host on its buses.
+/// `status`: shows the state of a running team, from any host on its buses.
 void add_status(CLI::App& app, Action& action);
 
-/// Ends somebody's mission, in order or at once.
+/// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);
 
-/// Every problem of a scenario; with `print`, the scenario as it would be run.
+/// Reports every problem of a scenario. With `print`, prints the scenario with all defaults.
 int check(const std::filesystem::path& scenario, bool print);
 
-/// (Re)makes the report of a run directory.
+/// Makes the report of a run directory, again if it exists.
 int report(const std::filesystem::path& run_dir);
 
-/// Simulates a recorded run again and compares the trajectories.
+/// Simulates a recorded run again and compares every file of the record.
 int verify(const std::filesystem::path& run_dir);
 
-/// `deploy`: the texts that start a mission on several hosts.
+/// `deploy`: writes the files that start a mission on several hosts.
 void add_deploy(CLI::App& app, Action& action);
 /// `spy`: LCM's viewer on one bus of a mission.
 void add_spy(CLI::App& app, Action& action);
 /// `keygen`: a mission key.
 void add_keygen(CLI::App& app, Action& action);
-/// What keeps hosts from hearing each other, and the commands that mend it.
+/// `doctor`: finds what prevents communication between hosts, and the commands that repair it.
 void add_doctor(CLI::App& app, Action& action);
 
 }  // namespace ergocast::cli

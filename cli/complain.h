@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a command that cannot go on says why.
+// How a command reports an error and ends.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +14,23 @@
 
 namespace ergocast::cli {
 
-/// What nobody reads to its end is cut, or counted.
+/// Longer lists and lines are cut.
 inline constexpr std::size_t kMostLines = 50, kMostBytes = 2000;
 
-/// The one place where the command's words for people leave it: whatever a file or a stranger has
-/// put into them, the terminal obeys none of it.
+/// Writes one line for people. All errors of the command pass here: the text may contain bytes of a
+/// file or of another host, and printable() escapes those that would control the terminal.
 inline void tell(const std::string& text) {
   const std::string shown = printable(std::string_view(text).substr(0, kMostBytes));
   std::fprintf(stderr, "%s%s\n", shown.c_str(), text.size() > kMostBytes ? "…" : "");
 }
 
-/// One line on standard error; returns the exit code.
+/// Writes one line on standard error; returns the exit code.
 inline int complain(ExitCode code, const std::string& problem) {
   tell(problem);
   return code;
 }
 
-/// A line for each of several.
+/// Writes one line for each problem.
 inline int complain(ExitCode code, const std::vector<std::string>& problems) {
   for (std::size_t i = 0; i < std::min(problems.size(), kMostLines); ++i) tell(problems[i]);
   if (problems.size() > kMostLines) tell("and " + std::to_string(problems.size() - kMostLines) + " more");

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A host takes a line of some twenty bytes.
+/// A host takes a line of about twenty bytes.
 constexpr std::size_t kMaxHostsBytes = std::size_t{1} << 18;
 
 struct DeployOptions {
@@ -87,7 +87,7 @@ int print(const std::vector<TextFile>& files) {
   return kExitDone;
 }
 
-/// Writes all files, or none if one of them is there already.
+/// Writes all files, or none if one of them exists already.
 int write_files(const std::vector<TextFile>& files, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast doctor`: what keeps agents on this host and others from hearing each other.
+// `ergocast doctor`: reports what prevents agents on this host and on others from communicating.
 #include <sys/ioctl.h>
 #include <unistd.h>
 

@@ -19,7 +19,7 @@ std::string known_names() {
   return names;
 }
 
-/// Puts one line into `faults`; what is wrong with it otherwise.
+/// Puts one line into `faults`; returns what is wrong with the line, or an empty text.
 std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
   for (const lab::FaultField& field : lab::fault_fields()) {
     if (item.fullname() != field.name) continue;

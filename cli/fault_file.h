@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults as people write them: one `name = value` a line, '#' begins a comment.
+// A file of faults: one `name = value` in each line; '#' begins a comment.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads both files, which one name leads to, and refuses them unless they are the two halves of
-// one key.
+// Reads the two files of one key name, and refuses them unless they are the two halves of one key.
 #include "cli/key_pair.h"
 
 #include <filesystem>

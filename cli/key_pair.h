@@ -7,12 +7,12 @@
 
 namespace ergocast::cli {
 
-/// For every agent, world, driver, logger and whoever watches.
+/// The key file of agents, world, driver, logger and monitors.
 std::string team_key_file(const std::string& name);
-/// For who begins and ends missions.
+/// The key file of the processes that start and end missions.
 std::string coordinator_key_file(const std::string& name);
 
-/// Why the files of `name` would not do for a team, with the remedy; nothing if they would.
+/// Why a team cannot use the two files of `name`, with the remedy; nothing if it can.
 std::optional<std::string> problem_of_key_pair(const std::string& name);
 
 }  // namespace ergocast::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast keygen`: a team's mission key.
+// `ergocast keygen`: writes the two files of a new mission key.
 #include <cstdio>
 #include <memory>
 
@@ -15,7 +15,7 @@ namespace {
 int make_keys(const std::string& name) {
   const std::string team = team_key_file(name), coordinator = coordinator_key_file(name);
   const MissionKey key = make_mission_key();
-  // The coordinator's first: without it nobody could use the team's.
+  // The coordinator's file first: the team's file is useless without it.
   if (const auto problem = write_key_file(coordinator, key_text(key, true))) return complain(kExitBadInput, *problem);
   if (const auto problem = write_key_file(team, key_text(key, false))) {
     std::remove(coordinator.c_str());

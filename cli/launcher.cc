@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each process has a state; every turn looks at it and decides whether to wait, restart, report
-// or kill.
+// Keeps a state for each process; every turn decides whether to wait, restart, report or kill.
 #include "cli/launcher.h"
 
 #include <unistd.h>
@@ -21,7 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr int kMaxRestarts = 3;
 constexpr auto kFirstBackOff = 500ms, kLongestBackOff = 4000ms;
-/// How long the machine may refuse to start a program, before that is as good as its death.
+/// A program that the system cannot execute for so long counts as lost.
 constexpr auto kLaunchPatience = 30s;
 /// How long processes may take to end by themselves, and then after SIGTERM.
 constexpr auto kEndPatience = 6s;
@@ -47,7 +46,7 @@ void Launcher::plan(Role role, std::string name, const std::string& program,
   }
   command.insert(command.end(), arguments.begin(), arguments.end());
   process.program.log = setup_.run_dir / "log" / (name + ".log");
-  // The logger still closes its files when we are gone; the others have nothing to lose.
+  // The logger still closes its files if the launcher dies; the others have nothing to save.
   process.program.signal_if_orphaned = role == Role::kLogger ? SIGTERM : SIGKILL;
   process.name = std::move(name);
   processes_.push_back(std::move(process));
@@ -105,7 +104,7 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   if (tells_the_end(process)) expect_end(now);
   if (ended_as_expected(process)) return;
   const bool refused = code == kExitUnavailable || !process.child->executed();
-  // One that ends in order may have heard of the mission's end before us.
+  // A process that ends in order may have received the mission's end before us.
   if (code != kExitDone && !(refused && process.refusals > 0)) explain(process);
   if (end_expected_ && process.role == Role::kLogger && code && code != kExitDone) {
     fail("the record cannot be written; see log/logger.log");
@@ -114,16 +113,16 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   if (refused) return try_again(process, now, stage, process.child->executed());
   process.refusals = 0;
   process.without_program_since.reset();
-  // A coordinator gives way to another, or has found no mission to take over.
+  // A coordinator yields to another coordinator, or has found no mission to take over.
   const bool gave_way = process.role == Role::kCoordinator && code == kExitFailed;
   const bool too_often = code != kExitDone && process.restarts >= kMaxRestarts;
   if (gave_way || too_often) return give_up(process, stage);
-  // It has reached the last tick, or left: without a coordinator nobody would admit a successor.
+  // The agent has reached the last tick, or left. Without a coordinator no successor is admitted.
   if (process.role == Role::kAgent && code == kExitDone && leaderless()) return;
   process.restart_at = now + back_off(process.restarts);
 }
 
-/// Its last words may have been lost, or we may have been asleep.
+/// The process's last messages may have been lost, or the launcher may have been suspended.
 bool Launcher::tells_the_end(const Process& process) {
   return process.child->exit_code() == kExitDone && process.role != Role::kAgent &&
          !runs(Role::kCoordinator);
@@ -144,7 +143,7 @@ void Launcher::restart(Process& process, Instant now, Stage stage) {
     display_.say(process.name + ": restarted (" + std::to_string(process.restarts) + " of " +
                  std::to_string(kMaxRestarts) + ")");
   }
-  // A mission that no agent knows has to be begun by the new coordinator, too.
+  // The new coordinator must also start the mission if no agent knows it yet.
   const bool resume = process.role == Role::kLogger ||
                       (process.role == Role::kCoordinator && stage != Stage::kGathering);
   const auto problem = launch(process, resume);
@@ -153,8 +152,9 @@ void Launcher::restart(Process& process, Instant now, Stage stage) {
   try_again(process, now, stage, false);
 }
 
-/// What the machine refuses is no death: there was no life. Without LCM no team flies here, so
-/// that is waited for; a program may be gone for good.
+/// A refused start does not count as a restart, because the process never ran. Without LCM no team
+/// flies on this host, so we retry without limit. A missing program may be gone for good, so we
+/// retry for kLaunchPatience.
 void Launcher::try_again(Process& process, Instant now, Stage stage, bool executed) {
   if (executed) process.without_program_since.reset();
   if (!executed && !process.without_program_since) process.without_program_since = now;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission's processes on this host: started, watched, restarted and ended.
+// Starts, watches, restarts and ends a mission's processes on this host.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace ergocast::cli {
 
 class ProgressDisplay;
 
-/// How a process's life went, for the summary.
+/// How a process ended, for the summary.
 struct ProcessFate {
   std::string name;
   int restarts = 0;
@@ -31,7 +31,7 @@ class Launcher {
     std::filesystem::path run_dir;
     LcmUrl url;
     RunId run = 0;
-    std::filesystem::path key_file;  ///< that can sign; empty: no key
+    std::filesystem::path key_file;  ///< the key file that can sign; empty: no key
     int agents = 0;
     std::int64_t event_log_mib = kEventLogMib;
   };
@@ -41,29 +41,29 @@ class Launcher {
   /// Starts logger, world, coordinator and agents. An error if one cannot be started at all.
   std::optional<std::string> start();
 
-  /// Looks after the processes at `now`: names who died and why, starts them again as long as the
-  /// mission lasts, and presses those that do not end when they should.
+  /// Checks the processes at `now`: reports each process that ended, restarts it while the mission
+  /// lasts, and signals processes that do not end in time.
   void attend(Instant now, Stage stage);
 
   /// True when every process has ended and none will be started again.
   bool all_ended();
 
-  /// The mission is to end: attend() restarts nobody any more and waits for the processes to go.
+  /// The mission ends: attend() restarts no process any more and waits for the processes to exit.
   void expect_end(Instant now);
 
   /// Makes the mission a failure; the first reason counts.
   void fail(std::string reason);
   const std::optional<std::string>& failure() const { return failure_; }
-  /// Whether the logger has ended, and not in order.
+  /// Whether the logger has ended with an error.
   bool record_broken() const;
-  /// Whether the coordinator has died once too often, or given way to another.
+  /// Whether the coordinator exceeded its restarts, or yielded to another coordinator.
   bool leaderless() const;
-  /// Whether a coordinator's process lives.
+  /// Whether a coordinator process runs.
   bool led() { return runs(Role::kCoordinator); }
-  /// "; coordinator was killed by SIGSEGV after 3 restarts": whom the team went on without.
+  /// "; coordinator was killed by SIGSEGV after 3 restarts": the processes that the team lost.
   std::string losses() const;
 
-  /// Ends the remaining processes: 1 politely (SIGTERM), 2 at once (SIGKILL).
+  /// Ends the remaining processes: 1 by SIGTERM, 2 by SIGKILL.
   void press(int how_hard);
 
   int restarts() const;
@@ -77,9 +77,9 @@ class Launcher {
     Child::Program program;
     std::optional<Child> child;
     bool end_noted = false, given_up = false;
-    int restarts = 0;  // after deaths
+    int restarts = 0;  // after the process ran and ended
     std::optional<Instant> restart_at;
-    int refusals = 0;  // by the machine, in a row: there was no program, or no LCM for it
+    int refusals = 0;  // refused starts in a row: the program or LCM was not available
     std::optional<Instant> without_program_since;
   };
 

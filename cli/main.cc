@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast: the command a person types.
+// ergocast: parses the command line and runs the selected command.
 #include <algorithm>
 #include <cstdio>
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each message moves the mission to a later stage, never back; the clock tells when a stage is
+// Each message moves the mission to a later stage, never back; the clock shows when a stage is
 // overdue.
 #include "cli/mission_watch.h"
 
@@ -29,7 +29,7 @@ void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
   if (!arrival.fresh) return;
   const Instant now = arrival.now;
   reach(team.header.tick, now);
-  // One that was restarted has yet to learn the metric.
+  // A restarted coordinator does not know the metric yet.
   if (team.ergodic_metric > 0) progress_.ergodic_metric = team.ergodic_metric;
   progress_.agents_alive = team.agents_alive;
   progress_.agents_expected = team.agents_expected;
@@ -57,7 +57,7 @@ void MissionWatch::on(const MissionPart& part, const Arrival& arrival) {
 
 void MissionWatch::on(const Stop& stop, const Arrival& arrival) {
   const Instant now = arrival.now;
-  if (!stop.now || stopping()) return;  // somebody else's
+  if (!stop.now || stopping()) return;  // not an emergency stop, or our own
   failed_ = failed_ || stop.failed;
   reason_ = stop.reason;
   reach(Stage::kOver, now);
@@ -88,7 +88,7 @@ void MissionWatch::stop(bool failed, std::string reason) {
 void MissionWatch::repeat(Transport& transport, Instant now, bool led) {
   if (!stop_) return;
   if (!stopping_since_) stopping_since_ = now;
-  // One that is gone, or frozen, ends nothing.
+  // A coordinator that has exited or hangs does not end the mission.
   const bool heard = stage_ == Stage::kOver || now - *stopping_since_ < kCoordinatorPatience;
   stop_->repeat(transport, now, !led || !heard);
 }

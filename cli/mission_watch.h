@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `ergocast run` hears of its mission and shows of it; and the one word it can say: STOP.
+// What `ergocast run` receives of its mission and shows of it; its only message is STOP.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,8 @@
 
 namespace ergocast::cli {
 
-/// How far the mission has come. That it is over the coordinator says, or an agent at the last tick.
+/// The stage of the mission. It is over when the coordinator ends it or an agent reaches the last
+/// tick.
 enum class Stage {
   kGathering,  ///< no agent knows the plan yet
   kReady,      ///< agents know it
@@ -37,24 +38,24 @@ class MissionWatch {
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   Stage stage() const { return stage_; }
-  /// Whether the coordinator has said that the mission failed; and why it ended, in any case.
+  /// Whether the coordinator reported that the mission failed. reason() tells why it ended.
   bool failed() const { return failed_; }
-  /// Whether it is over because its last tick has come.
+  /// Whether the mission is over because it reached its last tick.
   bool complete() const { return stage_ == Stage::kOver && progress_.tick >= timing_.tick_count; }
   const std::string& reason() const { return reason_; }
 
-  /// Lockstep: what to say of a tick that has stayed unanswered for too long.
+  /// Lockstep: the error text of a tick that has not been answered in time.
   std::optional<std::string> overdue(Instant now) const;
 
-  /// From now on repeat() says STOP; the first call counts.
+  /// From now on repeat() sends STOP; only the first call has an effect.
   void stop(bool failed, std::string reason);
   bool stopping() const { return stop_.has_value(); }
-  /// @param led  whether there is a coordinator to end the mission in order
+  /// @param led  whether a coordinator can end the mission in order
   void repeat(Transport& transport, Instant now, bool led);
 
  private:
   template <class M>
-  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const M&, const Arrival&) {}  // the other types need no action
   void on(const TeamStatus& team, const Arrival& arrival);
   void on(const AgentStatus& agent, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);

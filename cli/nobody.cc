@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Goes through the possible causes of silence in order, keys first, and words the first one that
-// holds.
+// Checks the possible causes of silence in order, keys first, and describes the first that applies.
 #include "cli/nobody.h"
 
 namespace ergocast::cli {
 namespace {
 
-/// Why nobody is believed, if that has to do with keys.
+/// Why every message was refused, if the cause is the keys.
 std::string key_problem(const BusOptions& options, const RefusalCounts& refused) {
   const auto count = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)]; };
   const std::string url = options.url.base();
-  // Some of either may be a stranger's.
+  // Some of the refused messages may come from other teams.
   if (count(Refusal::kUnkeyed) > count(Refusal::kTag)) {
     return "the team on " + url + " has no mission key: ask without --key-file";
   }

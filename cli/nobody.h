@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Why a command that listens to a team hears nobody.
+// Why a command that listens to a team receives nothing.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace ergocast::cli {
 
-/// One sentence with the remedy: the wrong URL or network, another version, another key or none.
+/// One sentence with the remedy: wrong URL or network, another version, another key or none.
 std::string why_nobody(const BusOptions& options, const Transport& transport);
 
 }  // namespace ergocast::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words the facts of a mission's progress and hands them to the progress line, the most
+// Turns a mission's progress into short texts and passes them to the progress line, the most
 // important first.
 #include "cli/progress.h"
 
@@ -9,7 +9,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// What there is to say, most important first.
+/// The texts to show, the most important first.
 std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
   std::vector<std::string> said{text_of("t = %.0f of ", static_cast<double>(at.tick) * at.dt_s) +
                                 text_of("%.0f s", static_cast<double>(at.tick_count) * at.dt_s)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a mission is.
+// Displays the progress of a mission.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct MissionProgress {
 
 class ProgressDisplay {
  public:
-  /// Shows it, if the last time is long enough ago.
+  /// Shows it, if the last display was long enough ago.
   void show(const MissionProgress& progress);
   void say(const std::string& line) { line_.say(line); }
   void end() { line_.end(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Redraws one line on a terminal, prints a line from time to time elsewhere, and cuts what does
-// not fit.
+// Redraws one line on a terminal, prints a line at intervals elsewhere, and cuts facts that do not
+// fit.
 #include "cli/progress_line.h"
 
 #include <sys/ioctl.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One line that says how far something is: a bar on a terminal, a plain line now and then elsewhere.
+// One line of progress: a bar on a terminal, a plain line at intervals elsewhere.
 #pragma once
 
 #include <chrono>
@@ -17,14 +17,14 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() { end(); }
 
-  /// Whether the last time is long enough ago; if so, show() is expected now.
+  /// Whether the last display was long enough ago; if so, the caller calls show() now.
   bool due(Clock::time_point now);
-  /// @param share  0 … 1 of the way
-  /// @param facts  most important first; as many as fit are shown
+  /// @param share  the completed share, 0 … 1
+  /// @param facts  the most important first; as many as fit are shown
   void show(double share, const std::vector<std::string>& facts);
   /// A line of its own, above the bar.
   void say(const std::string& line);
-  /// The bar's last state stays; what follows begins on a new line.
+  /// Leaves the bar's last state on the terminal; later output begins on a new line.
   void end();
 
  private:
@@ -33,8 +33,8 @@ class ProgressLine {
   Clock::time_point next_{};
 };
 
-/// How fast something goes: measured over half a second and more, and smoothed over some seconds, so
-/// that what is left to wait does not jump with every breath of the machine.
+/// The rate of a count: measured over half a second or more and smoothed over some seconds, so that
+/// the remaining time does not jump.
 class Rate {
  public:
   /// Counts per second; 0 until it is known.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes each file of a record again in memory and reports the first place where the recorded
-// file differs.
+// Makes each file of a record again in memory and reports the first place where the recorded file
+// differs.
 #include "cli/record_comparison.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::optional<std::string> text_of(const fs::path& file) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-/// Line `number`, from 1, of `text`; what ends before it is told.
+/// Line `number`, from 1, of `text`; a text for people if `text` is shorter.
 std::string line_of(const std::string& text, std::size_t number) {
   constexpr std::size_t kLongest = 160;
   std::istringstream lines(text);
@@ -45,7 +45,7 @@ std::string line_of(const std::string& text, std::size_t number) {
   return line.size() <= kLongest ? line : line.substr(0, kLongest) + "…";
 }
 
-/// The first line and column in which a text is not what it should be; empty if it is.
+/// The first line and column in which `recorded` differs from `expected`; empty if they are equal.
 std::string text_difference(const fs::path& file, const std::string& recorded,
                             const std::string& expected) {
   if (recorded == expected) return "";
@@ -64,14 +64,14 @@ FileComparison compare_text(const fs::path& run_dir, const std::string& name,
   return {name, compared, "", text_difference(run_dir / name, *recorded, expected)};
 }
 
-/// Whether the maps that the scenario named are no longer there.
+/// Whether all problems are maps that no longer exist.
 bool lacks_a_map(const std::vector<Problem>& problems) {
   return std::all_of(problems.begin(), problems.end(), [](const Problem& problem) {
     return problem.what.find("there is no such file") != std::string::npos;
   });
 }
 
-/// plan.binpb against the plan that the scenario compiles to.
+/// Compares plan.binpb with the plan that the scenario compiles to.
 FileComparison compare_plan(const fs::path& run_dir, const Mission& mission, const Scenario& scenario,
                             const FileComparison& hash) {
   const fs::path file = run_dir / kPlanFile;
@@ -87,12 +87,12 @@ FileComparison compare_plan(const fs::path& run_dir, const Mission& mission, con
   return plan_file;
 }
 
-/// Values that the wall clock and the machine decide.
+/// Values that depend on the wall clock and the machine.
 constexpr std::array kOfTheMachine{"/started", "/build", "/cpu_fma", "/wall_time_s", "/ticks_per_s"};
-/// Values that the network, and what went wrong on it, decide.
+/// Values that depend on the network and its faults.
 constexpr std::array kOfTheNetwork{"/reason",   "/interruptions",   "/events_removed", "/restarts",
                                    "/messages", "/record_complete", "/processes",      "/authenticated"};
-/// What the roster and the plan decide of an agent; its other values its last status said.
+/// An agent's values that roster and plan determine; its other values come from its last status.
 constexpr std::array kOfTheRoster{"/id", "/active_from", "/active_until"};
 
 template <std::size_t kCount>
@@ -110,7 +110,7 @@ bool is_free(const std::string& pointer, const Json& recorded, const Expectation
   if (expectation.whole) return false;
   if (of_an_agent) return std::find(kOfTheRoster.begin(), kOfTheRoster.end(), last) == kOfTheRoster.end();
   if (pointer == "/run_id" && recorded.value("mode", Json()) != "simulate") return true;
-  // A launcher calls a mission failed whose record is whole.
+  // A launcher can report a failed mission although its record is complete.
   if (pointer == "/result") return recorded.value("result", Json()) == "failed";
   if (pointer == "/speed_limit/clamped_commands") {
     return !expectation.complete || recorded.value("restarts", Json()) != 0;
@@ -136,7 +136,7 @@ Json expected_summary(const Json& recorded, const Mission& mission, const fs::pa
   return summary;
 }
 
-/// Where a value stands that people find by its key.
+/// The file and the key of a value, for people.
 std::string place_of(const fs::path& file, const std::string& pointer) {
   return file.string() + ", " + pointer;
 }

@@ -26,7 +26,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kAttendPeriod = 50ms;
 
-/// Until all processes have ended.
+/// Returns when all processes have ended.
 void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
                StopSignals& signals, ProgressDisplay& display) {
   int asked = 0;
@@ -41,7 +41,7 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
     }
     if (mission.stopping()) launcher.expect_end(now());
     launcher.attend(now(), mission.stage());
-    // Nobody else is left to notice.
+    // Without a coordinator no other process detects an overdue tick.
     if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
       launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
     }
@@ -51,7 +51,7 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
   launcher.attend(now(), mission.stage());
 }
 
-/// What can be said of a run whose logger left no summary.
+/// The summary of a run whose logger left none.
 nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
   const Timing& timing = scenario.mission().timing;
   return {{"run_id", to_hex(run)},
@@ -67,7 +67,7 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
           {"tick_count", timing.tick_count}};
 }
 
-/// The logger's summary with what only the launcher knows.
+/// The logger's summary with the values that only the launcher knows.
 nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher::Setup& setup,
                                        const Launcher& launcher, const MissionWatch& mission) {
   auto read = read_summary(setup.run_dir);
@@ -107,7 +107,7 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
   display.say("  key      " + (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
-/// Flies the mission on a network that works, into a run directory that is ready.
+/// Runs the mission. LCM works and the run directory is ready.
 int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal,
         StopSignals& signals) {
   ProgressDisplay display;

@@ -37,7 +37,7 @@ fs::path default_folder(const std::string& scenario) {
 
 using Json = nlohmann::ordered_json;
 
-/// What stands at `pointer` ("/messages/sent") as text; "unknown" if nothing does.
+/// The value at `pointer` ("/messages/sent") as text; "unknown" if there is none.
 std::string text_at(const Json& summary, const char* pointer) {
   const Json value = summary.value(Json::json_pointer(pointer), Json(nullptr));
   if (value.is_null()) return "unknown";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a run's files go, and the last words of `run` and `simulate`.
+// The run directory of a mission, and the closing lines of `run` and `simulate`.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace ergocast::cli {
 std::optional<Scenario> load_or_complain(const std::filesystem::path& file,
                                          const Overrides& overrides);
 
-/// The mission of a run directory's plan.binpb, or a complaint on the standard error stream.
+/// The mission of a run directory's plan.binpb, or an error on the standard error stream.
 std::optional<Mission> recorded_mission_or_complain(const std::filesystem::path& run_dir);
 
 /// Makes the folder (`wanted`, or runs/<scenario>-<time> if empty) and writes scenario.textproto,
@@ -23,7 +23,7 @@ std::optional<Mission> recorded_mission_or_complain(const std::filesystem::path&
 std::variant<std::filesystem::path, std::string> prepare_run_directory(
     const std::filesystem::path& wanted, const Scenario& scenario);
 
-/// Writes the report and prints how the run went and where everything is.
+/// Writes the report, prints how the run ended, and prints the paths of all results.
 void conclude(const std::filesystem::path& run_dir, const nlohmann::ordered_json& summary,
               const Scenario& scenario);
 

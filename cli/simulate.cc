@@ -18,7 +18,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Looking up from the simulation costs; once in so many turns is often enough for people.
+/// Turns between two updates of the display and checks for signals, which cost time.
 constexpr int kTurnsBetweenLooks = 256;
 
 void show(const lab::Swarm& swarm, const Mission& mission, ProgressDisplay& display) {
@@ -41,7 +41,7 @@ nlohmann::ordered_json summary_of(const lab::Swarm& swarm, const Scenario& scena
   return summarize(swarm.recorder(), context);
 }
 
-/// Until the mission is over, somebody wants it to end, or the disk is full. The wall time it took.
+/// Runs until the mission is over, a signal arrives, or the disk is full. Returns the wall time.
 double fly(lab::Swarm& swarm, const Mission& mission, const RunRecord& record) {
   StopSignals signals;
   ProgressDisplay display;

@@ -34,7 +34,7 @@ struct SpyOptions {
   bool print = false;
 };
 
-/// The first of `places` where there is something; nothing if there is none.
+/// The first of `places` that exists; nothing if none does.
 std::optional<fs::path> first_of(const std::vector<fs::path>& places) {
   std::error_code none;
   for (const fs::path& place : places) {
@@ -52,13 +52,13 @@ std::optional<fs::path> java_on_path() {
   return first_of(places);
 }
 
-/// Whether this Java lacks what windows need: Debian's "headless" packages.
+/// Whether this Java lacks the libraries for windows, as Debian's "headless" packages do.
 bool is_headless(const fs::path& java) {
   const fs::path libraries = java.parent_path().parent_path() / "lib";
   return fs::exists(libraries / "libawt_headless.so") && !fs::exists(libraries / "libawt_xawt.so");
 }
 
-/// What is started, and what is missing for it.
+/// The command to start, and what is missing for it.
 struct Viewer {
   std::vector<std::string> command;
   std::string packages;  ///< Debian packages to be installed, each after a space

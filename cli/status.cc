@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast status`: what a team looks like from any host on its buses. It only listens.
+// `ergocast status`: shows the state of a running team from any host on its buses. It only listens.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -25,7 +25,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Longer than anybody may say nothing without being silent.
+/// Longer than any process may be silent.
 constexpr auto kPatience = 3500ms;
 constexpr auto kTurn = 50ms;
 constexpr auto kLastWord = 1s;
@@ -34,7 +34,7 @@ struct StatusOptions : BusOptions {
   bool watch = false, json = false;
 };
 
-/// The runs that are heard on one URL.
+/// The runs received on one URL.
 class Listener {
  public:
   explicit Listener(const StatusOptions& options) : options_(options), since_(now()) {}
@@ -52,9 +52,9 @@ class Listener {
   }
 
   void listen(Instant until, int wake_fd) { transport_->deliver_until(until, wake_fd); }
-  /// To be called now and then: goes on listening where the network interface was exchanged.
+  /// To be called at intervals: continues to listen after the network interface was replaced.
   void follow_network() { transport_->renew_membership(); }
-  /// From now on nothing but the run that is heard.
+  /// From now on accepts only the run that was found.
   void stay_with_it() { transport_->set_run(runs_.begin()->first); }
 
   Instant since() const { return since_; }
@@ -86,7 +86,7 @@ int choose(const Listener& listener) {
   return complain(kExitBadInput, text);
 }
 
-/// Until everything is known that can be expected, or long enough. False if a signal came.
+/// Returns when all expected messages have come, or after kPatience. False if a signal came.
 bool listen_around(Listener& listener, StopSignals& signals) {
   const auto complete = [&] {
     return listener.runs().size() == 1 && listener.runs().begin()->second.complete();
@@ -117,7 +117,7 @@ int conclude_watch(const StatusOptions& options, const TeamPicture& picture, Tea
   return failed ? kExitFailed : kExitDone;
 }
 
-/// Agents may know of the end before the coordinator says why it came.
+/// Agents may report the end before the coordinator reports its reason.
 class End {
  public:
   bool come(const TeamView& view, Instant now) {

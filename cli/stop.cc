@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast stop`: ends a mission from any host on its buses, and says whether the team obeyed.
+// `ergocast stop`: ends a mission from any host on its buses, and reports whether the team obeyed.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -24,17 +24,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Longer than any agent is silent: whoever else flies on this URL is heard by then.
+/// Longer than any agent is silent, so that every other run on this URL is detected.
 constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
-/// How long to listen for anybody, and for a coordinator.
+/// How long to wait for any process, and for a coordinator.
 constexpr auto kHearing = 3s;
-/// How long a coordinator may take to end the mission, and then the team to go.
+/// How long a coordinator may take to end the mission; then how long the team may take to exit.
 constexpr auto kAnswerPatience = 5s;
 constexpr auto kLongest = 15s;
-/// For so long an emergency stop is said in any case: who is deaf for a moment hears it, too.
+/// An emergency stop is repeated at least so long, because a process may miss the first ones.
 constexpr auto kLeastInsistence = 1s;
 constexpr auto kStopTurn = 20ms;
-/// Runs beyond kMostRuns that are told in one turn.
+/// Runs beyond kMostRuns that get a STOP in one turn.
 constexpr std::size_t kMostInATurn = 256;
 constexpr const char* kAtOnce = "stopped at once by `ergocast stop --now` on ";
 
@@ -59,7 +59,7 @@ class Stopping {
     return std::nullopt;
   }
 
-  /// Finds the run, stops it and says how that went: the exit code.
+  /// Finds the run, stops it and reports the result; returns the exit code.
   int stop() {
     while (!found() && now() < since_ + kHearing) {
       if (!listen()) return kExitFailed;
@@ -88,12 +88,12 @@ class Stopping {
     return signals_.take() == 0;
   }
   bool found() const {
-    if (options_.run != 0) return true;  // nothing to find: an emergency does not wait
+    if (options_.run != 0) return true;  // the run is known, and an emergency must not wait
     return runs_.size() > 1 || (!runs_.empty() && now() >= since_ + kLookAround);
   }
 
-  /// In an emergency all runs on the URL are meant, also those heard later: nobody has time to
-  /// choose.
+  /// Stops the selected run. In an emergency it stops all runs on the URL, also those received
+  /// later, because there is no time to choose.
   int insist() {
     std::map<RunId, StopWord> words;
     std::map<RunId, int> codes;
@@ -119,7 +119,7 @@ class Stopping {
            })->second;
   }
 
-  /// Nobody is to go on because others, or recordings of them, have filled the table.
+  /// Runs beyond kMostRuns must stop, too. Other runs, or recordings of them, may fill the table.
   void say_to_the_crowd() {
     if (!options_.at_once) return;
     for (const RunId run : crowd_) {
@@ -143,7 +143,7 @@ class Stopping {
     }
   }
 
-  /// The exit code once it is known.
+  /// The exit code, or nothing while it is unknown.
   std::optional<int> verdict(const RunHeard& team) const {
     const auto waited = now() - since_;
     const auto left = team.still_there(now());
@@ -171,7 +171,7 @@ class Stopping {
   }
 
   int conclude(const RunHeard& team) const {
-    // A team that never began has moved nothing, whoever its world may be.
+    // A mission that never started has moved no vehicle.
     if (options_.at_once && !team.world_heard() && team.tick() > 0) {
       return complain(kExitFailed, "nobody is heard any more, but no world or driver was heard "
                                    "before either: whether the vehicles stand still is not known: "
@@ -206,7 +206,7 @@ class Stopping {
   StopSignals& signals_;
   std::unique_ptr<Transport> transport_;
   std::map<RunId, RunHeard> runs_;
-  std::set<RunId> crowd_;  // heard since the last turn, beyond kMostRuns
+  std::set<RunId> crowd_;  // beyond kMostRuns, received since the last turn
   bool crowded_ = false;
   Instant since_{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sends the same STOP every 0.1 s, each time under a new sequence number.
+// Sends the same STOP every 0.1 s, each time with a new sequence number.
 #include "cli/stop_word.h"
 
 #include <chrono>

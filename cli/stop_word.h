@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// STOP, said again and again: by `ergocast run` to its mission, by `ergocast stop` to anybody's.
+// Repeats STOP: `ergocast run` sends it to its own mission, `ergocast stop` to any mission.
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ class StopWord {
   /// @param failed  whether the mission is to count as failed
   StopWord(RunId run, bool failed, std::string reason);
 
-  /// Says it on every bus where somebody listens for it, if the last time is long enough ago.
-  /// @param at_once  to everybody, who then stand still; otherwise to the coordinator, who ends the
-  ///                 mission in order
+  /// Sends STOP on every bus with a receiver for it, if the last one was long enough ago.
+  /// @param at_once  all processes stop at once and the vehicles stand still; otherwise only the
+  ///                 coordinator obeys and ends the mission in order
   void repeat(Transport& transport, Instant now, bool at_once);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast study`: hands the missing runs to worker processes, writes a row for each, then
+// `ergocast study`: distributes the missing runs to worker processes, writes a row for each, then
 // makes the table and the page.
 #include <algorithm>
 #include <chrono>
@@ -28,7 +28,7 @@ constexpr std::size_t kMostFailuresNamed = 20;
 /// One run: a point and a seed.
 using Run = std::pair<std::size_t, std::uint64_t>;
 
-/// Those that are not done, seed by seed: whatever is there when somebody looks can be compared.
+/// The runs that are not done, seed by seed, so that an incomplete table is comparable, too.
 std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds,
                               const std::vector<Run>& done) {
   std::vector<Run> missing;
@@ -41,7 +41,7 @@ std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds,
   return missing;
 }
 
-/// Flies what is missing and writes it down as it comes.
+/// Simulates the missing runs and writes each result when it arrives.
 class Campaign {
  public:
   Campaign(const StudyPoints& points, std::vector<Run> missing, StudyDirectory& directory)
@@ -128,7 +128,7 @@ std::string command_of(const StudyOptions& options) {
          std::to_string(options.seeds.last) + " --out " + options.out.string();
 }
 
-/// The table on the terminal, and the page.
+/// Prints the table on the terminal and writes the page.
 std::optional<std::string> show_results(const StudyIdentity& identity,
                                         const StudyDirectory& directory,
                                         const StudyOptions& options) {
@@ -138,7 +138,7 @@ std::optional<std::string> show_results(const StudyIdentity& identity,
                     studies::study_page({identity.study, version(), command_of(options)}, summaries));
 }
 
-/// Where everything is, and how to go on if something is missing.
+/// Prints the paths of the results, and the command that completes the study if runs are missing.
 void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
                      const StudyOptions& options) {
   std::printf("\n%zu runs flown now, %zu in %s\n", campaign.flown(), directory.rows().size(),

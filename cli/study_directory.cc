@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Locks the folder, refuses one that another study began, reads the finished rows, and appends
-// new ones.
+// Locks the folder, refuses the folder of another study, reads the finished rows, and appends new
+// ones.
 #include "cli/study_directory.h"
 
 #include <fcntl.h>
@@ -50,7 +50,7 @@ Json to_json(const StudyIdentity& identity) {
   return {{"version", identity.version}, {"fields", identity.study.fields}, {"points", points}};
 }
 
-/// Why `ours` cannot go on where `theirs` was begun.
+/// Why the study `ours` cannot continue in the folder of `theirs`.
 std::string difference(const Json& ours, const Json& theirs) {
   const std::string fresh = "; give a new folder";
   for (const char* key : {"version", "fields", "points"}) {
@@ -74,7 +74,7 @@ std::string difference(const Json& ours, const Json& theirs) {
   return "";
 }
 
-/// Why the folder is not this study's; nothing if it is, or is new.
+/// Why this study cannot use the folder; nothing if it can.
 std::optional<std::string> objection(const fs::path& folder, const Json& identity) {
   std::error_code error;
   const fs::path file = folder / kIdentityFile;

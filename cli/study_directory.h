@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder of a study: study.json says what is compared, study.csv has one row a run. It outlives
-// the calls that add to it.
+// The folder of a study: study.json describes what is compared, study.csv has one row for each run.
+// Later commands can add rows.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@
 
 namespace ergocast::cli {
 
-/// A study and what its points are compiled to, which tells two studies of equal names apart.
+/// A study and the hashes of its compiled points, which distinguish two studies of equal names.
 struct StudyIdentity {
   studies::Study study;
-  std::vector<std::string> plan_hashes;  ///< one a point
+  std::vector<std::string> plan_hashes;  ///< one for each point
   std::string version;
 };
 
 class StudyDirectory {
  public:
-  /// Makes the folder, or goes on in one where the same study has begun. A torn last line of its
-  /// table is taken off. What is wrong otherwise: another study's folder, one with other files, one
-  /// in which somebody else is at work.
+  /// Makes the folder, or continues the same study in it. An incomplete last line of its table is
+  /// removed. An error if the folder belongs to another study, contains other files, or is in use
+  /// by another process.
   /// @param identity  outlives it
   static std::variant<std::unique_ptr<StudyDirectory>, std::string> open(
       const std::filesystem::path& folder, const StudyIdentity& identity);
@@ -39,9 +39,9 @@ class StudyDirectory {
   /// The runs of rows(): point and seed, ascending.
   std::vector<std::pair<std::size_t, std::uint64_t>> done() const;
 
-  /// A row more, in the file at once and whole. What is wrong, if it cannot be written.
+  /// Appends a row and writes it to the file at once, as a whole. An error if it cannot be written.
   std::optional<std::string> add(const studies::StudyRow& row);
-  /// Puts rows and file in the order of points and seeds. What is wrong, if it cannot be written.
+  /// Sorts rows and file by point and seed. An error if it cannot be written.
   std::optional<std::string> sort();
 
  private:

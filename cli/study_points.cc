@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts through all combinations of values, compiles each scenario with them, and reports each
-// problem once.
+// Enumerates all combinations of values, compiles each scenario with them, and reports each problem
+// once.
 #include "cli/study_points.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr std::size_t kMostPoints = 1000;
 
 using Problems = std::vector<std::string>;
 
-/// What is wrong with the request itself, before any file is read.
+/// Problems of the request itself, before any file is read.
 Problems problems_of(const StudyOptions& options) {
   Problems problems;
   std::set<std::string> fields;
@@ -42,7 +42,7 @@ Problems problems_of(const StudyOptions& options) {
   return problems;
 }
 
-/// Combination `index` of all values, the last field the fastest.
+/// Combination `index` of all values; the last field changes fastest.
 std::vector<FieldValue> combination(const std::vector<Variation>& variations, std::size_t index) {
   std::vector<FieldValue> fields;
   for (auto variation = variations.rbegin(); variation != variations.rend(); ++variation) {
@@ -61,8 +61,8 @@ std::string words_of(const std::vector<FieldValue>& fields) {
   return text;
 }
 
-/// Problems of one scenario's points. One that all have is the file's; of another it is said where
-/// it first was, unless it blames a varied value itself.
+/// Problems of one scenario's points. A problem of all points is reported for the file. Any other
+/// problem is reported for its first point, unless it names a varied value itself.
 class Complaints {
  public:
   void add(const std::vector<Problem>& problems, const std::string& point) {
@@ -130,7 +130,7 @@ class Compiler {
     point.agents = static_cast<int>(scenario.mission().starts_m.size());
     const Timing& timing = scenario.mission().timing;
     point.duration_s = static_cast<double>(timing.tick_count) * timing.dt_s;
-    // The seed is each run's.
+    // The seed is set for each run.
     const std::string hash = plan_hash(encode_plan(scenario.with_seed(0).mission()));
     const std::string text = file.string() + (fields.empty() ? "" : " with " + words_of(fields));
     const auto [twin, is_new] = plans_.emplace(hash, text);

@@ -15,7 +15,7 @@ namespace ergocast::cli {
 
 struct StudyPoints {
   StudyIdentity identity;
-  std::vector<Scenario> scenarios;  ///< one a point
+  std::vector<Scenario> scenarios;  ///< one for each point
 };
 
 /// All problems of all points, each once, if there are any.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Remembers the last message of every process of a run, and judges by silence whether the
-// process has ended.
+// Stores the last message of every process of a run, and detects by silence that a process has
+// ended.
 #include "cli/team_ears.h"
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 namespace ergocast::cli {
 namespace {
 
-/// Members that are told apart; those of former lives go as soon as the roster says so.
+/// The maximum number of members. Members of former incarnations are removed when the roster ends
+/// them.
 constexpr std::size_t kMostLives = std::size_t{kMaxAgents} * kMaxIncarnationsPerAgent;
 constexpr AgentId kProcesses[] = {kLogger, kWorld, kCoordinator};
 
@@ -38,7 +39,7 @@ void RunHeard::receive(const Message& message, Bus bus, AgentId transmitter, Ins
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
 }
 
-/// An agent may repeat it long after the coordinator's death, and says nothing new by it.
+/// An agent may repeat a part long after the coordinator exited; a repetition changes nothing.
 void RunHeard::on(const MissionPart& part, const Arrival&) {
   over_ = over_ || part.state == MissionState::kEnded || part.state == MissionState::kFailed;
   if (over_ && !part.reason.empty()) reason_ = part.reason;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The runs that speak on one URL: what `ergocast status` and `ergocast stop` listen to, and whether
-// they still speak, which `stop` goes by.
+// The runs received on one URL. `ergocast status` and `ergocast stop` listen to them; `stop` checks
+// here whether a run still sends.
 #pragma once
 
 #include <functional>
@@ -19,17 +19,17 @@
 
 namespace ergocast::cli {
 
-/// Runs on one URL that are told apart.
+/// The maximum number of runs on one URL.
 inline constexpr std::size_t kMostRuns = 16;
 
-/// Told what is heard, on which bus and from whom.
+/// Called with each message, its bus and its transmitter.
 using Hear = std::function<void(const Message&, Bus, AgentId transmitter)>;
 
-/// Hears all that tells how teams are. An error says why LCM cannot be used.
+/// Receives all messages about the state of teams. An error tells why LCM cannot be used.
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
     const BusOptions& options, Hear hear);
 
-/// What was heard of one run.
+/// The messages received of one run.
 class RunHeard {
  public:
   static constexpr Role kRole = Role::kMonitor;
@@ -38,25 +38,25 @@ class RunHeard {
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
-  /// Whether the coordinator, or who repeats its words, says that the mission is over.
+  /// Whether a MISSION, from the coordinator or repeated by an agent, reported the mission's end.
   bool over() const { return over_; }
   const std::string& reason() const { return reason_; }
   Tick tick() const { return tick_; }
   bool unheard() const;
   bool coordinator_heard() const { return heard(kCoordinator); }
   bool world_heard() const { return world_tick_ >= 0; }
-  /// Whether no vehicle moved in the newest state of the world; true if none was heard.
+  /// Whether no vehicle moved in the newest state of the world; true if none was received.
   bool stands_still() const;
 
-  /// Who has spoken lately and not said that it has finished: "agent 2", "world".
+  /// Processes that are not silent and have not reported that they finished: "agent 2", "world".
   std::vector<std::string> still_there(Instant now) const;
-  /// Members that are silent and have not said that they have finished.
+  /// Members that are silent and have not reported that they finished.
   std::vector<std::string> lost(Instant now) const;
   int agents() const { return static_cast<int>(agents_.size()); }
 
  private:
   template <class M>
-  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const M&, const Arrival&) {}  // the other types need no action
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const WorldState& world, const Arrival& arrival);
@@ -65,10 +65,10 @@ class RunHeard {
   }
 
   Participant me_;
-  std::map<Author, bool> agents_;  // whether it has said that it has finished
+  std::map<Author, bool> agents_;  // whether it reported that it finished
   std::map<AgentId, Eigen::Vector3d> velocities_mps_;  // in the newest state
   Tick tick_ = 0, world_tick_ = -1;
-  bool over_ = false;  // says the coordinator
+  bool over_ = false;  // the coordinator reported it
   std::string reason_;
 };
 

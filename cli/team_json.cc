@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the picture of a team as JSON, with null for what is not known yet.
+// Writes the picture of a team as JSON, with null for unknown values.
 #include <nlohmann/json.hpp>
 
 #include "cli/team_text.h"

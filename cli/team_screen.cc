@@ -54,7 +54,7 @@ void TeamScreen::show(const std::string& text) {
   if (terminal_) {
     const std::string seen = cut_to_height(text, terminal_height() - 1);
     lines_ = static_cast<int>(std::count(seen.begin(), seen.end(), '\n'));
-    // Without wrapping, so that a line is a line also where the terminal is narrow.
+    // Line wrapping is off, so that a line stays one line on a narrow terminal.
     std::printf("\x1b[?7l%s\x1b[?7h", seen.c_str());
   } else {
     std::fputs(text.c_str(), stdout);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where `ergocast status` shows its pictures.
+// The output of `ergocast status`.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace ergocast::cli {
 
-/// One picture after the other: in place on a terminal, one below the other elsewhere.
+/// Shows one picture after the other: in place on a terminal, one below the other elsewhere.
 class TeamScreen {
  public:
   explicit TeamScreen(bool json);
 
-  /// Until the next one takes its place; on a terminal no more than fits.
+  /// Shows it until the next one replaces it; on a terminal only as much as fits.
   void show(const TeamPicture& picture);
   void show(const std::string& text);
-  /// The whole of it, to stay.
+  /// Prints it in full, to stay.
   void print(const TeamPicture& picture);
 
-  /// How often show() is worth its while.
+  /// The time between two calls of show().
   PacingClock::duration period() const;
 
  private:
@@ -27,7 +27,7 @@ class TeamScreen {
   void make_room();
 
   bool terminal_, json_, colour_, shown_ = false;
-  int lines_ = 0;  // on the terminal, to be drawn over
+  int lines_ = 0;  // on the terminal, to be overwritten
 };
 
 }  // namespace ergocast::cli

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lays the picture of a team out in columns as wide as their widest cells, and colours what is
-// wrong.
+// Arranges the picture of a team in columns as wide as their widest cells, and colours problems.
 #include "cli/team_text.h"
 
 #include <algorithm>
@@ -26,7 +25,7 @@ std::string number(const char* format, double value) {
   return text;
 }
 
-/// How many characters a terminal shows of UTF-8.
+/// How many columns the UTF-8 text takes on a terminal.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
@@ -52,7 +51,7 @@ struct Column {
   bool right;
 };
 
-/// Columns as wide as their widest cell: numbers a blank apart, words two.
+/// Columns as wide as their widest cell: one space between numbers, two between words.
 std::string aligned(const std::vector<Column>& columns, const std::vector<std::vector<Cell>>& rows,
                     bool colour) {
   std::vector<std::size_t> widths;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps the newest message of every kind from each process, and derives the state of each row
-// from their ages.
+// Stores the newest message of every kind from each process, and derives the state of each row from
+// their ages.
 #include "cli/team_view.h"
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr PacingClock::duration kOverdue = 2 * kAgentStatusPeriod;
-/// In lockstep everybody waits for somebody now and then; for so long is worth a word.
+/// In lockstep every agent waits now and then; a longer wait is reported.
 constexpr PacingClock::duration kStandstill = 750ms;
-/// A loop that was deaf for so long, or an agent so far behind the world, is late.
+/// An event loop blocked for so long, or an agent so far behind the world, is late.
 constexpr double kLate_s = 0.5;
 
 double to_s(PacingClock::duration duration) {
@@ -46,7 +46,7 @@ void TeamView::receive(const Message& message, Bus bus, AgentId transmitter, Ins
   const auto arrival = me_.accept(message, bus, transmitter, now);
   if (!arrival) return;
   tick_ = std::max(tick_, arrival->from.tick);
-  // MISSION may be repeated by an agent long after the coordinator's death.
+  // An agent may repeat MISSION long after the coordinator exited.
   const Header& from = arrival->from;
   const bool first_hand = arrival->fresh && !std::holds_alternative<MissionPart>(message);
   if (first_hand && from.sender < kUnassigned) processes_[from.sender] = from;
@@ -162,7 +162,7 @@ void TeamView::add_agents(TeamPicture& picture, Instant now) const {
                   [](const AgentRow& row) { return row.condition < Condition::kUnheard; });
 }
 
-/// A member that is forgotten is dead or unheard by the coordinator.
+/// The coordinator receives nothing from a forgotten member.
 void TeamView::add_forgotten(TeamPicture& picture) const {
   for (const RosterEntry& entry : follower().roster()) {
     if (!entry.forgotten) continue;
@@ -173,7 +173,7 @@ void TeamView::add_forgotten(TeamPicture& picture) const {
   }
 }
 
-/// Whether a process of that kind has something to say at this stage of the mission.
+/// Whether a process of that kind must send at this stage of the mission.
 bool TeamView::should_speak(AgentId sender) const {
   if (over() || !follower().mission()) return sender == kCoordinator && !over();
   if (sender == kWorld) return follower().state() == MissionState::kRunning;
@@ -244,7 +244,7 @@ bool TeamView::over() const {
     const auto seen = agents_.find(author);
     const bool finished =
         seen != agents_.end() && seen->second.status.phase == AgentPhase::kFinished;
-    // Who was struck from the roster, say because it died, will not say that it has finished.
+    // An incarnation removed from the roster, for example a dead one, does not report its end.
     if (member && !finished) return false;
     anybody_finished |= finished;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team as somebody sees it who only listens: messages and time in, rows out. No clock, no I/O.
+// A team as a listening process sees it: messages and time in, rows out. No clock, no I/O.
 #pragma once
 
 #include <map>
@@ -13,22 +13,22 @@
 
 namespace ergocast {
 
-/// How an agent is doing, worst first.
+/// The condition of an agent, worst first.
 enum class Condition {
-  kSilent,   ///< has said nothing for 3 s or more
-  kWaiting,  ///< stands still because of somebody else
-  kLate,     ///< speaks late, is behind the world, or its process is too slow
-  kUnheard,  ///< not heard yet, and we have not listened for long
+  kSilent,   ///< has sent nothing for 3 s or more
+  kWaiting,  ///< cannot continue without another process
+  kLate,     ///< sends late, is behind the world, or its process is too slow
+  kUnheard,  ///< not received yet, and we have not listened for long
   kOk,
-  kFinished,  ///< has said that it is done
-  kGone,      ///< no member any more, and nobody took its place
+  kFinished,  ///< has reported that it is done
+  kGone,      ///< no longer a member, and without a successor
 };
 
 /// The newest member under one number.
 struct AgentRow {
   Author author;
   Condition condition = Condition::kOk;
-  double silent_s = 0;  ///< since its last status, or since we listen
+  double silent_s = 0;  ///< since its last status, or since the listening began
   int restarts = 0;     ///< former incarnations in the roster
   std::optional<AgentStatus> status;
 };
@@ -37,7 +37,7 @@ struct AgentRow {
 struct ProcessRow {
   std::string name;
   bool heard = false;
-  bool trouble = false;  ///< it should speak and does not
+  bool trouble = false;  ///< it should send and does not
   double silent_s = 0;
   Incarnation incarnation = 0;
   std::string host;  ///< empty: not known
@@ -46,21 +46,21 @@ struct ProcessRow {
 
 struct TeamPicture {
   RunId run = 0;
-  bool authenticated = false;  ///< else anybody on the network may have said it
-  std::string scenario;               ///< empty: the mission was not heard
-  std::optional<MissionState> state;  ///< nothing: not heard
+  bool authenticated = false;  ///< else any host on the network may have sent it
+  std::string scenario;               ///< empty: MISSION was not received
+  std::optional<MissionState> state;  ///< nothing: not received
   std::string reason;                 ///< why it ended, or why its plan cannot be read
   Tick tick = 0, tick_count = 0;      ///< tick_count 0: not known
   double dt_s = 0;
-  std::optional<double> ergodic_metric;  ///< median of what the agents see
+  std::optional<double> ergodic_metric;  ///< median of the agents' values
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
-  /// In ascending order: whose coverage counts no longer, or will soon not; see RosterEntry.
+  /// In ascending order: agents whose coverage no longer counts or soon will not; see RosterEntry.
   std::vector<AgentId> forgotten;
   std::vector<ProcessRow> processes;
   bool trouble = false;
-  bool over = false;  ///< the mission has ended: whoever was heard is leaving, or has left
+  bool over = false;  ///< the mission has ended: its processes exit or have exited
 };
 
 class TeamView {
@@ -76,9 +76,9 @@ class TeamView {
 
   TeamPicture picture(Instant now) const;
 
-  /// Whether the mission, its processes and every member of its roster have been heard.
+  /// Whether the mission, its processes and every member of its roster have been received.
   bool complete() const;
-  /// Whether the mission has ended: the coordinator says so, or all its members do.
+  /// Whether the coordinator, or all members, reported the mission's end.
   bool over() const;
 
  private:
@@ -89,7 +89,7 @@ class TeamView {
   };
 
   template <class M>
-  void on(const M&, const Arrival&) {}  // nothing more follows from the other types
+  void on(const M&, const Arrival&) {}  // the other types need no more action
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const TeamStatus& team, const Arrival& arrival);
   void on(const WorldState& world, const Arrival& arrival);
@@ -108,9 +108,9 @@ class TeamView {
   Instant since_;
   Tick tick_ = 0, world_tick_ = 0;
   std::map<Author, Seen> agents_;
-  std::map<AgentId, Header> processes_;  // the newest of each
+  std::map<AgentId, Header> processes_;  // the newest message of each
   std::string coordinator_host_;
-  std::optional<MissionState> team_state_;  // as TEAM_STATUS has it, which comes more often
+  std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;
 };
 

@@ -33,7 +33,7 @@ std::string place_of(const RowKey& key) {
   return "tick " + std::to_string(key.first) + ", agent " + std::to_string(key.second);
 }
 
-/// Takes the first cell off a row.
+/// Removes the first cell of a row and returns it.
 std::string_view take_cell(std::string_view& row) {
   const std::size_t comma = std::min(row.find(','), row.size());
   const std::string_view cell = row.substr(0, comma);
@@ -107,7 +107,7 @@ void TrajectoryComparison::miss(const std::string& simulated) {
   last_missing_ = tick;
 }
 
-/// Whether the recorded row is the simulated one but for a velocity of zero.
+/// Whether the recorded row is the simulated one, except for a velocity of zero.
 bool TrajectoryComparison::stands_where(const std::string& simulated) const {
   const auto vx = simulated.rfind(',', simulated.rfind(',') - 1);
   return *recorded_ == simulated.substr(0, vx) + ",0,0";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorded trajectory held against one that is simulated: row by row, bit by bit.
+// Compares a recorded trajectory with a simulated one: row by row, bit by bit.
 #pragma once
 
 #include <filesystem>
@@ -14,20 +14,20 @@ namespace ergocast::cli {
 
 /// The place and both texts of the first cell in which two rows of a table differ:
 /// "FILE:LINE, column NAME\nrecorded:  …\nsimulated: …\n".
-/// @param place   of the recorded row, as TableLines::place() says it
+/// @param place   of the recorded row, as TableLines::place() formats it
 /// @param header  the names of the columns
 std::string first_difference(std::string place, const std::string& header, const std::string& recorded,
                              const std::string& simulated);
 
-/// Rows that the record lacks are counted.
+/// Missing rows of the record are counted and not a difference.
 class TrajectoryComparison {
  public:
   explicit TrajectoryComparison(const std::filesystem::path& run_dir);
 
-  /// The run was stopped at once: in its last tick the vehicles stand still, which no simulation
+  /// Expects an emergency stop: in the last tick the vehicles stand still, which no simulation
   /// does.
   void expect_halt() { halt_expected_ = true; }
-  /// Why the record cannot be read, if so.
+  /// Why the record cannot be read; nothing if it can.
   const std::optional<std::string>& problem() const { return lines_.problem(); }
   /// Compares as many whole lines as there are; false at the first difference.
   bool compare(std::istream& simulated);
@@ -35,17 +35,17 @@ class TrajectoryComparison {
   bool same() const { return same_; }
   /// Whether the record ended before the simulation did.
   bool recorded_over() const { return recorded_over_; }
-  /// Whether the record goes on after the simulation's end.
+  /// Whether the record continues after the simulation's end.
   bool has_more() const { return recorded_.has_value(); }
   /// Whether its last tick has rows that stand still.
   bool halted() const { return halted_; }
-  /// Whether the record ends amid a line, or amid the rows of a tick.
+  /// Whether the record ends within a line, or within the rows of a tick.
   bool torn() const { return lines_.torn() || amid_tick_; }
   /// "tick 12, agent 3" of the first line that differs.
   std::string place() const;
   const std::string& difference() const { return difference_; }
   std::string last_tick() const { return last_.substr(0, last_.find(',')); }
-  /// Rows that are the simulation's.
+  /// Rows that equal the simulation's.
   std::int64_t rows() const { return rows_; }
   /// Ticks up to the last compared row that lack rows.
   Tick missing() const { return missing_; }

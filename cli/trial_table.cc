@@ -13,11 +13,11 @@ using lab::TrialFigures;
 
 struct Count {
   const char* column;   ///< in the CSV file
-  const char* meaning;  ///< in the summary; null: not there
+  const char* meaning;  ///< in the summary; null: not shown
   std::int64_t& (*of)(TrialFigures&);
 };
 
-/// All that is counted, in the order of the columns.
+/// All counters, in the order of the columns.
 constexpr Count kCounts[] = {
     {"agent_steps", nullptr, [](TrialFigures& f) -> std::int64_t& { return f.agent_steps; }},
     {"messages", nullptr, [](TrialFigures& f) -> std::int64_t& { return f.messages; }},

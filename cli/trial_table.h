@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What came of many trials: a CSV row a seed, and a summary for people.
+// The results of many trials: one CSV row for each seed, and a summary for people.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace ergocast::cli {
 
 enum class Verdict { kFine, kTimedOut, kViolated, kDied };
 
-/// What came of one seed, as it travels from a worker to us.
+/// The result of one seed, as a worker sends it.
 struct TrialReport {
   lab::TrialFigures figures;
   Verdict verdict = Verdict::kFine;
-  char what[600] = "";  ///< what was violated, or how the process died
+  char what[600] = "";  ///< the violation, or how the process ended
 };
 
 std::string csv_header();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast simulate --seeds`: flies each seed in a worker process, prints failures with the
+// `ergocast simulate --seeds`: simulates each seed in a worker process, prints failures with the
 // command that repeats them.
 #include <chrono>
 #include <cstdio>
@@ -24,10 +24,10 @@ namespace {
 
 constexpr const char* kSwarm = "swarm";
 constexpr std::int64_t kMostFailuresShown = 20;
-/// A trial takes some hundredths of a second: one that takes so long hangs.
+/// A trial takes some hundredths of a second; one that takes so long hangs.
 constexpr unsigned kPatience_s = 120;
 
-/// Faults by seed: of a file, or drawn. Nothing, after saying why, if the file is no good.
+/// Faults by seed: from a file, or drawn. Nothing, after an error message, if the file is invalid.
 std::optional<std::function<lab::Faults(std::uint64_t)>> faults_by_seed(const std::string& source) {
   if (source == kSwarm) return lab::drawn;
   if (source.empty()) return [](std::uint64_t) { return lab::Faults(); };
@@ -58,7 +58,7 @@ TrialReport report_of_death(std::uint64_t seed, const std::string& how) {
   return report;
 }
 
-/// The command that flies one seed again.
+/// The command that repeats the trial of one seed.
 std::string replay_of(const TrialsOptions& options, std::uint64_t seed) {
   std::string command = "ergocast simulate " + shell_word(options.mission.scenario.string());
   const Overrides& over = options.mission.overrides;
@@ -70,7 +70,7 @@ std::string replay_of(const TrialsOptions& options, std::uint64_t seed) {
   return command + " --seeds " + std::to_string(seed);
 }
 
-/// Takes the reports in as they come: rows, totals, a line of progress.
+/// Processes the reports when they arrive: rows, totals, a line of progress.
 class Desk {
  public:
   Desk(const TrialsOptions& options, std::ostream& csv) : options_(options), csv_(csv) {
@@ -81,7 +81,7 @@ class Desk {
   void take(const TrialReport& report) {
     totals_.add(report);
     rows_[report.figures.seed] = csv_row(report);
-    // In the order of the seeds, whichever worker was faster.
+    // Rows are written in the order of the seeds, in whichever order the workers finish.
     for (auto first = rows_.begin(); first != rows_.end() && first->first == next_row_;
          first = rows_.erase(first), ++next_row_) {
       csv_ << first->second << '\n';
@@ -119,7 +119,7 @@ class Desk {
   ProgressLine progress_;
   const ProgressLine::Clock::time_point since_ = ProgressLine::Clock::now();
   TrialTotals totals_;
-  std::map<std::uint64_t, std::string> rows_;  // that wait for smaller seeds
+  std::map<std::uint64_t, std::string> rows_;  // rows that wait for smaller seeds
   std::uint64_t next_row_;
 };
 

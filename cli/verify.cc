@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulates the mission of a record again and holds every file against it that the simulation
-// determines: first what the plan is made of, then the trajectory, then what follows from both.
+// Simulates the mission of a record again and compares every file that the simulation determines:
+// first the sources of the plan, then the trajectory, then what follows from both.
 #include <cstdio>
 #include <sstream>
 #include <utility>
@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kTurnsBetweenComparisons = 256;
 
-/// The simulation of a plan, as the recorder in it writes it.
+/// The simulation of a plan, with the tables that its recorder writes.
 struct Simulation {
   explicit Simulation(const Mission& mission) : swarm(options_of(mission), trajectory, metrics) {}
 
@@ -39,7 +39,7 @@ struct Simulation {
     return options;
   }
 
-  /// Until something differs or one of the two ends.
+  /// Runs until the first difference or the end of either trajectory.
   void run(TrajectoryComparison& comparison) {
     bool more = true;
     for (bool going_on = true; more && going_on;) {
@@ -53,7 +53,7 @@ struct Simulation {
   lab::Swarm swarm;
 };
 
-/// A recorder that has seen nothing but the recorded rows, and what it makes of them.
+/// A recorder that received only the recorded rows, and the tables that it writes.
 struct Observer {
   Observer(RunData rows, const MissionFollower& heard)
       : recorder(0, 1, trajectory, metrics) {
@@ -67,12 +67,13 @@ struct Observer {
   Recorder recorder;
 };
 
-/// Whether `summary` is that of a simulation, whose run id comes from the seed.
+/// Whether `summary` is of a simulation, whose run id comes from the seed.
 bool is_simulated(const Json& summary, const Recorder& simulated) {
   return summary.value("run_id", Json()) == to_hex(simulated.run());
 }
 
-/// Why a run over LCM has more in it than a simulation of its plan could know; empty if it has not.
+/// Why a run over LCM contains more than a simulation of its plan can reproduce; empty if it does
+/// not.
 std::string what_cannot_be_repeated(const Json& summary, const Mission& mission) {
   if (mission.timing.pace == Pace::kRealtime) {
     return "it ran in real time, where what an agent knew depended on the network";
@@ -101,7 +102,7 @@ std::string what_cannot_be_repeated(const Json& summary, const Mission& mission)
   return "";
 }
 
-/// The same for any JSON, whoever wrote it.
+/// The same for JSON of any origin.
 std::string why_not_repeatable(const Json& summary, const Mission& mission) {
   try {
     return what_cannot_be_repeated(summary, mission);
@@ -121,7 +122,7 @@ std::string difference_of(const TrajectoryComparison& comparison, const fs::path
   if (comparison.has_more()) return file + ": goes on after the plan's last tick, or after all stood still\n";
   const Json gaps = summary.value("gaps", Json()), segments = summary.value("segments", Json());
   const bool tells_of_gaps = gaps.is_number_integer() && segments.is_number_integer();
-  // Where a segment begins, a logger was killed, maybe amid the rows of a tick.
+  // A segment begins where a logger was killed, possibly within the rows of a tick.
   if (tells_of_gaps && comparison.missing() > gaps.get<Tick>() + segments.get<Tick>() - 1) {
     return file + ": lacks rows, first those of " + comparison.first_missing() + "; " +
            std::to_string(comparison.missing()) + " ticks do, of " + gaps.dump() + " that the summary tells of\n";
@@ -142,7 +143,7 @@ int report_difference(const fs::path& run_dir, const std::string& difference, co
   return kExitDiffers;
 }
 
-/// Which files were compared, and which were not.
+/// Prints which files were compared and which were not.
 void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
   std::printf("compared:\n");
   for (const FileComparison& file : files) {
@@ -160,7 +161,7 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
   }
 }
 
-/// Everything else that follows from the trajectory that was compared.
+/// Compares everything else that follows from the compared trajectory.
 std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission, RunData rows,
                                              const Simulation& simulation,
                                              const TrajectoryComparison& comparison, const Json& summary) {
@@ -185,7 +186,7 @@ std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Miss
   return files;
 }
 
-/// Says how it went, and exits.
+/// Prints the result; returns the exit code.
 int conclude_verification(const fs::path& run_dir, const TrajectoryComparison& comparison,
                           const Json& summary, const std::vector<FileComparison>& files) {
   for (const FileComparison& file : files) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forks workers that do a range of jobs each and send fixed-size results through a pipe of their
-// own.
+// Forks workers that do a range of jobs each and send fixed-size results, each through its own
+// pipe.
 #include "cli/workers.h"
 
 #include <poll.h>
@@ -21,7 +21,7 @@
 namespace ergocast::cli {
 namespace {
 
-/// Jobs a process does before it makes room for a fresh one.
+/// A worker process is replaced after so many jobs.
 constexpr std::uint64_t kMostJobsPerWorker = 64;
 constexpr int kIdlePeriod_ms = 100;
 
@@ -37,7 +37,7 @@ struct Stretch {
 struct Worker {
   pid_t pid = 0;
   int pipe = -1;
-  Stretch jobs;  // those it has not reported yet
+  Stretch jobs;  // those without a result yet
 };
 
 [[noreturn]] void work(const Stretch& stretch, int pipe, const Jobs& jobs) {
@@ -105,7 +105,7 @@ class Pool {
     }
   }
 
-  /// Waits for a result or a signal, for a moment at most.
+  /// Waits a short time at most for a result or a signal.
   void wait(int signal_fd) {
     std::vector<pollfd> polled{{signal_fd, POLLIN, 0}};
     for (const Worker& worker : workers_) polled.push_back({worker.pipe, POLLIN, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many jobs over worker processes: one that crashes, aborts or hangs costs one job.
+// Runs many jobs in worker processes: a crash, an abort or a hang costs one job.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@
 
 namespace ergocast::cli {
 
-/// A result may have so many bytes: it then arrives whole or not at all.
+/// The maximum size of a result: a pipe transfers it as a whole or not at all.
 inline constexpr std::size_t kMostResultBytes = 4000;
 
-/// What is to be done with each of the jobs 0 … count − 1.
+/// What to do with each of the jobs 0 … count − 1.
 struct Jobs {
   std::uint64_t count = 0;
   int processes = 1;
@@ -24,15 +24,15 @@ struct Jobs {
   std::size_t result_bytes = 0;
   /// Called in a worker; writes `result_bytes` bytes.
   std::function<void(std::uint64_t job, std::byte* result)> work;
-  /// Called here with what came of a job, in any order.
+  /// Called here with the result of each job, in any order.
   std::function<void(std::uint64_t job, const std::byte* result)> take;
-  /// Called here for a job that ended its process, with how that died.
+  /// Called here for a job that ended its process, with how the process ended.
   std::function<void(std::uint64_t job, const std::string& how)> lost;
-  /// Called here several times a second; false ends all early.
+  /// Called here several times a second; false ends the work early.
   std::function<bool()> go_on;
 };
 
-/// Does them all, unless a signal arrives.
+/// Does all jobs, unless a signal arrives.
 void work_in_processes(const Jobs& jobs, StopSignals& signals);
 
 /// Jobs whose results are values.

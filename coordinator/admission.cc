@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decides who may join the team, and under which number.
+// Decides which agents may join the team, and assigns their numbers.
 #include <algorithm>
 #include <utility>
 
@@ -19,7 +19,8 @@ RosterEntry* Coordinator::active_entry(AgentId id) {
   return at == roster_.end() ? nullptr : &*at;
 }
 
-/// Whether a member has said nothing since, and may be dead: soon its number may be free.
+/// Whether a member that counts as alive has sent nothing since `since`. It may be dead, and its
+/// number free soon.
 bool Coordinator::doubtful(Instant since, Instant now) const {
   return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return alive(entry, now) && last_sign(entry.author) < since;
@@ -27,7 +28,8 @@ bool Coordinator::doubtful(Instant since, Instant now) const {
 }
 
 std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
-  // A process that was started again at once is the successor of one that still seems to live.
+  // A restarted process may succeed a member that still counts as alive, so it waits while a member
+  // is doubtful.
   if (newcomers_.asked.size() >= kMaxRosterEntries) {
     auto& asked = newcomers_.asked;
     asked.erase(std::min_element(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
@@ -49,7 +51,7 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   const Incarnation nonce = hello.header.incarnation;
   if (hello.header.sender == kWorld) return on_question(hello, arrival);
-  if (nonce == 0 || hello.header.sender < kUnassigned) return;  // nobody's mark, or no agent
+  if (nonce == 0 || hello.header.sender < kUnassigned) return;  // no incarnation, or no agent
   if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
   if (hello.version != name_.version) {
     auto& strangers = newcomers_.strangers;
@@ -61,15 +63,16 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
   });
   if (known) return repeat_mission_soon();
   note_silences(now);
-  // Said before the newest was: by somebody who has yet to hear of it, or a recording.
+  // This HELLO is older than the newest revision: its sender has not received that yet, or it is a
+  // recording.
   if (hello.revision < revisions_.admits_from) return repeat_mission_soon();
   std::optional<AgentId> id = hello.requested_id;
   if (*id == kUnassigned) id = free_id(nonce, now);
-  if (!id) return;  // not yet, or the team is full
+  if (!id) return;  // no number is free yet, or the team is full
   if (const RosterEntry* holder = active_entry(*id)) {
-    if (alive(*holder, now)) return;  // the younger has to give way
-    // The silence of one concerns only who would take its number: where messages are late, members fall
-    // silent all the time, and nobody else's HELLO would ever be new enough.
+    if (alive(*holder, now)) return;  // the holder of the number keeps it
+    // The silence of a member matters only for its own number. On a network with long delays
+    // members fall silent often, and no other agent's HELLO would ever be new enough.
     if (hello.revision < members_[holder->author].silence_revision) return repeat_mission_soon();
   }
   admit({*id, nonce}, now);
@@ -80,7 +83,7 @@ void Coordinator::admit(const Author& author, Instant now) {
     return entry.author.agent == author.agent;
   });
   if (roster_.size() >= kMaxRosterEntries || lives >= kMaxIncarnationsPerAgent) return;
-  // The agents may be further than the last state that we heard of a world that is dead by now.
+  // The agents may be ahead of the last state received from a world that has died since.
   const Tick newest = std::max(world_.tick, team_tick_);
   if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
   const Tick from = state_ == MissionState::kRunning ? newest : 0;
@@ -90,7 +93,7 @@ void Coordinator::admit(const Author& author, Instant now) {
   members_[author];
   me_.presume_alive(author, now);
   newcomers_.asked.erase(author.incarnation);
-  world_.tick_since = now;  // the tick waits for the newcomer, too, which has its time for it
+  world_.tick_since = now;  // the tick also waits for the newcomer, which gets the full time
   announce();
 }
 

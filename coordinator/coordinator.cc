@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Admits agents into the roster, repeats the mission until it ends, and removes or names members
+// Admits agents into the roster, repeats the mission until it ends, and removes or reports members
 // that do not answer.
 #include "coordinator/coordinator.h"
 
@@ -19,11 +19,11 @@ using namespace std::chrono_literals;
 constexpr auto kMissionPeriod = 1s;
 constexpr auto kMissionGap = 100ms;
 constexpr auto kTeamStatusPeriod = 250ms;
-/// What an agent said before that is out of date.
+/// Older messages of an agent are out of date.
 constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 /// How long the end is repeated.
 constexpr auto kFarewell = 1s;
-/// Real time: how long the team gets to hear of a change before it takes effect.
+/// Real time: the notice that the team gets before a change takes effect.
 constexpr double kNotice_s = 2;
 
 }  // namespace
@@ -54,7 +54,8 @@ void Coordinator::receive(const Message& message, Bus bus, AgentId transmitter, 
     const bool flying = status != nullptr && (status->phase == AgentPhase::kWaiting ||
                                               status->phase == AgentPhase::kRunning);
     if (looking() && flying) me_.set_run(status->header.run);
-    // While it knows no run, whoever leads one here leads the one that it would disturb.
+    // While it searches, it knows no run. The coordinator of any run here is the one that it would
+    // disturb.
     if (me_.run() == 0 && !std::holds_alternative<TeamStatus>(message)) return;
   }
   const auto arrival = me_.accept(message, bus, transmitter, now);
@@ -83,7 +84,7 @@ void Coordinator::on(const AgentStatus& status, const Arrival& arrival) {
   change();
 }
 
-/// A world that begins asks the team where it is, for which the tick has its time anew.
+/// A starting world asks the team for its state; meanwhile the tick gets its full time again.
 void Coordinator::on_question(const Hello& question, const Arrival& arrival) {
   if (!arrival.fresh) return;
   if (question.header.incarnation != world_.begun) world_.tick_since = arrival.now;
@@ -144,7 +145,7 @@ AgentId Coordinator::waits_for(const RosterEntry& entry) const {
 }
 
 RosterEntry* Coordinator::culprit(Instant now) {
-  // A world that begins lacks the answers that its predecessor may have had.
+  // A restarted world lacks the answers that the former incarnation may have received.
   const bool asks = now - world_.asked <= kOverdue;
   RosterEntry* unheard = asks ? active_entry(world_.unheard) : nullptr;
   if (unheard != nullptr) return unheard;
@@ -157,7 +158,7 @@ RosterEntry* Coordinator::culprit(Instant now) {
       if (silent == nullptr || heard < last_sign(silent->author)) silent = &entry;
       continue;
     }
-    // Who waits for a teammate is not to blame; that teammate is, unless it waits itself.
+    // A member that waits for a teammate is not blamed. That teammate is, unless it waits itself.
     const AgentId teammate = waits_for(entry);
     RosterEntry* named = teammate == kUnassigned ? nullptr : active_entry(teammate);
     if (named != nullptr && waits_for(*named) == kUnassigned) {
@@ -203,7 +204,8 @@ void Coordinator::check_tick(Instant now) {
   change();
 }
 
-/// Whoever falls silent is news: its number may go to a newcomer that knows of the silence.
+/// A member's silence makes a new revision: its number may go to a newcomer that has received that
+/// revision.
 void Coordinator::note_silences(Instant now) {
   for (const RosterEntry& entry : roster_) {
     if (entry.active_until >= 0) continue;
@@ -217,11 +219,12 @@ void Coordinator::note_silences(Instant now) {
   }
 }
 
-/// What was covered under a number stops counting once nobody was heard under it for as long as the
-/// plan says, and counts again once somebody is.
+/// Coverage under a number stops counting after the plan's time without a message under that
+/// number. It counts again after the next one.
 void Coordinator::review_coverage(Instant now) {
   if (flown_.mission->forget_silent_after_s <= 0) return;
-  // Who hears nobody is deaf itself, and learns nothing of others' silence.
+  // Without any live member the coordinator may be cut off itself, so it concludes nothing from
+  // silence.
   if (alive_count(now) == 0) deaf_until_ = now;
   const auto patience = std::max(seconds(flown_.mission->forget_silent_after_s), silence_of(0));
   struct Number {
@@ -242,7 +245,7 @@ void Coordinator::review_coverage(Instant now) {
   }
 }
 
-/// Not before the last switch has happened: an entry has room for one.
+/// Waits for the previous switch to take effect, because an entry has room for one.
 bool Coordinator::may_switch(const RosterEntry& entry) const {
   return world_.tick >= entry.since_tick && world_.revision >= entry.since_revision;
 }
@@ -274,7 +277,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
     world_.tick_since = now;
     change();
   }
-  // First, so that a coordinator whom our mission outranks knows that we live.
+  // First, so that a coordinator that yields to our mission knows that we are alive.
   if (now >= said_.next_team_status) {
     publish_team_status(now, out);
     said_.next_team_status = now + kTeamStatusPeriod;
@@ -287,7 +290,8 @@ void Coordinator::lead(Instant now, Outbox& out) {
   ending_.finished = ending_.since && now - *ending_.since >= kFarewell;
 }
 
-/// Somebody has not heard; but nobody's hellos are to flood the bus.
+/// A process lacks the newest revision. kMissionGap limits the repetitions, so that HELLO messages
+/// cannot flood the bus.
 void Coordinator::repeat_mission_soon() {
   said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Admits agents, distributes the mission, starts, watches and ends it. Never steers.
+// Admits agents, distributes the mission, starts, monitors and ends it. It never steers.
 //
 // It repeats its whole state once a second, so that none of its messages needs an acknowledgement.
 // A restarted coordinator takes the mission over from the agents, which repeat it on request
@@ -20,20 +20,20 @@
 
 namespace ergocast {
 
-/// What a coordinator does about a mission that is already under way on its buses.
+/// The reaction of a coordinator to a mission that is already under way on its buses.
 enum class Takeover {
   kNever,     ///< starts a mission of its own at once
-  kIfFlying,  ///< listens for a moment; takes over what nobody leads, leaves to a living coordinator
-              ///< what it leads, or starts its own
-  kMust,      ///< takes over, also from a living coordinator, or fails
+  kIfFlying,  ///< listens for a moment; leaves if a coordinator leads the mission, else takes the
+              ///< mission over, or starts its own if there is none
+  kMust,      ///< takes over, also from a running coordinator, or fails
 };
 
-/// How a member of the roster, present or former, is doing.
+/// The state of a present or former member of the roster.
 enum class Presence { kAlive, kSilent, kGone };
 const char* to_string(Presence presence);
 
 struct CoordinatorIdentity {
-  RunId run = 0;  ///< its mission's; 0, unless kNever: whichever is flying, else `incarnation`
+  RunId run = 0;  ///< of its mission; 0, unless kNever: the run that is found, else `incarnation`
   Incarnation incarnation = 0;
   std::string host;
   std::string version;
@@ -43,7 +43,7 @@ class Coordinator {
  public:
   static constexpr Role kRole = Role::kCoordinator;
 
-  /// @param plan  the compiled plan as it travels; may be empty with kMust: any mission's
+  /// @param plan  the encoded plan; may be empty with kMust, which accepts any mission
   Coordinator(CoordinatorIdentity identity, std::vector<std::byte> plan,
               Takeover takeover = Takeover::kNever);
 
@@ -57,19 +57,20 @@ class Coordinator {
   /// True once the end has been repeated for long enough.
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
-  /// Null until it has one, which with a takeover takes a moment.
+  /// Null until it has a mission; a takeover needs a moment to find one.
   const Mission* mission() const { return flown_.mission ? &*flown_.mission : nullptr; }
-  /// Whether it has yet to find out if there is a mission to take over.
+  /// Whether it still searches for a mission to take over.
   bool looking() const { return search_.takeover != Takeover::kNever; }
   /// Whether it took the mission over from a predecessor.
   bool took_over() const { return flown_.taken_over; }
-  /// Whether it has finished without a word because the mission is not its to lead; reason() says why.
+  /// Whether it has finished silently because another coordinator leads the mission or it cannot be
+  /// taken over; see reason().
   bool left() const { return ending_.left; }
   MissionState state() const { return state_; }
   const std::string& reason() const { return ending_.reason; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
   Presence presence(const RosterEntry& entry, Instant now) const;
-  /// Hosts and versions of agents that were not admitted because their version is not ours.
+  /// Hosts and versions of agents that were refused because their version differs from ours.
   const std::set<std::pair<std::string, std::string>>& strangers() const { return newcomers_.strangers; }
   Tick tick() const { return world_.tick; }
 
@@ -77,13 +78,13 @@ class Coordinator {
   struct Name {
     std::string host, version;
   };
-  /// What it leads, or is to lead.
+  /// The mission that it leads or will lead.
   struct Flown {
     std::optional<Mission> mission;
-    std::vector<std::byte> plan;  // as it travels
+    std::vector<std::byte> plan;  // as encoded
     bool taken_over = false;
   };
-  /// How it finds a mission that is under way, until it leads one; the follower has what agents say.
+  /// The search for a mission that is under way. The follower holds the parts that agents repeat.
   struct MissionSearch {
     Takeover takeover;
     std::optional<Instant> since, found;
@@ -91,31 +92,31 @@ class Coordinator {
   };
   struct Revisions {
     std::int64_t current = 0;
-    std::int64_t who_may_join = 0;  // the newest that bears on all newcomers, …
-    std::int64_t admits_from = -1;  // … and what a HELLO must know of, once it was said
+    std::int64_t who_may_join = 0;  // the newest that affects all newcomers, …
+    std::int64_t admits_from = -1;  // … and the one that a HELLO must know, once it was sent
   };
   struct Member {
     std::optional<AgentStatus> status;
     bool silence_said = false;
-    std::int64_t silence_revision = -1;  // that tells of its last silence
+    std::int64_t silence_revision = -1;  // of the revision that reports its last silence
   };
   struct Newcomers {
-    std::map<Incarnation, Instant> asked;  // without a number: since when
+    std::map<Incarnation, Instant> asked;  // without a number: time of the first request
     std::set<std::pair<std::string, std::string>> strangers;
   };
-  /// The newest that was heard of the world.
+  /// The newest information about the world.
   struct WorldSeen {
     bool heard = false;
     Tick tick = 0;
     Instant tick_since{};
-    std::int64_t revision = 0;  // of the roster that the tick is flown by
+    std::int64_t revision = 0;  // the roster revision of that tick
     std::int64_t newest_revision = 0;    // of any state, …
     std::optional<Instant> newer_since;  // … and since when it is newer than ours
     std::int64_t missed_deadlines = 0;
     std::map<AgentId, Tick> answered;
-    Incarnation begun = 0;         // the life that asked last where the team is, …
-    AgentId unheard = kUnassigned; // … whose answer it waited for when it asked last, …
-    Instant asked{};               // … and when that was
+    Incarnation begun = 0;         // the incarnation that asked last for the team's state, …
+    AgentId unheard = kUnassigned; // … the agent that it waited for in that question, …
+    Instant asked{};               // … and the time of the question
   };
   struct Said {
     std::optional<Instant> first;  // when it began to lead
@@ -128,7 +129,7 @@ class Coordinator {
   };
 
   template <class M>
-  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const M&, const Arrival&) {}  // the other types need no action
   void on(const Hello& hello, const Arrival& arrival);
   void on_question(const Hello& question, const Arrival& arrival);
   void on(const AgentStatus& status, const Arrival& arrival);
@@ -165,7 +166,8 @@ class Coordinator {
   RosterEntry* culprit(Instant now);
   void announce() { say_anew(), revisions_.who_may_join = revisions_.current; }
   void say_anew() { ++revisions_.current, said_.next_mission = Instant{}; }
-  /// Anything but an admission: newcomers have to know of it, so that no recording of one gets in.
+  /// Any change but an admission: newcomers must know the new revision, so that no recording is
+  /// admitted.
   void change() { announce(), revisions_.admits_from = revisions_.current; }
   void repeat_mission_soon();
   void publish_mission(Outbox& out);
@@ -183,7 +185,7 @@ class Coordinator {
   Newcomers newcomers_;
   WorldSeen world_;
   Tick team_tick_ = 0;    // the newest of any agent
-  Instant deaf_until_{};  // it heard nobody
+  Instant deaf_until_{};  // it received no message
   Said said_;
   Ending ending_;
 };

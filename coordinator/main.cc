@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-coordinator: admits agents, hands out the mission, starts, watches and ends it.
+// ergocast-coordinator: runs the coordinator as a process and logs changes of the roster.
 #include <spdlog/spdlog.h>
 
 #include <map>
@@ -19,7 +19,8 @@
 namespace ergocast {
 namespace {
 
-/// One line for everybody who comes, falls silent, speaks again or goes, is forgotten or remembered.
+/// Logs one line for each member that joins, falls silent, returns, leaves, is forgotten or counts
+/// again.
 class RosterLog {
  public:
   void look(const Coordinator& coordinator, Instant now) {
@@ -48,7 +49,7 @@ class RosterLog {
   std::set<Author> forgotten_;
 };
 
-/// One line for each host and version whose agents are not admitted.
+/// Logs one line for each host and version whose agents are refused.
 class StrangersLog {
  public:
   void look(const Coordinator& coordinator) {
@@ -122,7 +123,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   return coordinator.state() == MissionState::kFailed ? kExitFailed : kExitDone;
 }
 
-/// A run id given means a run to be started; else somebody may already fly this mission.
+/// With a run id the coordinator starts that run. Otherwise the mission may already be under way.
 Takeover takeover_of(const NodeOptions& node, bool resume) {
   if (resume) return Takeover::kMust;
   return node.run != 0 ? Takeover::kNever : Takeover::kIfFlying;

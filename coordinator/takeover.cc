@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a coordinator comes by a mission that is already flying, and gives it up to another.
+// How a coordinator takes over a mission that is under way, and yields it to another.
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -11,13 +11,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long to look for a mission under way: longer than any agent is silent.
+/// How long to search for a mission under way: longer than any agent is silent.
 constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 constexpr auto kQuestionPeriod = 250ms;
-/// After the first answer, for newer revisions from agents that heard more of the predecessor.
+/// After the first answer, waits for newer revisions from other agents.
 constexpr auto kSecondOpinions = 600ms;
 constexpr auto kTakeoverPatience = 30s;
-/// The predecessor may have said some revisions that nobody has repeated to us.
+/// The predecessor may have sent some revisions that no agent has repeated to us.
 constexpr std::int64_t kRevisionLead = 1000;
 
 }  // namespace
@@ -27,19 +27,21 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
     if (arrival.mission_changed && !search_.found) search_.found = arrival.now;
     return;
   }
-  // Of two that took over at once, one stays.
+  // If two coordinators took over at once, one stays.
   if (std::pair(part.revision, part.header.incarnation) <= std::pair(revisions_.current, me_.incarnation())) return;
   if (rival_lives(arrival.now) && rival_->header.incarnation == part.header.incarnation) {
     return leave("another coordinator has taken the mission over", arrival.now);
   }
-  // What a dead one said and an agent has repeated: the team has to listen to us again.
+  // An agent repeated a revision of a coordinator that is gone. The team must accept our revisions
+  // again.
   revisions_.current = part.revision;
   change();
 }
 
-/// A predecessor may have said a revision that the world alone has heard: the team waits for that
-/// roster, or for a newer one. A coordinator that took over from us and lives says it, too, and the
-/// world may be the first to name it. So that one has time to be heard.
+/// The world may name a revision of a predecessor that no agent received. The team then waits for
+/// that roster or a newer one, so we send a higher revision. But the world may also be the first to
+/// name a revision of a coordinator that took over from us and is alive. So we first wait for
+/// messages of that coordinator.
 void Coordinator::speak_above_the_dead(Instant now) {
   if (world_.newest_revision <= revisions_.current) return world_.newer_since.reset();
   if (rival_lives(now) || now - *world_.newer_since <= silence_of(kCoordinator)) return;
@@ -56,7 +58,8 @@ bool Coordinator::rival_lives(Instant now) const {
   return rival_ && !me_.silent({kCoordinator, rival_->header.incarnation}, now);
 }
 
-/// Whether a living one leads the mission that we would take over, or, while we know of none, any.
+/// Whether a live coordinator leads the mission that we would take over. While we know of none, any
+/// live coordinator counts.
 bool Coordinator::rival_leads(Instant now) const {
   const auto leads = [](MissionState state) {
     return state == MissionState::kWaiting || state == MissionState::kRunning;
@@ -69,7 +72,7 @@ std::string Coordinator::led_by_rival() const {
          ": leave it to that one, choose another URL, or take the mission over with --resume";
 }
 
-/// At once, without a word: the mission is not ours to end.
+/// Finishes at once and silently: the mission is not ours to end.
 void Coordinator::leave(std::string reason, Instant now) {
   end(true, std::move(reason), now);
   ending_.finished = ending_.left = true;
@@ -77,7 +80,7 @@ void Coordinator::leave(std::string reason, Instant now) {
 
 void Coordinator::look_for_mission(Instant now, Outbox& out) {
   if (ending_.since) {
-    ending_.finished = true;  // told to stop; the mission is not ours yet
+    ending_.finished = true;  // the operator stops it before it leads a mission
     return;
   }
   if (!search_.since) search_.since = now;
@@ -105,7 +108,7 @@ void Coordinator::begin_own() {
   me_.set_run(me_.incarnation());
 }
 
-/// Why the mission under way cannot be taken over.
+/// Why the mission under way cannot be taken over; nothing if it can.
 std::optional<std::string> Coordinator::not_ours(Instant now) const {
   const std::string run = "run " + to_hex(me_.run());
   if (me_.follower().plan_problem()) return run + ": " + *me_.follower().plan_problem();
@@ -127,12 +130,13 @@ void Coordinator::take_over(Instant now) {
   roster_ = me_.follower().roster();
   state_ = me_.follower().state();
   ending_.reason = me_.follower().reason();
-  // The predecessor's or the agents', if the world has not spoken meanwhile: it may have died, too.
+  // The tick of the predecessor or the agents counts if the world has sent nothing meanwhile; the
+  // world may have died, too.
   for (const MissionPart& part : me_.follower().parts()) world_.tick = std::max(world_.tick, part.header.tick);
   team_tick_ = std::min(team_tick_, timing().tick_count);
   world_.tick = std::max(std::min(world_.tick, timing().tick_count), team_tick_);
-  // Above all that former successors have said, also what only agents know that we do not hear: the
-  // later a takeover, the higher its revisions.
+  // Our revision must exceed those of former successors, also those that only unreachable agents
+  // know. So a later takeover gets higher revisions.
   revisions_.current = std::max(me_.follower().revision() + kRevisionLead, (world_.tick + 1) * kRevisionLead);
   revisions_.who_may_join = revisions_.current;
   if (me_.follower().over()) ending_.since = now;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes all channel names once, by message type and agent, so that publishing builds no string.
+// Creates all channel names once, by message type and agent, so that publishing builds no string.
 #include "lcmtypes/channels.h"
 
 #include <array>
@@ -24,7 +24,7 @@ bool per_agent(const Message& message) {
   return std::visit([](const auto& m) { return kPerAgent<std::decay_t<decltype(m)>>; }, message);
 }
 
-/// All names, made once: publishing builds no string.
+/// All names, created once.
 struct Table {
   std::array<std::string, kNames.size()> plain;
   std::array<std::array<std::string, kMaxAgents + 1>, kNames.size()> numbered;  // [0] is id −1

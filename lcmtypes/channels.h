@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which channel carries what.
+// The channel of each message.
 #pragma once
 
 #include <optional>
@@ -12,25 +12,24 @@
 
 namespace ergocast {
 
-/// The name `message` travels under, transmitted by its sender or by whoever relays it; valid for
-/// the program's life. Names: ERGOCAST_HELLO, _MISSION, _TEAM_STATUS, _STOP, _WORLD_STATE,
-/// _RECORD_ACK, and one per agent for _CONTRIBUTION_<id>, _DIGEST_<id>, _AGENT_STATUS_<id>,
-/// _COMMAND_<id>.
+/// The channel of `message`, sent by its author or relayed by another agent; valid until the
+/// program ends. Names: ERGOCAST_HELLO, _MISSION, _TEAM_STATUS, _STOP, _WORLD_STATE, _RECORD_ACK,
+/// and one per agent for _CONTRIBUTION_<id>, _DIGEST_<id>, _AGENT_STATUS_<id>, _COMMAND_<id>.
 const std::string& channel_of(const Message& message, AgentId relayer = kUnassigned);
 
-/// A name, or with `per_agent` how one for each agent begins: its number follows, or "NEW".
+/// A name; with `per_agent` its beginning, which the agent's number or "NEW" follows.
 struct ChannelName {
   std::string_view text;
   bool per_agent = false;
 };
-/// One for each kind of message. Whatever arrives under another name is nobody's.
+/// One for each message type. Messages under other names are not ours.
 std::span<const ChannelName> channel_names();
 
-/// A regular expression that fits the whole names of the channels of these messages, and no other.
+/// A regular expression that matches exactly the channel names of these messages.
 std::string channels_of(MessageTypes types);
 
-/// Who transmitted what arrived under `channel`: the sender, or for contributions the agent whose
-/// channel it is. Nothing if `message` has no business there.
+/// The transmitter of a message on `channel`: its sender, or for contributions the agent of that
+/// channel. Nothing if `message` does not belong on `channel`.
 std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel);
 
 }  // namespace ergocast

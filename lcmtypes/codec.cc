@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks sizes, counts and the tag on raw bytes, and only then calls the generated decoder of
-// the type.
+// Checks sizes, counts and the tag on raw bytes, and only then decodes the fields.
 #include "lcmtypes/codec.h"
 
 #include <algorithm>
@@ -24,7 +23,7 @@ std::uint64_t fingerprint() {
   return hash;
 }
 
-/// Who alone says some things; of the others any sender may.
+/// The only allowed sender of some message types; other types allow any.
 template <class Plain>
 AgentId speaker_of(const Plain& m) {
   return m.header.sender;
@@ -34,7 +33,8 @@ AgentId speaker_of(const RecordAck&) { return kLogger; }
 AgentId speaker_of(const MissionPart&) { return kCoordinator; }
 AgentId speaker_of(const TeamStatus&) { return kCoordinator; }
 
-/// The message is made where it is returned: a contribution is a kilobyte, too much to pass along.
+/// Decodes the message into the return value: a contribution is a kilobyte and should not be
+/// copied.
 template <class Plain>
 std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   std::variant<Message, Refusal> result;
@@ -51,7 +51,8 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   return result;
 }
 
-/// What begins, rules and ends missions: whoever has only the team's shared key cannot say it.
+/// Messages that begin, control or end missions need a signature: the team's shared key is not
+/// enough.
 template <class Plain>
 constexpr bool kSigned = std::is_same_v<Plain, MissionPart> || std::is_same_v<Plain, Stop>;
 
@@ -104,7 +105,7 @@ std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId ru
   try {
     if (decoder->is_signed && !seal.signature_holds(bytes, known)) return Refusal::kUnsigned;
     return decoder->decode(bytes);
-  } catch (...) {  // only memory can run out here
+  } catch (...) {  // only memory exhaustion can throw here
     return Refusal::kLimit;
   }
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plain messages to checked bytes and back: the only place that knows the wire.
+// Encodes plain messages to protected bytes and decodes them: the only code that knows the wire
+// format.
 //
-// Bytes are believed in this order: size, type, tag (a hash over everything), run, signature, then
-// field by field (lcmtypes/fields.h). The decoders that lcm-gen makes are not used: they trust a
-// declared count before they look at the length.
+// Checks are made in this order: size, type, tag (a hash over everything), run, signature, then
+// field by field (lcmtypes/fields.h). The decoders of lcm-gen are not used, because they trust a
+// declared count before they check the length.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +19,15 @@
 namespace ergocast {
 
 /// Writes `message` into `out`, whose capacity is reused. Strings are cut at their limits.
-/// @param channel  that it will be published on; only a keyed seal asks
+/// @param channel  that it will be published on; only a keyed seal uses it
 /// @pre counts within the limits of team/messages.h.
 void encode(const Message& message, std::vector<std::byte>& out, const Seal& seal = {},
             std::string_view channel = {});
 
 /// The message in `bytes`, or why it is refused. Never throws, whatever the bytes are.
-/// @param run  the only run accepted; 0 accepts any (who only watches, or has yet to join)
-/// @param channel  that it came by; only a keyed seal asks
+/// @param run  the only run accepted; 0 accepts any (for monitors and processes that have not
+///             joined)
+/// @param channel  that it came by; only a keyed seal uses it
 /// @param known  signatures that need not be checked again; may be null
 std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run, const Seal& seal = {},
                                       std::string_view channel = {},

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every message field by field, in the order of its .lcm file: the one statement of what it is on
-// the wire. Writing, reading, the sizes of messages and what cannot be true all follow from it.
+// The fields of every message in the order of its .lcm file: the only definition of the wire
+// format. Writing, reading, message sizes and plausibility checks all use it.
 //
-// Fields<M>::list(io, m) names each field of `m` once, by what kind of number it is. Writer and
-// Reader (lcmtypes/wire.h) are the two that ask.
+// Fields<M>::list(io, m) visits each field of `m` once, with its kind of number. Writer and Reader
+// (lcmtypes/wire.h) are the two visitors.
 #pragma once
 
 #include <ergocast/agent_status_t.hpp>
@@ -22,7 +22,7 @@
 
 namespace ergocast {
 
-/// `Generated` is lcm-gen's type: of it, only its fingerprint is used.
+/// `Generated` is lcm-gen's type; only its fingerprint is used.
 template <class M>
 struct Fields;
 
@@ -63,7 +63,7 @@ struct Fields<MissionPart> {
   }
 };
 
-/// Whether the sums can be true is for CoverageTable::merge(), which knows the mission.
+/// CoverageTable::merge() checks whether the sums are plausible, because it knows the mission.
 template <>
 struct Fields<Contribution> {
   using Generated = contribution_t;
@@ -183,7 +183,7 @@ struct Fields<Digest> {
   }
 };
 
-/// What every message begins with, after its fingerprint.
+/// The beginning of every message, after its fingerprint.
 template <>
 struct Fields<Header> {
   static void list(auto& io, auto& h) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hashes a message with its tag and signature masked by zeros, and remembers which signatures
-// were valid.
+// Hashes a message with its tag and signature masked by zeros, and stores which signatures were
+// valid.
 #include "lcmtypes/seal.h"
 
 #include <sodium.h>
@@ -28,7 +28,7 @@ auto raw(Bytes& bytes) {
   return reinterpret_cast<Byte*>(bytes.data());
 }
 
-/// A message with `count` bytes, from the tag on, taken as zero.
+/// A message with `count` bytes, from the tag on, masked by zeros.
 class Blanked {
  public:
   Blanked(std::span<const std::byte> bytes, std::size_t count) : size_(bytes.size()) {
@@ -91,7 +91,7 @@ void Seal::sign(std::span<std::byte> bytes) const {
   const std::span<std::byte> signature = bytes.subspan(kHeaderEnd, sizeof(Signature));
   const bool is_empty = std::all_of(signature.begin(), signature.end(),
                                     [](std::byte b) { return b == std::byte{0}; });
-  if (!is_empty) return;  // repeated for somebody else
+  if (!is_empty) return;  // a repeated message keeps its signature
   const Blanked message(bytes, kUnsignedBytes);
   crypto_sign_detached(raw(signature), nullptr, message.data(), message.size(),
                        raw(*key_->signing));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What makes a datagram believable: a tag over all its bytes and, on what begins, rules and ends a
-// mission, a signature. Both stand at fixed places and are checked before anything is decoded.
+// Authenticates datagrams: by a tag over all bytes, and by a signature on messages that begin,
+// control or end a mission. Both have fixed places and are checked before anything is decoded.
 #pragma once
 
 #include <array>
@@ -18,29 +18,31 @@ namespace ergocast {
 
 /// Longest datagram we send: one Ethernet frame on any path with an MTU of 1280.
 inline constexpr std::size_t kMaxDatagramBytes = 1220;
-/// Where the tag stands in every message.
+/// The offset of the tag in every message.
 inline constexpr std::size_t kTagOffset = 44;
 inline constexpr std::size_t kTagBytes = 16;
 inline constexpr std::size_t kHeaderEnd = kTagOffset + kTagBytes;
 
-/// What the members of a team share and outsiders do not know.
+/// The secrets that the members of a team share.
 struct MissionKey {
   using Secret = std::array<std::byte, 32>;
   using SigningKey = std::array<std::byte, 64>;
 
-  Secret shared{};                    ///< whoever has it can speak for any agent, world or logger
-  Secret coordinator{};               ///< Ed25519 public key: whom to obey
-  std::optional<SigningKey> signing;  ///< its secret half: only to coordinators and operators
+  Secret shared{};                    ///< its holder can send as any agent, world or logger
+  Secret coordinator{};               ///< Ed25519 public key of the coordinators and operators
+  std::optional<SigningKey> signing;  ///< its secret half: only for coordinators and operators
 };
 
-/// Signed messages whose signature has held, by their keyed tags, so that a repeat costs a look and no
-/// signature. Only what was verified gets in; a tag that fits binds every byte, signature included.
+/// Signed messages with a valid signature, by their keyed tags, so that a repeat needs no second
+/// check of the signature. Only verified messages are stored; a valid tag covers every byte,
+/// signature included.
 class KnownSignatures {
  public:
   bool contains(std::span<const std::byte> message) const;
   void add(std::span<const std::byte> message);
 
-  /// Each tag has one place, where a later one replaces it: then that message is checked again.
+  /// A later message may replace a tag with the same place; the replaced message is then checked
+  /// again.
   static constexpr std::size_t kCapacity = 4096;
 
  private:
@@ -50,33 +52,33 @@ class KnownSignatures {
   std::vector<Tag> tags_;
 };
 
-/// Closes datagrams that are sent and looks at those that arrive. Cheap to copy.
+/// Protects outgoing datagrams and verifies incoming ones. Cheap to copy.
 ///
-/// Without a key the tag is XXH3-128 of the message with the tag taken as zero: damage is found,
-/// forgery is not. With one it is BLAKE2b-128, keyed with MissionKey::shared, of the same bytes
-/// followed by the name of the channel, so that an outsider can at most repeat, word for word and on
-/// its own channel, what a member has said. The signature is Ed25519 over the message with tag and
-/// signature taken as zero, so that a teammate can repeat a signed message.
+/// Without a key the tag is XXH3-128 of the message with zeros in place of the tag: it detects
+/// damage, but no forgery. With a key it is BLAKE2b-128, keyed with MissionKey::shared, of the same
+/// bytes and the name of the channel. An outsider can then only repeat a member's message
+/// unchanged, on its own channel. The signature is Ed25519 over the message with zeros in place of
+/// tag and signature, so that a teammate can repeat a signed message.
 class Seal {
  public:
   Seal() = default;
   explicit Seal(const MissionKey& key);
 
   bool keyed() const { return key_ != nullptr; }
-  /// By which two hosts tell whether they have the same key without showing it; 0 without one.
+  /// Lets two hosts compare their keys without revealing them; 0 without a key.
   std::uint64_t fingerprint() const;
-  /// Whether it can speak for the coordinator: always, if there is no key.
+  /// Whether it can sign as a coordinator or operator: always, if there is no key.
   bool can_sign() const { return !keyed() || key_->signing; }
 
-  /// Signs, if it can, a message whose signature is zero; then writes the tag.
-  /// @param has_signature  whether the header is followed by a place for one
+  /// Signs a message whose signature is zero, if it has the signing key; then writes the tag.
+  /// @param has_signature  whether the message has a signature field after the header
   void close(std::span<std::byte> bytes, bool has_signature, std::string_view channel) const;
 
-  /// Nothing, or kTag, or kUnkeyed: of a sender without a key.
+  /// Nothing if the tag is valid, or kTag, or kUnkeyed for a sender without a key.
   /// @pre kHeaderEnd to kMaxDatagramBytes bytes
   std::optional<Refusal> check_tag(std::span<const std::byte> bytes, std::string_view channel) const;
-  /// Whether who may begin and end missions has signed it; true without a key.
-  /// @param known  spares checking again what has held before, and learns; may be null
+  /// Whether the holder of the signing key has signed it; true without a key.
+  /// @param known  valid signatures, to skip the check and to extend; may be null
   /// @pre check_tag() found nothing wrong
   bool signature_holds(std::span<const std::byte> bytes, KnownSignatures* known = nullptr) const;
 

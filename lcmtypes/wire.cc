@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Texts on the wire, which end up in logs and on terminals.
+// Shortens and checks texts on the wire, because they appear in logs and on terminals.
 #include "lcmtypes/wire.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace ergocast {
 namespace {
 
-/// The first character that means something to a terminal: C0, DEL, or C1 in UTF-8.
+/// The first control character for terminals: C0, DEL, or C1 in UTF-8.
 std::string_view find_control(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -25,7 +25,7 @@ bool plausible_text(const std::string& text) { return find_control(text).empty()
 
 std::string bounded(const std::string& text, int limit) {
   auto size = static_cast<std::size_t>(limit);
-  // Not in the middle of a UTF-8 character.
+  // Does not cut a UTF-8 character in two.
   while (text.size() > size && size > 0 && (text[size] & 0xC0) == 0x80) --size;
   std::string cut = text.substr(0, size);
   cut.resize(std::min(cut.find('\0'), cut.size()));

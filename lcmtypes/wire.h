@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LCM's encoding: big-endian numbers, strings with their length and a final NUL, arrays whose
-// lengths stand before them. A Writer puts fields behind each other; a Reader takes them in turn
-// from bytes that may be anything.
+// LCM's encoding: big-endian numbers, strings with their length and a final NUL, arrays after their
+// lengths. A Writer appends fields; a Reader reads them in turn from untrusted bytes.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,25 +22,25 @@
 
 namespace ergocast {
 
-/// More messages, ticks or events of any kind than a run can have; sums of a few cannot overflow.
+/// More messages, ticks or events of any kind than a run can have; sums of a few do not overflow.
 inline constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
 
-/// The unsigned number of as many bits, most significant byte first on the wire.
+/// The unsigned number of the same size, most significant byte first on the wire.
 template <class Number>
 using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t, std::uint32_t>;
 
 inline std::uint64_t swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
 inline std::uint32_t swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
 
-/// `text` as it is sent: at most `limit` characters, up to a NUL, with a space for each character
-/// that means something to a terminal. Readers refuse what is different.
+/// `text` as it is sent: at most `limit` characters, ending before a NUL, with a space in place of
+/// each control character for terminals. Readers refuse other texts.
 std::string bounded(const std::string& text, int limit);
-/// Whether no character of `text` means something to a terminal.
+/// Whether `text` has no control character for terminals.
 bool plausible_text(const std::string& text);
 
 class Writer {
  public:
-  /// @param out  grows to the longest datagram, and shrinks to what was written by size()
+  /// @param out  grows to the longest datagram; size() is the written part
   explicit Writer(std::vector<std::byte>& out) : out_(out) { out_.resize(kMaxDatagramBytes); }
 
   std::size_t size() const { return at_; }
@@ -59,7 +58,7 @@ class Writer {
     }
   }
   void count(std::int64_t value) { number(value); }
-  /// Of what others can make us count: who leaps ahead in its numbering makes a loss of it.
+  /// For counts that other processes can increase: a jump in a sender's numbering counts as losses.
   void capped_count(std::int64_t value) { number(std::min(value, kMostEver)); }
   void count_or_none(std::int64_t value) { number(value); }
   void finite(double value) { number(value); }
@@ -101,14 +100,14 @@ class Writer {
   std::size_t at_ = 0;
 };
 
-/// Fields that are not there read as 0. A length beyond its limit is one of nothing.
+/// Missing fields are read as 0. A length beyond its limit becomes 0.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-  /// Whether there was every field, and nothing after the last.
+  /// Whether all fields were present, with no bytes after the last.
   bool complete() const { return complete_ && bytes_.empty(); }
-  /// Whether all that was read can be true.
+  /// Whether all values read are possible.
   bool plausible() const { return plausible_; }
 
   template <class Number>
@@ -165,7 +164,7 @@ class Reader {
   }
 
  private:
-  /// The next `count` bytes; null if there are fewer, and of all that follows.
+  /// The next `count` bytes; null if there are fewer, and from then on.
   const std::byte* take(std::size_t count) {
     complete_ = complete_ && count <= bytes_.size();
     if (!complete_) return nullptr;

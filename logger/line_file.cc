@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stream buffer gathers lines and writes only whole ones; after a failure it cuts the file at
+// A stream buffer gathers lines and writes only whole ones; after a failure it cuts the file after
 // the last whole line.
 #include "logger/line_file.h"
 
@@ -32,7 +32,7 @@ bool LineFile::Waiting::write() {
   error = errno;
   if (taken == whole) error = 0;
   std::clearerr(file.get());
-  // Of a line that did not fit, the file keeps nothing.
+  // Nothing of an incomplete line stays in the file.
   const std::size_t kept = taken == 0 ? 0 : text.rfind('\n', taken - 1) + 1;
   written_bytes += kept;
   std::error_code ignored;

@@ -11,15 +11,15 @@
 
 namespace ergocast {
 
-/// Lines wait until they are flushed, or are 64 KiB. What the disk does not take, half a line
-/// included, stays here for the next try: once the stream is bad, clear() and flush() try again, and
-/// whoever stops writing to a stream that is bad loses nothing and holds little.
+/// Lines are buffered until they are flushed or are 64 KiB. After a write error, as on a full disk,
+/// unwritten lines stay in the buffer and the stream is bad; clear() and flush() try again. A
+/// caller that writes nothing to a bad stream loses nothing, and the buffer stays small.
 class LineFile : public std::ostream {
  public:
   LineFile() : std::ostream(nullptr) { rdbuf(&waiting_); }
   /// Begins the file anew. The stream is bad if that fails.
   void open(const std::filesystem::path& file);
-  /// Why the last try failed, as errno; 0: it did not.
+  /// Why the last try failed, as errno; 0: it succeeded.
   int error() const { return waiting_.error; }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ergocast-logger: the run record as a process. Watches all three buses, never takes part.
+// ergocast-logger: records a run as a process. It listens on all three buses and only sends
+// acknowledgements.
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -24,18 +25,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a message is worth a place in the event log: what a bus repeats of another is not.
+/// Whether the event log keeps a message: MISSION and STOP on the command bus only repeat another
+/// bus.
 bool is_original(Bus bus, std::string_view channel) {
   return bus != Bus::kCommand || !(channel.ends_with("_MISSION") || channel.ends_with("_STOP"));
 }
 
-/// What a former process left in the run directory.
+/// The data that a former process left in the run directory.
 struct Past {
   RunData rows;
   std::vector<std::byte> plan;  ///< empty: not known
 };
 
-/// Its rows as far as they can be read. An error where nobody can tell which mission's they are.
+/// The readable rows of the record. An error if the mission of the record is unknown.
 std::variant<Past, std::string> read_past(const fs::path& folder) {
   Past past;
   if (segment_count(folder) == 0) return past;
@@ -56,13 +58,14 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// After a write error it is not worth another try before there is so much room.
+/// After a write error, waits for so much free space before the next try.
 constexpr std::uintmax_t kRoomBytes = 1 << 20;
 
-/// A recorder with the files it fills. While they cannot be written the team goes on without it.
+/// A recorder with its files. While they cannot be written, the team continues without the
+/// recorder.
 class RunLogger {
  public:
-  /// @param past  what to go on with, if anything
+  /// @param past  the record to continue, if any
   RunLogger(RunId run, RunRecord& record, std::optional<Past> past, EventLogLimits limits)
       : record_(record),
         events_(record.folder(), limits),
@@ -74,21 +77,21 @@ class RunLogger {
   }
 
   Recorder& recorder() { return recorder_; }
-  /// Whether something that should be in the files is not.
+  /// Whether data is missing in the files.
   bool failed() const { return stuck_; }
-  /// Whether the mission that was heard is not the one whose record is here.
+  /// Whether the received mission differs from that of the record.
   bool wrong_mission() const {
     const std::vector<std::byte>& heard = recorder_.follower().plan();
     return !plan_of_record_.empty() && !heard.empty() && heard != plan_of_record_;
   }
-  /// Whether there is nothing that a former process has not written better.
+  /// Whether it resumed a record and received no mission, so that it has nothing to add.
   bool idle() const { return resumed_ && !recorder_.follower().mission(); }
 
   void keep_event(Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
     if (is_original(bus, channel)) events_.write(channel, bytes);
   }
 
-  /// What is done every turn: times for the summary, and the plan once it is known.
+  /// To be called every turn: times for the summary, and the plan once it is known.
   void attend(Instant now) {
     const Tick rows = recorder_.facts().ticks - recorder_.facts().former_ticks;
     if (rows != seen_rows_) {
@@ -100,7 +103,7 @@ class RunLogger {
     if (!stuck_ && !plan_written_ && recorder_.follower().mission()) note(write_plan());
   }
 
-  /// Hands everything to the operating system, also what it has refused before.
+  /// Passes all data to the operating system, also data that it refused before.
   /// @param last  whether there will be no other try
   void flush(Instant now, bool last = false) {
     if (stuck_ && !last && !has_room()) return;
@@ -116,7 +119,7 @@ class RunLogger {
     }
   }
 
-  /// As if this process had never been.
+  /// Removes all files of this process.
   void discard() {
     record_.discard();
     events_.discard();
@@ -160,7 +163,7 @@ class RunLogger {
     }
   }
 
-  /// The plan as it was sent, and as people read it, unless a launcher has already written that.
+  /// Writes the plan as it was sent, and the scenario's text unless a launcher has written it.
   std::optional<std::string> write_plan() {
     const std::vector<std::byte>& plan = recorder_.follower().plan();
     if (auto problem = write_file(record_.folder() / kPlanFile, text_of(plan))) return problem;
@@ -179,7 +182,7 @@ class RunLogger {
   const bool resumed_;
   bool stuck_ = false, plan_written_ = false, removal_said_ = false;
   int interruptions_ = 0;
-  std::vector<std::byte> plan_of_record_;  // that it goes on with; empty: any
+  std::vector<std::byte> plan_of_record_;  // of the record that it continues; empty: any
   Recorder recorder_;
   Tick seen_rows_ = 0;
   std::optional<Instant> first_row_, last_row_;

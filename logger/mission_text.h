@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission as people read it.
+// A mission as text for people.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace ergocast {
 
-/// The scenario's text of `mission`, all fields with their values, but without the target, of which
-/// a mission knows only μ, and without description. With a target added it reads back to this
-/// mission, but for μ and wait_for_logger.
+/// The scenario's text of `mission`, all fields with their values. It lacks the description and the
+/// target, because a mission has only μ. With a target added it reads back to this mission, except
+/// for μ and wait_for_logger.
 /// @pre within_limits(mission), core/mission_limits.h
 std::string mission_text(const Mission& mission);
 

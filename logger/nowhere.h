@@ -7,8 +7,8 @@
 
 namespace ergocast {
 
-/// Takes everything and is always good: a file on a disk without end and without weight. A stream
-/// without a buffer is bad from the beginning instead, as on a full disk.
+/// Accepts everything and is always good, like a file on an unlimited disk. A stream without a
+/// buffer would be bad from the beginning, as on a full disk.
 class Nowhere : public std::ostream {
  public:
   Nowhere() : std::ostream(nullptr) { rdbuf(&buffer_); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// φ² of the team as an outside observer sees it: from where the vehicles really were.
+// φ² of the team for an outside observer, computed from the true positions of the vehicles.
 #pragma once
 
 #include "core/basis.h"
@@ -9,7 +9,7 @@ namespace ergocast {
 
 class Observer {
  public:
-  /// Nothing is covered yet.
+  /// Begins with no coverage.
   void begin(const Mission& mission) {
     weights_ = sobolev_weights(mission.basis, mission.domain);
     sums_s_ = Coefficients::Zero(mission.basis.mode_count());
@@ -25,7 +25,7 @@ class Observer {
   }
   bool has_seen_any() const { return covered_s_ > 0; }
 
-  /// φ² of what was covered. @pre has_seen_any()
+  /// φ² of the coverage so far. @pre has_seen_any()
   double metric(const Mission& mission) const {
     return ergodic_metric(sums_s_ / covered_s_, mission.target_coefficients, weights_);
   }

@@ -16,23 +16,24 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kAckPeriod = 100ms;
-/// When a state is missing that has been sent: the sooner the world knows, the sooner it repeats it.
+/// The period while a sent state is missing: an early acknowledgement lets the world repeat it
+/// early.
 constexpr auto kImpatientAckPeriod = 20ms;
 constexpr Tick kAckEveryTicks = 16;
 constexpr double kMetricsPeriod_s = 1.0;
-/// Real time does not repeat a state: after so many newer ones, a missing one is given up.
+/// Real time repeats no state: a missing one is given up after so many newer ones.
 constexpr std::size_t kGiveUpAfterStates = 16;
-/// Lockstep: states beyond this many ticks ahead cannot be honest, or nothing can be written. In
-/// real time the record may be behind by any number.
+/// Lockstep: states more than so many ticks ahead are forged, or no row can be written. In real
+/// time the record may be behind by any number of ticks.
 constexpr Tick kLeadTicks = 1024;
-/// States that wait to become rows.
+/// The maximum number of states that wait to become rows.
 constexpr std::size_t kMaxStates = static_cast<std::size_t>(kLeadTicks);
-/// Lockstep: how long a state may take to be repeated that may be gone for good.
+/// Lockstep: how long to wait for the repetition of a state that may be lost for good.
 constexpr auto kRepeatPatience = 500ms;
-/// How long after the end, or the last row, a missing state or an agent's last status may still come.
+/// How long after the end, or the last row, a missing state or an agent's last status may arrive.
 constexpr auto kFarewell = 1s;
 
-/// 17 significant digits: the double comes back bit for bit.
+/// 17 significant digits: reading them back gives the same double.
 void append_number(std::string& line, double value) {
   char text[40];
   const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17);
@@ -134,7 +135,7 @@ void Recorder::replay(const RunData& past) {
   });
   facts_.former_ticks = facts_.ticks;
   facts_.gaps = former_.end.first + 1 - facts_.ticks;
-  // With fewer, the last tick may have been cut off amid its rows, and is recorded to its end.
+  // With fewer rows, the last tick may be incomplete, and is recorded to its end.
   if (vehicles == 0 || vehicles < expected) return;
   write_due_metrics();
   ++next_row_;
@@ -158,7 +159,7 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
   facts_.clamped_commands = std::max(facts_.clamped_commands, world.clamped_commands);
   if (states_.size() >= kMaxStates && !states_.contains(tick)) return;
   State& state = states_[tick];
-  // A repeat says nothing new; a restarted world may even have forgotten the velocities.
+  // A repeat adds nothing, and a restarted world may not know the velocities.
   if (state.complete()) return;
   const auto parts = static_cast<std::size_t>(world.parts);
   if (state.world != world.header.incarnation || state.parts.size() != parts) {
@@ -240,7 +241,7 @@ void Recorder::fail(std::string reason) {
 void Recorder::close() {
   if (ending_.finished) return;
   ending_.finished = true;
-  // What stands behind a gap is written now or never.
+  // The last chance to write the rows after a gap.
   heard_.lost_before = std::max(heard_.lost_before, heard_.newest);
   while (writing() && gap_ahead() && next_pair() != states_.end()) {
     skip_gap();
@@ -271,7 +272,7 @@ bool Recorder::write_next_row() {
   return true;
 }
 
-/// Whether a state is missing that may never come, and newer ones are there.
+/// Whether a state that may be lost for good is missing and newer ones have arrived.
 bool Recorder::gap_ahead() const {
   if (!me_.knows_mission() || next_row_ >= mission().timing.tick_count || states_.empty()) return false;
   const Tick missing = holds(next_row_) ? next_row_ + 1 : next_row_;
@@ -282,15 +283,16 @@ bool Recorder::gap_is_final(Instant now) const {
   return is_lockstep() ? now - progress_ >= kRepeatPatience : states_.size() >= kGiveUpAfterStates;
 }
 
-/// Whether the world goes on without us, as it does in lockstep when it has not heard of a row for half
-/// of the time-out: we were cut off, and what was said meanwhile nobody repeats.
+/// Lockstep: whether the world continues without this recorder. It does so when it received no
+/// acknowledgement for half of the time-out. The recorder was then disconnected, and no process
+/// repeats the states of that time.
 bool Recorder::given_up(Instant now) const {
   const Tick expected = std::max(next_row_, heard_.lost_before) + kRecordWindowTicks;
   return is_lockstep() && writing() && heard_.newest > expected &&
          now - progress_ > seconds(mission().timing.lockstep_timeout_s / 2);
 }
 
-/// The first two successive states, with which the record can go on behind a gap.
+/// The first two successive states, from which the record can continue after a gap.
 std::map<Tick, Recorder::State>::const_iterator Recorder::next_pair() const {
   return std::adjacent_find(states_.begin(), states_.end(), [](const auto& a, const auto& b) {
     return b.first == a.first + 1 && a.second.complete() && b.second.complete();
@@ -357,12 +359,12 @@ void Recorder::write_metrics(double metric) {
     const RosterEntry* entry = follower().entry_of(author.incarnation);
     if (entry == nullptr || !entry->active_at(next_row_)) continue;
     staleness_s = std::max(staleness_s, status.max_staleness_s);
-    if (status.answered_tick < 0) continue;  // it knows of no coverage yet
+    if (status.answered_tick < 0) continue;  // it has no coverage yet
     low = first ? status.ergodic_metric : std::min(low, status.ergodic_metric);
     high = first ? status.ergodic_metric : std::max(high, status.ergodic_metric);
     first = false;
   }
-  // Until everybody has spoken again, what a former process had counted is nearer the truth.
+  // A former process's counts are better until all agents have sent a status.
   received = std::max(received, static_cast<std::int64_t>(former_.metrics.received));
   lost = std::max(lost, static_cast<std::int64_t>(former_.metrics.lost));
   std::string line = std::to_string(next_row_);

@@ -7,9 +7,10 @@
 // receives all lost rows again. While its streams are bad, as on a full disk, no row is written and
 // none acknowledged.
 //
-// In lockstep a row is left out only where no process can repeat its states: for ticks before the
-// first state that a resumed recorder heard, or that was heard of a new world, or that came while
-// nothing could be written, or after the world had given up a recorder that was cut off.
+// In lockstep a row is missing only if no process can repeat its states: those before the first
+// state that a resumed recorder received, before the first of a restarted world, of a time in which
+// the recorder could not write, or of a time in which the world had given up a disconnected
+// recorder.
 #pragma once
 
 #include <map>
@@ -27,14 +28,14 @@
 
 namespace ergocast {
 
-/// What the record says about the whole run.
+/// The results of the whole run.
 struct RunFacts {
   Tick ticks = 0;         ///< recorded
   Tick former_ticks = 0;  ///< of these, recorded before this recorder resumed
   double ergodic_metric_first = 0, ergodic_metric_last = 0;
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
   Tick gaps = 0;                            ///< ticks without rows before the last row
-  bool halted = false;                      ///< by a STOP at once: the last row stands still
+  bool halted = false;                      ///< by an emergency stop: the last row stands still
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
   std::int64_t clamped_commands = 0;                     ///< by the speed limit, likewise
 };
@@ -43,41 +44,41 @@ class Recorder {
  public:
   static constexpr Role kRole = Role::kLogger;
 
-  /// Writes to streams that outlive it; the caller mends those that become bad and says go_on().
-  /// @param run  the run to record; 0: the run of the first mission heard
-  /// @pre both streams are good: one that is bad from the beginning would never be written. Who
-  /// wants no tables gives a Nowhere (logger/nowhere.h).
+  /// Writes to streams that outlive it; the caller repairs bad streams and calls go_on().
+  /// @param run  the run to record; 0: the run of the first mission received
+  /// @pre both streams are good: a stream that is bad from the beginning would never be written. To
+  /// discard the tables, pass a Nowhere (logger/nowhere.h).
   Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory, std::ostream& metrics);
 
-  /// Goes on with the record that a former process left, all its segments, or none. Its rows are
-  /// added to the observer's sums again in their order, with the roster that is heard now, so φ²
-  /// goes on bit for bit; metrics rows that are due for them and missing are written.
-  /// @param plan  that of the record: any other mission that is heard is a plan_problem(); empty: any
+  /// Continues the record of a former process, all its segments, or none. Its rows are added to the
+  /// observer's sums again in their order, with the present roster, so φ² continues bit for bit;
+  /// missing metrics rows that are due are written.
+  /// @param plan  that of the record: any other mission received is a plan_problem(); empty: any
   /// @pre nothing has been received
   void resume(RunData past, std::vector<std::byte> plan = {});
 
-  /// The streams that were bad are good again: what they were given is written. A world that has
-  /// given this recorder up takes it back under its new incarnation.
+  /// The streams are good again: their buffered data is written. A world that has given this
+  /// recorder up accepts it again under its new incarnation.
   void go_on(Instant now);
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
-  /// Ends the record with what has come so far.
+  /// Ends the record with the rows so far.
   void stop(std::string reason);
   Instant next_wakeup() const;
 
-  /// True once the last tick is recorded or the mission is over, and no more can come.
+  /// True once the last tick is recorded or the mission is over, and nothing more can arrive.
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   const MissionFollower& follower() const { return me_.follower(); }
-  /// "done" (its last tick is recorded), "failed" or "stopped" (somebody ended it), and why.
+  /// "done" (its last tick is recorded), "failed" or "stopped" (an operator ended it), and why.
   const char* result() const;
   const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return facts_; }
-  /// The newest of each life that Liveness has room for, but with the worst loop lag of all.
+  /// The newest of each incarnation that Liveness holds, but with the worst loop lag of all.
   const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
   Tick next_row() const { return next_row_; }
-  /// The newest of which a state was heard.
+  /// The newest tick with a received state.
   Tick newest() const { return heard_.newest; }
 
  private:
@@ -88,10 +89,10 @@ class Recorder {
     bool complete() const;
   };
 
-  /// What was heard of the world.
+  /// The messages received of the world.
   struct Heard {
-    Incarnation world = 0;  // the last heard
-    Tick newest = 0;        // of which a state was heard
+    Incarnation world = 0;  // the last one received
+    Tick newest = 0;        // of the states received
     Tick lost_before = 0;   // states of earlier ticks may be gone for good
   };
   struct Acknowledged {
@@ -99,20 +100,20 @@ class Recorder {
     Instant next{};
   };
   struct Ending {
-    std::optional<Instant> since;  // no more is to come
+    std::optional<Instant> since;  // from then on nothing more is expected
     bool finished = false, failed = false;
     std::string reason;
   };
-  /// What a former process left.
+  /// The record of a former process.
   struct Former {
     std::optional<RunData> rows;  // until the mission is known
     bool resumed = false;
     std::pair<Tick, AgentId> end{-1, -1};  // tick and agent of the last row
-    MetricsRow metrics{.tick = -1};        // the last
+    MetricsRow metrics{.tick = -1};        // the last row
   };
 
   template <class M>
-  void on(const M&, const Arrival&) {}  // nothing follows from the other types
+  void on(const M&, const Arrival&) {}  // the other types need no action
   void on(const WorldState& world, const Arrival& arrival);
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);
@@ -136,7 +137,7 @@ class Recorder {
   void close();
   bool is_lockstep() const;
   void write_trajectory(const State& now, const State& next);
-  /// Whether somebody drives that vehicle at the row's tick: others stand still and cover nothing.
+  /// Whether a member drives that vehicle at the row's tick: others stand still and cover nothing.
   bool is_member(AgentId id) const;
   void observe(AgentId id, const Eigen::Vector3d& x_m);
   void write_due_metrics();
@@ -147,7 +148,7 @@ class Recorder {
   std::ostream& metrics_;
   std::map<Tick, State> states_;
   Tick next_row_ = 0;
-  Instant progress_{};  // last row, or first word of a new world
+  Instant progress_{};  // last row, or first message of a new world
   Heard heard_;
   Acknowledged acked_;
   Ending ending_;
@@ -157,7 +158,7 @@ class Recorder {
   RunFacts facts_;
 };
 
-/// One line a column set; what stands at the top of the two files.
+/// The header lines of the two files.
 inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps";
 inline constexpr const char* kMetricsHeader =
     "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"

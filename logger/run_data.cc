@@ -23,10 +23,10 @@ namespace {
 constexpr std::size_t kColumns = 7;  // of either table
 using Fields = std::array<double, kColumns>;
 
-/// Beyond any mission, and squares and sums of such numbers are still finite.
+/// Larger than any mission; squares and sums of such numbers are still finite.
 constexpr double kLargest = 1e100;
 
-/// Seven numbers with commas between them and nothing else.
+/// Seven numbers separated by commas, and nothing else.
 std::optional<Fields> parse_fields(std::string_view line) {
   Fields fields;
   const char* at = line.data();
@@ -41,8 +41,8 @@ std::optional<Fields> parse_fields(std::string_view line) {
   return fields;
 }
 
-/// Hands each row to `accept`, which says what is wrong with it or nothing. Of a segment with a row
-/// that is wrong it takes no more.
+/// Passes each row to `accept`, which returns the error of the row or nothing. After a bad row the
+/// rest of its segment is skipped.
 std::optional<std::string> read_table(
     TableLines lines, const std::function<std::optional<std::string>(const Fields&)>& accept) {
   std::optional<std::string> damage;
@@ -61,8 +61,8 @@ std::optional<std::string> read_table(
   return damage;
 }
 
-constexpr double kExact = 0x1p53;    // whole numbers above are not all doubles
-constexpr double kMostSaid = 0x1p62;  // more than all agents together can claim to have received
+constexpr double kExact = 0x1p53;    // larger whole numbers are not all doubles
+constexpr double kMostSaid = 0x1p62;  // more than all agents together can report
 
 bool is_count(double value, double most = kExact) {
   return value >= 0 && value <= most && value == std::floor(value);

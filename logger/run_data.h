@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a run directory back: the two tables, and the coverage that they add up to.
+// Reads a run directory: the two tables, and the coverage that follows from them.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,16 +45,16 @@ struct RunData {
   double end_s() const;  ///< time of the last row, 0 if there is none
 };
 
-/// Reads trajectory.csv and metrics.csv with all their segments, or says which file and line is
-/// wrong and what to do. A file's last line without its line break is what a killed run leaves: it
-/// is not counted.
+/// Reads trajectory.csv and metrics.csv with all their segments, or reports the file and line of an
+/// error with the remedy. A file's last line without its line break comes from a killed process and
+/// is ignored.
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir);
 
-/// The same of trajectory.csv alone.
+/// The same for trajectory.csv alone.
 std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir);
 
-/// The same into `run`, of each file what stands before the first line that is wrong. The first such
-/// line of all, or nothing if all is well.
+/// The same into `run`, with the rows of each file before its first bad line. Returns the first
+/// such line of all, or nothing if there is none.
 std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run);
 
 /// Visits trajectory.csv's rows in their order: ascending by tick, then by agent.

@@ -33,7 +33,8 @@ int segment_count(const fs::path& folder) {
     const std::uintmax_t size = fs::file_size(segment_file(folder, table, segment), error);
     return error ? std::optional<std::uintmax_t>() : size;
   };
-  // Whoever was killed while it began a segment has left one empty table, which is taken again.
+  // A process killed while it began a segment left at most one empty table; that segment is used
+  // again.
   const auto exists = [&bytes](int segment) {
     const auto rows = bytes(kTrajectoryFile, segment), values = bytes(kMetricsFile, segment);
     return (rows && values) || rows.value_or(0) + values.value_or(0) > 0;

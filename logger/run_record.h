@@ -24,19 +24,19 @@ inline constexpr const char* kPlanFile = "plan.binpb";
 /// File `segment` of a table: trajectory.csv, trajectory-001.csv, trajectory-002.csv …
 std::filesystem::path segment_file(const std::filesystem::path& folder, const std::string& table,
                                    int segment);
-/// Segments of the record in `folder`; 0 if there is none. One with rows counts also if a table of
-/// it is missing.
+/// The number of segments of the record in `folder`; 0 if there is none. A segment with rows counts
+/// even if one of its tables is missing.
 int segment_count(const std::filesystem::path& folder);
 
 class RunRecord {
  public:
   using Created = std::variant<std::unique_ptr<RunRecord>, std::string>;
 
-  /// Begins trajectory.csv and metrics.csv in an existing folder. An error names the file; a record
-  /// that is already there is left alone.
+  /// Begins trajectory.csv and metrics.csv in an existing folder. An error names the file. An
+  /// existing record stays unchanged.
   static Created create(const std::filesystem::path& folder);
-  /// The same for the next segment of the record in `folder`, the first if there is none. What is
-  /// there, damaged or not, is left alone.
+  /// The same for the next segment of the record in `folder`, the first if there is none. Existing
+  /// files, damaged or not, stay unchanged.
   static Created go_on(const std::filesystem::path& folder);
 
   /// Number of the segment, from 0.
@@ -46,8 +46,8 @@ class RunRecord {
   bool good() const { return trajectory_.good() && metrics_.good(); }
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Hands everything to the operating system, also what it has refused before. The write error,
-  /// such as a full disk, if any; nothing that was written is lost by it, nor is half a line left.
+  /// Passes all data to the operating system, also data that it refused before. Returns the write
+  /// error, such as a full disk, if any; after it no line is lost and no incomplete line stays.
   std::optional<std::string> flush();
 
   /// Removes the files of this segment.
@@ -64,8 +64,8 @@ class RunRecord {
   LineFile trajectory_, metrics_;
 };
 
-/// Writes a whole file under another name and renames it, so that nobody ever sees half of it.
-/// Nothing on success, otherwise the error.
+/// Writes a whole file under another name and renames it, so that readers never see an incomplete
+/// file. Nothing on success, otherwise the error.
 std::optional<std::string> write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace ergocast

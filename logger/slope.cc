@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kFewestRows = 3;
 constexpr double kShortestSpan = 2;
 
-/// How much of the axis each point stands for, as a share: rows even in time crowd together where
-/// log t is large, and would drown the rest.
+/// The share of the axis that each point represents. Rows at equal times are dense where log t is
+/// large, and would outweigh the others.
 std::vector<double> shares(const std::vector<double>& x) {
   std::vector<double> share;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Collects what the recorder, the plan and the process know into one JSON object with a fixed
-// order of keys.
+// Collects the data of recorder, plan and process in one JSON object with a fixed order of keys.
 #include "logger/summary.h"
 
 #include <algorithm>
@@ -17,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Real time: late commands that are worth a word.
+/// Real time: the share of late commands that the summary mentions.
 constexpr double kNotableShare = 0.01;
 
 /// JSON has no infinity and no NaN.
@@ -52,7 +51,7 @@ Json agents(const Recorder& recorder) {
   return list;
 }
 
-/// Sums over the agents' last statuses; what the recording process refused or lost is added.
+/// Sums over the agents' last statuses, plus what the recording process refused or lost.
 Json messages(const Recorder& recorder, const RunContext& context) {
   std::int64_t sent = 0, received = 0, lost = 0, drops = context.kernel_drops;
   RefusalCounts refused = context.refused;
@@ -89,7 +88,7 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
   summary["tick_count"] = mission.timing.tick_count;
 }
 
-/// The recorder's reason, and what nobody should overlook about how it came to it.
+/// The recorder's reason, with important remarks on the result.
 std::string reason_of(const Recorder& recorder) {
   const RunFacts& facts = recorder.facts();
   const auto agents = static_cast<double>(recorder.follower().roster().size());

@@ -12,30 +12,30 @@
 
 namespace ergocast {
 
-/// What the recorder cannot know.
+/// The facts that the recorder cannot know.
 struct RunContext {
   RunId run = 0;
   std::string started;        ///< wall-clock time, ISO 8601
   std::string version, build;
   std::string scenario_hash;  ///< of the compiled plan
   bool simulated = false;     ///< in one process, without a network
-  double wall_time_s = 0;     ///< of the present segment
+  double wall_time_s = 0;     ///< of the current segment
   int segments = 1;
-  int interruptions = 0;      ///< how often nothing could be written for a while
-  int events_removed = 0;     ///< segments of the event log, for its limit
-  RefusalCounts refused{};    ///< by whoever records
+  int interruptions = 0;      ///< how often the files could not be written for a time
+  int events_removed = 0;     ///< segments of the event log, removed because of its limit
+  RefusalCounts refused{};    ///< by the recording process
   std::int64_t kernel_drops = 0;
   bool cpu_has_fma = false;
 };
 
-/// The summary as far as the record tells. Keys are documented in docs/run_directory.md.
+/// The summary as far as the record determines it. Keys are documented in docs/run_directory.md.
 nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& context);
 
-/// As it stands in the file. Bytes that are no UTF-8, which the network may bring, are replaced.
+/// The text of the file. Bytes that are not UTF-8, which the network may bring, are replaced.
 std::string to_text(const nlohmann::ordered_json& summary);
 
-/// The summary of a run directory: null if there is none, whatever it holds if that is
-/// JSON, else an error that names the file.
+/// The summary of a run directory: null if there is none, any JSON value if the file is JSON, else
+/// an error that names the file.
 std::variant<nlohmann::ordered_json, std::string> read_summary(
     const std::filesystem::path& run_dir);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorded table read line by line, all its segments in order as one.
+// Reads a recorded table line by line, all its segments in order as one.
 #pragma once
 
 #include <filesystem>
@@ -15,15 +15,15 @@ class TableLines {
   TableLines(std::filesystem::path run_dir, std::string table, std::string header);
 
   /// The next line after a header; false at the end, and from the first problem on. A last line
-  /// without its line break is what a killed process leaves: it is not counted.
+  /// without its line break comes from a killed process and is ignored.
   bool next(std::string& line);
-  /// Goes on with the next segment, whatever is wrong with this one; false if there is none.
+  /// Continues with the next segment, also after a problem; false if there is none.
   bool skip_segment();
-  /// Where next()'s last line stands: "run/trajectory.csv:17: ".
+  /// The place of next()'s last line: "run/trajectory.csv:17: ".
   std::string place() const;
-  /// Whether the segment that was read last ends with such a line. @pre next() said false
+  /// Whether the segment that was read last ends with such a line. @pre next() returned false
   bool torn() const { return torn_; }
-  /// Which file cannot be opened or has a foreign header, and what to do about it.
+  /// The file that cannot be opened or has a foreign header, with the remedy.
   const std::optional<std::string>& problem() const { return problem_; }
 
  private:
@@ -39,7 +39,7 @@ class TableLines {
   std::optional<std::string> problem_;
 };
 
-/// What a line says, for an error message.
+/// A line as an error message quotes it.
 std::string in_quotes(const std::string& line);
 
 }  // namespace ergocast

@@ -18,7 +18,7 @@ std::string titled(const std::string& title, const std::string& unit) {
   return unit.empty() ? title : title + " [" + unit + "]";
 }
 
-/// The 1, 2 or 5 times a power of ten next above `step`.
+/// The smallest of 1, 2 and 5 times a power of ten that is not below `step`.
 double round_step(double step) {
   const double decade = std::pow(10, std::floor(std::log10(step)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -31,7 +31,8 @@ std::vector<AxisMark> linear_marks(const Axis& axis, int count) {
   const double low = axis.low / axis.label_unit, high = axis.high / axis.label_unit;
   const double step = round_step((high - low) / count);
   std::vector<AxisMark> result;
-  // Counted, not added up: with a step below the rounding of `low`, adding would never end.
+  // The marks are multiples of `step`, not sums: with a step below the rounding of `low`, adding
+  // would never end.
   const double first = std::ceil(low / step - 1e-9);
   for (int i = 0; i <= 2 * count; ++i) {
     const double value = (first + i) * step;
@@ -67,7 +68,7 @@ std::vector<AxisMark> log_marks(const Axis& axis) {
   return result;
 }
 
-/// Round steps; of very small or large values each label says its power of ten.
+/// Round steps; the labels of very small or large values have a power of ten each.
 std::vector<AxisMark> marks_within_a_decade(Axis axis, int count) {
   const int decade = static_cast<int>(std::floor(std::log10(axis.low)));
   if (decade >= -3 && decade < 6) return linear_marks(axis, count);
@@ -126,7 +127,8 @@ std::vector<AxisMark> marks(const Axis& axis, int count) {
   std::vector<AxisMark> result = log_marks(axis);
   const auto labelled = std::count_if(result.begin(), result.end(),
                                       [](const AxisMark& mark) { return !mark.label.empty(); });
-  // Up to a decade, round steps may say more than powers of ten; beyond, they would crowd at its end.
+  // Up to a decade, round steps may give more labels than powers of ten; beyond, they would crowd
+  // at its end.
   return labelled >= 3 || axis.high > 10 * axis.low ? result : marks_within_a_decade(axis, count);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plot's coordinate system: which values fall where, and the ticks and labels that say so.
+// The coordinate system of a plot: positions of values, ticks and labels.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@ struct Axis {
   double low = 0, high = 1;
   Scale scale = Scale::kLinear;
   double label_unit = 1;  ///< labels are values divided by this
-  std::vector<std::string> names{};  ///< if any, of the values 1, 2 …: the only marks
+  std::vector<std::string> names{};  ///< names of the values 1, 2 …; if any, the only marks
 
   /// 0 at the low end, 1 at the high end.
   double position(double value) const;
@@ -32,8 +32,8 @@ struct Axis {
 
 /// Exactly from `low` to `high`; "title [unit]".
 Axis range_axis(const std::string& title, const std::string& unit, double low, double high);
-/// From 0 to a little above the largest value; labels of tiny or huge values are in a power of
-/// ten that the title names.
+/// From 0 to a little above the largest value. Labels of tiny or huge values are in units of a
+/// power of ten that the title names.
 Axis amount_axis(const std::string& title, const std::string& unit, double largest);
 /// Logarithmic from `low` to `high`; each must be > 0 or is replaced.
 Axis log_axis(const std::string& title, double low, double high);
@@ -58,13 +58,13 @@ class Plot {
 
   /// Grid lines, below what is plotted.
   void grid();
-  /// Frame, tick labels and titles, above what is plotted.
+  /// Frame, tick labels and titles, drawn above the plotted data.
   void frame();
   /// `field` stretched over the whole area.
   void image(const Field& field, const ColorScale& colors, bool smooth);
   /// A curve over ascending x, cut off at the area's edge. Logarithms of values ≤ 0 are left out.
   void curve(const Polyline& points, std::string_view attributes);
-  /// In the middle of the area: why nothing is drawn.
+  /// Writes in the middle of the area why nothing is drawn.
   void say(std::string_view message);
 
  private:

@@ -15,13 +15,13 @@ namespace ergocast {
 struct Figure {
   std::string name;     ///< of its file, without ".svg"
   std::string title;
-  std::string caption;  ///< what to see in it, in a sentence or two; plain text
+  std::string caption;  ///< what it shows, in a sentence or two; plain text
   std::string svg;
-  bool wide = false;    ///< needs the width of two others
+  bool wide = false;    ///< needs the width of two other figures
 };
 
-/// Where the agents went, over the target density: crosses are starts, circles are ends.
-/// @param target  in multiples of the uniform density; if empty, what μ_k say of it is drawn
+/// The agents' tracks over the target density: crosses are starts, circles are ends.
+/// @param target  in multiples of the uniform density; if empty, the sum of the μ_k is drawn
 Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target);
 
 /// φ² against t, log–log, with the power of t that fits the last decade.
@@ -39,18 +39,19 @@ Figure speeds_figure(const RunData& run, const Mission& mission);
 /// Contributions received and lost, staleness, and how much the agents' own φ² differ.
 Figure communication_figure(const RunData& run, const Mission& mission);
 
-/// All of them, in the order of the report.
+/// All figures, in the order of the report.
 std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target);
 
-/// "λ = (1 + |k|²)^−1.5, f not divided by hₖ, 15 × 15 modes": what a φ² means nothing without.
+/// "λ = (1 + |k|²)^−1.5, f not divided by hₖ, 15 × 15 modes": the conventions that a φ² depends on.
 std::string conventions_line(const Basis& basis);
 
-/// The colour of an agent, "#rrggbb": seven that are told apart with any colour vision (Okabe and
-/// Ito's, without those that vanish on white), then again from the first.
+/// The colour of an agent, "#rrggbb": seven colours that are distinct with any colour vision (Okabe
+/// and Ito's, without those too pale on white), then again from the first.
 std::string agent_color(AgentId agent);
 inline constexpr std::size_t kAgentColors = 7;
 
-/// A key to the agents' colours in rows of at most `width` pixels below `top`; the pixels it took.
+/// A legend of the agents' colours in rows of at most `width` pixels below `top`; returns its
+/// height in pixels.
 double agent_legend(Svg& svg, const RunData& run, double left, double top, double width);
 
 }  // namespace ergocast

@@ -16,7 +16,7 @@ constexpr double kTitled = 30, kLegend = 48;  // room above it
 constexpr double kSide = 424;                 // of a map that shares its row with another
 constexpr double kWholeRow = 990;
 constexpr double kMostCells = 128;                 // along the longer side of a field
-constexpr double kFewestCells = kMaxModesPerAxis;  // so that no mode is mistaken for another
+constexpr double kFewestCells = kMaxModesPerAxis;  // so that modes do not alias
 
 /// The largest box of the proportions of `size` in kSide × `width`; never thinner than what can
 /// carry labels.
@@ -74,11 +74,11 @@ Field reconstruction(Coefficients coefficients, const Mission& mission) {
 // --- trajectories ---
 
 constexpr std::size_t kMostTrackPoints = 50'000;  // together; about 7 bytes each
-constexpr double kUnseen = 0.15;                  // a deviation in pixels that nobody sees
+constexpr double kUnseen = 0.15;                  // an invisible deviation in pixels
 
 struct DrawnTracks {
   std::map<AgentId, Polyline> lines;
-  double from_s = 0;  ///< what came before is left out
+  double from_s = 0;  ///< earlier points are left out
   std::size_t points = 0;
   double length = 0;
 };
@@ -99,7 +99,7 @@ DrawnTracks draw_tracks(const RunData& run, const Plot& plot, double from_s) {
   return drawn;
 }
 
-/// All of the tracks, or of very long ones as much of the end as fits.
+/// All tracks; of very long ones only the end, as much as the limit allows.
 DrawnTracks draw_tracks(const RunData& run, const Plot& plot) {
   DrawnTracks drawn = draw_tracks(run, plot, 0);
   if (drawn.points <= kMostTrackPoints) return drawn;
@@ -143,8 +143,8 @@ void draw_ends(Svg& svg, const RunData& run, const Plot& plot) {
   }
 }
 
-/// Numbers beside the circles where colours alone do not tell the agents apart, as long as there
-/// is room for them.
+/// Draws numbers beside the circles if colours alone do not distinguish the agents, unless there
+/// are too many.
 void draw_numbers(Svg& svg, const RunData& run, const Plot& plot) {
   constexpr std::size_t kMostNumbers = 24;
   if (run.tracks.size() <= kAgentColors || run.tracks.size() > kMostNumbers) return;
@@ -213,7 +213,7 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
 
   const Field ground =
       target.size() > 0 ? target : reconstruction(mission.target_coefficients, mission);
-  // A uniform target is to look like paper, not like its own peak.
+  // A uniform target is drawn light, and not as dark as a peak.
   const double densest = std::max(2.0, ground.maxCoeff());
   plot.image(ground / densest, pencil(), true);
 
@@ -234,7 +234,7 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
   const Rectangle domain = base_of(mission.domain);
   const Field target = reconstruction(mission.target_coefficients, mission);
   const Field achieved = reconstruction(coverage, mission);
-  // Some room above the target's own peak, for coverage that is too dense somewhere.
+  // Leaves room above the target's own peak, for coverage that is too dense in places.
   const double peak = target.maxCoeff();
   const double brightest = std::clamp(achieved.maxCoeff(), peak, 1.5 * peak);
 

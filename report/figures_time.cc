@@ -34,7 +34,7 @@ Axis time_axis(const RunData& run, const Mission& mission) {
 
 // --- φ² ---
 
-/// What a logarithmic plot of a series can show.
+/// The points of a series that a logarithmic plot can show.
 struct Positive {
   Polyline points;
   double low = 0, high = 0;
@@ -51,7 +51,7 @@ Positive positive(const Polyline& points) {
   return result;
 }
 
-/// The fitted line, and its slope in the corner that a falling curve leaves free.
+/// The fitted line, and its slope in the corner that is free under a falling curve.
 void draw_fit(Svg& svg, Plot& plot, const PowerLaw& law) {
   plot.curve({{law.from_s, law.at(law.from_s)}, {law.to_s, law.at(law.to_s)}}, "class=\"fit\"");
   const double x = plot.area().right() - 126, y = plot.area().top + 24;
@@ -112,7 +112,7 @@ Polyline over_time(const Bins& bins, double bin_s, const Value& value) {
   return points;
 }
 
-/// Everything between the slowest and the fastest command.
+/// The area between the slowest and the fastest command.
 void draw_band(Svg& svg, const Plot& plot, const Speeds& speeds) {
   Polyline outline = over_time(speeds.team, speeds.bin_s, [](const Bin& bin) { return bin.high; });
   const Polyline low = over_time(speeds.team, speeds.bin_s, [](const Bin& bin) { return bin.low; });
@@ -121,7 +121,7 @@ void draw_band(Svg& svg, const Plot& plot, const Speeds& speeds) {
   svg.path(path_data(outline), "class=\"band\"");
 }
 
-/// In a large team the lines of the agents only make the texture behind the team's.
+/// In a large team the lines of the agents are only a pale background of the team's.
 void draw_means(Plot& plot, const Speeds& speeds) {
   const bool large = speeds.agents.size() > kAgentColors;
   const std::string style =

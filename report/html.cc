@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Builds elements and tables from strings, and leaves out columns that have nothing to show.
+// Builds elements and tables from strings, and leaves out empty columns.
 #include "report/html.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pieces of HTML that a report is made of. Content is HTML: escape() is the caller's duty.
+// The HTML elements of a report. Content is HTML: the caller must escape() its text.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ class Facts {
  public:
   explicit Facts(const std::string& css_class) : html_("<dl class=\"" + css_class + "\">\n") {}
 
-  /// Nothing to say is not said.
+  /// Adds nothing if `value` is missing.
   void add(const std::string& name, const std::optional<std::string>& value);
   std::string html() const { return html_ + "</dl>\n"; }
 
@@ -30,7 +30,7 @@ struct Column {
   std::vector<std::optional<std::string>> cells{};
 };
 
-/// A table of the columns that have anything to say.
+/// A table without its empty columns.
 /// @pre every column has `rows` cells
 std::string table(std::vector<Column> columns, std::size_t rows);
 

@@ -106,7 +106,7 @@ std::string with_unit(double value, std::string_view unit) {
 
 std::string duration(double seconds) {
   if (!(seconds >= 120 && seconds < 1e15)) return readable(seconds) + "\u00a0s";
-  const double unit = seconds < 3600 ? 1 : 60;  // seconds are lost in hours
+  const double unit = seconds < 3600 ? 1 : 60;  // seconds do not matter in hours
   const auto whole = static_cast<long long>(std::round(seconds / unit) * unit);
   const long long hours = whole / 3600, minutes = whole / 60 % 60, rest = whole % 60;
   std::string text;
@@ -131,7 +131,7 @@ double text_width(std::string_view text, double size) {
 
 std::string axis_label(double value, double step) {
   const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 12);
-  // A tick at a rounding error from 0 is 0.
+  // A tick within a rounding error of 0 is 0.
   return typeset(plain_fixed(std::abs(value) < step * 1e-6 ? 0 : value, decimals));
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts the sections together from summary, record and figures; a value that is missing leaves no
-// empty line.
+// Combines the sections from summary, record and figures; a missing value leaves no empty line.
 #include "report/page.h"
 
 #include <algorithm>
@@ -18,9 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// --- what the summary says, where it says it ---
+// --- the values of the summary ---
 
-/// A value for people; nothing if the key is missing, null, or a list.
+/// A value as text for people; nothing if the key is missing, null, or a list.
 std::optional<std::string> said(const Json& object, const char* key) {
   if (!object.is_object() || !object.contains(key)) return {};
   const Json& value = object[key];

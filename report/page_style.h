@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How report.html looks: on a light or a dark screen, narrow or wide, and on paper.
+// The style of report.html: on a light or a dark screen, narrow or wide, and on paper.
 #pragma once
 
 namespace ergocast {

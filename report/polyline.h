@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curves with far more points than pixels, made small without changing the picture.
+// Reduces curves with far more points than pixels, without a visible change.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,11 @@ using Polyline = std::vector<Eigen::Vector2d>;
 Polyline simplify(const Polyline& points, double tolerance);
 
 /// At most four points of each column one unit wide: the first, lowest, highest and last, which
-/// cover the same pixels as all of them. @pre x ascends.
+/// cover the same pixels as all points. @pre x ascends.
 Polyline thin_columns(const Polyline& points);
 
 /// The data of an SVG path through `points`, to a tenth of a pixel; empty if there are none. A
-/// single point becomes a dot where the line's caps are round.
+/// single point becomes a dot if the line has round caps.
 std::string path_data(const Polyline& points);
 
 }  // namespace ergocast

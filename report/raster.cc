@@ -25,8 +25,7 @@ ColorScale blend(std::span<const Rgb> anchors) {
   return scale;
 }
 
-// PNG asks for zlib data; deflate allows blocks that are merely stored, which needs no library.
-// The pictures are small enough not to be worth compressing.
+// PNG requires zlib data. Deflate allows uncompressed blocks, which need no library.
 
 void append_big_endian(std::string& out, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 0xff);

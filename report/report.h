@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report of a run: what a person looks at.
+// Makes the report of a run, for people.
 #pragma once
 
 #include <filesystem>
@@ -14,21 +14,21 @@ namespace ergocast {
 
 inline constexpr const char* kReportFile = "report.html";
 
-/// A file of the report: its path within the run directory, and what stands in it.
+/// A file of the report: its path within the run directory, and its content.
 struct ReportFile {
   std::filesystem::path path;
   std::string text;
 };
 
-/// report.html and figures/*.svg as the run's trajectory.csv, metrics.csv and, if they are there,
-/// summary.json and target_density.csv make them. An empty run and a torn last line are fine.
-/// Otherwise what is wrong, where, and what to do about it.
+/// Draws report.html and figures/*.svg from the run's trajectory.csv, metrics.csv and, if they
+/// exist, summary.json and target_density.csv. An empty run and an incomplete last line are
+/// allowed. On failure, an error with its place and remedy.
 /// @pre `mission` is that of the run's plan.
 std::variant<std::vector<ReportFile>, std::string> draw_report(const std::filesystem::path& run_dir,
                                                                const Mission& mission);
 
-/// Writes them into `run_dir`; replaces what is there, each file at once or not at all. Nothing on
-/// success, otherwise what is wrong.
+/// Writes them into `run_dir` and replaces existing files, each as a whole or not at all. Nothing
+/// on success, otherwise the error.
 std::optional<std::string> write_report(const std::filesystem::path& run_dir,
                                         const Mission& mission);
 

@@ -21,7 +21,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The mean of as many values as there are, each drawn anew.
+/// The mean of a resample: as many values as there are, each drawn again.
 double resampled_mean(const std::vector<double>& values, std::uint64_t seed,
                       std::uint32_t resample) {
   double sum = 0;
@@ -72,7 +72,7 @@ double quantile(const std::vector<double>& ascending, double p) {
   const double place = p * static_cast<double>(ascending.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const double share = place - static_cast<double>(below);
-  // Between two infinite values there is no line.
+  // No interpolation between two infinite values.
   if (share == 0 || ascending[below] == ascending[below + 1]) return ascending[below];
   return ascending[below] + share * (ascending[below + 1] - ascending[below]);
 }

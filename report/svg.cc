@@ -11,7 +11,7 @@
 namespace ergocast {
 namespace {
 
-/// For a file opened alone; a page may say otherwise for a dark screen.
+/// For a file opened alone; a page may set other colours for a dark screen.
 constexpr const char* kStyle = R"(
 text{font:12px system-ui,"Segoe UI",Roboto,"Helvetica Neue",Arial,sans-serif;fill:#333}
 .tick{font-size:11px;fill:#555}.head{font-size:13px;font-weight:600}.note{font-size:11px;fill:#666}

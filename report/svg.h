@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A drawing, element by element. Whatever enters is made safe here: text is escaped, and a
-// coordinate that is no number never gets into the file.
+// Builds a drawing element by element. All input is made safe here: text is escaped, and a
+// coordinate that is not finite is not written.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,10 +16,10 @@ struct Area {
   double bottom() const { return top + height; }
 };
 
-/// `value` with one decimal as SVG wants it; 0 if it is not finite.
+/// `value` with one decimal in SVG's format; 0 if it is not finite.
 std::string pixels(double value);
 
-/// Attributes are written as they are: they are ours, never a user's.
+/// Attributes are not escaped: they come from this program, never from a user.
 class Svg {
  public:
   /// @param name  unique among the drawings of one page: the ids inside begin with it
@@ -29,7 +29,7 @@ class Svg {
   void rect(const Area& box, std::string_view attributes);
   void circle(const Eigen::Vector2d& center, double radius, std::string_view attributes);
   void path(std::string_view data, std::string_view attributes);
-  /// `at` is on the base line.
+  /// `at` is on the base line of the text.
   void text(const Eigen::Vector2d& at, std::string_view attributes, std::string_view content);
   /// A picture stretched over `box`; `smooth` blends its cells into each other.
   void image(const Area& box, std::string_view data_uri, bool smooth);

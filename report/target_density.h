@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The target as a picture in the run directory, so that a report needs neither scenario nor maps.
+// The target density as a table in the run directory, so that a report needs neither scenario nor
+// maps.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +12,17 @@
 
 namespace ergocast {
 
-/// What is to be covered, in multiples of the uniform density: a table with the north-west first.
+/// The density in multiples of the uniform density: a table with the north-west first.
 inline constexpr const char* kTargetDensityFile = "target_density.csv";
 
-/// The table as it stands in the file.
+/// The content of the file.
 std::string target_density_text(const Field& density);
 
 /// Nothing on success, otherwise the error.
 std::optional<std::string> write_target_density(const std::filesystem::path& file,
                                                 const Field& density);
 
-/// An empty field if there is no such file, otherwise what is wrong with it.
+/// An empty field if there is no such file; an error if it cannot be read.
 std::variant<Field, std::string> read_target_density(const std::filesystem::path& file);
 
 }  // namespace ergocast

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forks and executes a program with its output in a log file, and ties its life to that of its
-// parent.
+// Forks and executes a program with its output in a log file, and ends it when its parent ends.
 #include "runtime/child.h"
 
 #include <fcntl.h>
@@ -19,10 +18,10 @@
 namespace ergocast {
 namespace {
 
-/// What a shell says, too; none of our programs does.
+/// The code that a shell returns, too; our programs do not use it.
 constexpr int kCannotExecute = 127;
 
-/// Without standard streams a program's first sockets would take their place.
+/// Opens the standard streams: otherwise the program's first sockets would take their numbers.
 void take_streams(const char* log) {
   const int nothing = open("/dev/null", O_RDWR);
   const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
@@ -37,15 +36,15 @@ void say(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) _exit(kCannotExecute);
 }
 
-/// Between fork and exec only calls that are safe there.
+/// Runs between fork and exec, so it calls only async-signal-safe functions.
 [[noreturn]] void become(char* const* arguments, const char* log, int signal_if_orphaned,
                          pid_t parent) {
   setpgid(0, 0);
-  // LCM's sockets are inherited otherwise, and their drops counted as the child's. Besides, there
-  // is room for the log then, also if the parent has none left.
+  // Otherwise the child inherits LCM's sockets, and their drops are counted as the child's. Closing
+  // also frees a descriptor for the log, even if the parent has none left.
   close_range(STDERR_FILENO + 1, ~0U, 0);
   prctl(PR_SET_PDEATHSIG, signal_if_orphaned);
-  if (getppid() != parent) _exit(kCannotExecute);  // it was gone before we asked to be told
+  if (getppid() != parent) _exit(kCannotExecute);  // the parent ended before prctl()
   take_streams(log);
   StopSignals::restore_in_child();
   execv(arguments[0], arguments);
@@ -75,7 +74,7 @@ bool Child::running() {
   int status = 0;
   const pid_t ended = waitpid(pid_, &status, WNOHANG);
   if (ended == 0 || (ended < 0 && errno == EINTR)) return true;
-  status_ = ended == pid_ ? status : W_EXITCODE(kCannotExecute, 0);  // somebody else reaped it
+  status_ = ended == pid_ ? status : W_EXITCODE(kCannotExecute, 0);  // reaped elsewhere
   return false;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A process that this one starts, watches and ends.
+// A child process that this process starts, watches and ends.
 #pragma once
 
 #include <sys/types.h>
@@ -16,23 +16,24 @@ class Child {
  public:
   struct Program {
     std::vector<std::string> command;  ///< path and arguments
-    std::filesystem::path log;         ///< gets both output streams; lost where it cannot be opened
-    int signal_if_orphaned;            ///< what the kernel sends it when this process is gone
+    std::filesystem::path log;         ///< gets both output streams; lost if it cannot be opened
+    int signal_if_orphaned;            ///< the kernel sends it when this process ends
   };
 
-  /// Starts it in a process group of its own, so that Ctrl-C reaches only whoever watches it. An
-  /// error if the system has no place for a process; whether it executes the program shows later.
+  /// Starts the program in its own process group, so that Ctrl-C reaches only this process. An
+  /// error if the system cannot create a process. executed() tells later whether it ran the
+  /// program.
   static std::variant<Child, std::string> start(const Program& program);
 
   pid_t pid() const { return pid_; }
-  /// Takes note if it has ended.
+  /// Whether it runs; if it has ended, the result is stored.
   bool running();
-  /// Sends a signal, if it still runs.
+  /// Sends a signal if the process still runs.
   void send(int signal);
 
   /// After its end: the exit code, or nothing if a signal ended it.
   std::optional<int> exit_code() const;
-  /// After its end: whether there ever was a program, or the system would not execute it.
+  /// After its end: whether the system executed the program.
   bool executed() const;
   /// "exited with code 3", "was killed by SIGSEGV" or "could not be executed".
   std::string fate() const;
@@ -43,7 +44,7 @@ class Child {
   std::optional<int> status_;  // as waitpid() gives it
 };
 
-/// The last lines of a text file, for telling why a process ended.
+/// The last lines of a text file, to explain why a process ended.
 std::string last_lines(const std::filesystem::path& file, int count);
 
 }  // namespace ergocast

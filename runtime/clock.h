@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The only place where pacing time is read.
+// The only place where this process reads the monotonic clock for pacing.
 #pragma once
 
 #include <chrono>

@@ -23,14 +23,14 @@ constexpr std::uint32_t kMagicAt = kUdpHeaderBytes, kNameAt = kUdpHeaderBytes + 
 constexpr std::uint32_t kUnfragmented = 0x4c433032;  // "LC02"
 constexpr std::uint32_t kKeepAll = 0xffff;
 constexpr std::uint32_t kKeepTooLittle = kUdpHeaderBytes + 4;
-/// No message of ours is shorter, and no name or number is looked for beyond it.
+/// The shortest message; names and numbers lie within these bytes.
 constexpr std::uint32_t kShortest = kNameAt + 60;
-/// In a message.
+/// Offsets within a message.
 constexpr std::uint32_t kLifeAt = 20, kSequenceAt = 28;
-/// LCM allows names of 63 characters; what is longer than any message of ours only fills its queue.
+/// LCM allows names of 63 characters. Longer datagrams than ours would only fill LCM's queue.
 constexpr std::uint32_t kLongest = kNameAt + 64 + static_cast<std::uint32_t>(kMaxDatagramBytes);
 
-/// A program for the kernel, whose jumps go forward only and whose conditional ones not far.
+/// A program for the kernel. Jumps only go forward, and conditional jumps only a short distance.
 class Filter {
  public:
   explicit Filter(std::span<const Repeated> flooded) : to_repeats_(!flooded.empty()) {
@@ -55,20 +55,20 @@ class Filter {
     code_.push_back(BPF_STMT(static_cast<std::uint16_t>(what), from));
   }
   void end(std::uint32_t keep) { load(BPF_RET | BPF_K, keep); }
-  /// A datagram of ours whose message begins there: kept, unless repeats are to be looked for.
+  /// A datagram of ours whose message begins there: kept, unless repeats must be searched for.
   void keep(std::uint32_t message_at) {
     if (!to_repeats_) return end(kKeepAll);
     load(BPF_LDX | BPF_IMM, message_at);
     keeps_.push_back(code_.size());
     load(BPF_JMP | BPF_JA, 0);
   }
-  /// Goes on if what was loaded compares so with `value`, and else ends with kKeepTooLittle.
+  /// Continues if the loaded value compares so with `value`; otherwise ends with kKeepTooLittle.
   void pass_if(int compare, std::uint32_t value) {
     code_.push_back(BPF_JUMP(static_cast<std::uint16_t>(BPF_JMP | compare | BPF_K), value, 1, 0));
     end(kKeepTooLittle);
   }
 
-  /// Keeps a datagram of that name; others go on behind this.
+  /// Keeps a datagram of that name; for others the program continues after this code.
   void accept(const ChannelName& name) {
     std::string text(name.text);
     if (!name.per_agent) text.push_back('\0');
@@ -91,7 +91,7 @@ class Filter {
     }
   }
 
-  /// "NEW" or one to three digits, and the name's end.
+  /// Accepts "NEW" or one to three digits, then the end of the name.
   void accept_number(std::uint32_t at) {
     load(BPF_LD | BPF_W | BPF_ABS, at);
     skip_unless(0x4e455700, [&] { keep(at + 4); });
@@ -105,7 +105,7 @@ class Filter {
     }
     end(kKeepTooLittle);
   }
-  /// Does `then` if what was loaded is `value`.
+  /// Runs `then` if the loaded value is `value`.
   template <class Then>
   void skip_unless(std::uint32_t value, const Then& then) {
     const std::size_t jump = code_.size();
@@ -114,12 +114,12 @@ class Filter {
     code_[jump].jf = static_cast<std::uint8_t>(code_.size() - jump - 1);
   }
 
-  /// All that is kept comes here, with the place of the message in X.
+  /// All kept datagrams arrive here, with the offset of the message in X.
   void drop_repeats(std::span<const Repeated> flooded) {
     for (const std::size_t from : keeps_) code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
     load(BPF_LD | BPF_W | BPF_IND, kSequenceAt);
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0));
-    end(kKeepAll);  // nobody has said so much
+    end(kKeepAll);  // no sender has reached so high a sequence
     load(BPF_LD | BPF_W | BPF_IND, kSequenceAt + 4);
     load(BPF_ST, 0);
     load(BPF_LD | BPF_W | BPF_IND, kLifeAt + 4);
@@ -146,7 +146,7 @@ class Filter {
 
   std::vector<sock_filter> code_;
   const bool to_repeats_;
-  std::vector<std::size_t> keeps_;  // jumps to where repeats are looked for
+  std::vector<std::size_t> keeps_;  // jumps to the search for repeats
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Starts a new segment at a size limit, removes the oldest beyond the total, and cuts a torn
+// Starts a new segment at a size limit, removes the oldest beyond the total, and cuts an incomplete
 // event off.
 #include "runtime/event_log.h"
 
@@ -17,11 +17,11 @@
 namespace ergocast {
 namespace {
 
-/// What LCM writes around a message: its number, time and lengths.
+/// The bytes that LCM writes before a message: its number, time and lengths.
 constexpr std::int64_t kEventHeaderBytes = 28;
-/// Numbers of our segments are below: what a stranger calls higher leaves us numbers enough.
+/// Our segments have lower numbers; a foreign file with a higher number leaves enough of them free.
 constexpr int kFirstForeignNumber = 1'000'000'000;
-/// More than the C library keeps to itself before it writes.
+/// More bytes than the C library buffers before it writes.
 constexpr std::int64_t kUnwrittenBytes = 1 << 17;
 
 std::int64_t wall_clock_us() {
@@ -69,7 +69,7 @@ void EventLog::fail() {
   if (error_) return;
   error_ = file_.string() + ": " + std::strerror(errno);
   log_.reset();
-  // Half an event is taken back.
+  // Removes an incomplete event.
   std::error_code ignored;
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file_, ignored));
   while (!ends_.empty() && ends_.back() > bytes) ends_.pop_back();
@@ -97,7 +97,7 @@ void EventLog::open_next() {
   if (!log_->good()) fail();
 }
 
-/// For a whole segment more.
+/// Removes old segments until a new one has room.
 void EventLog::make_room() {
   auto there = segments_in(folder_);
   std::int64_t total = 0;

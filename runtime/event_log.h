@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages as they came, in LCM's log format: lcm-logplayer replays them, lcm-logplayer-gui shows them.
+// Received messages in LCM's log format: lcm-logplayer replays them, lcm-logplayer-gui shows them.
 #pragma once
 
 #include <cstdint>
@@ -20,25 +20,25 @@ namespace ergocast {
 inline constexpr std::int64_t kEventLogMib = 4096;
 
 struct EventLogLimits {
-  std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment is closed and the next begun
-  std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest go first
+  std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment ends and the next begins
+  std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest are removed first
 };
 
-/// events-000.lcm, events-001.lcm, … in one folder, after the highest number that is taken: the log
-/// that a killed process left may end amid a message.
+/// Writes events-000.lcm, events-001.lcm, … in one folder, after the highest existing number: the
+/// log of a killed process may end within a message.
 class EventLog {
  public:
   explicit EventLog(std::filesystem::path folder, EventLogLimits limits = {});
   ~EventLog();
 
-  /// Dropped while nothing can be written.
+  /// Appends a message; discards it while the log cannot be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
 
-  /// Hands everything to the operating system. The write error since the last call, if any: the
-  /// segment then ends with its last whole event, and the next call begins a new one.
+  /// Passes all data to the operating system. Returns the write error since the last call, if any:
+  /// the segment then ends with its last whole event, and the next call begins a new segment.
   std::optional<std::string> flush();
 
-  /// Segments that had to go for the limit.
+  /// Segments removed because of the limit.
   int removed() const { return removed_; }
 
   /// Removes the segments that this log has begun.
@@ -52,12 +52,12 @@ class EventLog {
 
   std::filesystem::path folder_, file_;
   EventLogLimits limits_;
-  std::int64_t written_ = 0;       // bytes of the present segment
+  std::int64_t written_ = 0;       // bytes of the current segment
   std::deque<std::int64_t> ends_;  // of its last events
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::unique_ptr<lcm::LogFile> log_;
   std::optional<std::string> error_;
-  bool told_ = false;  // the error, to the caller
+  bool told_ = false;  // the caller has received the error
 };
 
 }  // namespace ergocast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The life of every process: deliver what arrives, let the core act, publish what it says.
+// The main loop of every process: deliver messages, let the core act, publish its messages.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace ergocast {
 
 /// Runs `core` until it has finished. A core has receive() (called by the transport's handler),
 /// advance(now, out), next_wakeup() and finished().
-/// @param on_signal  called for SIGINT or SIGTERM; it tells the core to finish
-/// @param each_turn  called in every turn, for what only the process knows
-/// @param lag        learns of every turn
+/// @param on_signal  called for SIGINT or SIGTERM; it makes the core finish
+/// @param each_turn  called in every turn, for the work that only this process has
+/// @param lag        measures every turn
 template <class Core>
 void live(Core& core, Transport& transport, StopSignals& signals,
           const std::function<void()>& on_signal, const std::function<void()>& each_turn,

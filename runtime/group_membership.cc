@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the routed interface with the joined one, and moves the membership of LCM's sockets
-// when they differ.
+// Compares the routed interface with the joined one, and moves the membership of LCM's sockets if
+// they differ.
 #include "runtime/group_membership.h"
 
 #include <arpa/inet.h>
@@ -22,10 +22,10 @@ bool GroupMembership::renew() {
   const ip_mreqn former{group_, {}, static_cast<int>(interface_)};
   bool renewed = false;
   for (const int fd : sockets_) {
-    // Refused for as long as the membership holds.
+    // The kernel refuses this while the membership exists.
     if (setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &now, sizeof now) != 0) continue;
     renewed = true;
-    // Of 20 that the kernel allows a socket, also those on interfaces that are gone count.
+    // The kernel allows 20 memberships for each socket and also counts those on removed interfaces.
     if (interface_ != 0 && interface_ != leads_there) {
       setsockopt(fd, IPPROTO_IP, IP_DROP_MEMBERSHIP, &former, sizeof former);
     }

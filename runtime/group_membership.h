@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A socket's membership in LCM's group belongs to one network interface and ends with it: after an
-// adapter was unplugged, or a container disconnected from its network, LCM stays deaf on the next
-// one. It has no call for that, so its sockets are dealt with here.
+// Renews the membership of LCM's sockets in the multicast group. A membership belongs to one
+// network interface and ends with it. After an adapter was replaced, or a container reconnected,
+// LCM would receive nothing, and LCM has no call to join again.
 #pragma once
 
 #include <netinet/in.h>
@@ -14,17 +14,17 @@ namespace ergocast {
 
 class GroupMembership {
  public:
-  /// Takes note of the sockets of this process that listen to the buses of `url`.
+  /// Finds the sockets of this process that are bound to the buses of `url`.
   explicit GroupMembership(const LcmUrl& url);
 
-  /// Joins the group on the interface that leads to it, where that is not the one joined before.
-  /// @return whether it was another
+  /// Joins the group on the interface of the current route, if it is not the one joined before.
+  /// @return whether the interface changed
   bool renew();
 
  private:
   in_addr group_;
   std::vector<int> sockets_;
-  unsigned interface_;  // joined on; 0: unknown
+  unsigned interface_;  // the joined interface; 0: unknown
 };
 
 }  // namespace ergocast

@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view kTitle = "ergocast key 1";
 constexpr std::size_t kLongestFile = 4096;
 
-/// An open file that is closed again.
+/// Closes the file in its destructor.
 class File {
  public:
   explicit File(int fd) : fd_(fd) {}
@@ -52,8 +52,8 @@ bool from_hex(const std::string& text, std::array<std::byte, N>& bytes) {
          size == N && text.size() == 2 * N;
 }
 
-/// Whether the open file lies in the folder that systemd makes for one service. There an access
-/// control list lets the service's user read it, and what it permits shows as the group's rights.
+/// Whether the open file is in the folder that systemd makes for one service. There an access
+/// control list lets the service's user read the file, and its mask appears as the group's rights.
 bool is_credential(const struct stat& info, const std::filesystem::path& file) {
   const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
   if (folder == nullptr || *folder == '\0') return false;
@@ -71,14 +71,14 @@ std::optional<std::string> why_not_private(const struct stat& info,
   if (others != 0 && !(others == 040 && is_credential(info, file))) {
     return name + ": others than its owner may use this key; chmod 600 " + name;
   }
-  // Root reads everybody's files; whoever owns one can still exchange it.
+  // Root can read all files, but the owner of a file could still replace it.
   if (info.st_uid != geteuid() && info.st_uid != 0 && geteuid() != 0) {
     return name + ": belongs to another user; chown it to who runs this program";
   }
   return std::nullopt;
 }
 
-/// Takes in one line; false if it is none of a key file's.
+/// Reads one line; false if it does not belong in a key file.
 bool read_line(const std::string& line, MissionKey& key, int& found) {
   std::istringstream words(line);
   std::string name, value, rest;
@@ -90,7 +90,7 @@ bool read_line(const std::string& line, MissionKey& key, int& found) {
   return false;
 }
 
-/// Whether the two halves belong together, so that nobody signs what nobody believes.
+/// Whether the two halves belong together; otherwise no receiver would accept the signatures.
 bool halves_match(const MissionKey& key) {
   if (!key.signing) return true;
   MissionKey::Secret half;
@@ -138,7 +138,8 @@ std::string key_text(const MissionKey& key, bool for_coordinator) {
 
 std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path& file) {
   const std::string name = file.string();
-  // What is checked is what is read, whatever becomes of the name; a pipe must not hold us up.
+  // The checks and the reading use one open file, even if the name changes meanwhile. A pipe must
+  // not block us.
   const File opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat info {};
   if (opened.fd() < 0 || fstat(opened.fd(), &info) != 0) {

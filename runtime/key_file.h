@@ -19,15 +19,15 @@ namespace ergocast {
 /// A new key, of the operating system's random bits; it can sign.
 MissionKey make_mission_key();
 
-/// The text of a key file. Without the signing key if `for_coordinator` is false.
+/// The text of a key file, without the signing key if `for_coordinator` is false.
 std::string key_text(const MissionKey& key, bool for_coordinator);
 
-/// The key in `file`, or one sentence that says what is wrong with it and what to do. Refused are
-/// files that others than their owner may read or write, and those of other users. A file in
-/// $CREDENTIALS_DIRECTORY, where systemd puts what is one service's, may be readable by its group.
+/// The key in `file`, or one sentence with the error and its remedy. Files that other users may
+/// read or write, and files of other users, are refused. A file in $CREDENTIALS_DIRECTORY, where
+/// systemd puts the credentials of a service, may be readable by its group.
 std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path& file);
 
-/// Writes a file that only its owner may read; never over another. An error names the remedy.
+/// Writes a file that only its owner may read; never replaces one. An error names the remedy.
 std::optional<std::string> write_key_file(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace ergocast

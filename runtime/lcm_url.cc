@@ -49,13 +49,13 @@ const sockaddr* as_sockaddr(const Address& address) {
 }
 
 bool port_is_free(int port) {
-  // Without SO_REUSEADDR this fails when anybody holds the port, LCM's shared sockets included.
+  // Without SO_REUSEADDR this fails if any socket has the port, also one of LCM's shared sockets.
   const Socket probe(AF_INET, SOCK_DGRAM);
   const sockaddr_in any = address_of("0.0.0.0", port);
   return probe.fd() >= 0 && bind(probe.fd(), as_sockaddr(any), sizeof any) == 0;
 }
 
-/// A name that exists once per network namespace and vanishes with its process.
+/// The name exists once in each network namespace and vanishes with its process.
 int lock_ports(int base_port) {
   const int lock = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (lock < 0) return -1;
@@ -135,7 +135,7 @@ std::optional<std::string> why_unreachable(const LcmUrl& url) {
   if (setsockopt(socket.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) {
     return failed("cannot join the group");
   }
-  // To our own port, with a TTL of 0: seen by nobody else.
+  // To our own port, with a TTL of 0, so that no other host receives it.
   const unsigned char ttl = 0;
   setsockopt(socket.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   sockaddr_in target = group;

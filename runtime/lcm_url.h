@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one base URL from which a run's three buses follow.
+// The base URL that determines a run's three buses.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace ergocast {
 inline constexpr int kFirstBasePort = 24000;
 inline constexpr int kLastBasePort = 26997;
 
-/// `udpm://group:port[?ttl=N&recv_buf_size=N]`. LCM itself accepts nonsense silently (no port,
-/// unknown options), so it is read and checked here.
+/// `udpm://group:port[?ttl=N&recv_buf_size=N]`. Parsed and checked here, because LCM accepts
+/// invalid URLs silently (no port, unknown options).
 struct LcmUrl {
   std::string group = "239.255.76.67";
   int base_port = 7667;
@@ -35,14 +35,14 @@ struct LcmUrl {
   std::string of_port(int port) const;
 };
 
-/// Nothing if a datagram can be sent to the group and comes back; otherwise why not, with the
-/// commands that mend it. Takes a fraction of a second.
+/// Nothing if a datagram to the group comes back; otherwise the cause, with the commands that
+/// repair it. Takes a fraction of a second.
 std::optional<std::string> why_unreachable(const LcmUrl& url);
 
-/// Three free ports of this network, held by this process until it ends.
+/// Three free ports of this network namespace, reserved until this process ends.
 class PortReservation {
  public:
-  /// Starts to look at a place that depends on `run`. Nothing if the whole range is taken.
+  /// Searches from a place that depends on `run`. Nothing if all ports of the range are taken.
   static std::optional<PortReservation> take(RunId run);
   PortReservation(PortReservation&& other) noexcept;
   PortReservation& operator=(PortReservation&&) = delete;

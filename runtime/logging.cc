@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Formats log lines for a terminal or for the journal, and disarms characters that could steer a
+// Formats log lines for a terminal or for the journal, and escapes characters that would control a
 // terminal.
 #include "runtime/logging.h"
 
@@ -52,7 +52,7 @@ class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override { std::fflush(stderr); }
 };
 
-/// The text of an event as a terminal may have it: files and strangers are quoted in it.
+/// The text of an event, safe for a terminal: it may quote files and messages of other hosts.
 class PrintableText final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& event, const std::tm&,

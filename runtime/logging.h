@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a process's log lines go, and how they look.
+// Sets up a process's log: its destination and format.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace ergocast {
 
-/// What --log-level takes, from everything to errors only.
+/// The values of --log-level, from everything to errors only.
 inline const std::vector<std::string> kLogLevels{"trace", "debug", "info", "warn", "error"};
 
-/// One line per event on the standard error stream: time, level, process, text. If that stream is
-/// the journal's, a syslog priority takes the place of time and level, on every line of a text that
-/// has several. A line that is repeated within 5 s is counted, not written.
+/// One line per event on the standard error stream: time, level, process, text. On the journal's
+/// stream, a syslog priority replaces time and level, on every line of a text that has several. A
+/// line repeated within 5 s is counted and not written again.
 /// @param level  one of kLogLevels
 void set_up_logging(const std::string& process_name, const std::string& level);
 
@@ -20,7 +20,7 @@ void set_up_logging(const std::string& process_name, const std::string& level);
 /// $JOURNAL_STREAM; null: there is none.
 bool is_journal(const char* journal_stream, int fd);
 
-/// `text` as the journal wants it: "<N>process: line", for each of its lines that is not empty.
+/// `text` in the journal's format: "<N>process: line", for each of its lines that is not empty.
 std::string journal_lines(int priority, const std::string& process_name, const std::string& text);
 
 }  // namespace ergocast

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How late or deaf an event loop was: what a machine that is too slow, or a process that stood
-// still, looks like from inside.
+// The delay of an event loop: a machine that is too slow, or a suspended process, shows in it.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +12,12 @@ namespace ergocast {
 
 class LoopLag {
  public:
-  /// The loop woke up at `now`, having had work to do at `planned`.
+  /// The loop woke up at `now`; its work was due at `planned`.
   void woke(Instant planned, Instant now) {
     woke_ = now;
     worst_ = std::max(worst_, now - planned);
   }
-  /// It has done what there was to do: until now it heard nothing new.
+  /// The loop has done its work. Since it woke up, it received nothing new.
   void done(Instant now) { worst_ = std::max(worst_, now - woke_); }
 
   /// The worst of either since the last call [s].

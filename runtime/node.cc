@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Declares the options that all programs share, and words what a mistyped argument may have
-// meant.
+// Declares the options that all programs share, and suggests the nearest name for a mistyped
+// argument.
 #include "runtime/node.h"
 
 #include <lcm/lcm.h>
@@ -38,7 +38,7 @@ void read_run_id(const std::string& text, RunId& run) {
   }
 }
 
-/// Set to nothing it would be as if it were not set, and the team would fly without a key.
+/// An empty variable would count as unset, and the team would fly without a key.
 void refuse_empty_key_variable(const CLI::Option& option) {
   const char* file = std::getenv(kKeyVariable);
   if (file == nullptr || *file != '\0' || option.count() > 0) return;
@@ -46,14 +46,15 @@ void refuse_empty_key_variable(const CLI::Option& option) {
                                            "fly without a key");
 }
 
-/// "did you mean NAME?", or where all names are.
+/// "did you mean NAME?", or how to list all names.
 std::string remedy_for(const std::string& word, const std::vector<std::string>& names) {
   const std::string meant = nearest(word, names);
   return meant.empty() ? "--help lists what there is" : "did you mean " + meant + "?";
 }
 
-/// The first word of a command line that is neither a command nor an option, and what it may have
-/// meant; empty if all are known. CLI11 says only that it did not expect it, or blames the next.
+/// The first word of a command line that is neither a command nor an option, with the likely
+/// meaning; empty if all are known. CLI11's own message names no such alternative and may blame the
+/// next word.
 std::string unknown_word(const CLI::App& app, int argc, char** argv) {
   const CLI::App* command = &app;
   for (int i = 1; i < argc; ++i) {
@@ -138,7 +139,7 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
 void add_event_log_option(CLI::App& app, std::int64_t& mib) {
   app.add_option("--event-log-limit", mib, "Most that events-*.lcm may hold; the oldest go first")
       ->capture_default_str()
-      ->check(CLI::Range(128, 1 << 30))  // two segments at least
+      ->check(CLI::Range(128, 1 << 30))  // at least two segments
       ->type_name("MIB");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the command lines of all processes have in common.
+// Command-line options, exit codes and version of all programs.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,7 +15,7 @@ namespace ergocast {
 /// Exit codes of every program of Ergocast.
 enum ExitCode {
   kExitDone = 0,
-  kExitDiffers = 1,      ///< `verify`, `status`, `doctor`: not all is as it should be
+  kExitDiffers = 1,      ///< `verify`, `status`, `doctor`: a difference or trouble was found
   kExitBadInput = 2,     ///< arguments, scenario or run directory
   kExitUnavailable = 3,  ///< LCM cannot be used on this machine
   kExitFailed = 4,       ///< the mission failed
@@ -31,43 +31,44 @@ struct BusOptions {
 /// --lcm-url (default: $LCM_DEFAULT_URL, or LCM's own group).
 void add_url_option(CLI::App& app, LcmUrl& url);
 
-/// --key-file (default: $ERGOCAST_KEY_FILE, or no key; that variable, empty, is refused). `file` gets
-/// its name. Takes the command's parse-complete callback.
+/// --key-file (default: $ERGOCAST_KEY_FILE, or no key; an empty variable is refused). `file` gets
+/// its name. Uses the command's parse-complete callback.
 void add_key_option(CLI::App& app, Seal& seal, std::string* file = nullptr);
 
-/// What to say of a key that only the coordinator's file would do for.
+/// The error text for a command that needs the coordinator's key file.
 std::string cannot_sign(const std::string& key_file);
 
 /// --lcm-url, --key-file and --run-id.
 void add_bus_options(CLI::App& app, BusOptions& options);
 
-/// Of the programs that take part in a mission.
+/// The options of the programs that take part in a mission.
 struct NodeOptions : BusOptions {
   std::string log_level = "info";
 };
 
-/// Besides, --log-level (default: $ERGOCAST_LOG_LEVEL, or info) and --version.
+/// Adds --log-level (default: $ERGOCAST_LOG_LEVEL, or info) and --version to those.
 void add_node_options(CLI::App& app, NodeOptions& options);
 
-/// --event-log-limit: of those who write one. @param mib  its default
+/// --event-log-limit, for programs that write an event log. @param mib  its default
 void add_event_log_option(CLI::App& app, std::int64_t& mib);
 
-/// Parses, and says what an unknown word may have meant; the exit code if the program has to end here (0 after --help), −1 if it goes on.
+/// Parses the command line and suggests names for unknown words. Returns the exit code if the
+/// program must end here (0 after --help), −1 if it continues.
 int parse_command_line(CLI::App& app, int argc, char** argv);
 
-/// --version's text: ours, LCM's and the compiler's.
+/// The text of --version: our version, LCM's and the compiler's.
 std::string version_text();
 /// "GNU 12.2.0, Release".
 std::string build_text();
-/// Whether this processor multiplies and adds in one rounding: glibc's sin and cos depend on it.
+/// Whether this processor has fused multiply-add, which changes the results of glibc's sin and cos.
 bool cpu_has_fma();
-/// "0.2.0": what has to be equal in a team.
+/// "0.2.0": must be equal in a team.
 std::string version();
 
-/// 64 random bits of the operating system's, not 0.
+/// 64 random bits from the operating system, not 0.
 std::uint64_t random_identity();
 std::string host_name();
-/// Now, by the wall clock, as "2026-01-31T12:00:00Z".
+/// The current wall-clock time as "2026-01-31T12:00:00Z".
 std::string wall_clock_text();
 
 }  // namespace ergocast

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Derives the budget of a message rate from the mission, and refills it by seconds and by ticks
-// of the world.
+// Derives the budget of a message rate from the mission, and refills it by seconds and by ticks of
+// the world.
 #include "runtime/rate_limit.h"
 
 #include <algorithm>
@@ -12,12 +12,13 @@ namespace ergocast {
 namespace {
 
 constexpr double kMargin = 8;
-/// How often the world repeats a tick at the most, which everybody repeats its words at. In real
-/// time it repeats none, but the network may.
+/// How often the world repeats a tick at most; all agents then repeat their messages. In real time
+/// the world repeats none, but the network may.
 constexpr double kLockstepRepeatsPerSecond = 50, kRealtimeRepeatsPerSecond = 5;
-/// Statuses, digests and answers to a world that asks, besides those of mission time.
+/// Statuses, digests and answers to a world, in addition to those of mission time.
 constexpr double kOthersPerSecond = 40;
-/// What whoever was held up may find waiting: LCM's queues and the kernel's buffers hold less.
+/// The messages that may wait for a delayed process: LCM's queues and the kernel's buffers hold
+/// fewer.
 constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
 double parts(std::size_t count, int of) {

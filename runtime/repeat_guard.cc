@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts repeats in short windows and lists the newest sequence of each repeated incarnation
-// while a flood lasts.
+// Counts repeats in short windows and lists the newest sequence of each repeated incarnation while
+// a flood lasts.
 #include "runtime/repeat_guard.h"
 
 namespace ergocast {
@@ -13,7 +13,7 @@ bool RepeatGuard::count(const Header& from, bool is_news, Instant now) {
   const bool was_flooded = !flooded_.empty();
   const bool lapsed = now - window_began_ >= kWindow * (was_flooded ? kCalmWindows : 1);
   if (repeats_ < kMostRepeats && !lapsed) return false;
-  // While the kernel drops some, those that pass stand for many.
+  // While the kernel drops repeats, each that passes stands for many.
   const bool goes_on =
       was_flooded && repeats_ * static_cast<int>(kShareThatPasses) >= kMostRepeats * kCalmWindows;
   const bool flooded = repeats_ >= kMostRepeats || goes_on;

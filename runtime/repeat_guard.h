@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells when a bus is flooded with what has been said before, and what the kernel has to know to
-// keep most of it from us.
+// Detects floods of repeated messages and lists what the kernel must drop.
 //
-// A flood must not cost more than it takes to look at it: what has been read, hashed and decoded
-// has already cost what our own messages need. So the kernel looks, at sender's life and sequence,
-// before the datagram takes a place in the socket's buffer. It drops nothing while there is no
-// flood, since teammates repeat each other's messages for good reasons, and lets a share pass while
-// there is one. What it goes by was verified, so that no forger makes it drop what is new.
+// Reading, hashing and decoding a repeat costs as much as one of our own messages. So the kernel
+// compares the sender's incarnation and sequence before the datagram takes a place in the socket's
+// buffer. Without a flood it drops nothing, because teammates repeat each other's messages for good
+// reasons. During a flood it lets a share pass. The list has only verified messages, so a forger
+// cannot make the kernel drop new ones.
 #pragma once
 
 #include <chrono>
@@ -22,36 +21,37 @@
 
 namespace ergocast {
 
-/// Of one bus.
+/// The guard of one bus.
 class RepeatGuard {
  public:
-  /// So many repeats in so long are a flood; a team's own are fewer.
+  /// So many repeats in a window are a flood; a team repeats fewer.
   static constexpr int kMostRepeats = 200;
   static constexpr std::chrono::nanoseconds kWindow = std::chrono::milliseconds(100);
-  /// It is over when so many windows together had few: a process that was held up finds little at
-  /// first.
+  /// A flood ends after so many windows with few repeats together: a delayed process receives
+  /// little at first.
   static constexpr int kCalmWindows = 10;
-  /// As many as a team has at a time, and some.
+  /// More than the incarnations that a team has at a time.
   static constexpr std::size_t kMostLives = 144;
 
   explicit RepeatGuard(Bus bus) : bus_(bus) {}
 
-  /// Whether its sender has said nothing later yet, nor this, in this life (team/liveness.h).
-  /// @pre the message is believed
+  /// Whether this message is new: its sender has sent neither this nor a later message in this
+  /// incarnation (team/liveness.h).
+  /// @pre the message was verified
   bool is_news(const Header& from, Instant now) { return liveness_.record(from, bus_, now); }
 
-  /// Counts a message that is_news() was asked about. True if flooded() has changed.
+  /// Counts a message that was passed to is_news(). True if flooded() has changed.
   bool count(const Header& from, bool is_news, Instant now);
 
-  /// What the kernel is to keep from us; empty while there is no flood.
+  /// The messages that the kernel must drop; empty without a flood.
   std::span<const Repeated> flooded() const { return flooded_; }
 
  private:
   Bus bus_;
   Liveness liveness_;
   Instant window_began_{};
-  int repeats_ = 0;         // in this window, that came to us
-  std::set<Author> lives_;  // that were repeated since the flood began
+  int repeats_ = 0;         // in this window, as received
+  std::set<Author> lives_;  // repeated since the flood began
   std::vector<Repeated> flooded_;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks in the places that an installation has, and in those of the source tree, relative to the
-// running program.
+// Searches the folders of an installation and of the source tree, relative to the running program.
 #include "runtime/shipped_folder.h"
 
 namespace ergocast {

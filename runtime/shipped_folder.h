@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where what comes with the programs is.
+// The folders of files that come with the programs.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,11 @@
 
 namespace ergocast {
 
-/// As seen from the program: share/ergocast/NAME of an installation, or `in_tree` in the tree of
-/// build/*/bin. Empty: nowhere.
+/// share/ergocast/NAME of the program's installation, or `in_tree` of the source tree if the
+/// program is in build/*/bin. Empty: it does not exist.
 std::filesystem::path shipped_folder(const std::string& name, const std::string& in_tree);
 
-/// ergocast-spy.jar of an installation, or of this build. Empty: it was not built, for want of a JDK.
+/// ergocast-spy.jar of an installation, or of this build. Empty: it was not built without a JDK.
 std::filesystem::path spy_jar();
 
 }  // namespace ergocast

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scenarios that are installed with the programs, or lie in their source tree.
+// The scenarios that are installed with the programs, or are in their source tree.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace ergocast {
 
-/// For the options that take a scenario: puts the file of a shipped scenario in the place of its
-/// bare name, and refuses a bare name that neither a file nor a shipped scenario has. All other
-/// texts stay what they are.
+/// For options that take a scenario: replaces the bare name of a shipped scenario by its file, and
+/// refuses a bare name without a file or shipped scenario. All other texts stay unchanged.
 CLI::Validator shipped_scenario();
 
 }  // namespace ergocast

@@ -25,7 +25,7 @@ StopSignals::StopSignals() {
   const sigset_t set = stop_set();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   signal(SIGPIPE, SIG_IGN);
-  signal(SIGCHLD, SIG_DFL);  // a parent may have left it ignored: then no child can be waited for
+  signal(SIGCHLD, SIG_DFL);  // if the parent ignored it, no child could be waited for
   fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
 }
 

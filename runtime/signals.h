@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Requests to end, as something to wait for instead of something that interrupts.
+// Turns stop requests into a descriptor that an event loop can wait for.
 #pragma once
 
 namespace ergocast {
 
-/// Turns SIGINT and SIGTERM of this process into a readable descriptor. To be made before any
-/// thread starts, LCM's included. SIGPIPE is ignored,
-/// SIGCHLD as it is by default.
+/// Makes SIGINT and SIGTERM of this process readable from a descriptor. To be created before any
+/// thread starts, LCM's included. SIGPIPE is ignored; SIGCHLD gets its default action.
 class StopSignals {
  public:
   StopSignals();
@@ -15,10 +14,10 @@ class StopSignals {
   ~StopSignals();
 
   int fd() const { return fd_; }
-  /// How many have come since the last call.
+  /// The number of signals since the last call.
   int take();
 
-  /// Undoes the masking in a child process, before it executes something else.
+  /// Removes the mask in a child process, before it executes a program.
   static void restore_in_child();
 
  private:

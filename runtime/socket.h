@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A socket that closes itself, and where it may send to.
+// A socket that closes itself, and addresses to send to.
 #pragma once
 
 #include <netinet/in.h>
@@ -27,7 +27,7 @@ class Socket {
   int fd_;
 };
 
-/// What to say when the kernel refused one with `error`, and what to do about it.
+/// The error text when the kernel refused a socket with `error`, with the remedy.
 std::string no_socket(int error);
 
 /// @pre `ip` is an IPv4 address, as LcmUrl has checked its group

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the counters of the transport with those of the last look, and logs what grew, each
-// kind rarely.
+// Compares the transport's counters with those of the last check, and logs each kind of growth at a
+// limited rate.
 #include "runtime/traffic_watch.h"
 
 #include <spdlog/spdlog.h>
@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// What refusals that have to do with keys say about the hosts of a team.
+/// Explains refusals caused by keys, with the likely fault in the hosts of a team.
 std::string key_advice(const RefusalCounts& refused, bool keyed) {
   const auto some = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)] > 0; };
   std::string advice;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Says what was refused or lost on the way in, without letting a flood fill the log, and keeps the
-// process listening when its network interface is exchanged.
+// Logs what was refused or lost on reception, at a limited rate, and renews the group membership
+// when the network interface was replaced.
 #pragma once
 
 #include "core/ids.h"
@@ -11,11 +11,11 @@ namespace ergocast {
 
 class TrafficWatch {
  public:
-  /// Says at once what the transport lacks.
+  /// Logs at once what the transport lacks.
   explicit TrafficWatch(Transport& transport);
 
-  /// To be called every turn. Once a second it looks; what is new is logged at most every 10 s.
-  /// @return whether this was the turn that looked: the time for what is done once a second
+  /// To be called every turn. Checks once a second; logs changes at most every 10 s.
+  /// @return whether this turn checked: the time for other work of once a second
   bool look(Instant now);
   std::int64_t kernel_drops() const { return kernel_drops_; }
 

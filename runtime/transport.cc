@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One LCM instance for each bus: installs filters, decodes datagrams without throwing, and waits
-// with one poll.
+// Opens one LCM instance for each bus, installs filters, decodes datagrams without throwing, and
+// waits with one poll.
 #include "runtime/transport.h"
 
 #include <linux/sock_diag.h>
@@ -24,19 +24,19 @@ namespace ergocast {
 namespace {
 
 constexpr int kMaxDatagramsPerTurn = 256;
-/// Messages that may wait for us on a bus, 5 MB of them: a flood costs messages, not memory.
+/// Messages that may wait on a bus, 5 MB of them: a flood costs messages, but no more memory.
 constexpr int kQueueCapacity = 4096;
-/// Of each socket, unless the URL says otherwise or the machine allows less: what arrives while this process
-/// waits for a processor, among it the beginning of a flood.
+/// For each socket, unless the URL sets another size or the machine allows less. It holds what
+/// arrives while this process waits for a processor, for example the beginning of a flood.
 constexpr int kReceiveBufferBytes = 1 << 20;
 constexpr std::string_view kPrefix = "ERGOCAST_";
 constexpr const char* kFirewall =
     "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
-/// More than LCM opens for three buses and their self tests: pipes, a timer's, sockets.
+/// More descriptors than LCM opens for three buses and their self tests: pipes, timers, sockets.
 constexpr int kDescriptors = 32;
 
-/// What the system says to somebody who asks for that many descriptors; nothing if it gives them. LCM
-/// keeps such errors to itself, and fails its self test for want of a socket.
+/// The system's error if it cannot give so many descriptors; nothing if it can. LCM does not report
+/// such errors; only its self test fails.
 std::optional<std::string> why_no_descriptors() {
   std::vector<Socket> probes;
   for (int i = 0; i < kDescriptors; ++i) {
@@ -45,8 +45,8 @@ std::optional<std::string> why_no_descriptors() {
   return std::nullopt;
 }
 
-/// What the kernel dropped at these sockets. /proc/net/udp says it, too, but takes the longer the more
-/// sockets others have.
+/// The kernel's drops at these sockets. /proc/net/udp has the same counts, but reading it takes
+/// longer the more sockets exist.
 std::int64_t drops_of(const std::vector<int>& sockets) {
   std::int64_t drops = 0;
   for (const int socket : sockets) {
@@ -76,14 +76,14 @@ class LcmTransport final : public Transport {
   bool renew_membership() override { return membership_->renew(); }
 
  private:
-  /// A bus that we listen to.
+  /// A bus with subscriptions.
   struct Line {
     LcmTransport* transport = nullptr;
     Bus bus{};
     std::vector<int> sockets;
     RepeatGuard guard{Bus::kSwarm};
-    bool is_cut = false;             // the kernel drops repeats,
-    std::int64_t drops_counted = 0;  // and of its drops so many have been told apart
+    bool is_cut = false;             // the kernel drops repeats
+    std::int64_t drops_counted = 0;  // the kernel's drops at the last count
     void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
       transport->take(*this, buffer, channel);
     }
@@ -95,7 +95,7 @@ class LcmTransport final : public Transport {
   }
   void note_unknown_format(const std::string& channel) {
     ++unknown_format_.count;
-    // Whoever invents channels is not to write into our log.
+    // An unknown channel name must not enter our log with arbitrary bytes.
     const bool plain = std::all_of(channel.begin(), channel.end(), [](char c) {
       return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
     });
@@ -110,11 +110,11 @@ class LcmTransport final : public Transport {
   Handlers handlers_;
   RateLimit rates_;
   bool filtered_ = true;
-  std::int64_t cut_ = 0;  // repeats that the kernel has dropped for us
+  std::int64_t cut_ = 0;  // repeats that the kernel has dropped
   KnownSignatures signatures_;
   std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
   std::array<Line, kBusCount> lines_{};
-  std::vector<pollfd> ready_;             // of the buses we listen to, then the caller's
+  std::vector<pollfd> ready_;             // the listened buses, then the caller's descriptor
   std::vector<lcm::LCM*> listened_;
   std::optional<GroupMembership> membership_;
   std::vector<std::byte> bytes_;
@@ -132,7 +132,7 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscr
     const auto at = static_cast<std::size_t>(b);
     const Bus bus = static_cast<Bus>(b);
     if (hears[at] == 0) continue;
-    // LCM tests itself here; a subscription after a failed test would abort the process later.
+    // Runs LCM's self test: a subscription after a failed test would abort the process later.
     const int fd = buses_[at]->getFileno();
     if (fd < 0) {
       return url.of(bus) + ": " + scarce.value_or(std::string("LCM's self test failed\n") + kFirewall);
@@ -167,7 +167,8 @@ void LcmTransport::publish(const Outgoing& outgoing) {
                                                           static_cast<unsigned>(bytes_.size()));
 }
 
-/// What the filters of a flood drop is counted as refused, and not as lost for want of buffer space.
+/// Datagrams that the repeat filter dropped count as refused, and not as lost for want of buffer
+/// space.
 std::int64_t LcmTransport::kernel_drops() const {
   std::int64_t drops = -cut_;
   for (const Line& line : lines_) {
@@ -182,7 +183,7 @@ void LcmTransport::count_cut(Line& line) noexcept {
   for (; line.drops_counted < drops; ++line.drops_counted) refuse(Refusal::kRate);
 }
 
-/// Gives the kernel what the guard now says, or as much of it as there is room for.
+/// Gives the kernel the guard's list, or as much of it as there is room for.
 void LcmTransport::cut_repeats(Line& line) {
   if (line.is_cut) {
     count_cut(line);
@@ -221,7 +222,7 @@ void LcmTransport::take(Line& line, const lcm::ReceiveBuffer* buffer,
     }
     if (handlers_.on_accepted) handlers_.on_accepted(line.bus, channel, bytes);
     handlers_.on_message(message, line.bus, *transmitter);
-  } catch (...) {  // an exception that passes through LCM's C frames would abort the next call
+  } catch (...) {  // an exception must not pass through LCM's C frames: the next call would abort
     refuse(Refusal::kLimit);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The three LCM buses as one process uses them: checked messages in, messages out.
+// The three LCM buses as one process uses them: verified messages in, messages out.
 #pragma once
 
 #include <chrono>
@@ -21,23 +21,23 @@
 
 namespace ergocast {
 
-/// A process looks around at least this often, whatever it waits for.
+/// A process wakes up at least this often.
 inline constexpr std::chrono::nanoseconds kLongestWait = std::chrono::seconds(1);
 
 class Transport {
  public:
-  /// What becomes of a datagram; all but the first may be left out. `on_accepted` sees the bytes.
-  /// `transmitter` is the message's sender, or whoever relays it.
+  /// The receivers of datagrams; all but the first are optional. `on_accepted` gets the bytes.
+  /// `transmitter` is the message's sender, or the agent that relays it.
   struct Handlers {
     std::function<void(const Message&, Bus, AgentId transmitter)> on_message;
     std::function<void(Refusal)> on_refused = {};
     std::function<void(Bus, std::string_view channel, std::span<const std::byte>)> on_accepted = {};
   };
 
-  /// Opens every bus, to publish on; listens where `hears` has a message. An error says what would
-  /// mend it.
+  /// Opens every bus for publishing and listens where `hears` has a message. An error names its
+  /// remedy.
   /// @param run  the only run accepted; 0 accepts any until set_run()
-  /// @param seal  closes what is published, and what it does not open is refused
+  /// @param seal  signs and tags published messages; messages that it does not verify are refused
   static std::variant<std::unique_ptr<Transport>, std::string> open(
       const LcmUrl& url, RunId run, const Seal& seal, const Subscriptions& hears,
       Handlers handlers);
@@ -45,12 +45,12 @@ class Transport {
 
   virtual void set_run(RunId run) = 0;
   virtual void publish(const Outgoing& outgoing) = 0;
-  /// What an agent may say from now on, and how far the world is; nothing is limited before.
+  /// Sets the rate budget of agents and the world's tick; without a call nothing is limited.
   virtual void limit_agents(const Allowance& allowance, Tick tick) = 0;
 
-  /// Waits until something arrives, `deadline` has come or `wake_fd` (−1: none) is readable, for
-  /// kLongestWait at most, and hands over what has arrived; at most a bounded number of datagrams, so that a flood cannot
-  /// keep the caller from its work. Nothing that arrives makes it throw.
+  /// Waits until a message arrives, `deadline` has come or `wake_fd` (−1: none) is readable, at
+  /// most kLongestWait, and passes on what has arrived. The number of datagrams is limited, so that
+  /// a flood cannot keep the caller from its work. No datagram makes it throw.
   /// @return when it stopped waiting
   virtual Instant deliver_until(Instant deadline, int wake_fd) = 0;
 
@@ -64,20 +64,21 @@ class Transport {
   };
   const UnknownFormat& unknown_format() const { return unknown_format_; }
 
-  /// Whether only who has the team's key is believed.
+  /// Whether only messages with the team's key are accepted.
   virtual bool keyed() const = 0;
-  /// Whether the kernel keeps from LCM what is none of our messages.
+  /// Whether the kernel discards foreign datagrams before LCM reads them.
   virtual bool filtered() const = 0;
 
-  /// The last agent that said more than its share, so that some was refused; kUnassigned: none.
+  /// The last agent that exceeded its rate budget, so that messages were refused; kUnassigned:
+  /// none.
   AgentId babbler() const { return babbler_; }
-  /// How many were refused for that, and not because others have repeated what an agent once said.
+  /// Refused messages of agents that exceeded their budget themselves, without repeats by others.
   std::int64_t babbled() const { return babbled_; }
 
   /// Datagrams that the kernel dropped at our sockets for want of buffer space.
   virtual std::int64_t kernel_drops() const = 0;
 
-  /// Listens on the network interface that now leads to the group; true if it is a new one.
+  /// Listens on the network interface of the current route to the group; true if it is a new one.
   virtual bool renew_membership() = 0;
 
  protected:

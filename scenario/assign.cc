@@ -19,13 +19,13 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// A field of a block that is there.
+/// A field of a block that exists.
 struct Target {
   Message* message = nullptr;
   const FieldDescriptor* field = nullptr;
 };
 
-/// The first thing that the parser says.
+/// Keeps the parser's first error.
 class FirstError : public google::protobuf::io::ErrorCollector {
  public:
   void AddError(int, int, const std::string& message) override {
@@ -54,7 +54,7 @@ class Assignment {
     findings_.add_to_flag(field_.flag, what, std::move(remedy));
   }
 
-  /// Goes down the path, block by block.
+  /// Follows the path, block by block.
   std::optional<Target> find() {
     Message* message = &scenario_;
     std::string_view rest = field_.path;
@@ -87,7 +87,7 @@ class Assignment {
     return nullptr;
   }
 
-  /// What stands before `name` in the path.
+  /// The part of the path before `name`.
   std::string block_of(const std::string& name) const {
     return field_.path.substr(0, field_.path.find(name));
   }

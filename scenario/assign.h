@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Setting one field of a scenario by its path.
+// Sets one field of a scenario by its path.
 #pragma once
 
 #include "scenario/findings.h"
@@ -7,9 +7,8 @@
 
 namespace ergocast {
 
-/// Writes `field` into `scenario`. A path that names no number, word or truth value, or a value
-/// that cannot be read, is reported; from now on all problems of the field are those of
-/// `field.flag`.
+/// Writes `field` into `scenario`. An error if the path names no number, word or truth value, or if
+/// the value cannot be read. From now on all problems of the field are those of `field.flag`.
 void assign(const FieldValue& field, proto::Scenario& scenario, Findings& findings);
 
 }  // namespace ergocast

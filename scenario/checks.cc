@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares values with their ranges, and stays silent about a field that already has a problem.
+// Compares values with their ranges, and skips fields that already have a problem.
 #include "scenario/checks.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What rules say of a scenario's fields, each mistake once.
+// Reports what is wrong with a scenario's fields, each mistake once.
 #pragma once
 
 #include <set>
@@ -13,29 +13,29 @@ namespace ergocast {
 /// "path[index]".
 std::string indexed(const std::string& path, int index);
 
-/// `value` rounded up, or down, to four digits: a limit that a person would like to type.
+/// `value` rounded up, or down, to four digits: a limit that is easy to type.
 double rounded_up(double value);
 double rounded_down(double value);
 
-/// Reports problems and remembers where they are.
+/// Reports problems and records the paths of their fields.
 class Checks {
  public:
   explicit Checks(Findings& findings) : findings_(findings), unsound_(findings.given_up()) {}
 
   void problem(const std::string& path, const std::string& what, std::string remedy);
 
-  /// Whether nothing is wrong yet at `path` or below it. Fields are compared with each other only
-  /// where each is sound by itself: one mistake is one problem.
+  /// Whether no problem is known yet at `path` or below it. Rules between fields apply only to
+  /// fields that are valid by themselves: one mistake is one problem.
   bool sound(const std::string& path) const;
 
-  /// Whether nothing is wrong anywhere.
+  /// Whether no problem is known at all.
   bool nothing_found() const { return findings_.empty(); }
 
-  /// A field that nobody could read is not missing, nor is one in a block that nobody could read.
+  /// Reports a missing field, unless the field or its block is in the file but unreadable.
   void missing(const std::string& path, const std::string& what, std::string remedy);
 
-  /// Whether `value` is in `range`; if not, that is a problem.
-  /// @param wanted  what to write instead, where the range is not what matters
+  /// Whether `value` is in `range`; if not, reports a problem.
+  /// @param wanted  what to write instead, if the range is no useful advice
   bool in_range(const std::string& path, double value, const Range& range,
                 const std::string& wanted = "");
 

@@ -16,12 +16,12 @@ namespace ergocast {
 namespace {
 
 constexpr double kMinMassInside = 1e-6;
-/// How far any μ_mn may be off; only Gaussians with correlation or beside keep-outs, almost wholly
-/// cut off, come near it.
+/// The maximum error of any μ_mn. Only Gaussians with correlation or beside keep-outs come near it,
+/// if almost all of them is cut off.
 constexpr double kMaxTargetError = 1e-7;
 
-/// As many cells as a person can tell apart in a picture, along the longer side of the domain, and
-/// enough along the shorter one of any domain.
+/// As many cells along the longer side of the domain as a person can distinguish in a picture, and
+/// a minimum along the shorter one.
 constexpr double kMostCells = 256, kFewestCells = 64;
 
 std::string span_text(double origin_m, double size_m) {

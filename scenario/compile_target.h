@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a target as it is written to the numbers that the agents get.
+// Computes from a target as written the numbers that the agents receive.
 #pragma once
 
 #include <optional>
@@ -15,10 +15,10 @@ struct CompiledTarget {
   DensityGrid density;        ///< in multiples of the uniform density, for people
 };
 
-/// Integrates the target and reads its maps; nothing if anything in the scenario is wrong. Reports
-/// what only that shows: maps that cannot be used, parts of which nothing is left, too little mass,
-/// a μ that is not exact enough.
-/// @pre validate() found nothing wrong with domain, basis and target
+/// Integrates the target and reads its maps; nothing if the scenario has any problem. Reports the
+/// problems that only integration finds: unusable maps, parts that are cut off entirely, too little
+/// mass, a μ that is not exact enough.
+/// @pre validate() found no problem in domain, basis and target
 std::optional<CompiledTarget> compile_target(const proto::Scenario& scenario, Checks& checks);
 
 }  // namespace ergocast

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From Protobuf's blocks to the cores' plain types. Defaults are filled in; nothing is checked.
+// Converts Protobuf's blocks to the plain types of the cores. Defaults are filled in; nothing is
+// checked.
 #pragma once
 
 #include "core/mission.h"
@@ -10,15 +11,15 @@ namespace ergocast {
 
 Box domain_of(const proto::Domain& domain);
 Polygon polygon_of(const proto::Polygon& polygon);
-/// The whole target but for its maps.
+/// The whole target, except its maps.
 TargetDensity target_of(const proto::Target& target);
-/// Where the scenario says that the map lies.
+/// The extent of the map that the scenario states.
 Rectangle extent_of(const proto::Map& map);
 Basis basis_of(const proto::Basis& basis);
 ControlLaw law_of(const proto::Law& law, const Box& domain);
 Timing timing_of(const proto::Time& time);
 
-/// The whole mission but for μ.
+/// The whole mission, except μ.
 Mission mission_of(const proto::Scenario& scenario);
 
 }  // namespace ergocast

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts the options over the text, fills what is left open, first what depends on other fields,
-// and draws the random starts.
+// Applies the options to the text, fills open fields, first those that depend on other fields, and
+// draws the random starts.
 #include "scenario/defaults.h"
 
 #include <algorithm>
@@ -53,15 +53,15 @@ void fill_constants(Message& message) {
       }
     } else if (field.message_type() != proto::Covariance::descriptor() ||
                reflection->HasField(message, &field)) {
-      // A covariance is the one block whose absence means something: the Gaussian is round.
+      // An absent covariance has a meaning: the Gaussian is round.
       fill_constants(*reflection->MutableMessage(&message, &field));
     }
   }
 }
 
-/// How far a push is to carry, as a share of the shorter side.
+/// The distance of a push, as a share of the shorter side.
 constexpr double kPushShare = 0.01;
-/// What the contraction takes of u_max, at most.
+/// The maximum share of u_max that the contraction takes.
 constexpr double kContractionShare = 0.01;
 constexpr double kFloorOfCeiling = 0.05;
 constexpr double kMostIntensity = 1e6;
@@ -69,10 +69,10 @@ constexpr double kMostIntensity = 1e6;
 constexpr double kAnticipation = 2;
 constexpr double kEpsilon = 0.05;
 constexpr double kEpsilonWithoutAnticipation = 0.2;
-/// Between two broadcasts, where teammates reckon what has not been said yet: docs/network.md.
+/// Steps between two broadcasts where teammates extrapolate in between: docs/network.md.
 constexpr int kReckonedPeriodTicks = 10;
 
-/// How far ahead agents look, where the law is ours and not the paper's, and how much they must say.
+/// How far ahead agents look, and how often they broadcast, if the law is ours and not the paper's.
 void fill_foresight(proto::Scenario& scenario) {
   proto::Law& law = *scenario.mutable_law();
   const bool is_ours = law.regularization() == proto::Law::RELATIVE &&
@@ -96,7 +96,7 @@ void fill_law(const Box& domain, proto::Law& law) {
   }
   const double side_m = domain.shortest_side_m();
   if (!(law.u_max_mps() > 0) || !(side_m > 0) || !domain.size_m.allFinite()) return;
-  // The diffusion that crosses this length in the time the input needs for it.
+  // The diffusion that crosses this length in the same time as the input.
   const double ceiling = std::sqrt(law.u_max_mps() * kPushShare * side_m);
   if (!law.has_noise_intensity()) law.set_noise_intensity(kFloorOfCeiling * ceiling);
   if (!law.has_noise_ceiling() && law.perturbation() == proto::Law::ADAPTIVE) {
@@ -107,7 +107,7 @@ void fill_law(const Box& domain, proto::Law& law) {
   law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
 }
 
-/// A map's name counts from the scenario's folder, wherever the program was started.
+/// A map's name is relative to the scenario's folder, not to the working directory.
 void make_absolute(const std::filesystem::path& scenario, proto::Target& target) {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::absolute(scenario, error).parent_path();
@@ -170,7 +170,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   proto::Agents& agents = *scenario.mutable_agents();
   if (!agents.has_quorum()) {
     const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
-    // A team outside its limits is reported as such, not by its quorum as well.
+    // A team outside its limits is reported for its size, and not for its quorum as well.
     agents.set_quorum(static_cast<int>(std::clamp<std::int64_t>(size, 1, kMaxAgents)));
   }
 }

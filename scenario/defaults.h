@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scenario file leaves open: the command line's words, the defaults, the random starts.
+// Completes a scenario: command-line options, defaults, random starts.
 #pragma once
 
 #include <string>
@@ -9,14 +9,15 @@
 
 namespace ergocast {
 
-/// Writes `overrides` over what the file says. From now on their problems are the command line's.
+/// Writes `overrides` over the values of the file. From now on their problems are the command
+/// line's.
 void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings);
 
-/// Gives every field that is left out, and not required, its value, and maps their whole paths. `file`
-/// names a scenario that does not name itself; maps are in its folder.
+/// Gives every absent field that is not required its default, and maps their absolute paths. `file`
+/// gives the scenario's name if the scenario has none; maps are in its folder.
 void fill_in(proto::Scenario& scenario, const std::string& file);
 
-/// Replaces random_count by that many listed starts, each a function of the seed and the agent.
+/// Replaces random_count by so many listed starts, each a function of the seed and the agent.
 /// @pre the scenario is valid
 void draw_starts(proto::Scenario& scenario);
 

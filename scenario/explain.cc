@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Recognises the parser's sentences by their beginnings, and suggests the nearest field or value
+// Recognises the parser's messages by their beginnings, and suggests the nearest field or value
 // name.
 #include "scenario/explain.h"
 
@@ -21,13 +21,13 @@ using google::protobuf::Descriptor;
 using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 
-/// How far `wrong` is from being `name`. A forgotten unit is the likeliest slip.
+/// The distance of `wrong` from `name`. A forgotten unit is the most likely mistake.
 int unlikeness(std::string_view wrong, std::string_view name) {
   if (name.starts_with(std::string(wrong) + "_")) return 0;
   return edit_distance(wrong, name);
 }
 
-/// The field of `message` that `wrong` was most likely to be, or null.
+/// The field of `message` that `wrong` most likely means, or null.
 const FieldDescriptor* nearest_field(const Descriptor& message, const std::string& wrong) {
   const FieldDescriptor* best = nullptr;
   int least = most_typos_in(wrong) + 1;
@@ -63,7 +63,7 @@ std::string remedy_for_unknown_field(const std::string& type, const std::string&
   return "write it inside " + meant->block + " { }";
 }
 
-/// The values that an enumeration field of this name takes, wherever it is; empty if none.
+/// The values of an enumeration field of this name, in any block; empty if there is none.
 std::string values_of(const Descriptor& message, const std::string& field) {
   const FieldDescriptor* found = message.FindFieldByName(field);
   if (found != nullptr && found->enum_type() != nullptr) return enum_names(*found->enum_type());
@@ -77,7 +77,7 @@ std::string values_of(const Descriptor& message, const std::string& field) {
 
 std::string name_of_last(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
-/// The first two texts in double quotes, empty where there are none.
+/// The first two texts in double quotes; empty if missing.
 std::pair<std::string, std::string> quoted_in(const std::string& message) {
   std::array<std::string, 2> found;
   std::size_t end = std::string::npos;
@@ -90,7 +90,8 @@ std::pair<std::string, std::string> quoted_in(const std::string& message) {
   return {found[0], found[1]};
 }
 
-/// What to say of text that is not what the field takes, `wanted` in the parser's words.
+/// The problem of a text that the field does not accept; `wanted` is the parser's word for the
+/// type.
 Problem wrong_value(const std::string& subject, const std::string& text,
                     const std::string& wanted) {
   const std::string what = subject + text + " is not ";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parser's complaints in words that help.
+// Explains the parser's errors for people.
 #pragma once
 
 #include <google/protobuf/descriptor.h>
@@ -12,15 +12,15 @@
 
 namespace ergocast {
 
-/// What the parser's `message` about `broken` means, and what to do about it; without a `where`.
+/// The meaning and the remedy of the parser's `message` about `broken`; without a `where`.
 Problem explained(const std::string& message, const BrokenField& broken = {});
 
-/// A field that somebody may have meant.
+/// A field that the person probably meant.
 struct MeantField {
-  std::string block;  ///< its path from the scenario; empty: where it was looked for
+  std::string block;  ///< its path from the scenario; empty: in the same block
   std::string field;
 };
-/// What a field `wrong`, which `message` does not have, was most likely to be.
+/// The field that `wrong`, which `message` does not have, most likely means.
 std::optional<MeantField> field_meant(const google::protobuf::Descriptor& message,
                                       const std::string& wrong);
 

@@ -17,7 +17,7 @@ using limits::above;
 using limits::between;
 
 constexpr Range kCoordinate = {limits::kCoordinate_m, true};
-/// A variance; the limits that matter follow from the domain.
+/// A variance; its effective limits follow from the domain.
 constexpr Limits kVariance = above(0, 1e22);
 constexpr Limits kWeight = above(0, 1e9);
 

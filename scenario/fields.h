@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One table of every number in a scenario: its default and its limits, as scenario.proto's comments
-// state them; the limits of what a mission has, too, are in core/mission_limits.h. What depends on more
-// than one field is in validate.cc.
+// The table of every number in a scenario: its default and its limits, as scenario.proto's comments
+// state them. core/mission_limits.h has the limits that a mission has, too. validate.cc has the
+// rules that depend on more than one field.
 #pragma once
 
 #include <google/protobuf/descriptor.h>
@@ -14,9 +14,9 @@
 
 namespace ergocast {
 
-/// Numbers allowed for a field, and how they are said.
+/// The numbers allowed for a field, with their text.
 struct Range : Limits {
-  bool coordinate = false;  ///< a place: what people should write follows from the domain
+  bool coordinate = false;  ///< a place: useful values follow from the domain
 
   constexpr Range(const Limits& limits, bool is_coordinate = false)
       : Limits(limits), coordinate(is_coordinate) {}
@@ -28,7 +28,7 @@ struct Range : Limits {
 enum class Absence {
   kRefused,    ///< the field is required
   kDefaulted,  ///< it becomes FieldRule::default_value
-  kLeft,       ///< other fields decide what it means
+  kLeft,       ///< other fields determine its value
 };
 
 struct FieldRule {
@@ -38,7 +38,7 @@ struct FieldRule {
   double default_value = 0;
 };
 
-/// The rule of a number's field, or null for one that has none: seed.
+/// The rule of a numeric field, or null for the one without a rule: seed.
 const FieldRule* rule_of(const google::protobuf::FieldDescriptor& field);
 
 inline constexpr std::uint64_t kDefaultSeed = 1;

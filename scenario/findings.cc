@@ -24,7 +24,7 @@ struct Step {
   int index = 0;
 };
 
-/// Cuts the first step off `path`.
+/// Removes the first step of `path` and returns it.
 Step first_step(std::string_view& path) {
   const std::string_view text = path.substr(0, path.find('.'));
   path.remove_prefix(std::min(path.size(), text.size() + 1));
@@ -50,7 +50,7 @@ TextFormat::ParseLocation Findings::locate(const std::string& path) const {
   while (tree != nullptr && message != nullptr && !rest.empty()) {
     const Step step = first_step(rest);
     const FieldDescriptor* field = message->FindFieldByName(step.field);
-    // The tree insists on −1 for the index of a field that is not repeated.
+    // The tree requires −1 for the index of a field that is not repeated.
     const int index = field->is_repeated() ? step.index : -1;
     const TextFormat::ParseLocation here = tree->GetLocation(field, index);
     if (here.line < 0) break;

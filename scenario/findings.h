@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong with a scenario, and which line of the file is to blame.
+// Collects the problems of a scenario with their lines in the file.
 #pragma once
 
 #include <google/protobuf/message.h>
@@ -17,31 +17,31 @@
 
 namespace ergocast {
 
-/// Collects problems. Fields are named by paths such as "target.gaussians[2].sigma_m".
+/// Collects problems. Fields have paths such as "target.gaussians[2].sigma_m".
 class Findings {
  public:
-  /// @param file  what problems call the source
+  /// @param file  the name of the source in the problems
   explicit Findings(std::string file) : file_(std::move(file)) {}
 
-  /// For the parser to fill; until then no path has a line.
+  /// The parser fills the result; until then no path has a line.
   google::protobuf::TextFormat::ParseInfoTree& new_locations() { return locations_.emplace(); }
 
   /// From now on problems of the field at `path` are the command line's, not the file's.
   void blame(const std::string& path, const std::string& flag) { flags_[path] = flag; }
 
-  /// The field at `path` is in the file but cannot be read: nobody knows its value.
+  /// The field at `path` is in the file but cannot be read, so its value is unknown.
   void give_up(const std::string& path) { given_up_.insert(path); }
   const std::set<std::string>& given_up() const { return given_up_; }
 
-  /// The field or block at `path` may stand in the file under a name that nobody knows, which is a
-  /// problem already: neither it nor what is in it is said to be missing.
+  /// The field or block at `path` may be in the file under an unknown name, which is already a
+  /// problem. So neither it nor its content is reported as missing.
   void excuse(const std::string& path) { excused_.insert(path); }
   const std::set<std::string>& excused() const { return excused_; }
 
-  /// A problem at a place in the text; its `where` is filled in here.
+  /// A problem at a place in the text; this function fills in its `where`.
   void add_at(Place place, Problem problem);
 
-  /// A problem of one field. A field that is not in the file is located by the block it belongs in.
+  /// A problem of one field. A field that is not in the file is located by its block.
   void add(const std::string& path, const std::string& what, std::string remedy);
 
   /// A problem of the file as a whole, or of a flag of the command line.
@@ -50,7 +50,7 @@ class Findings {
 
   bool empty() const { return found_.empty(); }
 
-  /// In the order of the file; those without a line come last.
+  /// Sorted by their place in the file; those without a line come last.
   std::vector<Problem> take();
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Accepts ASCII letters, digits and a few signs, and replaces all other characters where it
-// makes a name.
+// Accepts ASCII letters, digits and a few signs, and replaces all other characters when it makes a
+// name.
 #include "scenario/names.h"
 
 #include "core/mission_limits.h"

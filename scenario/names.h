@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names of scenarios: they become names of folders.
+// Makes names of scenarios, which become names of folders.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace ergocast {
 
-/// A name, is_name() of core/mission_limits.h: `text` with '_' for whatever a name may not have.
+/// A name, is_name() of core/mission_limits.h: `text` with '_' for each character that is not
+/// allowed.
 std::string name_from(std::string_view text);
 
 }  // namespace ergocast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command-line options that say something over a scenario file.
+// The command-line options that override fields of a scenario file.
 #pragma once
 
 #include <CLI/CLI.hpp>

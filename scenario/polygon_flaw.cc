@@ -12,8 +12,8 @@
 namespace ergocast {
 namespace {
 
-/// On which side of the line through a and b the point lies: 1 left, −1 right, 0 on it. In extended
-/// precision, since it is the sign of a difference.
+/// The side of the line through a and b on which the point lies: 1 left, −1 right, 0 on it. In
+/// extended precision, because the sign of a small difference must be right.
 int side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& point) {
   using Wide = long double;
   const Wide cross = (Wide{b.x()} - a.x()) * (Wide{point.y()} - a.y()) -
@@ -23,8 +23,8 @@ int side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector
 
 struct Edge {
   Eigen::Vector2d from, to;
-  int ring;       // 0 the outline, then the holes
-  int number;     // in its ring
+  int ring;       // 0: the outline; then the holes
+  int number;     // its index in the ring
 };
 
 bool boxes_apart(const Edge& e, const Edge& f) {
@@ -38,7 +38,7 @@ bool touch(const Edge& e, const Edge& f) {
          side(f.from, f.to, e.from) * side(f.from, f.to, e.to) <= 0;
 }
 
-/// Whether `next`, which begins where `edge` ends, goes back along it.
+/// Whether `next`, which begins at the end of `edge`, goes back along it.
 bool folds_back(const Edge& edge, const Edge& next) {
   return side(edge.from, edge.to, next.to) == 0 &&
          (edge.to - edge.from).dot(next.to - next.from) < 0;
@@ -59,7 +59,7 @@ std::vector<Edge> edges_of(const Polygon& polygon) {
   return edges;
 }
 
-/// Whether two edges of `count` in a ring are where they may be to each other.
+/// Whether the position of two edges to each other is allowed; `count` is the size of a ring.
 bool may_meet(const Edge& e, const Edge& f, int count) {
   if (e.ring != f.ring) return !touch(e, f);
   if ((e.number + 1) % count == f.number) return !folds_back(e, f);
@@ -104,7 +104,7 @@ std::optional<PolygonFlaw> flaw_of_edges(const Polygon& polygon) {
   return {};
 }
 
-/// @pre no edges touch, so a ring is inside another as a whole or not at all
+/// @pre no edges touch, so that a ring is inside another entirely or not at all
 std::optional<PolygonFlaw> flaw_of_holes(const Polygon& polygon) {
   const int holes = static_cast<int>(polygon.holes.size());
   for (int i = 0; i < holes; ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kTabWidth = 8;  // as Protobuf's tokenizer has it
+constexpr int kTabWidth = 8;  // as in Protobuf's tokenizer
 
 int next_column(char c, int column) {
   return c == '\t' ? column + kTabWidth - column % kTabWidth : column + 1;
@@ -44,7 +44,7 @@ std::size_t token_end(std::string_view text, std::size_t begin) {
   return end;
 }
 
-/// Rougher than Protobuf's own tokens, but a text with errors has them too.
+/// Simpler than Protobuf's own tokenizer, but it also accepts text with errors.
 std::vector<Token> tokens_of(std::string_view text) {
   std::vector<Token> tokens;
   int line = 0;
@@ -62,7 +62,7 @@ std::vector<Token> tokens_of(std::string_view text) {
   return tokens;
 }
 
-/// A token may be as long as the file.
+/// Cuts a token: it may be as long as the file.
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   std::size_t end = std::min(text.size(), kLongest);
@@ -79,7 +79,7 @@ bool closes(const Token& token) { return token.text == "}" || token.text == ">";
 bool nests(const Token& token) { return opens(token) || token.text == "["; }
 bool unnests(const Token& token) { return closes(token) || token.text == "]"; }
 
-/// Whether tokens[i] is a field's name, going by what follows it.
+/// Whether tokens[i] is a field's name, judged by the next token.
 bool names_field(const std::vector<Token>& tokens, Index i) {
   return i + 1 < tokens.size() && is_word(tokens[i]) &&
          (tokens[i + 1].text == ":" || opens(tokens[i + 1]));
@@ -95,7 +95,7 @@ Index token_at(const std::vector<Token>& tokens, std::size_t offset) {
   return static_cast<Index>(at - tokens.begin()) - (after_open_string && !inside ? 1 : 0);
 }
 
-/// The first token of the field whose token `at` is wrong.
+/// The first token of the field with the wrong token `at`.
 Index field_begin(const std::vector<Token>& tokens, Index at, std::string_view message) {
   if (at >= 2 && tokens[at - 1].text == ":" && is_word(tokens[at - 2])) return at - 2;
   const bool after_name = tokens[at].text == ":" || opens(tokens[at]) ||
@@ -104,7 +104,7 @@ Index field_begin(const std::vector<Token>& tokens, Index at, std::string_view m
   return after_name && at >= 1 && is_word(tokens[at - 1]) ? at - 1 : at;
 }
 
-/// One past the end of what tokens[open] opens.
+/// One past the end of the block that begins at tokens[open].
 Index block_end(const std::vector<Token>& tokens, Index open) {
   int depth = 0;
   for (Index i = open; i < tokens.size(); ++i) {
@@ -130,7 +130,7 @@ Index field_end(const std::vector<Token>& tokens, Index begin, Index at) {
   return end;
 }
 
-/// The name of the block that tokens[open] opens; `list` if it is one of a list's.
+/// The name of the block that begins at tokens[open]; `list` if it is an element of a list.
 Index name_of_block(const std::vector<Token>& tokens, Index open, Index list) {
   if (open == 0) return 0;
   const std::string_view before = tokens[open - 1].text;
@@ -161,8 +161,8 @@ std::string path_of(const std::vector<Token>& tokens, Index name) {
   return child(name);
 }
 
-/// "name: 1,5", which the parser takes for a number, a separator and another field called 5. It
-/// stumbles over the token after that.
+/// "name: 1,5", which the parser reads as a number, a separator and another field called 5. It
+/// reports the token after that.
 std::optional<BrokenField> decimal_comma(const std::vector<Token>& tokens, Index at) {
   for (Index fraction = at; fraction + 1 >= at && fraction >= 4; --fraction) {
     const Token& whole = tokens[fraction - 2];
@@ -210,7 +210,7 @@ std::optional<BrokenField> broken_field(std::string_view text, std::size_t offse
                                         std::string_view message) {
   const std::vector<Token> tokens = tokens_of(text);
   Index at = token_at(tokens, offset);
-  // Words that are no value of the field's are noticed one token late.
+  // The parser reports an invalid word one token late.
   const bool late = message.starts_with("Unknown enumeration value") ||
                     message.starts_with("Invalid value for boolean");
   if (late && at > 0) --at;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reading on after a syntax error: Protobuf's parser stops at the first one, but a person wants to
-// hear of all. The field that holds the error is cut out of the text, and the rest is read again.
+// Error recovery after a syntax error: Protobuf's parser stops at the first error, but a person
+// wants to see all. The field with the error is cut out of the text, and the rest is parsed again.
 #pragma once
 
 #include <compare>
@@ -11,7 +11,7 @@
 
 namespace ergocast {
 
-/// A place in a text as Protobuf counts it: from 0, in bytes, a tab up to the next multiple of 8.
+/// A place in a text as Protobuf counts: from 0, in bytes, a tab up to the next multiple of 8.
 struct Place {
   int line = 0, column = 0;
   auto operator<=>(const Place&) const = default;
@@ -21,21 +21,21 @@ Place place_of(std::string_view text, std::size_t offset);
 
 /// A field that cannot be read.
 struct BrokenField {
-  std::size_t begin, end;  ///< where it stands
-  std::size_t culprit;     ///< what the parser stumbled over
+  std::size_t begin, end;  ///< its range in the text
+  std::size_t culprit;     ///< the token that the parser reported
   std::string path;        ///< such as "target.gaussians[2].sigma_m"; empty for stray characters
-  std::string text;        ///< of the culprit, or how it begins
+  std::string text;        ///< of the culprit, or its beginning
   bool decimal_comma = false;  ///< the text is a number such as 1,5
 };
 
-/// The field to blame for an error that the parser found at `offset`; nothing at the text's end.
+/// The field that causes an error at `offset`; nothing at the text's end.
 std::optional<BrokenField> broken_field(std::string_view text, std::size_t offset,
                                         std::string_view message);
 
-/// Where a block begins that has no end; nothing if all are closed.
+/// Where an unclosed block begins; nothing if all are closed.
 std::optional<std::size_t> unclosed_block(std::string_view text);
 
-/// Where blocks first lie more than `limit` deep.
+/// Where blocks are first nested more than `limit` deep.
 std::optional<std::size_t> too_deep(std::string_view text, int limit);
 
 }  // namespace ergocast

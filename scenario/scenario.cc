@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chains the steps text, defaults, validation, target and plan, and stops at the first step that
+// Runs the steps text, defaults, validation, target and plan, and stops at the first step that
 // finds problems.
 #include "text/regular_file.h"
 #include "scenario/scenario.h"
@@ -22,7 +22,7 @@ namespace {
 
 using Problems = std::vector<Problem>;
 
-/// The contents of `file`, or why there are none.
+/// The contents of `file`, or why it cannot be read.
 std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);

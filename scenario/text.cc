@@ -22,7 +22,7 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::TextFormat;
 
-/// What the parser says, which quotes the file and may be as long as the file is.
+/// The parser's message, which quotes the file and may be as long as the file.
 struct Complaint {
   Place place;
   std::string message;
@@ -31,7 +31,7 @@ struct Complaint {
       : place{std::max(line, 0), std::max(column, 0)}, message(words.substr(0, 300)) {}
 };
 
-/// One reading of the text: the first error, and the warnings.
+/// The result of one parse: the first error, and the warnings.
 class Collector : public google::protobuf::io::ErrorCollector {
  public:
   static constexpr std::size_t kMaxWarnings = 40;
@@ -47,10 +47,10 @@ class Collector : public google::protobuf::io::ErrorCollector {
   std::vector<Complaint> warnings;
 };
 
-/// Blocks lie at most five deep; the limit keeps a hostile file off our stack.
+/// Blocks are nested at most five deep; the limit protects our stack from malicious files.
 constexpr int kMaxDepth = 16;
 
-/// Whether the parser can take `text`; if not, that is reported.
+/// Whether the parser can accept `text`; if not, reports a problem.
 bool fit_to_parse(std::string_view text, Findings& findings) {
   if (text.size() > kMaxScenarioBytes) {
     findings.add_to_file(
@@ -82,8 +82,8 @@ void parse_once(const std::string& text, proto::Scenario& scenario, Findings& fi
   parser.Parse(&stream, &scenario);
 }
 
-/// Reports a syntax error and takes it out of `text`.
-/// @return false where that cannot be done
+/// Reports a syntax error and removes it from `text`.
+/// @return false if it cannot be removed
 bool repair(const Complaint& error, std::string& text, Findings& findings) {
   const std::optional<BrokenField> broken =
       broken_field(text, offset_of(text, error.place), error.message);
@@ -106,8 +106,8 @@ bool repair(const Complaint& error, std::string& text, Findings& findings) {
   return false;
 }
 
-/// A field under a wrong name is not missing under its right one: one slip, one problem. Where nobody
-/// can tell which field it was to be, none of its block is said to be missing.
+/// A field under a wrong name is not reported as missing under its right one. If the right name is
+/// unknown, no field of the block is reported as missing.
 void excuse_what_was_meant(const Complaint& unknown, const std::string& text, Findings& findings) {
   const auto field = broken_field(text, offset_of(text, unknown.place), unknown.message);
   if (!field) return;
@@ -130,7 +130,7 @@ void excuse_what_was_meant(const Complaint& unknown, const std::string& text, Fi
   }
 }
 
-/// Numbers in the fewest digits, text as it was written.
+/// Numbers in the fewest digits, text unchanged.
 class Readable : public TextFormat::FastFieldValuePrinter {
  public:
   void PrintString(const std::string& value, TextFormat::BaseTextGenerator* out) const override {
@@ -143,7 +143,7 @@ class Readable : public TextFormat::FastFieldValuePrinter {
   }
 };
 
-/// A start or a vertex in one line: there may be many of them.
+/// A start or a vertex in one line, because there may be many of them.
 template <class Point>
 class OneLine : public TextFormat::FastFieldValuePrinter {
  public:
@@ -166,7 +166,7 @@ class OneLine : public TextFormat::FastFieldValuePrinter {
 }  // namespace
 
 bool read_text(std::string_view file, proto::Scenario& scenario, Findings& findings) {
-  constexpr int kMaxErrors = 40;  // fewer than the commands print, so that what follows them is seen
+  constexpr int kMaxErrors = 40;  // fewer than the commands print, so that later problems are shown
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (file.starts_with(kByteOrderMark)) file.remove_prefix(kByteOrderMark.size());
   if (!fit_to_parse(file, findings)) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Protobuf's text format, read with useful complaints and printed to be read.
+// Reads Protobuf's text format with helpful errors, and prints it for people.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace ergocast {
 
-/// Reads `text` into `scenario`, records where each field stands, and reports everything that the
-/// format itself refuses. A field that cannot be read is given up, and the rest is read.
-/// @return false where that cannot be done: `scenario` is then of no use
+/// Reads `text` into `scenario`, records the place of each field, and reports all format errors. A
+/// field that cannot be read is skipped, and the rest is read.
+/// @return false if the text cannot be read: `scenario` is then unusable
 bool read_text(std::string_view text, proto::Scenario& scenario, Findings& findings);
 
 /// Every set field. Doubles in the fewest digits that read back exactly; a start or vertex takes one line.

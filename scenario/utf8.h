@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a text stops being UTF-8.
+// Finds the first byte of a text that is not UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace ergocast {
 
-/// Where `text` stops being UTF-8; npos if it never does.
+/// The offset of the first byte that is not UTF-8; npos if there is none.
 std::size_t first_bad_utf8(std::string_view text);
 
 }  // namespace ergocast

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One function for each block checks what the table of fields cannot: rules between fields.
+// One function for each block checks the rules between fields, which the table of fields cannot
+// contain.
 #include "scenario/validate.h"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ class Validator {
     return checks_.in_range(path, value, range, wanted);
   }
 
-  // Each field by itself.
+  // Rules for single fields.
 
   void each_field(const Message& message, const std::string& prefix) {
     const auto* reflection = message.GetReflection();
@@ -93,7 +94,7 @@ class Validator {
     in_range(path, number_in(message, field), rule->range, place_wanted(field, *rule));
   }
 
-  /// "in the domain, 0 to 2000", as far as the domain is known; empty for what is no place in it.
+  /// "in the domain, 0 to 2000", if the domain is known; empty for fields that are no place in it.
   std::string place_wanted(const FieldDescriptor& field, const FieldRule& rule) const {
     const proto::Domain& domain = scenario_.domain();
     if (!rule.range.coordinate || rule.message == domain.GetDescriptor()->name()) return "";
@@ -111,7 +112,7 @@ class Validator {
             "write one of " + enum_names(*field.enum_type()));
   }
 
-  // Fields beside each other.
+  // Rules between fields.
 
   void words() {
     if (!is_name(scenario_.name())) {
@@ -284,7 +285,7 @@ class Validator {
 
   void starts() {
     const proto::Domain& domain = scenario_.domain();
-    // Each axis by itself: one that is wrong hides nothing of the other.
+    // Each axis separately: a problem of one hides no problem of the other.
     const bool x_known = domain.has_size_x_m() && sound("domain.origin_x_m") && sound("domain.size_x_m");
     const bool y_known = domain.has_size_y_m() && sound("domain.origin_y_m") && sound("domain.size_y_m");
     for (int i = 0; i < scenario_.agents().starts_size(); ++i) {
@@ -310,7 +311,7 @@ class Validator {
 
   const proto::Scenario& scenario_;
   Checks& checks_;
-  double shorter_side_m_ = 0;  // once the domain is sound
+  double shorter_side_m_ = 0;  // known once the domain is valid
 };
 
 }  // namespace

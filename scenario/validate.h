@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a scenario can be flown.
+// Checks whether a scenario can be flown.
 #pragma once
 
 #include "scenario/checks.h"
@@ -7,8 +7,8 @@
 
 namespace ergocast {
 
-/// Reports everything in `scenario` that breaks a limit stated in scenario.proto, but for what only
-/// the integrals of its target show (compile_target.h). A scenario without a target is a plan's.
+/// Reports everything in `scenario` that breaks a limit of scenario.proto, except for problems that
+/// only integration finds (compile_target.h). A scenario without a target comes from a plan.
 /// @pre the defaults are filled in
 void validate(const proto::Scenario& scenario, Checks& checks);
 

@@ -18,7 +18,7 @@ constexpr int kMaxMaps = 16;
 constexpr int kMaxRegions = 64;
 constexpr int kMaxKeepOuts = 64;
 constexpr int kMaxVertices = 4096;
-/// Above this the ridge is too thin for the quadrature of μ.
+/// Above this the ridge is too narrow for the quadrature of μ.
 constexpr double kMaxCorrelation = 0.99;
 
 class TargetValidator {
@@ -164,7 +164,7 @@ class TargetValidator {
 
   const proto::Target& target_;
   Checks& checks_;
-  double longer_side_m_ = 0;  // 0 while the domain is not sound
+  double longer_side_m_ = 0;  // 0 while the domain is invalid
 };
 
 }  // namespace

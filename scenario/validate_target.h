@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the parts of a target are what scenario.proto says they must be.
+// Checks whether the parts of a target obey the rules of scenario.proto.
 #pragma once
 
 #include "scenario/checks.h"
@@ -7,7 +7,7 @@
 
 namespace ergocast {
 
-/// Looks at the fields and at the names of maps, not into them.
+/// Checks the fields and the names of maps, not the content of maps.
 /// @pre the defaults are filled in, and each number has been checked by itself
 void validate_target(const proto::Scenario& scenario, Checks& checks);
 

@@ -13,10 +13,10 @@ namespace {
 /// A normal vector in the plane is longer than this many deviations once in 65 million steps.
 constexpr double kDeviations = 6;
 
-/// Agents that look ahead want steps of at most this share of the shorter side: docs/law.md.
+/// Agents with a forecast need steps of at most this share of the shorter side: docs/law.md.
 constexpr double kLongestStep = 0.05;
 
-/// What the law's noise is, in the scenario's own words.
+/// The law's noise as a formula of scenario fields.
 std::string noise_text(const ControlLaw& law, double dt_s) {
   const std::string own = "noise_intensity / sqrt(dt_s)";
   if (law.perturbation == Perturbation::kConstant) return own;
@@ -25,7 +25,7 @@ std::string noise_text(const ControlLaw& law, double dt_s) {
          " m/s held for " + std::to_string(held) + (held == 1 ? " step" : " steps");
 }
 
-/// A limit below what the law commands cuts the tails of its noise off.
+/// A limit below the law's commands cuts off the tails of its noise.
 void warn_of_speed_limit(const Mission& mission, Findings& findings) {
   const ControlLaw& law = mission.law;
   const double dt_s = mission.timing.dt_s;
@@ -49,7 +49,7 @@ void warn_of_speed_limit(const Mission& mission, Findings& findings) {
                          ", less noise or a greater dt_s, or accept it: the cuts are counted");
 }
 
-/// What a teammate did in the last step says little of the next if it crosses the domain in a few.
+/// A teammate's last step does not predict its next one if it crosses the domain in a few steps.
 void warn_of_coarse_steps(const Mission& mission, Findings& findings) {
   const double longest_s = kLongestStep * mission.domain.shortest_side_m() / mission.law.u_max_mps;
   if (mission.law.anticipation <= 0 || mission.timing.dt_s <= longest_s) return;

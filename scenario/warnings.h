@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scenario may do, but will hardly want.
+// Warns of settings that are allowed but probably not intended.
 #pragma once
 
 #include "core/mission.h"
@@ -7,7 +7,7 @@
 
 namespace ergocast {
 
-/// Adds what `mission`, which breaks no rule, is to be warned of.
+/// Adds the warnings about `mission`, which breaks no rule.
 void warn(const Mission& mission, Findings& findings);
 
 }  // namespace ergocast

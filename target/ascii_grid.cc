@@ -58,7 +58,7 @@ class AsciiGrid : public MapFile {
   }
   std::string here() const { return file_.string() + ", line " + std::to_string(words_.line()); }
 
-  /// Ends at the first word that is a number where a key would stand: the first cell.
+  /// Ends at the first number in the place of a key: it is the first cell.
   std::optional<MapProblem> read_header() {
     static const std::string kKeys[] = {"ncols",     "nrows",     "cellsize",  "xllcorner",
                                         "xllcenter", "yllcorner", "yllcenter", "nodata_value"};
@@ -99,7 +99,7 @@ class AsciiGrid : public MapFile {
     return {};
   }
 
-  /// Where the extent begins; a stated centre of the first cell lies half a cell inside.
+  /// The lower end of the extent; a stated centre of the first cell is half a cell inside.
   double low_of(const std::string& axis, double cell_m) {
     if (header_.contains(lowest(axis, "corner"))) return header_[lowest(axis, "corner")];
     return header_[lowest(axis, "center")] - 0.5 * cell_m;

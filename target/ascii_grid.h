@@ -7,8 +7,8 @@
 namespace ergocast {
 
 /// Keys, in any case and order: ncols, nrows, cellsize, xllcorner or xllcenter, yllcorner or
-/// yllcenter, and NODATA_value, −9999 if it is left out. A cell that has it is 0. Line breaks among
-/// the cells mean nothing.
+/// yllcenter, and NODATA_value (default −9999). A cell with this value is 0. Line breaks among the
+/// cells have no meaning.
 OpenedMap open_ascii_grid(const std::filesystem::path& file);
 
 }  // namespace ergocast

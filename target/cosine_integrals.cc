@@ -11,8 +11,8 @@
 namespace ergocast {
 namespace {
 
-/// sin(z)/z, where `sine` is sin(z) to rounding. A sine near 0 that was put together from two
-/// products has no digits left to divide; there the series is exact.
+/// sin(z)/z, where `sine` is sin(z) to rounding. A sine near 0 that was computed from two products
+/// has no exact digits; there the series is exact.
 double sinc(double z, double sine) {
   if (std::abs(z) > 0.1) return sine / z;
   const double z2 = z * z;
@@ -31,7 +31,7 @@ struct Multiples {
   }
 };
 
-/// What the edge from `a` to `b` adds to the integrals round the polygon.
+/// Adds the contribution of the edge from `a` to `b` to the integrals around the polygon.
 void add_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double density,
               const Eigen::Vector2d& size_m, PlaneCoefficients& sums) {
   const Eigen::Vector2d wave = std::numbers::pi * size_m.cwiseInverse();  // of the first modes
@@ -82,7 +82,8 @@ double add_polygon(std::span<const Eigen::Vector2d> corners, double density,
     perimeter_m += (b - a).norm();
     add_edge(a, b, density, size_m, sums);
   }
-  // Each edge's share is at most its length · L/π, known to a few roundings and sinc's 2e-15.
+  // Each edge's contribution is at most its length · L/π, with an error of a few roundings and
+  // sinc's 2e-15.
   constexpr double kRoundings = 16 * std::numeric_limits<double>::epsilon();
   return kRoundings * density * perimeter_m * size_m.maxCoeff();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // ∫ cos(mπx/Lx) cos(nπy/Ly) in closed form: over intervals, and over polygons by Green's theorem.
 //
-// Differences of sines, which cancel over short lengths, are written as products with
-// sinc(z) = sin(z)/z instead. Lengths count from the domain's lower left corner [m].
+// Differences of sines lose digits over short lengths, so they are computed as products with
+// sinc(z) = sin(z)/z. Lengths are measured from the domain's lower left corner [m].
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ Eigen::VectorXd cosine_integrals(double low, double high, double length, int mod
 ///
 /// @param corners  counter-clockwise; at least three, of a polygon that does not cross itself
 /// @param size_m   of the domain
-/// @return         how far any sum may be off by rounding, in the unit of `sums`
+/// @return         the maximum rounding error of any sum, in the unit of `sums`
 double add_polygon(std::span<const Eigen::Vector2d> corners, double density,
                    const Eigen::Vector2d& size_m, PlaneCoefficients& sums);
 

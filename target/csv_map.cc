@@ -27,7 +27,7 @@ std::string in_line(const fs::path& file, long long line) {
   return file.string() + ", line " + std::to_string(line);
 }
 
-/// Counts what there is, character by character, so that no line has to fit the memory.
+/// Counts rows and columns character by character, so that no line has to fit in memory.
 class Shape {
  public:
   explicit Shape(const fs::path& file) : file_(file) {

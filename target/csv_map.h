@@ -9,8 +9,8 @@
 
 namespace ergocast {
 
-/// Reads the file once to count. Blanks around a number and lines without anything do no harm; an
-/// empty cell is 0.
+/// Reads the file once to count. Blanks around a number and empty lines are ignored; an empty cell
+/// is 0.
 OpenedMap open_csv_map(const std::filesystem::path& file);
 
 /// `grid`, row i along x and column j along y from the lower left corner, as such a table with the

@@ -69,7 +69,7 @@ void add_separable(const Gaussian& gaussian, const Rectangle& domain, DensityGri
          averages_along(mean_m.y(), deviation_m.y(), domain.size_m.y(), sum.cols()).transpose();
 }
 
-/// One with correlation, averaged over 4 × 4 points of each cell.
+/// A Gaussian with correlation, averaged over 4 × 4 points of each cell.
 void add_correlated(const Gaussian& gaussian, const Rectangle& domain, DensityGrid& sum) {
   constexpr int kPoints = 4;
   const Eigen::Vector2d step(domain.size_m.x() / static_cast<double>(kPoints * sum.rows()),

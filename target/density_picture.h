@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The target density for people to look at: averages over the cells of a grid of the domain.
+// The target density as a picture for people: averages over the cells of a grid of the domain.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,16 +11,17 @@
 
 namespace ergocast {
 
-/// One number a cell: row i along x, column j along y, both upwards from the domain's origin.
+/// One number for each cell: row i along x, column j along y, both upwards from the domain's
+/// origin.
 using DensityGrid = Eigen::MatrixXd;
 
-/// Averages over a raster's cells, row by row as RasterIntegral takes them.
+/// Averages over a raster's cells, row by row like RasterIntegral.
 class RasterPicture {
  public:
   RasterPicture(const RasterGrid& grid, const Rectangle& domain, int cells_x, int cells_y);
   void add_row(int row, std::span<const double> values);
 
-  /// Density [1/m²] of a raster whose whole mass is 1, exact but for rounding.
+  /// Density [1/m²] of a raster with the mass 1, exact except for rounding.
   DensityGrid density() const;
 
  private:
@@ -32,8 +33,8 @@ class RasterPicture {
 
 /// Σ of the target's parts [1/m²], before the division by its mass. `maps` holds the weighted
 /// densities of the maps. The edges of regions and keep-outs are exact along x and sampled eight
-/// times a cell along y; Gaussians are exact
-/// without correlation, with it averages of 4 × 4 points.
+/// times a cell along y. Gaussians without correlation are exact; those with correlation are
+/// averages of 4 × 4 points.
 DensityGrid density_picture(const TargetDensity& target, const DensityGrid& maps,
                             const Rectangle& domain);
 

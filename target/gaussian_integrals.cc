@@ -19,7 +19,7 @@ constexpr double kNode[kNodes] = {-0.9602898564975363, -0.7966664774136267, -0.5
 constexpr double kWeight[kNodes] = {0.1012285362903763, 0.2223810344533745, 0.3137066458778873,
                                     0.3626837833783620, 0.3626837833783620, 0.3137066458778873,
                                     0.2223810344533745, 0.1012285362903763};
-// A bell is below 1e-16 of its peak nine standard deviations away.
+// A Gaussian is below 1e-16 of its peak at nine standard deviations.
 constexpr double kReach = 9;
 
 struct Interval {
@@ -27,14 +27,14 @@ struct Interval {
   double length() const { return high - low; }
 };
 
-/// The part of [low, low + length] that a bell reaches.
+/// The part of [low, low + length] where the Gaussian is not negligible.
 Interval reached(double mean, double deviation, double low, double length) {
   const double high = low + length;
   return {std::clamp(mean - kReach * deviation, low, high),
           std::clamp(mean + kReach * deviation, low, high)};
 }
 
-/// Panels that resolve both the bell and the fastest cosine to rounding.
+/// The number of panels that resolves both the Gaussian and the fastest cosine to rounding.
 int panels_for(const Interval& over, double deviation, int modes, double length) {
   const double wavelength = 2 * length / std::max(1, modes - 1);
   return std::clamp(static_cast<int>(std::ceil(over.length() / std::min(deviation, wavelength))),
@@ -119,7 +119,7 @@ TargetCoefficients correlated(const Gaussian& g, const Rectangle& domain, const 
   return result;
 }
 
-/// The Gaussian at one y: its marginal density there and what is left of it along x.
+/// The Gaussian at one y: its marginal density there and its conditional density along x.
 class AcrossAt {
  public:
   AcrossAt(const Gaussian& g, const Eigen::Vector2d& mean_m)
@@ -140,7 +140,7 @@ class AcrossAt {
   }
   double deviation_x() const { return deviation_x_; }
 
-  /// Over how much of y the mass between two sides of these slopes changes.
+  /// The length in y over which the mass between two sides of these slopes changes.
   double scale_y(double left_slope, double right_slope) const {
     const double steepest = std::max(std::abs(left_slope - slope_), std::abs(right_slope - slope_));
     return std::min(deviation_y_, deviation_x_ / steepest);

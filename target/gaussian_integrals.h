@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ∫ f_mn of one Gaussian, over the domain or what is left of it.
+// ∫ f_mn of one Gaussian, over the domain or the free part of it.
 #pragma once
 
 #include <span>
@@ -21,14 +21,15 @@ class GaussianDensity {
   double scale_;
 };
 
-/// ∫ f_mn N over the whole domain. A diagonal covariance makes it a product of two one-dimensional
-/// integrals, exact to rounding (about 1e-14); with correlation it is taken by Gauss–Legendre
-/// panels, doubled until two successive results agree to 1e-12 or the limit of panels is reached.
+/// ∫ f_mn N over the whole domain. With a diagonal covariance it is a product of two
+/// one-dimensional integrals, exact to rounding (about 1e-14). With correlation, Gauss–Legendre
+/// panels are doubled until two successive results agree to 1e-12 or the limit of panels is
+/// reached.
 TargetCoefficients integrals_over_domain(const Gaussian& gaussian, const Rectangle& domain,
                                          const Basis& basis);
 
-/// The same over `pieces` of it: panels along y, and at each of their nodes panels along x between
-/// the piece's sides, as wide as the Gaussian at that y. Doubled likewise.
+/// The same over `pieces` of the domain: panels along y, and at each of their nodes panels along x
+/// between the piece's sides, as wide as the Gaussian at that y. They are doubled in the same way.
 TargetCoefficients integrals_over(const Gaussian& gaussian, std::span<const Trapezoid> pieces,
                                   const Rectangle& domain, const Basis& basis);
 

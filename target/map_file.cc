@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chooses the reader by the end of the file's name, and checks size and dimensions first.
+// Chooses the reader by the extension of the file's name, and checks size and dimensions first.
 #include "target/map_file.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Why `file` cannot be opened, if so.
+/// Why `file` cannot be opened; nothing if it can.
 std::optional<MapProblem> check_file(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);

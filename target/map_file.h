@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Target maps as people have them: PNG pictures, tables of numbers, ESRI ASCII grids.
+// Target maps in common formats: PNG pictures, tables of numbers, ESRI ASCII grids.
 //
-// A map is read row by row, so that one of 8192 × 8192 cells needs the memory of a row.
+// A map is read row by row, so that a map of 8192 × 8192 cells needs the memory of one row.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ inline constexpr double kMaxMapValue = 1e30;  ///< so that no sum of values over
 
 /// Why a map cannot be used.
 struct MapProblem {
-  std::string what;    ///< with the file's name, and the line where there are lines
+  std::string what;    ///< with the file's name, and the line if it has lines
   std::string remedy;  ///< what to do about it
 };
 
@@ -32,7 +32,7 @@ class MapFile {
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
-  /// What the file says of its place; only an ESRI ASCII grid does.
+  /// The extent that the file states; only an ESRI ASCII grid has one.
   const std::optional<Rectangle>& extent() const { return extent_; }
 
   /// Reads the next row into `values`, the westernmost first: densities from 0 to kMaxMapValue, 0
@@ -50,7 +50,7 @@ using OpenedMap = std::variant<std::unique_ptr<MapFile>, MapProblem>;
 
 enum class MapKind { kPng, kCsv, kAsciiGrid };
 
-/// By the name's end: .png, .csv, .asc, large or small; nothing for any other.
+/// The kind by the extension .png, .csv or .asc, in either case; nothing for any other.
 std::optional<MapKind> map_kind(const std::filesystem::path& file);
 
 /// Opens a map and reads its dimensions.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a file word by word, keeps the beginning of long words, and checks each number for a
-// density.
+// Reads a file word by word, keeps the beginning of long words, and checks that each number is a
+// valid density.
 #include "target/map_text.h"
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace ergocast {
 namespace {
 
-/// What is quoted of a word in a complaint.
+/// A word as an error message quotes it.
 std::string quoted(std::string_view word) {
   constexpr std::size_t kMost = 40;
   std::string text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in text files.
+// Parses numbers in text files.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,21 @@
 
 namespace ergocast {
 
-/// The number that `text` is, the whole of it, in C's notation whatever the locale; else nothing.
+/// The number that the whole of `text` represents, in C's notation and any locale; else nothing.
 std::optional<double> number_in(std::string_view text);
 
-/// The density in a cell, or what is wrong with it. `where` begins what is said.
+/// The density of a cell, or its error, which begins with `where`.
 std::variant<double, MapProblem> density_in(std::string_view text, const std::string& where);
 std::optional<MapProblem> check_density(double value, const std::string& where);
 
-/// Words between white space, and the lines they stand in.
+/// Words between white space, with their line numbers.
 class WordReader {
  public:
   explicit WordReader(const std::filesystem::path& file);
 
-  /// The next word, empty at the end of the file; of a very long one its beginning.
+  /// The next word, empty at the end of the file; only the beginning of a very long one.
   std::string_view next();
-  /// Number of the line in which the last word stands, from 1.
+  /// The line number of the last word, from 1.
   long long line() const { return line_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads one row after the other with libpng, and refuses pictures whose rows are no plain greys.
+// Reads one row after the other with libpng, and refuses pictures that are not plain grey.
 #include "target/png_map.h"
 
 #include <png.h>
@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// libpng reports errors by longjmp, over which no destructor runs: the functions that call
-/// setjmp hold nothing but numbers and pointers.
+/// libpng reports errors by longjmp, which runs no destructors: the functions that call setjmp hold
+/// only numbers and pointers.
 class PngMap : public MapFile {
  public:
   explicit PngMap(const fs::path& file)
@@ -74,7 +74,7 @@ class PngMap : public MapFile {
     return read && png_sig_cmp(bytes, 0, sizeof bytes) == 0;
   }
 
-  // libpng reports what is wrong by a jump. NOLINTBEGIN(cert-err52-cpp)
+  // libpng reports errors by a jump. NOLINTBEGIN(cert-err52-cpp)
   bool read_header() {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_init_io(png_, stream_);
@@ -85,7 +85,7 @@ class PngMap : public MapFile {
 
   bool begin_rows() {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
-    // One grey that is declared transparent becomes an alpha channel like any other.
+    // A transparent grey value becomes an ordinary alpha channel.
     png_set_tRNS_to_alpha(png_);
     png_read_update_info(png_, info_);
     return true;
@@ -121,7 +121,7 @@ class PngMap : public MapFile {
                       "save it in grey of 8 or 16 bits, not interlaced, with or without alpha"};
   }
 
-  /// PNG's numbers begin with their high byte.
+  /// PNG stores the high byte first.
   double sample(std::size_t i) const {
     return wide_ ? 256.0 * line_[2 * i] + line_[2 * i + 1] : line_[i];
   }

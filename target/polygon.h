@@ -10,20 +10,20 @@ namespace ergocast {
 /// The corners in order [m]; the last is joined to the first.
 using Ring = std::vector<Eigen::Vector2d>;
 
-/// What lies inside the outline and outside all holes.
+/// The area inside the outline and outside all holes.
 struct Polygon {
   Ring outline;
   std::vector<Ring> holes;
 };
 
-/// Area of a ring that does not cross itself [m²], positive whichever way round it is written.
+/// Area of a ring that does not cross itself [m²], positive in either orientation.
 double area_m2(const Ring& ring);
 
-/// Area without the holes' [m²].
+/// Area without that of the holes [m²].
 /// @pre the holes lie inside the outline and apart from each other
 double area_m2(const Polygon& polygon);
 
-/// Whether `x_m` is inside. On the edge it is either.
+/// Whether `x_m` is inside. On the edge the result may be either.
 bool contains(const Ring& ring, const Eigen::Vector2d& x_m);
 bool contains(const Polygon& polygon, const Eigen::Vector2d& x_m);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Adds the integrals of whole cells by columns, and cuts only cells that a slanted side passes
-// through.
+// Adds the integrals of whole cells by columns, and cuts only cells that a slanted side crosses.
 #include "target/raster_integral.h"
 
 #include <algorithm>
@@ -15,7 +14,7 @@ namespace {
 
 constexpr int kModesAtOnce = 16;
 
-/// Corners of a convex polygon that is cut out of a trapezoid by two verticals: at most six.
+/// Corners of a convex polygon, cut from a trapezoid by two verticals: at most six.
 struct Corners {
   std::array<Eigen::Vector2d, 8> at;
   std::size_t count = 0;
@@ -25,7 +24,7 @@ struct Corners {
 };
 
 /// The part of `shape` on one side of x = `limit` (Sutherland and Hodgman's rule).
-/// @param side  +1 keeps what is right of it, −1 what is left
+/// @param side  +1 keeps the part to the right of it, −1 that to the left
 Corners cut(const Corners& shape, double limit, double side) {
   Corners kept;
   for (std::size_t i = 0; i < shape.count; ++i) {
@@ -79,7 +78,7 @@ void RasterIntegral::add_row(int row, std::span<const double> values) {
 }
 
 /// Columns between the sides are whole and share one integral along y; those that a slanted side
-/// passes through are cut.
+/// crosses are cut.
 void RasterIntegral::add_piece(const Trapezoid& piece, std::span<const double> values) {
   const auto [left, inner_left] = std::minmax(piece.left_low, piece.left_high);
   const auto [inner_right, right] = std::minmax(piece.right_low, piece.right_high);
@@ -100,7 +99,7 @@ void RasterIntegral::add_piece(const Trapezoid& piece, std::span<const double> v
   for (std::size_t i = whole_end; i < end; ++i) add_cut_cell(i, piece, values[i]);
 }
 
-/// A few modes at a time, whose sums stay in registers over the whole row.
+/// Computes a few modes at a time, so that their sums stay in registers over the whole row.
 Eigen::VectorXd RasterIntegral::sum_of(std::span<const double> values, std::size_t begin,
                                        std::size_t end) const {
   Eigen::VectorXd sums(along_x_.rows());
@@ -124,7 +123,8 @@ void RasterIntegral::add_cut_cell(std::size_t column, const Trapezoid& piece, do
 
 TargetCoefficients RasterIntegral::shares() const {
   ERGOCAST_REQUIRE(has_mass());
-  // One rounding an addition, all of terms of one size: at most rows + columns of them, and a few.
+  // One rounding for each addition of terms of similar size: at most rows + columns of them, and a
+  // few.
   const double additions = grid_.columns + grid_.rows + 16;
   const double rounding = 1.2e-16 * additions + rounding_ / whole_;
   return {sums_ / whole_, rounding};

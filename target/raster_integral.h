@@ -12,31 +12,31 @@
 
 namespace ergocast {
 
-/// Equal cells that fill `extent`: cell (column 0, row 0) has its lower left corner. A value belongs
-/// to the whole of its cell, so the centre of the first lies half a cell inside the extent.
+/// Equal cells that fill `extent`: cell (column 0, row 0) has its lower left corner. A value
+/// belongs to its whole cell, so the centre of the first cell is half a cell inside the extent.
 struct RasterGrid {
   Rectangle extent;
   int columns = 0, rows = 0;
 };
 
-/// Takes the rows one after another, in any order, and holds none of them: O(columns · modes_x) of
-/// memory. Exact but for rounding: each cell's integral has a closed form, and a cell that the
-/// domain's edge or a keep-out cuts counts by the part that is left. The sums run in the order of
-/// the rows, within a row in that of the columns, on every processor.
+/// Takes the rows in any order, each once, and stores none of them: O(columns · modes_x) of memory.
+/// Exact except for rounding: each cell's integral has a closed form, and a cell that the domain's
+/// edge or a keep-out cuts counts by its free part. The sums run in the order of the rows, and of
+/// the columns within a row, on every processor.
 class RasterIntegral {
  public:
   /// @param free  free_area() of the domain
   RasterIntegral(const RasterGrid& grid, const Rectangle& domain, const Basis& basis,
                  std::vector<Trapezoid> free);
 
-  /// @param row     counted from the south, each row once; rows that never come are zero
+  /// @param row     counted from the south, each row once; missing rows are zero
   /// @param values  `columns` densities, at least 0, up to one common factor
   void add_row(int row, std::span<const double> values);
 
   /// Whether any value was above 0.
   bool has_mass() const { return whole_ > 0; }
 
-  /// The integrals divided by that over the whole extent: entry (0,0) is the share that is left.
+  /// The integrals divided by the integral over the whole extent: entry (0,0) is the free share.
   /// @pre has_mass()
   TargetCoefficients shares() const;
 

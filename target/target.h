@@ -11,24 +11,23 @@
 
 namespace ergocast {
 
-/// One bell of the mixture (7).
+/// One Gaussian of the mixture (7).
 struct Gaussian {
   double weight = 1;
   Eigen::Vector2d mean_m{0, 0};
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Identity();
 };
 
-/// The same everywhere in a polygon, which may reach out of the domain.
+/// A constant density in a polygon, which may be partly outside the domain.
 struct Region {
   double weight = 1;
   Polygon polygon;
 };
 
 /// Σ weight·N(mean, covariance) + Σ weight·[x in polygon]/area(polygon) + uniform_weight / area,
-/// zero in every keep-out, truncated to the domain and divided by what is left, so that it
-/// integrates to 1. A weight is thus the mass of the whole part, before anything is cut off it.
-/// Weights need not add up to 1. Maps, which are too large to be values, are added by
-/// RasterIntegral.
+/// zero in every keep-out, truncated to the domain and divided by the remaining mass, so that it
+/// integrates to 1. A weight is thus the mass of the whole part, before any of it is cut off.
+/// Weights need not add up to 1. RasterIntegral adds maps, which are too large to be values.
 struct TargetDensity {
   std::vector<Gaussian> gaussians;
   double uniform_weight = 0;
@@ -45,8 +44,8 @@ struct TargetCoefficients {
 ///
 /// Exact to rounding: the uniform part, regions, and without keep-outs Gaussians with a diagonal
 /// covariance. The other Gaussians are integrated by Gauss–Legendre panels, doubled until two
-/// successive results agree to 1e-12 or the limit of panels is reached. `error_bound` says what was
-/// reached.
+/// successive results agree to 1e-12 or the limit of panels is reached. `error_bound` tells the
+/// accuracy reached.
 /// @pre weights ≥ 0, covariances positive definite, polygons that do not cross themselves and have
 ///      an area, some mass inside the domain (mass_inside() > 0).
 TargetCoefficients target_coefficients(const TargetDensity& target, const Rectangle& domain,
@@ -56,7 +55,7 @@ TargetCoefficients target_coefficients(const TargetDensity& target, const Rectan
 TargetCoefficients target_integrals(const TargetDensity& target, const Rectangle& domain,
                                     const Basis& basis);
 
-/// Of one region, without its weight: entry (0,0) is the share of it that is left.
+/// The integrals of one region, without its weight: entry (0,0) is its free share.
 TargetCoefficients region_integrals(const Region& region, const TargetDensity& target,
                                     const Rectangle& domain, const Basis& basis);
 

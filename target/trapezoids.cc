@@ -9,10 +9,10 @@
 namespace ergocast {
 namespace {
 
-/// An edge that is not horizontal, upwards.
+/// An edge that is not horizontal, directed upwards.
 struct Edge {
   Eigen::Vector2d low, high;
-  std::size_t polygon;  ///< whose it is
+  std::size_t polygon;  ///< the polygon that it belongs to
 
   double x_at(double y) const {
     if (y >= high.y()) return high.x();
@@ -60,7 +60,8 @@ std::vector<double> levels_of(const std::vector<Edge>& edges, double height) {
   return levels;
 }
 
-/// Which polygons a walk from left to right is inside of: `wanted` of the first, none of the rest.
+/// Tracks which polygons a walk from left to right is inside of. A point is free if it is inside
+/// the first `wanted` polygons and outside the others.
 class Walk {
  public:
   Walk(std::size_t polygons, std::size_t wanted) : inside_(polygons), wanted_(wanted) {}
@@ -80,12 +81,12 @@ class Walk {
 
 Trapezoid piece(const Edge& left, const Edge& right, double low, double high) {
   Trapezoid cut{low, high, left.x_at(low), left.x_at(high), right.x_at(low), right.x_at(high)};
-  cut.right_low = std::max(cut.right_low, cut.left_low);  // but for rounding they are
+  cut.right_low = std::max(cut.right_low, cut.left_low);  // equal or greater except for rounding
   cut.right_high = std::max(cut.right_high, cut.left_high);
   return cut;
 }
 
-/// @param shapes  the first `wanted` are to be inside of, the others outside of
+/// @param shapes  a piece is inside the first `wanted` of them and outside the others
 std::vector<Trapezoid> cut_up(const std::vector<Polygon>& shapes, std::size_t wanted,
                               const Rectangle& domain) {
   std::vector<Edge> edges;

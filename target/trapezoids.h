@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The part of the domain that is inside one polygon and outside others, cut into trapezoids.
 //
-// Horizontals through every corner and every crossing of edges leave slabs in which no two edges
-// cross. There the edges stand in one order from left to right, and a walk along it that counts
-// which polygons it is inside of finds every piece: unions, differences and holes alike. A corner
-// that is off by a rounding error moves a piece's side by as much and breaks nothing.
+// Horizontals through every corner and every crossing of edges cut the domain into slabs in which
+// no two edges cross. There the edges have one order from left to right. A walk in this order
+// counts which polygons it is inside of, and so finds every piece: unions, differences and holes
+// alike. A rounding error of a corner moves a piece's side by the same distance and breaks nothing.
 #pragma once
 
 #include <array>
@@ -16,7 +16,8 @@
 
 namespace ergocast {
 
-/// Between two horizontals and two straight sides; lengths from the domain's lower left corner [m].
+/// An area between two horizontals and two straight sides; lengths from the domain's lower left
+/// corner [m].
 struct Trapezoid {
   double low, high;               ///< y of the horizontals
   double left_low, left_high;     ///< x of the left side at low and at high
@@ -28,10 +29,10 @@ struct Trapezoid {
   std::array<Eigen::Vector2d, 4> corners() const;
 };
 
-/// `domain` without `keep_outs`, which may overlap, as trapezoids that do not; ascending by `low`.
+/// `domain` without `keep_outs`, which may overlap, as disjoint trapezoids; ascending by `low`.
 std::vector<Trapezoid> free_area(const Rectangle& domain, std::span<const Polygon> keep_outs);
 
-/// The part of it inside `region`.
+/// The part of the free area inside `region`.
 std::vector<Trapezoid> free_area_within(const Polygon& region, const Rectangle& domain,
                                         std::span<const Polygon> keep_outs);
 

@@ -16,7 +16,7 @@ struct Deadline {
 
   bool due(Instant now, Tick current) const { return now >= at || current >= tick; }
 
-  /// In `wall`, or in `mission_s` of mission time, at least one tick.
+  /// Sets both: `wall` from `now`, and `mission_s` of mission time, at least one tick.
   static Deadline in(PacingClock::duration wall, Instant now, double mission_s, double dt_s,
                      Tick current) {
     return {now + wall, current + std::max<Tick>(1, static_cast<Tick>(mission_s / dt_s))};

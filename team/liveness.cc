@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers how long each kind of process may be silent.
+// Defines the heartbeat and the silence limit of each kind of process, and records signs of life.
 #include "team/liveness.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// TEAM_STATUS comes twice as often as an agent's status, MISSION each second.
+/// TEAM_STATUS comes twice as often as an agent's status, MISSION once a second.
 constexpr PacingClock::duration kTeamStatusHeartbeat = 250ms;
 constexpr PacingClock::duration kMissionHeartbeat = 1s;
 
@@ -33,7 +33,7 @@ PacingClock::duration silence_of(AgentId sender, CoordinatorSign sign, const Tim
 
 bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silence) {
   const auto ticks_left = static_cast<double>(timing.tick_count - std::max<Tick>(newest, 0));
-  // In lockstep nobody knows how long it takes, but no tick may stay unanswered for longer.
+  // The duration of a lockstep mission is unknown, but each tick has a time limit.
   const double plan_s = timing.pace == Pace::kLockstep
                             ? timing.lockstep_timeout_s
                             : ticks_left * timing.dt_s / timing.realtime_factor;
@@ -83,7 +83,8 @@ std::int64_t Liveness::newest(const Author& life, Bus bus) const {
 std::int64_t Liveness::lost(const Author& life, Bus bus) const {
   const Heard* const heard = heard_of(life, bus);
   if (heard == nullptr) return 0;
-  // A message that came before the first, or twice, makes up for one that did not come.
+  // Messages before the first one, or repeats, may compensate for lost ones; the result is at least
+  // 0.
   return std::max<std::int64_t>(0, heard->newest - heard->first + 1 - heard->count);
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who is alive: the last fresh message of each life, and the one rule of silence.
+// Decides which processes are alive: the last fresh message of each incarnation, and one rule of
+// silence.
 //
-// Whoever records messages can send them again, and a key does not prevent it. A repeat changes
-// nothing by what it says. It must not keep the dead alive either, nor make anybody speak.
+// An attacker can record messages and replay them; a key does not prevent this. A replay is not a
+// sign of life and gets no answer.
 #pragma once
 
 #include <algorithm>
@@ -21,54 +22,54 @@ namespace ergocast {
 /// A sender is silent after so many heartbeats without a sign of life.
 inline constexpr int kMissedHeartbeats = 6;
 
-/// How a process that listens can tell that the coordinator lives.
+/// How a listening process detects that the coordinator is alive.
 enum class CoordinatorSign {
-  kTeamStatus,  ///< by TEAM_STATUS, which nobody repeats
-  kMission,     ///< by MISSION alone, also if a teammate repeats a part that was never heard
+  kTeamStatus,  ///< by TEAM_STATUS, which no process repeats
+  kMission,     ///< by MISSION alone, also if a teammate repeats a part not received before
 };
 
-/// How often a sender of this kind speaks at least [wall time].
-/// @param timing  of the mission, if it is known: a world in real time may speak once a tick only
+/// The longest time between two messages of this kind of sender [wall time].
+/// @param timing  of the mission, if known: a world in real time may send only once a tick
 PacingClock::duration heartbeat_of(AgentId sender, CoordinatorSign sign, const Timing* timing);
 
-/// After how long without a sign of life a sender is silent: an agent, the world and the logger
-/// after 3 s (the world in real time after six ticks if that is longer), the coordinator after 1.5 s
-/// without TEAM_STATUS, or after 6 s without MISSION where TEAM_STATUS is not listened to.
+/// The time without a sign of life after which a sender is silent: 3 s for an agent, the world and
+/// the logger (six ticks for a world in real time if that is longer). The coordinator is silent
+/// after 1.5 s without TEAM_STATUS, or after 6 s without MISSION for a process without a
+/// subscription to TEAM_STATUS.
 PacingClock::duration silence_of(AgentId sender, CoordinatorSign sign = CoordinatorSign::kTeamStatus,
                                  const Timing* timing = nullptr);
 
-/// How long after the mission's end, as far as the plan tells, a world or a coordinator may still
-/// turn up that is started again [wall s].
+/// How long after the planned end a restarted world or coordinator may still appear [wall s].
 inline constexpr double kFarewellPatience_s = 30;
 
-/// Whether a running mission must be over, of whose world and coordinator nothing has been heard
-/// for `silence`, and whose newest tick was `newest`. Whoever is cut off while the mission ends does
-/// not hear of the end, and those who know of it are gone.
+/// Whether a running mission must be over: nothing was received from its world and coordinator for
+/// `silence`, and its newest tick was `newest`. A process that was disconnected when the mission
+/// ended stops by itself. The others have exited and cannot tell it.
 bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silence);
 
 class Liveness {
  public:
-  /// Takes in a message that its sender has transmitted itself.
-  /// @param is_sign  whether it shows, if it is fresh, that its sender lives
-  /// @return whether it is fresh: its sender has said nothing later yet, nor this, in this life and
-  ///   on this bus. Of more than kMostLives lives, the later ones are never fresh.
+  /// Records a message that its sender has transmitted itself.
+  /// @param is_sign  whether it is a sign of life if it is fresh
+  /// @return whether it is fresh: its sender has sent neither this nor a later message in this
+  ///   incarnation on this bus. Messages of incarnations beyond kMostLives are never fresh.
   bool record(const Header& from, Bus bus, Instant now, bool is_sign = true);
 
-  /// Takes it that a life lives at `now`, as one that has just been admitted does. It has a place even
-  /// where strangers have filled the table; the caller bounds how many have.
+  /// Counts an incarnation as alive at `now`, for example after its admission. It gets a place even
+  /// in a full table; the caller limits how many such incarnations there are.
   void presume_alive(const Author& life, Instant now);
 
-  /// When the last sign of this life came.
+  /// The time of the last sign of this incarnation.
   std::optional<Instant> last_sign(const Author& life) const;
-  /// When the last sign of any life of this kind came; all agents are one kind.
+  /// The time of the last sign of any incarnation of this kind; all agents are one kind.
   std::optional<Instant> last_sign_of_kind(AgentId sender) const { return kinds_[kind_of(sender)]; }
 
-  /// The newest sequence of `life` on `bus`; −1 if nothing was heard.
+  /// The newest sequence of `life` on `bus`; −1 if nothing was received.
   std::int64_t newest(const Author& life, Bus bus) const;
-  /// How many of its messages are missing between the first and the newest that were heard.
+  /// How many of its messages are missing between the first and the newest one received.
   std::int64_t lost(const Author& life, Bus bus) const;
 
-  /// Twice as many as a roster has room for: coordinators, worlds and loggers live more than once.
+  /// Twice the size of a roster: coordinators, worlds and loggers may have several incarnations.
   static constexpr std::size_t kMostLives = 2 * kMaxRosterEntries;
 
  private:

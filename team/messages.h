@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All messages between processes, as plain values. Only lcmtypes/ knows their bytes.
+// All messages between processes, as plain values. Only lcmtypes/ encodes them.
 #pragma once
 
 #include <Eigen/Core>
@@ -119,8 +119,8 @@ struct TeamStatus {
   std::string host;                   ///< the coordinator's
 };
 
-/// Ends a run for good. Without `now` only the coordinator obeys, and ends the mission for all;
-/// with `now` every process that hears it obeys.
+/// Ends a run for good. Without `now` only the coordinator obeys, and ends the mission in order;
+/// with `now` every process that receives it obeys.
 struct Stop {
   Header header;
   bool failed = false;  ///< whether the mission failed, or was only ended
@@ -139,7 +139,7 @@ struct Vehicle {
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.
 struct WorldState {
   Header header;
-  std::int64_t roster_revision = 0;   ///< that it knew when it first said this tick
+  std::int64_t roster_revision = 0;   ///< known when it first sent this tick
   std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
   std::int64_t skipped_ticks = 0;     ///< real time: ticks that a delayed world skipped
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
@@ -160,7 +160,7 @@ struct Command {
 struct RecordAck {
   Header header;
 };
-/// Lockstep: how many ticks the world may be ahead of what the logger has acknowledged, unless it has
+/// Lockstep: how many ticks the world may be ahead of the logger's acknowledgement, unless it has
 /// given that logger up.
 inline constexpr Tick kRecordWindowTicks = 64;
 

@@ -12,7 +12,7 @@
 namespace ergocast {
 namespace {
 
-/// Incomplete revisions that are kept.
+/// The maximum number of incomplete revisions.
 constexpr std::size_t kMostRevisions = 4;
 
 }  // namespace
@@ -33,7 +33,7 @@ bool MissionFollower::receive(const MissionPart& part) {
     collected_.erase(collected_.begin(), collected_.upper_bound(revision_));
     return committed;
   }
-  // Several at once: the rest of the newest may have died with its coordinator.
+  // The rest of the newest revision may be lost with its coordinator, so several are kept.
   if (collected_.size() > kMostRevisions) collected_.erase(collected_.begin());
   return false;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts the numbered parts of MISSION together: what every process but the coordinator knows of the
-// roster and of the mission's state.
+// Assembles the numbered parts of MISSION: the roster and the mission's state, as every process but
+// the coordinator knows them.
 #pragma once
 
 #include <algorithm>
@@ -17,24 +17,24 @@ namespace ergocast {
 
 class MissionFollower {
  public:
-  /// From now on takes no other plan than this one: a foreign one is a plan_problem().
+  /// From now on accepts only this plan: a foreign plan is a plan_problem().
   /// @pre no part has been received
   void expect_plan(std::vector<std::byte> plan) { expected_plan_ = std::move(plan); }
 
   /// Takes in one part, in any order. True if it completed a newer revision. A run has one plan: a
-  /// revision that comes with another has no effect but on foreign_plans().
+  /// revision with another plan only counts in foreign_plans().
   bool receive(const MissionPart& part);
 
   /// The mission, once a whole plan has arrived and decoded.
   const std::optional<Mission>& mission() const { return mission_; }
-  /// Why this program cannot read the plan that has arrived: it is another version's, damaged,
-  /// or not the one that was expected.
+  /// Why this program cannot use the received plan: another version, damage, or not the expected
+  /// plan.
   const std::optional<std::string>& plan_problem() const { return plan_problem_; }
   /// Complete revisions that were ignored because their plan is not this run's.
   std::int64_t foreign_plans() const { return foreign_plans_; }
 
   std::int64_t revision() const { return revision_; }
-  /// The newest revision of which any part has come; −1: none.
+  /// The newest revision of which any part was received; −1: none.
   std::int64_t newest_heard() const {
     return collected_.empty() ? revision_ : std::max(revision_, collected_.rbegin()->first);
   }
@@ -43,7 +43,7 @@ class MissionFollower {
   const std::string& reason() const { return reason_; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
   const std::vector<std::byte>& plan() const { return plan_; }
-  /// The newest complete revision as its coordinator said it, to be repeated to whoever asks.
+  /// The newest complete revision as its coordinator sent it, for answers to mission requests.
   const std::vector<MissionPart>& parts() const { return parts_; }
 
   /// The entry of an incarnation, or null.
@@ -67,7 +67,7 @@ class MissionFollower {
   std::map<std::int64_t, Parts> collected_;  // by revision, none of them complete
 };
 
-/// Sequence numbers for one sender, counted per bus, so that a gap on a bus is a loss on that bus.
+/// Sequence numbers of one sender, counted per bus, so that a gap on a bus is a loss on that bus.
 class Sequencer {
  public:
   std::int64_t next(Bus bus) { return ++last_[static_cast<std::size_t>(bus)]; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decides which message counts, and counts those that do not.
+// Decides which messages are accepted, and counts the refused ones.
 #include "team/participant.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ std::optional<Arrival> Participant::accept(const Message& message, Bus bus, Agen
                                            Instant now) {
   const Header& from = header_of(message);
   if (!hears(subscriptions_of(role_), bus, message)) return std::nullopt;
-  // Multicast gives everybody their own words back.
+  // Multicast returns our own messages to us.
   if (self_.incarnation != 0 && from.incarnation == self_.incarnation) return std::nullopt;
   if (self_.run != 0 && from.run != self_.run) {
     count_refused(Refusal::kRun);
@@ -19,9 +19,10 @@ std::optional<Arrival> Participant::accept(const Message& message, Bus bus, Agen
   ++received_;
   Arrival arrival{from, transmitter, now};
   const auto* part = std::get_if<MissionPart>(&message);
-  // Teammates repeat MISSION in the coordinator's name, also after its death.
+  // Teammates repeat MISSION in the coordinator's name, also after its end.
   const bool is_sign = part == nullptr || coordinator_sign() == CoordinatorSign::kMission;
-  // Who asks to be admitted is nobody yet, and a stranger could ask in any number of lives.
+  // An agent without a number is no member yet, and an attacker could send HELLO under any number
+  // of incarnations.
   const bool asks = std::holds_alternative<Hello>(message) && from.sender >= kUnassigned;
   const bool direct = transmitter == from.sender;
   arrival.fresh = direct && !asks && liveness_.record(from, bus, now, is_sign);
@@ -54,7 +55,7 @@ bool Participant::silent(const Author& life, Instant now) const {
 }
 
 bool Participant::silent(AgentId process, Instant now, std::optional<Instant> since) const {
-  const auto sign = std::max(liveness_.last_sign_of_kind(process), since);  // nothing is the least
+  const auto sign = std::max(liveness_.last_sign_of_kind(process), since);  // empty is the least
   const Timing* const timing = knows_mission() ? &mission().timing : nullptr;
   return !sign || now - *sign >= silence_of(process, coordinator_sign(), timing);
 }

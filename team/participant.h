@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every process of a mission has in common: which messages it accepts, what it knows of the
-// mission and of its roster, who is alive, and how its own messages are numbered.
+// The common part of every process of a mission: it decides which messages are accepted, knows the
+// mission and its roster, tracks which processes are alive, and numbers our own messages.
 //
-// Agent, coordinator, world, recorder, driver and the monitors each own one, and ask accept() first
-// of every message. No socket, thread, clock or file.
+// Agent, coordinator, world, recorder, driver and the monitors each own one, and pass every message
+// to accept() first. No socket, thread, clock or file.
 #pragma once
 
 #include <array>
@@ -21,19 +21,19 @@
 
 namespace ergocast {
 
-/// Under which name a process speaks.
+/// The identity under which a process sends.
 struct Identity {
   RunId run = 0;                ///< 0: the run of the first MISSION heard
   AgentId id = kUnassigned;     ///< an agent's number, or kCoordinator, kWorld …
-  Incarnation incarnation = 0;  ///< random; 0 only for who never speaks
+  Incarnation incarnation = 0;  ///< random; 0 only if it never sends
 };
 
-/// What a receiver has to know about a message besides its content.
+/// What a receiver needs of a message besides its content.
 struct Arrival {
   const Header& from;
   AgentId transmitter;  ///< the sender, or the agent that repeats the message
   Instant now;
-  bool fresh = false;  ///< it came from its sender, who has said nothing later yet; see Liveness
+  bool fresh = false;  ///< it came from its sender, and no later one came before; see Liveness
   bool mission_changed = false;  ///< it completed a newer revision of mission and roster
 };
 
@@ -41,37 +41,37 @@ class Participant {
  public:
   Participant(Role role, const Identity& self) : role_(role), self_(self) {}
 
-  /// The checks that all processes share. Nothing if the message is of a type that our role does not
-  /// hear on `bus`, our own, or of another run, which is counted as Refusal::kRun. While our run is
-  /// 0, all runs pass, and the first MISSION sets it. Otherwise liveness has learnt of the message,
-  /// and from MISSION the follower; a plan that is not this run's is counted as Refusal::kRange.
+  /// The checks that all processes share. Returns nothing if our role has no subscription to the
+  /// message on `bus`, if the message is our own, or if it is of another run, which counts as
+  /// Refusal::kRun. While our run is 0, all runs pass, and the first MISSION sets it. An accepted
+  /// message updates liveness and, if it is a MISSION, the follower; a foreign plan counts as
+  /// Refusal::kRange.
   std::optional<Arrival> accept(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   // ---- the mission, as far as it is known ----------------------------------------------------------
   const MissionFollower& follower() const { return follower_; }
-  /// From now on takes no other plan than this one.
+  /// From now on accepts only this plan.
   /// @pre no part of the mission has been received
   void expect_plan(std::vector<std::byte> plan) { follower_.expect_plan(std::move(plan)); }
   /// @pre a whole plan has arrived and could be read
   const Mission& mission() const { return *follower_.mission(); }
   const Timing& timing() const { return mission().timing; }
   bool knows_mission() const { return follower_.mission().has_value(); }
-  /// The roster's entry of the sender if that is a member, present or former, under its own number;
-  /// else null.
+  /// The sender's roster entry if it is a present or former member under its own number; else null.
   const RosterEntry* member(const Header& from) const;
 
   // ---- the others --------------------------------------------------------------------------------
   const Liveness& liveness() const { return liveness_; }
-  /// Takes it that a life lives at `now`; see Liveness.
+  /// Counts an incarnation as alive at `now`; see Liveness.
   void presume_alive(const Author& life, Instant now) { liveness_.presume_alive(life, now); }
-  /// Whether this life has given no sign for six heartbeats, or never.
+  /// Whether this incarnation has given no sign of life for six heartbeats, or never.
   bool silent(const Author& life, Instant now) const;
-  /// The same of any life of the coordinator, the world or the logger.
-  /// @param since  from when on it should speak
+  /// The same for any incarnation of the coordinator, the world or the logger.
+  /// @param since  when it should have started to send
   bool silent(AgentId process, Instant now, std::optional<Instant> since = {}) const;
-  /// Whether the running mission must be over: nobody who could tell us has spoken for so long; to a
-  /// world that is coordinator and agents, to everybody else coordinator and world.
-  /// @param newest  tick that is known
+  /// Whether the running mission must be over, because all processes that could report its end are
+  /// silent: for the world these are coordinator and agents, for others coordinator and world.
+  /// @param newest  the newest known tick
   bool cut_off(Tick newest, Instant now) const;
 
   // ---- ourselves ---------------------------------------------------------------------------------
@@ -81,20 +81,20 @@ class Participant {
   AgentId id() const { return self_.id; }
   void set_id(AgentId id) { self_.id = id; }
   Incarnation incarnation() const { return self_.incarnation; }
-  /// A process that goes on as another life of itself. Its sequences go on, too.
+  /// Continues under a new incarnation; the sequence numbers continue, too.
   void set_incarnation(Incarnation incarnation) { self_.incarnation = incarnation; }
   Author author() const { return {self_.id, self_.incarnation}; }
 
   /// Appends `message` under our header and with the next sequence of `bus`.
   template <class M>
   void publish(Bus bus, const M& message, Tick tick, Outbox& out) {
-    // Copied once, into its place: a contribution is a kilobyte.
+    // Copies the message once, in place: a contribution is a kilobyte.
     Outgoing& outgoing = out.emplace_back();
     outgoing.bus = bus;
     outgoing.message.emplace<M>(message).header = {
         self_.run, self_.id, self_.incarnation, ++sequences_[static_cast<std::size_t>(bus)], tick};
   }
-  /// Appends somebody else's block as its author said it: we are only the transmitter.
+  /// Appends another agent's block unchanged: we are only its transmitter.
   void relay(Bus bus, const Contribution& block, Outbox& out) const;
 
   void count_refused(Refusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
@@ -111,7 +111,7 @@ class Participant {
   Role role_;
   Identity self_;
   MissionFollower follower_;
-  Instant mission_heard_{};  // by whomever it was said
+  Instant mission_heard_{};  // from any transmitter
   Liveness liveness_;
   std::array<std::int64_t, kBusCount> sequences_{};
   RefusalCounts refused_{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Encodes a mission with Protobuf lite, and checks every field of what the network brings.
+// Encodes a mission with Protobuf lite, and checks every field of a received plan.
 #include "team/plan.h"
 
 #include <xxhash.h>
@@ -19,7 +19,7 @@ constexpr std::size_t kMaxPlanBytes = std::size_t{kMaxPlanParts} * kMaxPlanBytes
 
 constexpr const char* kRemedy = ": install the same version on every host";
 
-/// Of bytes in which not even a version can be found.
+/// The error for bytes without a readable version.
 std::string unreadable_plan() {
   return std::string(
              "the mission's plan is damaged or of a much newer version than this program, "
@@ -27,20 +27,20 @@ std::string unreadable_plan() {
          kRemedy;
 }
 
-/// Of a plan that only claims to be of this version.
+/// The error for a plan that falsely claims this version.
 std::string broken_plan() {
   return std::string("the mission's plan says that it is of version " ERGOCAST_VERSION
                      ", but breaks that version's rules: it is damaged or another build's") +
          kRemedy;
 }
 
-/// What a version looks like; the word of a stranger is not to reach a terminal as it is.
+/// Whether the text is a possible version: arbitrary received text must not reach a terminal.
 bool is_version(const std::string& text) {
   return !text.empty() && text.size() <= static_cast<std::size_t>(kMaxVersionLength) &&
          std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
 }
 
-// Each part of a mission there and back.
+// Conversion of each part of a mission in both directions.
 
 void write(const Box& domain, proto::Plan::Domain& out) {
   out.set_origin_x_m(domain.origin_m.x());
@@ -122,7 +122,7 @@ Timing read(const proto::Plan::Timing& in) {
           .on_timeout = in.evict_on_timeout() ? OnTimeout::kEvict : OnTimeout::kEndMission};
 }
 
-/// Nothing where the numbers of μ or of the starts do not make a whole.
+/// Nothing if the number of coefficients or starts does not fit.
 std::optional<Mission> read(const proto::Plan& in) {
   Mission mission;
   mission.name = in.name();
@@ -179,7 +179,7 @@ std::vector<std::byte> encode_plan(const Mission& mission) {
   plan.set_wait_for_logger(mission.wait_for_logger);
 
   std::vector<std::byte> bytes(plan.ByteSizeLong());
-  // The limits of a mission keep it well below.
+  // within_limits() keeps it below this size.
   ERGOCAST_REQUIRE(bytes.size() <= kMaxPlanBytes);
   ERGOCAST_REQUIRE(plan.SerializeToArray(bytes.data(), static_cast<int>(bytes.size())));
   return bytes;
@@ -189,7 +189,7 @@ std::variant<Mission, std::string> decode_plan(std::span<const std::byte> bytes)
   if (bytes.size() > kMaxPlanBytes) return unreadable_plan();
   proto::Plan plan;
   const bool whole = plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
-  // What follows the version may be written in a way that only that version knows.
+  // Only the version itself can read the fields after its number.
   if (!is_version(plan.version())) return unreadable_plan();
   if (plan.version() != ERGOCAST_VERSION) {
     return "the mission's plan is of version " + plan.version() +
@@ -197,7 +197,8 @@ std::variant<Mission, std::string> decode_plan(std::span<const std::byte> bytes)
   }
   std::optional<Mission> mission = read(plan);
   if (!whole || !mission || !within_limits(*mission)) return broken_plan();
-  // A plan has one spelling: what leaves something out, or adds something, was not encoded.
+  // A mission has exactly one encoding: bytes that differ from it were not written by
+  // encode_plan().
   if (!std::ranges::equal(encode_plan(*mission), bytes)) return broken_plan();
   return std::move(*mission);
 } catch (...) {

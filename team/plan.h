@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The compiled plan: a Mission as bytes, from whoever starts it to everybody who takes part.
+// The compiled plan: a Mission as bytes, which the coordinator distributes to all participants.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@
 namespace ergocast {
 
 /// The plan of `mission`, which names this program's version. Equal missions give equal bytes.
-/// @pre within_limits(mission), core/mission_limits.h: else nobody takes the plan.
+/// @pre within_limits(mission), core/mission_limits.h: otherwise no receiver accepts the plan.
 std::vector<std::byte> encode_plan(const Mission& mission);
 
-/// The mission of a plan, bit for bit, within its limits. A sentence for bytes that are no plan,
-/// are another version's, break a limit, or are not what encode_plan() writes of their mission:
-/// plans come from the network.
+/// The mission of a plan, bit for bit, within its limits. Plans come from the network: an error for
+/// bytes that are no plan, are of another version, break a limit, or differ from the encoding of
+/// their mission.
 std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept;
 
-/// 32 hex digits that name a plan: XXH3-128 of its bytes.
+/// 32 hex digits that identify a plan: XXH3-128 of its bytes.
 std::string plan_hash(std::span<const std::byte> plan);
 
 }  // namespace ergocast

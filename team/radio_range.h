@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which agents hear each other in a simulated world with a limited radio range.
+// Decides which agents receive each other in a simulated world with a limited radio range.
 #pragma once
 
 #include <map>
@@ -9,8 +9,8 @@
 
 namespace ergocast {
 
-/// Positions by the newest world state, and the rule that follows: b hears what a transmits while
-/// ‖x_a − x_b‖ ≤ range. All agents hear a process without a known position.
+/// Positions from the newest world state, and the range rule: b receives what a transmits while
+/// ‖x_a − x_b‖ ≤ range. All agents receive a process without a known position.
 class RadioRange {
  public:
   /// @param range_m  0: unlimited

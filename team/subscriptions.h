@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which role hears which messages: the one table that processes and the laboratory use.
+// The subscriptions of each role to messages: the one table that processes and the laboratory use.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ template <class... Ms>
 inline constexpr MessageTypes kTypes = types_of<Ms...>();
 inline constexpr MessageTypes kEveryType = (MessageTypes{1} << kMessageTypeCount) - 1;
 
-/// The messages that one role hears, by bus.
+/// The messages that one role receives, by bus.
 using Subscriptions = std::array<MessageTypes, kBusCount>;
 using SubscriptionTable = std::array<Subscriptions, kRoleCount>;
 
@@ -65,7 +65,8 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);
   hears(Role::kLauncher,    Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, Stop>);
-  // A replayed event log has the messages of all buses on the first: LCM's player knows one URL.
+  // A replayed event log has the messages of all buses on the first, because LCM's player knows one
+  // URL.
   hears(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
   hears(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState>);
   hears(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);

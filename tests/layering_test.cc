@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads every #include of the tree and holds it against the one table of who may know whom.
+// Reads every #include of the tree and compares it with the one table of allowed dependencies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 namespace ergocast {
 namespace {
 
-// What lies outside the tree, by what it lets a file do. The standard library's harmless part is
-// open to all; so is Eigen.
+// Headers outside the tree, by the capability they give. The harmless part of the standard library
+// and Eigen are allowed everywhere.
 enum class Outside {
-  kProtobuf,     // messages that people write
+  kProtobuf,     // the scenario's messages
   kPlanMessage,  // the plan's message, and the small part of Protobuf that it needs
   kLcm,          // the network
   kLcmTypes,     // lcm-gen's structs
@@ -34,7 +34,7 @@ enum class Outside {
 };
 using enum Outside;
 
-/// Who may include what: a folder, or one file where it differs from its folder.
+/// The allowed includes of a folder, or of one file that differs from its folder.
 struct Rule {
   std::string_view who;
   std::set<std::string_view> folders;
@@ -52,7 +52,7 @@ const std::vector<Rule> kRules = {
     {"runtime",
      {"text", "core", "team", "lcmtypes", "runtime"},
      {kLcm, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
-    // The participants: they know what they share, and not each other.
+    // The participants: they know the shared parts, but not each other.
     {"agent", {"core", "team", "agent"}, {}},
     {"coordinator", {"core", "team", "coordinator"}, {}},
     {"sim", {"core", "team", "sim"}, {}},
@@ -75,7 +75,7 @@ const std::vector<Rule> kRules = {
      {"text", "core", "target", "team", "lcmtypes", "scenario", "runtime", "logger", "report", "lab",
       "lab/studies", "ops/doctor", "ops/deploy", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
-    // What a user copies: a participant with its main beside it.
+    // The example to copy: a participant with its main.
     {"examples/driver", {"core", "team", "examples/driver"}, {}},
     {"examples/driver/main.cc", {"examples/driver", "runtime"}, {kLog}},
 };
@@ -83,7 +83,7 @@ const std::vector<Rule> kRules = {
 /// Folders with code that may include everything.
 const std::set<std::string_view> kFree = {"tests"};
 
-/// Names of headers by kind; a star at an end stands for anything.
+/// Names of headers by kind; a star at an end matches anything.
 struct Kind {
   Outside outside;
   std::vector<std::string_view> names;
@@ -107,7 +107,7 @@ const std::vector<Kind> kKinds = {
       "linux/*", "fcntl.h", "ifaddrs.h", "poll.h", "pthread.h", "signal.h", "spawn.h", "time.h", "unistd.h"}},
 };
 
-// Reading the time or rolling dice needs no #include of its own: <chrono> is open to all.
+// The time or a random device needs no special #include: <chrono> is allowed everywhere.
 const std::string_view kClocksAndDice[] = {
     "_clock::now",   "clock_gettime", "gettimeofday", "std::time(",
     "random_device", "std::rand(",    "sleep_for",    "sleep_until"};
@@ -127,7 +127,7 @@ const Rule* rule_of(const std::string& path) {
   return found;
 }
 
-/// The folder of the table in which `header` lies; its first folder if the table has none.
+/// The folder of the table that contains `header`; its first folder if the table has none.
 std::string_view folder_of(std::string_view header) {
   std::string_view found = header.substr(0, header.find('/'));
   for (const Rule& rule : kRules) {
@@ -154,7 +154,7 @@ std::string objection(const Rule& rule, const std::string& header, bool quoted) 
   return harmless ? "" : "<" + header + "> has no entry in this table";
 }
 
-/// What a line includes and whether in quotes; an empty name if it is no #include.
+/// The name that a line includes and whether it is in quotes; an empty name if it is no #include.
 std::pair<std::string, bool> include_in(std::string line) {
   std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
   for (const auto& [start, end] : {std::pair("#include\"", '"'), std::pair("#include<", '>')}) {
@@ -245,7 +245,7 @@ TEST(Sources, BeginWithTheirLicenceAndASentenceOfTheirOwn) {
   EXPECT_EQ(twice, sentences.end()) << *twice;
 }
 
-/// What the checker says of one line in a file.
+/// The checker's report on one line in a file.
 std::string said_of(const std::string& path, const std::string& line) {
   const auto found = violations_in(path, "// first\n" + line + "\n");
   return found.empty() ? "" : found.front();

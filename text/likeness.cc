@@ -29,7 +29,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& names
   std::string best;
   int least = most_typos_in(word) + 1;
   for (const std::string& name : names) {
-    // What somebody began to type is as good as one slip.
+    // The beginning of a name counts as one slip.
     const int distance =
         word.size() >= 3 && name.starts_with(word) ? 1 : edit_distance(word, name);
     if (distance >= least) continue;

@@ -7,7 +7,8 @@
 namespace ergocast {
 namespace {
 
-/// Bytes of the character that `text` begins with; 0 if it is none, or one that steers a terminal.
+/// The length of the character that `text` begins with; 0 if it is malformed or controls a
+/// terminal.
 std::size_t harmless_bytes(std::string_view text) {
   const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text of files and strangers as a terminal may have it.
+// Escapes text of files and other hosts for a terminal.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace ergocast {
 
-/// `text` without what a terminal would obey: control characters other than line break and tab, and
-/// bytes that are no UTF-8, stand there as \x1b.
+/// `text` without terminal controls: control characters other than line break and tab, and bytes
+/// that are not UTF-8, appear as \x1b.
 std::string printable(std::string_view text);
 
 }  // namespace ergocast

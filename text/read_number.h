@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in texts that somebody else wrote.
+// Strict parsing of numbers in text from outside the program.
 #pragma once
 
 #include <charconv>
@@ -10,9 +10,9 @@
 
 namespace ergocast {
 
-/// The number that `text` is from its first character to its last; nothing where it is anything else
-/// or not in the range of `Number`. Without a sign for unsigned numbers, without '+' for any, and the
-/// same in every locale. `base` is for whole numbers: std::from_chars says what it may be.
+/// The number that the whole of `text` represents; nothing if it has other characters or the number
+/// is outside the range of `Number`. No sign for unsigned numbers, no '+' at all; independent of
+/// the locale. `base` is for whole numbers, as in std::from_chars.
 template <class Number, std::same_as<int>... Base>
 std::optional<Number> read_number(std::string_view text, Base... base) {
   Number number{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a file that a person names can be read to its end.
+// Checks whether a file named by a person can be read to its end.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace ergocast {
 
-/// Why not, without the name: a pipe, a device or a socket would hold the program up, or never end.
-/// A file that does not exist is no such problem: opening it says so.
+/// Why not, without the name: a pipe, a device or a socket would block the program or never end. A
+/// missing file is no problem here: opening it reports the error.
 std::optional<std::string> why_not_regular(const std::filesystem::path& file);
 
 }  // namespace ergocast

@@ -8,7 +8,7 @@
 namespace ergocast {
 
 std::string shortest(double value) {
-  // 100000 rather than 1e+05, where neither is hard to read.
+  // 100000 instead of 1e+05, where both are easy to read.
   const bool plain = value == 0 || (std::abs(value) >= 1e-4 && std::abs(value) < 1e10);
   const auto format = plain ? std::chars_format::fixed : std::chars_format::general;
   char text[64];

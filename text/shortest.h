@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers as people write them.
+// Formats numbers as people write them.
 #pragma once
 
 #include <string>

@@ -7,7 +7,8 @@
 namespace ergocast {
 namespace {
 
-/// A string as YAML and Compose read it back, whatever it holds; $ begins a variable there.
+/// Quotes a string so that YAML and Compose read it back unchanged; Compose replaces $ by
+/// variables.
 std::string yaml(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -33,7 +34,7 @@ std::string list(const std::vector<std::string>& words) {
 constexpr const char* kTeamKey = "./mission.key";
 constexpr const char* kCoordinatorKey = "./mission.coordinator.key";
 
-/// Unlike Compose's short form, this one makes no folder of a file that is missing.
+/// Unlike Compose's short form, this form does not create a folder for a missing file.
 std::string mount(const std::string& source, const std::string& target) {
   return "      - type: bind\n        source: " + yaml(source) + "\n        target: " + target +
          "\n        read_only: true\n";
@@ -47,13 +48,13 @@ std::string service(const std::string& name, const char* restart,
          (volumes.empty() ? "" : "    volumes:\n" + volumes);
 }
 
-/// Codes 2 (bad input) and 4 (the mission failed) become 0: a restart mends neither.
+/// Exit codes 2 (bad input) and 4 (the mission failed) become 0, because a restart repairs neither.
 std::vector<std::string> unless_in_vain(std::vector<std::string> command) {
   command.insert(command.begin(), {"tini", "-e", "2", "-e", "4", "--"});
   return command;
 }
 
-/// What has to lie beside the file on its host, and whose it is there.
+/// Comments that name the files needed beside the Compose file, and their owner.
 std::string key_head(const DeployHost& host, const DeployMission& mission) {
   if (mission.keys.empty()) return "";
   const std::string name = mission.keys.string();
@@ -82,7 +83,7 @@ std::string head(const DeployHost& host, const DeployMission& mission, const std
   return text + key_head(host, mission);
 }
 
-/// @param alone  there is no other host: the containers have a bridge of their own
+/// @param alone  there is no other host: the containers use a bridge network
 std::string compose_text(const DeployHost& host, const DeployMission& mission, bool alone) {
   std::string text =
       "version: \"3.8\"\n\nx-ergocast: &ergocast\n  image: ergocast\n  environment:\n    "
@@ -95,14 +96,14 @@ std::string compose_text(const DeployHost& host, const DeployMission& mission, b
   if (!alone) text += "  network_mode: host\n";
   text += "\nservices:\n";
   for (const DeployProcess& process : processes_of(host)) {
-    // The image's script: every mission into a folder of its own, owned by whoever owns ./runs.
+    // The image's script writes each mission into a new folder that belongs to the owner of ./runs.
     text += process.name == "logger"
                 ? service("logger", "\"on-failure:5\"", {"record"}, "      - ./runs:/runs\n" + key,
                           "    user: root\n")
                 : service(process.name, "\"on-failure:5\"", unless_in_vain(process.command), key);
   }
   if (host.coordinator) {
-    // One that is started again would begin a second mission.
+    // A restarted coordinator would begin a second mission.
     text += service("coordinator", "\"no\"",
                     {"ergocast-coordinator", "/mission/" + mission.files.front()},
                     mount(mission.folder.string(), "/mission") +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which computer does what in a mission on several of them, and the texts that make them do it.
-// Nothing here opens a file or starts a process; names and paths are not trusted.
+// The assignment of processes to computers, and the files that start a mission on them. This code
+// opens no file and starts no process. It does not trust names and paths.
 #pragma once
 
 #include <filesystem>
@@ -15,23 +15,23 @@
 namespace ergocast {
 
 struct DeployHost {
-  std::string name;     ///< as the hosts file calls it; a safe file name
+  std::string name;     ///< from the hosts file; a safe file name
   std::string address;  ///< "user@computer" for ssh; the name, if the file gives none
   bool coordinator = false, logger = false, sim = false;
-  bool driver = false;      ///< something that is not ours takes the world's place
+  bool driver = false;      ///< a program of the user takes the world's place
   std::vector<int> agents;  ///< ascending
 };
 
 /// "coordinator, logger, agents 0 1", for people.
 std::string roles_of(const DeployHost& host);
 
-/// Reads a hosts file, one computer a line: `name [user@computer] role…` with the roles
-/// `coordinator`, `logger`, `sim`, `driver`, `agent N…` and `agents=COUNT` (whichever numbers are
-/// free). `#` begins a comment. All problems at once; `file` is what they call it.
+/// Reads a hosts file, one computer in each line: `name [user@computer] role…` with the roles
+/// `coordinator`, `logger`, `sim`, `driver`, `agent N…` and `agents=COUNT` (which takes free
+/// numbers). `#` begins a comment. Returns all problems at once; they name the file as `file`.
 std::variant<std::vector<DeployHost>, std::vector<Problem>> parse_hosts(std::string_view text,
                                                                         const std::string& file);
 
-/// What is to be flown.
+/// The mission to deploy.
 struct DeployMission {
   std::string name;
   std::filesystem::path folder;  ///< whole path of the scenario's folder
@@ -43,8 +43,8 @@ struct DeployMission {
   std::filesystem::path keys;
 };
 
-/// What a sound hosts file lacks for this mission. `file` is what the problems call it.
-/// @param apart  the processes have several networks: hosts or containers
+/// Problems of a valid hosts file with this mission. The problems name the file as `file`.
+/// @param apart  the processes use separate networks: hosts or containers
 std::vector<Problem> problems_of(const std::vector<DeployHost>& hosts, const DeployMission& mission,
                                  const std::string& file, bool apart);
 
@@ -53,7 +53,7 @@ struct DeployProcess {
   std::vector<std::string> command;  ///< program and arguments, without the URL
 };
 
-/// All but the coordinator, in the order in which they are started. Records go into "record".
+/// All processes but the coordinator, in the order of their start. Records go into "record".
 std::vector<DeployProcess> processes_of(const DeployHost& host);
 
 struct TextFile {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splits each line into words with their columns and reports every word that is no host, address
-// or role.
+// Splits each line into words with their columns and reports every word that is no host, address or
+// role.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -20,8 +20,8 @@ bool is_letter_or_digit(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
 
-/// Letters, digits, dots, hyphens and underscores, beginning with one of the first two: never an
-/// option of ssh, never a path, nothing that a shell would read.
+/// Letters, digits, dots, hyphens and underscores, beginning with a letter or digit. Such a name is
+/// no option of ssh, no path, and nothing that a shell would interpret.
 bool is_plain(std::string_view text) {
   return !text.empty() && text.size() <= kLongestName && is_letter_or_digit(text.front()) &&
          std::all_of(text.begin(), text.end(), [](char c) {
@@ -153,7 +153,7 @@ class HostsReader {
     return next;
   }
 
-  /// Gives the agents that are only counted the lowest free numbers, in the order of the file.
+  /// Gives agents without a number the lowest free numbers, in the order of the file.
   void number_agents() {
     int id = 0;
     for (std::size_t i = 0; i < hosts_.size(); ++i) {

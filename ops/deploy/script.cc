@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fills marks in script texts with values that are quoted for the shell.
+// Replaces marks in script texts with values that are quoted for the shell.
 #include "ops/deploy/script.h"
 
 #include <algorithm>

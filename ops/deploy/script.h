@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the shell scripts of `ergocast deploy` have in common.
+// The common parts of the shell scripts of `ergocast deploy`.
 #pragma once
 
 #include "ops/deploy/deploy.h"
 
 namespace ergocast {
 
-/// `text` as one word of a shell, whatever it holds; quoted only where it has to be.
+/// Any `text` as one word of a shell; quoted only if necessary.
 std::string shell_word(std::string_view text);
 
 /// `head` with the script's name for %SCRIPT% and the multicast group for %GROUP%.

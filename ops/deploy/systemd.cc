@@ -85,7 +85,7 @@ esac
 [ "$failed" = no ]
 )sh";
 
-/// The services of a host but the coordinator's.
+/// The services of a host, except the coordinator's.
 std::string services_of(const DeployHost& host) {
   std::string services;
   if (host.logger) services += " ergocast-logger";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opens LCM datagrams by hand, sorts them by run, and words what the runs and strangers on the
-// bus mean.
+// Parses LCM datagrams without LCM, groups them by run, and describes the runs and the foreign
+// senders on the bus.
 #include "ops/doctor/bus_listener.h"
 
 #include <poll.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostRuns = 8, kMostNames = 8;
 
-/// The channel and payload of a short LCM datagram; an empty channel if it is none.
+/// The channel and payload of a short LCM datagram; an empty channel if it is no LCM datagram.
 std::pair<std::string, std::span<const std::byte>> opened(std::span<const std::byte> datagram) {
   constexpr std::size_t kHeaderBytes = 8;  // "LC02" and a sequence number
   constexpr std::size_t kMaxChannelBytes = 63;

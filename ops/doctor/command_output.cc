@@ -10,7 +10,7 @@ namespace ergocast::doctor {
 
 std::string output_of(const std::string& command) {
   const std::string line = "PATH=$PATH:/usr/sbin:/sbin; " + command;
-  // A shell is what is wanted here, and no command has a part from elsewhere.
+  // The command needs a shell; it is constant, without any input.
   const std::unique_ptr<FILE, int (*)(FILE*)> output(
       popen(line.c_str(), "r"), pclose);  // NOLINT(cert-env33-c)
   std::string text;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a command of the system's says.
+// Runs a command of the operating system and returns its output.
 #pragma once
 
 #include <string>
 
 namespace ergocast::doctor {
 
-/// Everything that `command`, a line for the shell, writes; nothing if it cannot be run. Programs of
-/// the system administrator's are found, too.
+/// Everything that `command`, a line for the shell, prints; nothing if it cannot be run. Also finds
+/// programs in the folders of the system administrator.
 std::string output_of(const std::string& command);
 
 }  // namespace ergocast::doctor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs each check and hands on what later checks need: the route, the failure of LCM, a free
+// Runs each check and passes results that later checks need: the route, the failure of LCM, a free
 // port.
 #include "ops/doctor/examination.h"
 
@@ -22,14 +22,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kListening = 1s;  // agents say how they are every 0.5 s
+constexpr auto kListening = 1s;  // agents send a status every 0.5 s
 
 std::optional<int> some_free_base_port() {
   const auto free = PortReservation::take(random_identity());
   return free ? std::optional(free->base_port()) : std::nullopt;
 }
 
-/// Ports and swarm bus.
+/// Checks ports and swarm bus.
 void examine_bus(const LcmUrl& url, const Seal& seal, Examination& all) {
   const auto everybody = holders("/proc", url);
   std::string refusal;
@@ -41,7 +41,7 @@ void examine_bus(const LcmUrl& url, const Seal& seal, Examination& all) {
   all.findings.push_back(ports_finding(url, everybody, refusal, free));
   if (!all.lcm_usable || !refusal.empty()) return;
   all.findings.push_back(overheard.finding(url, free));
-  // Another `ergocast` on the port is a test like this one.
+  // Another `ergocast` on the port is a doctor like this one.
   const bool held = std::any_of(everybody.begin(), everybody.end(), [&url](const Holder& one) {
     return one.port == url.base_port && one.program != "ergocast";
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All checks of this host, in order. Changes nothing on it.
+// Runs all checks of this host, in order. Changes nothing on it.
 #pragma once
 
 #include "ops/doctor/finding.h"
@@ -11,12 +11,12 @@ namespace ergocast::doctor {
 struct Examination {
   Findings findings;
   bool lcm_usable = false;
-  /// Why no probes may be sent to the swarm's port: somebody else is there; empty: nobody.
+  /// Why no probes may be sent to the swarm's port: another program uses it; empty: it is free.
   std::string port_taken;
 };
 
 /// @param seal  the team's, if it has a key
-/// @param several_hosts  whether the team is meant to be on more than this one
+/// @param several_hosts  whether the team uses other hosts, too
 Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts);
 
 }  // namespace ergocast::doctor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one check of the machine says, and how bad it is.
+// The result of one check of the machine, and its severity.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@ namespace ergocast::doctor {
 
 enum class Level {
   kOk,
-  kNote,     ///< good to know; nothing has to be done
-  kWarning,  ///< works, but loses messages or confuses somebody
-  kProblem,  ///< agents will not hear each other
+  kNote,     ///< information; no action is needed
+  kWarning,  ///< works, but loses messages or disturbs another program
+  kProblem,  ///< agents will not receive each other's messages
 };
 const char* to_string(Level level);
 
 struct Finding {
-  std::string check;  ///< what was looked at, in a word or two
+  std::string check;  ///< the name of the check, in a word or two
   Level level = Level::kOk;
   std::string found;   ///< one line
   std::string why;     ///< why it matters; empty if all is well
-  std::string remedy;  ///< commands to copy, one a line; empty if there is nothing to mend
+  std::string remedy;  ///< commands to copy, one a line; empty if nothing needs repair
 };
 using Findings = std::vector<Finding>;
 
@@ -28,11 +28,11 @@ Level worst_of(const Findings& findings);
 
 /// "eth0, eth1".
 std::string joined(const std::vector<std::string>& words, const char* separator = ", ");
-/// `value` with so many digits after the point.
+/// `value` with `digits` digits after the point.
 std::string fixed(double value, int digits);
 /// "1 note", "2 notes".
 std::string counted(long count, const char* what);
-/// Without what could steer a terminal, for names that others chose.
+/// `text` without control characters for the terminal: other hosts choose these names.
 std::string printable(std::string text);
 
 }  // namespace ergocast::doctor

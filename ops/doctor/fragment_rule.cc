@@ -29,7 +29,7 @@ Chain chain_of(const json& entry, const char* name) {
           entry.at(name).get<std::string>()};
 }
 
-/// Chains that what arrives for this host comes through.
+/// The chains that packets to this host pass.
 std::set<Chain> input_chains(const json& ruleset) {
   std::set<Chain> chains;
   for (const json& entry : ruleset.at("nftables")) {
@@ -51,7 +51,7 @@ bool has_port(const json& right, int port) {
                      [port](const json& one) { return has_port(one, port); });
 }
 
-/// Whether nothing in the rule but what is named here acts on a packet.
+/// Whether the rule has no statements other than `statements`.
 bool consists_of(const json& rule, const std::set<std::string>& statements) {
   const json& parts = rule.at("expr");
   return std::all_of(parts.begin(), parts.end(), [&](const json& part) {
@@ -59,7 +59,7 @@ bool consists_of(const json& rule, const std::set<std::string>& statements) {
   });
 }
 
-/// Whether the rule drops every fragment of LCM's that comes to `port`.
+/// Whether the rule drops every fragment of LCM's that is sent to `port`.
 bool drops_fragments(const json& rule, int port) {
   if (!consists_of(rule, {"match", "counter", "drop"})) return false;
   bool fragments = false, drops = false, here = true;
@@ -75,14 +75,13 @@ bool drops_fragments(const json& rule, int port) {
                payload.value("protocol", "") == "udp") {
       here = here && has_port(match.at("right"), port);
     } else {
-      here = false;  // drops less than all
+      here = false;  // drops only some of them
     }
   }
   return fragments && drops && here;
 }
 
-/// Whether fragments to `port` are dropped in one of the chains before another rule there may let
-/// them through.
+/// Whether one of the chains drops fragments to `port` before any other rule of it can accept them.
 bool is_covered(const json& ruleset, std::set<Chain> chains, int port) {
   for (const json& entry : ruleset.at("nftables")) {
     if (!entry.contains("rule")) continue;
@@ -106,7 +105,7 @@ int covered_ports(const json& ruleset, const LcmUrl& url) {
   return covered;
 }
 
-/// The file's own ports are LCM's default and those that runs choose for themselves.
+/// The shipped file covers LCM's default ports and those that runs choose for themselves.
 std::string command_that_loads(const LcmUrl& url, const std::filesystem::path& rules) {
   const bool named = url.base_port == LcmUrl{}.base_port ||
                      (url.base_port >= kFirstBasePort && url.base_port <= kLastBasePort);

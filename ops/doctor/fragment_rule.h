@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the kernel drops LCM's fragments before they reach anybody at our ports.
+// Checks whether the kernel drops LCM's fragments before they reach our sockets.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace ergocast::doctor {
 
-/// What `nft -j list ruleset` says; nothing if this user may not ask, or there is no nft.
+/// The output of `nft -j list ruleset`; nothing if this user may not ask, or nft is missing.
 std::optional<std::string> nft_ruleset();
 
 /// @param ruleset  JSON, as nft writes it

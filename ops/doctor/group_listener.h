@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A socket that listens to a group beside LCM's.
+// A socket that receives the datagrams of a multicast group, in addition to LCM's.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace ergocast::doctor {
 
-/// Hears what is sent to the group and port, and no other group's; shares the port as LCM does.
-/// Its fd() is valid even if `error` says why it hears nothing.
+/// Receives datagrams to this group and port only; shares the port as LCM does. Its fd() is valid
+/// even if `error` tells why it receives nothing.
 Socket group_listener(const std::string& group, int port, std::string& error);
 
 }  // namespace ergocast::doctor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads settings below /proc and /sys, compares each with what our datagrams need, and words the
-// commands.
+// Reads settings below /proc and /sys, compares each with the needs of our datagrams, and composes
+// the commands.
 #include "ops/doctor/kernel_limits.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace ergocast::doctor {
 namespace {
 
 constexpr int kRecommendedBytes = 4194304;
-/// What one of our datagrams of 900 to 1250 bytes takes of a receive buffer: at the default of
-/// 212992 bytes, 92 fit (Linux 6, x86-64).
+/// The space of one of our datagrams of 900 to 1250 bytes in a receive buffer: the default of
+/// 212992 bytes holds 92 (Linux 6, x86-64).
 constexpr int kBytesPerDatagram = 2304;
 
 std::optional<long> number_in(const std::filesystem::path& file) {
@@ -47,7 +47,7 @@ Finding receive_buffer_finding(const LcmUrl& url, const ReceiveBuffer& buffer) {
   const std::string holds =
       "holds about " + std::to_string(buffer.granted_bytes / kBytesPerDatagram) + " datagrams";
   const long asked = url.receive_buffer_bytes;
-  // The kernel grants twice what is asked for, to cover its own bookkeeping.
+  // The kernel grants twice the requested size, to cover its own bookkeeping.
   if (asked > 0 && buffer.granted_bytes < 2 * asked) {
     return {"receive buffer", Level::kWarning,
             "the URL asks for " + std::to_string(asked) + " bytes, the kernel grants " +
@@ -89,7 +89,7 @@ Finding reverse_path_finding(const std::filesystem::path& proc, const std::strin
   const auto setting = [&proc](const std::string& name) {
     return number_in(proc / "sys/net/ipv4/conf" / name / "rp_filter").value_or(0);
   };
-  // The kernel takes the larger of the two; 1 is strict, 2 is loose.
+  // The kernel uses the larger of the two; 1 is strict, 2 is loose.
   const long value = std::max(setting("all"), setting(interface));
   const std::string found = interface + ": rp_filter=" + std::to_string(value);
   if (value != 1) return {"source check", Level::kOk, found, "", ""};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sends a probe in each period and spends the rest of the period reading the probes of others.
+// Sends a probe in each period and spends the rest of the period reading the probes of other hosts.
 #include "ops/doctor/peer_exchange.h"
 
 #include <arpa/inet.h>
@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 
 constexpr std::chrono::nanoseconds kPeriod = std::chrono::nanoseconds(1s) / kProbesPerSecond;
 
-/// Takes in what has arrived, at most so much that a flood does not keep us from sending.
+/// Reads the datagrams that have arrived; a limit lets us send also during a flood.
 void hear(const Socket& listener, PeerLedger& ledger) {
   std::array<std::byte, 2048> buffer;
   for (int i = 0; i < 256; ++i) {
@@ -72,7 +72,7 @@ PeerTest try_peers(const LcmUrl& url, const Seal& seal, std::chrono::seconds dur
     }
     hear_until(start + i * kPeriod, listener, ledger);
   }
-  // A single failure is a loss like any other.
+  // A single failure counts as an ordinary loss.
   if (unsent == count) test.error = problem;
   test.peers = ledger.peers();
   test.only_heard_by_others = ledger.only_heard_by_others();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sends probes, listens for others', and says who hears whom.
+// Exchanges probes with other hosts and reports which hosts receive which.
 #pragma once
 
 #include <chrono>
@@ -17,13 +17,13 @@ struct PeerTest {
   std::vector<Peer> peers;
   int only_heard_by_others = 0;
   std::uint32_t sent = 0;
-  std::string error;  ///< why it could not be done; empty: it was
+  std::string error;  ///< why the test failed; empty: it succeeded
 };
 
-/// For so long, with kProbesPerSecond. @pre at most kMaxPeerSeconds
+/// Sends kProbesPerSecond for `duration`. @pre at most kMaxPeerSeconds
 PeerTest try_peers(const LcmUrl& url, const Seal& seal, std::chrono::seconds duration);
 
-/// One finding for each peer, or one that nobody was heard.
+/// One finding for each peer, or one if no peer was received.
 /// @param version  ours
 /// @param key  the fingerprint of ours
 Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::string& version,

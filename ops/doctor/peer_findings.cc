@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of the hosts that were heard, and of those that were not.
+// Describes the peers that this host received, and those that it did not.
 #include <algorithm>
 
 #include "ops/doctor/peer_exchange.h"
@@ -8,7 +8,7 @@
 namespace ergocast::doctor {
 namespace {
 
-/// More is lost by chance on no healthy network.
+/// A healthy network loses less.
 constexpr double kMuchLost_percent = 1.0;
 constexpr double kAlmostAll_percent = 90.0;
 

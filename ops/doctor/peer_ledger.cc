@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Who is silent for so long has ended; a longer hold would only blur the round trip.
+/// A peer that is silent for so long has ended; a longer hold would make the round trip inexact.
 constexpr auto kForgotten = 2s;
 constexpr std::size_t kMostRumours = 4 * kMaxPeers;
 
@@ -47,7 +47,7 @@ Probe PeerLedger::next(Instant now) {
 }
 
 void PeerLedger::take(const Probe& probe, const std::string& address, Instant now) {
-  if (probe.nonce == nonce_) return;  // our own, looped back
+  if (probe.nonce == nonce_) return;  // our own, looped back by multicast
   if (!rows_.contains(probe.nonce) && rows_.size() == kMaxPeers) return;
   Row& row = rows_[probe.nonce];
   row.peer.host = probe.host;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who was heard, how well, and by whom this host is heard. No socket and no clock.
+// Records the peers that this host receives, with their losses in both directions. No socket and no
+// clock.
 #pragma once
 
 #include <map>
@@ -22,16 +23,16 @@ struct Loss {
   static double percent(std::uint32_t expected, std::uint32_t heard);
 };
 
-/// One other host, or rather one test on it.
+/// One test on another host; a host may run several.
 struct Peer {
   std::string host, version, address;
   Loss from_it;
-  std::optional<Loss> to_it;          ///< as it says; nothing if it never says that it hears us
+  std::optional<Loss> to_it;          ///< as it reports; nothing if it never reports to receive us
   std::vector<double> round_trips_s;  ///< ascending
   std::int64_t duplicates = 0;
   std::uint64_t key = 0;  ///< the fingerprint of its mission key; 0 without one
 
-  /// Whether it was heard for long enough (half a second) to say whom it hears.
+  /// Whether it sent for long enough (half a second) to report what it receives.
   bool judged() const { return from_it.heard.all() >= kProbesPerSecond / 2; }
   /// @pre there are round trips
   double round_trip_s(double quantile) const;
@@ -42,14 +43,14 @@ class PeerLedger {
   /// @param key  the fingerprint of ours
   PeerLedger(std::uint64_t nonce, std::string host, std::string version, std::uint64_t key = 0);
 
-  /// The next probe to send. @pre at most kMaxProbes times
+  /// The next probe to send. @pre called at most kMaxProbes times
   Probe next(Instant now);
   void take(const Probe& probe, const std::string& address, Instant now);
 
   std::uint32_t sent() const { return static_cast<std::uint32_t>(sent_at_.size()); }
-  /// By host.
+  /// Sorted by host.
   std::vector<Peer> peers() const;
-  /// Tests that others went on hearing for a second and that this host never heard.
+  /// Tests that another host received for at least a second and this host never received.
   int only_heard_by_others() const;
 
  private:
@@ -58,7 +59,7 @@ class PeerLedger {
     std::vector<bool> seen;
     std::uint32_t first = 0, last = 0;
     Instant last_at{};
-    std::optional<std::uint32_t> last_timed;  // our probe of the newest round trip
+    std::optional<std::uint32_t> last_timed;  // our probe in the newest round trip
   };
   void count(const Probe& probe, Instant now, Row& row);
   void take_echo(const Echo& echo, Instant now, Row& row);
@@ -71,7 +72,7 @@ class PeerLedger {
   struct Rumour {
     std::uint32_t first = 0, last = 0;
   };
-  std::map<std::uint64_t, Rumour> rumours_;  // by nonce, what others hear
+  std::map<std::uint64_t, Rumour> rumours_;  // by nonce, the peers that other hosts report
 };
 
 }  // namespace ergocast::doctor

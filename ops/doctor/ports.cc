@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the inodes of the sockets at our ports, and then the processes whose descriptors name
+// Finds the inodes of the sockets at our ports, and then the processes whose descriptors link to
 // them.
 #include "ops/doctor/ports.h"
 
@@ -41,7 +41,8 @@ std::string program_of(const fs::path& process) {
   return printable(comm.substr(0, comm.find('\n')));
 }
 
-/// Adds whoever of `process` holds one of `wanted`, and takes note of which were found.
+/// Adds `process` once for each port if it holds one of `wanted`, and records the inodes in
+/// `found`.
 void look_into(const fs::path& process, long pid, const std::map<unsigned long, int>& wanted,
                std::set<unsigned long>& found, std::vector<Holder>& holders) {
   std::set<int> ports;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who has the three ports of a run open on this host.
+// Finds the processes of this host that have one of a run's three ports open.
 #pragma once
 
 #include <filesystem>
@@ -15,16 +15,16 @@ namespace ergocast::doctor {
 
 struct Holder {
   int port = 0;
-  std::string program;  ///< empty: somebody else's process, whose name this user may not see
+  std::string program;  ///< empty: another user's process, whose name is not readable
   long pid = 0;
 };
 
-/// Who holds one of the URL's ports; one entry for each process and port.
+/// The processes that hold one of the URL's ports; one entry for each process and port.
 /// @param proc  /proc, or a folder like it
 std::vector<Holder> holders(const std::filesystem::path& proc, const LcmUrl& url);
 
-/// @param refusal    why the base port cannot be opened beside them, if so
-/// @param free_port  a base port that would be free, if one is known
+/// @param refusal    why the base port cannot be opened beside these processes; empty if it can
+/// @param free_port  a free base port, if one is known
 Finding ports_finding(const LcmUrl& url, const std::vector<Holder>& holders,
                       const std::string& refusal, std::optional<int> free_port);
 

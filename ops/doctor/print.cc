@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sorts findings by level, wraps their text to the width of the terminal, and writes the same as
-// JSON.
+// Sorts findings by level, wraps their text to the width of the terminal, and writes them as JSON.
 #include "ops/doctor/print.h"
 
 #include <algorithm>
@@ -25,7 +24,7 @@ std::string coloured(const std::string& text, Level level, const Look& look) {
   return colour + text + "\033[0m";
 }
 
-/// Each line behind `indent` spaces, broken between words.
+/// Each line after `indent` spaces, broken between words.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns) {
   std::string lines, line;
   std::istringstream words(text);

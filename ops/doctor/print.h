@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Findings and peers for people and for programs.
+// Findings and peers as text for people and as JSON for programs.
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ struct Look {
   int columns = 100;  ///< width at which explanations are wrapped
 };
 
-/// The worst first.
+/// The findings as text, the worst first.
 std::string text_of(const LcmUrl& url, Findings findings, const Look& look);
-/// A table, one line a peer; empty without peers.
+/// A table with one line for each peer; empty without peers.
 std::string text_of(const std::vector<Peer>& peers);
 
 /// {"url", "host", "findings": […], "peers": […]}.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes fixed fields in big-endian order and accepts exactly the bytes that it could have
+// Writes fixed fields in big-endian order and accepts only bytes that this program could have
 // written.
 #include "ops/doctor/probe.h"
 

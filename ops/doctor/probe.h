@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The datagram with which hosts try whether they hear each other.
+// The datagram that hosts exchange to test their connection.
 //
-// It is no LCM message: it goes to the port that the team will use, since a firewall may treat
-// ports differently, but does not begin with LCM's "LC02", so that a program of a team, should
-// one be there after all, throws it away at its first four bytes.
+// A firewall may treat ports differently, so a probe goes to the port that the team will use. It is
+// no LCM message and does not begin with LCM's "LC02": an LCM program on that port discards it
+// after four bytes.
 #pragma once
 
 #include <cstddef>
@@ -19,27 +19,28 @@ inline constexpr int kProbesPerSecond = 20;
 inline constexpr int kMaxPeerSeconds = 600;
 inline constexpr std::uint32_t kMaxProbes = kProbesPerSecond * kMaxPeerSeconds;
 inline constexpr std::size_t kMaxPeers = 24;
-/// Every fourth probe is as long as our longest message under LCM's header: 1280 with IP and UDP.
+/// Every fourth probe is as long as our longest message with LCM's header: 1280 bytes with IP and
+/// UDP.
 inline constexpr std::size_t kLargeProbeBytes = 1252;
 inline constexpr bool is_large(std::uint32_t sequence) { return sequence % 4 == 3; }
 
-/// How many probes of a kind there are from `first` to `last`.
+/// The number of small and large probes from `first` to `last`.
 struct ProbeCount {
   std::uint32_t small = 0, large = 0;
   std::uint32_t all() const { return small + large; }
 };
 ProbeCount probes_between(std::uint32_t first, std::uint32_t last);
 
-/// What a host has heard of another one.
+/// The probes that a host has received of another one.
 struct Echo {
-  std::uint64_t nonce = 0;            ///< whom it heard
+  std::uint64_t nonce = 0;            ///< the sender of the probes
   std::uint32_t first = 0, last = 0;  ///< sequence numbers
   ProbeCount heard;                   ///< from first to last, each once
-  std::uint64_t held_ns = 0;          ///< from hearing `last` to sending this
+  std::uint64_t held_ns = 0;          ///< from receiving `last` to sending this
 };
 
 struct Probe {
-  std::uint64_t nonce = 0;  ///< of this test on its host
+  std::uint64_t nonce = 0;  ///< names the test that sends it
   std::uint32_t sequence = 0;
   std::string host, version;
   std::vector<Echo> echoes;
@@ -48,7 +49,7 @@ struct Probe {
 
 /// The bytes of `probe`, in `out`. Names are cut at 32 and 16 bytes, echoes at kMaxPeers.
 void write(const Probe& probe, std::vector<std::byte>& out);
-/// The probe in `bytes`, if every size and number in it can be true.
+/// The probe in `bytes`; nothing if a size or number in it is impossible.
 std::optional<Probe> read(std::span<const std::byte> bytes);
 
 }  // namespace ergocast::doctor

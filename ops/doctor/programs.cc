@@ -94,7 +94,7 @@ std::optional<Finding> firewall_finding(std::string_view rules, const std::strin
     }
     const bool drops_input =
         line.find("hook input") != line.npos && line.find("policy drop") != line.npos;
-    if (drops_input && !table.starts_with("ip6 ")) {  // LCM speaks IPv4
+    if (drops_input && !table.starts_with("ip6 ")) {  // LCM uses IPv4 only
       const std::string insert = "nft insert rule " + table + " " + chain;
       return drops(insert + " ip daddr " + group + " accept", insert + " ip protocol igmp accept");
     }

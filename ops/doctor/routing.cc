@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the interface that the route names with those that reach other hosts, and words the
-// `ip` commands.
+// Compares the interface of the route with those that reach other hosts, and composes the `ip`
+// commands.
 #include "ops/doctor/routing.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace ergocast::doctor {
 namespace {
 
-/// One `ip route` command for each interface it could be.
+/// One `ip route` command for each possible interface.
 std::string route_commands(const char* verb, const std::vector<std::string>& names) {
   std::vector<std::string> lines;
   for (const std::string& name : names) {
@@ -78,7 +78,7 @@ Finding route_finding(const LcmUrl& url, const Interface& routed,
 
 Finding interface_finding(const Interface& routed) {
   Finding finding{"interface", Level::kOk, routed.name + " is up", "", ""};
-  // That it is down nobody can see here: the kernel then takes its routes away.
+  // An interface that is down does not occur here: the kernel removes its routes.
   if (!routed.multicast && !routed.loopback) {
     finding = {"interface", Level::kProblem, routed.name + " is not set to multicast",
                "The route to the group names it, but it does not take part in multicast.",
@@ -128,7 +128,7 @@ Finding self_test_finding(const LcmUrl& url, const std::optional<std::string>& f
   if (!failure) {
     return {"self test", Level::kOk, "a datagram to " + url.group + " came back", "", ""};
   }
-  // The first line says what happened, those below it what the other checks say better.
+  // The first line tells what happened. The other checks cover the rest better.
   std::string found = failure->substr(0, failure->find('\n'));
   if (found.starts_with(url.base() + ": ")) found.erase(0, url.base().size() + 2);
   const std::string why = "LCM tests itself in the same way, and no program of Ergocast starts. ";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernel's table of UDP sockets, /proc/net/udp: which ports are taken, and by whom.
+// Parses the kernel's table of UDP sockets, /proc/net/udp: open ports and the inodes of their
+// sockets.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +11,11 @@ namespace ergocast::doctor {
 
 struct UdpSocket {
   int port = 0;
-  unsigned long inode = 0;  ///< by which a process is found to hold it
+  unsigned long inode = 0;  ///< links the socket to the processes that hold it
   bool operator==(const UdpSocket&) const = default;
 };
 
-/// The sockets in such a table, as far as it is well formed.
+/// The sockets in such a table; malformed lines are skipped.
 std::vector<UdpSocket> parse_socket_table(std::string_view table);
 
 }  // namespace ergocast::doctor

@@ -14,7 +14,7 @@ import java.util.function.DoubleToIntFunction;
 final class Axes {
   private static final int MARKS = 5;
 
-  /** What stands along one side: linear, or decades where `low` and `high` are powers of ten. */
+  /** The scale of one side: linear, or decades where `low` and `high` are powers of ten. */
   static final class Scale {
     final String title;
     final double low, high;
@@ -27,14 +27,14 @@ final class Axes {
       this.log = log;
     }
 
-    /** Decades around values above 0. */
+    /** A scale of whole decades that contains `low` and `high`, both above 0. */
     static Scale decades(String title, double low, double high) {
       double first = Math.floor(Math.log10(low));
       double last = Math.max(first + 1, Math.ceil(Math.log10(high)));
       return new Scale(title, Math.pow(10, first), Math.pow(10, last), true);
     }
 
-    /** 0 to 1 along the scale. */
+    /** The position of `value` along the scale, 0 to 1. */
     double position(double value) {
       return log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
     }

@@ -9,7 +9,7 @@ import java.util.regex.Pattern;
 import lcm.lcm.LCM;
 import lcm.spy.ChannelData;
 
-/** Listens to teams: one for each base URL that was asked for, as long as lcm-spy runs. */
+/** Listens to teams while lcm-spy runs: one for each base URL that was requested. */
 final class Buses {
   /** System property with the base URL; without it, the URL that LCM_DEFAULT_URL gives lcm-spy. */
   static final String BASE_URL = "ergocast.url";
@@ -27,7 +27,7 @@ final class Buses {
     if (base != null) return team(base);
     String spied = System.getenv("LCM_DEFAULT_URL");
     if (spied == null || spied.isEmpty()) spied = "udpm://239.255.76.67:7667?ttl=0";
-    // WORLD_STATE is said one port above the base.
+    // WORLD_STATE is sent one port above the base.
     return team(
         above(spied, channel.fingerprint == ergocast.world_state_t.LCM_FINGERPRINT ? -1 : 0));
   }

@@ -7,7 +7,7 @@ import javax.swing.JDesktopPane;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** CONTRIBUTION: the coefficients that target, team and each agent's coverage have. */
+/** CONTRIBUTION: the coefficients of target, team and each agent's coverage. */
 public final class CoefficientsPlugin implements SpyPlugin {
   @Override
   public boolean canHandle(long fingerprint) {

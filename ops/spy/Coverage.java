@@ -6,12 +6,12 @@ import java.util.Map;
 import java.util.TreeMap;
 import java.util.function.IntPredicate;
 
-/** The running sums of everybody heard: of each block the one with most steps, as agents do it. */
+/** The running sums of all agents received: of each block the one with most steps, as agents do. */
 final class Coverage {
   static final int BLOCK = 128;
   private static final int MAX_AUTHORS = 512;
 
-  /** One life of an agent. */
+  /** One incarnation of an agent. */
   private static final class Row {
     final int agent;
     final long[] steps; // by block
@@ -57,7 +57,7 @@ final class Coverage {
     return rows.values().stream().mapToInt(row -> row.agent).distinct().sorted().toArray();
   }
 
-  /** c of some agents together; NaN where nothing was heard. */
+  /** c of the selected agents together; NaN where nothing was received. */
   double[] coefficients(IntPredicate which) {
     double[] sums = new double[modes];
     double[] elapsed = new double[modes];
@@ -72,7 +72,7 @@ final class Coverage {
     return sums;
   }
 
-  /** The time that some agents have covered [s]. */
+  /** The time that the selected agents have covered [s]. */
   double elapsed(IntPredicate which) {
     return rows.values()
         .stream()

@@ -2,8 +2,8 @@
 package ergocast.spy;
 
 /**
- * Points over time, at most CAPACITY of them however long it goes on: when the memory is full,
- * every second one is dropped, and from then on only half as many are kept.
+ * Points over time, at most CAPACITY. When the memory is full, every second point is dropped, and
+ * the distance between later points is doubled.
  */
 final class History {
   static final int CAPACITY = 2048;
@@ -14,7 +14,7 @@ final class History {
   private long ticksBetween = 1;
   private int size;
 
-  /** Keeps the point unless it is not newer than the last, or too close to it in time. */
+  /** Keeps the point if it is newer than the last one and not too close to it in time. */
   void add(long atTick, double atX, double atY) {
     if (size > 0 && atTick < tick[size - 1] + ticksBetween) return;
     if (size == CAPACITY) thin();

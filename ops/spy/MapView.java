@@ -14,7 +14,7 @@ import java.awt.image.BufferedImage;
 import java.util.Arrays;
 import java.util.Map;
 
-/** The target as grey, and on it each agent with the way it came. */
+/** The target in grey, and on it each agent with its track. */
 final class MapView extends Picture {
   private static final int CELLS = 200;
   private static final int LEFT = 72, TOP = 58, RIGHT = 84, BOTTOM = 50; // around the map [pixels]
@@ -74,7 +74,7 @@ final class MapView extends Picture {
     drawnPlan = plan;
   }
 
-  /** As large as it goes with equal scales; a domain too narrow for that fills what there is. */
+  /** The largest axes with equal scales; a very narrow domain fills the available area instead. */
   private Axes axes(Plan plan) {
     int width = Math.max(20, getWidth() - LEFT - RIGHT);
     int height = Math.max(20, getHeight() - TOP - BOTTOM);
@@ -99,7 +99,7 @@ final class MapView extends Picture {
     g.draw(recent);
   }
 
-  /** Points begin to end of an agent's track, both inclusive where there are such. */
+  /** Points begin to end of an agent's track, both inclusive if they exist. */
   private static Path2D path(Axes axes, Team.Agent agent, int begin, int end) {
     Path2D path = new Path2D.Double();
     for (int i = begin; i <= end && i < agent.track.size(); ++i) {

@@ -7,7 +7,7 @@ import java.awt.Rectangle;
 import java.awt.geom.Path2D;
 import java.util.Locale;
 
-/** How far the team's coverage is from the target, over the mission's time. */
+/** The ergodic metric of the team over the mission's time. */
 final class MetricView extends Picture {
   private static final int LEFT = 72, TOP = 58, RIGHT = 24, BOTTOM = 50; // around the plot [pixels]
 
@@ -49,7 +49,7 @@ final class MetricView extends Picture {
     g.draw(curve);
   }
 
-  /** A time axis that grows by steps. */
+  /** The end of the time axis, which grows in steps. */
   private static double nextRound(double elapsed) {
     double end = 10;
     while (end < elapsed) end *= end < 60 ? 2 : 1.5;

@@ -39,7 +39,7 @@ abstract class Picture extends JComponent {
     g.dispose();
   }
 
-  /** A title and a line that explains it, above the area at `x`. */
+  /** A title and an explanation, above the area at `x`. */
   static void headline(Graphics2D g, String title, String note, int x) {
     Font plain = g.getFont();
     g.setFont(plain.deriveFont(Font.BOLD, 14f));

@@ -7,7 +7,7 @@ import java.nio.charset.StandardCharsets;
 import java.util.HashMap;
 import java.util.Map;
 
-/** What a picture needs of a compiled plan, message Plan of team/plan.proto. */
+/** The fields of a compiled plan, message Plan of team/plan.proto, that the pictures need. */
 final class Plan {
   static final int MAX_MODES = 64;
   static final long MAX_TICKS = 100000000;

@@ -12,9 +12,8 @@ import java.util.TreeMap;
 import lcm.lcm.LCMDataInputStream;
 
 /**
- * What one run's messages say, as far as it is drawn. Its methods are called with its lock held.
- * The hash that every message carries is not checked here, so nothing but a picture follows from
- * it.
+ * The messages of one run, as far as they are drawn. Call its methods with its lock held.
+ * The hash of the messages is not checked here, because only a picture depends on it.
  */
 final class Team {
   private static final int MAX_AGENTS = 128;
@@ -23,7 +22,7 @@ final class Team {
   private static final int MAX_PART_BYTES = 1024;
   private static final long SILENCE_NS = 3_000_000_000L;
 
-  /** One agent's way and how well the team does as it sees it. */
+  /** One agent's track and the metric that it reports. */
   static final class Agent {
     final History track = new History();
     double x, y; // newest [m]
@@ -33,18 +32,18 @@ final class Team {
   }
 
   final Map<Integer, Agent> agents = new TreeMap<>();
-  History metric = new History(); // median of the agents' over time [s]
-  Plan plan; // null until it has come
+  History metric = new History(); // median of the agents' values over time [s]
+  Plan plan; // null until it has been received
   Coverage coverage;
-  long tick; // newest heard
-  String status = ""; // the coordinator's words
+  long tick; // newest received
+  String status = ""; // the coordinator's report
 
   private long run;
   private long heardNs;
   private long revision = -1;
   private byte[][] parts = new byte[0][];
 
-  /** Takes in a message; what is none, or of another run while this one goes on, has no effect. */
+  /** Takes in a message; invalid bytes and messages of another active run have no effect. */
   void receive(LCMDataInputStream bytes) {
     try {
       long fingerprint = bytes.readLong();
@@ -60,11 +59,11 @@ final class Team {
         on(new ergocast.contribution_t(in));
       }
     } catch (IOException | RuntimeException notOurs) {
-      // Whatever comes of bytes that are no message ends here: LCM's thread has to go on.
+      // Any error of invalid bytes ends here: LCM's thread must continue.
     }
   }
 
-  /** Refuses large counts: generated decoders make room for as many as a message claims to have. */
+  /** Refuses large counts: generated decoders allocate as many elements as a message claims. */
   private static DataInput bounded(DataInput in) {
     Class<?>[] type = {DataInput.class};
     return (DataInput) Proxy.newProxyInstance(
@@ -140,7 +139,7 @@ final class Team {
     if (isUnderWay(message.header) && agent(message.header.sender) != null) coverage.add(message);
   }
 
-  /** Whether what an agent says of phi^2 is of the last ten seconds. */
+  /** Whether the agent's value of phi^2 is from the last ten seconds. */
   private boolean isCurrent(Agent agent) {
     return agent.metricTick >= 0 && (tick - agent.metricTick) * plan.dt <= 10;
   }
@@ -160,7 +159,7 @@ final class Team {
     return System.nanoTime() - heardNs > SILENCE_NS;
   }
 
-  /** A new run, or a replay's second time, takes the place of one that has become silent. */
+  /** A new run, or a second replay, replaces a run that has become silent. */
   private boolean begins(ergocast.header_t header) {
     if (run != 0 && !isSilent()) return false;
     run = header.run_id;

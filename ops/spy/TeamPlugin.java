@@ -9,9 +9,9 @@ import javax.swing.JPanel;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** WORLD_STATE and TEAM_STATUS: where the team is, where it was, and how well it covers. */
+/** WORLD_STATE and TEAM_STATUS: the positions and tracks of the team, and its ergodic metric. */
 public final class TeamPlugin implements SpyPlugin {
-  /** Listens from lcm-spy's start on where the base URL is known, so that tracks are whole. */
+  /** Listens from lcm-spy's start if the base URL is known, so that tracks are complete. */
   public TeamPlugin() {
     String base = System.getProperty(Buses.BASE_URL);
     if (base != null) Buses.team(base);

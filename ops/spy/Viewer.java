@@ -15,7 +15,7 @@ import javax.swing.SwingUtilities;
 import javax.swing.Timer;
 import lcm.spy.ChannelData;
 
-/** Opens a picture of the team in a window of lcm-spy's and keeps it fresh. */
+/** Opens a picture of the team in a window of lcm-spy and updates it. */
 final class Viewer extends AbstractAction {
   private static final int REFRESH_MS = 250;
 
@@ -48,7 +48,7 @@ final class Viewer extends AbstractAction {
     fill(frame);
     Timer refresh = new Timer(REFRESH_MS, tick -> {
       frame.setTitle(title(team));
-      frame.getContentPane().revalidate(); // the mission may have come, and with it the shape
+      frame.getContentPane().revalidate(); // the mission, and with it the shape, may have arrived
       frame.repaint();
       if (frame.isClosed() || !desktop.isShowing()) ((Timer) tick.getSource()).stop();
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When an agent samples, speaks and answers: the control step, in lockstep and in real time.
+// The control step: when an agent samples, sends and answers, in lockstep and in real time.
 #include <gtest/gtest.h>
 
 #include <algorithm>

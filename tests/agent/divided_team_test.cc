@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a team knows in the end whose members could not all hear each other, or died: everything,
-// once, in its authors' own words.
+// The final coverage of a team whose members were disconnected or died: each member holds
+// everything once, as its authors sent it.
 #include <gtest/gtest.h>
 
 #include "tests/agent/live_team.h"
@@ -30,7 +30,7 @@ Mission realtime(int agents) {
   return mission;
 }
 
-/// The world's ticks [from, until), 0.1 s each; all that the team says.
+/// The world's ticks [from, until), 0.1 s each; returns all messages of the team.
 Outbox fly(LiveTeam& team, int agents, Tick from, Tick until) {
   Outbox said;
   for (Tick tick = from; tick < until; ++tick) {
@@ -70,7 +70,7 @@ TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
     const AgentId other = 2 - end;
     const auto held = team[end].coverage()->steps_held(author_of(other));
     ASSERT_GE(held.value_or(0), 28) << "30 ticks, and two broadcasts are tolerated";
-    // Not something like the other's sums: its sums.
+    // The same sums as the other's, bit for bit.
     const auto words = blocks_of(mission, author_of(other), path_of(other, 0, *held), 0);
     for (int b = 0; b < 2; ++b) {
       EXPECT_EQ(team[end].coverage()->block(author_of(other), b).sums,
@@ -122,7 +122,7 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   team.hear_by([](AgentId a, AgentId b) { return a / 2 == b / 2; });
   fly(team, 4, 0, 20);
   EXPECT_EQ(team[0].coverage()->row_count(), 2u) << "its half";
-  // 3 dies while only 2 has heard of it; then the halves meet.
+  // 3 dies after only 2 has received its blocks; then the halves meet.
   team.kill(3);
   auto roster = roster_of(4);
   roster[3].active_until = 20;
@@ -169,7 +169,8 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
 }
 
 TEST(LostBroadcast, IsMendedByATeammateWhoHeardIt) {
-  // In real time the next broadcast mends it anyway; the last one of an agent has no next.
+  // In real time the next broadcast repairs a loss anyway, but an agent's last broadcast has no
+  // next one.
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   fly(team, 3, 0, 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An agent driven by hand, and what its teammates would say.
+// An agent driven by hand, and the messages of its teammates.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ inline Mission two_block_mission(int agents) {
   return mission;
 }
 
-/// Agent `id` of a team that has been told to run.
+/// Agent `id` of a team whose mission runs.
 inline Agent running_agent(const Mission& mission, AgentId id = 0) {
   announce(mission);
   Agent agent(identity_of(id));
@@ -35,7 +35,7 @@ inline Agent running_agent(const Mission& mission, AgentId id = 0) {
   return agent;
 }
 
-/// What `author` says after it has been at these places, one a tick.
+/// The blocks of `author` after it has been at these places, one a tick.
 inline std::vector<Contribution> blocks_of(const Mission& mission, const Author& author,
                                            const std::vector<Eigen::Vector3d>& path_m,
                                            Tick next_broadcast_tick) {

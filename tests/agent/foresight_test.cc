@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent makes of looking ahead: what its command answers to, when its tick may be answered,
-// and that nothing foreseen is ever said. Which places it believes: reckoning_test.cc.
+// An agent with a forecast: what its command depends on, when it may answer its tick, and that it
+// never sends forecast coverage. reckoning_test.cc has the places that it accepts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ WorldState world_of(int agents, Tick tick) {
   return world_state(tick, all_whereabouts(agents, tick), tick - 1);
 }
 
-/// What agent `id` says at `tick`.
+/// The blocks that agent `id` broadcasts at `tick`.
 std::vector<Contribution> words_of(const Mission& mission, AgentId id, Tick tick,
                                    Tick period = 10) {
   std::vector<Eigen::Vector3d> path_m;
@@ -101,8 +101,8 @@ TEST(AgentForesees, NothingWithoutAnticipation) {
 // ---- the tick of a block -----------------------------------------------------------------------
 
 TEST(AgentForesees, TheSameOfARepeatAsOfTheBroadcast) {
-  // A repeat says when its sums were broadcast, so that who hears only that counts the age from
-  // there.
+  // A repeated block carries the tick of its broadcast, so that an agent that receives only the
+  // repeat computes the same age.
   Mission mission = looking_ahead(2, false, Pace::kLockstep);
   mission.timing.broadcast_period_ticks = 8;
   Agent author = running_agent(mission, 1);
@@ -132,7 +132,7 @@ TEST(AgentForesees, TheSameOfARepeatAsOfTheBroadcast) {
 }
 
 TEST(AgentForesees, NothingFromWhatATeammateHasGainedSinceBeforeItTookPart) {
-  // What had been passed on to it by then is another thing for each who joins.
+  // The data relayed to an agent by then differs for each agent that joins.
   const Mission mission = looking_ahead(3, false);
   const auto foreseen = [&](bool knows_more) {
     std::vector<RosterEntry> roster = roster_of(3);
@@ -151,7 +151,7 @@ TEST(AgentForesees, NothingFromWhatATeammateHasGainedSinceBeforeItTookPart) {
 
 // ---- places ------------------------------------------------------------------------------------
 
-/// A team in lockstep that tells each `period` ticks: what everybody is commanded at each tick.
+/// A team in lockstep that broadcasts each `period` ticks: the commands of all agents at each tick.
 std::vector<Eigen::Vector3d> commands_in_lockstep(Mission mission, int period, int ticks) {
   mission.timing.broadcast_period_ticks = period;
   LiveTeam team(mission);
@@ -197,8 +197,8 @@ TEST(AgentReckons, NotByAVehicleOutsideTheDomain) {
 }
 
 TEST(AgentReckons, NotByPlacesOfAFormerLifesTime) {
-  // 1 was restarted at tick 5. What it has done since it has said at tick 5; before, another life
-  // flew.
+  // 1 was restarted at tick 5. Its blocks from tick 5 on are of the new incarnation, those before
+  // of the former one.
   const Mission mission = looking_ahead(3, true);
   const Author reborn{1, life_of(1) + 7};
   const std::vector<RosterEntry> roster{
@@ -226,7 +226,7 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
   Outbox said;
   std::int64_t sequence = 0;
   for (Tick tick = 3; tick < 60; ++tick) {
-    // Agent 2 complains each second that it has nothing of anybody.
+    // Agent 2 sends each second a digest that has nothing of agent 1.
     if (tick % 10 == 0) {
       Digest digest;
       digest.header = {kRun, 2, life_of(2), ++sequence, tick};
@@ -308,7 +308,8 @@ TEST(AgentInLockstep, WaitsForNoPartThatItDoesNotNeed) {
   }
 }
 
-// ---- the dead ----------------------------------------------------------------------------------
+// ---- teammates that died
+// -------------------------------------------------------------------------
 
 TEST(AgentForesees, NothingOfATeammateThatHasBeenSilentForLongerThanItLooksAhead) {
   for (const bool dead_reckoning : {false, true}) {
@@ -334,7 +335,7 @@ TEST(AgentForesees, NothingOfATeammateThatHasBeenSilentForLongerThanItLooksAhead
       } else if (silent_s > horizon_s + 0.05 && !dead_reckoning) {
         EXPECT_LT(ahead, 1e-15) << tick;
       } else if (silent_s > horizon_s + 0.05) {
-        // What it is known to have done since its last words counts; nothing is expected of it.
+        // Its known coverage since its last message counts; nothing is forecast for it.
         CoverageTable table(mission.basis, mission.timing.dt_s);
         std::vector<Eigen::Vector3d> path_m, own_m;
         for (Tick t = 0; t <= 25; ++t) path_m.push_back(whereabouts(1, t));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage that the roster forgets: from a named tick on it does not steer, but it is passed on.
+// Coverage that the roster forgets: from a given tick on it does not steer, but it is still
+// relayed.
 #include <gtest/gtest.h>
 
 #include "tests/agent/driven_agent.h"
@@ -23,7 +24,7 @@ WorldState world_at(Tick tick, std::int64_t revision = 0) {
   return world;
 }
 
-/// Whether agent 0 has steered by its own coverage alone, in the ticks [0, `ticks`).
+/// Whether agent 0 used only its own coverage to steer, in the ticks [0, `ticks`).
 bool steered_alone(const Agent& agent, const Mission& mission, Tick ticks) {
   CoverageTable own(mission.basis, mission.timing.dt_s);
   for (Tick tick = 0; tick < ticks; ++tick) {
@@ -50,7 +51,7 @@ TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, forgetting_from(0), at(0s));
-  // While the tick waits for another revision, a teammate passes on what 1 had said.
+  // While the tick waits for another revision, a teammate relays a block of 1.
   EXPECT_TRUE(only<Command>(tell(agent, world_at(0, 2))).empty());
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
   EXPECT_EQ(only<Command>(tell(agent, forgetting_from(0, 2))).size(), 1u);
@@ -58,7 +59,7 @@ TEST(AgentForgets, WhatComesOnlyAfterwardsToo) {
 }
 
 TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
-  // All must forget at the same tick, whoever hears of it first.
+  // All agents must forget at the same tick, whichever receives the revision first.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));
@@ -68,7 +69,7 @@ TEST(AgentForgets, AtTheTickThatWaitsForTheNews) {
 }
 
 TEST(AgentForgets, NotBeforeTheWorldFliesByTheRosterThatSaysSo) {
-  // Agents that have heard more of the roster than others must not differ from them.
+  // Agents with a newer roster must not differ from the others.
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
   give(agent, block_of(mission, 1, kGone, 100), at(0s));

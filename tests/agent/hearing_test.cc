@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent believes of what it hears, and what its status says of it.
+// Which messages an agent accepts, and how its status reports them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace test;
 
 // ---- what is refused -----------------------------------------------------------------------------
 
-/// Feeds one untrue contribution and expects: no row, no block, one more refusal for `why`.
+/// Sends one false contribution and expects: no row, no block, one more refusal for `why`.
 void expect_refused(const Contribution& lie, Refusal why) {
   Mission mission = small_mission(2);
   mission.timing.pace = Pace::kRealtime;
@@ -48,7 +48,8 @@ TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
 }
 
 TEST(AgentRefuses, CoverageFromTheFuture) {
-  // A minute of lead is allowed, since clocks of several hosts may differ; beyond it would win for ever.
+  // A lead of a minute is allowed, because clocks of several hosts may differ; a larger one would
+  // win for ever.
   const Mission mission = small_mission(2);
   Contribution future = block_of(mission, 1, {{200, 500, 0}}, 1);
   const auto claim = [&future](std::int64_t steps) {
@@ -88,7 +89,7 @@ TEST(AgentRefuses, AndShowsWhatTheTransportRefused) {
 }
 
 TEST(AgentRefuses, ItsOwnEcho) {
-  // Multicast gives everybody their own words back.
+  // Multicast returns an agent's own messages to it.
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
   const auto said = only<Contribution>(tell(agent, world_state(0, {{100, 500, 0}})));

@@ -27,7 +27,7 @@ TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
   EXPECT_EQ(agent.next_wakeup(), at(250ms));
   EXPECT_EQ(only<Hello>(advance(agent, at(250ms))).size(), 1u);
 
-  // A roster that names only others changes nothing.
+  // A roster without us changes nothing.
   EXPECT_EQ(only<Hello>(tell(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
                 .size(), 1u);
   EXPECT_EQ(agent.phase(), AgentPhase::kJoining);
@@ -178,7 +178,8 @@ TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
 TEST(AgentHears, CoverageOfMembersOnly) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  // More lives of our own number than a table holds, and one of a teammate: none is in the roster.
+  // More incarnations of our own number than a table holds, and one of a teammate: none is in the
+  // roster.
   for (Incarnation life = 1; life <= 20; ++life) {
     give(agent, blocks_of(mission, {0, life}, {{900, 900, 0}}, 1).front(), at(0s));
     give(agent, blocks_of(mission, {1, life}, {{900, 900, 0}}, 1).front(), at(0s));
@@ -201,8 +202,8 @@ TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
          at(0s));
     return *agent.coverage()->steps_held(author_of(1));
   };
-  // The ticks 0, 1 and 2, and the lead that everybody is granted: who evicted it may not have heard
-  // of its last ticks. A member of tick 9 might have 610.
+  // The ticks 0, 1 and 2, and the lead granted to all: the coordinator that evicted it may not have
+  // received its last ticks. A member of tick 9 might have 610.
   EXPECT_EQ(hear(603), 603) << "it still covers, but is no member";
   EXPECT_EQ(hear(604), 603);
 }
@@ -254,7 +255,7 @@ TEST(AgentJoining, NamesTheNewestMissionOfWhichItHasHeardAPartAtOnce) {
   EXPECT_EQ(named(at(111ms)), 99);
 }
 
-/// Agent 0 in its second life, admitted from tick 7 on by a roster of revision 9.
+/// Agent 0 in its second incarnation, admitted from tick 7 on by a roster of revision 9.
 Agent successor_from_7(const Mission& mission) {
   announce(mission);
   Agent agent(identity_of(0));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several agents in one hand: what one says on the swarm bus, the others hear at once, if they can.
+// Several agents driven together: each receives the others' messages on the swarm bus at once, if
+// in range.
 #pragma once
 
 #include <functional>
@@ -15,7 +16,7 @@ using Hears = std::function<bool(AgentId listener, AgentId transmitter)>;
 
 class LiveTeam {
  public:
-  /// Every planned agent, told to run; all hear all until told otherwise.
+  /// Every planned agent, with a running mission; all receive all until a test changes it.
   explicit LiveTeam(const Mission& mission) {
     for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
       agents_.emplace(id, running_agent(mission, id));
@@ -25,16 +26,16 @@ class LiveTeam {
   Agent& operator[](AgentId id) { return agents_.at(id); }
   void hear_by(Hears hears) { hears_ = std::move(hears); }
   void kill(AgentId id) { agents_.erase(id); }
-  /// Another life of an agent that was killed.
+  /// Another incarnation of an agent that was killed.
   void revive(AgentId id, Agent agent) { agents_.emplace(id, std::move(agent)); }
 
-  /// The world or the coordinator says something to everybody; returns all that this leads to.
+  /// The world or the coordinator sends a message to all agents; returns all that follow from it.
   Outbox tell(const Message& message, Instant now) {
     for (auto& [id, agent] : agents_) give(agent, message, now);
     return settle(now);
   }
 
-  /// Everybody speaks and hears until nobody has more to say at `now`; returns what was said.
+  /// All agents send and receive until none has more to send at `now`; returns the messages.
   Outbox settle(Instant now) {
     Outbox said;
     for (std::size_t before = std::size_t(-1); before != said.size();) {
@@ -48,7 +49,7 @@ class LiveTeam {
     return said;
   }
 
-  /// Time passes and nothing comes from outside; returns what was said.
+  /// Time passes and nothing comes from outside; returns the messages.
   Outbox wait(Instant from, std::chrono::nanoseconds duration) {
     Outbox said;
     for (Instant now = from; now <= from + duration; now += 10ms) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents as the mission's memory: they repeat it to a coordinator or a world that has just started,
-// tell the world where they were, and ask anew when the roster has lost them.
+// Agents store the mission: they repeat it to a restarted coordinator or world, report their places
+// to the world, and ask for admission again when the roster has lost them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// A mission in two parts, as a coordinator says it.
+/// A mission in two parts, as a coordinator sends it.
 std::array<MissionPart, 2> two_parts(std::int64_t revision) {
   std::array<MissionPart, 2> parts;
   for (std::int32_t p = 0; p < 2; ++p) {
@@ -38,7 +38,7 @@ Agent informed_agent(const Mission& mission = small_mission(2)) {
   return agent;
 }
 
-/// Above what its asker has said in the tests.
+/// With sequences above those of all former messages in the tests.
 Hello question_of(AgentId who, Tick tick) {
   return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, 1000 + next_sequence(), tick}, kUnassigned, "", ""};
 }
@@ -120,7 +120,7 @@ TEST(MissionRepeat, IsNeededIfSomebodyElseKnowsLess) {
   EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 50ms))).size(), 4u);
 }
 
-/// How often the mission is repeated in 3 s to somebody who says something each millisecond.
+/// How often the mission is repeated in 3 s to a process that sends something each millisecond.
 template <class Say>
 std::size_t repeats_to(Say say) {
   Agent agent = informed_agent();
@@ -142,7 +142,7 @@ TEST(MissionRepeat, ComesTenTimesASecondAtMostToWhoAsks) {
   EXPECT_LE(answers, 30u);
 }
 
-// Recordings of an old mission must not use up the answers to who asks.
+// Recordings of an old mission must not use up the answers to mission requests.
 TEST(MissionRepeat, ComesToWhoAsksAlsoJustAfterAnOldOneWasCorrected) {
   Agent agent = informed_agent();
   EXPECT_EQ(repeated_after(agent, two_parts(2)[0]), 4u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent foresees from where its teammates are: their places since their last blocks count as if
-// said there, the next block replaces them, and nobody is told of them.
+// An agent's forecast from the places of its teammates: their places since their last blocks count
+// as if broadcast there, the next block replaces them, and no agent is sent them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,8 +45,9 @@ Coefficients sums_of(const Mission& mission, const Path& path_m) {
   return sums;
 }
 
-/// ĉ at `tick` of who has been on its own path since `own_from` and counts on one teammate: it has been
-/// at these places, did as in the `gained` last of them before the last known one was `age` ticks old.
+/// ĉ at `tick` of an agent with its own path since `own_from` and one teammate. The teammate has
+/// been at these places, and it continues as in the `gained` last of them; the last known one was
+/// `age` ticks old.
 Coefficients foreseen(const Mission& mission, Tick own_from, Tick tick, const Path& theirs,
                       std::size_t gained, Tick age) {
   const double dt_s = mission.timing.dt_s;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rules of repair: what a digest says, which gap is worth an answer, who gives it and when.
-// What teams make of these rules is in divided_team_test.cc.
+// The rules of repair: the content of a digest, which gap gets an answer, which agent answers and
+// when. divided_team_test.cc has their effect on teams.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -28,7 +28,7 @@ class Repair : public ::testing::Test {
       return a.author < b.author;
     });
   }
-  /// Agent 0 has heard `author` say `steps`, and that it speaks every `period` ticks.
+  /// Agent 0 has received `steps` of `author`, which broadcasts every `period` ticks.
   void hold(const Author& author, std::int64_t steps, Tick period = 1) {
     for (const Contribution& block :
          blocks_of(mission, author, path_of(steps), steps - 1 + period)) {
@@ -36,7 +36,7 @@ class Repair : public ::testing::Test {
     }
   }
 
-  /// `from` says in its next digest that it holds only `steps` of `author`.
+  /// `from` reports in its next digest that it holds only `steps` of `author`.
   void complain(AgentId from, const Author& author, std::int64_t steps, Instant now) {
     Digest digest;
     digest.header = {kRun, from, life_of(from), ++sequence, 0};
@@ -49,7 +49,7 @@ class Repair : public ::testing::Test {
     complain(from, author, steps, now + 1s);
   }
 
-  /// Whom it has decided to answer for by `now`, once the longest delay is over.
+  /// The authors that it has decided to answer for by `now`, once the longest delay is over.
   std::vector<Author> answered(Instant now) {
     std::vector<Author> authors;
     for (const Contribution& block : repair.answers_due(table, now + 250ms, 0)) {
@@ -222,7 +222,8 @@ TEST_F(Repair, WhoKnowsNoMoreIsSilent) {
   EXPECT_EQ(answered(at(3s)), nobody) << "the other knows more";
 }
 
-// ---- who answers, and when -----------------------------------------------------------------------
+// ---- which agent answers, and when
+// ---------------------------------------------------------------
 
 TEST_F(Repair, AnAnswerIsEveryBlockOfTheRow) {
   mission = two_block_mission(5);

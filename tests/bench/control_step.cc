@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One agent's control step beside its floor, and what it costs to take in the teammates' news.
+// Times one agent's control step, its lower bound, and the merging of teammates' contributions.
 //
-// Every timed step stands directly after the merges of what teammates say in that tick, as in a
+// Every timed step comes directly after the merges of the teammates' messages of that tick, as in a
 // lockstep mission. Pausing the benchmark's timer there would cost as much as the step itself, so
-// each step is timed between two readings of the clock. An iteration is a round of many ticks, and
-// its time is their median less that of an empty interval: whatever else the machine does meanwhile
-// hits few of them. Teammates take turns within ten ticks at most, so it is the mean of ten
-// medians, one for each tick of the turn.
+// each step is timed between two readings of the clock. An iteration is a round of many ticks. Its
+// time is their median less that of an empty interval: other load on the machine affects few of
+// them. Teammates take turns within ten ticks at most, so it is the mean of ten medians, one for
+// each tick of the turn.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a flood of repeats costs a keyed team that flies in real time: somebody without the key
-// keeps what the team says and sends it again, word for word, so many times a second.
+// Measures what a flood of repeats costs a keyed team in real time: a process without the key
+// records the team's messages and sends them again, unchanged, so many times a second.
 //
-// Lateness depends on the machine and on what else runs there, so that a person reads it here and
-// no test decides by it. What must hold on any machine is counted in tests/process/flood_test.cc.
+// Lateness depends on the machine and its load, so a person reads it here and no test depends on
+// it. tests/process/flood_test.cc counts what must hold on any machine.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -42,7 +42,7 @@ constexpr auto kRecording = 12s, kFlood = 22s, kPause = 1s;
 
 constexpr std::array<const char*, 4> kKinds = {"MISSION", "WORLD_STATE", "COMMAND", ""};
 
-/// A keyed team in real time, in a folder that goes with it.
+/// A keyed team in real time, in a folder that is removed with it.
 class KeyedTeam {
  public:
   KeyedTeam() : key_(make_mission_key()) {
@@ -63,7 +63,7 @@ class KeyedTeam {
     if (getenv("ERGOCAST_BENCH_KEEP") == nullptr) fs::remove_all(folder_, ignored);
   }
 
-  /// What the team says of itself: the world's tick, late commands, and what the agents have lost.
+  /// The team's reports: the world's tick, late commands, and the agents' losses.
   struct Says {
     Tick tick = -1;
     std::int64_t late = 0, lost = 0, drops = 0;
@@ -98,14 +98,14 @@ class KeyedTeam {
   std::optional<Child> mission_;
 };
 
-/// Sends at that rate for so long, in bursts of a millisecond; how many a second it could send.
+/// Sends at that rate for so long, in bursts of a millisecond; returns the rate it reached.
 double flood(test::Replayer& replayer, double per_second, std::chrono::duration<double> time) {
   const auto start = Clock::now();
   std::size_t sent = 0;
   for (auto at = start; at - start < time; at = Clock::now()) {
     const auto due =
         static_cast<std::size_t>(per_second * std::chrono::duration<double>(at - start).count());
-    // What the machine has no time for is not made up for later.
+    // Datagrams that the machine was too slow to send are not sent later.
     replayer.replay(std::min<std::size_t>(due - std::min(due, sent), 1000));
     sent += std::min<std::size_t>(due - std::min(due, sent), 1000);
     std::this_thread::sleep_for(1ms);

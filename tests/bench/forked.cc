@@ -18,7 +18,7 @@ Forked::Forked(const std::function<void()>& life) {
   if (pid_ < 0) throw std::runtime_error("fork() failed");
   if (pid_ > 0) return;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() == parent) life();  // else it was gone before we asked to be told
+  if (getppid() == parent) life();  // otherwise the parent ended before the request
   _exit(0);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A copy of this process that does one thing and is gone with its handle, or with this process.
+// A copy of this process that runs one function and ends with its handle, or with this process.
 #pragma once
 
 #include <sys/types.h>
@@ -11,7 +11,7 @@ namespace ergocast::bench {
 
 class Forked {
  public:
-  /// Starts `life` in a child. To be made while this process has one thread.
+  /// Runs `life` in a child. To be created while this process has one thread.
   explicit Forked(const std::function<void()>& life);
   Forked(Forked&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}
   Forked& operator=(Forked&&) = delete;

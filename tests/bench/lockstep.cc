@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole team as processes over LCM, beside a ping-pong of datagrams of the same number and size
-// between as many processes, without our codec and without mathematics: straight over UDP, which is the
-// floor, and over LCM.
+// Times a whole team as processes over LCM, beside a ping-pong of datagrams of the same number and
+// size between as many processes, without our codec and without mathematics: straight over UDP,
+// which is the lower bound, and over LCM.
 //
-// The real programs are started as a user starts them; how fast they were is read from the record.
+// The real programs are started as a user starts them; the record has their speed.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 
@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 constexpr double kDuration_s = 1000;
 const fs::path kScenario = fs::path(ERGOCAST_SCENARIO_DIR) / "paper_fig1a.textproto";
 
-/// A folder that goes with this object.
+/// A folder that is removed with this object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -50,7 +50,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// Ticks per second of a mission by the real programs, or why there is no such figure.
+/// Ticks per second of a mission by the real programs, or why there is no figure.
 std::variant<double, std::string> run_mission() {
   const TemporaryFolder folder;
   const fs::path record = folder.path() / "run", log = folder.path() / "log";

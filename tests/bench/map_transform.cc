@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The transform of a map against its size, beside reading as many doubles from memory once: what no
-// way of adding up a map that is held as doubles could do without.
+// Times the transform of a map against its size, beside reading as many doubles from memory once,
+// which any method with a map in memory must do.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace ergocast::bench {
 namespace {
 
-constexpr int kRowsHeld = 64;  // repeated, so that the largest map need not be held
+constexpr int kRowsHeld = 64;  // repeated, so that the largest map need not fit in memory
 
 std::vector<double> some_rows(int columns) {
   std::vector<double> values(static_cast<std::size_t>(columns) * kRowsHeld);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bare world and bare agents exchange datagrams of the sizes that a real tick has, and repeat
-// lost ones.
+// A bare world and bare agents exchange datagrams of the sizes of a real tick, and repeat lost
+// ones.
 #include "tests/bench/ping_pong.h"
 
 #include <algorithm>
@@ -18,11 +18,11 @@
 namespace ergocast::bench {
 namespace {
 
-/// What a real world, agent and logger do when a datagram was lost: say it again.
+/// What a real world, agent and logger do when a datagram was lost: they send it again.
 constexpr int kRepeat_ms = 20;
 constexpr int kRepeatAck_ms = 100;
 constexpr Tick kAckEveryTicks = 16;
-/// Until then everybody has opened its sockets and touched its memory.
+/// By then every process has opened its sockets and touched its memory.
 constexpr Tick kWarmUpTicks = 200;
 
 std::size_t size_of(const Message& message) {
@@ -65,7 +65,7 @@ class RawAgent {
     if (!repeated) answered_ = false;
     if (repeated && answered_) answer();
   }
-  /// Our own blocks come back to us, too.
+  /// We also receive our own blocks.
   bool hears_everybody() const {
     return std::all_of(held_.begin(), held_.end(), [this](Tick tick) { return tick >= tick_; });
   }
@@ -76,7 +76,7 @@ class RawAgent {
 
   AgentId id_;
   Traffic traffic_;
-  std::vector<Tick> held_;  // newest tick of every block of everybody
+  std::vector<Tick> held_;  // newest tick of every block of every agent
   Tick tick_ = -1;
   bool answered_ = true;
   std::string contribution_, command_;
@@ -154,7 +154,7 @@ std::optional<double> ping_pong(Carrier carrier, const Traffic& traffic, Tick ti
   url.base_port = ports->base_port();
   if (why_unreachable(url)) return std::nullopt;
 
-  // Before this process has threads of LCM's.
+  // Before LCM starts threads in this process.
   std::vector<Forked> others;
   others.emplace_back([&] { live_as_logger(carrier, traffic, url); });
   for (AgentId id = 0; id < traffic.agents; ++id) {

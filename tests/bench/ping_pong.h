@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The floor of lockstep, and beside it what LCM alone costs: processes that only pass the same messages around.
+// The lower bound of lockstep, and the cost of LCM alone: processes that only exchange the same
+// messages.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,8 @@
 
 namespace ergocast::bench {
 
-/// What a mission says in one tick of lockstep, in the bytes that our codec makes of it: the world
-/// its state, every agent all its blocks and a command; the logger acknowledges now and then.
+/// The messages of a mission in one tick of lockstep, in the bytes of our codec: the world sends
+/// its state, every agent all its blocks and a command; the logger acknowledges at intervals.
 struct Traffic {
   int agents;
   int blocks;  ///< per agent and tick
@@ -20,8 +21,9 @@ struct Traffic {
 };
 Traffic traffic_of(const Mission& mission);
 
-/// Forks every agent and the logger, is the world itself, and plays `ticks` ticks: the messages have the right size, number, order and recipients, but nothing in them. Nothing is
-/// encoded, checked or computed. Every process has ended when it returns.
+/// Forks every agent and the logger, is the world itself, and plays `ticks` ticks. The messages
+/// have the right size, number, order and recipients, but no content: nothing is encoded, checked
+/// or computed. Every process has ended when it returns.
 /// @return ticks per second, the start left out; nothing if LCM cannot be used
 std::optional<double> ping_pong(Carrier carrier, const Traffic& traffic, Tick ticks);
 

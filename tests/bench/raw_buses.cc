@@ -57,7 +57,7 @@ class LcmBuses final : public RawBuses {
     lcm::LCM* lcm;
     const Handler* handler;
     void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-      if (channel == "LCM_SELF_TEST") return;  // every liblcm that starts says it to all
+      if (channel == "LCM_SELF_TEST") return;  // every liblcm sends it when it starts
       Stamp stamp;
       std::memcpy(&stamp, buffer->data, sizeof stamp);
       (*handler)(bus, stamp);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The three buses without our transport, with bytes that mean nothing: over LCM, or straight over
-// UDP.
+// The three buses without our transport, with meaningless bytes: over LCM, or straight over UDP.
 #pragma once
 
 #include <functional>
@@ -36,10 +35,10 @@ class RawBuses {
                                         const std::vector<Bus>& listening, Handler handler);
   virtual ~RawBuses() = default;
 
-  /// Datagrams of one size, whoever carries them: a name and `bytes` bytes.
+  /// Sends a datagram of one size by any carrier: a name and `bytes` bytes.
   virtual void publish(Bus bus, const std::string& channel, const Stamp& stamp,
                        std::size_t bytes) = 0;
-  /// Handles all that is there, once something is. False if nothing came for so long.
+  /// Handles all waiting datagrams, once there is one. False if none came for so long.
   virtual bool wait(int timeout_ms) = 0;
 };
 

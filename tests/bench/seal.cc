@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mission key costs each message: closing and opening datagrams with and without one, beside
-// the hash alone over as many bytes.
+// Times what a mission key costs each message: protecting and verifying datagrams with and without
+// one, beside the hash alone over as many bytes.
 #include <benchmark/benchmark.h>
 #include <sodium.h>
 
@@ -75,7 +75,7 @@ void Refuse(benchmark::State& state) {
   }
 }
 
-/// The floor: libsodium's hash of these bytes, and nothing else.
+/// The lower bound: libsodium's hash of these bytes, and nothing else.
 void KeyedHashAlone(benchmark::State& state) {
   std::vector<std::byte> bytes;
   encode(message_of(state.range(0)), bytes);

@@ -41,7 +41,7 @@ void waves_anywhere(double x_m, double wave_number, int modes, Waves& out) {
   }
 }
 
-/// A teammate's sums, and its share of what it is about to add.
+/// A teammate's sums, and its share of the coverage forecast.
 template <Ahead kAhead>
 double foreseen_anywhere(const Tables& tables, int mate, int m, int n) {
   const int at = (mate * tables.modes + m) * tables.stride + n;
@@ -112,8 +112,7 @@ struct Lanes {
   __m256d power, x, y, xx, xy, yy;
 };
 
-/// `team` and a teammate's sums, and its share of what it is about to add, at four modes of row
-/// `m`.
+/// `team` and a teammate's sums, and its share of the forecast, at four modes of row `m`.
 template <Ahead kAhead>
 ERGOCAST_AVX2 inline __m256d add_mate(__m256d team, const Tables& tables, int mate, int m,
                                       int column) {
@@ -132,7 +131,7 @@ ERGOCAST_AVX2 inline __m256d add_mate(__m256d team, const Tables& tables, int ma
   return _mm256_fmadd_pd(share, wave, _mm256_add_pd(team, sums));
 }
 
-/// So many vectors of columns at once, over all rows: what is summed stays in registers.
+/// Processes so many vectors of columns at once, over all rows: the sums stay in registers.
 template <Ahead kAhead, int kVectors>
 ERGOCAST_AVX2 inline void add_columns(const Tables& tables, const Waves& along_x,
                                       const Waves& along_y, double dt_s, double per_second,
@@ -300,7 +299,7 @@ Totals StepFloor::totals(const Eigen::Vector3d& x_m, double per_second) {
       std::numbers::pi * mission_.domain.size_m.head<2>().cwiseInverse();
   const Tables tables{agents_,        modes_,         stride_,        sums_.data(), gains_.data(),
                       target_.data(), weight_.data(), energy_.data(), mates_.data()};
-  // Also behind the last mode, where the weights are zero and nothing counts.
+  // Also after the last mode, where the weights are zero and nothing counts.
   Waves along_x, along_y;
   waves(x_m.x(), wave_numbers.x(), stride_, along_x);
   waves(x_m.y(), wave_numbers.y(), stride_, along_y);

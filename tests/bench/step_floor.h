@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The control step as the leanest kernel we can write by hand: raw arrays, no blocks, no authors,
-// no checks, everything in one pass over the modes, with AVX2 and fused multiply-add where the
-// processor has them. What it costs is what the mathematics costs.
+// The control step as a minimal kernel written by hand: raw arrays, no blocks, no authors, no
+// checks, everything in one pass over the modes, with AVX2 and fused multiply-add where the
+// processor has them. Its time is that of the mathematics.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class StepFloor {
  public:
   StepFloor(const Mission& mission, int agents);
 
-  /// What teammates say: all blocks of some of them, agent after agent.
+  /// The teammates' messages: all blocks of some of them, agent after agent.
   void take(const std::vector<Contribution>& news);
 
   /// Agent 0's command, everybody's places [m] known if the mission says so; the same as Agent's
@@ -30,20 +30,20 @@ class StepFloor {
     using Table = std::array<double, kMaxModesPerAxis>;
     alignas(32) Table value, slope, bend;
   };
-  /// What teammates are about to add to their sums.
+  /// The forecast gains of teammates.
   enum class Ahead { kNothing, kGains, kPlaces };
   /// One agent of the team.
   struct Mate {
     Waves along_x, along_y;  ///< where it is, if places are known
-    double step_s = 0;       ///< what its sums gain there
-    double share = 0;        ///< of what it is about to add
+    double step_s = 0;       ///< the gain of its sums there
+    double share = 0;        ///< of the forecast
     std::int64_t steps = 0, gained_steps = 0;
     Tick tick = -1, period = 1;
   };
   /// The modes' tables. Rows are padded with zeros to whole vectors.
   struct Tables {
     int agents, modes, stride;
-    double* sums;         ///< one table an agent, the own one first
+    double* sums;         ///< one table for each agent, the own one first
     const double* gains;  ///< likewise
     const double *target, *weight, *energy;
     const Mate* mates;  ///< the own one first

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agent 0 of a team, with what its teammates say at hand, for timing what it does with it.
+// Agent 0 of a team, with its teammates' messages prepared, for timing how it processes them.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace ergocast::bench {
 
-/// What agent 0 answers to, and from what it knows it.
+/// The coverage that agent 0 uses, and its source.
 enum class Sight {
-  kKnown,            ///< c, of rows told each tick
-  kToldEachTick,     ///< ĉ, of rows told each tick
-  kToldEach10Ticks,  ///< ĉ, of rows told every ten ticks, in turns
-  kReckoned,         ///< likewise, and of where teammates are
+  kKnown,            ///< c, of rows broadcast each tick
+  kToldEachTick,     ///< ĉ, of rows broadcast each tick
+  kToldEach10Ticks,  ///< ĉ, of rows broadcast every ten ticks, in turns
+  kReckoned,         ///< likewise, with the teammates' places
 };
 
 class StepTeam {
@@ -30,9 +30,9 @@ class StepTeam {
   /// Every block that teammates say at tick().
   const std::vector<Contribution>& news() const { return news_; }
 
-  /// The next tick: everybody moves; the teammates add their samples and make the news.
+  /// The next tick: all agents move; the teammates add their samples and prepare their messages.
   void teammates_step();
-  /// Agent 0 takes in the news, and where everybody is.
+  /// Agent 0 takes in the teammates' messages and the places of all agents.
   void merge_news();
   /// What agent 0 does between knowing where it is and saying how it moves.
   Eigen::Vector3d step();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a study makes of a core: missions without messages, and the numbers noted of them.
+// Times a study on one core: missions without messages, and the numbers recorded of them.
 //
-// An iteration is one mission. Two threads stand for the two worker processes of a study, which
-// share nothing either. The floor is as many bare control steps, each of an agent by itself.
+// An iteration is one mission. Two threads represent the two worker processes of a study, which
+// share nothing either. The lower bound is the same number of bare control steps, each of an agent
+// by itself.
 #include <benchmark/benchmark.h>
 
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole team in one process, messages as bytes: what the laboratory makes of one core.
+// A whole team in one process, messages as bytes: the speed of the laboratory on one core.
 //
-// An iteration is one mission from the first hello to the last row of its record. The record is
-// written as in a run, but nobody keeps it.
+// An iteration is one mission from the first HELLO to the last row of its record. The record is
+// written as in a run, but discarded.
 #include <benchmark/benchmark.h>
 
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bugs that the laboratory has to see. This file is linked in front of the real program,
-// ergocast-with-bugs, whose calls from one library into another it stands between (--wrap: the names
-// in WRAPPED lines are the linker's, and CMake reads them here). ERGOCAST_BUG chooses the bug;
-// without, every call passes through.
+// The bugs that the laboratory must detect. This file is linked in front of the real program as
+// ergocast-with-bugs and intercepts calls from one library into another (--wrap: the names in
+// WRAPPED lines are the linker's, and CMake reads them here). ERGOCAST_BUG selects the bug; without
+// it, every call passes through.
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -32,7 +32,7 @@ bool bug(std::string_view name) {
   return chosen != nullptr && name == chosen;
 }
 
-/// Some ticks after the mission's begin, when all know each other.
+/// Some ticks after the mission's start, when all agents know each other.
 constexpr Tick kUnderWay = 100;
 
 }  // namespace
@@ -88,11 +88,11 @@ void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at
 
 namespace {
 
-/// Who hears a message now, and whether a teammate repeats it.
+/// The agent that receives a message now, and whether a teammate repeats it.
 const Agent* listener;
 bool is_relayed;
 
-/// What a table was made of, for a forecast that mistakes it.
+/// The content of a table, for a forecast that misreads it.
 struct Told {
   Basis basis;
   double dt_s;
@@ -129,7 +129,7 @@ Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t ma
   if (bug("an honest block is refused") && theirs.steps > kUnderWay) return Merge::kRefusedRange;
   if (bug("one agent's rows are dropped") && theirs.author().agent == 0) return Merge::kStale;
   Contribution changed = theirs;
-  // Still within what a receiver grants to rounding.
+  // Still within the rounding that a receiver allows.
   if (bug("a receiver rounds") && theirs.block == 0) changed.sums[0] *= 1 + 5e-10;
   if (bug("a receiver mixes up modes")) {
     for (std::size_t k = 1; k < changed.sums.size(); ++k) changed.sums[k] *= -1;
@@ -163,7 +163,7 @@ constexpr Tick kForEver = 10000;
 bool the_dead_are_foreseen() { return bug("the dead are foreseen for ever"); }
 bool foresees_itself() { return bug("an agent foresees itself"); }
 
-/// The table as it would be if it had been told otherwise.
+/// The table as it would be with other messages.
 CoverageTable mistaken(const CoverageTable& table, Tick tick) {
   const Told& told = told_to.at(&table);
   CoverageTable other(told.basis, told.dt_s, told.joined);
@@ -211,7 +211,7 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table, const std::vecto
 
 namespace {
 
-/// Repeats a block of a teammate's in its own name.
+/// Repeats a teammate's block in its own name.
 void relay(const Agent& self, Outbox& out) {
   const CoverageTable& table = *self.coverage();
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -244,7 +244,7 @@ void bug_advance(Agent* self, Instant now, Outbox& out) {
     }
   }
   if (bug("an agent repeats unasked")) relay(*self, out);
-  // As an answer to what it has heard since its last, though nobody lacked anything.
+  // As an answer to the messages since its last one, although no block was missing.
   if (bug("an agent repeats what all have") && std::any_of(out.begin(), out.end(), speaks_digest)) {
     relay(*self, out);
   }

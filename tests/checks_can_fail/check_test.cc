@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each finding of `ergocast check` against a scenario that has it: small edits to a good one, and every
-// field outside its limits, as the program's own table of fields has them.
+// Each finding of `ergocast check` for a scenario that has it: small edits to a good one, and every
+// field outside its limits, which are read from the program's own table of fields.
 #include <google/protobuf/text_format.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ time { duration_s: 60 }
 agents { starts { x_m: 10 y_m: 20 } }
 )";
 
-/// One mistake put into kGood, and how what is said of it begins; the line is that of `from`.
+/// One mistake put into kGood, and the beginning of its error text; the line is that of `from`.
 struct Mistake {
   std::string from, to, said;
   bool has_line = true;
@@ -165,7 +165,7 @@ std::vector<Mistake> mistakes_of_targets() {
   };
 }
 
-/// Of maps; `files` are what is written beside the scenario.
+/// Mistakes of maps; `files` are written beside the scenario.
 std::vector<Mistake> mistakes_of_maps() {
   const std::string at = "target.maps[0].file: ";
   const std::string extent = "origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50";
@@ -235,7 +235,7 @@ class Scenarios : public OwnHost {
     write_png(folder_ / "laced.png", 4, 4, {.interlace = PNG_INTERLACE_ADAM7}, grey);
   }
 
-  /// One that root cannot open for reading either.
+  /// A file that root cannot open for reading either.
   static fs::path unreadable_file() {
     for (const auto& bus : fs::directory_iterator("/sys/bus")) {
       const fs::path file = bus.path() / "drivers_probe";
@@ -264,7 +264,7 @@ class Scenarios : public OwnHost {
                        << output().substr(0, 2000);
   }
 
-  /// Keeps what was said, line by line.
+  /// Keeps the output, line by line.
   std::vector<std::string> note(const std::string& text) {
     std::istringstream lines(text);
     std::vector<std::string> all;
@@ -279,7 +279,7 @@ class Scenarios : public OwnHost {
 
 // ---- fields by themselves ------------------------------------------------------------------------
 
-/// Every block and every number that there is.
+/// A scenario with every block and every number.
 constexpr const char* kRich = R"(
 name: "rich" description: "all fields" seed: 1 goal_ergodic_metric: 1
 domain { origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 }
@@ -304,7 +304,7 @@ agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 forget_silent_afte
 world { disturbance_intensity: 0.1 radio_range_m: 30 speed_limit_mps: 100 }
 )";
 
-/// Calls `visit` for each field that a person can write a number or a word for, with its block.
+/// Calls `visit` for each field that takes a number or a word, with its block.
 void each_field(Block& message, const std::string& path,
                 const std::function<void(Block&, const FieldDescriptor&, const std::string&)>& visit) {
   const auto* reflection = message.GetReflection();
@@ -326,7 +326,7 @@ void each_field(Block& message, const std::string& path,
 
 class CheckCanFail : public Scenarios {
  protected:
-  /// The program says that of the field at `path`, once `spoil` has been done to it.
+  /// Expects this problem of the field at `path` after `spoil` was applied.
   void expect_said(const std::string& path, const std::string& what,
                    const std::function<void(Block&, const FieldDescriptor&)>& spoil) {
     proto::Scenario scenario;
@@ -359,7 +359,7 @@ class CheckCanFail : public Scenarios {
   void expect_limits(const FieldDescriptor& field, const std::string& path, const FieldRule& rule) {
     const bool whole = field.cpp_type() != FieldDescriptor::CPPTYPE_DOUBLE;
     const Range& range = rule.range;
-    // Where the domain begins is no place in it.
+    // The domain's origin is no place in the domain.
     const bool in_domain = range.coordinate && !path.starts_with("domain.");
     const std::string above = in_domain ? " is far outside the domain" : " is above the limit ";
     const std::string too_low = in_domain ? above : " is below the limit ";
@@ -377,7 +377,7 @@ class CheckCanFail : public Scenarios {
     });
   }
 
-  /// Each field at its limits, and where it is missing.
+  /// Each field at its limits, and missing.
   void plant_in_fields() {
     write("s.textproto", kRich);
     EXPECT_EQ(ergocast({"check", file_}), 0) << output();
@@ -417,7 +417,7 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find(what), std::string::npos) << what << ":\n" << output();
   }
 
-  /// Files that are none, and flags.
+  /// Invalid files, and flags.
   void plant_outside_the_text() {
     write("s.textproto", kGood);
     expect_refused({"check", folder_ / "none.textproto"}, "none.textproto: there is no such file");
@@ -481,7 +481,7 @@ TEST_F(CheckCanFail, InEachOfItsFindings) {
   plant_in_the_text();
   plant_outside_the_text();
   plant_warnings();
-  // Of override_options.cc the words are those of --help.
+  // The texts of override_options.cc are those of --help.
   std::vector<std::string> sources =
       sources_in("scenario", {"scenario/assign.cc", "scenario/override_options.cc"});
   for (const std::string& file : sources_in("target")) sources.push_back(file);

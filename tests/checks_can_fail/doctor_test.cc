@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each finding of `ergocast doctor` on a host that has it: some thirty hosts on one network, each with
-// a fault of its own, are examined at once.
+// Each finding of `ergocast doctor` on a host that has it: some thirty hosts on one network, each
+// with a fault of its own, are examined at once.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr const char* kTeamsGroup = "239.255.76.67";
 
-/// Somebody on another host who says something again and again while the doctor listens.
+/// A sender on another host that sends repeatedly while the doctor listens.
 using Speaker = std::function<void()>;
 
 /// A host that answers the doctor's probes in its own way.
@@ -37,7 +37,7 @@ class PretendedPeer {
     std::uint32_t most = doctor::kMaxProbes;                            ///< probes it sends
     std::function<bool(std::uint32_t)> leaves_out = [](auto) { return false; };  ///< by sequence
     bool twice = false;
-    bool gossips = false;  ///< of somebody whom the doctor never hears
+    bool gossips = false;  ///< of a peer that the doctor never receives
   };
   PretendedPeer(int port, Manners manners)
       : manners_(std::move(manners)), to_(address_of(kTeamsGroup, port)), socket_(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) {
@@ -48,7 +48,7 @@ class PretendedPeer {
     EXPECT_EQ(setsockopt(socket_.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership), 0);
   }
 
-  /// Answers each probe of the doctor's with one of its own.
+  /// Answers each probe of the doctor with its own probe.
   void turn() {
     std::array<std::byte, 2048> buffer;
     for (ssize_t size; (size = recv(socket_.fd(), buffer.data(), buffer.size(), 0)) > 0;) {
@@ -92,11 +92,11 @@ struct Plant {
   std::string set_up = "";                 ///< a shell's command on the host
   std::string url_options = "ttl=1";
   std::vector<std::string> arguments = {};
-  std::string wrapper = "";                ///< a shell's words before the program's
-  std::vector<int> held_ports = {};        ///< by a socket of the test's, after the URL's port
-  bool alone = false;                      ///< which shares them with nobody
+  std::string wrapper = "";                ///< a shell's command before the program's
+  std::vector<int> held_ports = {};        ///< by a socket of the test, after the URL's port
+  bool alone = false;                      ///< which has them for itself
   std::function<Speaker(int port)> speaker = {};  ///< made on another host
-  int agents = 0;                                 ///< of ours at the same ports, that wait for a mission
+  int agents = 0;                                 ///< ours, at the same ports, without a mission
   bool as_nobody = false, on_a_terminal = false;
   int port = 0;                                   ///< if it matters
 };
@@ -117,7 +117,7 @@ class DoctorCanFail : public OnHosts {
   std::filesystem::path key_file(const char* name) const { return folder_ / name; }
   Seal seal(const char* name) const { return Seal(std::get<MissionKey>(read_key_file(key_file(name)))); }
 
-  /// Says `message` for as long as the doctor listens.
+  /// Sends `message` while the doctor listens.
   template <class M>
   std::function<Speaker(int)> says(M message, const Seal& seal = {}) {
     return [message, seal](int port) -> Speaker {
@@ -165,7 +165,7 @@ class DoctorCanFail : public OnHosts {
     EXPECT_EQ(bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   }
 
-  /// Lets the others speak until every doctor has ended.
+  /// Lets the senders send until every doctor has ended.
   void wait_for_all() {
     EXPECT_TRUE(eventually([this] {
       for (const Speaker& speak : speakers_) speak();
@@ -296,7 +296,7 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
       plant("peer stranger", ", lost: ", "warning", {.leaves_out = every_fifth}, test),
       plant("peer stranger", "probes came twice", "note", {.twice = true}, test),
       plant("peers", "1 more heard by others, but not here", "problem", {.gossips = true}, test),
-      // What is for people, on a terminal.
+      // The output for people, on a terminal.
       {.arguments = {"--peer", "1"}, .wrapper = "env NO_COLOR=1", .on_a_terminal = true},
   };
 }
@@ -319,7 +319,7 @@ TEST_F(DoctorCanFail, InEachOfItsFindings) {
   for (const char* name : {"ours", "other"}) {
     ASSERT_EQ(write_key_file(key_file(name), key_text(make_mission_key(), false)), std::nullopt);
   }
-  // Where nobody but root may look, the build may be, too.
+  // If only root may read the folder, the build may be in such a folder, too.
   fs::permissions(folder_, fs::perms::group_exec | fs::perms::others_exec, fs::perm_options::add);
   fs::copy_file(program_folder() / "ergocast", folder_ / "ergocast");
   // A host without nft, whose iptables drops.

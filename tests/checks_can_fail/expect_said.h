@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The register's rule: whatever the sources can say has been said by the program, to a plant.
+// The register's rule: the program has produced every text in its sources, each in reply to a
+// plant.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,16 +14,16 @@
 
 namespace ergocast::test {
 
-/// Words that no plant on a test machine can bring out. Keep them few.
+/// Texts that no plant on a test machine can produce. Keep them few.
 struct Unsayable {
   std::string file, words, why;
 };
 
-/// Whether two statements may use the same words, so that one plant would do for both.
+/// Whether two statements may use the same text, so that one plant serves both.
 enum class Words { kAreTheirOwn, kMayBeShared };
 
-/// Fails for each saying of `files` that is in none of the texts of `said`, but for the unsayable ones,
-/// and for each of those that was said after all.
+/// Fails for each text of `files` that is in none of `said`, except the unsayable ones, and for
+/// each unsayable one that was produced.
 inline void expect_all_said(const std::vector<std::string>& files, const std::vector<std::string>& said,
                             const std::vector<Unsayable>& unsayable, Words words_of_two = Words::kAreTheirOwn) {
   const std::vector<Saying> sayings = sayings_of(files);

@@ -17,13 +17,13 @@ using lab::Invariant;
 
 struct Plant {
   Invariant broken;
-  const char* bug;            ///< "": none but what the options say
+  const char* bug;            ///< "": only the one in the options
   std::string faults = "";    ///< a fault file's lines
   std::string scenario = "";  ///< lines added to faulty_team's
-  std::string says = "";      ///< which of several reports under that name
+  std::string says = "";      ///< selects one of several reports under that name
 };
 
-// To the mission's end, so that what few blocks do is met, too.
+// To the mission's end, so that effects of few blocks appear, too.
 const char* const kLateBlocks =
     "loss = 0.5\nreordering = 0.5\nreordering_max_s = 3\nswarm_bus_only = 1\nlasting_share = 1";
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
@@ -70,7 +70,7 @@ const Plant kPlants[] = {
 
 class InvariantsCanFail : public OwnHost {
  protected:
-  /// The exit code of two seeds of the faulty team without faults, but for what the plant says.
+  /// The exit code of two seeds of the faulty team without faults, except for those of the plant.
   int fly(const Plant& plant, const char* bug) {
     std::string text = text_of(scenario_file("faulty_team"));
     for (std::istringstream lines(plant.scenario); lines;) {
@@ -88,7 +88,7 @@ class InvariantsCanFail : public OwnHost {
     return code;
   }
   bool says(const std::string& part) const { return output().find(part) != std::string::npos; }
-  /// What came first: violations, or that there were none.
+  /// The first output: violations, or that there were none.
   std::string said() const { return output().substr(0, 1000); }
 
  private:
@@ -133,8 +133,8 @@ TEST_F(InvariantsCanFail, EachOfThem) {
   }
 }
 
-/// Plants that have the same said reach one place; another that reports under the same name needs one
-/// of its own.
+/// Plants with the same report reach one place; another place with the same report needs its own
+/// plant.
 TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
   std::string sources;
   for (const std::string& file : sources_in("lab")) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each reason for which a message is refused: somebody says such a message to a team that flies, whose
-// agents count it by name, as `ergocast status` shows and their logs say.
+// Each reason for a refusal: a test process sends such a message to a flying team. The agents count
+// it by name, and `ergocast status` and their logs show it.
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
@@ -29,7 +29,7 @@ class RefusalsCanBeSeen : public FlyingMission {
     return Seal(std::get<MissionKey>(read_key_file(file)));
   }
 
-  /// Hears the mission's parts, which say its run, too.
+  /// Receives the mission's parts, which also contain its run.
   void learn_mission() {
     const auto ear = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, seal(team_), {kTypes<MissionPart>, 0, 0},
@@ -62,15 +62,15 @@ class RefusalsCanBeSeen : public FlyingMission {
     AgentStatus status;
     status.header = from(3, run());
     status.host = "stranger";
-    // Not all at once: what does not fit the agents' sockets is lost, not refused.
+    // Not all at once: what exceeds the agents' socket buffers is lost, not refused.
     for (int turn = 0; turn < 200; ++turn) {
       for (int i = 0; i < 20; ++i) babbler_->say(Bus::kSwarm, status);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
 
-  /// More former lives of one agent than a table has rows for, and a word of each. Whoever has the
-  /// coordinator's key can say that.
+  /// More former incarnations of one agent than a table has rows for, and a message of each. The
+  /// coordinator's key is enough to send that.
   void crowd() {
     constexpr int kLives = kMaxIncarnationsPerAgent + 1;
     constexpr AgentId kMany = 99;
@@ -78,7 +78,7 @@ class RefusalsCanBeSeen : public FlyingMission {
     int life = 0;
     for (MissionPart part : follower_.parts()) {
       part.revision += 1000;
-      part.signature = {};  // which is of the part as it was
+      part.signature = {};  // it was valid for the unchanged part
       for (; life < kLives && part.roster.size() < kMaxRosterEntriesPerMessage; ++life) {
         part.roster.push_back({{kMany, static_cast<Incarnation>(1000 + life)}, 0, 1});
       }
@@ -96,7 +96,7 @@ class RefusalsCanBeSeen : public FlyingMission {
     }
   }
 
-  /// How many agent 0 has refused so, as `ergocast status` tells.
+  /// The number of agent 0's refusals of this kind, as `ergocast status` shows it.
   std::int64_t refused(const std::string& reason) {
     ergocast({"status", "--json", "--lcm-url", kUrl, "--key-file", team_});
     const auto told = nlohmann::json::parse(output(), nullptr, false);
@@ -116,19 +116,19 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
   learn_mission();
   babbler_ = std::make_unique<Stranger>(kUrl, seal(team_));
   const std::map<Refusal, std::function<void()>> plants = {
-      // Longer than any message; the kernel keeps what is much shorter or longer to itself.
+      // Longer than any message; the kernel drops much shorter or longer datagrams.
       {Refusal::kSize, [this] { say_raw(1230); }},
       {Refusal::kType, [this] { say_raw(200); }},
       {Refusal::kTag, [this] { say(seal(other_), hello(run())); }},
       {Refusal::kUnkeyed, [this] { say({}, hello(run())); }},
       {Refusal::kUnsigned, [this] { say(seal(team_), Stop{from(kOperator, run()), false, "no key"}); }},
       {Refusal::kRun, [this] { say(seal(team_), hello(run() + 1)); }},
-      // An agent that says where all vehicles are.
+      // An agent that sends the places of all vehicles.
       {Refusal::kRange, [this] { say(seal(team_), world_of(3), Bus::kWorld); }},
       {Refusal::kRate, [this] { babble(); }},
       {Refusal::kLimit, [this] { crowd(); }},
   };
-  // By the program's own list; the last one changes the roster, and so comes last.
+  // In the order of the program's own list; the last one changes the roster, and so comes last.
   std::vector<Refusal> order;
   for (int i = 0; i < kRefusalKinds; ++i) order.push_back(static_cast<Refusal>(i));
   std::ranges::stable_partition(order, [](Refusal one) { return one != Refusal::kLimit; });
@@ -145,8 +145,8 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
       return refused(name) > 0;
     })) << name << ":\n" << output();
   }
-  // A warning names all since the start, at most every 10 s; but not what an agent's tables refuse,
-  // which its status alone tells.
+  // A warning lists all kinds since the start, at most every 10 s. It does not list the refusals of
+  // an agent's tables, which only its status has.
   for (const Refusal reason : order) {
     if (reason == Refusal::kLimit) continue;
     const std::string name = to_string(reason);

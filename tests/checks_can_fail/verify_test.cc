@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each thing that `ergocast verify` can say, by a record that has been falsified so.
+// Each result that `ergocast verify` can report, produced by a record that was falsified for it.
 #include <functional>
 #include <span>
 #include <sstream>
@@ -40,7 +40,7 @@ void edit_summary(const fs::path& run, const std::function<void(Json&)>& change)
   write(run / "summary.json", summary.dump(2));
 }
 
-/// As if it had not been simulated: what a run over LCM may not have is looked for then.
+/// Makes it look like a run over LCM, which `verify` then checks for what it cannot repeat.
 void call_it_a_run(const fs::path& run, const std::function<void(Json&)>& change = [](Json&) {}) {
   edit_summary(run, [&](Json& summary) {
     summary["run_id"] = "0123456789abcdef";
@@ -58,7 +58,7 @@ struct Lie {
   std::function<void(const fs::path& run)> tell;
 };
 
-/// Of the summary and of what makes a run unrepeatable.
+/// Falsifications of the summary and of what makes a run unrepeatable.
 std::vector<Lie> lies_of_the_summary() {
   const auto agent = [](const char* key, const Json& value) {
     return [key, value](Json& summary) { summary["agents"][0][key] = value; };
@@ -108,7 +108,7 @@ std::vector<Lie> lies_of_the_tables() {
          edit_summary(run, [](Json& s) { s["result"] = "stopped"; });
          edit_lines(run / "trajectory.csv", [](Lines& lines) { lines.resize(lines.size() - 2); });
        }},
-      // As a logger leaves it that was killed, with a gap after its last metrics.
+      // The record of a killed logger, with a gap after its last metrics.
       {"1 ticks before that are missing", 0,
        [=](const fs::path& run) {
          fs::remove(run / "summary.json");
@@ -159,7 +159,7 @@ std::vector<Lie> lies_of_the_sources() {
       {"report.html:", 1, [](const fs::path& run) { edit(run / "report.html", [](std::string& text) { text += "!"; }); }},
       {"scenario.textproto           is not there", 0,
        [](const fs::path& run) { fs::remove(run / "scenario.textproto"); }},
-      // As a logger by hand leaves it, which has heard the plan and no more.
+      // As a manually started logger leaves it, which has received only the plan.
       {"all but the target, which it lacks", 0,
        [](const fs::path& run) {
          write(run / "scenario.textproto", mission_text(plan_in(run)));

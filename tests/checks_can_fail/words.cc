@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small tokenizer of C++ collects the texts that a function puts together, and looks for them
-// in what was said.
+// A small tokenizer of C++ collects the texts that a function puts together, and searches for them
+// in the output.
 #include "tests/checks_can_fail/words.h"
 
 #include <algorithm>
@@ -80,7 +80,7 @@ Tokens tokens_of(const std::string& source) {
   return tokens;
 }
 
-/// With one space where there are several, or a line's end.
+/// Replaces several spaces, or a line's end, by one space.
 std::string on_one_line(const std::string& text) {
   static const std::regex kSpaces("\\s+");
   return std::regex_replace(text, kSpaces, " ");
@@ -96,7 +96,7 @@ std::vector<std::string> pieces_of(const std::string& text) {
   return pieces;
 }
 
-/// Whether it has a letter and a space, conversions aside.
+/// Whether it has a letter and a space outside conversions.
 bool is_words(const std::string& text) {
   static const std::regex kWords("[A-Za-z][^A-Za-z]* | [^A-Za-z]*[A-Za-z]");
   const std::vector<std::string> pieces = pieces_of(text);
@@ -104,7 +104,8 @@ bool is_words(const std::string& text) {
                      [](const std::string& piece) { return std::regex_search(piece, kWords); });
 }
 
-/// Where `condition ? one : other` begins and ends; the branches of one within another count as its own.
+/// The begin and end of `condition ? one : other`; the branches of a nested one are branches of
+/// their own.
 class Branches {
  public:
   void pass(const std::string& sign, std::vector<std::vector<std::string>>& alternatives) {
@@ -121,7 +122,7 @@ class Branches {
   int depth_ = 1000, begun_ = -1;  // a statement may end in more blocks than it began in
 };
 
-/// One file, and who says what in it.
+/// One file, and the texts of each function in it.
 struct Reader {
   std::string path;
   Tokens tokens;
@@ -171,7 +172,7 @@ struct Reader {
     }
   }
 
-  /// Whether what stands at `i` only is looked for, not said.
+  /// Whether the text at `i` is only searched for, and not printed.
   bool is_asked_for(std::size_t i) const {
     static const std::set<std::string> kAsking = {"starts_with", "ends_with", "find",  "contains",
                                                   "sound",       "getenv",    "at",    "value",
@@ -215,7 +216,7 @@ struct Reader {
   }
 };
 
-/// What each function says itself or through those it calls. Functions of one name count as one.
+/// The texts of each function and of those it calls. Functions of one name count as one.
 std::map<std::string, std::vector<Saying>> words_by_function(const std::vector<Reader>& readers) {
   std::map<std::string, std::map<std::string, Saying>> words;  // by function and place
   std::set<std::pair<std::string, std::string>> calls;         // caller, callee
@@ -245,7 +246,7 @@ std::map<std::string, std::vector<Saying>> words_by_function(const std::vector<R
   return lists;
 }
 
-/// Calls that pass nothing but a name to a function that speaks: the name has to be in what it says.
+/// Calls that pass only a name to a function with texts: the name must be in its output.
 std::vector<Saying> sayings_of_calls(const Reader& reader,
                                      const std::map<std::string, std::vector<Saying>>& words) {
   std::vector<Saying> sayings;

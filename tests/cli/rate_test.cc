@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is left to wait must not jump: the rate behind it follows slowly, and comes to the truth.
+// The remaining time must not jump: its rate changes slowly and converges to the true one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

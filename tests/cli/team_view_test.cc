@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What somebody who only listens knows of a team: who is well, who is not, and since when.
+// The state of a team as a listening process knows it: which agents have trouble, and since when.
 #include "cli/team_view.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TeamStatus coordinator_at(Tick tick) {
   return team;
 }
 
-/// A listener since 0 s, and a team whose words it hears.
+/// A listener since 0 s, and a team whose messages it receives.
 class TeamViewTest : public ::testing::Test {
  protected:
   explicit TeamViewTest(const Mission& mission = small_mission(4)) : view_(kRun, at(0s)) {
@@ -42,7 +42,7 @@ class TeamViewTest : public ::testing::Test {
     status.header.tick = tick;
     return status;
   }
-  /// Everybody is heard, with sequence numbers of that half second.
+  /// Every process sends, with the sequence numbers of that half second.
   void hear_all(Instant now, Tick tick = 0, AgentId but = kUnassigned) {
     hear_processes(now, tick);
     for (AgentId id = 0; id < 4; ++id) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whom the coordinator admits, under which number, and when the mission starts.
+// The agents that the coordinator admits, their numbers, and the start of the mission.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
 }
 
 TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
-  // The world's last state was lost to the coordinator, and the world died with it.
+  // The coordinator did not receive the world's last state, and the world died.
   Coordinator coordinator = running_coordinator(small_mission(2));
   give(coordinator, world_where(7, {6, 6}), at(1s));
   AgentStatus status = status_of(1, 1);
@@ -115,7 +115,7 @@ TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
   }
 }
 
-// A container engine starts a dead agent again within a second, and nobody tells it its number.
+// A container engine restarts a dead agent within a second and does not pass on its number.
 TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const auto ask_at = [&](Instant now) {
@@ -152,7 +152,7 @@ TEST(CoordinatorAdmits, AReplayedStatusKeepsNobodyAlive) {
 
 // ---- what a newcomer knows ----
 
-/// The newest revision that it says until `now`.
+/// The newest revision that it sends until `now`.
 std::int64_t newest_said(Coordinator& coordinator, Instant now) {
   for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) return part.revision;
   ADD_FAILURE() << "it says no MISSION";
@@ -177,7 +177,7 @@ TEST(CoordinatorAdmits, ManyAtOnceWhoKnowTheNewestThatWasSaid) {
   EXPECT_EQ(coordinator.roster().size(), 20u);
 }
 
-// Somebody waited under the number of a living agent and gave up; his words were recorded.
+// An agent waited for the number of a live agent and gave up; its messages were recorded.
 TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const std::int64_t known = newest_said(coordinator, at(1s));
@@ -193,7 +193,7 @@ TEST(CoordinatorAdmits, NobodyInTheNameOfWhoSpokeBeforeTheHolderFellSilent) {
   EXPECT_EQ(coordinator.roster().size(), 3u) << "who waits there still";
 }
 
-// Where messages are late, members fall silent and speak again faster than anybody's words get through.
+// On a network with long delays, members fall silent and return faster than any HELLO arrives.
 TEST(CoordinatorAdmits, OthersThoughAMemberFellSilentSinceTheySpoke) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   const std::int64_t known = newest_said(coordinator, at(1s));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coordinator under way, driven by hand: what it repeats, whom a time-out names, and that the end
-// reaches everybody.
+// The coordinator under way, driven by hand: what it repeats, which agent a time-out names, and
+// that the end reaches all processes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -117,7 +117,7 @@ Mission impatient(int agents, OnTimeout on_timeout = OnTimeout::kEndMission) {
   return mission;
 }
 
-/// Everybody in `ids` says at `now` that it lives and for whom it waits.
+/// Each agent sends at `now` a status with the agent that it waits for.
 void all_alive(Coordinator& coordinator, const std::vector<AgentId>& waiting_for, Instant now) {
   for (std::size_t id = 0; id < waiting_for.size(); ++id) {
     give(coordinator, status_of(static_cast<AgentId>(id), now.time_since_epoch().count() + 1, -1,
@@ -146,7 +146,7 @@ TEST(CoordinatorTimeOut, StartsAgainWithEveryTick) {
   }
 }
 
-/// When the roster says that this life has left.
+/// The tick at which this incarnation left, as the roster has it.
 Tick until(const Coordinator& coordinator, const Author& author) {
   for (const RosterEntry& entry : coordinator.roster()) {
     if (entry.author == author) return entry.active_until;
@@ -173,7 +173,7 @@ TEST(CoordinatorTimeOut, StartsAgainWithAnAdmissionThatTheTickWaitsFor) {
   }
 }
 
-/// A world that begins asks the team where it is, and waits for `whom`.
+/// A starting world asks the team for its state, and waits for `whom`.
 Hello question_of_world(Incarnation life, AgentId whom) {
   return {{kRun, kWorld, life, next_sequence(), 0}, whom, "", ""};
 }
@@ -181,7 +181,7 @@ Hello question_of_world(Incarnation life, AgentId whom) {
 TEST(CoordinatorTimeOut, NamesWhomAWorldThatBeginsWaitsFor) {
   for (const bool heard_a_world : {false, true}) {
     Coordinator coordinator = running_coordinator(impatient(3));
-    // Its predecessor had the answers of all but another.
+    // The former world had the answers of all agents but another one.
     if (heard_a_world) give(coordinator, world_where(5, {4, 5, 5}), at(0s));
     for (int tenths = 0; tenths <= 100; ++tenths) {
       const Instant now = at(tenths * 100ms);
@@ -230,7 +230,8 @@ TEST(CoordinatorTimeOut, IsNotPutOffByRepeatsOfTheSameTick) {
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
 }
 
-/// Whom the reason names if nobody's answer of tick 5 has come; `waiting_for` as they report it.
+/// The agent that the reason names if no answer of tick 5 has come; `waiting_for` as the agents
+/// report it.
 std::string blamed(const std::vector<AgentId>& waiting_for) {
   const auto agents = static_cast<int>(waiting_for.size());
   Coordinator coordinator = running_coordinator(impatient(agents));
@@ -246,12 +247,12 @@ TEST(CoordinatorTimeOut, DoesNotBlameWhoWaitsForATeammate) {
   EXPECT_EQ(blamed({2, 2, -1}), "agent 2");
   // 1 waits for 0, 0 for 2: the end of the chain.
   EXPECT_EQ(blamed({2, 0, -1}), "agent 2");
-  // Two that wait for each other: somebody has to be named.
+  // Two agents that wait for each other: one of them must be named.
   EXPECT_EQ(blamed({1, 0}), "agent 0");
 }
 
 TEST(CoordinatorTimeOut, BlamesTheSilentFirstAndAmongThemTheOneSilentForLongest) {
-  // 0 waits for 1 and says so; 1 was heard 2 s ago, 2 has not been heard since the start.
+  // 0 reports that it waits for 1; the last message of 1 is 2 s old, that of 2 from the start.
   Coordinator coordinator = running_coordinator(impatient(3));
   give(coordinator, world_where(5, {4, 4, 4}), at(1s));
   give(coordinator, status_of(1, 1, 4), at(9s));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Agents that leave, and coverage that is forgotten: what the roster says of those who are gone.
+// Agents that leave, and coverage that is forgotten: the roster entries of former members.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ RosterEntry entry_of(const Coordinator& coordinator, const Author& author) {
   return at == coordinator.roster().end() ? RosterEntry{} : *at;
 }
 
-/// The revision it says at `now`, or nothing.
+/// The revision it sends at `now`, or nothing.
 std::optional<std::int64_t> said_revision(Coordinator& coordinator, Instant now) {
   const auto parts = only<MissionPart>(advance(coordinator, now));
   return parts.empty() ? std::nullopt : std::optional(parts[0].revision);
@@ -80,7 +80,7 @@ Mission forgetful(Pace pace = Pace::kRealtime) {
   return mission;
 }
 
-/// One agent is heard at `now`; nobody else is.
+/// Only one agent sends a status at `now`.
 void speaks(Coordinator& coordinator, const Author& author, Instant now) {
   AgentStatus status = status_of(author.agent, now.time_since_epoch().count() + 1);
   status.header.incarnation = author.incarnation;
@@ -88,14 +88,14 @@ void speaks(Coordinator& coordinator, const Author& author, Instant now) {
 }
 void only_0_speaks(Coordinator& coordinator, Instant now) { speaks(coordinator, author_of(0), now); }
 
-/// The world at `tick`, which it flies by roster `revision`.
+/// The world at `tick`, which uses roster `revision`.
 WorldState flown_by(std::int64_t revision, Tick tick) {
   WorldState world = world_where(tick, {tick - 1, tick - 1});
   world.roster_revision = revision;
   return world;
 }
 
-/// A coordinator whose agent 1 has been silent for 20 s at tick 50; the newest revision is said.
+/// A coordinator whose agent 1 has been silent for 20 s at tick 50; the newest revision was sent.
 Coordinator with_1_forgotten(Pace pace = Pace::kRealtime) {
   Coordinator coordinator = running_coordinator(forgetful(pace));
   give(coordinator, flown_by(1, 50), at(1s));
@@ -199,7 +199,7 @@ TEST(Forgetting, NobodyByACoordinatorThatHearsNobody) {
 }
 
 TEST(Forgetting, SparesAFormerLifeWhileItsSuccessorLives) {
-  // The successor has its predecessor's place and goes on with its work.
+  // The successor takes the former agent's place and continues its work.
   Coordinator coordinator = running_coordinator(forgetful());
   advance(coordinator, at(3s));
   give(coordinator, hello_of(1, 99), at(3s));

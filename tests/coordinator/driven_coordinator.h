@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A coordinator driven by hand, and what agents and the world tell it.
+// A coordinator driven by hand, and the messages of agents and world.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ inline Coordinator coordinator_of(const Mission& mission) {
   return {{kRun, kCoordinatorLife, "here", kVersion}, encode_plan(mission)};
 }
 
-/// Of somebody who has heard of every revision there can be.
+/// The revision in a HELLO that is always new enough.
 inline constexpr std::int64_t kEveryRevision = std::int64_t{1} << 40;
 
 inline Hello hello_of(AgentId id, Incarnation incarnation, std::int64_t revision = kEveryRevision) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A coordinator that finds a mission already flying: it listens, takes over what the agents
-// remember, and never speaks against another.
+// A coordinator that finds a mission already under way: it listens, takes over what the agents
+// know, and never competes with another coordinator.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ Coordinator successor(Takeover takeover, RunId run = 0,
   return {{run, kSuccessorLife, "here", kVersion}, std::move(plan), takeover};
 }
 
-/// What an agent remembers of the predecessor's word at `tick`.
+/// An agent's copy of the predecessor's message at `tick`.
 MissionPart memory_of(std::int64_t revision, std::vector<RosterEntry> roster = roster_of(2),
                       Tick tick = 0, MissionState state = MissionState::kRunning) {
   MissionPart part = mission_part(revision, state, std::move(roster));
@@ -39,7 +39,7 @@ Coordinator taken_over(const MissionPart& memory) {
   return coordinator;
 }
 
-/// What only a living coordinator says.
+/// A message that only a live coordinator sends.
 TeamStatus alive(Incarnation life, std::int64_t sequence = 1) {
   TeamStatus status;
   status.header = {kRun, kCoordinator, life, sequence, 0};
@@ -310,7 +310,7 @@ TEST(TookOver, AnAgentItDoesNotKnowComesBackUnderItsIncarnation) {
 }
 
 TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
-  // By the world's word while it looked around, or by the predecessor's last.
+  // From the world's message during the search, or from the predecessor's last one.
   for (const Tick remembered : {12, 3}) {
     Coordinator coordinator = successor(Takeover::kIfFlying);
     advance(coordinator, at(0s));
@@ -320,7 +320,7 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
     advance(coordinator, at(700ms));
     ASSERT_TRUE(coordinator.took_over());
     EXPECT_EQ(coordinator.tick(), 12);
-    // The restarted agent's former life covered twelve ticks, not none.
+    // The restarted agent's former incarnation covered twelve ticks, not none.
     give(coordinator, hello_of(1, 99), at(5s));
     ASSERT_EQ(coordinator.roster().size(), 3u);
     const auto former = std::find_if(coordinator.roster().begin(), coordinator.roster().end(),
@@ -330,7 +330,7 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
 }
 
 TEST(TookOver, KnowsTheTickThatOnlyTheAgentsHaveSeen) {
-  // World and coordinator died together; the agents were further than the coordinator knew.
+  // World and coordinator died together; the agents were ahead of the coordinator's last tick.
   Coordinator coordinator = successor(Takeover::kIfFlying);
   advance(coordinator, at(0s));
   AgentStatus status = status_of(0, 1);
@@ -380,7 +380,7 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
   MissionPart repeated = memory_of(1000);
   repeated.header.incarnation = kSuccessorLife;
   give(coordinator, alive(kSuccessorLife), at(1s));
-  give(coordinator, repeated, at(3s));  // by an agent, long after its last word
+  give(coordinator, repeated, at(3s));  // by an agent, long after the coordinator's last message
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
   EXPECT_GT(said_by(advance(coordinator, at(3s))).revision, 1000) << "or the team would not listen";
 }

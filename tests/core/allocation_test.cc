@@ -79,7 +79,7 @@ std::size_t allocations_in(const Action& action) {
   return g_allocations - before;
 }
 
-/// Whoever is shown to it has to exist: the compiler may not leave an allocation out.
+/// An object that this points to must exist: the compiler may not leave its allocation out.
 const void* volatile g_seen = nullptr;
 
 TEST(Allocations, AreCountedWhateverTheWay) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coverage table as a CRDT: whatever is lost, repeated or reordered, who has heard the same
-// holds the same; and c_k, (4), from its blocks.
+// The coverage table as a CRDT: with any loss, repetition or order, tables that received the same
+// blocks are equal; and c_k, (4), from its blocks.
 #include "core/coverage_table.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ void expect_same(const Held& a, const Held& b) {
 
 const std::vector<Author> kTeam{{0, 7}, {0, 9}, {1, 5}, {2, 1}};
 
-/// Everything that was ever said: each author's blocks after 1, 2, 5 and 8 steps.
+/// All messages: each author's blocks after 1, 2, 5 and 8 steps.
 std::vector<Contribution> everything_said() {
   std::vector<Contribution> said;
   for (const Author& author : kTeam) {
@@ -228,7 +228,7 @@ TEST(CoverageTable, BlocksThatNobodyHasCoveredAreZero) {
 }
 
 TEST(CoverageTable, ItsOwnSamplesAndItsOwnWordsAreTheSameThing) {
-  // A teammate who is told everything has the same row, bit for bit.
+  // A teammate that receives everything has the same row, bit for bit.
   CoverageTable own = table_of(), teammate = table_of();
   const Author self{3, 33};
   for (std::int64_t step = 0; step < 50; ++step) {
@@ -379,7 +379,7 @@ TEST(CoverageTableAccepts, HonestRoundingOfManyAdditions) {
   EXPECT_EQ(table.merge(block, kSteps), Merge::kNewer);
 }
 
-/// What is said after the first step, with four modes.
+/// The block after the first step, with four modes.
 Contribution first_step() {
   Contribution block;
   block.steps = 1;

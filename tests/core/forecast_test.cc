@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ĉ on random tables, against its formula evaluated again from all that was heard; and what it must
-// not depend on: the order in which things come, and what anybody only claims.
+// ĉ on random tables, compared with its formula evaluated again from all received blocks; and what
+// it must not depend on: the order of the blocks, and mere claims of an author.
 #include "core/forecast.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ Eigen::Vector3d place(AgentId agent, Tick tick, const Mission& mission) {
                     static_cast<std::uint64_t>(tick));
 }
 
-/// Somebody who covers where its vehicle is, tick by tick, and speaks when it is asked to.
+/// An agent that covers the place of its vehicle, tick by tick, and broadcasts when it is asked to.
 class Life {
  public:
   Life(const Author& author, const Mission& mission)
@@ -228,7 +228,7 @@ Coefficients by_the_formula(const Known& known, const Mission& mission) {
 
 // ---- random histories --------------------------------------------------------------------------
 
-/// In a block as it was said, one sum becomes another that its range still allows.
+/// Changes one sum of a broadcast block to another value that its range still allows.
 void forge(Contribution& block, Dice& dice) {
   const double elapsed_s = static_cast<double>(block.steps) * kDt;
   block.sums[1 + dice.below(10)] = dice.one_in(2) ? elapsed_s : -elapsed_s;
@@ -238,7 +238,7 @@ RosterEntry entry_of(const Author& author, Tick from, Tick until = -1) {
   return {author, from, until};
 }
 
-/// Agent 2 and we were restarted, somebody has left, somebody is to come, somebody is not named.
+/// Agent 2 and we were restarted; one agent has left, one is to come, one is not in the roster.
 std::vector<RosterEntry> drawn_roster(Dice& dice) {
   const Tick reborn = dice.tick(1, kEnd), ours = dice.tick(0, kEnd);
   std::vector<RosterEntry> roster{entry_of({0, 7}, 0, ours), entry_of(kSelf, ours)};
@@ -346,9 +346,9 @@ TEST_P(Foreseen, IsWhatIsKnownWhereTheLawDoesNotLookAhead) {
   });
 }
 
-// ---- who counts --------------------------------------------------------------------------------
+// ---- which agents count ------------------------------------------------------------------------
 
-/// A team of `agents` that has told all at each of the ticks 0 … kEnd − 1, in its words.
+/// A team of `agents` that has broadcast all at each of the ticks 0 … kEnd − 1, as its messages.
 std::vector<Contribution> told_each_tick(int agents, const Mission& mission, Tick every = 1) {
   std::vector<Contribution> said;
   std::vector<Life> lives;
@@ -427,7 +427,7 @@ TEST(ForecastCounts, NoFormerLifeOfOurOwn) {
   for (Tick tick = 0; tick < 20; ++tick) life.cover(tick);
   for (const Contribution& block : life.speak(19)) known.heard.push_back(block);
   const Coefficients expected = foreseen(known, mission);
-  // Also where the roster does not say yet that it has left.
+  // Also where the roster does not have its departure yet.
   for (const Tick until : {Tick{20}, Tick{-1}}) {
     Known named = known;
     named.roster[0].active_from = 20;
@@ -436,7 +436,7 @@ TEST(ForecastCounts, NoFormerLifeOfOurOwn) {
   }
 }
 
-/// What agent 1 said last, in both blocks.
+/// Agent 1's last message, in both blocks.
 std::vector<Contribution*> last_words_of_1(Known& known) {
   std::vector<Contribution*> last(2);
   for (Contribution& block : known.heard) {
@@ -527,7 +527,7 @@ TEST(ForecastCounts, ABlockThatSaysItIsFromTheFutureAsOneOfNow) {
 }
 
 TEST(ForecastBefore, IsNoBlockFromBeforeOneTookPart) {
-  // Whoever has heard more of the time before must foresee the same.
+  // An agent with more data of the time before must forecast the same.
   const Mission mission = mission_of(false);
   Known little = team_of(3, mission, kPeriod);
   little.joined = kEnd - 7;

@@ -226,7 +226,7 @@ TEST(Weight, APeriodThatThePlanDoesNotAllowBuysNothing) {
   }
 }
 
-// A block says when it was said and when its author speaks again, both as it likes.
+// A block states its own tick and that of its author's next one, with arbitrary values.
 TEST(Weight, AnAnnouncementOfThePastIsNone) {
   const LookAhead look_ahead = telling_each(kPeriod);
   for (const Tick period : {Tick{0}, Tick{-1}, -(Tick{1} << 48)}) {

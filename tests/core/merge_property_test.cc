@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coverage table on random histories: many lives, lost, late, repeated and relayed blocks,
-// groups that merge in any order, authors that are forgotten. What was heard decides what is held.
+// The coverage table on random histories: many incarnations, lost, late, repeated and relayed
+// blocks, groups that merge in any order, authors that are forgotten. The received blocks alone
+// decide what is held.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +46,8 @@ class Dice {
   std::uint64_t history_, throws_ = 0;
 };
 
-/// All that the lives of this history ever broadcast, in the order of their sequences.
+/// All blocks that the incarnations of this history ever broadcast, in the order of their
+/// sequences.
 std::vector<Contribution> everything_said(std::uint64_t history) {
   Dice dice(history);
   std::vector<Contribution> said;
@@ -120,7 +122,7 @@ void expect_same(const CoverageTable& a, const CoverageTable& b) {
   EXPECT_EQ(average_of(a), average_of(b));
 }
 
-/// Looks at what was said in each of many histories.
+/// Checks the messages of each of many histories.
 void in_every_history(
     const std::function<void(const std::vector<Contribution>& said, Dice& dice)>& check) {
   for (std::uint64_t history = 0; history < kHistories; ++history) {

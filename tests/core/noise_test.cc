@@ -32,7 +32,8 @@ Words words_of(std::uint64_t step, std::uint32_t who, std::uint32_t purpose, std
 }
 
 TEST(Noise, RepeatsThePublishedVectorsOfPhilox) {
-  // philox4x32-10 of the Random123 distribution: counter words (step low, step high, who, purpose).
+  // philox4x32-10 of the Random123 distribution: counter words (step low, step high, agent,
+  // purpose).
   Words words = words_of(0, 0, 0, 0);
   EXPECT_EQ(words.first, 0x6627e8d5e169c58du);
   EXPECT_EQ(words.second, 0xbc57ac4c9b00dbd8u);

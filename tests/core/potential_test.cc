@@ -112,7 +112,7 @@ class FreshTeam {
     mission_.dead_reckoning = number() < 0.5;
   }
 
-  /// Its last two words: rates are what the last tick gave.
+  /// Its last two messages: rates come from the last tick.
   void draw_life(const Author& author) {
     CoverageTable own(mission_.basis, kDt);
     for (Tick tick = 0; tick <= last_tick_; ++tick) {

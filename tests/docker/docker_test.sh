@@ -59,7 +59,7 @@ too_few_agents_end_with_a_sentence() {
   ERGOCAST_SCENARIO=patient
 }
 
-# What befalls a member befalls it in mid-mission: these last until the test ends them.
+# Faults of members happen during the mission, so these missions last until the test ends them.
 endless=(--duration 10000000)
 a_killed_agent_comes_back_under_its_number() {
   fly killed 4 "${endless[@]}"

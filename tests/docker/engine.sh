@@ -6,7 +6,7 @@
 
 export DOCKER_HOST=unix://$work/engine.sock
 
-# Waits until a command succeeds. How long that may take decides no success.
+# Waits until a command succeeds. The time that it takes decides no success.
 eventually() {
   local deadline=$((SECONDS + ${PATIENCE_S:-300}))
   until "$@" >/dev/null 2>&1; do
@@ -37,7 +37,7 @@ import_base() {
     --exclude='./var/lib/apt/lists/*' -c . | docker import - debian-12 >/dev/null
 }
 
-# Builds where packages can be fetched: in this machine's network, with a bridge to nobody.
+# Builds in this machine's network, so that packages can be fetched, and without a bridge.
 the_image_is_built_from_the_package() {
   start_engine /proc/self/ns/net --bridge=none --iptables=false --ip-forward=false
   import_base

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by docker_test.sh (bash): a person who uses the compose files, and what is expected of it.
+# Sourced by docker_test.sh (bash): the steps of a person with the compose files, and their expected results.
 # shellcheck shell=bash disable=SC2154  # work and source are set before
 
 person=4321
@@ -7,7 +7,7 @@ over=
 export COMPOSE_PROJECT_NAME=team ERGOCAST_SCENARIOS=$work/scenarios ERGOCAST_SCENARIO=patient
 export ERGOCAST_AGENTS ERGOCAST_OPTIONS ERGOCAST_RUNS ERGOCAST_KEYS=$work/team
 
-# Whose the scenarios are, so that the records are to be, too.
+# The owner of the scenarios, who must also own the records.
 make_person() {
   mkdir "$ERGOCAST_SCENARIOS"
   local file=$source/scenarios/quadrimodal_corners.textproto

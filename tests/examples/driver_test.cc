@@ -20,7 +20,7 @@ Mission mission_of(Pace pace, double command_hold_s = 0.5) {
   return mission;
 }
 
-/// A driver that has heard at 0 s that the mission of two agents runs.
+/// A driver that received at 0 s that the mission of two agents runs.
 Driver running_driver(const Mission& mission, double speed_limit_mps = kSpeedLimit_mps) {
   announce(mission);
   Driver driver(kRun, kWorldLife, speed_limit_mps);

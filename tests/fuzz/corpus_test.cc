@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every target over every input of its corpus, with the ordinary compiler. Inputs that once broke
-// something stay there.
+// Runs every target over every input of its corpus, with the ordinary compiler. Inputs that once
+// caused a failure stay in the corpus.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One datagram under some channel, as it came and with its tag made right: what is accepted says
-// the same when it is sent again, one message alone cannot break a table, and who has a key accepts
+// One datagram on some channel, as received and with a valid tag: an accepted message is unchanged
+// when it is sent again, one message alone cannot break a table, and a receiver with a key accepts
 // nothing.
 //
 // Input: a byte with the length of the channel's name, the name, the datagram.

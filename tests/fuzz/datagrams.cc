@@ -69,7 +69,7 @@ void write(std::span<std::uint8_t> at, std::uint64_t value) {
   for (std::size_t i = at.size(); i-- > 0; value >>= 8) at[i] = static_cast<std::uint8_t>(value);
 }
 
-/// Another number in place of the one at `field`.
+/// Another number for the one at `field`.
 std::uint64_t instead_of(std::span<const std::uint8_t> field, Dice& dice) {
   switch (dice.below(4)) {
     case 0:
@@ -119,7 +119,7 @@ std::size_t mutate_datagram(std::span<std::uint8_t> space, std::size_t size, Dic
                  length);
     return size;
   }
-  // A field: those of the header, or any width anywhere behind it.
+  // A field: one of the header, or any width anywhere after it.
   constexpr std::size_t kFields[][2] = {{8, 8}, {16, 4}, {20, 8}, {28, 8}, {36, 8}};
   constexpr std::size_t kWidths[] = {1, 4, 8, 8};
   std::size_t offset = 0, width = 1;

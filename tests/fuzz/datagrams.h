@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Datagrams that lie: bytes changed where fields are, and the tag made right again.
+// Forged datagrams: bytes changed at the places of fields, with a valid tag.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +25,11 @@ class Dice {
   std::uint64_t state_;
 };
 
-/// Gives a datagram of at least kHeaderBytes the tag that a sender without a key would.
+/// Gives a datagram of at least kHeaderBytes the tag of a sender without a key.
 void retag(std::span<std::uint8_t> datagram);
 
-/// Changes one thing: a field's number, a string's length, a few bits, the size; the new size, at
-/// most space.size(). The tag is as wrong as that makes it.
+/// Changes one thing: a field's number, a string's length, a few bits, the size. Returns the new
+/// size, at most space.size(). The tag stays as it was.
 std::size_t mutate_datagram(std::span<std::uint8_t> space, std::size_t size, Dice& dice);
 
 }  // namespace ergocast::fuzz

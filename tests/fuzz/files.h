@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that hold an input, for readers that want a path.
+// Files that hold an input, for readers that need a path.
 #pragma once
 
 #include <sys/mman.h>
@@ -21,7 +21,7 @@ inline std::filesystem::path memory_file(Input content) {
   return "/proc/self/fd/" + std::to_string(fd);
 }
 
-/// A folder of this process's own, in memory where there is such a place; gone when it ends.
+/// A folder of this process, in memory if possible; removed when it ends.
 class Folder {
  public:
   Folder() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What nft and iptables say.
+// The output of nft and iptables.
 #include "ops/doctor/programs.h"
 #include "tests/fuzz/target.h"
 

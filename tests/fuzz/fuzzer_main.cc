@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What libFuzzer calls: the one target of this program.
+// The entry points for libFuzzer: the one target of this program.
 #include "tests/fuzz/target.h"
 
 extern "C" {

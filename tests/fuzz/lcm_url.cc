@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bus's URL: what is accepted is spelled so that it reads back the same.
+// A bus's URL: an accepted one prints as text that reads back the same.
 #include "runtime/lcm_url.h"
 
 #include "tests/fuzz/target.h"

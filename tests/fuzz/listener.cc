@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One core that hears nothing but a stranger who knows its run: it does not break, holds nothing
-// that cannot be, and says nothing that would be refused.
+// One core that only receives messages of an attacker with its run id: it does not crash, holds
+// nothing impossible, and sends nothing that would be refused.
 //
-// The first byte of the input is Features, the second says who listens.
+// The first byte of the input is Features, the second selects the core.
 #include <sstream>
 
 #include "lcmtypes/codec.h"
@@ -16,7 +16,7 @@
 namespace ergocast::fuzz {
 namespace {
 
-/// Whatever was heard, what a core says is accepted by its own.
+/// A core's messages are valid, whatever it received.
 void check_said(const Outbox& said) {
   static std::vector<std::byte> bytes;
   for (const Outgoing& outgoing : said) {
@@ -25,7 +25,7 @@ void check_said(const Outbox& said) {
   }
 }
 
-/// Plays `input` to `core`, which begins to live a second after the clock.
+/// Plays `input` to `core`, which starts a second after the clock.
 template <class Core, class Receive>
 Instant listen(Input input, Core& core, const Receive& receive) {
   Instant now = test::at(std::chrono::seconds(1));
@@ -85,7 +85,7 @@ void recorder_listens(Input input) {
   check_table(metrics.view());
 }
 
-/// `ergocast status` as a core that says nothing.
+/// `ergocast status` as a core that sends nothing.
 struct Viewer : TeamView {
   using TeamView::TeamView;
   void advance(Instant, Outbox&) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A PNG. Its chunks carry checksums, at which a changed file would always fail: they are made
-// right.
+// A PNG. Its chunks carry checksums, at which a changed file would always fail, so they are
+// corrected.
 #include <zlib.h>
 
 #include "target/png_map.h"

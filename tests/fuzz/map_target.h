@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the targets of all map formats do: read every row, and check the promises of
+// The common part of the targets of all map formats: read every row, and check the guarantees of
 // target/map_file.h.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace ergocast::fuzz {
 
-/// Reads at most a million cells: what comes later is read as what came before.
+/// Reads at most a million cells: later rows are read by the same code.
 inline void read_map(Input input, OpenedMap (*open)(const std::filesystem::path&)) {
   const OpenedMap opened = open(memory_file(input));
   if (const auto* problem = std::get_if<MapProblem>(&opened)) {

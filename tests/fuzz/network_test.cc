@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team that flies in real time while somebody throws damaged datagrams at its buses: nobody dies,
+// An adversary sends damaged datagrams to the buses of a team in real time: no process dies,
 // nothing is accepted, and the mission is flown to its end.
 //
 // A short run asserts no time. A long one, which prints how many deadlines were missed with and
@@ -62,7 +62,7 @@ std::pair<int, int> accepted(const std::filesystem::path& folder, const Vandal& 
 
 class HostileNetwork : public FlyingMission {
  protected:
-  /// Deadlines missed in a stretch of the mission.
+  /// Missed deadlines in a part of the mission.
   struct Stretch {
     Tick ticks = 0;
     std::int64_t missed = 0;
@@ -71,7 +71,7 @@ class HostileNetwork : public FlyingMission {
     }
   };
 
-  /// Listens for so long, striking so often, if at all.
+  /// Listens for so long and sends so many damaged datagrams, if any.
   static Stretch spend(Vandal& vandal, std::chrono::duration<double> time, long strikes) {
     const Tick tick = vandal.tick();
     const std::int64_t missed = vandal.missed_deadlines();

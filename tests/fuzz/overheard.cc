@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LCM datagrams as `ergocast doctor` overhears them: "LC02", a number, a channel, a message.
+// LCM datagrams that `ergocast doctor` receives: "LC02", a number, a channel, a message.
 //
-// Input: a length of 2 bytes, high one first, then a datagram, and so on. Tags are made right.
+// Input: a length of 2 bytes, high one first, then a datagram, and so on. Tags are made valid.
 #include "ops/doctor/bus_listener.h"
 #include "ops/doctor/print.h"
 #include "tests/fuzz/datagrams.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A compiled plan as it comes from the network: refused in a sentence, or a mission that a scenario
-// could have said.
+// A compiled plan from the network: refused with one sentence, or a mission that a scenario can
+// describe.
 #include "team/plan.h"
 
 #include <algorithm>

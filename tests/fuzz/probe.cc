@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The probes with which `ergocast doctor` of two hosts try each other, one after the other.
+// The probes that `ergocast doctor` on two hosts exchange, one after the other.
 //
 // Input: a length of 2 bytes, high one first, then a datagram, and so on.
 #include "ops/doctor/probe.h"

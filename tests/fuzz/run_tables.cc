@@ -23,7 +23,7 @@ void check(const RunData& run) {
   for (const double c : coverage.reshaped()) ERGOCAST_REQUIRE(std::abs(c) <= 1 + 1e-6);
 }
 
-/// A restarted logger goes on with such a record.
+/// A restarted logger continues such a record.
 void resume(RunData run) {
   std::ostringstream trajectory, metrics;
   test::announce(test::small_mission(2));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scenario from its text to its plan: refused with problems that say where, what and what to do,
-// or a mission that its own printed text and its own plan lead to again.
+// A scenario from its text to its plan: refused with problems that have place, error and remedy, or
+// a mission that its own printed text and its own plan lead to again.
 #include "scenario/scenario.h"
 
 #include "team/plan.h"
@@ -22,7 +22,7 @@ const Folder& folder_with_maps() {
   return folder;
 }
 
-/// Correlated Gaussians take seconds here, and long texts hide nothing that short ones do not show.
+/// Correlated Gaussians take seconds here, and long texts find no more than short ones.
 bool too_costly(std::string_view text) {
   return text.size() > 2048 || text.find("xy_m2") != text.npos;
 }

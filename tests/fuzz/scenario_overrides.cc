@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `--set` puts over a scenario: a line "path=value" each.
+// The overrides of `--set`: one "path=value" in each line.
 #include "scenario/scenario.h"
 #include "tests/fuzz/target.h"
 

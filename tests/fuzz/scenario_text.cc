@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scenario's text as far as its rules go: everything but the integrals over its target, which
-// take too long for millions of texts. A negative weight put over each keeps the loader from them.
+// A scenario's text and its rules, without the integrals over its target, which take too long for
+// millions of texts. A negative weight in each keeps the loader from them.
 #include "scenario/scenario.h"
 #include "tests/fuzz/target.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the binary inputs that the corpora began with: fuzz-seeds DIRECTORY
-// To be run again when a message or the plan has changed its format, or the program its version, which is
-// in the plan.
+// Writes the first binary inputs of the corpora: fuzz-seeds DIRECTORY. Run it again when the format
+// of a message or of the plan has changed, or the program's version, which is in the plan.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -67,7 +66,7 @@ std::string turn(int wait, AgentId transmitter, const std::string& datagram) {
   return std::string{static_cast<char>(wait), static_cast<char>(transmitter)} + framed(datagram);
 }
 
-/// What a team says that flies by itself, one message of every kind at a time.
+/// The messages of an undisturbed team, one of every kind at a time.
 std::vector<std::string> everything_said(SmallTeam& team) {
   std::vector<std::string> turns;
   std::map<std::size_t, int> said;

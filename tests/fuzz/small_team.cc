@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 using test::kRun;
 
 constexpr int kAgents = 2;
-/// So often a team answers itself at one instant: about one lockstep tick.
+/// The maximum number of answers at one instant: about one lockstep tick.
 constexpr int kMostRounds = 4;
 
 }  // namespace
@@ -119,7 +119,7 @@ void SmallTeam::deliver(const Outbox& out) {
   for (const Outgoing& outgoing : out) {
     encode(outgoing.message, bytes_);
     const auto decoded = decode(bytes_, kRun);
-    // Whatever was heard, what the team says itself is accepted by its own.
+    // The team's own messages are valid, whatever it received.
     ERGOCAST_REQUIRE(std::holds_alternative<Message>(decoded));
     const AgentId transmitter =
         outgoing.relayer == kUnassigned ? header_of(outgoing.message).sender : outgoing.relayer;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole team in one process, two agents, that hears what a fuzzer says among its own messages.
+// A whole team in one process, two agents, that receives a fuzzer's messages among its own.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace ergocast::fuzz {
 
-/// Which kind of mission is flown; every bit a feature.
+/// The kind of the mission; every bit is a feature.
 enum Features : std::uint8_t {
   kRealtimePace = 1,
   kLooksAhead = 2,
@@ -31,12 +31,12 @@ enum Features : std::uint8_t {
 /// A short mission that two agents fly, with these features.
 Mission mission_with(std::uint8_t features);
 
-/// Who `message` is heard from if `transmitter` claims to have sent it: only contributions are
+/// The transmitter of `message` if `transmitter` claims to have sent it: only contributions are
 /// relayed.
 AgentId transmitter_in(const Message& message, AgentId transmitter);
 
-/// Abort if an agent holds what cannot be, or what it shows would steer a terminal, or a number in
-/// a table is none.
+/// Aborts if an agent holds something impossible, shows text that controls a terminal, or has NaN
+/// in a table.
 void check(const Agent& agent);
 void check(const TeamPicture& picture);
 void check_table(std::string_view table);
@@ -45,15 +45,15 @@ class SmallTeam {
  public:
   explicit SmallTeam(std::uint8_t features);
 
-  /// A stranger's datagram, as the transport would hand it on.
+  /// An attacker's datagram, as the transport would pass it on.
   void hear(std::span<const std::byte> datagram, AgentId transmitter);
-  /// Time goes on, and everybody does what is due and hears the others.
+  /// Time passes; every process does its due work and receives the others' messages.
   void pass(std::chrono::nanoseconds time);
 
-  /// Aborts if what anybody holds or has written cannot be.
+  /// Aborts if any process holds or has written something impossible.
   void check() const;
 
-  /// Sees every datagram that the team sends.
+  /// Receives every datagram that the team sends.
   std::function<void(AgentId transmitter, const std::vector<std::byte>&)> on_sent;
 
  private:

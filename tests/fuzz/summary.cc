@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// summary.json as the report reads it back: whatever JSON it is, a page comes of it.
+// summary.json as the report reads it: any JSON gives a page.
 #include "logger/summary.h"
 
 #include "report/page.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A fuzz target: a function of bytes that has to come back, whatever they are.
+// A fuzz target: a function of bytes that must return for any input.
 //
-// Each file of this folder that is named after a folder of corpus/ defines one, with
-// FUZZ_TARGET(name). clang's libFuzzer runs one target a program (fuzzer_main.cc); the ordinary
-// build runs them all over what is in corpus/ (corpus_test.cc).
+// Each file of this folder with the name of a folder of corpus/ defines one, with
+// FUZZ_TARGET(name). clang's libFuzzer runs one target in each program (fuzzer_main.cc); the
+// ordinary build runs all of them over the files in corpus/ (corpus_test.cc).
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ using Input = std::span<const std::uint8_t>;
 struct Target {
   const char* name;
   void (*run)(Input);
-  /// Changes the first `size` of `space` bytes as only who knows the format can; the new size.
+  /// Changes the first `size` of `space` bytes with knowledge of the format; returns the new size.
   std::size_t (*mutate)(std::span<std::uint8_t> space, std::size_t size,
                         std::uint64_t seed) = nullptr;
 };

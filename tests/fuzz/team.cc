@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team that flies, among whose messages a stranger's come: nobody in it breaks, and nobody says
-// what the others would not accept. The first byte of the input is Features.
+// A flying team that also receives an attacker's messages: no process crashes or sends what others
+// would refuse. The first byte of the input is Features.
 #include "tests/fuzz/small_team.h"
 #include "tests/fuzz/target.h"
 #include "tests/fuzz/turns.h"

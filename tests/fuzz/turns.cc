@@ -81,7 +81,7 @@ std::size_t mutate_turns(std::span<std::uint8_t> space, std::size_t size, std::u
     case 3:  // left out
       std::memmove(&space[turn.begin], space.data() + turn.end, size - turn.end);
       return size - length;
-    case 4:  // said again, at the end
+    case 4:  // repeated, at the end
       if (size + length > space.size()) return size;
       std::memcpy(space.data() + size, &space[turn.begin], length);
       return size + length;

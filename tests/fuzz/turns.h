@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a stranger says, one datagram after the other: the input of the targets that have a state.
+// An attacker's datagrams, one after the other: the input of the targets with a state.
 //
 // First kPrefixBytes that the target reads. Then turns of 4 bytes and a datagram: how long to wait
-// before it (an index of kWaits), who transmits it, its length (2 bytes, high one first). Tags are
-// made right, so that a change reaches whoever listens.
+// before it (an index of kWaits), its transmitter, its length (2 bytes, high one first). Tags are
+// made valid, so that a change reaches the listening core.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps recent datagrams, changes one to four things in a copy, and sends the copy in LCM's
-// form.
+// Records recent datagrams, changes one to four things in a copy, and sends the copy in LCM's
+// format.
 #include "tests/fuzz/vandal.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void Vandal::take(int bus, std::span<const std::uint8_t> datagram) {
   if (sent_ == 0 && heard_.size() < kMostKept) heard_.push_back(std::move(packet));
 }
 
-/// The packet with one to four things changed, so that it is not what anybody has said.
+/// The packet with one to four changes, so that it differs from all recorded ones.
 Vandal::Packet Vandal::damaged(const Packet& original) {
   Packet packet = original;
   const std::size_t size = packet.message.size();
@@ -73,7 +73,7 @@ Vandal::Packet Vandal::damaged(const Packet& original) {
   }
   packet.message.resize(now);
   if (packet.message == original.message) packet.message[dice_.below(now)] ^= 1;
-  // Whoever has no key can make the right tag of somebody without a key.
+  // An attacker without a key can compute the tag of a team without a key.
   if (seal_.keyed() && now >= kHeaderBytes && dice_.below(2) == 0) retag(packet.message);
   if (dice_.below(8) == 0) packet.channel = heard_[dice_.below(heard_.size())].channel;
   if (dice_.below(64) == 0) packet.channel += static_cast<char>('0' + dice_.below(10));
@@ -102,7 +102,7 @@ void Vandal::strike() {
   if (what == 1) datagram.resize(dice_.below(datagram.size()));  // cut off
   if (what == 2) datagram[dice_.below(kLcmHeaderBytes)] = static_cast<std::uint8_t>(dice_.next());
   if (what == 3) std::replace(datagram.begin(), datagram.end(), std::uint8_t{0}, std::uint8_t{1});
-  // The header of a fragment makes LCM itself crash, which no program that uses it can prevent.
+  // The header of a fragment makes LCM itself crash, which no program with LCM can prevent.
   if (datagram.size() >= 4 && std::memcmp(datagram.data(), "LC03", 4) == 0) datagram[3] = '4';
   const sockaddr_in to = address_of(url_.group, url_.base_port + packet.bus);
   sendto(mouth_.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the network of a team who keeps what it says and sends it back damaged.
+// An adversary on a team's network: it records messages and sends them back damaged.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace ergocast::fuzz {
 
 class Vandal {
  public:
-  /// @param seal  the team's, with which only its state is read. If it has a key, some forgeries get
-  ///              the tag that would be right without one.
+  /// @param seal  the team's, only for reading its state. If it has a key, some forgeries get the
+  ///              tag that is valid without one.
   Vandal(const LcmUrl& url, const Seal& seal, std::uint64_t seed);
 
-  /// Takes in what has arrived. While nothing has been sent yet it is kept.
+  /// Reads the waiting datagrams. They are recorded until the first one was sent.
   void listen();
   /// Sends one datagram to one of the buses.
   void strike();
@@ -32,7 +32,7 @@ class Vandal {
     return forgeries_.contains(mark(channel, message));
   }
 
-  /// As the world says: its tick, and the commands that came too late so far.
+  /// The world's reports: its tick, and the number of late commands.
   Tick tick() const { return tick_; }
   std::int64_t missed_deadlines() const { return missed_deadlines_; }
 

@@ -20,7 +20,7 @@ if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
   exit
 fi
 
-# This namespace is the switch; those of the hosts are named where nobody else sees it.
+# This namespace is the switch. The names of the hosts' namespaces are in a private mount.
 mkdir -p /run/netns
 mount -t tmpfs tmpfs /run/netns
 ip link add switch type bridge

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `ergocast doctor` says of hosts on one network, and of what goes wrong there.
+// The findings of `ergocast doctor` on hosts of one network, and of faults there.
 #include <unistd.h>
 
 #include <map>
@@ -173,7 +173,7 @@ TEST_F(DoctorOnHosts, AFirewallIsOpenedByTheCommandsGiven) {
 }
 
 TEST_F(DoctorOnHosts, ACableThatIsPulledIsNamed) {
-  // The kernel puts off what it says of a link that has changed a moment before.
+  // The kernel reports a change of a link with a delay.
   lan_->unplug(0);
   lan_->heal();
   lan_->unplug(0);

@@ -15,8 +15,8 @@ void append(std::string& bytes, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(number >> shift));
 }
 
-/// The first of two fragments of a message. Its data is to go to 64 bytes before the message's
-/// beginning, or as 32 bits have it: 4 GB behind it. LCM's check of that overflows.
+/// The first of two fragments of a message. Its data goes to 64 bytes before the message's
+/// beginning, which in 32 bits is 4 GB after it. LCM's check of that overflows.
 std::string crafted_fragment(const std::string& channel) {
   std::string bytes = "LC03";
   append(bytes, 1);     // the message's number
@@ -36,10 +36,10 @@ void send_to(const std::string& address, Bus bus, const std::string& bytes) {
 
 class Fragments : public FlyingMission {
  protected:
-  /// From now on programs start as on a kernel without socket filters, which keep fragments out.
+  /// From now on programs start as on a kernel without socket filters, which block fragments.
   void take_socket_filters_away() {
     setenv("LD_PRELOAD", ERGOCAST_NO_SOCKET_FILTER, 1);
-    // With AddressSanitizer: a preloaded library is fine, and a crash is to be the kernel's.
+    // With AddressSanitizer: allows a preloaded library, and leaves crashes to the kernel.
     setenv("ASAN_OPTIONS", "verify_asan_link_order=0:handle_segv=0", 1);
   }
   void TearDown() override {
@@ -49,7 +49,7 @@ class Fragments : public FlyingMission {
     FlyingMission::TearDown();
   }
 
-  /// Fragments for everybody who listens to anything; how many.
+  /// Sends fragments to all listening ports; returns how many.
   static int send_to_everybody() {
     int sent = 0;
     for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
@@ -62,7 +62,7 @@ class Fragments : public FlyingMission {
     }
     return sent;
   }
-  /// The team flies on as if nothing had been.
+  /// The team continues undisturbed.
   void expect_nothing_happens(Child& mission) {
     ASSERT_TRUE(moves_on(100000)) << said();
     mission.send(SIGTERM);
@@ -70,7 +70,7 @@ class Fragments : public FlyingMission {
     EXPECT_EQ(summary()["restarts"], 0) << said();
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   }
-  /// What the rule has dropped.
+  /// The number of packets that the rule has dropped.
   int dropped() {
     const auto file = folder_ / "rules";
     if (std::system(("nft list table inet ergocast > " + file.string()).c_str()) != 0) return -1;
@@ -82,7 +82,7 @@ class Fragments : public FlyingMission {
 TEST_F(Fragments, CrashAnAgentOnceWhoIsStartedAgainAndGetsItsSumBack) {
   take_socket_filters_away();
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
-  // What is sent to this host alone goes to whoever listens to a port last.
+  // A datagram to this host alone reaches the socket that was bound last.
   kill_next(agent(2));
   ASSERT_TRUE(logs("agent-2", ": running", 2)) << said();
   Witness witness(kUrl);

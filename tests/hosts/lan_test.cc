@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The network that the other tests stand on does what they ask of it.
+// The network of the other tests behaves as they require.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A socket on a host that sends to a multicast group and hears it.
+/// A socket on a host that sends to a multicast group and receives from it.
 class Radio {
  public:
   Radio(const Lan& lan, int host) {
@@ -35,7 +35,7 @@ class Radio {
     const std::string text(bytes, '.');
     sendto(fd_, text.data(), text.size(), 0, address(), sizeof group_);
   }
-  /// How many have come, once none has come for a while.
+  /// The number of messages received, once none has come for a while.
   int heard() {
     int count = 0;
     char text[2000];
@@ -62,7 +62,7 @@ class ThreeHosts : public OnHosts {
     OnHosts::TearDown();
   }
   Radio& radio(int host) { return radios_[static_cast<std::size_t>(host)]; }
-  /// Who hears what `from` says now, as "01": host 0 and host 1.
+  /// The hosts that receive a message of `from`, as "01": host 0 and host 1.
   std::string hearers(int from) {
     radio(from).send();
     std::string who;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A network that loses frames at random: lockstep makes up for every one of them, real time goes on
-// without.
+// A network that loses frames at random: lockstep repeats every lost message, real time continues
+// without them.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {
@@ -32,7 +32,7 @@ TEST_F(Loss, InRealTimeDoesNotKeepTheMissionFromItsEnd) {
 
 TEST_F(Loss, InRealTimeLeavesNobodyBehindByMoreThanTheAnnouncedPeriods) {
   constexpr int kPeriodTicks = 5;
-  // What a digest says may be a mission second old; its author speaks in between.
+  // A digest may be a mission second old, and its author sends contributions in between.
   constexpr std::int64_t kTolerated = 2 * kPeriodTicks + 10 + kPeriodTicks;
   start(mission(kEndless, std::string(kRealtime) + " broadcast_period_ticks: 5"));
   Witness witness = witness_on(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts that do not hear each other for a while: in real time everybody goes on with what there is,
+// Hosts that are disconnected for a while: in real time all processes continue with what they have,
 // and afterwards the team agrees again.
 #include "tests/hosts/team_on_hosts.h"
 
@@ -10,7 +10,7 @@ constexpr Tick kTicksPerSecond = 50;  // of wall time, at kRealtime
 
 class Partition : public TeamOnHosts {
  protected:
-  /// Steps of each of the four, as `witness` has heard them say.
+  /// Steps of each of the four agents, as `witness` received them.
   using Coverage = std::array<std::int64_t, 4>;
   static Coverage said(const Witness& witness) {
     Coverage coverage{};
@@ -19,7 +19,7 @@ class Partition : public TeamOnHosts {
     }
     return coverage;
   }
-  /// Whether `who` says that it holds at least so much of everybody else.
+  /// Whether `who` reports that it holds at least so much of all other agents.
   static bool holds(const Witness& witness, AgentId who, const Coverage& coverage) {
     for (AgentId whose = 0; whose < 4; ++whose) {
       const std::int64_t held = witness.held(witness.member(who), witness.member(whose));
@@ -34,7 +34,7 @@ class Partition : public TeamOnHosts {
   static bool agree_on(Witness& witness, const Coverage& coverage) {
     return witness.hears([&] { return all_hold(witness, coverage); });
   }
-  /// What everybody has covered so far and a little more.
+  /// The coverage of all agents so far and a little more.
   static Coverage more_than(Coverage coverage, std::int64_t steps) {
     for (std::int64_t& one : coverage) one += steps;
     return coverage;

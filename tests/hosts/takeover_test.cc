@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts that are gone for good: what ran there goes on elsewhere.
+// Hosts that are gone for good: their processes continue elsewhere.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {
@@ -32,7 +32,7 @@ TEST_F(Takeover, AWorldOnAnotherHostGoesOnWhereTheAgentsWere) {
   wait_for(world_->child);
   world_ = &on(0, "ergocast-sim");
   ASSERT_TRUE(world_->says("moving from tick")) << world_->said();
-  // What only the killed world knew may be missing in the record.
+  // States that only the killed world had may be missing in the record.
   expect_all_to_go_on_and_end_when_told();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Programs on several hosts, each with a network stack of its own, as people would start them
+// Programs on several hosts, each with its own network stack, started as people would start them
 // there.
 #pragma once
 
@@ -73,7 +73,7 @@ class TeamOnHosts : public OnHosts {
   /// Tells the coordinator to end the mission.
   void end_mission() { coordinator_->child.send(SIGINT); }
 
-  /// It goes on, until it is told to end, and the record is what the simulation gives.
+  /// The mission continues until it is stopped, and the record equals the simulation's.
   void expect_all_to_go_on_and_end_when_told() {
     EXPECT_TRUE(moves_on()) << coordinator_->said();
     end_mission();
@@ -82,7 +82,7 @@ class TeamOnHosts : public OnHosts {
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   }
 
-  /// Everybody ends by itself, in order.
+  /// All processes end by themselves, in order.
   void expect_all_to_end() {
     for (Program* program : {coordinator_, world_, logger_}) {
       EXPECT_EQ(wait_for(program->child), 0) << program->said();

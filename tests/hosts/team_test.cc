@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team on three hosts: everybody is found, and the mission is flown as on one.
+// A team on three hosts: all processes are found, and the mission is flown as on one host.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {
@@ -15,7 +15,7 @@ std::vector<std::string> hosts_of(const nlohmann::json& summary) {
 
 class Team : public TeamOnHosts {
  protected:
-  /// Agents that are told a URL and nothing else.
+  /// Agents that get a URL and no number.
   void start_with_nameless_agents(const std::filesystem::path& scenario) {
     start_all_but_agents(scenario);
     for (const int host : {0, 1, 2, 2}) agents_.push_back(&on(host, "ergocast-agent"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host whose multicast goes elsewhere, or nowhere: its agent is missed, by its number.
+// A host whose multicast goes elsewhere, or nowhere: its agent is reported missing, by its number.
 #include "tests/hosts/team_on_hosts.h"
 
 namespace ergocast::test {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Teams that look ahead, in the laboratory: in lockstep nothing that happens to messages,
-// coordinator or world changes what is foreseen; in real time a dead teammate is not counted on for
-// ever.
+// Teams with a forecast, in the laboratory: in lockstep no fault of messages, coordinator or world
+// changes the forecast; in real time a dead teammate does not count for ever.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -141,7 +140,7 @@ double metric_after_a_death(const std::string& law, const std::string& agents, s
   lab::Swarm swarm(std::move(options), trajectory, metrics);
   swarm.run();
   EXPECT_EQ(swarm.agent(0).tick(), 6000);
-  // All that it said until then, and nothing since.
+  // All that it sent until then, and nothing since.
   const auto held = swarm.agent(0).coverage()->steps_held(swarm.agent(3).author());
   EXPECT_GT(held.value_or(0), 1500 - 21);
   EXPECT_LE(held.value_or(0), 1500);

@@ -60,7 +60,7 @@ class InvariantsTest : public ::testing::Test {
       table.add_sample(author, BasisAt({x_m, 4, 0}, mission_.domain, mission_.basis));
     }
   }
-  /// An agent that knows of everybody.
+  /// An agent that holds coverage of all agents.
   Holder holder(const CoverageTable& table, Coefficients& c, const Author& self = kOne) {
     c = Coefficients::Zero(144);
     table.average(c);

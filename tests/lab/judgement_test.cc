@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the laboratory blames a mission for: what its faults can have caused is forgiven, and what they
-// cannot have caused is not; and a message that somebody does not subscribe to is missed.
+// The laboratory's judgement of a mission: it excuses effects that the faults can have caused, and
+// no others; and it detects a message without a subscription.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -48,7 +48,7 @@ std::string problem(const TrialResult& result) {
   return result.violation ? to_string(*result.violation) : "";
 }
 
-/// One kind of message that somebody hears on a bus.
+/// One kind of message that a role receives on a bus.
 struct Heard {
   Role role;
   Bus bus;
@@ -78,15 +78,15 @@ SubscriptionTable without(const Heard& heard) {
 /// What the laboratory has no occasion to miss, for each a reason.
 bool never_missed(const Heard& heard) {
   const MessageTypes type = MessageTypes{1} << heard.type;
-  // No operator says STOP here, and nobody starts a second agent of a number or a second coordinator;
-  // the tests of real processes do.
+  // No operator sends STOP here, and no second agent of a number or second coordinator is started;
+  // the tests of real processes do that.
   if (type == kTypes<Stop>) return true;
   if (heard.role == Role::kAgent) return type == kTypes<AgentStatus>;
   if (heard.role == Role::kCoordinator) {
-    // It asks in lockstep only whom a world that begins waits for.
+    // It asks in lockstep only the agent that a starting world waits for.
     return type == kTypes<TeamStatus> || (type == kTypes<Hello> && heard.bus == Bus::kWorld);
   }
-  // The logger keeps everything for who looks at the event log later; its tables need this only.
+  // The logger records everything for later readers of the event log; its tables need this only.
   return heard.role == Role::kLogger && !(type == kTypes<WorldState> && heard.bus == Bus::kWorld);
 }
 
@@ -122,7 +122,7 @@ TEST(RadioRange, IsNoFault) {
   }
 }
 
-// A chain of four that hardly move, in which nobody hears the next but one.
+// A chain of four that hardly move, in which no agent receives the next but one.
 TEST(RadioRange, ExcusesNobodyFromPassingOnWhatItHears) {
   const auto chain = std::get<Scenario>(Scenario::parse(R"(
     domain { size_x_m: 100 size_y_m: 100 }
@@ -158,7 +158,7 @@ TEST(Eviction, OfWhoWasAwayIsNoFault) {
   EXPECT_GE(evicted, 3);
 }
 
-// A mission that goes on for long after everybody is back judges nobody a second time.
+// A mission that continues for long after all agents are back is judged only once.
 TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
   int evicted = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -174,8 +174,8 @@ TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
   EXPECT_GE(evicted, 3);
 }
 
-// There all were evicted before the coordinator was to be killed: they had ended, and nobody else
-// could have told its successor of the mission.
+// In these runs all were evicted before the coordinator was to be killed: they had ended, and no
+// other process could have told its successor of the mission.
 TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
   for (const std::uint64_t seed : {751, 1948, 4022}) {
     const TrialResult result = fly(evicting(), seed, lab::drawn(seed));

@@ -187,7 +187,7 @@ TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {
       EXPECT_LE(value, field.most) << field.name;
       on += value > 0 ? 1 : 0;
     }
-    // These say how, not whether: they are the same for all, or harmless alone.
+    // These fields tell how, not whether: they are the same for all, or harmless alone.
     const std::set<std::string> how = {"downtime_max_s", "lasting_share", "swarm_bus_only"};
     if (how.contains(field.name)) continue;
     EXPECT_GT(on, 20) << field.name;

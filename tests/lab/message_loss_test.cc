@@ -96,7 +96,7 @@ TEST_P(EachKind, LosingAThirdChangesNoTrajectory) {
 TEST_P(EachKind, LosingFourOfFiveEndsTheMissionAllTheSame) {
   const Outcome outcome = fly(dropping(GetParam(), 80));
   EXPECT_TRUE(outcome.in_time);
-  // Whoever is admitted late starts the mission late, but the mission is the same.
+  // A late admission starts the mission late, but the mission is the same.
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
   EXPECT_EQ(outcome.trajectory, lossless());
 }
@@ -104,7 +104,7 @@ TEST_P(EachKind, LosingFourOfFiveEndsTheMissionAllTheSame) {
 TEST_P(EachKind, LosingAllIsDecidedByTheCoordinatorAtTheLatest) {
   const Outcome outcome = fly(dropping(GetParam(), 100));
   EXPECT_TRUE(outcome.state == MissionState::kEnded || outcome.state == MissionState::kFailed);
-  // Only who never hears of a mission waits for one for ever.
+  // Only an agent that never receives a mission waits for one for ever.
   EXPECT_TRUE(outcome.in_time || std::string(kKinds[GetParam()]) == "MissionPart");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which message may come under which name.
+// The channels that are allowed for each message.
 #include "lcmtypes/channels.h"
 
 #include <gtest/gtest.h>

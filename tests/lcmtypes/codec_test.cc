@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Honest messages: every field survives, and the types that lcm-gen generates read the same from our
-// bytes, because lcm-spy and log players use them.
+// Valid messages: every field survives, and lcm-gen's types read the same from our bytes, because
+// lcm-spy and log players use them.
 #include "lcmtypes/codec.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ namespace {
 
 using namespace test;
 
-/// What lcm-gen's own type reads from our bytes; it has to use all of them.
+/// The value that lcm-gen's own type reads from our bytes; it must use all of them.
 template <class Wire>
 Wire read_by_lcm(const Bytes& bytes) {
   Wire wire;

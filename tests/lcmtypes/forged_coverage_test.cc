@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage that the codec cannot judge and the table can: bytes in, no effect.
+// Forged coverage that only the table can detect, not the codec: it has no effect.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(CodecAndTable, ASumLargerThanTheTimeItCoversIsRefused) {
 }
 
 TEST(CodecAndTable, ASumLargerThanItsOwnS00IsRefused) {
-  // S_00 adds up dt itself, since f_00 = 1: it cannot differ from the time covered.
+  // S_00 is the sum of dt itself, because f_00 = 1: it cannot differ from the time covered.
   for (const double s00 : {0.0, 50.0, -100.0, 100 * (1 - 1e-8)}) {
     Contribution lie = standing_still(1);
     lie.sums[0] = s00;

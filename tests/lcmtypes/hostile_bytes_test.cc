@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hostile bytes: whatever they are, the answer is a reason, never a message, a throw or a read past
-// the end (each datagram stands in an allocation of its exact size, for the address sanitizer).
+// Hostile bytes: for any bytes the result is a refusal, never a message, an exception or a read
+// past the end (each datagram has an allocation of its exact size, for the address sanitizer).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -103,14 +103,14 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
 }
 
 TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
-  // 45 bytes less of roster and 45 more of plan: the whole adds up, so only its meaning changes.
+  // 45 bytes less of roster and 45 more of plan: the total size is right, only the meaning changes.
   Bytes shifted = encoded(mission_part());
   put32(shifted, kSignatureEnd + 17, 1);
   put32(shifted, kSignatureEnd + 21, 345);
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
   EXPECT_EQ(part.plan.size(), 345u);
-  // Beyond a limit, it does not help that the sum is right.
+  // Beyond a limit a right total does not help.
   put32(shifted, kSignatureEnd + 17, 9);
   put32(shifted, kSignatureEnd + 21, 300 - 7 * 45);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
@@ -324,7 +324,8 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
   EXPECT_EQ(verdict(Message(status)), "range");
 }
 
-// Whoever leaps ahead in its numbering makes others count what never was; they are to be heard still.
+// A jump in a sender's numbering makes others count losses that never happened; others must still
+// accept their messages.
 TEST(Codec, MoreLossesThanThereCanBeAreSaidAsTheMostThatIsAccepted) {
   AgentStatus status = agent_status();
   status.contributions_lost = std::int64_t{1} << 57;
@@ -359,7 +360,7 @@ TEST(Codec, MutationsWithACorrectTagNeverDoMoreThanBeRefusedOrMakeAValidMessage)
       ++refused;
     }
   }
-  // Both ways out were taken often enough to mean something.
+  // Both results were frequent enough for the test to be meaningful.
   EXPECT_GT(refused, 5000);
   EXPECT_GT(accepted, 5000);
 }

@@ -137,7 +137,7 @@ inline Bytes encoded(const Message& message) {
   return bytes;
 }
 
-/// Recomputes the tag as a sender who knows the format would: XXH3-128 with bytes 44 to 59 zero.
+/// Recomputes the tag with knowledge of the format: XXH3-128 with bytes 44 to 59 zero.
 inline Bytes retagged(Bytes bytes) {
   std::memset(bytes.data() + 44, 0, 16);
   XXH128_canonical_t canonical;

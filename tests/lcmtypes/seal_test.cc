@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mission key promises: an outsider can at most repeat, word for word and on its own channel,
-// what a member has said; and a member cannot speak for the coordinator.
+// The guarantees of a mission key: an outsider can at most repeat a member's message, unchanged and
+// on its own channel, and a member cannot send as the coordinator.
 #include "lcmtypes/seal.h"
 
 #include <sodium.h>
@@ -83,7 +83,7 @@ TEST(Seal, NoChangedBitIsAccepted) {
       Bytes bad = good;
       bad[bit / 8] ^= static_cast<std::byte>(1 << (bit % 8));
       EXPECT_NE(opened(bad, kMemberSeal, channel_of(message)), "accepted") << bit;
-      // Who knows the format, but not the key, gets no further.
+      // Knowledge of the format without the key does not help.
       ASSERT_NE(opened(retagged(bad), kMemberSeal, channel_of(message)), "accepted") << bit;
     }
   }
@@ -95,7 +95,7 @@ TEST(Seal, ARepeatUnderAnotherNameIsRefused) {
   for (const char* channel : {"ERGOCAST_CONTRIBUTION_4", "ERGOCAST_CONTRIBUTION", ""}) {
     EXPECT_EQ(opened(bytes, kMemberSeal, channel), "tag") << channel;
   }
-  // A teammate says it again under its own name, which takes the key.
+  // A teammate relays it under its own name, which needs the key.
   EXPECT_EQ(opened(sealed(contribution(), kMemberSeal, 4), kMemberSeal, "ERGOCAST_CONTRIBUTION_4"),
             "accepted");
 }
@@ -129,7 +129,8 @@ TEST(Seal, ASignatureIsOfOneMessageOfOneRun) {
             "unsigned");
 }
 
-/// The same team, but it obeys somebody else: no signature of the first one's holds for it.
+/// The same team with another coordinator's public key: the first one's signatures are invalid for
+/// it.
 Seal obeying_another() {
   MissionKey key = member_of(key_of(1));
   key.coordinator = key_of(2).coordinator;
@@ -143,7 +144,7 @@ TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
   KnownSignatures known;
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "unsigned");
   EXPECT_EQ(verdict(decode(bytes, kRun, kMemberSeal, channel, &known)), "accepted");
-  // Were it checked, it would be refused as before.
+  // A check would refuse it as before.
   EXPECT_EQ(verdict(decode(bytes, kRun, obeying_another(), channel, &known)), "accepted");
 }
 
@@ -170,7 +171,7 @@ TEST(KnownSignatures, AKnownTagMakesNoOtherBytesAcceptable) {
     bad[at] ^= std::byte{1};
     EXPECT_NE(verdict(decode(bad, kRun, kMemberSeal, channel, &known)), "accepted") << at;
   }
-  // Of a former run it is still none of ours.
+  // The message of a former run is still refused.
   EXPECT_EQ(verdict(decode(good, kRun + 1, kMemberSeal, channel, &known)), "run");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who hears what, as team/subscriptions.h says it, on LCM's channels and in README.md.
+// The subscriptions of team/subscriptions.h, on LCM's channels and in README.md.
 #include "team/subscriptions.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ namespace {
 using namespace test;
 using Names = std::set<std::string>;
 
-/// What README.md calls each role; the logger hears everything, so no line of the table says it.
+/// The names of the roles in README.md; the logger receives everything, so no line of the table has
+/// it.
 constexpr const char* kNames[kRoleCount] = {"agents", "coordinator", "world", "driver", "", "run", "status"};
 
 std::string trimmed(const std::string& text) {
@@ -36,7 +37,7 @@ std::vector<std::string> split(const std::string& line, char at) {
   return parts;
 }
 
-/// "agents (`--now`), coordinator" without what stands in brackets.
+/// "agents (`--now`), coordinator" without the text in brackets.
 Names listeners(const std::string& cell) {
   Names names;
   for (const std::string& part : split(cell, ',')) names.insert(trimmed(part.substr(0, part.find('('))));
@@ -81,7 +82,7 @@ TEST(Subscriptions, AreThoseOfTheReadme) {
   }
 }
 
-// LCM takes a pattern that has to fit the whole name.
+// LCM's pattern must match the whole name.
 TEST(Subscriptions, AreTheChannelsOfTheirTypesAndNoOthers) {
   for (const Subscriptions& subscriptions : kSubscriptions) {
     for (std::size_t bus = 0; bus < kBusCount; ++bus) {

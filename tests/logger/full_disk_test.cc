@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorder whose streams take nothing for a while, as on a full disk.
+// A recorder whose streams refuse all data for a while, as on a full disk.
 #include "logger/nowhere.h"
 #include "tests/logger/record.h"
 
@@ -57,7 +57,8 @@ TEST(FullDisk, InLockstepTheRecordGoesOnWhereTheTeamIsAndCountsTheGap) {
   for (Tick tick = 11; tick <= 5000; ++tick) record.tell(state_of(tick), at(59s));
   free_space(record, at(60s));
   advance(record.recorder, at(60s));
-  // What it holds, 1024 ticks from the first missing on; then the world's repeats, after a while.
+  // Its buffered ticks, 1024 from the first missing one on; then the world's repeats, after a
+  // while.
   record.tell(state_of(5000), at(61s));
   EXPECT_EQ(acks(record.tell(state_of(5001), at(62s))), std::vector<Tick>{5000});
   const auto rows = record.trajectory_rows();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A table on a disk that takes no more, and then takes more again.
+// A table on a disk that is full and then has room again.
 #include "logger/line_file.h"
 
 #include <gtest/gtest.h>

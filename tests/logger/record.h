@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorder with the streams it writes to, and what it is told in tests.
+// A recorder with its output streams, and the messages that tests send it.
 #pragma once
 
 #include <gtest/gtest.h>

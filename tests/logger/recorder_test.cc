@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The run record: which rows, which numbers, what is acknowledged, and what a gap or an end does.
+// The run record: its rows and numbers, its acknowledgements, and the effect of a gap or an end.
 #include "logger/recorder.h"
 
 #include <gtest/gtest.h>
@@ -157,7 +157,7 @@ TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItL
   Record record(mission);
   const auto patience = seconds(mission.timing.lockstep_timeout_s / 2);
   for (Tick tick = 0; tick <= 10; ++tick) record.tell(state_of(tick));
-  // The world has gone on meanwhile, further than it would with a logger.
+  // The world has continued meanwhile, further than it would with a logger.
   record.tell(state_of(500), at(1s));
   EXPECT_EQ(record.recorder.next_row(), 10) << "it may still be waiting for us";
   const Instant back = at(seconds(1)) + patience;
@@ -265,7 +265,7 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
   record.tell(report(0, 6, 99, 99, 1, 1));  // older
   record.tell(report(1, 1, 0.25, 2.5, 200, 4));
   record.tell(report(2, 1, 0.75, 0.5, 300, 5));
-  AgentStatus newcomer = status_of(1, 2);  // φ² of no coverage at all says nothing
+  AgentStatus newcomer = status_of(1, 2);  // φ² without any coverage has no meaning
   newcomer.ergodic_metric = 7;
   newcomer.max_staleness_s = 2.5;
   newcomer.contributions_received = 200;

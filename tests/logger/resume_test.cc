@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A logger that was killed and goes on: nothing twice, nothing changed, and only what nobody can
-// repeat is missing.
+// A logger that was killed and continues: nothing is written twice or changed, and only rows that
+// no process can repeat are missing.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr Incarnation kNextWorldLife = kWorldLife + 1;
 
-/// Three agents that jump about, each with digits to the last place.
+/// Three agents that jump between places, each with digits to the last place.
 WorldState team_at(Tick tick) {
   WorldState state = world_state(tick, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
   for (AgentId id = 0; id < 3; ++id) {
@@ -38,7 +38,7 @@ WorldState of_world(Incarnation incarnation, WorldState state) {
   return state;
 }
 
-/// The first columns, which do not depend on when statuses came.
+/// The first columns, which do not depend on the arrival of statuses.
 std::vector<std::string> observed(const std::vector<std::string>& metrics_rows) {
   std::vector<std::string> rows;
   for (const std::string& row : metrics_rows) {
@@ -70,7 +70,7 @@ class Resume : public testing::Test {
     std::ifstream in(dir / file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  /// What a recorder finds that comes after a killed one with these files.
+  /// The data that a resumed recorder finds after a killed one with these files.
   RunData past(const std::string& trajectory, const std::string& metrics) const {
     write("trajectory.csv", trajectory);
     write("metrics.csv", metrics);
@@ -96,7 +96,7 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
   ASSERT_EQ(lived.trajectory_rows().size(), 300u);
   const std::string trajectory = killed.trajectory.str(), metrics = killed.metrics.str();
   for (std::size_t cut = 0; cut < trajectory.size(); cut += 71) {
-    // Either table may have come further than the other.
+    // One table may be longer than the other.
     const std::string rows = trajectory.substr(0, cut);
     const std::string values = metrics.substr(0, cut * 13 % metrics.size());
     Record resumed(mission, past(rows, values));

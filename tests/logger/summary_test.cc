@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The summary is valid JSON for any bytes, and says of the mission's goal only what is known.
+// The summary is valid JSON for any bytes, and its text on the mission's goal has only known facts.
 #include "logger/summary.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(Summary, IsWrittenWhateverBytesTheNetworkBrought) {
   EXPECT_EQ(read["reason"], "caf\xef\xbf\xbd") << "the replacement character";
 }
 
-/// What is said of the goal after one recorded tick.
+/// The summary's text on the goal after one recorded tick.
 nlohmann::ordered_json goal_after_a_tick(double goal_ergodic_metric) {
   Mission mission = small_mission(1);
   mission.goal_ergodic_metric = goal_ergodic_metric;

@@ -6,7 +6,7 @@
 
 expect_file() { [ -s "$root/$1" ] || fail "$1 is not installed"; }
 
-# Everything that belongs to nobody but us, temporary files left out.
+# All files of the system, without temporary files and those of the package manager.
 files_of_system() {
   (cd "$root" && find . -xdev \( -path ./tmp -o -path ./proc -o -path ./var/cache -o -path ./var/log \
     -o -path ./var/lib/apt -o -path ./var/lib/dpkg \) -prune -o -print | sort)

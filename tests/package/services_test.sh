@@ -27,7 +27,7 @@ after_all() {
 # shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
-# With what the services say, once there are any.
+# Prints the services' journal, if the system runs.
 fail() {
   [ -z "${init:-}" ] || journal >&2
   echo "FAILED: $*" >&2
@@ -76,8 +76,8 @@ took_over() { there journalctl -o cat -u ergocast-coordinator | grep -q ', taken
 recorded() { [ "$(rows)" -ge "$1" ]; }
 kill_one() { there systemctl kill --kill-whom=main --signal=KILL "$1"; }
 
-# Of a mission that nobody may leave: ticks wait for whoever is being restarted. One that a test
-# disturbs is endless; its record lies in memory, so it is not to grow fast.
+# A mission that waits for every process: its ticks wait while one is restarted. A mission that a test
+# disturbs is endless. Its record is in memory, so it must not grow fast.
 endless=10000000
 use_scenario() {
   sed "s/duration_s: 600/duration_s: $1  lockstep_timeout_s: 600  admission_timeout_s: 600  broadcast_period_ticks: 20/" \
@@ -183,7 +183,7 @@ check_next_mission() {
   done
 }
 
-# Sets up what "ergocast deploy --keys" says, with an ssh into this system and a sudo for root.
+# Runs the script of "ergocast deploy --keys", with an ssh into this system and a sudo for root.
 use_keys() {
   mkdir "$work/bin"
   cat >"$work/bin/ssh" <<END
@@ -206,7 +206,7 @@ check_mission_with_keys() {
   use_keys
   [ "$(there stat -c '%a %U' /etc/ergocast/mission.key /etc/ergocast/mission.coordinator.key | uniq)" = '600 root' ] ||
     fail 'others may read the keys'
-  # An agent without the key hears that there is one.
+  # An agent without the key reports that the team has one.
   there systemd-run --quiet --unit=outsider ergocast-agent --lcm-url "$url"
   there systemctl start $all
   eventually recorded 500

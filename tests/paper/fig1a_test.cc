@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fig. 1(a): the classical law (5) from the four corners is caught by the target's symmetry.
 //
-// In exact arithmetic nobody would move at all. Three of the four do, because sin(mπ) is not zero
-// in floating point; what they then do is what the figure shows.
+// In exact arithmetic no agent would move. Three of the four do, because sin(mπ) is not zero in
+// floating point; their motion is what the figure shows.
 #include <gtest/gtest.h>
 
 #include <algorithm>

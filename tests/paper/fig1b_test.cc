@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fig. 1(b): the classical law (5) from the horizontal midline, y = 1000.
 //
-// On which side an agent leaves the midline is decided by rounding errors; both are accepted.
+// Rounding errors decide the side on which an agent leaves the midline; both are accepted.
 #include <gtest/gtest.h>
 
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fig. 2: the law (8) with the dynamics (10), ε = 1e-3, σ = 1e-5, k = 1e-3 about the origin, leaves
-// what holds the classical law. Medians over seeds, since the noise decides how soon.
+// the sets that hold the classical law. Medians over seeds, because the noise determines the time.
 #include <gtest/gtest.h>
 
 #include "tests/support/paper_team.h"

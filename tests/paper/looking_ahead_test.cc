@@ -25,7 +25,7 @@ Mission noiseless(Mission mission, double epsilon) {
 
 // ---- the potential in time ---------------------------------------------------------------------
 
-/// E and what it is made of, of a team in flight, from where its agents have been.
+/// E and its parts, of a team in flight, from the places of its agents.
 class Witness {
  public:
   explicit Witness(const Mission& mission)
@@ -36,7 +36,7 @@ class Witness {
     weight_s_ = LookAhead(mission).horizon_s(static_cast<int>(n), 0) + mission.timing.dt_s;
   }
 
-  /// Everybody is there for a step.
+  /// Adds one step of all agents at their places.
   void sample(const lab::IdealTeam& team) {
     for (const Coefficients& f : values(team)) sums_ += mission_.timing.dt_s * f;
     covered_s_ += mission_.timing.dt_s * static_cast<double>(team.size());
@@ -57,7 +57,7 @@ class Witness {
     return sum;
   }
 
-  /// ⟨F − Nμ, F⟩: what time adds, for whatever is covered meanwhile.
+  /// ⟨F − Nμ, F⟩: the change by time alone, independent of the motion.
   double inflow(const lab::IdealTeam& team) const {
     Coefficients all = Coefficients::Zero(sums_.size());
     for (const Coefficients& f : values(team)) all += f;
@@ -82,8 +82,8 @@ class Witness {
 };
 
 TEST(LookingAhead, ThePotentialFallsByTheTeamsDescentAndRisesByWhatTimeAdds) {
-  // dE/dt = T_a Σ_i B_i·u_i + ⟨F − Nμ, F⟩: exact but for the step, and so the more the smaller it
-  // is.
+  // dE/dt = T_a Σ_i B_i·u_i + ⟨F − Nμ, F⟩: exact except for the step, so the error falls with the
+  // step.
   double worst[2];
   for (const int finer : {0, 1}) {
     Mission mission = noiseless(shipped_mission("quadrimodal_corners"), 0.2);
@@ -102,7 +102,7 @@ TEST(LookingAhead, ThePotentialFallsByTheTeamsDescentAndRisesByWhatTimeAdds) {
       for (std::size_t i = 0; i < team.size(); ++i)
         descent += ahead_s * team.b(i).dot(team.v_mps(i));
       ASSERT_LE(descent, 0);
-      // The same time on: what a next sample adds comes with it.
+      // One more step: the next sample's contribution is included.
       Witness next = witness;
       next.sample(team);
       const double rate = (next.potential(team) - before) / mission.timing.dt_s;
@@ -144,7 +144,7 @@ TEST(LookingAhead, AMirroredTeamStaysMirroredAndItsAgentsOnTheMirrorStayOnIt) {
       mission.starts_m = {one, mirror.image(one, side_m), two, mirror.image(two, side_m),
                           0.5 * (aside + mirror.image(aside, side_m))};
       PaperTeam team(mission);
-      // What is off at first is rounding; in time it grows, as under the classical law.
+      // The first deviation is rounding; it grows with time, as under the classical law.
       team.run_until(5, [&] {
         for (const std::size_t i : {0U, 2U}) {
           ASSERT_LT((team.x_m(i + 1) - mirror.image(team.x_m(i), side_m)).norm(), 1e-6)

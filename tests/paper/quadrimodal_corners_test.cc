@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our recommended law, ε relative to the residual, from the starts that hold the classical one.
+// Our recommended law, ε relative to the residual, from the starts that hold the classical law.
 #include <gtest/gtest.h>
 
 #include "tests/support/paper_team.h"

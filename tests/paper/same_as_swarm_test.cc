@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The distributed team is the paper's team: agents that only hear each other's messages take the
-// same steps, bit for bit, as agents that know everything.
+// The distributed team is the paper's team: agents with only each other's messages take the same
+// steps, bit for bit, as agents with perfect communication.
 #include <gtest/gtest.h>
 
 #include <sstream>

@@ -137,7 +137,8 @@ TEST(Theorem1, AlmostSureEscapeMayTakeLongerThanTheMission) {
 }
 
 TEST(Theorem1, LastAgentOfFig2aIsStillOnItsDiagonalAtTheEnd) {
-  // The contraction leads it out of its corner and down the diagonal, which is what Fig. 1(a) complains of.
+  // The contraction moves it out of its corner and down the diagonal, the weakness that Fig. 1(a)
+  // shows.
   constexpr int kFew = 200;
   Mission mission = shipped_mission("paper_fig2a");
   for (mission.seed = 1; mission.seed <= kFew; ++mission.seed) {

@@ -15,7 +15,7 @@ class StartedByHand : public ByHand {
     EXPECT_TRUE(recorded(20000)) << coordinator.said();
     return coordinator;
   }
-  /// A scenario of two agents that goes on for as long as the test needs.
+  /// A scenario of two agents that lasts as long as the test needs.
   std::filesystem::path endless_pair() {
     std::string text = text_of(scenario(std::string("duration_s: ") + kEndless));
     for (const char* start : {"starts { x_m: 0     y_m: 2000 }", "starts { x_m: 2000  y_m: 2000 }"}) {
@@ -92,8 +92,8 @@ TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
   EXPECT_TRUE(moves_on());
 }
 
-// As when an adapter is unplugged, or a container taken off its network: memberships in the group end
-// with the interface.
+// As when an adapter is unplugged, or a container is disconnected from its network: memberships in
+// the group end with the interface.
 TEST_F(StartedByHand, AMissionGoesOnOnAnotherNetworkInterface) {
   const auto plug_in = [] {
     return std::system("ip link add wire type veth peer name end && ip addr add 10.1.1.1/24 dev wire && "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the kernel passes on to a socket of ours, with real sockets: our messages always, a share of
-// what is said again while there is a flood, nothing else.
+// the repeats during a flood, nothing else.
 #include "runtime/datagram_filter.h"
 
 #include "lcmtypes/channels.h"
@@ -18,7 +18,7 @@ class DatagramFilter : public ::testing::Test {
     EXPECT_EQ(bind(ear_.fd(), reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
   }
 
-  /// Sends a message by LCM's format; whether more than a stump of it arrives.
+  /// Sends a message in LCM's format; whether more than its first bytes arrive.
   bool passes(const Message& message, const std::string& channel) {
     encode(message, bytes_);
     std::string datagram = std::string("LC02\0\0\0\1", 8) + channel + '\0';

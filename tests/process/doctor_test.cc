@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast doctor` on this host: what it finds, and that it disturbs nobody.
+// `ergocast doctor` on this host: what it finds, and that it disturbs no team.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -138,7 +138,7 @@ TEST_F(Doctor, TwoOnOneHostHearEachOther) {
   doctor({"--peer", "3"});
   ASSERT_EQ(told_["peers"].size(), 1u) << output();
   EXPECT_EQ(told_["peers"][0]["hears_this_host"], true);
-  EXPECT_EQ(finding("TTL")["level"], "problem");  // nobody else would
+  EXPECT_EQ(finding("TTL")["level"], "problem");  // no other host would
   other.send(SIGKILL);
 }
 

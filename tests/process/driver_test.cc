@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The example driver in the place of ergocast-sim, with everything else as it is.
+// The example driver in place of ergocast-sim; everything else is unchanged.
 #include "tests/process/mission.h"
 #include "tests/process/record.h"
 

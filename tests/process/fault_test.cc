@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens when processes hang, are told to stop, or hear what nobody of theirs said.
+// Processes that hang, that get a stop signal, or that receive messages of a foreign sender.
 #include <lcm/lcm-cpp.hpp>
 
 #include "core/noise.h"
@@ -43,12 +43,12 @@ TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
 }
 
 TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
-  // A buffer that cannot hold what is said while it is stopped.
+  // A buffer too small for the messages that arrive while it is stopped.
   Child mission = launch_held(scenario("duration_s: 20 lockstep_timeout_s: 10"),
                               {"--lcm-url", "udpm://239.255.76.67:24699?ttl=0&recv_buf_size=20000"});
   signal_to({"ergocast-logger"}, SIGSTOP);
   release();
-  // The world goes on without it when its patience is over, to the end.
+  // The world continues without it after its time-out, to the end.
   ASSERT_TRUE(logs("coordinator", "mission ended")) << said();
   EXPECT_NE(log_of("sim").find("going on without"), std::string::npos);
   signal_to({"ergocast-logger"}, SIGCONT);
@@ -62,7 +62,7 @@ TEST_F(Fault, ParentThatIgnoresItsChildrenIsNoObstacle) {
   EXPECT_EQ(std::system(("exec " + (program_folder() / "ergocast").string() + " run " +
                          scenario_file("quadrimodal_corners").string() +
                          " --duration 5 --out " + out().string() + " >/dev/null 2>&1").c_str()),
-            -1);  // whoever ignores children cannot ask how they ended
+            -1);  // a parent that ignores SIGCHLD cannot wait for a child
   signal(SIGCHLD, SIG_DFL);
   EXPECT_EQ(summary()["result"], "done");
 }

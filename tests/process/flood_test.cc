@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Floods on the buses of a team that goes on flying.
+// Floods on the buses of a team, which continues its mission.
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
@@ -23,7 +23,7 @@ long resident_kb(pid_t pid) {
 
 class Flood : public FlyingMission {
  protected:
-  /// Short LCM messages under 100 000 names that nobody has heard, on one bus.
+  /// Short LCM messages under 100 000 unknown channel names, on one bus.
   static void send_foreign_names(Bus bus, const std::string& stem) {
     const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
     const Socket socket(AF_INET, SOCK_DGRAM);
@@ -37,7 +37,7 @@ class Flood : public FlyingMission {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));  // so that all are heard
     }
   }
-  /// What is said on a channel of ours, but fifty times as long as any message.
+  /// A message on a channel of ours, but fifty times as long as any valid one.
   static void send_long_datagrams(Bus bus) {
     const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
     const Socket socket(AF_INET, SOCK_DGRAM);
@@ -78,7 +78,7 @@ TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
   EXPECT_EQ(summary()["restarts"], 0);
 }
 
-/// Says what agent 3 has said, again and again; or, in its place, as if it said so much itself.
+/// Repeats agent 3's messages without end, or sends new ones at that rate in its place.
 class Babbler {
  public:
   Babbler(const std::string& url, bool in_its_place)
@@ -113,7 +113,7 @@ class Babbler {
 
 class Babble : public Flood {
  protected:
-  /// What `ergocast status` says of the agents.
+  /// The agents' part of `ergocast status`.
   nlohmann::json agents() {
     ergocast({"status", "--json", "--lcm-url", kUrl});
     return nlohmann::json::parse(output())["agents"];
@@ -159,14 +159,15 @@ TEST_F(Babble, WhatOthersRepeatOfAnAgentIsLimitedAndNotItsFault) {
   EXPECT_EQ(log_of("coordinator").find("silent"), std::string::npos) << log_of("coordinator");
 }
 
-/// A team with a key, and somebody without it who says again what he has heard.
+/// A team with a key, and a process without it that repeats the received messages.
 class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const char*> {
  protected:
   FloodOfRepeats() {
     const MissionKey key = make_mission_key();
     EXPECT_EQ(write_key_file(key_file_, key_text(key, true)), std::nullopt);
   }
-  /// What the processes that hear the flood have refused as `rate`: agents, as they say themselves.
+  /// Messages that the receivers of the flood refused as `rate`: for agents, as they report
+  /// themselves.
   std::int64_t refused_by_agents() {
     ergocast({"status", "--json", "--lcm-url", kUrl, "--key-file", key_file_});
     std::int64_t refused = 0;
@@ -179,8 +180,8 @@ class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const 
   const std::filesystem::path key_file_ = folder_ / "c.key";
 };
 
-/// Without recognising them every one would be taken in: neither the world nor the coordinator has a
-/// budget. How fast the machine is decides how long it takes, and nothing else.
+/// Without detection every repeat would be accepted: neither the world nor the coordinator has a
+/// budget. The speed of the machine only affects the duration.
 TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
   constexpr std::int64_t kEnough = 50000;
   constexpr std::size_t kAtOnce = 200;  // every 5 ms at the most: 40 000 a second
@@ -196,7 +197,7 @@ TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
     replayer.replay(kAtOnce);
     return recorded_bytes() > from + 30000;
   })) << "stands still\n" << said();
-  // A new coordinator asks the agents for the mission, whose words are repeats, too.
+  // A new coordinator asks the agents for the mission, whose parts are repeats, too.
   const pid_t first = pids({"ergocast-coordinator"}).front();
   kill(first, SIGKILL);
   EXPECT_TRUE(eventually([&] {

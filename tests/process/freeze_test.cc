@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A process that stands still for five seconds and then goes on, as on a machine that swaps or a
-// laptop whose lid was closed: nobody is lost, and in lockstep not a bit changes.
-// No mission here ends before the test says so.
+// A process that stands still for five seconds and then continues, as on a machine that swaps or a
+// laptop with its lid closed: no process is lost, and in lockstep not a bit changes. No mission
+// here ends before the test ends it.
 #include "tests/process/mission.h"
 #include "tests/process/witness.h"
 

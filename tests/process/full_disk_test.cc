@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The disk of a run directory is full for a while: the team goes on, and later so does the record.
+// The disk of a run directory is full for a while: the team continues, and later the record does,
+// too.
 #include <sys/mount.h>
 #include <sys/statvfs.h>
 
@@ -25,7 +26,7 @@ class FullDisk : public FlyingMission {
   bool resize_disk(const std::string& size) const {
     return mount("none", out().c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()) == 0;
   }
-  /// Makes it as small as what is on it, which grows meanwhile.
+  /// Makes it as small as its content, which grows meanwhile.
   bool fill_disk() const {
     return eventually([this] {
       struct statvfs disk {};
@@ -53,13 +54,13 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
   ASSERT_TRUE(fill_disk());
   const auto bytes = recorded_bytes();
   const Tick full_at = recorded_rows(out()).rbegin()->first;
-  // Twice as many ticks as a recorder keeps for later: once those that it had not yet tried to write.
+  // Twice as many ticks as a recorder buffers: some of them it had not yet tried to write.
   Witness witness(kUrl);
   ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > full_at + 2200; }))
       << said();
   EXPECT_LT(recorded_bytes(), bytes + 200000);
   ASSERT_TRUE(resize_disk(kRoomy));
-  // What was held is written first; the gap is behind it.
+  // The buffered rows are written first; the gap comes after them.
   ASSERT_TRUE(eventually([&] { return recorded_rows(out()).rbegin()->first > full_at + 2200; }))
       << log_of("logger");
   mission.send(SIGTERM);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team with a mission key beside somebody who hears everything, repeats it and forges more.
+// A team with a mission key beside an attacker that receives everything, repeats it and forges
+// more.
 #include <sys/stat.h>
 
 #include <array>
@@ -15,8 +16,8 @@
 namespace ergocast::test {
 namespace {
 
-/// Somebody on the network without the key: keeps what is said, says it again, and says in the name
-/// of those it has heard what they have not said.
+/// An attacker on the network without the key. It records and repeats messages, and forges others
+/// in the name of their senders.
 class Outsider {
  public:
   explicit Outsider(const LcmUrl& url)
@@ -28,7 +29,7 @@ class Outsider {
     }
   }
 
-  /// Hears for a moment, repeats some of all that was ever heard, and forges some of it.
+  /// Receives for a moment, repeats some of all messages received so far, and forges some of them.
   void turn() {
     for (lcm::LCM& bus : buses_) {
       for (int n = 0; n < 64 && bus.handleTimeout(0) > 0; ++n) {
@@ -58,7 +59,7 @@ class Outsider {
     }
   };
 
-  /// Also what it has sent itself: forgeries breed. LCM's own self test has no header.
+  /// Also its own datagrams, so that forgeries are forged again. LCM's own self test has no header.
   void keep(Heard one) {
     constexpr std::size_t kMost = 20000;
     if (heard_.size() < kMost && one.bytes.size() >= kHeaderEnd) heard_.push_back(std::move(one));
@@ -114,7 +115,7 @@ TEST_F(Keyed, OutsidersChangeNotOneBitOfTheMission) {
                                      coordinator_, "--lcm-url", kUrl});
   mission_log_ = log_;
   Outsider outsider(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
-  // The world waits until enough is forged, however fast the team would fly.
+  // The world waits until there are enough forgeries, at any speed of the team.
   ASSERT_TRUE(eventually([] { return pids({"ergocast-sim"}).size() == 1; }));
   signal_to({"ergocast-sim"}, SIGSTOP);
   ASSERT_TRUE(eventually([&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast run` on a machine that cannot start again at once what has died: the mission goes on.
+// `ergocast run` on a machine that cannot restart a dead process at once: the mission continues.
 #include <sys/resource.h>
 
 #include "tests/process/mission.h"
@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> kLoggerProgram{"ergocast-logger"};
 
-/// In lockstep: what moves on has everybody back.
+/// In lockstep: a mission that continues has all its processes back.
 class Launch : public FlyingMission {
  protected:
   void TearDown() override {
@@ -69,7 +69,7 @@ TEST_F(Launch, WithoutRoomForOneMoreProcessADeadAgentComesBackOnceThereIs) {
   end(mission, 1);
 }
 
-/// Programs of the test's own, which it can take away.
+/// Copies of the programs, which the test can remove.
 class OwnPrograms : public Launch {
  protected:
   void SetUp() override {
@@ -113,7 +113,7 @@ TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
   kill_next({"ergocast-coordinator"});
   kill_next({"ergocast-sim"});
   kill_next(kLoggerProgram);
-  // More often than what dies is started again.
+  // More often than a dead process is restarted.
   for (const char* name : {"agent-1", "coordinator", "sim", "logger"}) {
     EXPECT_TRUE(logs(name, "LCM needs a multicast route", 4)) << said();
   }
@@ -122,7 +122,7 @@ TEST_F(Launch, WhileTheRouteIsAwayTheDeadAreWaitedForAndNoRestartIsCounted) {
   end(mission, 4);
 }
 
-/// Something befalls the record before the logger's successor reads it.
+/// The record is damaged before the logger's next process reads it.
 class DamagedRecord : public Launch {
  protected:
   template <class Damage>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the programs load: those of every robot read no scenario, no map and no picture.
+// The libraries of the programs: those of every robot contain no scenario, map or picture reader.
 #include <array>
 #include <memory>
 
@@ -8,7 +8,7 @@
 namespace ergocast::test {
 namespace {
 
-/// What `ldd` says of a program, also of what its libraries load.
+/// The output of `ldd` for a program, which includes indirect libraries.
 std::string loaded_by(const std::string& program) {
   const std::string command = "LC_ALL=C ldd '" + (program_folder() / program).string() + "' 2>&1";
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), &pclose);

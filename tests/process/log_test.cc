@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the programs log: how much, and how it looks in the journal.
+// The logs of the programs: their amount, and their format in the journal.
 #include <sys/stat.h>
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the processes of a failed test have logged.
+// The logs of the processes of a failed test.
 #pragma once
 
 #include <filesystem>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mission of real processes that a test disturbs.
 //
-// Machines differ tenfold in speed, both ways, so no test may need a fast or a slow one: a mission
-// that is disturbed either lasts until the test ends it (launch_endless()), or stands still at a
-// tick while the test acts (launch_held()); a test waits for what it can see, and never sleeps
-// instead. tests/at_speed tries that: with ERGOCAST_TEST_SPEED=fast, which is read here, missions
+// Machines differ tenfold in speed, both ways, so no test may need a fast or a slow one. A
+// disturbed mission either lasts until the test ends it (launch_endless()), or stands still at a
+// tick while the test acts (launch_held()). A test waits for visible events and never sleeps
+// instead. tests/at_speed checks that: with ERGOCAST_TEST_SPEED=fast, which is read here, missions
 // fly several times as fast and the default one is over after a tenth of its ticks.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace ergocast::test {
 
-/// Process ids on this host whose command line contains all of `words`.
+/// Ids of the processes on this host whose command line contains all of `words`.
 inline std::vector<pid_t> pids(const std::vector<std::string>& words) {
   std::vector<pid_t> found;
   for (const std::string& process : processes_on_own_host()) {
@@ -41,9 +41,9 @@ class FlyingMission : public OwnHost {
   /// For missions whose buses the test uses itself.
   static constexpr const char* kUrl = "udpm://239.255.76.67:24700?ttl=0";
 
-  /// Mission time [s] that no test outlives: the limit, 10⁸ ticks.
+  /// Mission time [s] that is longer than any test: the limit, 10⁸ ticks.
   static constexpr const char* kEndless = "10000000";
-  /// Where a held mission stands.
+  /// The tick at which a held mission stands.
   static constexpr int kHeldTick = 50;
 
   /// The default scenario with other or more fields in its `time` and `agents`. A tick may stay
@@ -75,7 +75,7 @@ class FlyingMission : public OwnHost {
     EXPECT_TRUE(recorded(30000)) << said();
     return mission;
   }
-  /// One that does not end by itself, and does not fill a disk.
+  /// A mission that does not end by itself, and does not fill a disk.
   Child launch_endless(const std::filesystem::path& scenario, std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--duration", kEndless});
     if (std::find(more.begin(), more.end(), "--event-log-limit") == more.end()) {
@@ -83,8 +83,8 @@ class FlyingMission : public OwnHost {
     }
     return launch(scenario, more);
   }
-  /// One in lockstep that stands still in mid-flight, since agent 0 is stopped as it is about to
-  /// answer tick kHeldTick, until release().
+  /// A mission in lockstep that stands still under way until release(): agent 0 is stopped just
+  /// before its answer to tick kHeldTick.
   Child launch_held(const std::filesystem::path& scenario,
                     const std::vector<std::string>& more = {}) {
     hold_next("ERGOCAST_COMMAND_0", kHeldTick);
@@ -95,8 +95,8 @@ class FlyingMission : public OwnHost {
   }
   static void release() { signal_to(agent(0), SIGCONT); }
 
-  /// Of the programs that are started from now on, the first that is about to say something on that
-  /// channel at that tick, or later, is stopped.
+  /// Stops the first of the programs started from now on that is about to send a message on that
+  /// channel at that tick or later.
   void hold_next(const std::string& channel, Tick tick) const {
     const auto once = folder_ / "hold";
     std::ofstream(once).close();
@@ -118,7 +118,7 @@ class FlyingMission : public OwnHost {
     return stat.substr(stat.rfind(')') + 1).starts_with(" T");
   }
 
-  /// What `ergocast run` has said, and what one of its processes.
+  /// The output of `ergocast run`, and that of one of its processes.
   std::string said() const { return text_of(mission_log_); }
   bool said(const std::string& part) const { return said().find(part) != std::string::npos; }
   std::string log_of(const std::string& process) const {
@@ -200,7 +200,7 @@ class ByHand : public FlyingMission {
   void TearDown() override {
     for (Program& program : programs_) {
       // It may have been stopped. Not after SIGTERM: SIGCONT cancels the SIGSTOP by which the leak
-      // sanitizer holds the threads of a process that ends, which then waits for ever.
+      // sanitizer holds the threads of an ending process, which then waits for ever.
       program.child.send(SIGCONT);
       program.child.send(SIGTERM);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Running the real programs from a test.
+// Runs the real programs from a test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,8 +25,8 @@
 
 namespace ergocast::test {
 
-/// How long something that must happen may take before a test gives up: decides no success, also on
-/// a machine of a tenth of the speed that is busy with other things.
+/// How long a test waits for a necessary event before it fails. It decides no success, also on a
+/// busy machine with a tenth of the speed.
 inline constexpr auto kPatience = std::chrono::seconds(300);
 
 inline std::string text_of(const std::filesystem::path& file) {
@@ -38,7 +38,7 @@ inline std::filesystem::path scenario_file(const std::string& name) {
   return std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
 }
 
-/// Waits for `condition`; false if it does not come.
+/// Waits for `condition`; false if it does not become true.
 inline bool eventually(const std::function<bool()>& condition) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (!condition()) {
@@ -48,18 +48,18 @@ inline bool eventually(const std::function<bool()>& condition) {
   return true;
 }
 
-/// Where our programs are: those of this build, unless the environment names others.
+/// The folder of our programs: that of this build, unless the environment names another.
 inline std::filesystem::path program_folder() {
   const char* others = std::getenv("ERGOCAST_BIN_DIR");
   return others != nullptr ? others : ERGOCAST_BIN_DIR;
 }
 
-/// Of what processes_on_own_host() says.
+/// The id in a text of processes_on_own_host().
 inline pid_t pid_of(const std::string& process) {
   return std::stoi(process.substr(process.find("pid ") + 4));
 }
 
-/// A folder that is gone after the test, and the programs' network.
+/// A folder that is removed after the test, and the programs' network.
 class OwnHost : public ::testing::Test {
  protected:
   OwnHost() {
@@ -70,8 +70,8 @@ class OwnHost : public ::testing::Test {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
-  /// A test that has failed may have left its mission flying: what the processes say then is all
-  /// there is to know of them, and they are ended here.
+  /// A failed test may leave its mission running. The output of its processes is the only
+  /// information on them; they are ended here.
   void TearDown() override {
     if (HasFailure()) {
       tell_logs();
@@ -126,7 +126,7 @@ class OwnHost : public ::testing::Test {
   std::filesystem::path folder_, log_;
 
  private:
-  /// Of questions that a test asks again and again, the last answer is enough.
+  /// If a test repeats a question, only the last answer is kept.
   void note_command(const std::string& program, const std::vector<std::string>& arguments) {
     std::string command = program;
     for (const std::string& argument : arguments) command += ' ' + argument;

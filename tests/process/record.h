@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The recorded trajectory of a mission of real processes, as a test asks it.
+// The recorded trajectory of a mission of real processes, as tests query it.
 #pragma once
 
 #include <cstdio>

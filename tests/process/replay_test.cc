@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorded mission is played again on one URL, as LCM's player does it: `ergocast status` sees it whole.
+// A recorded mission is replayed on one URL, as LCM's player does: `ergocast status` shows all of
+// it.
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
@@ -21,7 +22,7 @@ TEST_F(Replay, ShowsTheWholeTeamAndItsEnd) {
   for (const char* process : {"coordinator  alive", "world        alive", "logger       alive"}) {
     EXPECT_NE(said.find(process), std::string::npos) << said;
   }
-  // What has ended is not alive, whatever was heard of it a moment ago.
+  // An ended mission is not alive, although its messages are recent.
   const std::string end = said.substr(said.rfind("quadrimodal_corners, run "));
   EXPECT_NE(end.find("the mission has ended"), std::string::npos) << end;
   EXPECT_EQ(end.find("alive"), std::string::npos) << end;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the network of a team who keeps its datagrams and sends them again, word for word.
+// An attacker on a team's network: it records its datagrams and sends them again, unchanged.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ namespace ergocast::test {
 /// Works below LCM, so that it sends as fast as the kernel lets it.
 class Replayer {
  public:
-  /// @param stem  how the channels begin whose datagrams it keeps, without ERGOCAST_
+  /// @param stem  the beginning of the recorded channels, without ERGOCAST_
   Replayer(const LcmUrl& url, std::string_view stem) : mouth_(AF_INET, SOCK_DGRAM), url_(url), name_("ERGOCAST_" + std::string(stem)) {
     for (int bus = 0; bus < kBusCount; ++bus) {
       ears_.push_back(doctor::group_listener(url.group, url.base_port + bus, error_));
     }
   }
 
-  /// Takes in what waits; to be called before anything is sent again.
+  /// Records the waiting datagrams; to be called before the first replay.
   void listen() {
     constexpr std::size_t kMost = 20000;
     for (int bus = 0; bus < kBusCount; ++bus) {
@@ -42,7 +42,7 @@ class Replayer {
   }
   std::size_t kept() const { return kept_.size(); }
 
-  /// Sends so many of what it has kept, in turn. From the first on it listens no more.
+  /// Sends so many of the recorded datagrams, in turn. After the first call it records no more.
   void replay(std::size_t count) {
     ears_.clear();
     for (; count > 0; --count, ++next_) {

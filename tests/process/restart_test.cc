@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kill -9: nobody's death alone ends a mission, and what is started again goes on where it was.
+// kill -9: the death of one process never ends a mission, and a restarted process continues where
+// it was.
 #include <lcm/lcm-cpp.hpp>
 
 #include "tests/process/mission.h"
@@ -13,7 +14,7 @@ using namespace std::chrono_literals;
 const std::vector<std::string> kSimProcess{"ergocast-sim"}, kLoggerProcess{"ergocast-logger"},
     kCoordinatorProcess{"ergocast-coordinator"};
 
-/// How many events an event log holds up to where it was cut off.
+/// The number of events in an event log, up to an incomplete one.
 int events_in(const std::filesystem::path& file) {
   lcm::LogFile log(file, "r");
   int events = 0;
@@ -29,13 +30,13 @@ Tick last_tick(const std::filesystem::path& table) {
 
 class Restart : public FlyingMission {
  protected:
-  /// What only a killed world knew may be missing in the record; nothing else may be.
+  /// States that only a killed world had may be missing in the record; nothing else may be.
   void expect_identical_to_its_simulation(bool complete = true) {
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
     EXPECT_NE(output().find("identical"), std::string::npos) << output();
     EXPECT_TRUE(!complete || output().find("missing") == std::string::npos) << output();
   }
-  /// Once more than it is started again.
+  /// Kills it once more than it is restarted.
   void kill_for_good(const std::vector<std::string>& words) {
     for (int death = 0; death <= 3; ++death) kill_next(words);
   }
@@ -69,7 +70,7 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
   const auto member = [&witness] { return witness.member(1); };
   ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 0 && witness.answered(member()) > 0; }));
   const Author former = member();
-  // One that does not answer holds lockstep until what was said last has been repeated.
+  // An agent that does not answer holds the tick until the last messages have been repeated.
   if (lockstep) signal_to(agent(2), SIGSTOP);
   ASSERT_TRUE(witness.hears([&] { return !lockstep || witness.stands_still(former); }));
   kill_next(agent(1));
@@ -185,7 +186,7 @@ TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
 }
 
 TEST_F(Restart, AMissionThatNobodyKnowsYetIsBegunByTheNextCoordinator) {
-  hold_next("ERGOCAST_MISSION", -1);  // the coordinator, before it has said anything
+  hold_next("ERGOCAST_MISSION", -1);  // the coordinator, before its first message
   Child mission = start_mission(scenario(), {"--duration", "20"});
   ASSERT_TRUE(eventually([] { return stopped(pids(kCoordinatorProcess)); })) << said();
   hold_none();

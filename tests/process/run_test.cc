@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The main job: a mission as real processes over real LCM.
+// The main use: a mission as real processes over real LCM.
 #include <algorithm>
 #include <sstream>
 
@@ -73,7 +73,8 @@ TEST_F(MissionRun, SeventeenAgentsFillTwoWorldStatesATick) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
-// Told each tick or seldom, reckoned or not: eighteen agents, whose places come in two parts.
+// With frequent or rare broadcasts, with or without dead reckoning: eighteen agents, whose places
+// come in two parts.
 TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
   std::vector<std::string> trajectories;
   for (const std::string telling : {"agents { dead_reckoning: true", "agents { dead_reckoning: false"}) {
@@ -128,7 +129,7 @@ TEST_F(MissionRun, EventsReplayWithLcmLogplayer) {
   const std::string url = "udpm://239.255.76.67:24500?ttl=0";
   ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners").string(), "--duration", "3",
                       "--out", out()}), 0) << output();
-  // A second logger records the replay; what it hears has to make the same record.
+  // A second logger records the replay and must make the same record.
   const auto again = folder_ / "again";
   std::filesystem::create_directory(again);
   const std::string run_id = summary()["run_id"];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A record in several segments, as a logger leaves it that was killed and started again.
+// A record in several segments, as a logger that was killed and restarted leaves it.
 #include "runtime/event_log.h"
 #include "tests/process/programs.h"
 
@@ -24,7 +24,7 @@ class Segments : public OwnHost {
     write("metrics.csv", metrics.substr(0, metrics.find('\n' + first_end.substr(0, 3)) + 1));
     write("metrics-001.csv", metrics.substr(0, metrics.find('\n') + 1));
   }
-  /// As a logger leaves it that was killed for good: it said nothing of the whole, and nobody drew it.
+  /// The record of a logger that was killed for good: no summary and no drawing.
   void forget_the_end() {
     std::filesystem::remove(out() / "summary.json");
     std::filesystem::remove(out() / "report.html");

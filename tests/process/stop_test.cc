@@ -20,7 +20,7 @@ class StopCommand : public ByHand {
   }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
 
-  /// Whether the record says so, whatever it adds about late commands.
+  /// Whether the record has that reason, possibly with a remark on late commands.
   bool was_ended(const std::string& reason) const {
     return summary()["reason"].get<std::string>().starts_with(reason);
   }
@@ -38,14 +38,14 @@ class StopCommand : public ByHand {
       all.push_back(&hand("ergocast-agent", {"--id", id}));
     return all;
   }
-  /// And under way.
+  /// Also waits until the mission is under way.
   std::vector<Program*> fly(const std::filesystem::path& scenario) {
     const auto all = start_all(scenario);
     EXPECT_TRUE(recorded(30000)) << all[2]->said();
     return all;
   }
-  /// Nobody moves in the record's last tick, and everybody did before: in lockstep in the very tick
-  /// before; in real time whoever hears of the stop first stands first.
+  /// No vehicle moves in the record's last tick, and all moved before: in lockstep in the tick
+  /// before; in real time a process that receives the stop first stands still first.
   void expect_halt(bool realtime) {
     auto rows = recorded_rows(out());
     ASSERT_GT(rows.size(), 2u);
@@ -106,7 +106,7 @@ TEST_P(Stopped, AtOnceWithoutACoordinator) {
   expect_halt(GetParam());
 }
 
-// The tick at which STOP is said is known when the team waits for one of its agents.
+// The tick of STOP is known when the team waits for one of its agents.
 TEST_F(StopCommand, NobodyMovesInTheTickAfterTheOneInWhichItWasHeard) {
   constexpr Tick kWaitedFor = 100;
   hold_next("ERGOCAST_COMMAND_2", kWaitedFor);
@@ -180,7 +180,7 @@ TEST_F(StopCommand, WithNobodyThereSaysWhatToCheck) {
   EXPECT_TRUE(answered("nobody of run 00000000000000b2 was heard on ")) << output();
 }
 
-/// Coordinators of two runs speak until `done`.
+/// Coordinators of two runs send until `done`.
 void two_runs_speak_until(const std::function<bool()>& done) {
   Stranger stranger("udpm://239.255.76.67:24700?ttl=0");
   ASSERT_TRUE(eventually([&] {
@@ -210,7 +210,7 @@ TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
   EXPECT_TRUE(decided.says("no world or driver was heard")) << "so nobody knows about vehicles";
 }
 
-// Whoever has recorded many runs of the same key cannot hide another one behind them.
+// An attacker with recordings of many runs of the same key cannot hide another run behind them.
 TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
   std::set<RunId> told;
   const auto listener = std::get<0>(Transport::open(

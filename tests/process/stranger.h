@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the buses who says what a test wants him to.
+// A foreign sender on the buses that sends what a test asks for.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class Stranger {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);
     transport_->publish({bus, message});
   }
-  /// Bytes as they are.
+  /// Sends bytes unchanged.
   void say(Bus bus, const std::string& channel, const std::vector<std::byte>& bytes) {
     lcm::LCM raw(url_.of(bus));
     raw.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast study`: every combination once, whatever interrupts it.
+// `ergocast study`: every combination once, after any interruption.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -41,7 +41,7 @@ class Study : public OwnHost {
     return ergocast(arguments(seeds, out));
   }
 
-  /// The table of a study that nothing interrupts.
+  /// The table of a study without interruption.
   std::string fresh(const std::string& seeds) {
     const auto folder = folder_ / ("fresh-" + seeds);
     EXPECT_EQ(study(seeds, folder), 0) << output();

@@ -16,7 +16,7 @@ TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
   ASSERT_EQ(summary()["agents"].size(), 2U);
   const double observed = summary()["ergodic_metric"]["last"];
   for (const auto& one : summary()["agents"]) {
-    // Of its own coverage alone, either would compute another figure.
+    // From its own coverage alone, each would compute another figure.
     EXPECT_NEAR(one["ergodic_metric"].get<double>(), observed, 1e-9 * observed);
   }
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
@@ -55,7 +55,7 @@ TEST_F(TeamSize, OneNeedsNobody) {
 
 class LateAgent : public ByHand {
  protected:
-  /// It is a member, knows what the others covered, and they know what it does.
+  /// It is a member, holds the others' coverage, and they hold its coverage.
   static void expect_to_take_part(Witness& witness, AgentId newcomer, AgentId veteran) {
     ASSERT_TRUE(witness.hears([&] { return witness.member(newcomer).incarnation != 0; }));
     const Author late = witness.member(newcomer), early = witness.member(veteran);

@@ -55,7 +55,7 @@ class Trials : public OwnHost {
     return metric.empty() ? "none" : metric.back();
   }
 
-  /// What follows `before` in each line that has it, up to `after` or the line's end.
+  /// The text after `before` in each line that has it, up to `after` or the line's end.
   std::vector<std::string> told(const std::string& before, const std::string& after = "\n") const {
     std::vector<std::string> parts;
     const std::string text = output();
@@ -86,7 +86,7 @@ TEST_F(Trials, AGoalOutOfReachFailsEverySeedWithTheMetricThatSimulateRecords) {
 }
 
 TEST_F(Trials, EachSeedDrawsItsStartsAsSimulateDoes) {
-  // After one tick φ² is that of the places where all began.
+  // After one tick φ² is that of the start places.
   const std::vector<std::string> one_tick = {folder_ / "mission.textproto", "--duration", "0.1"};
   auto words = one_tick;
   words.insert(words.begin(), "simulate");

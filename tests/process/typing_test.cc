@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What people type wrong, and files that are not what they should be: one sentence that says what to do,
-// nothing that a terminal obeys, and nobody waits.
+// Typing errors and invalid files: one sentence that tells what to do, nothing that controls a
+// terminal, and no program that blocks.
 #include <fcntl.h>
 #include <sys/stat.h>
 
@@ -68,7 +68,7 @@ TEST_F(Typing, PlacesAreSaidByTheDomainAndNotByALimitNobodyMeets) {
   EXPECT_FALSE(said("1e+13")) << output();
 }
 
-// Nothing is ever written into the pipe: whoever opens it to read waits for good.
+// Nothing is ever written into the pipe: a program that opens it to read would wait for ever.
 TEST_F(Typing, PipesAreRefusedWhereverAFileIsNamed) {
   const std::string pipe = folder_ / "pipe", scenario = scenario_file("quadrimodal_corners");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

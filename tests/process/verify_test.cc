@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A record is falsified, one value at a time: `ergocast verify` finds it and names the place.
+// A record is falsified, one value at a time: `ergocast verify` finds the change and names the
+// place.
 #include <algorithm>
 #include <set>
 #include <sstream>
@@ -21,7 +22,7 @@ class Falsified : public OwnHost {
               0) << output();
     ASSERT_EQ(ergocast({"verify", out()}), 0) << output();
   }
-  /// Whether `verify` says of the record, with `text` in `file`, that it differs there.
+  /// Expects `verify` to report a difference at `place` when `file` contains `text`.
   void expect_found(const std::string& file, const std::string& text, const std::string& place) {
     const std::string honest = text_of(out() / file);
     ASSERT_NE(text, honest);
@@ -148,7 +149,7 @@ TEST_F(Falsified, PlanScenarioTargetAndReportAreFound) {
   }
 }
 
-// A record whose makers agree with each other and not with its plan.
+// A record whose files agree with each other, but not with its plan.
 TEST_F(Falsified, PlanOfAnotherSeedIsFoundThoughEverythingNamesIt) {
   record("simulate");
   ASSERT_EQ(ergocast({"simulate", out() / "scenario.textproto", "--seed", "99", "--out", folder_ / "other"}), 0);

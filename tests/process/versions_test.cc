@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts with different versions of Ergocast: nobody takes part in a mission it may misunderstand,
-// and both sides say so.
+// Hosts with different versions of Ergocast: no process takes part in a mission that it may
+// misunderstand, and both sides report it.
 #include "runtime/node.h"
 #include "tests/process/mission.h"
 #include "tests/process/stranger.h"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr RunId kTheirRun = 0xabc;
 
-/// What a coordinator of version 9.9.9 says, whose plan only begins as ours do.
+/// The message of a coordinator of version 9.9.9, whose plan only begins as ours do.
 MissionPart their_mission() {
   MissionPart part;
   part.header = {kTheirRun, kCoordinator, 71, 0, 0};
@@ -66,7 +66,7 @@ TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
     stranger_.say(Bus::kSwarm, theirs);
     return coordinator.said().find(warning) != std::string::npos;
   })) << coordinator.said();
-  // An honest agent of our version is admitted, to the number that the other has asked for.
+  // A valid agent of our version gets the number that the other has asked for.
   hand("ergocast-agent", {"--id", "2"});
   ASSERT_TRUE(witness.hears([&] {
     stranger_.say(Bus::kSwarm, theirs);

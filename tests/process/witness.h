@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Somebody on the buses of a mission who only listens: what the team says of itself.
+// A listening process on the buses of a mission: it collects what the team reports of itself.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Witness {
         {.on_message = [this](const Message& message, Bus, AgentId) { hear(message); }}));
   }
 
-  /// Listens until `condition` holds; false if it does not come.
+  /// Listens until `condition` holds; false if it never does.
   bool hears(const std::function<bool()>& condition) {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (!condition()) {
@@ -35,7 +35,7 @@ class Witness {
     }
     return true;
   }
-  /// For a moment; for conditions that several witnesses have to meet.
+  /// Listens for a moment; for conditions on several witnesses.
   void listen() { transport_->deliver_until(now() + std::chrono::milliseconds(5), -1); }
 
   /// The newest member under that number; incarnation 0 if there is none.
@@ -49,12 +49,12 @@ class Witness {
   const RosterEntry* entry(const Author& author) const {
     return follower_.entry_of(author.incarnation);
   }
-  /// Steps of `whose` coverage that `who` holds, as its newest digest says; 0 if it says nothing.
+  /// Steps of `whose` coverage that `who` holds, by its newest digest; 0 if it holds nothing.
   std::int64_t held(const Author& who, const Author& whose) const {
     const auto digest = held_.find({who, whose});
     return digest == held_.end() ? 0 : digest->second;
   }
-  /// The newest block `at` heard of `author`, from whomever; steps 0 if there is none.
+  /// The newest block `at` received of `author`, from any transmitter; steps 0 if there is none.
   Contribution block(const Author& author, int at = 0) const {
     const auto block = blocks_.find({author, at});
     return block == blocks_.end() ? Contribution{} : block->second;
@@ -64,12 +64,12 @@ class Witness {
     const std::int64_t first = block(author, 0).steps;
     return blocks_.contains({author, 1}) ? std::min(first, block(author, 1).steps) : first;
   }
-  /// The last tick that `author` has answered; −1 if it has not been heard.
+  /// The last tick that `author` has answered; −1 if no message of it came.
   Tick answered(const Author& author) const {
     const auto tick = answered_.find(author);
     return tick == answered_.end() ? -1 : tick->second;
   }
-  /// The last tick that the logger has acknowledged; −1 if it has not been heard.
+  /// The last tick that the logger has acknowledged; −1 if no acknowledgement came.
   Tick recorded() const { return recorded_; }
   /// Whether its last two statuses are of one tick: in lockstep, half a second without progress.
   bool stands_still(const Author& author) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What keeps vehicles slow and still, with the real programs.
+// Limits and emergency stops of vehicles, with the real programs.
 #include <cmath>
 
 #include "tests/process/mission.h"

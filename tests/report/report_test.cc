@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report of a run: what it says is read back from its files, and what it draws is checked as
-// text: well-formed, self-contained, free of what is not a number, and small.
+// The report of a run: its values are read back from its files, and its drawings are checked as
+// text: well-formed, self-contained, without NaN, and small.
 #include "report/report.h"
 
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ void write(const fs::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
 
-/// Whether every element is closed in the right order and no '<' or stray '&' stands in a text.
-/// Enough for what we write ourselves: no comments, no CDATA, no '>' in attributes.
+/// Whether every element is closed in the right order and no text has '<' or a stray '&'. Enough
+/// for our own output: no comments, no CDATA, no '>' in attributes.
 testing::AssertionResult well_formed(const std::string& xml) {
   static const std::regex kReference("&(amp|lt|gt|quot|#39);");
   std::vector<std::string> open;
@@ -295,7 +295,7 @@ TEST_F(Report, UniformTargetAndExtremeDomainsAreDrawn) {
   for (const auto& [width_m, height_m] : {std::pair(1e5, 1.0), {1.0, 1e5}, {1.0, 1.0}}) {
     mission.domain.size_m = {width_m, height_m, 0};
     cover({{}, 1});
-    record(3, 200);  // mostly outside: an observer takes what the files say
+    record(3, 200);  // mostly outside: an observer takes what the files have
     ASSERT_EQ(report(), std::nullopt);
     expect_sound();
   }

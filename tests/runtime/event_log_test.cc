@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The event log's limits, and a disk that takes no more.
+// The event log's limits, and a full disk.
 #include "runtime/event_log.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of 1000 bytes with what LCM writes around it.
+/// An event of 1000 bytes, with LCM's header.
 const std::vector<std::byte> kEvent(1000 - 28 - 4);
 
 class EventLogTest : public ::testing::Test {
@@ -61,7 +61,7 @@ TEST_F(EventLogTest, ANumberThatASegmentOfOursCannotHaveIsNoNumber) {
   };
   begin();
   EXPECT_EQ(events("events-000.lcm"), 1);
-  // The last that can be ours, and then what no file has.
+  // The last number of ours, and then one that no file has.
   std::ofstream(folder_ / "events-999999999.lcm") << "ours";
   begin();
   EXPECT_EQ(events("events-1000000001.lcm"), 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Log lines as the journal wants them.
+// Log lines in the journal's format.
 #include "runtime/logging.h"
 
 #include <gtest/gtest.h>

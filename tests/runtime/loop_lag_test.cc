@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How late or deaf a loop was, from the times that it tells.
+// The lateness and the blocked time of a loop, from the times that it reports.
 #include "runtime/loop_lag.h"
 
 #include <gtest/gtest.h>

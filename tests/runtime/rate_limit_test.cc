@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nobody who does what the mission asks is ever limited; whoever babbles soon is.
+// An agent that does what the mission asks is never limited; one that exceeds its budget soon is.
 #include "runtime/rate_limit.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ int refused(const Mission& mission, int messages_per_tick, double ticks_per_seco
   return refused;
 }
 
-/// Two blocks and a command; a status and a digest now and then round up.
+/// Two blocks and a command; an occasional status or digest rounds up.
 constexpr int kHonest = 4;
 
 TEST(RateLimit, DoesNotMeetAnHonestAgentHoweverFastTheTeamIs) {

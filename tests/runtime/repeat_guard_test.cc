@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flood of repeats is seen and its end is seen; what a team repeats for good reasons is none.
+// The start and end of a flood of repeats are detected; a team's legitimate repeats are no flood.
 #include "runtime/repeat_guard.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ Header said(AgentId sender, Incarnation life, std::int64_t sequence) {
 
 class Guarded : public ::testing::Test {
  protected:
-  /// True if the kernel is to be told something else.
+  /// True if the kernel needs a new list.
   bool hear(const Header& from, Instant when) {
     return guard_.count(from, guard_.is_news(from, when), when);
   }
@@ -63,14 +63,14 @@ TEST_F(Guarded, AFloodIsCutAtTheNewestThatIsKnownOfWhoIsRepeated) {
 TEST_F(Guarded, AFloodThatLastsIsCutAtEverNewerSequencesAndItsEndOpensAgain) {
   hear(said(3, 7, 5), at(1s));
   flood(said(3, 7, 5), RepeatGuard::kMostRepeats, at(1s));
-  // A share of it passes, by which we know that it lasts.
+  // A share of it passes and shows that it lasts.
   hear(said(3, 7, 6), at(1050ms));
   constexpr int kShareOfIt =
       RepeatGuard::kMostRepeats * RepeatGuard::kCalmWindows / static_cast<int>(kShareThatPasses);
   EXPECT_FALSE(flood(said(3, 7, 5), kShareOfIt + 1, at(1060ms)));
   EXPECT_TRUE(hear(said(3, 7, 7), at(2000ms)));
   EXPECT_EQ(dropped_up_to(7), 7);
-  // What is newer than that is repeated: it passes, until the kernel is told.
+  // Repeats newer than the list pass until the kernel gets a new list.
   EXPECT_TRUE(flood(said(3, 7, 8), RepeatGuard::kMostRepeats + 1, at(2010ms)));
   EXPECT_EQ(dropped_up_to(7), 8);
   EXPECT_FALSE(hear(said(3, 7, 9), at(2900ms)));

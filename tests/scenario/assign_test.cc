@@ -15,7 +15,7 @@ Overrides with(const std::string& path, const std::string& value) {
   return overrides;
 }
 
-/// What is said of a field set so.
+/// The problems of a field with this value.
 std::string said_of(const std::string& path, const std::string& value) {
   return joined(problems_of(kSmall, with(path, value)));
 }

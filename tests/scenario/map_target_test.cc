@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Targets from files: where a map lies, what of it counts, what the agents get of it, and what is said
-// of one that cannot be used.
+// Targets from files: the place of a map, its mass, the coefficients of it, and the errors of an
+// unusable one.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -21,7 +21,7 @@ std::string without_block(std::string text, const std::string& name) {
   return begin == std::string::npos ? text : text.erase(begin, end + 3 - begin);
 }
 
-/// What a scenario says of a mission: all but μ, which its target decides, and wait_for_logger.
+/// A mission as scenarios describe it: without μ, which the target determines, and wait_for_logger.
 Mission as_scenarios_know_it(Mission mission) {
   mission.target_coefficients.setZero();
   mission.target_coefficients[0] = 1;
@@ -60,8 +60,8 @@ TEST(MissionText, IsThatOfItsScenarioWithoutDescriptionAndTarget) {
   }
 }
 
-// The limits stand in two places: what the plan's reader takes, a scenario can say, and the same
-// mission comes of it.
+// The limits are in two places: a plan that the reader accepts can be written as a scenario, which
+// gives the same mission.
 TEST(HostilePlan, WithAnyBitFlippedIsRefusedOrOfAMissionThatAScenarioSays) {
   Bytes plan = plan_of(good(R"(
     name: "small"

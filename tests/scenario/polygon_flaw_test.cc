@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What makes a polygon none, and what does not.
+// Invalid polygons and valid ones.
 #include "scenario/polygon_flaw.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@ Ring box(double x, double y, double size) {
   return {{x, y}, {x + size, y}, {x + size, y + size}, {x, y + size}};
 }
 
-/// "hole: what"; empty if nothing is wrong. Told the same of the rings written the other way round.
+/// "hole: what"; empty if nothing is wrong. Checks that the other orientation of the rings gives
+/// the same.
 std::string said_of(Polygon polygon, double min_area_m2 = 1e-6) {
   const auto text = [&] {
     const auto flaw = flaw_of(polygon, min_area_m2);

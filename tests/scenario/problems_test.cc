@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of a scenario that cannot be flown: everything that is wrong, at once, with its
-// place, the limit it breaks and the remedy.
+// The problems of an invalid scenario: every error at once, with its place, the limit it breaks and
+// the remedy.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ agents {
       "f:21:3: agents.quorum: 3 is above the limit, the team's size 1 (write 1 to 1)\n");
 }
 
-/// One mistake put into kSmall, and what must be said of it: that alone.
+/// One mistake put into kSmall, and its only problem.
 struct Mistake {
   const char* from;
   const char* to;
@@ -245,7 +245,7 @@ TEST(Limits, TooLongADescription) {
                   "2001 bytes are above the limit 2000"));
 }
 
-// What cannot be read is unknown, not missing: it must not draw a second problem after it.
+// An unreadable field is unknown, not missing: it must not cause a second problem.
 TEST(Salvage, UnreadableFieldsAreNotMissingAsWell) {
   for (const char* text : {"domain { size_x_m: a size_y_m: b }", "domain: 5", "domain 5"}) {
     const std::string said =
@@ -287,7 +287,7 @@ TEST(Text, HostileTextIsRefusedQuickly) {
   EXPECT_FALSE(problems_of(std::string(100, '\0')).empty());
 }
 
-// Whatever a file holds, it is a scenario that survives printing, or there is a reason.
+// Any file is a scenario that survives printing, or has a problem.
 TEST(Text, AnyDamageIsNamedOrHarmless) {
   std::mt19937 random(1);
   const std::string whole = good(Scenario::load(shipped("quadrimodal_corners"))).print();
@@ -353,7 +353,7 @@ TEST_F(File, ThatHasNoEndIsRefused) {
 }
 
 TEST_F(File, ThatCannotBeReadIsNamed) {
-  // Opens for everybody, root included, but gives an error where reading begins.
+  // Every user can open it, root included, but reading fails.
   EXPECT_TRUE(has(said_of("/proc/self/mem"), "cannot be read"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What scenario.proto's comments say of a number is what the table of fields holds it to.
+// The numbers in scenario.proto's comments are those of the table of fields.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
 /// The comment of each field by "Message.field": the lines above it, or above the fields that it
-/// follows without a comment, and what stands behind it on its line.
+/// follows without a comment, and the rest of its line.
 std::map<std::string, std::string> read_comments() {
   std::ifstream file(ERGOCAST_SOURCE_DIR "/scenario/scenario.proto");
   const std::regex message_line(R"(^message (\w+) \{)");
@@ -42,7 +42,7 @@ std::map<std::string, std::string> read_comments() {
   return comments;
 }
 
-/// Whether `comment` has `value` as a number of its own, however it is written: 1e7 or 10000000.
+/// Whether `comment` has `value` as a separate number in any notation: 1e7 or 10000000.
 bool says(const std::string& comment, double value) {
   const std::regex number(R"((?:^|[^\w.])(\d+(?:\.\d+)?(?:e-?\d+)?)(?![\w]))");
   for (std::sregex_iterator at(comment.begin(), comment.end(), number), end; at != end; ++at) {
@@ -51,8 +51,8 @@ bool says(const std::string& comment, double value) {
   return false;
 }
 
-/// Fields whose comments name the limits that other fields set, or leave them to their message's: the
-/// table holds them only so far that no number overflows.
+/// Fields whose limits depend on other fields or are in their message's comment: the table only
+/// prevents overflow.
 bool limits_stand_elsewhere(const std::string& name) {
   return name == "Gaussian.sigma_m" || name.starts_with("Covariance.") ||
          name.starts_with("Start.") || name.starts_with("Vertex.") || name.starts_with("Domain.origin_") ||
@@ -119,7 +119,7 @@ TEST(ProtoComments, SayWhatIsRequired) {
   each_number([&](const std::string& name, const FieldRule& rule) {
     if (rule.absence != Absence::kRefused || name.starts_with("Vertex.") ||
         name.starts_with("Start.")) {
-      return;  // those two say it of the whole message
+      return;  // those two have it in the comment of the message
     }
     EXPECT_NE(lower(comments.at(name)).find("required"), std::string::npos) << name;
   });

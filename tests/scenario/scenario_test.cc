@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a valid scenario becomes: defaults, overrides, random starts, print(), the shipped files.
+// The result of a valid scenario: defaults, overrides, random starts, print(), the shipped files.
 #include "scenario/scenario.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(Defaults, OfNoiseRiseWithTheFloorThatIsGiven) {
   EXPECT_EQ(law.noise_ceiling, 7);
 }
 
-/// A law that does not look ahead is that of version 0.1.0, the paper's or the classical one: whole.
+/// A law without a forecast is that of version 0.1.0, the paper's or the classical one: in full.
 TEST(Defaults, OfALawThatDoesNotLookAheadStayWhatTheyWere) {
   for (const auto& [law, epsilon] :
        {std::pair{"anticipation: 0", 0.2}, std::pair{"perturbation: CONSTANT", 0.2},

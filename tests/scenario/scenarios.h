@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenario texts for tests, and the two ways their reading can end.
+// Scenario texts for tests, and the two possible results of reading them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
 }
 
-/// The fewest words that make a scenario.
+/// The shortest text that makes a scenario.
 inline constexpr std::string_view kSmall = R"(
 domain { size_x_m: 100 size_y_m: 50 }
 target { uniform_weight: 1 }

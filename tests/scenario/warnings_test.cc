@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scenario is warned of, in its own numbers: a speed limit below what the law commands, and
-// steps too coarse for agents that look ahead.
+// The warnings about a scenario, in its own numbers: a speed limit below the law's commands, and
+// steps too coarse for agents with a forecast.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/scenarios.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world driven by hand, and what it says.
+// A world driven by hand, and its messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ inline World world_of(const Mission& mission) {
   return {kRun, kWorldLife};
 }
 
-/// Every agent's answer to the question of this life of the world where it was.
+/// Every agent's answer to the question of this incarnation of the world for its place.
 inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation life = kWorldLife) {
   for (AgentId id = 0; id < agents; ++id) {
     Command answer = command_of(id, -1, {0, 0, 0});
@@ -38,7 +38,7 @@ inline std::vector<WorldState> states_after(World& world, Instant now) {
   return only<WorldState>(advance(world, now));
 }
 
-/// The one state that the world says now.
+/// The only state that the world sends now.
 inline WorldState state_after(World& world, Instant now) {
   const auto states = states_after(world, now);
   EXPECT_EQ(states.size(), 1u);

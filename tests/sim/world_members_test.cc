@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated world, driven by hand: whose commands count, and who joins and leaves.
+// The simulated world, driven by hand: which commands count, and which agents join and leave.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world that dies and is started again goes on where the team was, by what the agents tell it:
-// in lockstep as if nothing had happened, bit for bit, at whatever moment it died.
+// A world that dies and is restarted continues where the team was, from the agents' answers: in
+// lockstep without any difference, bit for bit, at whatever moment it died.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,14 +16,14 @@ using namespace test;
 
 // ---- lockstep, with real agents ------------------------------------------------------------------
 
-/// Which of three agents still heard the tick at which the world died; none of their answers
-/// reached it.
+/// Which of three agents received the tick at which the world died; none of their answers reached
+/// it.
 struct Death {
   Tick tick;
   bool heard[3];
 };
 
-/// A lockstep flight of three agents. Checks that no tick is ever told in two ways.
+/// A lockstep flight of three agents. Checks that no tick is sent with two contents.
 class Flight {
  public:
   using Told = std::map<Tick, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>>;
@@ -47,7 +47,7 @@ class Flight {
         if (death.heard[id]) give(team_[id], state, now_);
       }
     }
-    team_.settle(now_);  // whatever they say, no world hears it
+    team_.settle(now_);  // their messages reach no world
     world_ = begin(++lives_);
     while (!world_.begun_at()) {
       now_ += 10ms;
@@ -94,7 +94,8 @@ class Flight {
   Told told_;
 };
 
-/// Speaks every fourth tick, so that some may answer a tick that others have not heard of.
+/// Broadcasts every fourth tick, so that some agents may answer a tick that others have not
+/// received.
 Mission lively_mission(double disturbance) {
   Mission mission = small_mission(3);
   mission.target_coefficients[4] = 0.3;
@@ -185,8 +186,8 @@ TEST(WorldAsks, BeginsInRealTimeWithoutASilentAgentAfterTwoSeconds) {
   EXPECT_EQ(place(states[0], 1), mission.starts_m[1]) << "nobody knows better";
 }
 
-// Only that one may have heard the last tick of the world's predecessor, and where it is nobody else
-// knows.
+// Only that agent may have received the last tick of the former world, and no other process knows
+// its place.
 TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
   World world = asking_world(small_mission(2));
   for (const Tick tick : {8, 9})
@@ -378,7 +379,7 @@ TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   give(world, successors, at(1s));
   std::vector<Tick> repeated;
   for (const WorldState& state : states_after(world, at(2s))) repeated.push_back(state.header.tick);
-  // The next row that it lacks, and the state after it; what is no longer remembered is a gap.
+  // The next row that it lacks, and the state after it; a state that is no longer stored is a gap.
   ASSERT_FALSE(repeated.empty());
   EXPECT_EQ(repeated.front(), 74);
   give(world, ack_of(3), at(2s));

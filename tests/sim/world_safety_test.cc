@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated world, driven by hand: what keeps vehicles slow, finite and still.
+// The simulated world, driven by hand: its limits keep vehicles slow, finite and still.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -158,7 +158,7 @@ TEST(WorldHalt, SaysFirstWhereTheLastStepLed) {
   World world = running_world(mission);
   give(world, ack_of(-1), at(0s));
   Tick tick = 0;
-  // Until the world is as far ahead of the record as it may be: the next state is not said.
+  // Until the world is as far ahead of the record as it may be: the next state is not sent.
   for (advance(world, at(0s)); tick < kRecordWindowTicks; ++tick) {
     give(world, command_of(0, tick, {1, 0, 0}), at(0s));
     if (advance(world, at(0s)).empty()) break;

@@ -161,7 +161,7 @@ Mission recorded_mission() {
   return mission;
 }
 
-/// Answers every tick at `now` until the world says nothing new.
+/// Answers every tick at `now` until the world sends nothing new.
 void run_while_it_goes(World& world, Instant now) {
   for (auto states = states_after(world, now); !states.empty(); states = states_after(world, now)) {
     give(world, command_of(0, world.tick(), {1, 0, 0}), now);
@@ -197,7 +197,7 @@ TEST(WorldRecord, RepeatsWhatTheLoggerLacks) {
   const auto states = states_after(world, at(2s));
   std::vector<Tick> ticks;
   for (const WorldState& state : states) ticks.push_back(state.header.tick);
-  // The newest says who has answered; then come the oldest ones that are missing.
+  // The newest state lists the answers; then come the oldest ones that are missing.
   std::vector<Tick> expected{84};
   for (Tick tick = 21; tick <= 36; ++tick) expected.push_back(tick);
   EXPECT_EQ(ticks, expected);
@@ -210,7 +210,7 @@ TEST(WorldRecord, GivesUpASilentLoggerAndSaysSo) {
   World world = running_world(recorded_mission());
   give(world, ack_of(-1), at(0s));
   run_while_it_goes(world, at(0s));
-  // Half the team's patience, so that the coordinator blames nobody in the meantime.
+  // Half the team's time-out, so that the coordinator blames no agent in the meantime.
   advance(world, at(5s));
   EXPECT_FALSE(world.logger_lost());
   EXPECT_EQ(world.tick(), 64);
@@ -277,7 +277,7 @@ TEST(WorldEnd, ByItselfOnceNeitherAgentNorCoordinatorCanStillCome) {
   const Command answer = command_of(0, 0, {1, 0, 0});
   give(world, answer, at(5s));
   advance(world, at(5s));
-  give(world, answer, at(30s));  // a recording of it is nobody's word
+  give(world, answer, at(30s));  // a recording of it is no answer
   advance(world, at(45s));
   EXPECT_FALSE(world.finished()) << "10 s for a tick, and 30 s more";
   advance(world, at(45001ms));

@@ -15,7 +15,7 @@ import lcm.lcm.LCMDataOutputStream;
 import lcm.lcm.LCMEncodable;
 import lcm.spy.LCMTypeDatabase;
 
-/** What the tests ask Java: each prints what it finds, or ends with an exception. */
+/** The Java checks of the tests: each prints its result, or ends with an exception. */
 public final class SpyProbe {
   private static final long RUN = 4711;
 
@@ -53,7 +53,7 @@ public final class SpyProbe {
     }
   }
 
-  /** Decodes all that comes as lcm-spy does; one line for each channel, and for each failure. */
+  /** Decodes all messages as lcm-spy does; one line for each channel, and for each failure. */
   private static void listen(String[] urls) throws Exception {
     LCMTypeDatabase database = new LCMTypeDatabase();
     Set<String> known = new HashSet<>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A screen that nobody sees, with LCM's viewer on it.
+// A virtual screen with LCM's viewer on it.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace ergocast::test {
 
-/// What of the tests' needs this machine lacks: " xvfb xdotool"; empty if nothing.
+/// The programs that this machine lacks for the tests: " xvfb xdotool"; empty if none.
 inline std::string missing_for_spy(bool with_screen) {
   const std::string jar = std::string(ERGOCAST_BIN_DIR) + "/../ops/spy/ergocast-spy.jar";
   std::vector<std::pair<std::string, std::string>> needs{{jar, " default-jdk liblcm-java"}};
@@ -36,7 +36,7 @@ struct Area {
 };
 using Pixel = std::pair<int, int>;
 
-/// What Xvfb shows: a file in the format of xwd, which it keeps up to date.
+/// The picture of Xvfb: a file in the format of xwd, which it keeps up to date.
 class Screenshot {
  public:
   explicit Screenshot(const std::filesystem::path& file) : bytes_(text_of(file)) {
@@ -71,7 +71,7 @@ class Screenshot {
   int width_ = 0, height_ = 0, stride_ = 0, first_ = 0;
 };
 
-/// Asks Java; see SpyProbe.java.
+/// Runs the Java checks; see SpyProbe.java.
 class WithProbe : public FlyingMission {
  protected:
   std::vector<std::string> probe_command(const std::vector<std::string>& question) const {
@@ -85,12 +85,12 @@ class WithProbe : public FlyingMission {
     command.insert(command.end(), question.begin(), question.end());
     return command;
   }
-  /// A program that is not ours; its output goes to log_.
+  /// A program of the system; its output goes to log_.
   Child begin(const std::vector<std::string>& command) {
     log_ = folder_ / ("tool-" + std::to_string(++begun_));
     return std::get<Child>(Child::start({command, log_, SIGKILL}));
   }
-  /// Runs one to its end; what it said.
+  /// Runs one to its end; returns its output.
   std::string said_by(const std::vector<std::string>& command) {
     Child child = begin(command);
     EXPECT_TRUE(eventually([&child] { return !child.running(); })) << command.front();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The jar that lcm-spy gets: types, the plan's reader, and pictures of given messages.
+// The jar for lcm-spy: types, the plan's reader, and pictures of given messages.
 #include <cmath>
 
 #include "target/target.h"
@@ -19,7 +19,7 @@ class SpyJar : public WithProbe {
     const std::string missing = missing_for_spy(false);
     if (!missing.empty()) GTEST_SKIP() << "not installed when this was built:" << missing;
   }
-  /// The plan that agents of a scenario get, and its file.
+  /// The plan that a scenario's agents receive, and its file.
   Scenario plan_of(const std::string& name) {
     auto loaded = Scenario::load(scenario_file(name));
     const auto& scenario = std::get<Scenario>(loaded);

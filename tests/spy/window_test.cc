@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast spy` beside a real mission, on a real screen as far as programs can tell.
+// `ergocast spy` beside a real mission, on a virtual screen.
 #include "tests/spy/spy_desk.h"
 
 namespace ergocast::test {

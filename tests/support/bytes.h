@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A message as it travels: two are the same if their bytes are.
+// A message as its bytes: two messages are equal if their bytes are.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One rule for each field says how its value is drawn, and a field without a rule is an error.
+// Every field has a rule that draws its value, and a field without a rule is an error.
 #include "tests/support/drawn_scenario.h"
 
 #include <google/protobuf/descriptor.h>
@@ -62,7 +62,7 @@ Draw spread(double low, double high) {
     set(block, field, dice.log_uniform(low, high));
   };
 }
-/// What changes nothing, or something else.
+/// A value without effect, or another one.
 Draw either(double neutral, Draw other) {
   return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
     dice.uniform() < 0.8 ? set(block, field, neutral) : other(block, field, dice);
@@ -95,7 +95,7 @@ Rule many(int least, int most) { return {draw_block, least, most}; }
 const Draw kCoin = [](Block& block, const FieldDescriptor& field, Dice& dice) {
   block.GetReflection()->SetBool(&block, &field, dice.coin());
 };
-/// Where anything is [m]: inside every domain.
+/// A place [m] inside every domain.
 const Draw kPlace = number(1, 99);
 
 const std::map<std::string, Rule>& rules() {

@@ -11,12 +11,12 @@
 
 namespace ergocast::test {
 
-/// Writes the maps that drawn scenarios name.
+/// Writes the maps that the drawn scenarios use.
 void write_maps(const std::filesystem::path& folder);
 
-/// A small mission: up to 24 agents, 24 × 24 modes and 60 ticks, with each field that may be left out
-/// there in every second one. Not all are valid. Throws std::logic_error, which names it, if
-/// scenario.proto has a field that drawn_scenario.cc does not know.
+/// A small mission: up to 24 agents, 24 × 24 modes and 60 ticks, with each optional field in every
+/// second scenario. Not all are valid. If scenario.proto has a field that drawn_scenario.cc does
+/// not know, throws std::logic_error with its name.
 proto::Scenario drawn_scenario(std::uint64_t seed);
 
 /// "Law.epsilon" of each field that is set in `message`, or in what it holds.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded into programs, stops one of them as SIGSTOP from outside would, but at the very message
-// a test names, however fast the machine is: the first program that is about to say on a channel
-// what has that tick or a later one in its header.
-//   ERGOCAST_HOLD="CHANNEL TICK FILE"   whoever can remove FILE is stopped, so it happens once
+// Preloaded into programs, stops one of them as SIGSTOP from outside would, but at the exact
+// message that a test names: the first program that is about to send on a channel a message with
+// that tick or a later one in its header.
+//   ERGOCAST_HOLD="CHANNEL TICK FILE"   the program that removes FILE is stopped, and no other
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -40,7 +40,7 @@ std::string bytes_of(const msghdr& message) {
   return bytes;
 }
 
-/// The tick of a message on the channel that is waited for; nothing of any other.
+/// The tick of a message on the selected channel; nothing for any other.
 std::optional<std::int64_t> tick_of(const std::string& datagram) {
   constexpr std::size_t kName = 8, kTick = 36;  // after LCM's own header; in our message
   const std::size_t at = kName + hold().channel.size() + 1 + kTick;

@@ -118,7 +118,7 @@ Lan::Lan(int count) : home_(Namespaces::of_this_thread()), switch_(Namespaces::m
   wait_for_links();
 }
 
-/// The kernel takes its time to use a link that has come up.
+/// The kernel needs some time to use a link that has come up.
 void Lan::wait_for_links() const {
   constexpr int kTurns = 1000;
   const auto ready = [this] {
@@ -183,7 +183,7 @@ void Lan::heal() {
 }
 
 void Lan::apply_rules() const {
-  // In one transaction; the first line is for the first time, when there is nothing to delete.
+  // In one transaction; the first line is for the first call, when there is nothing to delete.
   std::string rules =
       "table bridge faults\ndelete table bridge faults\ntable bridge faults {\n"
       "  chain forward {\n    type filter hook forward priority 0\n";

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts on a network of the test's own: network namespaces whose cables end in a bridge, which
-// stands in one more as the switch. None of them has a name outside this process, so all are gone
-// once it and the programs it started are, however they ended.
+// Hosts on a network of the test: network namespaces whose cables end in a bridge, which is in
+// another namespace as the switch. None of them has a name outside this process, so all are removed
+// when it and the programs it started have ended, in any way.
 //
-// Needs iproute2, nftables and root, or a process in a user namespace of its own (own_host.h) where
-// the kernel allows that. Every function throws std::runtime_error with the command that failed.
+// Needs iproute2, nftables and root, or a process in its own user namespace (own_host.h) if the
+// kernel allows that. Every function throws std::runtime_error with the command that failed.
 #pragma once
 
 #include <chrono>
@@ -16,11 +16,11 @@
 
 namespace ergocast::test {
 
-/// A network and a host name, held by this process.
+/// A network and a host name, kept open by this process.
 class Namespaces {
  public:
   static Namespaces of_this_thread();
-  /// New ones, with a loopback; this thread stays where it is.
+  /// New ones, with a loopback; this thread stays in its own.
   static Namespaces make(const std::string& host_name);
   Namespaces(Namespaces&& other) noexcept
       : net_(std::exchange(other.net_, -1)), name_(std::exchange(other.name_, -1)) {}
@@ -44,7 +44,7 @@ class Lan {
   explicit Lan(int count);
   int hosts() const { return static_cast<int>(hosts_.size()); }
 
-  /// While it lives, this thread is on that host: what it opens or starts stays there.
+  /// While it exists, this thread is on that host: sockets and processes that it starts stay there.
   class Visit {
    public:
     Visit(const Namespaces& host, const Namespaces& home) : home_(home) { host.enter(); }
@@ -61,17 +61,18 @@ class Lan {
   void unplug(int host);
   /// From now on the switch carries nothing from one host to the other.
   void block(int from, int to);
-  /// From now on the switch loses so many of a hundred frames, each copy of a broadcast by itself.
-  /// @param spared  hosts that everything reaches, such as an observer's
+  /// From now on the switch loses so many percent of the frames, each copy of a broadcast
+  /// separately.
+  /// @param spared  hosts without losses, such as an observer's
   void lose(int percent, std::set<int> spared = {});
-  /// From now on every frame takes so much longer. False if this kernel cannot do it (no netem).
+  /// From now on every frame is delayed so long. False if this kernel cannot do it (no netem).
   bool delay(std::chrono::milliseconds time);
-  /// Cables in, nothing blocked, lost or late.
+  /// Connects all cables and removes blocks, losses and delays.
   void heal();
 
   /// Of all links.
   void set_mtu(int bytes);
-  /// A second interface, eth1, into a network in which nobody is.
+  /// A second interface, eth1, into a network without other hosts.
   void add_interface(int host);
   /// Sends that host's multicast to one of its interfaces; "": to none.
   void route_multicast(int host, const std::string& interface);
@@ -80,7 +81,7 @@ class Lan {
   void on_switch(const std::string& command) const { run_on(switch_, command); }
   void on_host(int host, const std::string& command) const;
 
-  /// IP packets that the switch was to carry since the start, and fragments of packets among them.
+  /// IP packets that the switch received since the start, and fragments of packets among them.
   std::int64_t packets() const { return count_of("ip_packets"); }
   std::int64_t fragments() const { return count_of("ip_fragments"); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded into a program, makes its system one that has no room for another process while the file
-// $ERGOCAST_TEST_NO_MORE_PROCESSES is there.
+// Preloaded into a program, makes the system refuse new processes while the file
+// $ERGOCAST_TEST_NO_MORE_PROCESSES exists.
 #include <sys/types.h>
 
 #include <dlfcn.h>

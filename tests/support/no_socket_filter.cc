@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded into a program, makes its kernel one that knows no socket filters.
+// Preloaded into a program, makes its kernel refuse socket filters.
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>

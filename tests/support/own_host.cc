@@ -59,7 +59,7 @@ void enter_own_host() {
     write_text("/proc/self/uid_map", "0 " + std::to_string(user) + " 1");
     write_text("/proc/self/gid_map", "0 " + std::to_string(group) + " 1");
   }
-  // Not possible below a chroot, whose root is no mount point.
+  // Not possible in a chroot, whose root is no mount point.
   mounts_are_private = root && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
   must_run("ip link set lo up");
   must_run("ip link set lo multicast on");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host of the test's own: a network namespace with multicast on its loopback, so that tests
-// that open sockets neither hear nor disturb anybody, and can see which processes they left.
+// A host of the test's own: a network namespace with multicast on its loopback, so that tests with
+// open sockets neither receive from nor disturb other programs, and can see which processes they
+// left.
 #pragma once
 
 #include <set>
@@ -9,14 +10,14 @@
 
 namespace ergocast::test {
 
-/// Moves this process into new namespaces: network, mounts and the host's name; as an ordinary user
-/// in a new user namespace. Throws std::runtime_error with the reason where the system forbids it.
+/// Moves this process into new namespaces: network, mounts and host name; an ordinary user also
+/// gets a new user namespace. Throws std::runtime_error with the reason if the system forbids it.
 void enter_own_host();
 
-/// Whether it was root's process that moved.
+/// Whether the process was root's.
 bool is_root();
 
-/// Whether mounting is possible there without anybody else seeing it.
+/// Whether mounting is possible there, invisible to other processes.
 bool may_mount();
 
 /// "agent (pid 12)" of every process in one of these network namespaces (as /proc/PID/ns/net shows

@@ -20,7 +20,7 @@ inline Mission shipped_mission(const std::string& name, const Overrides& overrid
   return std::get<Scenario>(Scenario::load(file, overrides)).mission();
 }
 
-/// How probable a test may be to fail although what it claims is true, with other seeds.
+/// The probability that a test fails with other seeds although its statement is true.
 inline constexpr double kError = 1e-9;
 
 using PaperTeam = lab::IdealTeam;

@@ -45,11 +45,11 @@ inline Mission small_mission(int agents) {
   return mission;
 }
 
-/// The plan that mission_part() says: of the mission that announce() was given last.
+/// The plan in mission_part(): that of the last announce().
 inline std::vector<std::byte> announced_plan;
 inline void announce(const Mission& mission) { announced_plan = encode_plan(mission); }
 
-/// A plan that nobody can read, and what everybody says of it.
+/// An invalid plan, and the error that every process reports for it.
 inline const std::vector<std::byte> kNoPlan{std::byte{1}};
 inline std::string why_no_plan() { return std::get<std::string>(decode_plan(kNoPlan)); }
 
@@ -59,7 +59,7 @@ inline std::vector<RosterEntry> roster_of(int agents) {
   return roster;
 }
 
-/// Above all that a test has said before: what is said twice is no news.
+/// Higher than all former ones in a test: a repeated message is not fresh.
 inline std::int64_t next_sequence() {
   static std::int64_t last = 0;
   return ++last;
@@ -109,23 +109,23 @@ inline AgentStatus status_of(AgentId id, std::int64_t sequence, Tick answered_ti
   return status;
 }
 
-/// On which bus a process of that role hears such a message.
+/// The bus on which a process of that role receives such a message.
 inline Bus bus_of(const Message& message, Role role) {
   const bool asks = std::holds_alternative<Hello>(message) && header_of(message).sender == kWorld;
   Bus bus = asks || std::holds_alternative<WorldState>(message) ? Bus::kWorld : Bus::kSwarm;
   if (std::holds_alternative<Command>(message) || std::holds_alternative<RecordAck>(message)) {
     bus = Bus::kCommand;
   }
-  // MISSION and STOP are said on two buses.
+  // MISSION and STOP are sent on two buses.
   return hears(subscriptions_of(role), bus, message) ? bus : Bus::kCommand;
 }
 
-/// Has `core` hear `message` from `transmitter`.
+/// Gives `message` to `core`, from `transmitter`.
 template <class Core>
 void give(Core& core, const Message& message, Instant now, AgentId transmitter) {
   core.receive(message, bus_of(message, Core::kRole), transmitter, now);
 }
-/// Has `core` hear `message` from its sender.
+/// Gives `message` to `core`, from its sender.
 template <class Core>
 void give(Core& core, const Message& message, Instant now) {
   give(core, message, now, header_of(message).sender);
@@ -141,7 +141,7 @@ std::vector<M> only(const Outbox& out) {
   return found;
 }
 
-/// What `core` publishes at `now`.
+/// The messages that `core` publishes at `now`.
 template <class Core>
 Outbox advance(Core& core, Instant now) {
   Outbox out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preloaded into a program, makes its kernel one whose clock nobody has set.
+// Preloaded into a program, makes its kernel's clock appear unsynchronised.
 #include <sys/timex.h>
 
 extern "C" int adjtimex(timex* time) noexcept {

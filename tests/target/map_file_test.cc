@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What maps say is read as it stands, and what cannot be one is refused with a remedy.
+// The content of maps is read exactly, and a file that cannot be a map is refused with a remedy.
 #include "target/map_file.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ class Maps : public ::testing::Test {
     }
     return std::get<Rows>(result);
   }
-  /// What is wrong with `file`; empty if nothing is.
+  /// The problem of `file`; empty if there is none.
   std::string said_of(const fs::path& file) {
     const auto result = read(file);
     const auto* problem = std::get_if<MapProblem>(&result);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A large map is read and transformed in far less memory than it has.
+// A large map is read and transformed in much less memory than its size.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -35,7 +35,7 @@ TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "map_memory.png";
   test::write_png(file, kSide, kSide, {.bits = 16},
                   [](int column, int row, int) { return (column ^ row) & 1023; });
-  // From now on the peak counts anew.
+  // Resets the peak.
   if (!(std::ofstream("/proc/self/clear_refs") << 5 << std::flush)) GTEST_SKIP() << "no clear_refs";
   const double before = memory_mib("VmRSS");
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Integrals over polygons in another way than core/'s: triangles from the first corner, each with
-// its sign, and in each a product of Gauss rules on panels (Duffy's map of the square).
+// Integrals over polygons by another method than core/'s: triangles from the first corner, each
+// with its sign, and in each a product of Gauss rules on panels (Duffy's map of the square).
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// μ_k, (3), against integrals found in other ways: Romberg's rule in extended precision for bells
+// μ_k, (3), against integrals by other methods: Romberg's rule in extended precision for Gaussians
 // that are products, the characteristic function for those well inside, another Gauss rule for the
 // rest.
 #include "target/target.h"
@@ -230,7 +230,8 @@ TEST(TargetCoefficients, OfACorrelatedBellAreWithinTheirStatedError) {
 }
 
 TEST(TargetCoefficients, AHopelesslyNarrowRidgeSaysThatItIsNotExact) {
-  // 1e-5 of its length wide: no rule on these panels can see it, and the stated error admits it.
+  // Its width is 1e-5 of its length: no rule on these panels can resolve it, and the stated error
+  // shows that.
   const Gaussian ridge = bell(1, 700, 650, 100, 60, 1 - 5e-11);
   EXPECT_GT(target_coefficients({{ridge}, 0}, kDomain, basis_of(15, 15)).error_bound, 1e-3);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing that comes off the network is taken for a plan unless it could have been encoded here.
+// Bytes from the network are accepted as a plan only if this program could have encoded them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -147,7 +147,7 @@ void pull(Mission& m) {
   m.law.u_max_mps = 360;
 }
 
-// Each breaks one limit, and as few others as can be.
+// Each breaks one limit, and as few others as possible.
 TEST(HostilePlan, ThatBreaksALimitIsRefused) {
   using Change = void (*)(Mission&);
   constexpr Change kBroken[] = {
@@ -245,14 +245,14 @@ TEST(HostilePlan, OfAnotherVersionIsRefusedWithBothVersionsNamed) {
   const std::string sentence = "the mission's plan is of version " + theirs + ", this program is " +
                                ours + ": install the same version on every host";
   EXPECT_EQ(problem_of(plan), sentence);
-  // What follows may be written in a way that we cannot even take apart.
+  // The rest may be in a format that we cannot parse.
   plan.resize(2 + length + 1);
   EXPECT_EQ(problem_of(plan), sentence);
 }
 
 TEST(HostilePlan, WithoutAVersionIsDamagedOrMuchNewer) {
   EXPECT_TRUE(has(problem_of({}), "damaged or of a much newer version"));
-  for (const int byte : {0x1b, 0xff}) {  // no word of a stranger moves the cursor of a terminal
+  for (const int byte : {0x1b, 0xff}) {  // no received text moves the cursor of a terminal
     Bytes plan = encode_plan(rich_mission());
     plan[3] = static_cast<std::byte>(byte);
     EXPECT_TRUE(has(problem_of(plan), "damaged or of a much newer version"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who is alive: only what is said for the first time is a sign of life, and silence has one rule.
+// Liveness: only a fresh message is a sign of life, and there is one rule of silence.
 #include "team/liveness.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MISSION's parts put together: any order, repeats, losses, mixed revisions and lies.
+// MISSION's parts assembled: any order, repeats, losses, mixed revisions and forgeries.
 #include "team/mission_follower.h"
 
 #include <gtest/gtest.h>

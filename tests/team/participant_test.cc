@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The checks that all processes share, and what a process knows of the others and says itself.
+// The checks that all processes share, and what a process knows of the others and publishes itself.
 #include "team/participant.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(Participant, RefusesItsOwnEcho) {
   Outbox out;
   agent.publish(Bus::kSwarm, Hello{}, 0, out);
   EXPECT_FALSE(accept(agent, out[0].message));
-  agent.set_id(3);  // admitted meanwhile: it is the same process
+  agent.set_id(3);  // admitted meanwhile: the same process
   EXPECT_FALSE(accept(agent, out[0].message));
   EXPECT_EQ(agent.refused(), RefusalCounts{});
 }
@@ -192,7 +192,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
 
 // ---- cut off -------------------------------------------------------------------------------------
 
-/// A lockstep mission with a patience of 5 s, and 30 s for whoever may come back.
+/// A lockstep mission with a time-out of 5 s, and 30 s for a process that may come back.
 Participant in_mission(Role role, MissionState state = MissionState::kRunning) {
   Mission mission = small_mission(2);
   mission.timing.lockstep_timeout_s = 5;

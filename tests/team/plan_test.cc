@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The compiled plan: every field of a mission travels, to the last bit.
+// The compiled plan: every field of a mission is encoded, to the last bit.
 #include "team/plan.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 using test::rich_mission;
 using Bytes = std::vector<std::byte>;
 
-/// Every field as a text, to the last bit. Who adds a field to a mission does not come past here:
-/// the names of all are listed.
+/// Every field as a text, to the last bit. A new field of a mission must be added here: the names
+/// of all are listed.
 class Fields {
  public:
   explicit Fields(const Mission& mission) {
@@ -98,7 +98,7 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   expect_travels(mission);
 }
 
-// Two that were mixed up would not show where both are true.
+// Two swapped switches would not show if both are true.
 TEST(Plan, CarriesEachSwitchByItself) {
   for (int flipped = 0; flipped < 10; ++flipped) {
     SCOPED_TRACE(flipped);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who hears whom: by distance, between agents whose places are known.
+// Radio range: which agents with known places receive each other, by distance.
 #include "team/radio_range.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mission of which every field says something.
+// A mission in which every field has an effect.
 #pragma once
 
 #include "core/mission.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Harmless text stays as it is, control characters are replaced, and the nearest name is found.
+// Harmless text is unchanged, control characters are replaced, and the nearest name is found.
 #include "text/printable.h"
 
 #include <gtest/gtest.h>

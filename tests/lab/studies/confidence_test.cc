@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Limits that are exceeded no more often than they say: tried with an error that can be seen.
+// Limits that are exceeded no more often than stated: tested with a visible error.
 #include "lab/studies/theorems/confidence.h"
 
 #include <gtest/gtest.h>

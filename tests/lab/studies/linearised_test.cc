@@ -42,7 +42,8 @@ TEST_P(FromEverySet, FollowsTheMethodAsLongAsTheDeviationIsSmall) {
     const auto steps = linearised(mission, kSteps);
     const bool edge = steps.front().slopes.isZero(0);
     const std::vector<double> predicted = deviation(steps, mission);
-    // An edge mirrors who crosses it, and without one f and B go on as even and odd functions.
+    // An edge mirrors an agent that crosses it; without one f and B continue as even and odd
+    // functions.
     lab::IdealTeam team(mission, edge ? lab::Edges::kNone : lab::Edges::kReflect);
     double largest_m = 0;
     while (team.tick() < kSteps && largest_m < kSmall_m) {

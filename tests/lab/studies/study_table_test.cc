@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study's rows as text, and what they say together.
+// A study's rows as text, and the results that follow from all of them.
 #include "lab/studies/study_table.h"
 
 #include <gtest/gtest.h>

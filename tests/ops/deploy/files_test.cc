@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `ergocast deploy` writes is read by those it is written for: bash, Compose.
+// Bash and Compose can read the files of `ergocast deploy`.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -31,14 +31,14 @@ class DeployFiles : public ::testing::Test {
   }
   ~DeployFiles() override { fs::remove_all(folder_); }
 
-  /// Both files of a mission key, under a name that needs care; their text is their own name.
+  /// Both files of a mission key, with a name that needs quoting; their content is their own name.
   void make_keys() {
     mission_.keys = folder_ / "our team's";
     for (const char* end : {".key", ".coordinator.key"})
       std::ofstream(mission_.keys.string() + end) << end + 1 << "\n";
   }
 
-  /// What a shell command prints; the file's text is in $file.
+  /// The output of a shell command; the file's text is in $file.
   std::string output(const std::string& command, const std::string& text = "") {
     std::ofstream(folder_ / "file") << text;
     const std::string all = "file=" + (folder_ / "file").string() + "; { " + command + "\n} >" +
@@ -70,7 +70,7 @@ TEST_F(DeployFiles, ScriptsAreSoundAndKeepEveryPathInOneWord) {
     ASSERT_EQ(files.size(), 1U);
     EXPECT_TRUE(files[0].executable);
     EXPECT_EQ(output("bash -n \"$file\"", files[0].text), "") << files[0].text;
-    // Without a command a script only says how it is used, and what it has set is what was given.
+    // Without a command a script only prints its usage, and its variables have the given values.
     const std::string said = output("set -- ; . \"$file\"", files[0].text + "\n");
     EXPECT_TRUE(has(said, "Usage: ")) << said;
     const std::string settings = files[0].text.substr(0, files[0].text.find("\n# Calls"));
@@ -112,7 +112,7 @@ TEST_F(DeployFiles, TheSshScriptGivesEveryProcessItsOwnKey) {
 }
 
 TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
-  // An ssh that says what it would do.
+  // An ssh that prints what it would do.
   const std::string ssh =
       "ssh() { if [ \"$1\" = -n ]; then echo \"$2: $3\"; else echo \"$1: $2\"; cat; fi; }\n";
   std::string script = systemd_files(hosts_, mission_)[0].text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hosts file of `ergocast deploy`: what it says, and every way it can be wrong.
+// The hosts file of `ergocast deploy`: its content, and every possible error.
 #include <gtest/gtest.h>
 
 #include <algorithm>

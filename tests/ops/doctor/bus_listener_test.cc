@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Datagrams of runs, strangers and random bytes lead to the right finding, and none does harm.
+// Datagrams of runs, foreign senders and random bytes lead to the right finding, and none does
+// harm.
 #include "ops/doctor/bus_listener.h"
 
 #include <cstring>
@@ -90,7 +91,7 @@ TEST(BusListener, NoBytesHurtAndNoneBecomeARun) {
   for (int i = 0; i < 20000; ++i) {
     auto bytes = honest;
     bytes.resize(random() % (honest.size() + 8));
-    // Of the payload, the tag knows every byte; of LCM's header, nobody would notice.
+    // The tag covers every byte of the payload, but not LCM's header.
     if (bytes.size() >= honest.size()) bytes.resize(honest.size() + 1);
     if (i % 2 == 0 && !bytes.empty()) bytes[random() % bytes.size()] ^= std::byte{0x40};
     overheard.take(bytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder that stands for /, /proc or /sys, and finding one's way in findings.
+// A folder that stands for /, /proc or /sys, and helpers to find findings.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@ namespace ergocast::doctor {
 namespace {
 
 /// As nft writes it.
-/// @param more  matches besides
+/// @param more  additional matches
 /// @param before  a rule before it
 std::string ruleset(const std::string& hook, const std::string& ports, const std::string& verdict,
                     const std::string& more = "", const std::string& before = "") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Settings in made-up /proc and /sys folders lead to the right finding and the right commands.
+// Settings in artificial /proc and /sys folders lead to the right finding and the right commands.
 #include "ops/doctor/kernel_limits.h"
 
 #include "tests/ops/doctor/fixture.h"

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each way in which two hosts can fail to hear each other has its finding and its level.
+// Each kind of broken connection between two hosts has its finding and its level.
 #include "ops/doctor/peer_exchange.h"
 #include "tests/ops/doctor/fixture.h"
 
 namespace ergocast::doctor {
 namespace {
 
-/// A host that hears us and is heard, `heard` of 150 short and 50 long probes.
+/// A host that is connected in both directions, with `heard` of 150 short and 50 long probes
+/// received.
 Peer peer(ProbeCount heard) {
   Peer one{"robot-1", "0.1.0", "10.0.0.2", {{150, 50}, heard}, Loss{{150, 50}, heard}, {0.001}, 0};
   return one;

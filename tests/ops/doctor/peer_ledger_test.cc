@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two ledgers probe each other over links that lose, delay or repeat, and both know what
-// happened.
+// Two ledgers probe each other over links that lose, delay or repeat, and both compute the right
+// losses.
 #include "ops/doctor/peer_ledger.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Two hosts that probe in turn; what is between them is said by two functions of the sequence.
+/// Two hosts that probe in turn; two functions of the sequence define the network between them.
 struct Pair {
   PeerLedger a{1, "alpha", "0.1.0"}, b{2, "beta", "0.1.0", 77};
   Instant at{1h};

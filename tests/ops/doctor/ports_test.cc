@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A made-up /proc says who holds which port, and hostile names in it reach no terminal.
+// An artificial /proc lists the processes that hold each port, and hostile names in it reach no
+// terminal.
 #include "ops/doctor/ports.h"
 
 #include "tests/ops/doctor/fixture.h"
@@ -37,7 +38,7 @@ TEST_F(Ports, HoldersOfTheThreePortsAreFound) {
   EXPECT_EQ(found[0].program, "ergocast-agent");
   EXPECT_EQ(found[0].pid, 12);
   EXPECT_EQ(found[1].port, 24002);
-  EXPECT_EQ(found[1].program, "");  // nobody whose sockets we may see
+  EXPECT_EQ(found[1].program, "");  // a process whose sockets we may not see
 }
 
 TEST_F(Ports, NamesThatOthersChoseCannotSteerTheTerminal) {

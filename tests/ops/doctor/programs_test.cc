@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lcm-spy lacks is found in a made-up file system, and a firewall's policy in its rules.
+// The missing parts of lcm-spy are found in an artificial file system, and a firewall's policy in
+// its rules.
 #include "ops/doctor/programs.h"
 
 #include "tests/ops/doctor/fixture.h"

@@ -55,7 +55,7 @@ TEST(Routing, InterfacesThatNobodyCouldUseAreNoChoice) {
             Level::kOk);
 }
 
-/// What is said of the interface that the route names.
+/// The finding about the interface that the route names.
 Finding said_of(const Interface& routed) {
   return routing_findings(url_of("ttl=1"), routed.name, {loopback(), routed})[1];
 }
