@@ -23,7 +23,7 @@ namespace ergocast {
 /// What a coordinator does about a mission that is already under way on its buses.
 enum class Takeover {
   kNever,     ///< starts a mission of its own at once
-  kIfFlying,  ///< listens for a moment; takes over what nobody leads, leaves to a living coordinator
+  kIfRunning,  ///< listens for a moment; takes over what nobody leads, leaves to a living coordinator
               ///< what it leads, or starts its own
   kMust,      ///< takes over, also from a living coordinator, or fails
 };

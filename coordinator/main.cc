@@ -125,7 +125,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
 /// A run id given means a run to be started; else somebody may already fly this mission.
 Takeover takeover_of(const NodeOptions& node, bool resume) {
   if (resume) return Takeover::kMust;
-  return node.run != 0 ? Takeover::kNever : Takeover::kIfFlying;
+  return node.run != 0 ? Takeover::kNever : Takeover::kIfRunning;
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ Eigen::Vector2d Controller::command(AgentId agent, Tick tick, const Eigen::Vecto
   spectral_gradient_ = field.gradient;
   Eigen::Vector2d velocity = smooth_input(field.gradient, epsilon_, law_.u_max_mps) -
                              law_.contraction_gain_per_s * (x_m - law_.contraction_center_m);
-  if (law_.greatest_noise() > 0) {
+  if (law_.max_noise() > 0) {
     const Eigen::Vector2d xi =
         normal_pair(seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
                     static_cast<std::uint64_t>(tick));

@@ -16,7 +16,8 @@ double to_open_unit(std::uint64_t word) { return (static_cast<double>(word >> 11
 
 }  // namespace
 
-Words random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::uint64_t step) {
+RandomBits random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who,
+                        std::uint64_t step) {
   const r123::Philox4x32::ctr_type counter = {{static_cast<std::uint32_t>(step),
                                                static_cast<std::uint32_t>(step >> 32), who,
                                                static_cast<std::uint32_t>(purpose)}};
@@ -29,7 +30,7 @@ Words random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::
 
 Eigen::Vector2d uniform_pair(std::uint64_t seed, Purpose purpose, std::uint32_t who,
                              std::uint64_t step) {
-  const Words words = random_words(seed, purpose, who, step);
+  const RandomBits words = random_words(seed, purpose, who, step);
   return {to_open_unit(words.first), to_open_unit(words.second)};
 }
 
