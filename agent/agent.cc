@@ -130,7 +130,7 @@ void Agent::on(const Stop& stop, const Arrival&) {
 
 // ---- what teammates and the world say ------------------------------------------------------------
 
-std::int64_t Agent::most_steps(const InMission& flight, const RosterEntry& author, Instant now) const {
+std::int64_t Agent::max_steps(const InMission& flight, const RosterEntry& author, Instant now) const {
   const Timing& timing = mission().timing;
   const Tick tick = flight.step.tick;
   Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
@@ -154,10 +154,10 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
     flight->anti_entropy.on_relayed(theirs, flight->table);
   }
   ++status_.contributions_received;
-  const std::int64_t max_steps = most_steps(*flight, *entry, arrival.now);
+  const std::int64_t limit = max_steps(*flight, *entry, arrival.now);
   // We do not know yet how late it is.
-  if (flight->step.tick < 0 && theirs.steps > max_steps) return;
-  switch (flight->table.merge(theirs, max_steps)) {
+  if (flight->step.tick < 0 && theirs.steps > limit) return;
+  switch (flight->table.merge(theirs, limit)) {
     case Merge::kRefusedRange: return count_refused(Refusal::kRange);
     case Merge::kRefusedLimit: return count_refused(Refusal::kLimit);
     case Merge::kNewer: flight->news[theirs.author()] = flight->step.tick; return;

@@ -160,7 +160,7 @@ class Agent {
   std::optional<std::string> evicted(Tick tick) const;
   void ask_for_admission(Instant now, Outbox& out);
   void repeat_mission(Instant now, Outbox& out);
-  std::int64_t most_steps(const InMission& flight, const RosterEntry& author, Instant now) const;
+  std::int64_t max_steps(const InMission& flight, const RosterEntry& author, Instant now) const;
   std::int64_t lost() const;
   Tick oldest_news(const InMission& flight) const;
   AgentStatus status_of(const InMission& flight, AgentPhase phase);

@@ -23,7 +23,7 @@ constexpr int kToleratedPeriods = 2;
 /// Whether who holds `steps` and `mark` of a row of ours is worth an answer.
 bool lacks_something(const CoverageTable& table, std::size_t row, bool will_speak,
                      std::int64_t steps, std::uint64_t mark) {
-  if (will_speak && table.fewest_steps(row) <= steps) return false;  // nearly always
+  if (will_speak && table.min_steps(row) <= steps) return false;  // nearly always
   const CoverageTable::Holding ours = table.holding(row);
   if (will_speak) return ours.steps - steps > kToleratedPeriods * ours.announced_period;
   // Two may each hold a block that the other lacks, and both say the same number of steps.

@@ -23,7 +23,7 @@ namespace ergocast {
 /// The reaction of a coordinator to a mission that is already under way on its buses.
 enum class Takeover {
   kNever,     ///< starts a mission of its own at once
-  kIfFlying,  ///< listens for a moment; leaves if a coordinator leads the mission, else takes the
+  kIfRunning,  ///< listens for a moment; leaves if a coordinator leads the mission, else takes the
               ///< mission over, or starts its own if there is none
   kMust,      ///< takes over, also from a running coordinator, or fails
 };

@@ -126,7 +126,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
 /// With a run id the coordinator starts that run. Otherwise the mission may already be under way.
 Takeover takeover_of(const NodeOptions& node, bool resume) {
   if (resume) return Takeover::kMust;
-  return node.run != 0 ? Takeover::kNever : Takeover::kIfFlying;
+  return node.run != 0 ? Takeover::kNever : Takeover::kIfRunning;
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
   if (!search_.since) search_.since = now;
   if (search_.found && now - *search_.found >= kSecondOpinions) return take_over(now);
   const auto looked = now - *search_.since;
-  if (search_.takeover == Takeover::kIfFlying && me_.run() == 0 && looked >= kLookAround) {
+  if (search_.takeover == Takeover::kIfRunning && me_.run() == 0 && looked >= kLookAround) {
     return rival_leads(now) ? leave(led_by_rival(), now) : begin_own();
   }
   if (looked >= kTakeoverPatience) {
@@ -116,7 +116,7 @@ std::optional<std::string> Coordinator::not_ours(Instant now) const {
     return run + " of another plan (" + me_.follower().mission()->name +
            ") is flying on this URL: choose another URL, or wait for its end";
   }
-  if (search_.takeover == Takeover::kIfFlying && rival_leads(now)) return led_by_rival();
+  if (search_.takeover == Takeover::kIfRunning && rival_leads(now)) return led_by_rival();
   return std::nullopt;
 }
 

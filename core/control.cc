@@ -77,7 +77,7 @@ Eigen::Vector3d Controller::command(AgentId agent, Tick tick, const Eigen::Vecto
   Eigen::Vector3d velocity = smooth_input(field.gradient, epsilon_, law_.u_max_mps) -
                              law_.contraction_gain_per_s * (x_m - law_.contraction_center_m);
   if (domain_.planar()) velocity.z() = 0;  // instead of −0
-  if (law_.greatest_noise() > 0) {
+  if (law_.max_noise() > 0) {
     const Eigen::Vector3d xi =
         normal_in(domain_, seed_, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
                   static_cast<std::uint64_t>(tick));

@@ -184,7 +184,7 @@ void CoverageTable::average(Coefficients& coverage) const {
   }
 }
 
-std::int64_t CoverageTable::Row::fewest_steps() const {
+std::int64_t CoverageTable::Row::min_steps() const {
   std::int64_t fewest = blocks.front().steps;
   for (const Block& block : blocks) fewest = std::min(fewest, block.steps);
   return fewest;
@@ -205,10 +205,10 @@ Tick CoverageTable::announced_period(const Author& author) const {
 
 std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) const {
   const Row* row = find(author);
-  return row == nullptr ? std::nullopt : std::optional(row->fewest_steps());
+  return row == nullptr ? std::nullopt : std::optional(row->min_steps());
 }
 
-std::int64_t CoverageTable::Row::most_steps() const {
+std::int64_t CoverageTable::Row::max_steps() const {
   std::int64_t most = 0;
   for (const Block& block : blocks) most = std::max(most, block.steps);
   return most;
@@ -224,7 +224,7 @@ std::uint64_t CoverageTable::Row::mark() const {
 }
 
 CoverageTable::Holding CoverageTable::Row::holding() const {
-  return {author, fewest_steps(), most_steps(), announced_period(), mark()};
+  return {author, min_steps(), max_steps(), announced_period(), mark()};
 }
 
 CoverageTable::Holding CoverageTable::holding(std::size_t i) const { return rows_[i].holding(); }

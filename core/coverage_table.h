@@ -74,7 +74,7 @@ class CoverageTable {
   Holding holding(std::size_t i) const;
   const Author& author(std::size_t i) const { return rows_[i].author; }
   bool counts(std::size_t i) const { return rows_[i].counts; }
-  std::int64_t fewest_steps(std::size_t i) const { return rows_[i].fewest_steps(); }
+  std::int64_t min_steps(std::size_t i) const { return rows_[i].min_steps(); }
   /// The row of `author`; all 0 if it is unknown.
   Holding holding(const Author& author) const;
 
@@ -119,8 +119,8 @@ class CoverageTable {
     std::vector<Block> blocks;
     std::vector<double> sums;   // block_count · kBlockSize, zero beyond the last mode
     std::vector<double> gains;  // likewise
-    std::int64_t fewest_steps() const;
-    std::int64_t most_steps() const;
+    std::int64_t min_steps() const;
+    std::int64_t max_steps() const;
     std::uint64_t mark() const;
     Holding holding() const;
     Tick announced_period() const;

@@ -37,7 +37,7 @@ struct ControlLaw {
   bool paired_pushes = false;  ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
 
   /// What σ never exceeds [m/√s].
-  double greatest_noise() const {
+  double max_noise() const {
     return perturbation == Perturbation::kAdaptive ? noise_ceiling : noise_intensity;
   }
 };

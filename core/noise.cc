@@ -17,7 +17,7 @@ double to_open_unit(std::uint64_t word) { return (static_cast<double>(word >> 11
 /// The second pair of numbers of a step has a counter that no first pair has.
 constexpr std::uint32_t kSecondPair = 0x8000'0000;
 
-Words words_at(std::uint64_t seed, std::uint32_t purpose, std::uint32_t who, std::uint64_t step) {
+RandomBits words_at(std::uint64_t seed, std::uint32_t purpose, std::uint32_t who, std::uint64_t step) {
   const r123::Philox4x32::ctr_type counter = {
       {static_cast<std::uint32_t>(step), static_cast<std::uint32_t>(step >> 32), who, purpose}};
   const r123::Philox4x32::key_type key = {
@@ -27,7 +27,7 @@ Words words_at(std::uint64_t seed, std::uint32_t purpose, std::uint32_t who, std
           static_cast<std::uint64_t>(word[2]) << 32 | word[3]};
 }
 
-Eigen::Vector2d uniform_of(const Words& words) {
+Eigen::Vector2d uniform_of(const RandomBits& words) {
   return {to_open_unit(words.first), to_open_unit(words.second)};
 }
 
@@ -39,7 +39,7 @@ Eigen::Vector2d normal_of(const Eigen::Vector2d& u) {
 
 }  // namespace
 
-Words random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::uint64_t step) {
+RandomBits random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::uint64_t step) {
   return words_at(seed, static_cast<std::uint32_t>(purpose), who, step);
 }
 

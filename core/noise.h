@@ -21,10 +21,10 @@ enum class Purpose : std::uint32_t {
 };
 
 /// Two independent 64-bit words (Philox 4×32-10, Salmon et al. 2011).
-struct Words {
+struct RandomBits {
   std::uint64_t first, second;
 };
-Words random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::uint64_t step);
+RandomBits random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::uint64_t step);
 
 /// Two independent numbers, uniform in (0, 1).
 Eigen::Vector2d uniform_pair(std::uint64_t seed, Purpose purpose, std::uint32_t who,

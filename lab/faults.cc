@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One table names every field; a seed draws the strengths of the faults and the times of the
-// incidents.
+// One table names every field; a seed draws how strong the faults are, and what happens when.
 #include "lab/faults.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/noise.h"
-#include "lab/dice.h"
+#include "lab/random_stream.h"
 
 namespace ergocast::lab {
 namespace {
@@ -37,7 +36,7 @@ constexpr FaultField kFields[] = {
     {"lasting_share", &Faults::lasting_share, 1},
 };
 
-/// Streams of dice, so that one kind of fault does not change what another draws.
+/// Random streams, so that one kind of fault does not change what another draws.
 enum Stream : std::uint32_t { kSwarm = 1, kPartitions, kAgents, kCoordinator, kWorldProcess };
 
 }  // namespace
@@ -45,40 +44,40 @@ enum Stream : std::uint32_t { kSwarm = 1, kPartitions, kAgents, kCoordinator, kW
 std::span<const FaultField> fault_fields() { return kFields; }
 
 Faults drawn(std::uint64_t seed) {
-  Dice dice(seed, kSwarm);
+  RandomStream random(seed, kSwarm);
   Faults faults;
-  if (dice.coin()) faults.loss = 0.7 * std::pow(dice.uniform(), 2);
-  if (dice.coin()) faults.duplication = 0.5 * std::pow(dice.uniform(), 2);
-  if (dice.coin()) faults.corruption = 0.3 * std::pow(dice.uniform(), 2);
-  if (dice.coin()) {
-    faults.delay_mean_s = dice.log_uniform(1e-3, 0.3);
-    faults.delay_max_s = faults.delay_mean_s * dice.log_uniform(1, 7);
+  if (random.coin()) faults.loss = 0.7 * std::pow(random.uniform(), 2);
+  if (random.coin()) faults.duplication = 0.5 * std::pow(random.uniform(), 2);
+  if (random.coin()) faults.corruption = 0.3 * std::pow(random.uniform(), 2);
+  if (random.coin()) {
+    faults.delay_mean_s = random.log_uniform(1e-3, 0.3);
+    faults.delay_max_s = faults.delay_mean_s * random.log_uniform(1, 7);
   }
-  if (dice.coin()) {
-    faults.reordering = 0.5 * dice.uniform();
-    faults.reordering_max_s = dice.log_uniform(1e-3, 1);
+  if (random.coin()) {
+    faults.reordering = 0.5 * random.uniform();
+    faults.reordering_max_s = random.log_uniform(1e-3, 1);
   }
-  if (dice.coin()) {
-    faults.clogging = dice.log_uniform(1e-4, 1e-2);
-    faults.clog_max_s = dice.log_uniform(0.1, 4);
+  if (random.coin()) {
+    faults.clogging = random.log_uniform(1e-4, 1e-2);
+    faults.clog_max_s = random.log_uniform(0.1, 4);
   }
-  if (dice.coin()) {
-    faults.partitions_per_s = dice.log_uniform(0.02, 0.3);
-    faults.partition_max_s = dice.log_uniform(0.2, 10);
-    faults.one_way_share = dice.uniform();
+  if (random.coin()) {
+    faults.partitions_per_s = random.log_uniform(0.02, 0.3);
+    faults.partition_max_s = random.log_uniform(0.2, 10);
+    faults.one_way_share = random.uniform();
   }
-  if (dice.coin()) faults.agent_crashes_per_s = dice.log_uniform(0.03, 0.3);
-  if (dice.coin()) faults.coordinator_crashes_per_s = dice.log_uniform(0.03, 0.15);
-  if (dice.coin()) faults.world_crashes_per_s = dice.log_uniform(0.03, 0.15);
-  faults.downtime_max_s = dice.log_uniform(0.1, 6);
-  if (dice.coin()) {
-    faults.clock_rate_error = dice.log_uniform(1e-5, 0.05);
-    faults.clock_offset_max_s = dice.log_uniform(1e-3, 1e6);
+  if (random.coin()) faults.agent_crashes_per_s = random.log_uniform(0.03, 0.3);
+  if (random.coin()) faults.coordinator_crashes_per_s = random.log_uniform(0.03, 0.15);
+  if (random.coin()) faults.world_crashes_per_s = random.log_uniform(0.03, 0.15);
+  faults.downtime_max_s = random.log_uniform(0.1, 6);
+  if (random.coin()) {
+    faults.clock_rate_error = random.log_uniform(1e-5, 0.05);
+    faults.clock_offset_max_s = random.log_uniform(1e-3, 1e6);
   }
-  if (dice.coin()) faults.swarm_bus_only = 1;
-  if (dice.coin()) {
-    faults.replay = 0.3 * std::pow(dice.uniform(), 2);
-    faults.replay_max_s = dice.log_uniform(0.1, 60);
+  if (random.coin()) faults.swarm_bus_only = 1;
+  if (random.coin()) {
+    faults.replay = 0.3 * std::pow(random.uniform(), 2);
+    faults.replay_max_s = random.log_uniform(0.1, 60);
   }
   return faults;
 }
@@ -99,34 +98,34 @@ bool hinders(const Faults& f, double patience_s) {
   return std::pow(1 - arrives, patience_s / 2) > kNever || latest_s > patience_s / 2;
 }
 
-std::vector<Incident> incidents(const Faults& faults, std::uint64_t seed, int agents,
+std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, int agents,
                                 double horizon_s) {
-  std::vector<Incident> all;
+  std::vector<FaultEvent> all;
   const auto draw = [&](Stream stream, double per_s, double max_s, auto kind_and_who) {
-    Dice dice(seed, stream);
+    RandomStream random(seed, stream);
     double at_s = 0;
-    while (per_s > 0 && (at_s += dice.exponential(1 / per_s)) < horizon_s) {
-      const double lasts_s = max_s * dice.uniform();
-      const auto [kind, who] = kind_and_who(dice);
+    while (per_s > 0 && (at_s += random.exponential(1 / per_s)) < horizon_s) {
+      const double lasts_s = max_s * random.uniform();
+      const auto [kind, who] = kind_and_who(random);
       all.push_back({kind, at_s, lasts_s, who});
     }
   };
-  using enum Incident::Kind;
-  const auto one_of_one = [](Incident::Kind kind) {
-    return [kind](Dice&) { return std::pair(kind, std::uint64_t{0}); };
+  using enum FaultEvent::Kind;
+  const auto one_of_one = [](FaultEvent::Kind kind) {
+    return [kind](RandomStream&) { return std::pair(kind, std::uint64_t{0}); };
   };
-  draw(kPartitions, faults.partitions_per_s, faults.partition_max_s, [&](Dice& dice) {
-    const auto kind = dice.uniform() < faults.one_way_share ? kOneWayCut : kSplit;
-    return std::pair(kind, dice.word());
+  draw(kPartitions, faults.partitions_per_s, faults.partition_max_s, [&](RandomStream& random) {
+    const auto kind = random.uniform() < faults.one_way_share ? kOneWayCut : kSplit;
+    return std::pair(kind, random.word());
   });
-  draw(kAgents, faults.agent_crashes_per_s, faults.downtime_max_s, [&](Dice& dice) {
-    return std::pair(kAgentCrash, dice.word() % static_cast<std::uint64_t>(agents));
+  draw(kAgents, faults.agent_crashes_per_s, faults.downtime_max_s, [&](RandomStream& random) {
+    return std::pair(kAgentCrash, random.word() % static_cast<std::uint64_t>(agents));
   });
   draw(kCoordinator, faults.coordinator_crashes_per_s, faults.downtime_max_s,
        one_of_one(kCoordinatorCrash));
   draw(kWorldProcess, faults.world_crashes_per_s, faults.downtime_max_s, one_of_one(kWorldCrash));
   std::stable_sort(all.begin(), all.end(),
-                   [](const Incident& a, const Incident& b) { return a.at_s < b.at_s; });
+                   [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;
 }
 

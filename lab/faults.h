@@ -57,16 +57,16 @@ std::span<const FaultField> fault_fields();
 Faults drawn(std::uint64_t seed);
 
 /// Something that happens at a moment, whatever messages are sent.
-struct Incident {
+struct FaultEvent {
   enum class Kind { kSplit, kOneWayCut, kAgentCrash, kCoordinatorCrash, kWorldCrash };
   Kind kind;
   double at_s;        ///< after the mission's begin
   double lasts_s;
-  std::uint64_t who;  ///< splits and cuts: bit i: seat i is in the first part; crash: which agent
+  std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash: which agent
 };
 
-/// The incidents of `horizon_s` seconds, by time.
-std::vector<Incident> incidents(const Faults& faults, std::uint64_t seed, int agents,
+/// The events of `horizon_s` seconds, by time.
+std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, int agents,
                                 double horizon_s);
 
 }  // namespace ergocast::lab

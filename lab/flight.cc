@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/noise.h"
-#include "lab/dice.h"
+#include "lab/random_stream.h"
 #include "lcmtypes/codec.h"
 #include "team/plan.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 /// More events than this in a virtual second are a storm of messages.
 constexpr std::int64_t kMostMessagesPer_s = 100000;
-/// A stream of dice beside lab/faults.cc's.
+/// A random stream beside those of lab/faults.cc.
 constexpr std::uint32_t kClocks = 16;
 
 }  // namespace
@@ -26,10 +26,10 @@ Flight::Flight(const TrialOptions& options, std::ostream& trajectory, std::ostre
       seed_(mission_.seed),
       run_(random_words(seed_, Purpose::kIncarnation, ~0U, 0).first | 1),
       agents_count_(static_cast<int>(mission_.starts_m.size())),
-      seats_(agents_count_ + 3),
-      network_(seed_, options.faults, seats_),
+      nodes_(agents_count_ + 3),
+      network_(seed_, options.faults, nodes_),
       invariants_(mission_),
-      processes_(static_cast<std::size_t>(seats_)),
+      processes_(static_cast<std::size_t>(nodes_)),
       agents_(static_cast<std::size_t>(agents_count_)),
       recorder_(run_, 1, trajectory, metrics),
       planned_s_(static_cast<double>(mission_.timing.tick_count) * mission_.timing.dt_s /
@@ -40,60 +40,60 @@ Flight::Flight(const TrialOptions& options, std::ostream& trajectory, std::ostre
   faulty_s_ = options.faults.lasting_share * planned_s_;
   // To the end means to the end of a mission that began late, too.
   if (options.faults.lasting_share >= 1) faulty_s_ += mission_.timing.admission_timeout_s;
-  incidents_ = incidents(options.faults, seed_, agents_count_, faulty_s_);
-  for (Seat seat = 0; seat < seats_; ++seat) {
+  events_ = fault_events(options.faults, seed_, agents_count_, faulty_s_);
+  for (NodeId node = 0; node < nodes_; ++node) {
     for (std::size_t bus = 0; bus < kBusCount; ++bus) {
-      on_bus_[bus].set(static_cast<std::size_t>(seat), subscriptions(seat)[bus] != 0);
+      on_bus_[bus].set(static_cast<std::size_t>(node), subscriptions(node)[bus] != 0);
     }
   }
   set_clocks();
-  for (Seat seat = 0; seat < seats_; ++seat) start(seat);
+  for (NodeId node = 0; node < nodes_; ++node) start(node);
 }
 
-const Subscriptions& Flight::subscriptions(Seat seat) const {
-  const Role role = seat < agents_count_          ? Role::kAgent
-                    : seat == coordinator_seat() ? Role::kCoordinator
-                    : seat == world_seat()       ? Role::kWorld
+const Subscriptions& Flight::subscriptions(NodeId node) const {
+  const Role role = node < agents_count_          ? Role::kAgent
+                    : node == coordinator_node() ? Role::kCoordinator
+                    : node == world_node()       ? Role::kWorld
                                                  : Role::kLogger;
   return subscriptions_of(role, options_.subscriptions);
 }
 
-std::string Flight::name_of(Seat seat) const {
-  if (seat < agents_count_) return "agent " + std::to_string(seat);
-  return seat == coordinator_seat() ? "the coordinator" : seat == world_seat() ? "the world" : "the logger";
+std::string Flight::name_of(NodeId node) const {
+  if (node < agents_count_) return "agent " + std::to_string(node);
+  return node == coordinator_node() ? "the coordinator" : node == world_node() ? "the world" : "the logger";
 }
 
-Incarnation Flight::incarnation_of(Seat seat) const {
-  const std::uint32_t life = processes_[static_cast<std::size_t>(seat)].life;
-  return random_words(seed_, Purpose::kIncarnation, static_cast<std::uint32_t>(seat), life).first | 1;
+Incarnation Flight::incarnation_of(NodeId node) const {
+  const std::uint32_t life = processes_[static_cast<std::size_t>(node)].life;
+  return random_words(seed_, Purpose::kIncarnation, static_cast<std::uint32_t>(node), life).first | 1;
 }
 
 void Flight::set_clocks() {
   const Faults& faults = options_.faults;
   if (faults.clock_rate_error <= 0 && faults.clock_offset_max_s <= 0) return;
-  Dice dice(seed_, kClocks);
+  RandomStream random(seed_, kClocks);
   for (Process& process : processes_) {
-    const double rate = 1 + faults.clock_rate_error * (2 * dice.uniform() - 1);
-    process.clock = SkewedClock(rate, seconds(faults.clock_offset_max_s * dice.uniform()));
+    const double rate = 1 + faults.clock_rate_error * (2 * random.uniform() - 1);
+    process.clock = SkewedClock(rate, seconds(faults.clock_offset_max_s * random.uniform()));
     ++figures_.skewed_clocks;
   }
 }
 
-void Flight::start(Seat seat) {
-  Process& process = at(seat);
-  const Incarnation incarnation = incarnation_of(seat);
-  if (seat < agents_count_) {
-    agents_[static_cast<std::size_t>(seat)] = std::make_unique<Agent>(
-        AgentIdentity{run_, seat, incarnation, "laboratory", options_.version});
-    answered_[static_cast<std::size_t>(seat)] = -1;
-    invariants_.born({seat, incarnation});
-  } else if (seat == coordinator_seat()) {
+void Flight::start(NodeId node) {
+  Process& process = at(node);
+  const Incarnation incarnation = incarnation_of(node);
+  if (node < agents_count_) {
+    agents_[static_cast<std::size_t>(node)] = std::make_unique<Agent>(
+        AgentIdentity{run_, node, incarnation, "laboratory", options_.version});
+    answered_[static_cast<std::size_t>(node)] = -1;
+    invariants_.born({node, incarnation});
+  } else if (node == coordinator_node()) {
     const bool first = process.life == 0;
     coordinator_ = std::make_unique<Coordinator>(
         CoordinatorIdentity{run_, incarnation, "laboratory", options_.version},
         first ? options_.plan : std::vector<std::byte>(),
         first ? Takeover::kNever : Takeover::kMust);
-  } else if (seat == world_seat()) {
+  } else if (node == world_node()) {
     world_ = std::make_unique<World>(run_, incarnation);
     acknowledged_.reset();
     logger_lost_ = false;
@@ -122,10 +122,10 @@ Instant Flight::next_time() {
   for (const Process& process : processes_) {
     next = std::min(next, process.up ? process.wakeup : process.restart);
   }
-  for (const Ending& ending : endings_) next = std::min(next, ending.at);
+  for (const FaultEnd& end : fault_ends_) next = std::min(next, end.at);
   if (healed_) return std::min(next, deadline_);
-  if (next_incident_ < incidents_.size()) {
-    next = std::min(next, Instant(seconds(incidents_[next_incident_].at_s)));
+  if (next_event_ < events_.size()) {
+    next = std::min(next, Instant(seconds(events_[next_event_].at_s)));
   }
   return std::min(next, Instant(seconds(faulty_s_)));
 }
@@ -136,8 +136,8 @@ TrialResult Flight::run() {
     if (now_ >= deadline_) break;
     if (static_cast<double>(figures_.messages) > kMostMessagesPer_s * (progress_s() + 1)) break;
     if (!healed_) {
-      end_incidents();
-      begin_incidents();
+      end_events();
+      begin_events();
       if (progress_s() >= faulty_s_ || mission_over()) heal();
     }
     restart_due();
@@ -156,60 +156,60 @@ TrialResult Flight::run() {
 void Flight::deliver_due() {
   while (network_.next() <= now_) {
     const Delivery delivery = network_.pop();
-    for (Seat seat = 0; seat < seats_; ++seat) {
-      if (delivery.to.test(static_cast<std::size_t>(seat)) && at(seat).up) hear(seat, delivery);
+    for (NodeId node = 0; node < nodes_; ++node) {
+      if (delivery.to.test(static_cast<std::size_t>(node)) && at(node).up) hear(node, delivery);
     }
   }
 }
 
-void Flight::hear(Seat seat, const Delivery& delivery) {
-  Process& process = at(seat);
+void Flight::hear(NodeId node, const Delivery& delivery) {
+  Process& process = at(node);
   const Instant local = process.clock.local(now_);
   const Message& message = *delivery.message;
   const auto* ack = std::get_if<RecordAck>(&message);
-  if (ack != nullptr && seat == world_seat()) {
+  if (ack != nullptr && node == world_node()) {
     acknowledged_ = std::max(acknowledged_.value_or(-1), ack->header.tick);
   }
   // Everything on a bus arrives; what no subscription names goes no further.
-  if (!hears(subscriptions(seat), delivery.bus, message)) return;
+  if (!hears(subscriptions(node), delivery.bus, message)) return;
   process.heard = true;
   const auto* digest = std::get_if<Digest>(&message);
-  if (digest != nullptr && seat < agents_count_) invariants_.heard(agent(seat).author(), *digest);
-  with(seat, [&](auto& core) {
+  if (digest != nullptr && node < agents_count_) invariants_.heard(agent(node).author(), *digest);
+  with(node, [&](auto& core) {
     core.receive(message, delivery.bus, delivery.transmitter, local);
   });
-  if (seat >= agents_count_) return;
-  Agent& one = agent(seat);
+  if (node >= agents_count_) return;
+  Agent& one = agent(node);
   invariants_.received({one.author(), one.coverage(), nullptr, &one.follower().roster()}, message);
 }
 
 void Flight::advance_due() {
-  for (Seat seat = 0; seat < seats_; ++seat) {
-    if (at(seat).up && (at(seat).heard || at(seat).wakeup <= now_)) advance(seat);
+  for (NodeId node = 0; node < nodes_; ++node) {
+    if (at(node).up && (at(node).heard || at(node).wakeup <= now_)) advance(node);
   }
 }
 
-void Flight::advance(Seat seat) {
-  Process& process = at(seat);
+void Flight::advance(NodeId node) {
+  Process& process = at(node);
   const Instant local = process.clock.local(now_);
   process.heard = false;
-  with(seat, [&](auto& core) { core.advance(local, outbox_); });
-  publish(seat);
-  const Instant next = with(seat, [](auto& core) { return core.finished() ? Instant::max() : core.next_wakeup(); });
-  invariants_.wakeup(in_seconds(now_), name_of(seat), next <= local);
+  with(node, [&](auto& core) { core.advance(local, outbox_); });
+  publish(node);
+  const Instant next = with(node, [](auto& core) { return core.finished() ? Instant::max() : core.next_wakeup(); });
+  invariants_.wakeup(in_seconds(now_), name_of(node), next <= local);
   process.wakeup = process.clock.when(next);
-  if (seat < agents_count_) after_agent(seat);
-  if (seat == world_seat()) after_world();
+  if (node < agents_count_) after_agent(node);
+  if (node == world_node()) after_world();
 }
 
-void Flight::publish(Seat seat) {
+void Flight::publish(NodeId node) {
   if (outbox_.empty()) return;  // most often, and c_k is added up for who holds it
-  const bool is_agent = seat < agents_count_;
-  const Holder speaker = is_agent ? holder_of(seat) : Holder();
+  const bool is_agent = node < agents_count_;
+  const TableView speaker = is_agent ? view_of(node) : TableView();
   for (const Outgoing& outgoing : outbox_) {
     const double t_s = in_seconds(now_);
     invariants_.sent(t_s, outgoing, speaker.table != nullptr ? &speaker : nullptr);
-    if (is_agent) note_answer(seat, outgoing.message, speaker);
+    if (is_agent) note_answer(node, outgoing.message, speaker);
     encode(outgoing.message, bytes_);
     auto decoded = decode(bytes_, run_);
     invariants_.decoded(t_s, decoded, false);
@@ -223,7 +223,7 @@ void Flight::publish(Seat seat) {
     figures_.relayed += outgoing.relayer != kUnassigned;
     const AgentId sender = header_of(outgoing.message).sender;
     const int corrupted = network_.send(
-        now_, seat, on_bus_[static_cast<std::size_t>(outgoing.bus)], outgoing.bus,
+        now_, node, on_bus_[static_cast<std::size_t>(outgoing.bus)], outgoing.bus,
         outgoing.relayer != kUnassigned ? outgoing.relayer : sender,
         std::make_shared<const Message>(std::get<Message>(std::move(decoded))));
     for (int i = 0; i < corrupted; ++i) {
@@ -235,14 +235,14 @@ void Flight::publish(Seat seat) {
   outbox_.clear();
 }
 
-void Flight::after_agent(Seat seat) {
+void Flight::after_agent(NodeId node) {
   const double t_s = in_seconds(now_);
-  Agent& one = agent(seat);
+  Agent& one = agent(node);
   invariants_.refused(t_s, one.author(), one.refused());
-  look_for_recovery(seat);
-  if (!one.finished() || at(seat).judged) return;
-  at(seat).judged = true;  // by what is wrong at this moment
-  invariants_.finished(t_s, one.author(), one.reason(), mission_over() || evicted(seat));
+  look_for_recovery(node);
+  if (!one.finished() || at(node).judged) return;
+  at(node).judged = true;  // by what is wrong at this moment
+  invariants_.finished(t_s, one.author(), one.reason(), mission_over() || evicted(node));
 }
 
 void Flight::after_world() {
@@ -253,18 +253,18 @@ void Flight::after_world() {
 }
 
 /// Once for each tick that an agent answers.
-void Flight::note_answer(Seat seat, const Message& message, const Holder& holder) {
+void Flight::note_answer(NodeId node, const Message& message, const TableView& holder) {
   const auto* command = std::get_if<Command>(&message);
-  Tick& answered = answered_[static_cast<std::size_t>(seat)];
+  Tick& answered = answered_[static_cast<std::size_t>(node)];
   if (command == nullptr || command->header.tick <= answered) return;
   answered = command->header.tick;
   ++figures_.agent_steps;
   invariants_.answered(in_seconds(now_), holder);
 }
 
-void Flight::look_for_recovery(Seat seat) {
-  auto& recovery = recoveries_[static_cast<std::size_t>(seat)];
-  const CoverageTable* table = agent(seat).coverage();
+void Flight::look_for_recovery(NodeId node) {
+  auto& recovery = recoveries_[static_cast<std::size_t>(node)];
+  const CoverageTable* table = agent(node).coverage();
   if (!recovery || table == nullptr) return;
   std::erase_if(recovery->lacks, [&](const auto& lack) {
     return table->steps_held(lack.first).value_or(0) >= lack.second;

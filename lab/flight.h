@@ -37,63 +37,63 @@ class Flight {
     bool up = false, heard = false;
     bool judged = false;  // it has finished, and whether it may have is said
   };
-  struct Ending {
+  struct FaultEnd {
     Instant at;
-    Incident incident;
+    FaultEvent event;
   };
   struct Recovery {
     Instant since;
     std::vector<std::pair<Author, std::int64_t>> lacks;
   };
 
-  Seat coordinator_seat() const { return agents_count_; }
-  Seat world_seat() const { return agents_count_ + 1; }
-  Seat recorder_seat() const { return agents_count_ + 2; }
-  Process& at(Seat seat) { return processes_[static_cast<std::size_t>(seat)]; }
-  Agent& agent(Seat seat) { return *agents_[static_cast<std::size_t>(seat)]; }
+  NodeId coordinator_node() const { return agents_count_; }
+  NodeId world_node() const { return agents_count_ + 1; }
+  NodeId recorder_node() const { return agents_count_ + 2; }
+  Process& at(NodeId node) { return processes_[static_cast<std::size_t>(node)]; }
+  Agent& agent(NodeId node) { return *agents_[static_cast<std::size_t>(node)]; }
   template <class F>
-  auto with(Seat seat, F f);
-  const Subscriptions& subscriptions(Seat seat) const;
-  std::string name_of(Seat seat) const;
-  Incarnation incarnation_of(Seat seat) const;
+  auto with(NodeId node, F f);
+  const Subscriptions& subscriptions(NodeId node) const;
+  std::string name_of(NodeId node) const;
+  Incarnation incarnation_of(NodeId node) const;
 
   void set_clocks();
-  void start(Seat seat);
+  void start(NodeId node);
   Instant next_time();
   void pass_to(Instant now);
   double progress_s() const;
 
   // The driver of the faults.
-  void begin_incidents();
-  void end_incidents();
-  void begin(const Incident& incident);
-  void cut(const Incident& incident, bool join);
-  bool may_crash(Seat seat);
-  bool crash(Seat seat, double lasts_s);
+  void begin_events();
+  void end_events();
+  void begin(const FaultEvent& event);
+  void cut(const FaultEvent& event, bool join);
+  bool may_crash(NodeId node);
+  bool crash(NodeId node, double lasts_s);
   void restart_due();
   void heal();
-  bool anybody_else_knows_the_mission(Seat seat);
+  bool anybody_else_knows_the_mission(NodeId node);
 
   void deliver_due();
-  void hear(Seat seat, const Delivery& delivery);
+  void hear(NodeId node, const Delivery& delivery);
   void advance_due();
-  void advance(Seat seat);
-  void publish(Seat seat);
-  void after_agent(Seat seat);
-  void look_for_recovery(Seat seat);
+  void advance(NodeId node);
+  void publish(NodeId node);
+  void after_agent(NodeId node);
+  void look_for_recovery(NodeId node);
   void after_world();
 
-  Holder holder_of(Seat seat);
-  std::vector<Holder> living();
-  std::vector<Holder> present();
-  void note_answer(Seat seat, const Message& message, const Holder& holder);
+  TableView view_of(NodeId node);
+  std::vector<TableView> living();
+  std::vector<TableView> present();
+  void note_answer(NodeId node, const Message& message, const TableView& holder);
   void supervise_coordinator();
   std::string still_running();
   void note_hindrance();
   bool our_doing(Instant at) const;
   bool timed_out() const;
-  bool evicted(Seat seat);
-  bool struck(Seat seat);  // from the roster
+  bool evicted(NodeId node);
+  bool struck(NodeId node);  // from the roster
   bool failed() const;
   bool mission_over() const;
   bool everybody_finished();
@@ -104,10 +104,10 @@ class Flight {
   Mission mission_;
   std::uint64_t seed_;
   RunId run_;
-  int agents_count_, seats_;
+  int agents_count_, nodes_;
   Network network_;
   Invariants invariants_;
-  Seats on_bus_[kBusCount];  // whoever listens to anything there
+  NodeSet on_bus_[kBusCount];  // whoever listens to anything there
 
   std::vector<Process> processes_;
   std::vector<std::unique_ptr<Agent>> agents_;
@@ -116,9 +116,9 @@ class Flight {
   Recorder recorder_;
 
   Instant now_{};
-  std::vector<Incident> incidents_;
-  std::size_t next_incident_ = 0;
-  std::vector<Ending> endings_;
+  std::vector<FaultEvent> events_;
+  std::size_t next_event_ = 0;
+  std::vector<FaultEnd> fault_ends_;
   double planned_s_, faulty_s_;  // virtual time of the mission, and of its faults
   std::optional<Instant> healed_, failed_since_;
   std::optional<Instant> hindered_;  // the last moment at which somebody was away
@@ -137,10 +137,10 @@ class Flight {
 };
 
 template <class F>
-auto Flight::with(Seat seat, F f) {
-  if (seat < agents_count_) return f(agent(seat));
-  if (seat == coordinator_seat()) return f(*coordinator_);
-  if (seat == world_seat()) return f(*world_);
+auto Flight::with(NodeId node, F f) {
+  if (node < agents_count_) return f(agent(node));
+  if (node == coordinator_node()) return f(*coordinator_);
+  if (node == world_node()) return f(*world_);
   return f(recorder_);
 }
 

@@ -52,7 +52,7 @@ void Invariants::born(const Author& author) {
 
 // ---- safety: what is said ------------------------------------------------------------------------
 
-void Invariants::sent(double t_s, const Outgoing& outgoing, const Holder* speaker) {
+void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
   if (const auto* command = std::get_if<Command>(&outgoing.message)) return check(t_s, *command);
   if (const auto* block = std::get_if<Contribution>(&outgoing.message)) {
@@ -117,7 +117,7 @@ void Invariants::check(double t_s, const Command& command) {
 }
 
 void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
-                       const Holder* speaker) {
+                       const TableView* speaker) {
   const double covered_s = static_cast<double>(block.steps) * mission_.timing.dt_s;
   const double most_s = covered_s * (1 + 1e-9 + rounding(block.steps));
   double largest_s = 0;
@@ -137,7 +137,7 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
                name_of(block.author())));
 }
 
-void Invariants::check(double t_s, const Digest& digest, const Holder& speaker) {
+void Invariants::check(double t_s, const Digest& digest, const TableView& speaker) {
   for (int i = 0; i < digest.entry_count; ++i) {
     const DigestEntry& entry = digest.entries[static_cast<std::size_t>(i)];
     const std::int64_t held = steps_of(*speaker.table, entry.author);
@@ -190,8 +190,8 @@ void Invariants::gave_up_logger(double t_s, std::optional<Tick> acknowledged, Ti
 // ---- liveness ------------------------------------------------------------------------------------
 
 void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant now,
-                             const std::vector<Holder>& living) {
-  for (const Holder& holder : living) {
+                             const std::vector<TableView>& living) {
+  for (const TableView& holder : living) {
     const RosterEntry* entry = entry_of(coordinator.roster(), holder.self);
     const char* taken_for = entry == nullptr ? "nobody" : to_string(coordinator.presence(*entry, now));
     if (entry != nullptr && coordinator.presence(*entry, now) == Presence::kAlive) continue;

@@ -21,7 +21,7 @@
 #include "core/mission.h"
 #include "team/mission_follower.h"
 #include "lab/faults.h"
-#include "lab/holder.h"
+#include "lab/table_view.h"
 #include "lab/shadow.h"
 #include "logger/recorder.h"
 
@@ -131,17 +131,17 @@ class Invariants {
   /// Somebody speaks: positions in the domain; |u| ≤ u_max; |S| ≤ S_00 = steps · dt; a digest that
   /// says what its sender holds; at most one answer for each entry of a digest heard.
   /// @param speaker  the agent, or null
-  void sent(double t_s, const Outgoing& outgoing, const Holder* speaker);
+  void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has heard a digest.
   void heard(const Author& listener, const Digest& digest);
   /// Bytes were read: whole ones are accepted, damaged ones refused.
   void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
   /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for.
-  void received(const Holder& listener, const Message& message);
+  void received(const TableView& listener, const Message& message);
   /// An agent has answered a tick: what it holds never shrinks, nobody's steps exceed the ticks
   /// there were, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1, and ĉ_k, where its law looks
   /// ahead, follows by the equation of core/forecast.h from what has reached it (lab/shadow.h).
-  void answered(double t_s, const Holder& holder);
+  void answered(double t_s, const TableView& holder);
   /// An agent's core has refused so many messages, of which none was damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);
   /// An agent has ended by itself.
@@ -162,10 +162,10 @@ class Invariants {
   /// With a radio range an agent learns what another has, through others too, only where each on the
   /// way has heard the next for long enough: then it holds what the other held that long ago. δ is
   /// what it lacks, and repeats may go on.
-  void recovered(double t_s, const std::vector<Holder>& living);
+  void recovered(double t_s, const std::vector<TableView>& living);
   /// To be called with it: what the coordinator thinks of everybody who lives.
   void coordinated(double t_s, const Coordinator& coordinator, Instant now,
-                   const std::vector<Holder>& living);
+                   const std::vector<TableView>& living);
   /// Everybody has ended, or the time is up.
   /// @param excused  ticks whose states may have been kept from the logger
   void ended(double t_s, const std::string& still_running, const std::string& failure,
@@ -173,7 +173,7 @@ class Invariants {
 
   const std::optional<Violation>& violation() const { return violation_; }
   /// Only measures how far these are from c_true, for largest_view_error().
-  void compare_views(const std::vector<Holder>& living);
+  void compare_views(const std::vector<TableView>& living);
   /// max_a √(Σ λ (c_a − c_true)²) of the last recovered() or compare_views().
   double largest_view_error() const { return largest_view_error_; }
   Tick last_tick() const { return last_tick_; }
@@ -188,24 +188,24 @@ class Invariants {
   void violate(double t_s, Invariant invariant, const std::string& who, std::string numbers);
   void check(double t_s, const WorldState& world);
   void check(double t_s, const Command& command);
-  void check(double t_s, const Contribution& block, AgentId relayer, const Holder* speaker);
-  void check(double t_s, const Digest& digest, const Holder& speaker);
-  void check_steps(double t_s, const Holder& holder);
-  void check_average(double t_s, const Holder& holder);
-  void check_forecast(double t_s, const Holder& holder);
-  std::map<Author, std::vector<Best>> best_of(const std::vector<Holder>& living) const;
+  void check(double t_s, const Contribution& block, AgentId relayer, const TableView* speaker);
+  void check(double t_s, const Digest& digest, const TableView& speaker);
+  void check_steps(double t_s, const TableView& holder);
+  void check_average(double t_s, const TableView& holder);
+  void check_forecast(double t_s, const TableView& holder);
+  std::map<Author, std::vector<Best>> best_of(const std::vector<TableView>& living) const;
   Coefficients average_of(const std::map<Author, std::vector<Best>>& rows) const;
-  void check_rows(double t_s, const Holder& holder,
+  void check_rows(double t_s, const TableView& holder,
                   const std::map<Author, std::vector<Best>>& best);
-  void check_view(double t_s, const Holder& holder,
+  void check_view(double t_s, const TableView& holder,
                   const std::map<Author, std::vector<Best>>& best, const Coefficients& c_true);
   void check_quiet(double t_s);
   void note_positions(double t_s, const WorldState& world);
-  void check_counted(double t_s, const Holder& holder, const std::vector<Holder>& living);
-  void check_neighbours(double t_s, const std::vector<Holder>& living);
+  void check_counted(double t_s, const TableView& holder, const std::vector<TableView>& living);
+  void check_neighbours(double t_s, const std::vector<TableView>& living);
   std::set<Author> within(int hops, const Author& self, double heard_for_s, double t_s,
-                          const std::vector<Holder>& living) const;
-  void check_learned(double t_s, const Holder& holder, const Author& other,
+                          const std::vector<TableView>& living) const;
+  void check_learned(double t_s, const TableView& holder, const Author& other,
                      const std::map<Author, std::int64_t>& held_then, int hops);
 
   Mission mission_;

@@ -15,14 +15,14 @@ constexpr Tick kTicksBetweenAverages = 11;
 
 // ---- safety: what is known -----------------------------------------------------------------------
 
-void Invariants::received(const Holder& listener, const Message& message) {
+void Invariants::received(const TableView& listener, const Message& message) {
   if (mission_.law.anticipation <= 0) return;
   const bool is_block = std::holds_alternative<Contribution>(message);
   if (!is_block && !std::holds_alternative<WorldState>(message)) return;
   shadows_[listener.self].hear(mission_, listener, message);
 }
 
-void Invariants::answered(double t_s, const Holder& holder) {
+void Invariants::answered(double t_s, const TableView& holder) {
   check_steps(t_s, holder);
   const bool looks_ahead = mission_.law.anticipation > 0 && holder.foreseen != nullptr;
   if (looks_ahead) shadows_[holder.self].answer(mission_, holder);
@@ -32,7 +32,7 @@ void Invariants::answered(double t_s, const Holder& holder) {
   if (looks_ahead) check_forecast(t_s, holder);
 }
 
-void Invariants::check_steps(double t_s, const Holder& holder) {
+void Invariants::check_steps(double t_s, const TableView& holder) {
   auto& held_before = held_[holder.self];
   std::map<AgentId, std::int64_t> steps_of_id;
   for (const Author& author : authors_) {
@@ -54,7 +54,7 @@ void Invariants::check_steps(double t_s, const Holder& holder) {
   }
 }
 
-void Invariants::check_average(double t_s, const Holder& holder) {
+void Invariants::check_average(double t_s, const TableView& holder) {
   const Coefficients expected = average_of(best_of({holder}));
   const double error = (*holder.coverage - expected).cwiseAbs().maxCoeff();
   if (error > rounding(last_tick_ * static_cast<std::int64_t>(authors_.size()))) {
@@ -70,7 +70,7 @@ void Invariants::check_average(double t_s, const Holder& holder) {
   }
 }
 
-void Invariants::check_forecast(double t_s, const Holder& holder) {
+void Invariants::check_forecast(double t_s, const TableView& holder) {
   const Coefficients expected = shadows_[holder.self].foreseen(mission_, holder);
   const double error = (*holder.foreseen - expected).cwiseAbs().maxCoeff();
   if (error <= rounding(last_tick_ * static_cast<std::int64_t>(authors_.size()))) return;
@@ -82,9 +82,9 @@ void Invariants::check_forecast(double t_s, const Holder& holder) {
 
 /// The newest of each author's blocks that anybody holds. Forgotten rows do not count any more.
 std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
-    const std::vector<Holder>& living) const {
+    const std::vector<TableView>& living) const {
   std::map<Author, std::vector<Best>> best;
-  for (const Holder& holder : living) {
+  for (const TableView& holder : living) {
     if (holder.table == nullptr) continue;
     for (const Author& author : authors_) {
       if (!holder.table->steps_held(author)) continue;
@@ -117,17 +117,17 @@ Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& r
   return c;
 }
 
-void Invariants::recovered(double t_s, const std::vector<Holder>& living) {
-  for (const Holder& holder : living) {
+void Invariants::recovered(double t_s, const std::vector<TableView>& living) {
+  for (const TableView& holder : living) {
     if (holder.table != nullptr && holder.answered >= 0) continue;
     return violate(t_s, Invariant::kEverybodyIsBack, name_of(holder.self),
                    holder.table == nullptr ? "is not admitted" : "has seen no tick");
   }
-  for (const Holder& holder : living) check_counted(t_s, holder, living);
+  for (const TableView& holder : living) check_counted(t_s, holder, living);
   const auto best = best_of(living);
   const Coefficients c_true = average_of(best);
   compare_views(living);
-  for (const Holder& holder : living) {
+  for (const TableView& holder : living) {
     if (mission_.radio_range_m <= 0) check_rows(t_s, holder, best);
     check_view(t_s, holder, best, c_true);
   }
@@ -135,8 +135,8 @@ void Invariants::recovered(double t_s, const std::vector<Holder>& living) {
   check_quiet(t_s);
 }
 
-void Invariants::check_counted(double t_s, const Holder& holder, const std::vector<Holder>& living) {
-  for (const Holder& other : living) {
+void Invariants::check_counted(double t_s, const TableView& holder, const std::vector<TableView>& living) {
+  for (const TableView& other : living) {
     const RosterEntry* entry = entry_of(*holder.roster, other.self);
     if (entry == nullptr || !is_forgotten(*entry, holder)) continue;
     violate(t_s, Invariant::kTheLivingCount, name_of(holder.self),
@@ -144,10 +144,10 @@ void Invariants::check_counted(double t_s, const Holder& holder, const std::vect
   }
 }
 
-void Invariants::compare_views(const std::vector<Holder>& living) {
+void Invariants::compare_views(const std::vector<TableView>& living) {
   const Coefficients c_true = average_of(best_of(living));
   largest_view_error_ = 0;
-  for (const Holder& holder : living) {
+  for (const TableView& holder : living) {
     if (holder.coverage == nullptr || holder.answered < 0) continue;
     const Coefficients difference = *holder.coverage - c_true;
     largest_view_error_ = std::max(
@@ -155,7 +155,7 @@ void Invariants::compare_views(const std::vector<Holder>& living) {
   }
 }
 
-void Invariants::check_view(double t_s, const Holder& holder,
+void Invariants::check_view(double t_s, const TableView& holder,
                             const std::map<Author, std::vector<Best>>& best,
                             const Coefficients& c_true) {
   double stale_s = 0, covered_s = 0;
@@ -182,7 +182,7 @@ void Invariants::check_view(double t_s, const Holder& holder,
                " s of ", covered_s, " s unknown"));
 }
 
-void Invariants::check_rows(double t_s, const Holder& holder,
+void Invariants::check_rows(double t_s, const TableView& holder,
                             const std::map<Author, std::vector<Best>>& best) {
   for (const auto& [author, blocks] : best) {
     const auto newest = std::min_element(blocks.begin(), blocks.end(), [](const Best& a, const Best& b) {
@@ -203,9 +203,9 @@ void Invariants::check_rows(double t_s, const Holder& holder,
 }
 
 /// What an agent held is known to others after a round of digests for each hop between them.
-void Invariants::check_neighbours(double t_s, const std::vector<Holder>& living) {
+void Invariants::check_neighbours(double t_s, const std::vector<TableView>& living) {
   Memory& present = memories_.emplace_back(Memory{t_s, {}});
-  for (const Holder& holder : living) {
+  for (const TableView& holder : living) {
     for (const Author& author : authors_) present.held[holder.self][author] = steps_of(*holder.table, author);
   }
   for (int hops = 1; hops < static_cast<int>(living.size()); ++hops) {
@@ -214,7 +214,7 @@ void Invariants::check_neighbours(double t_s, const std::vector<Holder>& living)
       return memory.t_s <= t_s - takes_s;
     });
     if (past == memories_.rend()) return;
-    for (const Holder& holder : living) {
+    for (const TableView& holder : living) {
       for (const Author& other : within(hops, holder.self, t_s - past->t_s, t_s, living)) {
         check_learned(t_s, holder, other, past->held[other], hops);
       }
@@ -224,7 +224,7 @@ void Invariants::check_neighbours(double t_s, const std::vector<Holder>& living)
 
 /// Whom `self` has heard for so long without a break, through at most so many others less one.
 std::set<Author> Invariants::within(int hops, const Author& self, double heard_for_s, double t_s,
-                                    const std::vector<Holder>& living) const {
+                                    const std::vector<TableView>& living) const {
   const auto hears = [&](const Author& a, const Author& b) {
     const auto apart = last_apart_t_s_.find(std::minmax(a.agent, b.agent));
     return apart == last_apart_t_s_.end() || t_s - apart->second > heard_for_s;
@@ -232,7 +232,7 @@ std::set<Author> Invariants::within(int hops, const Author& self, double heard_f
   std::set<Author> reached{self};
   for (int hop = 0; hop < hops; ++hop) {
     const std::set<Author> inner = reached;
-    for (const Holder& holder : living) {
+    for (const TableView& holder : living) {
       const auto heard = [&](const Author& one) { return hears(one, holder.self); };
       if (std::any_of(inner.begin(), inner.end(), heard)) reached.insert(holder.self);
     }
@@ -240,7 +240,7 @@ std::set<Author> Invariants::within(int hops, const Author& self, double heard_f
   return reached;
 }
 
-void Invariants::check_learned(double t_s, const Holder& holder, const Author& other,
+void Invariants::check_learned(double t_s, const TableView& holder, const Author& other,
                                const std::map<Author, std::int64_t>& held_then, int hops) {
   for (const auto& [author, then] : held_then) {
     const RosterEntry* entry = entry_of(*holder.roster, author);

@@ -11,7 +11,7 @@
 namespace ergocast::lab {
 namespace {
 
-/// Streams of dice beside lab/faults.cc's: one for each link and question.
+/// Random streams beside those of lab/faults.cc: one for each link and question.
 constexpr std::uint32_t kWhether = 1U << 20, kHowLong = 2U << 20, kDamage = 3U << 20,
                         kReplay = 4U << 20;
 
@@ -24,33 +24,33 @@ bool quiet(const Faults& f) {
 
 }  // namespace
 
-Network::Network(std::uint64_t seed, const Faults& faults, int seats)
+Network::Network(std::uint64_t seed, const Faults& faults, int nodes)
     : seed_(seed),
       faults_(faults),
       quiet_(quiet(faults)),
-      seats_(seats),
-      links_(static_cast<std::size_t>(seats * seats * kBusCount)),
-      link_cuts_(static_cast<std::size_t>(seats * seats)) {}
+      nodes_(nodes),
+      links_(static_cast<std::size_t>(nodes * nodes * kBusCount)),
+      link_cuts_(static_cast<std::size_t>(nodes * nodes)) {}
 
-int Network::send(Instant now, Seat from, const Seats& to, Bus bus, AgentId transmitter,
+int Network::send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId transmitter,
                   const std::shared_ptr<const Message>& message) {
-  Seats at_once;  // all whom nothing special happens to
+  NodeSet at_once;  // all whom nothing special happens to
   int corrupted = 0;
-  for (Seat seat = 0; seat < seats_; ++seat) {
-    const auto bit = static_cast<std::size_t>(seat);
+  for (NodeId node = 0; node < nodes_; ++node) {
+    const auto bit = static_cast<std::size_t>(node);
     if (!to.test(bit)) continue;
-    if (seat == from) {  // one's own voice does not cross the network
+    if (node == from) {  // one's own voice does not cross the network
       at_once.set(bit);
       continue;
     }
-    const Fate fate = fate_of(now, pair_index(from, seat), bus);
+    const Fate fate = fate_of(now, pair_index(from, node), bus);
     corrupted += fate.corrupted ? 1 : 0;
     for (const auto& arrival : {fate.arrives, fate.arrives_again, fate.is_replayed}) {
       if (!arrival) continue;
       if (*arrival == now + kLatency && !at_once.test(bit)) {
         at_once.set(bit);
       } else {
-        push(*arrival, bus, transmitter, Seats().set(bit), message);
+        push(*arrival, bus, transmitter, NodeSet().set(bit), message);
       }
     }
   }
@@ -67,7 +67,7 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
   if (quiet_ || wired) return {now + kLatency, {}, {}, false};
   const auto index = static_cast<std::uint32_t>(pair) * kBusCount + static_cast<std::uint32_t>(bus);
   Link& link = links_[index];
-  const Words dice = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);
+  const RandomBits random = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);
   const auto upper = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word >> 32)); };
   const auto lower = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word)); };
   Fate fate;
@@ -76,8 +76,8 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
     ++counted_.replayed;
     fate.is_replayed = now + kLatency + seconds(faults_.replay_max_s * replay.y());
   }
-  // One die for what excludes each other.
-  const double what = upper(dice.first);
+  // One draw for what excludes each other.
+  const double what = upper(random.first);
   if (what < faults_.loss) {
     ++counted_.lost;
     return fate;
@@ -87,8 +87,8 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
     fate.corrupted = true;
     return fate;
   }
-  fate.arrives = arrival(now, link, index, upper(dice.second), lower(dice.second));
-  if (lower(dice.first) < faults_.duplication) {
+  fate.arrives = arrival(now, link, index, upper(random.second), lower(random.second));
+  if (lower(random.first) < faults_.duplication) {
     ++counted_.duplicated;
     fate.arrives_again = *fate.arrives + kLatency;
   }
@@ -119,7 +119,7 @@ Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, doub
   return link.last_arrival = std::max(at, link.last_arrival);
 }
 
-void Network::push(Instant at, Bus bus, AgentId transmitter, const Seats& to,
+void Network::push(Instant at, Bus bus, AgentId transmitter, const NodeSet& to,
                    const std::shared_ptr<const Message>& message) {
   queue_.push({at, pushed_++, bus, transmitter, to, message});
 }
@@ -145,12 +145,12 @@ void Network::heal(Instant now) {
 }
 
 void damage(std::vector<std::byte>& bytes, std::uint64_t seed, std::uint64_t copy) {
-  const Words dice = random_words(seed, Purpose::kFault, kDamage, copy);
-  const std::size_t where = dice.first % bytes.size();
-  switch (dice.second % 4) {
+  const RandomBits random = random_words(seed, Purpose::kFault, kDamage, copy);
+  const std::size_t where = random.first % bytes.size();
+  switch (random.second % 4) {
     case 0: bytes.resize(where); return;
     case 1: bytes.resize(bytes.size() + 1 + where, std::byte{0}); return;
-    case 2: bytes[where] ^= std::byte{1} << (dice.second >> 2) % 8; return;
+    case 2: bytes[where] ^= std::byte{1} << (random.second >> 2) % 8; return;
     default:
       for (std::size_t i = where; i < std::min(where + 16, bytes.size()); ++i) bytes[i] ^= std::byte{0x5a};
   }

@@ -21,9 +21,9 @@
 namespace ergocast::lab {
 
 /// Where a process sits: agents 0 … agents − 1, then coordinator, world, recorder.
-using Seat = int;
-inline constexpr int kMaxSeats = kMaxAgents + 3;
-using Seats = std::bitset<kMaxSeats>;
+using NodeId = int;
+inline constexpr int kMaxNodes = kMaxAgents + 3;
+using NodeSet = std::bitset<kMaxNodes>;
 
 /// How long a message takes that nothing happens to. Above 0, so that no loop stops time.
 inline constexpr PacingClock::duration kLatency = std::chrono::microseconds(200);
@@ -39,18 +39,18 @@ struct Delivery {
   std::uint64_t order;  ///< of insertion
   Bus bus;
   AgentId transmitter;
-  Seats to;
+  NodeSet to;
   std::shared_ptr<const Message> message;
 };
 
 class Network {
  public:
-  Network(std::uint64_t seed, const Faults& faults, int seats);
+  Network(std::uint64_t seed, const Faults& faults, int nodes);
 
-  /// Puts a message on its way from one seat to others.
+  /// Puts a message on its way from one node to others.
   /// @param transmitter  as receivers see it
   /// @return  how many copies are to be corrupted; they are the caller's to damage and to refuse
-  int send(Instant now, Seat from, const Seats& to, Bus bus, AgentId transmitter,
+  int send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId transmitter,
            const std::shared_ptr<const Message>& message);
 
   /// Instant::max() if nothing is on its way.
@@ -58,8 +58,8 @@ class Network {
   Delivery pop();
 
   /// From now on, `from` is not heard by `to`, until join() has been called as often.
-  void cut(Seat from, Seat to) { ++link_cuts_[pair_index(from, to)]; }
-  void join(Seat from, Seat to) { --link_cuts_[pair_index(from, to)]; }
+  void cut(NodeId from, NodeId to) { ++link_cuts_[pair_index(from, to)]; }
+  void join(NodeId from, NodeId to) { --link_cuts_[pair_index(from, to)]; }
   /// No more faults: cuts end, and what clogged links hold arrives within kLatency.
   void heal(Instant now);
 
@@ -80,19 +80,19 @@ class Network {
     }
   };
 
-  std::size_t pair_index(Seat from, Seat to) const {
-    const int index = from * seats_ + to;
+  std::size_t pair_index(NodeId from, NodeId to) const {
+    const int index = from * nodes_ + to;
     return static_cast<std::size_t>(index);
   }
   Fate fate_of(Instant now, std::size_t pair, Bus bus);
   Instant arrival(Instant now, Link& link, std::uint32_t link_index, double reorders, double clogs);
-  void push(Instant at, Bus bus, AgentId transmitter, const Seats& to,
+  void push(Instant at, Bus bus, AgentId transmitter, const NodeSet& to,
             const std::shared_ptr<const Message>& message);
 
   std::uint64_t seed_;
   Faults faults_;
   bool quiet_;  // nothing can happen to a message
-  int seats_;
+  int nodes_;
   std::vector<Link> links_;
   std::vector<int> link_cuts_;
   std::priority_queue<Delivery, std::vector<Delivery>, Later> queue_;

@@ -97,7 +97,7 @@ bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, T
          });
 }
 
-bool flies(const Holder& agent, const RosterEntry& entry) {
+bool flies(const TableView& agent, const RosterEntry& entry) {
   return entry.author != agent.self && !is_forgotten(entry, agent) &&
          is_newest(*agent.roster, entry, agent.answered);
 }
@@ -106,7 +106,7 @@ bool flies(const Holder& agent, const RosterEntry& entry) {
 
 // ---- what was heard -----------------------------------------------------------------------------
 
-void Shadow::hear(const Mission& mission, const Holder& agent, const Message& message) {
+void Shadow::hear(const Mission& mission, const TableView& agent, const Message& message) {
   if (agent.table == nullptr) return;
   if (!active_from_) {
     const RosterEntry* own = entry_of(*agent.roster, agent.self);
@@ -117,7 +117,7 @@ void Shadow::hear(const Mission& mission, const Holder& agent, const Message& me
 }
 
 /// What a block says is taken from the message itself; from the table, only whether it is held now.
-void Shadow::take(const Holder& agent, const Contribution& theirs) {
+void Shadow::take(const TableView& agent, const Contribution& theirs) {
   if (theirs.author() == agent.self) return;
   Row& row = rows_[theirs.author()];
   row.blocks.resize(static_cast<std::size_t>(agent.table->block_count()));
@@ -128,7 +128,7 @@ void Shadow::take(const Holder& agent, const Contribution& theirs) {
   block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick, theirs.sums};
 }
 
-void Shadow::note_places(const Mission& mission, const Holder& agent, const WorldState& world) {
+void Shadow::note_places(const Mission& mission, const TableView& agent, const WorldState& world) {
   const Tick tick = world.header.tick;
   for (int i = 0; i < world.vehicle_count && tick >= positions_tick_; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
@@ -162,7 +162,7 @@ bool Shadow::in_range(const Mission& mission, AgentId one, AgentId other) const 
 
 // ---- where teammates have been ------------------------------------------------------------------
 
-void Shadow::answer(const Mission& mission, const Holder& agent) {
+void Shadow::answer(const Mission& mission, const TableView& agent) {
   if (!mission.dead_reckoning) return;
   for (auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
@@ -230,7 +230,7 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
 }
 
 std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
-                                                    const Holder& agent) const {
+                                                    const TableView& agent) const {
   std::vector<std::vector<Part>> team(1);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const Contribution own = agent.table->block(agent.self, b);
@@ -244,7 +244,7 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
   return team;
 }
 
-Coefficients Shadow::foreseen(const Mission& mission, const Holder& agent) const {
+Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) const {
   const double dt_s = mission.timing.dt_s;
   Coefficients c = Coefficients::Zero(mission.basis.mode_count());
   const auto team = this->team(mission, agent);

@@ -17,20 +17,20 @@
 #include "core/ids.h"
 #include "team/messages.h"
 #include "core/mission.h"
-#include "lab/holder.h"
+#include "lab/table_view.h"
 
 namespace ergocast::lab {
 
 class Shadow {
  public:
   /// A message has reached the agent, which now is as `agent` says.
-  void hear(const Mission& mission, const Holder& agent, const Message& message);
+  void hear(const Mission& mission, const TableView& agent, const Message& message);
 
   /// The agent has answered a tick. To be called for each, as each adds places to the rows.
-  void answer(const Mission& mission, const Holder& agent);
+  void answer(const Mission& mission, const TableView& agent);
 
   /// ĉ at the tick that the agent has answered.
-  Coefficients foreseen(const Mission& mission, const Holder& agent) const;
+  Coefficients foreseen(const Mission& mission, const TableView& agent) const;
 
  private:
   struct Place {
@@ -58,13 +58,13 @@ class Shadow {
     Tick tick = 0, period = 0;
   };
 
-  void take(const Holder& agent, const Contribution& theirs);
-  void note_places(const Mission& mission, const Holder& agent, const WorldState& world);
+  void take(const TableView& agent, const Contribution& theirs);
+  void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void reckon(const RosterEntry& entry, Row& row) const;
   Part said(const Block& block) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, bool flies) const;
-  std::vector<std::vector<Part>> team(const Mission& mission, const Holder& agent) const;
+  std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
   std::optional<Tick> active_from_;
   std::map<Author, Row> rows_;

@@ -14,8 +14,8 @@
 namespace ergocast::lab {
 namespace {
 
-Incarnation incarnation_of(std::uint64_t seed, int seat) {
-  return random_words(seed, Purpose::kIncarnation, static_cast<std::uint32_t>(seat), 0).first | 1;
+Incarnation incarnation_of(std::uint64_t seed, int node) {
+  return random_words(seed, Purpose::kIncarnation, static_cast<std::uint32_t>(node), 0).first | 1;
 }
 
 Mission decoded(const Options& options) {
@@ -91,8 +91,8 @@ void Swarm::send(Outbox& out) {
   out.clear();
 }
 
-bool Swarm::reaches(const Message& message, int seat) {
-  if (!options_.delivers || options_.delivers(message, seat)) return true;
+bool Swarm::reaches(const Message& message, int node) {
+  if (!options_.delivers || options_.delivers(message, node)) return true;
   ++messages_dropped_;
   return false;
 }
@@ -101,9 +101,9 @@ void Swarm::deliver(const Datagram& datagram) {
   const auto decoded = decode(datagram.bytes, run_);
   const Message* message = std::get_if<Message>(&decoded);
   if (message == nullptr) return;
-  const auto tell = [&]<class Core>(Core& core, int seat) {
+  const auto tell = [&]<class Core>(Core& core, int node) {
     const bool heard = hears(subscriptions_of(Core::kRole), datagram.bus, *message);
-    if (heard && reaches(*message, seat)) {
+    if (heard && reaches(*message, node)) {
       core.receive(*message, datagram.bus, datagram.transmitter, now_);
     }
   };

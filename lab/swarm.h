@@ -29,8 +29,8 @@ struct Options {
   int agents = 0;
   std::string host = "laboratory";
   std::string version;
-  /// Whether this message reaches that seat; all do if empty.
-  std::function<bool(const Message&, int seat)> delivers;
+  /// Whether this message reaches that node; all do if empty.
+  std::function<bool(const Message&, int node)> delivers;
 };
 
 class Swarm {
@@ -64,7 +64,7 @@ class Swarm {
   void advance_all();
   void send(Outbox& out);
   void deliver(const Datagram& datagram);
-  bool reaches(const Message& message, int seat);
+  bool reaches(const Message& message, int node);
   bool everybody_finished() const;
   Instant next_wakeup() const;
 

@@ -14,25 +14,25 @@ constexpr auto kCheckPeriod = std::chrono::seconds(1);
 
 }  // namespace
 
-Holder Flight::holder_of(Seat seat) {
-  const Agent& one = agent(seat);
+TableView Flight::view_of(NodeId node) {
+  const Agent& one = agent(node);
   return {one.author(), one.coverage(), &one.team_coverage(), &one.follower().roster(), one.tick(),
           one.roster_revision(), &one.foreseen_coverage()};
 }
 
-std::vector<Holder> Flight::living() {
-  std::vector<Holder> living;
-  for (Seat seat = 0; seat < agents_count_; ++seat) {
-    if (at(seat).up && !agent(seat).finished()) living.push_back(holder_of(seat));
+std::vector<TableView> Flight::living() {
+  std::vector<TableView> living;
+  for (NodeId node = 0; node < agents_count_; ++node) {
+    if (at(node).up && !agent(node).finished()) living.push_back(view_of(node));
   }
   return living;
 }
 
 /// Also who has reached the plan's end, as all have when their views are measured.
-std::vector<Holder> Flight::present() {
-  std::vector<Holder> present;
-  for (Seat seat = 0; seat < agents_count_; ++seat) {
-    if (at(seat).up) present.push_back(holder_of(seat));
+std::vector<TableView> Flight::present() {
+  std::vector<TableView> present;
+  for (NodeId node = 0; node < agents_count_; ++node) {
+    if (at(node).up) present.push_back(view_of(node));
   }
   return present;
 }
@@ -42,19 +42,19 @@ bool Flight::mission_over() const {
 }
 
 bool Flight::everybody_finished() {
-  for (Seat seat = 0; seat < seats_; ++seat) {
-    if (!at(seat).up || !with(seat, [](auto& core) { return core.finished(); })) return false;
+  for (NodeId node = 0; node < nodes_; ++node) {
+    if (!at(node).up || !with(node, [](auto& core) { return core.finished(); })) return false;
   }
   return true;
 }
 
 /// Like an init system: who could take nothing over starts anew.
 void Flight::supervise_coordinator() {
-  if (!at(coordinator_seat()).up || !coordinator_->finished() || mission_over()) return;
+  if (!at(coordinator_node()).up || !coordinator_->finished() || mission_over()) return;
   if (!healed_ && coordinator_->mission() == nullptr) {
     ++figures_.coordinator_crashes;
-    at(coordinator_seat()).up = false;
-    at(coordinator_seat()).restart = now_;
+    at(coordinator_node()).up = false;
+    at(coordinator_node()).restart = now_;
     return;
   }
   invariants_.finished(in_seconds(now_), {kCoordinator, 0}, coordinator_->reason(), false);
@@ -66,14 +66,14 @@ void Flight::check_recovered() {
   if (mission_over() || options_.faults.lasting_share >= 1) return;
   const double t_s = in_seconds(now_);
   invariants_.recovered(t_s, living());
-  invariants_.coordinated(t_s, *coordinator_, at(coordinator_seat()).clock.local(now_), living());
+  invariants_.coordinated(t_s, *coordinator_, at(coordinator_node()).clock.local(now_), living());
 }
 
 std::string Flight::still_running() {
   std::string names;
-  for (Seat seat = 0; seat < seats_; ++seat) {
-    if (with(seat, [](auto& core) { return core.finished(); })) continue;
-    names += (names.empty() ? "" : ", ") + name_of(seat);
+  for (NodeId node = 0; node < nodes_; ++node) {
+    if (with(node, [](auto& core) { return core.finished(); })) continue;
+    names += (names.empty() ? "" : ", ") + name_of(node);
   }
   return names;
 }
@@ -83,7 +83,7 @@ void Flight::note_hindrance() {
   const bool away = std::any_of(processes_.begin(), processes_.end(),
                                 [](const Process& process) { return !process.up; });
   const bool poor = !healed_ && hinders(options_.faults, mission_.timing.lockstep_timeout_s);
-  if (away || poor || !endings_.empty()) hindered_ = now_;
+  if (away || poor || !fault_ends_.empty()) hindered_ = now_;
 }
 
 /// Whether what went wrong then may be due to what we have done: after each hindrance everybody has
@@ -96,12 +96,12 @@ bool Flight::our_doing(Instant at) const {
 bool Flight::timed_out() const { return failed_since_ && our_doing(*failed_since_); }
 
 /// Whether it has left the team as the scenario says, after it could not answer in time.
-bool Flight::evicted(Seat seat) {
-  return mission_.timing.on_timeout == OnTimeout::kEvict && struck(seat) && our_doing(now_);
+bool Flight::evicted(NodeId node) {
+  return mission_.timing.on_timeout == OnTimeout::kEvict && struck(node) && our_doing(now_);
 }
 
-bool Flight::struck(Seat seat) {
-  const RosterEntry* entry = agent(seat).follower().entry_of(agent(seat).author().incarnation);
+bool Flight::struck(NodeId node) {
+  const RosterEntry* entry = agent(node).follower().entry_of(agent(node).author().incarnation);
   return entry != nullptr && entry->active_until >= 0;
 }
 
@@ -124,7 +124,7 @@ TrialResult Flight::result() {
   figures_.ergodic_metric = recorder_.facts().ergodic_metric_last;
   figures_.view_error = invariants_.largest_view_error();
   figures_.faults = network_.counted();
-  for (Seat seat = 0; seat < agents_count_; ++seat) figures_.evictions += agent(seat).finished() && struck(seat);
+  for (NodeId node = 0; node < agents_count_; ++node) figures_.evictions += agent(node).finished() && struck(node);
   if (figures_.recoveries > 0) {
     figures_.recovery_mean_s = recovery_sum_s_ / static_cast<double>(figures_.recoveries);
   }

@@ -26,7 +26,7 @@ double resampled_mean(const std::vector<double>& values, std::uint64_t seed,
                       std::uint32_t resample) {
   double sum = 0;
   for (std::size_t i = 0; i < values.size(); i += 2) {
-    const Words words = random_words(seed, Purpose::kFault, resample, i);
+    const RandomBits words = random_words(seed, Purpose::kFault, resample, i);
     sum += values[words.first % values.size()];
     if (i + 1 < values.size()) sum += values[words.second % values.size()];
   }

@@ -215,7 +215,7 @@ namespace {
 void relay(const Agent& self, Outbox& out) {
   const CoverageTable& table = *self.coverage();
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    if (table.author(row) == self.author() || table.fewest_steps(row) == 0) continue;
+    if (table.author(row) == self.author() || table.min_steps(row) == 0) continue;
     Contribution block = real_block(&table, table.author(row), 0);
     block.header.run = self.run();
     out.push_back({Bus::kSwarm, block, self.author().agent});

@@ -30,7 +30,7 @@ MissionPart memory_of(std::int64_t revision, std::vector<RosterEntry> roster = r
 
 /// A coordinator that has taken over `memory`, at 1 s.
 Coordinator taken_over(const MissionPart& memory) {
-  Coordinator coordinator = successor(Takeover::kIfFlying, 0, memory.plan);
+  Coordinator coordinator = successor(Takeover::kIfRunning, 0, memory.plan);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, memory, at(0s));
@@ -65,7 +65,7 @@ TEST(TakeoverNever, SpeaksAtOnce) {
 }
 
 TEST(TakeoverIfFlying, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilence) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   EXPECT_EQ(coordinator.next_wakeup(), Instant{}) << "at once, to listen";
   for (int ms = 0; ms < 750; ms += 10) EXPECT_TRUE(advance(coordinator, at(5s + ms * 1ms)).empty());
   EXPECT_LE(coordinator.next_wakeup(), at(5s + 750ms));
@@ -77,7 +77,7 @@ TEST(TakeoverIfFlying, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilenc
 }
 
 TEST(TakeoverIfFlying, AgentsThatJoinOrHaveFinishedFlyNothing) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   for (const AgentPhase phase : {AgentPhase::kJoining, AgentPhase::kFinished}) {
     AgentStatus status = status_of(0, 1);
@@ -91,7 +91,7 @@ TEST(TakeoverIfFlying, AgentsThatJoinOrHaveFinishedFlyNothing) {
 }
 
 TEST(Takeover, AsksTheAgentsFourTimesASecondOnceItKnowsTheRun) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   EXPECT_TRUE(advance(coordinator, at(0s)).empty()) << "whom?";
   give(coordinator, status_of(0, 1), at(200ms));
   EXPECT_EQ(coordinator.run(), kRun);
@@ -133,7 +133,7 @@ TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
 }
 
 TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   for (int ms = 0; ms < 30000; ms += 250) {
@@ -151,7 +151,7 @@ constexpr const char* kLedByAnother =
     "or take the mission over with --resume";
 
 TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, alive(kCoordinatorLife), at(100ms));
@@ -164,7 +164,7 @@ TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
 }
 
 TEST(TakeoverIfFlying, LeavesALeaderAloneThatStillWaitsForItsFirstAgent) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   give(coordinator, alive(kCoordinatorLife), at(100ms));
   EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(750ms))).empty());
@@ -173,7 +173,7 @@ TEST(TakeoverIfFlying, LeavesALeaderAloneThatStillWaitsForItsFirstAgent) {
 }
 
 TEST(TakeoverIfFlying, AfterTheEndOfALeadersMissionStartsItsOwn) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   TeamStatus farewell = alive(kCoordinatorLife, 2);
   farewell.state = MissionState::kEnded;
@@ -200,7 +200,7 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   roster[0].forgotten = true;
   roster[0].since_tick = 9;
   roster[0].since_revision = 2;
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, memory_of(5), at(100ms));
@@ -251,7 +251,7 @@ TEST(Takeover, OfAnotherVersionsPlanIsRefusedWithItsDecodersSentence) {
 }
 
 TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
-  for (const Takeover takeover : {Takeover::kIfFlying, Takeover::kMust}) {
+  for (const Takeover takeover : {Takeover::kIfRunning, Takeover::kMust}) {
     Coordinator coordinator = successor(takeover);
     advance(coordinator, at(0s));
     give(coordinator, status_of(0, 1), at(0s));
@@ -312,7 +312,7 @@ TEST(TookOver, AnAgentItDoesNotKnowComesBackUnderItsIncarnation) {
 TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
   // From the world's message during the search, or from the predecessor's last one.
   for (const Tick remembered : {12, 3}) {
-    Coordinator coordinator = successor(Takeover::kIfFlying);
+    Coordinator coordinator = successor(Takeover::kIfRunning);
     advance(coordinator, at(0s));
     give(coordinator, status_of(0, 1), at(0s));
     if (remembered < 12) give(coordinator, world_where(12, {11, 11}), at(100ms));
@@ -331,7 +331,7 @@ TEST(TookOver, KnowsTheTickBeforeTheWorldSpeaksAgain) {
 
 TEST(TookOver, KnowsTheTickThatOnlyTheAgentsHaveSeen) {
   // World and coordinator died together; the agents were ahead of the coordinator's last tick.
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   AgentStatus status = status_of(0, 1);
   status.header.tick = 12;
@@ -343,7 +343,7 @@ TEST(TookOver, KnowsTheTickThatOnlyTheAgentsHaveSeen) {
 }
 
 TEST(TookOver, BelievesNoTickBeyondTheMissions) {
-  Coordinator coordinator = successor(Takeover::kIfFlying);
+  Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   AgentStatus status = status_of(0, 1);
   status.header.tick = 1'000'000;
@@ -439,7 +439,7 @@ TEST(TakenOver, OfTwoThatTakeOverAtOnceOneYields) {
     std::vector<Coordinator> two;
     for (const Incarnation life : {kSuccessorLife, kSuccessorLife + 1}) {
       two.emplace_back(CoordinatorIdentity{0, life, "here", kVersion},
-                       encode_plan(small_mission(2)), Takeover::kIfFlying);
+                       encode_plan(small_mission(2)), Takeover::kIfRunning);
       advance(two.back(), at(0s));
       give(two.back(), status_of(0, 1), at(0s));
       give(two.back(), memory_of(5), at(0s));

@@ -98,7 +98,7 @@ TEST(CoverageTable, OrderAndRepetitionOfMessagesDoNotMatter) {
     // Shuffled by our own generator, with some messages twice.
     std::vector<std::pair<std::uint64_t, Contribution>> keyed;
     for (std::uint32_t i = 0; i < said.size(); ++i) {
-      const Words words = random_words(round, Purpose::kFault, i, 0);
+      const RandomBits words = random_words(round, Purpose::kFault, i, 0);
       keyed.emplace_back(words.first, said[i]);
       if (words.second % 3 == 0) keyed.emplace_back(words.second, said[i]);
     }

@@ -27,14 +27,14 @@ std::vector<Eigen::Vector2d> normal_draws(std::uint64_t seed, std::uint32_t who)
   return draws;
 }
 
-Words words_of(std::uint64_t step, std::uint32_t who, std::uint32_t purpose, std::uint64_t seed) {
+RandomBits words_of(std::uint64_t step, std::uint32_t who, std::uint32_t purpose, std::uint64_t seed) {
   return random_words(seed, static_cast<Purpose>(purpose), who, step);
 }
 
 TEST(Noise, RepeatsThePublishedVectorsOfPhilox) {
   // philox4x32-10 of the Random123 distribution: counter words (step low, step high, agent,
   // purpose).
-  Words words = words_of(0, 0, 0, 0);
+  RandomBits words = words_of(0, 0, 0, 0);
   EXPECT_EQ(words.first, 0x6627e8d5e169c58du);
   EXPECT_EQ(words.second, 0xbc57ac4c9b00dbd8u);
   words = words_of(~0ull, ~0u, ~0u, ~0ull);

@@ -62,7 +62,7 @@ void coordinator_listens(Input input) {
   const bool takes_over = (input[0] & kCoordinatorTakesOver) != 0;
   Coordinator coordinator({test::kRun, test::kCoordinatorLife, "base", "1"},
                           encode_plan(mission_with(input[0])),
-                          takes_over ? Takeover::kIfFlying : Takeover::kNever);
+                          takes_over ? Takeover::kIfRunning : Takeover::kNever);
   listen(input, coordinator, [&coordinator](const Message& message, Instant now, AgentId) {
     test::give(coordinator, message, now);
   });

@@ -76,7 +76,7 @@ SmallTeam::SmallTeam(std::uint8_t features)
     : mission_(mission_with(features)),
       world_(kRun, test::kWorldLife),
       coordinator_({kRun, test::kCoordinatorLife, "base", "1"}, encode_plan(mission_),
-                   features & kCoordinatorTakesOver ? Takeover::kIfFlying : Takeover::kNever),
+                   features & kCoordinatorTakesOver ? Takeover::kIfRunning : Takeover::kNever),
       recorder_(kRun, test::kLoggerLife, trajectory_, metrics_),
       view_(kRun, now_) {
   for (AgentId id = 0; id < kAgents; ++id) {

@@ -11,7 +11,7 @@
 namespace ergocast::test {
 namespace {
 
-using lab::Holder;
+using lab::TableView;
 using lab::Invariants;
 
 /// The name of what was violated.
@@ -75,7 +75,7 @@ class InvariantsTest : public ::testing::Test {
     team.sent(0, world(99, {5, 5, 0}), nullptr);
     CoverageTable table(mission_.basis, 0.1), other(mission_.basis, 0.1);
     Forecast forecast(mission_, kOne);
-    Holder one = holder(table, c_one_);
+    TableView one = holder(table, c_one_);
     const auto hear = [&](Tick tick, std::int64_t steps) {
       cover(other, kTwo, 1, static_cast<double>(steps) / 10);
       for (const int b : {1, 0}) {
@@ -144,7 +144,7 @@ TEST_F(InvariantsTest, SumsAreAtMostTheTimeCovered) {
 TEST_F(InvariantsTest, RelaysAnswerDigests) {
   CoverageTable table(mission_.basis, 0.1);
   cover(table, kTwo, 20);
-  const Holder one = holder(table, c_one_);
+  const TableView one = holder(table, c_one_);
   Digest asks;
   asks.entry_count = 1;
   team_.heard(kOne, asks);
@@ -159,7 +159,7 @@ TEST_F(InvariantsTest, RelaysAnswerDigests) {
 TEST_F(InvariantsTest, DigestsSayWhatIsHeld) {
   CoverageTable table(mission_.basis, 0.1);
   cover(table, kOne, 20);
-  const Holder one = holder(table, c_one_);
+  const TableView one = holder(table, c_one_);
   Digest digest;
   digest.entry_count = 3;
   digest.entries[0] = {kOne, 20, 0};
@@ -208,7 +208,7 @@ TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {
   CoverageTable table(mission_.basis, 0.1), one(mission_.basis, 0.1), two(mission_.basis, 0.1);
   for (CoverageTable* rows : {&table, &one}) cover(*rows, kOne, 30, 2);
   for (CoverageTable* rows : {&table, &two}) cover(*rows, kTwo, 10, 8);
-  const Holder right = holder(table, c_one_);
+  const TableView right = holder(table, c_one_);
   team_.answered(1, right);
   EXPECT_EQ(violated(), "");
   Coefficients a = Coefficients::Zero(144), b = a;
@@ -269,7 +269,7 @@ TEST_F(InvariantsTest, EverybodyLearnsEveryRow) {
 TEST_F(InvariantsTest, ViewsAgreeWithinTheirStaleness) {
   CoverageTable one(mission_.basis, 0.1);
   cover(one, kTwo, 50);
-  const Holder right = holder(one, c_one_);
+  const TableView right = holder(one, c_one_);
   team_.recovered(1, {right});
   EXPECT_EQ(violated(), "");
   CoverageTable other(mission_.basis, 0.1);
@@ -280,7 +280,7 @@ TEST_F(InvariantsTest, ViewsAgreeWithinTheirStaleness) {
 }
 
 TEST_F(InvariantsTest, EverybodyIsBack) {
-  Holder outside;
+  TableView outside;
   outside.self = kOne;
   team_.recovered(1, {outside});
   EXPECT_EQ(violated(), "everybody is back in the mission");
@@ -289,7 +289,7 @@ TEST_F(InvariantsTest, EverybodyIsBack) {
 TEST_F(InvariantsTest, RelaysStopOnceAllKnowAll) {
   CoverageTable table(mission_.basis, 0.1);
   cover(table, kTwo, 20);
-  const Holder one = holder(table, c_one_);
+  const TableView one = holder(table, c_one_);
   Digest asks;
   asks.entry_count = 10;
   team_.heard(kOne, asks);

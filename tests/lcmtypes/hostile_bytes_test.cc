@@ -348,7 +348,7 @@ TEST(Codec, MutationsWithACorrectTagNeverDoMoreThanBeRefusedOrMakeAValidMessage)
   for (std::uint64_t round = 0; round < 60000; ++round) {
     Bytes bytes = encoded(originals[round % originals.size()]);
     for (std::uint32_t change = 0; change < 1 + round % 5; ++change) {
-      const Words words = random_words(11, Purpose::kFault, change, round);
+      const RandomBits words = random_words(11, Purpose::kFault, change, round);
       bytes[8 + words.first % (bytes.size() - 8)] = static_cast<std::byte>(words.second);
     }
     if (round % 7 == 0) bytes.resize(kHeaderBytes + round % (bytes.size() - kHeaderBytes + 1));

@@ -85,7 +85,7 @@ TEST(Defaults, ConstantNoiseHasNoCeiling) {
   const Scenario scenario = good(small_with("law {", "law { perturbation: CONSTANT"));
   EXPECT_EQ(scenario.mission().law.perturbation, Perturbation::kConstant);
   EXPECT_EQ(scenario.print().find("noise_ceiling"), std::string::npos);
-  EXPECT_DOUBLE_EQ(scenario.mission().law.greatest_noise(), 0.05 * std::sqrt(5 * 0.5));
+  EXPECT_DOUBLE_EQ(scenario.mission().law.max_noise(), 0.05 * std::sqrt(5 * 0.5));
 }
 
 TEST(Defaults, AbsoluteRegularizationIsClassicalUnlessEpsilonIsGiven) {

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "lab/dice.h"
+#include "lab/random_stream.h"
 #include "tests/support/grey_png.h"
 
 namespace ergocast::test {
@@ -21,10 +21,10 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using Block = google::protobuf::Message;
-using lab::Dice;
+using lab::RandomStream;
 
 /// How one value of a field is drawn; a repeated one gets one more.
-using Draw = std::function<void(Block&, const FieldDescriptor&, Dice&)>;
+using Draw = std::function<void(Block&, const FieldDescriptor&, RandomStream&)>;
 struct Rule {
   Draw draw;
   int least, most;  ///< how many; the least is 0 for what may be left out
@@ -34,7 +34,7 @@ std::string name_of(const FieldDescriptor& field) {
   return std::string(field.containing_type()->name()) + '.' + std::string(field.name());
 }
 
-void draw_fields(Block& block, Dice& dice);
+void draw_fields(Block& block, RandomStream& random);
 
 // ---- values --------------------------------------------------------------------------------------
 
@@ -52,48 +52,48 @@ void set(Block& block, const FieldDescriptor& field, double value) {
 
 /// The same density everywhere.
 Draw number(double low, double high) {
-  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
-    set(block, field, low + (high - low) * dice.uniform());
+  return [=](Block& block, const FieldDescriptor& field, RandomStream& random) {
+    set(block, field, low + (high - low) * random.uniform());
   };
 }
 /// Each power of ten as likely.
 Draw spread(double low, double high) {
-  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
-    set(block, field, dice.log_uniform(low, high));
+  return [=](Block& block, const FieldDescriptor& field, RandomStream& random) {
+    set(block, field, random.log_uniform(low, high));
   };
 }
 /// A value without effect, or another one.
 Draw either(double neutral, Draw other) {
-  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
-    dice.uniform() < 0.8 ? set(block, field, neutral) : other(block, field, dice);
+  return [=](Block& block, const FieldDescriptor& field, RandomStream& random) {
+    random.uniform() < 0.8 ? set(block, field, neutral) : other(block, field, random);
   };
 }
 /// The field's first value, or any.
 Draw word(double first) {
-  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
+  return [=](Block& block, const FieldDescriptor& field, RandomStream& random) {
     const auto& type = *field.enum_type();
-    const int any = static_cast<int>(dice.word() % static_cast<std::uint64_t>(type.value_count()));
-    block.GetReflection()->SetEnum(&block, &field, type.value(dice.uniform() < first ? 0 : any));
+    const int any = static_cast<int>(random.word() % static_cast<std::uint64_t>(type.value_count()));
+    block.GetReflection()->SetEnum(&block, &field, type.value(random.uniform() < first ? 0 : any));
   };
 }
 Draw text(std::vector<std::string> choice) {
-  return [=](Block& block, const FieldDescriptor& field, Dice& dice) {
-    block.GetReflection()->SetString(&block, &field, choice[dice.word() % choice.size()]);
+  return [=](Block& block, const FieldDescriptor& field, RandomStream& random) {
+    block.GetReflection()->SetString(&block, &field, choice[random.word() % choice.size()]);
   };
 }
-void draw_block(Block& block, const FieldDescriptor& field, Dice& dice) {
+void draw_block(Block& block, const FieldDescriptor& field, RandomStream& random) {
   const auto& fields = *block.GetReflection();
   draw_fields(*(field.is_repeated() ? fields.AddMessage(&block, &field)
                                     : fields.MutableMessage(&block, &field)),
-              dice);
+              random);
 }
 
 Rule may(Draw draw) { return {std::move(draw), 0, 1}; }
 Rule must(Draw draw) { return {std::move(draw), 1, 1}; }
 Rule many(int least, int most) { return {draw_block, least, most}; }
 
-const Draw kCoin = [](Block& block, const FieldDescriptor& field, Dice& dice) {
-  block.GetReflection()->SetBool(&block, &field, dice.coin());
+const Draw kCoin = [](Block& block, const FieldDescriptor& field, RandomStream& random) {
+  block.GetReflection()->SetBool(&block, &field, random.coin());
 };
 /// A place [m] inside every domain.
 const Draw kPlace = number(1, 99);
@@ -192,7 +192,7 @@ const std::map<std::string, Rule>& rules() {
   return rules;
 }
 
-void draw_fields(Block& block, Dice& dice) {
+void draw_fields(Block& block, RandomStream& random) {
   for (int i = 0; i < block.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor& field = *block.GetDescriptor()->field(i);
     const auto rule = rules().find(name_of(field));
@@ -202,8 +202,8 @@ void draw_fields(Block& block, Dice& dice) {
     }
     const auto& [draw, least, most] = rule->second;
     const auto range = static_cast<std::uint64_t>(most - least + 1);
-    const int count = least + static_cast<int>(dice.word() % range);
-    for (int n = 0; n < count; ++n) draw(block, field, dice);
+    const int count = least + static_cast<int>(random.word() % range);
+    for (int n = 0; n < count; ++n) draw(block, field, random);
   }
 }
 
@@ -287,9 +287,9 @@ void write_maps(const std::filesystem::path& folder) {
 }
 
 proto::Scenario drawn_scenario(std::uint64_t seed) {
-  Dice dice(seed, 0);
+  RandomStream random(seed, 0);
   proto::Scenario scenario;
-  draw_fields(scenario, dice);
+  draw_fields(scenario, random);
   agree(scenario);
   return scenario;
 }

@@ -9,9 +9,9 @@
 
 namespace ergocast::lab {
 
-class Dice {
+class RandomStream {
  public:
-  Dice(std::uint64_t seed, std::uint32_t stream) : seed_(seed), stream_(stream) {}
+  RandomStream(std::uint64_t seed, std::uint32_t stream) : seed_(seed), stream_(stream) {}
 
   std::uint64_t word() { return random_words(seed_, Purpose::kFault, stream_, ++draws_).first; }
   /// In (0, 1).

@@ -15,7 +15,7 @@
 
 namespace ergocast::lab {
 
-struct Holder {
+struct TableView {
   Author self;
   const CoverageTable* table = nullptr;    ///< null: it is not admitted
   const Coefficients* coverage = nullptr;  ///< its c_k, as of `answered`
@@ -40,7 +40,7 @@ inline const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const
 }
 
 /// Its own row an agent counts whatever others have heard of it.
-inline bool is_forgotten(const RosterEntry& entry, const Holder& by) {
+inline bool is_forgotten(const RosterEntry& entry, const TableView& by) {
   return entry.author != by.self && entry.forgotten_at(by.answered, by.roster_revision);
 }
 
