@@ -10,7 +10,7 @@
 namespace ergocast::studies {
 
 struct PlanSetting {
-  int nodes = 40;           ///< velocities of a plan
+  int nodes = 20;           ///< velocities of a plan
   double node_s = 5;        ///< how long one is held, a multiple of dt
   int points = 1;           ///< places a node at which f is taken
   double run_weight = 10;   ///< of φ² on the way, against φ² at the horizon

@@ -2,6 +2,7 @@
 // Takes the normalised steps of one plan, and pulls each node back into its two circles.
 #include "lab/studies/plans/planner.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/noise.h"
@@ -42,7 +43,10 @@ void Planner::draw(AgentId agent, const Eigen::Vector2d& along_mps) {
 
 void Planner::improve(const Outlook& outlook, const Eigen::Vector2d& x_m, bool trusted) {
   cost_(outlook, x_m, nodes_, slope_);
-  const double rms = std::sqrt(slope_.squaredNorm() / static_cast<double>(slope_.cols()));
+  // Nodes beyond the mission's end have no slope and no say.
+  const auto flown = std::count_if(outlook.durations_s.begin(), outlook.durations_s.end(),
+                                   [](double duration_s) { return duration_s > 0; });
+  const double rms = std::sqrt(slope_.squaredNorm() / static_cast<double>(flown));
   if (!(rms > 0)) return;
   momentum_ = setting_.momentum * momentum_ + slope_ / rms;
   nodes_ -= setting_.step * u_max_mps_ * momentum_;

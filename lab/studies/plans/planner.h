@@ -18,8 +18,9 @@ class Planner {
   /// The nodes as they are now are announced.
   void announce() { announced_ = nodes_; }
 
-  /// One step: slope over its RMS, momentum, clipped to u_max, and where `trusted` each node is
-  /// kept within trust · u_max of its announced value; there its momentum is halved.
+  /// One step: slope over its RMS over the nodes to be flown, momentum, clipped to u_max, and where
+  /// `trusted` each node is kept within trust · u_max of its announced value; there its momentum is
+  /// halved.
   void improve(const Outlook& outlook, const Eigen::Vector2d& x_m, bool trusted);
 
   /// The next node begins.

@@ -107,16 +107,20 @@ TEST(PlanCost, IsTheMetricToComeForOneNode) {
   const auto modes = static_cast<std::size_t>(mission.basis.mode_count());
   outlook.known_s.resize(modes);
   outlook.others_s.resize(modes);
-  add_gain(mission, 1, {800, 500}, {0, 0}, 20, outlook.known_s.data());
-  outlook.covered_s = 20;
-  Coefficients coverage = 20 * basis_values({800, 500}, mission.domain, mission.basis);
+  // Three agents at one place for 10 s; two of them stay there.
+  const Eigen::Vector2d there_m(800, 500);
+  outlook.known_agents = 3;
+  outlook.covered_s = 30;
+  add_gain(mission, 1, there_m, {0, 0}, 30, outlook.known_s.data());
+  add_gain(mission, 1, there_m, {0, 0}, 10, outlook.others_s.data());
+  Coefficients coverage = 40 * basis_values(there_m, mission.domain, mission.basis);
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector2d place_m = x_m + (i + 0.5) * 0.1 * v_mps;
     coverage += 0.1 * basis_values(place_m, mission.domain, mission.basis);
   }
   Nodes nodes = v_mps, slope = nodes;
   EXPECT_NEAR(PlanCost(mission, setting)(outlook, x_m, nodes, slope),
-              ergodic_metric(coverage / 25, mission.target_coefficients,
+              ergodic_metric(coverage / 45, mission.target_coefficients,
                              sobolev_weights(mission.basis, mission.domain)),
               kRounding);
 }
@@ -160,6 +164,48 @@ TEST(PlanTeam, KeepsEveryPlanWithinTheTrustRegionWhileItFlies) {
     }
   }
   EXPECT_NEAR(farthest_mps, 2, kRounding);
+}
+
+TEST(PlanTeam, FliesItsNodesAndTheirMirrorImageBehindEachEdge) {
+  Mission mission = mission_of(2);
+  mission.law.noise_intensity = 0;
+  PlanSetting setting;
+  setting.nodes = 40;
+  setting.step = 0;  // the first plan as it was drawn
+  PlanTeam team(mission, setting);
+  team.step();
+  const Nodes nodes[] = {team.planner(0).nodes(), team.planner(1).nodes()};
+  Eigen::Vector2d straight_m[] = {mission.starts_m[0], mission.starts_m[1]};
+  Coefficients coverage = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  bool left = false;
+  for (Tick tick = 0; tick < 1999; ++tick) {
+    if (tick > 0) team.step();
+    for (std::size_t i = 0; i < 2; ++i) {
+      coverage += basis_values(straight_m[i], mission.domain, mission.basis) /
+                  static_cast<double>(2 * 1999);
+      straight_m[i] += 0.1 * nodes[i].col(tick / 50);
+      ASSERT_LT((team.x_m(i) - reflect(straight_m[i], mission.domain)).norm(), 1e-6) << tick;
+      left |= !mission.domain.contains(straight_m[i]);
+    }
+  }
+  EXPECT_TRUE(left) << "no edge was met";
+  EXPECT_NEAR(team.metric(),
+              ergodic_metric(coverage, mission.target_coefficients,
+                             sobolev_weights(mission.basis, mission.domain)),
+              kRounding);
+}
+
+TEST(PlanTeam, OfWhichNothingIsHeardFliesAsOneAgentAlone) {
+  PlanSetting deaf;
+  deaf.loss = 1;
+  PlanTeam alone(mission_of(1), PlanSetting()), team(mission_of(3), PlanSetting());
+  PlanTeam unheard(mission_of(3), deaf);
+  for (int tick = 0; tick < 600; ++tick) {
+    for (PlanTeam* each : {&alone, &team, &unheard}) each->step();
+    ASSERT_EQ(unheard.x_m(0), alone.x_m(0)) << tick;
+    // Announced at tick 1 and heard at tick 2, they change the plan there, and the place after it.
+    ASSERT_EQ(team.x_m(0) == alone.x_m(0), tick < 2) << tick;
+  }
 }
 
 /// Nobody is nearer to the truth than one who flies what it said.
