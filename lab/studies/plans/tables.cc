@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -37,26 +39,59 @@ std::string spread(const std::vector<double>& metrics) {
   return text;
 }
 
-/// One line: the plans against the law, over the seeds that both flew.
-void print_row(const fs::path& folder, const std::string& setting, const std::string& row) {
-  Flights law = flights_of(folder / ("law-" + row + ".csv"));
-  const Flights plans = flights_of(folder / (setting + "-" + row + ".csv"));
-  const std::size_t runs = std::min(law.seeds.size(), plans.seeds.size());
-  if (!std::equal(law.seeds.begin(), law.seeds.begin() + static_cast<std::ptrdiff_t>(runs),
-                  plans.seeds.begin())) {
-    throw std::runtime_error("other seeds of " + row + " under " + setting);
+/// φ² under the law and under plans, over the seeds that both flew.
+struct Pairs {
+  Pairs(const fs::path& folder, const std::string& setting, const std::string& row) {
+    const Flights of_law = flights_of(folder / ("law-" + row + ".csv"));
+    const Flights of_plans = flights_of(folder / (setting + "-" + row + ".csv"));
+    const auto runs =
+        static_cast<std::ptrdiff_t>(std::min(of_law.seeds.size(), of_plans.seeds.size()));
+    if (!std::equal(of_law.seeds.begin(), of_law.seeds.begin() + runs, of_plans.seeds.begin())) {
+      throw std::runtime_error("other seeds of " + row + " under " + setting);
+    }
+    law.assign(of_law.metrics.begin(), of_law.metrics.begin() + runs);
+    plans.assign(of_plans.metrics.begin(), of_plans.metrics.begin() + runs);
   }
-  const auto first = [runs](std::vector<double> values) {
-    values.resize(runs);
-    return values;
-  };
-  const std::vector<double> theirs = first(law.metrics), ours = first(plans.metrics);
-  const Estimate ratio = ratio_of(ours, theirs);
-  const double worst =
-      *std::max_element(ours.begin(), ours.end()) / *std::max_element(theirs.begin(), theirs.end());
-  std::printf("| %s | %zu | %s | %s | %.3g (%.3g to %.3g) | %.2g |\n", row.c_str(), runs,
-              spread(theirs).c_str(), spread(ours).c_str(), ratio.value, ratio.low, ratio.high,
-              worst);
+
+  /// "runs: ratio of the means (interval) · ratio of the worst".
+  std::string against() const {
+    const Estimate ratio = ratio_of(plans, law);
+    const double worst =
+        *std::max_element(plans.begin(), plans.end()) / *std::max_element(law.begin(), law.end());
+    char text[96];
+    std::snprintf(text, sizeof text, "%zu: %.3g (%.3g to %.3g) · %.2g", law.size(), ratio.value,
+                  ratio.low, ratio.high, worst);
+    return text;
+  }
+
+  std::vector<double> law, plans;
+};
+
+/// The first setting also with its φ².
+void print_row(const fs::path& folder, const std::vector<std::string>& settings,
+               const std::string& row) {
+  const Pairs first(folder, settings.front(), row);
+  std::string name = row;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  std::printf("| %s | %s | %s |", name.c_str(), spread(first.law).c_str(),
+              spread(first.plans).c_str());
+  for (const std::string& setting : settings)
+    std::printf(" %s |", Pairs(folder, setting, row).against().c_str());
+  std::printf("\n");
+}
+
+void print_table(const fs::path& folder, const std::string& names, int rows, char** row) {
+  std::istringstream words(names);
+  const std::vector<std::string> settings{std::istream_iterator<std::string>(words), {}};
+  if (settings.empty()) throw std::runtime_error("no setting");
+  std::string head = "| | the law | " + settings.front() + " |", rule = "|---|---|---|";
+  for (const std::string& setting : settings) {
+    head += " " + setting + " against the law |";
+    rule += "---|";
+  }
+  std::printf("%s\n%s\n", head.c_str(), rule.c_str());
+  for (int i = 0; i < rows; ++i) print_row(folder, settings, row[i]);
+  std::printf("\n");
 }
 
 }  // namespace
@@ -64,16 +99,11 @@ void print_row(const fs::path& folder, const std::string& setting, const std::st
 
 int main(int argc, char** argv) {
   if (argc < 4) {
-    std::fprintf(stderr, "usage: studies-plans FOLDER SETTING ROW...\n");
+    std::fprintf(stderr, "usage: studies-plans FOLDER 'SETTING...' ROW...\n");
     return 2;
   }
   try {
-    std::printf(
-        "%s:\n\n| | runs | the law: mean · worst | plans: mean · worst | ratio of means | ratio of "
-        "worst cases |\n|---|---|---|---|---|---|\n",
-        argv[2]);
-    for (int row = 3; row < argc; ++row) ergocast::studies::print_row(argv[1], argv[2], argv[row]);
-    std::printf("\n");
+    ergocast::studies::print_table(argv[1], argv[2], argc - 3, argv + 3);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "studies-plans: %s\n", error.what());
