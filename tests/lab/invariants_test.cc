@@ -61,7 +61,7 @@ class InvariantsTest : public ::testing::Test {
     }
   }
   /// An agent that holds coverage of all agents.
-  Holder holder(const CoverageTable& table, Coefficients& c, const Author& self = kOne) {
+  TableView holder(const CoverageTable& table, Coefficients& c, const Author& self = kOne) {
     c = Coefficients::Zero(144);
     table.average(c);
     return {self, &table, &c, &roster_, 88};
