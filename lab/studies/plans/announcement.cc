@@ -9,7 +9,7 @@
 namespace ergocast::studies {
 
 Announcement::Announcement(const Mission& mission, const PlanSetting& setting, Tick tick,
-                           std::vector<double> sums_s, const Eigen::Vector2d& x_m, Nodes nodes)
+                           std::vector<double> sums_s, const Eigen::Vector3d& x_m, Nodes nodes)
     : mission_(mission),
       clock_(mission, setting),
       points_(setting.points),
@@ -41,7 +41,7 @@ void Announcement::advance(Tick tick) {
 
 void Announcement::foresee(int from, int to) {
   const std::size_t modes = sums_s_.size();
-  Eigen::Vector2d at_m = x_m_;
+  Eigen::Vector3d at_m = x_m_;
   for (int node = from; node < to; ++node) {
     const auto n = static_cast<std::size_t>(node);
     double* gain = gains_s_.data() + n * modes;

@@ -14,13 +14,13 @@ namespace ergocast::studies {
 class Announcement {
  public:
   Announcement(const Mission& mission, const PlanSetting& setting, Tick tick,
-               std::vector<double> sums_s, const Eigen::Vector2d& x_m, Nodes nodes);
+               std::vector<double> sums_s, const Eigen::Vector3d& x_m, Nodes nodes);
 
   /// Continues to `tick`, not before the present one.
   void advance(Tick tick);
 
   const std::vector<double>& sums_s() const { return sums_s_; }
-  const Eigen::Vector2d& x_m() const { return x_m_; }
+  const Eigen::Vector3d& x_m() const { return x_m_; }
   const Nodes& nodes() const { return nodes_; }
   /// What it will gain, node by node: nodes × modes [s].
   const std::vector<double>& gains_s() const { return gains_s_; }
@@ -33,7 +33,7 @@ class Announcement {
   int points_;
   Tick tick_;
   std::vector<double> sums_s_;
-  Eigen::Vector2d x_m_;
+  Eigen::Vector3d x_m_;
   Nodes nodes_;
   std::vector<double> durations_s_, gains_s_;
 };

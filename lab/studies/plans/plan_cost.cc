@@ -29,7 +29,7 @@ PlanCost::PlanCost(const Mission& mission, const PlanSetting& setting)
   places_.reserve(static_cast<std::size_t>(setting.nodes * setting.points));
 }
 
-double PlanCost::operator()(const Outlook& outlook, const Eigen::Vector2d& x_m, const Nodes& nodes,
+double PlanCost::operator()(const Outlook& outlook, const Eigen::Vector3d& x_m, const Nodes& nodes,
                             Nodes& slope) {
   ERGOCAST_REQUIRE(outlook.durations_s.front() > 0);
   const int flown = fly(outlook, x_m, nodes);
@@ -40,8 +40,8 @@ double PlanCost::operator()(const Outlook& outlook, const Eigen::Vector2d& x_m, 
 
 /// Sets places and W_h; returns how many nodes have τ > 0.
 ERGOCAST_VECTORIZED
-int PlanCost::fly(const Outlook& outlook, const Eigen::Vector2d& x_m, const Nodes& nodes) {
-  Eigen::Vector2d at_m = x_m;
+int PlanCost::fly(const Outlook& outlook, const Eigen::Vector3d& x_m, const Nodes& nodes) {
+  Eigen::Vector3d at_m = x_m;
   const double* before = outlook.known_s.data();
   const double* target = mission_.target_coefficients.data();
   double wanted_s = outlook.covered_s;  // of μ; all of the past at the first node
@@ -102,7 +102,7 @@ void PlanCost::trace_back(const Outlook& outlook, int flown, Nodes& slope) {
   std::fill(adjoint_.begin(), adjoint_.end(), 0);
   double* adjoint = adjoint_.data();
   const double* weight = weights_.data();
-  Eigen::Vector2d later(0, 0);  // ∂J by a shift of all later places
+  Eigen::Vector3d later(0, 0, 0);  // ∂J by a shift of all later places
   for (int node = flown - 1; node >= 0; --node) {
     const double factor = factors_[static_cast<std::size_t>(node)];
     const double duration_s = outlook.durations_s[static_cast<std::size_t>(node)];
@@ -111,7 +111,7 @@ void PlanCost::trace_back(const Outlook& outlook, int flown, Nodes& slope) {
     slope.col(node) = duration_s * later;
     for (int point = 0; point < points_; ++point) {
       const BasisAt& place = places_[static_cast<std::size_t>(node * points_ + point)];
-      const Eigen::Vector2d here =
+      const Eigen::Vector3d here =
           duration_s / points_ * weighted_gradient(place, mission_.basis, adjoint);
       slope.col(node) += share_at(point, points_) * duration_s * here;
       later += here;
@@ -119,8 +119,8 @@ void PlanCost::trace_back(const Outlook& outlook, int flown, Nodes& slope) {
   }
 }
 
-void add_gain(const Mission& mission, int points, const Eigen::Vector2d& x_m,
-              const Eigen::Vector2d& v_mps, double duration_s, double* gain) {
+void add_gain(const Mission& mission, int points, const Eigen::Vector3d& x_m,
+              const Eigen::Vector3d& v_mps, double duration_s, double* gain) {
   for (int point = 0; point < points; ++point) {
     const CosinesAt place(x_m + share_at(point, points) * duration_s * v_mps, mission.domain,
                           mission.basis);

@@ -21,7 +21,7 @@
 
 namespace ergocast::studies {
 
-using Nodes = Eigen::Matrix2Xd;  ///< velocities [m/s], one a column, or derivatives by them
+using Nodes = Eigen::Matrix3Xd;  ///< velocities [m/s], one a column, or derivatives by them
 
 /// What an agent knows and expects while it plans.
 struct Outlook {
@@ -40,11 +40,11 @@ class PlanCost {
   /// J of flying `nodes` from `x_m`.
   /// @param slope  takes ∂J/∂node [s/m]; nodes with τ = 0 get 0
   /// @pre Outlook::durations_s[0] > 0
-  double operator()(const Outlook& outlook, const Eigen::Vector2d& x_m, const Nodes& nodes,
+  double operator()(const Outlook& outlook, const Eigen::Vector3d& x_m, const Nodes& nodes,
                     Nodes& slope);
 
  private:
-  int fly(const Outlook& outlook, const Eigen::Vector2d& x_m, const Nodes& nodes);
+  int fly(const Outlook& outlook, const Eigen::Vector3d& x_m, const Nodes& nodes);
   double weigh(const Outlook& outlook, int flown);
   void trace_back(const Outlook& outlook, int flown, Nodes& slope);
   double* residual_of(int node) { return residuals_.data() + std::ptrdiff_t{node} * modes_; }
@@ -60,7 +60,7 @@ class PlanCost {
 };
 
 /// gain += duration_s / points · Σ f at `points` places along a straight way from `x_m`.
-void add_gain(const Mission& mission, int points, const Eigen::Vector2d& x_m,
-              const Eigen::Vector2d& v_mps, double duration_s, double* gain);
+void add_gain(const Mission& mission, int points, const Eigen::Vector3d& x_m,
+              const Eigen::Vector3d& v_mps, double duration_s, double* gain);
 
 }  // namespace ergocast::studies

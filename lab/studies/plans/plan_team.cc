@@ -27,7 +27,7 @@ void add(const double* from, std::size_t count, double* to) {
 
 }  // namespace
 
-PlanTeam::Agent::Agent(AgentId number, const Eigen::Vector2d& start_m, const Mission& mission,
+PlanTeam::Agent::Agent(AgentId number, const Eigen::Vector3d& start_m, const Mission& mission,
                        const PlanSetting& setting)
     : id(number),
       x_m(start_m),
@@ -49,8 +49,8 @@ PlanTeam::PlanTeam(Mission mission, const PlanSetting& setting)
           static_cast<Tick>(std::ceil(setting.trust_from * mission_.domain.size_m.maxCoeff() /
                                       mission_.law.u_max_mps / mission_.timing.dt_s))),
       underway_(mission_.starts_m.size()),
-      coverage_(Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y)) {
-  for (const Eigen::Vector2d& start_m : mission_.starts_m)
+      coverage_(Coefficients::Zero(mission_.basis.mode_count())) {
+  for (const Eigen::Vector3d& start_m : mission_.starts_m)
     agents_.emplace_back(static_cast<AgentId>(agents_.size()), start_m, mission_, setting_);
 }
 
@@ -136,8 +136,8 @@ void PlanTeam::command(Agent& agent) {
         agent.outlook.known_s[static_cast<std::size_t>(k)] / agent.outlook.covered_s;
   }
   controller_.see(coverage_);
-  const Eigen::Vector2d law_mps = controller_.command(agent.id, tick_, agent.x_m, agent.at);
-  const Eigen::Vector2d u_mps =
+  const Eigen::Vector3d law_mps = controller_.command(agent.id, tick_, agent.x_m, agent.at);
+  const Eigen::Vector3d u_mps =
       smooth_input(controller_.spectral_gradient(), controller_.epsilon(), mission_.law.u_max_mps);
   if (tick_ == 0) agent.planner.draw(agent.id, u_mps);
   if (agent.outlook.durations_s.front() > 0) {
@@ -147,8 +147,8 @@ void PlanTeam::command(Agent& agent) {
 }
 
 void PlanTeam::move(Agent& agent) {
-  const Rectangle& domain = mission_.domain;
-  const Eigen::Vector2d straight_m = moved(mission_, agent.id, tick_, agent.x_m, agent.v_mps);
+  const Box& domain = mission_.domain;
+  const Eigen::Vector3d straight_m = moved(mission_, agent.id, tick_, agent.x_m, agent.v_mps);
   agent.x_m = reflect(straight_m, domain);
   for (int axis = 0; axis < 2; ++axis) {
     const double folds =
@@ -158,7 +158,7 @@ void PlanTeam::move(Agent& agent) {
 }
 
 double PlanTeam::metric() const {
-  Coefficients coverage = Coefficients::Zero(mission_.basis.modes_x, mission_.basis.modes_y);
+  Coefficients coverage = Coefficients::Zero(mission_.basis.mode_count());
   for (const Agent& agent : agents_) {
     for (Eigen::Index k = 0; k < coverage.size(); ++k)
       coverage.data()[k] += agent.sums_s[static_cast<std::size_t>(k)];

@@ -27,18 +27,18 @@ class PlanTeam {
   void fly();
 
   Tick tick() const { return tick_; }
-  const Eigen::Vector2d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
+  const Eigen::Vector3d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
   const Planner& planner(std::size_t agent) const { return agents_[agent].planner; }
   /// φ² of all samples taken so far.
   double metric() const;
 
  private:
   struct Agent {
-    Agent(AgentId number, const Eigen::Vector2d& start_m, const Mission& mission,
+    Agent(AgentId number, const Eigen::Vector3d& start_m, const Mission& mission,
           const PlanSetting& setting);
 
     AgentId id;
-    Eigen::Vector2d x_m, v_mps{0, 0};
+    Eigen::Vector3d x_m, v_mps{0, 0, 0};
     BasisAt at;
     std::vector<double> sums_s;
     Planner planner;

@@ -24,24 +24,26 @@ bool cut(Vector&& v, double length) {
 Planner::Planner(const Mission& mission, const PlanSetting& setting)
     : setting_(setting),
       u_max_mps_(mission.law.u_max_mps),
+      domain_(mission.domain),
       seed_(mission.seed),
       cost_(mission, setting),
-      nodes_(Nodes::Zero(2, setting.nodes)),
+      nodes_(Nodes::Zero(3, setting.nodes)),
       announced_(nodes_),
       momentum_(nodes_),
       slope_(nodes_) {}
 
-void Planner::draw(AgentId agent, const Eigen::Vector2d& along_mps) {
+void Planner::draw(AgentId agent, const Eigen::Vector3d& along_mps) {
   for (Eigen::Index h = 0; h < nodes_.cols(); ++h) {
     // Nothing waits for answers here, so these numbers are free.
-    const Eigen::Vector2d spread = normal_pair(
-        seed_, Purpose::kAnswer, static_cast<std::uint32_t>(agent), static_cast<std::uint64_t>(h));
+    const Eigen::Vector3d spread =
+        normal_in(domain_, seed_, Purpose::kAnswer, static_cast<std::uint32_t>(agent),
+                  static_cast<std::uint64_t>(h));
     nodes_.col(h) = along_mps + setting_.first_spread * u_max_mps_ * spread;
     cut(nodes_.col(h), u_max_mps_);
   }
 }
 
-void Planner::improve(const Outlook& outlook, const Eigen::Vector2d& x_m, bool trusted) {
+void Planner::improve(const Outlook& outlook, const Eigen::Vector3d& x_m, bool trusted) {
   cost_(outlook, x_m, nodes_, slope_);
   // Nodes beyond the mission's end have no slope and no say.
   const auto flown = std::count_if(outlook.durations_s.begin(), outlook.durations_s.end(),
@@ -54,7 +56,7 @@ void Planner::improve(const Outlook& outlook, const Eigen::Vector2d& x_m, bool t
     cut(nodes_.col(h), u_max_mps_);
     if (!trusted) continue;
     // Between two velocities within u_max, so what is cut stays within it.
-    Eigen::Vector2d away = nodes_.col(h) - announced_.col(h);
+    Eigen::Vector3d away = nodes_.col(h) - announced_.col(h);
     if (!cut(away, setting_.trust * u_max_mps_)) continue;
     nodes_.col(h) = announced_.col(h) + away;
     momentum_.col(h) *= 0.5;

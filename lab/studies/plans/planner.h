@@ -13,7 +13,7 @@ class Planner {
 
   /// A first plan: every node `along_mps`, plus normal numbers of first_spread · u_max, clipped to
   /// u_max. A function of the mission's seed and the agent.
-  void draw(AgentId agent, const Eigen::Vector2d& along_mps);
+  void draw(AgentId agent, const Eigen::Vector3d& along_mps);
 
   /// The nodes as they are now are announced.
   void announce() { announced_ = nodes_; }
@@ -21,7 +21,7 @@ class Planner {
   /// One step: slope over its RMS over the nodes to be flown, momentum, clipped to u_max, and where
   /// `trusted` each node is kept within trust · u_max of its announced value; there its momentum is
   /// halved.
-  void improve(const Outlook& outlook, const Eigen::Vector2d& x_m, bool trusted);
+  void improve(const Outlook& outlook, const Eigen::Vector3d& x_m, bool trusted);
 
   /// The next node begins.
   void turn();
@@ -34,6 +34,7 @@ class Planner {
  private:
   PlanSetting setting_;
   double u_max_mps_;
+  Box domain_;
   std::uint64_t seed_;
   PlanCost cost_;
   Nodes nodes_, announced_, momentum_, slope_;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-Eigen::Vector2d drawn(std::uint32_t who, int step) {
-  return normal_pair(7, Purpose::kFault, who, static_cast<std::uint64_t>(step));
+Eigen::Vector3d drawn(std::uint32_t who, int step) {
+  return on_ground(normal_pair(7, Purpose::kFault, who, static_cast<std::uint64_t>(step)));
 }
 
 /// A domain off the origin with more modes along y than along x, and a target that is no
@@ -21,11 +21,11 @@ Eigen::Vector2d drawn(std::uint32_t who, int step) {
 Mission mission_of(int agents) {
   Mission mission;
   mission.seed = 5;
-  mission.domain = {{-300, 40}, {2000, 1500}};
+  mission.domain = {{-300, 40, 0}, {2000, 1500, 0}};
   mission.basis.modes_x = 7;
   mission.basis.modes_y = 9;
-  mission.target_coefficients = 0.5 * (basis_values({200, 400}, mission.domain, mission.basis) +
-                                       basis_values({1300, 900}, mission.domain, mission.basis));
+  mission.target_coefficients = 0.5 * (basis_values({200, 400, 0}, mission.domain, mission.basis) +
+                                       basis_values({1300, 900, 0}, mission.domain, mission.basis));
   mission.law.u_max_mps = 20;
   mission.law.regularization = Regularization::kRelative;
   mission.law.epsilon = 0.05;
@@ -46,11 +46,11 @@ Outlook outlook_of(const Mission& mission, const PlanSetting& setting, Tick tick
   outlook.known_agents = 3;
   outlook.covered_s = 3 * mission.timing.dt_s * static_cast<double>(tick + 1);
   outlook.known_s.resize(modes);
-  add_gain(mission, 1, {100, 300}, {3, 2}, outlook.covered_s, outlook.known_s.data());
+  add_gain(mission, 1, {100, 300, 0}, {3, 2, 0}, outlook.covered_s, outlook.known_s.data());
   outlook.others_s.resize(modes * outlook.durations_s.size());
   for (std::size_t h = 0; h < outlook.durations_s.size(); ++h) {
     for (const double x_m : {400.0, 1100.0}) {
-      add_gain(mission, 1, {x_m, 700}, {5.0 * static_cast<double>(h), 1}, outlook.durations_s[h],
+      add_gain(mission, 1, {x_m, 700, 0}, {5.0 * static_cast<double>(h), 1, 0}, outlook.durations_s[h],
                outlook.others_s.data() + h * modes);
     }
   }
@@ -58,7 +58,7 @@ Outlook outlook_of(const Mission& mission, const PlanSetting& setting, Tick tick
 }
 
 Nodes nodes_of(const PlanSetting& setting) {
-  Nodes nodes(2, setting.nodes);
+  Nodes nodes(3, setting.nodes);
   for (int h = 0; h < setting.nodes; ++h) nodes.col(h) = 8 * drawn(1, h);
   return nodes;
 }
@@ -74,7 +74,7 @@ TEST_P(Adjoint, IsTheSlopeByOnesOwnNodes) {
   const Outlook outlook = outlook_of(mission, setting, tick);
   PlanCost cost(mission, setting);
   Nodes nodes = nodes_of(setting), slope = nodes, unused = nodes;
-  const Eigen::Vector2d x_m(150, 900);
+  const Eigen::Vector3d x_m(150, 900, 0);
   cost(outlook, x_m, nodes, slope);
   const double greatest = slope.cwiseAbs().maxCoeff();
   ASSERT_GT(greatest, 0);
@@ -101,21 +101,21 @@ TEST(PlanCost, IsTheMetricToComeForOneNode) {
   setting.nodes = 1;
   setting.points = 50;  // one each tick
   setting.run_weight = 0;
-  const Eigen::Vector2d x_m(150, 900), v_mps(12, -7);
+  const Eigen::Vector3d x_m(150, 900, 0), v_mps(12, -7, 0);
   Outlook outlook;
   outlook.durations_s = {5};
   const auto modes = static_cast<std::size_t>(mission.basis.mode_count());
   outlook.known_s.resize(modes);
   outlook.others_s.resize(modes);
   // Three agents at one place for 10 s; two of them stay there.
-  const Eigen::Vector2d there_m(800, 500);
+  const Eigen::Vector3d there_m(800, 500, 0);
   outlook.known_agents = 3;
   outlook.covered_s = 30;
-  add_gain(mission, 1, there_m, {0, 0}, 30, outlook.known_s.data());
-  add_gain(mission, 1, there_m, {0, 0}, 10, outlook.others_s.data());
+  add_gain(mission, 1, there_m, {0, 0, 0}, 30, outlook.known_s.data());
+  add_gain(mission, 1, there_m, {0, 0, 0}, 10, outlook.others_s.data());
   Coefficients coverage = 40 * basis_values(there_m, mission.domain, mission.basis);
   for (int i = 0; i < 50; ++i) {
-    const Eigen::Vector2d place_m = x_m + (i + 0.5) * 0.1 * v_mps;
+    const Eigen::Vector3d place_m = x_m + (i + 0.5) * 0.1 * v_mps;
     coverage += 0.1 * basis_values(place_m, mission.domain, mission.basis);
   }
   Nodes nodes = v_mps, slope = nodes;
@@ -130,19 +130,19 @@ TEST(Planner, StaysWithinTheTrustRegionAndTheGreatestSpeed) {
   PlanSetting setting;
   setting.step = 0.2;
   Planner planner(mission, setting);
-  planner.draw(1, {15, 5});
+  planner.draw(1, {15, 5, 0});
   planner.announce();
   const Outlook outlook = outlook_of(mission, setting, 1234);
   double farthest_mps = 0;
   for (int i = 0; i < 50; ++i) {
-    planner.improve(outlook, {150, 900}, true);
+    planner.improve(outlook, {150, 900, 0}, true);
     const double away_mps = (planner.nodes() - planner.announced()).colwise().norm().maxCoeff();
     EXPECT_LE(away_mps, 0.1 * 20 * (1 + kRounding));
     EXPECT_LE(planner.nodes().colwise().norm().maxCoeff(), 20 * (1 + kRounding));
     farthest_mps = std::max(farthest_mps, away_mps);
   }
   EXPECT_NEAR(farthest_mps, 2, kRounding) << "the region never bound";
-  planner.improve(outlook, {150, 900}, false);
+  planner.improve(outlook, {150, 900, 0}, false);
   EXPECT_GT((planner.nodes() - planner.announced()).colwise().norm().maxCoeff(), 2);
 }
 
@@ -175,8 +175,8 @@ TEST(PlanTeam, FliesItsNodesAndTheirMirrorImageBehindEachEdge) {
   PlanTeam team(mission, setting);
   team.step();
   const Nodes nodes[] = {team.planner(0).nodes(), team.planner(1).nodes()};
-  Eigen::Vector2d straight_m[] = {mission.starts_m[0], mission.starts_m[1]};
-  Coefficients coverage = Coefficients::Zero(mission.basis.modes_x, mission.basis.modes_y);
+  Eigen::Vector3d straight_m[] = {mission.starts_m[0], mission.starts_m[1]};
+  Coefficients coverage = Coefficients::Zero(mission.basis.mode_count());
   bool left = false;
   for (Tick tick = 0; tick < 1999; ++tick) {
     if (tick > 0) team.step();
@@ -215,12 +215,12 @@ TEST(Announcement, ContinuesAsItsAuthorFlies) {
   setting.nodes = 6;
   const Nodes nodes = nodes_of(setting);
   const auto modes = static_cast<std::size_t>(mission.basis.mode_count());
-  Announcement said(mission, setting, 1234, std::vector<double>(modes), {150, 900}, nodes);
-  Eigen::Vector2d x_m(150, 900);
+  Announcement said(mission, setting, 1234, std::vector<double>(modes), {150, 900, 0}, nodes);
+  Eigen::Vector3d x_m(150, 900, 0);
   std::vector<double> sums_s(modes);
   for (Tick tick = 1234; tick < 1363; ++tick) {
     x_m += 0.1 * nodes.col(tick / 50 - 1234 / 50);
-    add_gain(mission, 1, x_m, {0, 0}, 0.1, sums_s.data());
+    add_gain(mission, 1, x_m, {0, 0, 0}, 0.1, sums_s.data());
   }
   said.advance(1300);
   said.advance(1363);
