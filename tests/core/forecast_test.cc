@@ -323,6 +323,18 @@ TEST_P(Foreseen, IsTheFormula) {
   EXPECT_GT(largest, 0.1) << "or nothing was foreseen";
 }
 
+/// As many modes in six slabs, of which the second block begins within a row of the last.
+TEST_P(Foreseen, IsTheFormulaInSpaceToo) {
+  mission_.domain.origin_m.z() = -20;
+  mission_.domain.size_m.z() = 400;
+  mission_.basis.modes_x = 4;
+  mission_.basis.modes_y = mission_.basis.modes_z = 6;
+  in_every_history([&](const Known& known, Dice&) {
+    ASSERT_LT((foreseen(known, mission_) - by_the_formula(known, mission_)).cwiseAbs().maxCoeff(),
+              1e-12);
+  });
+}
+
 TEST_P(Foreseen, IsAnAverageWhateverAnybodyClaims) {
   in_every_history([&](Known known, Dice& dice) {
     for (Contribution& block : known.heard) {
