@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast simulate --seeds`: flies each seed in a worker process, prints failures with the
+// `ergocast simulate --seeds`: simulates each seed in a worker process, prints failures with the
 // command that repeats them.
 #include <chrono>
 #include <cstdio>
@@ -58,7 +58,7 @@ TrialReport report_of_death(std::uint64_t seed, const std::string& how) {
   return report;
 }
 
-/// The command that flies one seed again.
+/// The command that simulates one seed again.
 std::string replay_of(const TrialsOptions& options, std::uint64_t seed) {
   std::string command = "ergocast simulate " + shell_word(options.mission.scenario.string());
   const Overrides& over = options.mission.overrides;
@@ -136,17 +136,17 @@ int trials(const TrialsOptions& options) {
   if (!path.empty() && !csv) return complain(kExitBadInput, path.string() + ": cannot be written (--out takes a file here)");
 
   Nowhere nowhere;
-  const auto fly = [&](std::uint64_t job) {
+  const auto run = [&](std::uint64_t job) {
     const std::uint64_t seed = options.seeds.first + job;
     const Mission mission = scenario->with_seed(seed).mission();
     return report_of(
-        lab::fly_trial({encode_plan(mission), (*faults)(seed), version()}, nowhere, nowhere));
+        lab::run_trial({encode_plan(mission), (*faults)(seed), version()}, nowhere, nowhere));
   };
   StopSignals signals;
   Desk desk(options, path.empty() ? static_cast<std::ostream&>(nowhere) : csv);
   const auto start = std::chrono::steady_clock::now();
   Jobs jobs = jobs_with_results<TrialReport>(
-      fly, [&](std::uint64_t, const TrialReport& report) { desk.take(report); });
+      run, [&](std::uint64_t, const TrialReport& report) { desk.take(report); });
   jobs.count = options.seeds.count();
   jobs.processes = options.jobs;
   jobs.patience_s = kPatience_s;

@@ -3,7 +3,7 @@
 // what holds the classical law. Medians over seeds, since the noise decides how soon.
 #include <gtest/gtest.h>
 
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {
