@@ -8,7 +8,7 @@
 #include "cli/complain.h"
 #include "cli/progress.h"
 #include "cli/run_directory.h"
-#include "lab/swarm.h"
+#include "lab/simulation.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "runtime/node.h"
@@ -21,36 +21,37 @@ namespace {
 /// Turns between two updates of the display and checks for signals, which cost time.
 constexpr int kTurnsBetweenLooks = 256;
 
-void show(const lab::Swarm& swarm, const Mission& mission, ProgressDisplay& display) {
+void show(const lab::Simulation& simulation, const Mission& mission, ProgressDisplay& display) {
   const int agents = static_cast<int>(mission.starts_m.size());
-  display.show({swarm.recorder().next_row(), mission.timing.tick_count, mission.timing.dt_s,
-                swarm.recorder().facts().ergodic_metric_last, agents, agents});
+  const Recorder& recorder = simulation.recorder();
+  display.show({recorder.next_row(), mission.timing.tick_count, mission.timing.dt_s,
+                recorder.facts().ergodic_metric_last, agents, agents});
 }
 
-nlohmann::ordered_json summary_of(const lab::Swarm& swarm, const Scenario& scenario,
+nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scenario,
                                   const std::string& started, double wall_time_s) {
   RunContext context;
   context.started = started;
-  context.run = swarm.recorder().run();
+  context.run = recorder.run();
   context.version = version();
   context.build = build_text();
   context.scenario_hash = plan_hash(encode_plan(scenario.mission()));
   context.simulated = true;
   context.wall_time_s = wall_time_s;
   context.cpu_has_fma = cpu_has_fma();
-  return summarize(swarm.recorder(), context);
+  return summarize(recorder, context);
 }
 
 /// Runs until the mission is over, a signal arrives, or the disk is full. Returns the wall time.
-double fly(lab::Swarm& swarm, const Mission& mission, const RunRecord& record) {
+double run(lab::Simulation& simulation, const Mission& mission, const RunRecord& record) {
   StopSignals signals;
   ProgressDisplay display;
   const auto start = std::chrono::steady_clock::now();
   int turns = 0;
-  while (swarm.step()) {
+  while (simulation.step()) {
     if (++turns % kTurnsBetweenLooks != 0) continue;
-    show(swarm, mission, display);
-    if (signals.take() > 0) swarm.coordinator().end(false, "Ctrl-C or SIGTERM", swarm.now());
+    show(simulation, mission, display);
+    if (signals.take() > 0) simulation.end("Ctrl-C or SIGTERM");
     if (!record.good()) break;
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -71,21 +72,17 @@ int simulate(const MissionOptions& options) {
     return complain(kExitBadInput, *problem);
   }
   RunRecord& record = *std::get<0>(created);
-  lab::Options lab_options;
-  lab_options.plan = encode_plan(scenario->mission());
-  lab_options.agents = static_cast<int>(scenario->mission().starts_m.size());
-  lab_options.host = host_name();
-  lab_options.version = version();
-  lab::Swarm swarm(std::move(lab_options), record.trajectory(), record.metrics());
+  lab::Simulation simulation({.plan = encode_plan(scenario->mission()), .version = version(), .host = host_name()},
+                             record.trajectory(), record.metrics());
 
   const std::string started = wall_clock_text();
-  const double wall_time_s = fly(swarm, scenario->mission(), record);
-  const auto summary = summary_of(swarm, *scenario, started, wall_time_s);
+  const double wall_time_s = run(simulation, scenario->mission(), record);
+  const auto summary = summary_of(simulation.recorder(), *scenario, started, wall_time_s);
   auto error = record.flush();
   if (!error) error = write_file(folder / kSummaryFile, to_text(summary));
   if (error) return complain(kExitFailed, *error + "; the record is incomplete");
   conclude(folder, summary, *scenario);
-  return swarm.coordinator().state() == MissionState::kFailed ? kExitFailed : kExitDone;
+  return simulation.coordinator().state() == MissionState::kFailed ? kExitFailed : kExitDone;
 }
 
 }  // namespace ergocast::cli

@@ -136,17 +136,17 @@ int trials(const TrialsOptions& options) {
   if (!path.empty() && !csv) return complain(kExitBadInput, path.string() + ": cannot be written (--out takes a file here)");
 
   Nowhere nowhere;
-  const auto fly = [&](std::uint64_t job) {
+  const auto run = [&](std::uint64_t job) {
     const std::uint64_t seed = options.seeds.first + job;
     const Mission mission = scenario->with_seed(seed).mission();
     return report_of(
-        lab::fly_trial({encode_plan(mission), (*faults)(seed), version()}, nowhere, nowhere));
+        lab::run_trial({encode_plan(mission), (*faults)(seed), version()}, nowhere, nowhere));
   };
   StopSignals signals;
   Desk desk(options, path.empty() ? static_cast<std::ostream&>(nowhere) : csv);
   const auto start = std::chrono::steady_clock::now();
   Jobs jobs = jobs_with_results<TrialReport>(
-      fly, [&](std::uint64_t, const TrialReport& report) { desk.take(report); });
+      run, [&](std::uint64_t, const TrialReport& report) { desk.take(report); });
   jobs.count = options.seeds.count();
   jobs.processes = options.jobs;
   jobs.patience_s = kPatience_s;

@@ -11,7 +11,7 @@
 #include "cli/run_directory.h"
 #include "cli/trajectory_comparison.h"
 #include "core/ids.h"
-#include "lab/swarm.h"
+#include "lab/simulation.h"
 #include "logger/recorder.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
@@ -27,30 +27,23 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kTurnsBetweenComparisons = 256;
 
-/// The simulation of a plan, with the tables that its recorder writes.
-struct Simulation {
-  explicit Simulation(const Mission& mission) : swarm(options_of(mission), trajectory, metrics) {}
-
-  static lab::Options options_of(const Mission& mission) {
-    lab::Options options;
-    options.plan = encode_plan(mission);
-    options.agents = static_cast<int>(mission.starts_m.size());
-    options.version = version();
-    return options;
-  }
+/// The simulation of a plan, as the recorder in it writes it.
+struct Repetition {
+  explicit Repetition(const Mission& mission)
+      : simulation({.plan = encode_plan(mission), .version = version()}, trajectory, metrics) {}
 
   /// Runs until the first difference or the end of either trajectory.
   void run(TrajectoryComparison& comparison) {
     bool more = true;
     for (bool going_on = true; more && going_on;) {
-      for (int i = 0; i < kTurnsBetweenComparisons && more; ++i) more = swarm.step();
+      for (int i = 0; i < kTurnsBetweenComparisons && more; ++i) more = simulation.step();
       std::istringstream rows(std::exchange(trajectory, std::ostringstream()).str());
       going_on = comparison.compare(rows);
     }
   }
 
   std::ostringstream trajectory, metrics;
-  lab::Swarm swarm;
+  lab::Simulation simulation;
 };
 
 /// A recorder that received only the recorded rows, and the tables that it writes.
@@ -163,15 +156,15 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
 
 /// Compares everything else that follows from the compared trajectory.
 std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission, RunData rows,
-                                             const Simulation& simulation,
+                                             const Repetition& repetition,
                                              const TrajectoryComparison& comparison, const Json& summary) {
-  const Recorder& simulated = simulation.swarm.recorder();
+  const Recorder& simulated = repetition.simulation.recorder();
   const bool complete = !comparison.recorded_over();
   const bool whole = complete && comparison.missing() == 0 && is_simulated(summary, simulated);
   const Observer observer(std::move(rows), simulated.follower());
   const Expectation expectation{
       .recorder = whole ? simulated : observer.recorder,
-      .metrics = (whole ? simulation.metrics : observer.metrics).str(),
+      .metrics = (whole ? repetition.metrics : observer.metrics).str(),
       .simulation = is_simulated(summary, simulated),
       .whole = whole,
       .complete = complete,
@@ -215,12 +208,12 @@ int verify(const fs::path& run_dir) {
   auto read = read_summary(run_dir);
   if (const auto* problem = std::get_if<std::string>(&read)) return complain(kExitBadInput, *problem);
   Json& summary = std::get<Json>(read);
-  Simulation simulation(*mission);
+  Repetition repetition(*mission);
   if (!summary.is_object()) {
     tell(run_dir.string() + ": no " + kSummaryFile +
          ", so nothing is known of restarts; comparing all the same");
     summary = Json::object();
-  } else if (!is_simulated(summary, simulation.swarm.recorder())) {
+  } else if (!is_simulated(summary, repetition.simulation.recorder())) {
     const auto reason = why_not_repeatable(summary, *mission);
     if (!reason.empty()) return complain(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
   }
@@ -230,7 +223,7 @@ int verify(const fs::path& run_dir) {
     if (!file.difference.empty()) return report_difference(run_dir, file.difference, summary);
   }
   if (summary.value("emergency_stop", Json()) == true) comparison.expect_halt();
-  simulation.run(comparison);
+  repetition.run(comparison);
   if (const auto& problem = comparison.problem()) return complain(kExitBadInput, *problem);
   if (const auto difference = difference_of(comparison, run_dir, summary); !difference.empty()) {
     const std::string where = comparison.same() ? "" : ", first at " + comparison.place();
@@ -241,7 +234,7 @@ int verify(const fs::path& run_dir) {
   if (const auto* problem = std::get_if<std::string>(&rows)) {
     return report_difference(run_dir, *problem + '\n', summary);
   }
-  auto rest = compare_the_rest(run_dir, *mission, std::get<RunData>(std::move(rows)), simulation, comparison,
+  auto rest = compare_the_rest(run_dir, *mission, std::get<RunData>(std::move(rows)), repetition, comparison,
                                summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/noise.h"
 
@@ -24,16 +25,22 @@ bool quiet(const Faults& f) {
 
 }  // namespace
 
-Network::Network(std::uint64_t seed, const Faults& faults, int nodes)
+Network::Network(std::uint64_t seed, const Faults& faults, int nodes,
+                 PacingClock::duration latency)
     : seed_(seed),
       faults_(faults),
       quiet_(quiet(faults)),
       nodes_(nodes),
+      latency_(latency),
       links_(static_cast<std::size_t>(nodes * nodes * kBusCount)),
       link_cuts_(static_cast<std::size_t>(nodes * nodes)) {}
 
 int Network::send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId transmitter,
-                  const std::shared_ptr<const Message>& message) {
+                  std::shared_ptr<Decoded> read) {
+  if (quiet_ && cuts_ == 0) {
+    push(now + latency_, {bus, transmitter, to, std::move(read)});
+    return 0;
+  }
   NodeSet at_once;  // all whom nothing special happens to
   int corrupted = 0;
   for (NodeId node = 0; node < nodes_; ++node) {
@@ -47,14 +54,16 @@ int Network::send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId 
     corrupted += fate.corrupted ? 1 : 0;
     for (const auto& arrival : {fate.arrives, fate.arrives_again, fate.is_replayed}) {
       if (!arrival) continue;
-      if (*arrival == now + kLatency && !at_once.test(bit)) {
+      if (*arrival == now + latency_ && !at_once.test(bit)) {
         at_once.set(bit);
       } else {
-        push(*arrival, bus, transmitter, NodeSet().set(bit), message);
+        push(*arrival, {bus, transmitter, NodeSet().set(bit), read});
       }
     }
   }
-  if (at_once.any()) push(now + kLatency, bus, transmitter, at_once, message);
+  if (at_once.any()) {
+    push(now + latency_, {bus, transmitter, at_once, std::move(read)});
+  }
   return corrupted;
 }
 
@@ -64,7 +73,7 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
     return {};
   }
   const bool wired = faults_.swarm_bus_only > 0 && bus != Bus::kSwarm;
-  if (quiet_ || wired) return {now + kLatency, {}, {}, false};
+  if (quiet_ || wired) return {now + latency_, {}, {}, false};
   const auto index = static_cast<std::uint32_t>(pair) * kBusCount + static_cast<std::uint32_t>(bus);
   Link& link = links_[index];
   const RandomBits random = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);
@@ -74,7 +83,7 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
   const auto replay = uniform_pair(seed_, Purpose::kFault, kReplay | index, link.sent);
   if (replay.x() < faults_.replay) {
     ++counted_.replayed;
-    fate.is_replayed = now + kLatency + seconds(faults_.replay_max_s * replay.y());
+    fate.is_replayed = now + latency_ + seconds(faults_.replay_max_s * replay.y());
   }
   // One draw for what excludes each other.
   const double what = upper(random.first);
@@ -90,14 +99,14 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
   fate.arrives = arrival(now, link, index, upper(random.second), lower(random.second));
   if (lower(random.first) < faults_.duplication) {
     ++counted_.duplicated;
-    fate.arrives_again = *fate.arrives + kLatency;
+    fate.arrives_again = *fate.arrives + latency_;
   }
   return fate;
 }
 
 Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, double reorders,
                          double clogs) {
-  Instant at = now + kLatency;
+  Instant at = now + latency_;
   const auto how_long = uniform_pair(seed_, Purpose::kFault, kHowLong | link_index, link.sent);
   if (faults_.delay_mean_s > 0) {
     const double delay_s = -faults_.delay_mean_s * std::log(how_long.x());
@@ -119,28 +128,21 @@ Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, doub
   return link.last_arrival = std::max(at, link.last_arrival);
 }
 
-void Network::push(Instant at, Bus bus, AgentId transmitter, const NodeSet& to,
-                   const std::shared_ptr<const Message>& message) {
-  queue_.push({at, pushed_++, bus, transmitter, to, message});
+void Network::push(Instant at, Delivery delivery) {
+  // Most come after all that is on its way.
+  queue_.emplace_hint(queue_.end(), std::pair(at, pushed_++), std::move(delivery));
 }
 
-Delivery Network::pop() {
-  Delivery delivery = queue_.top();
-  queue_.pop();
-  return delivery;
-}
+Delivery Network::pop() { return std::move(queue_.extract(queue_.begin()).mapped()); }
 
 void Network::heal(Instant now) {
   faults_ = {};
   quiet_ = true;
   std::fill(link_cuts_.begin(), link_cuts_.end(), 0);
+  cuts_ = 0;
   // What is still held back comes in the order in which it would have come.
-  std::vector<Delivery> waiting;
-  while (!queue_.empty()) waiting.push_back(pop());
-  for (Delivery& delivery : waiting) {
-    delivery.at = std::min(delivery.at, now + kLatency);
-    delivery.order = pushed_++;
-    queue_.push(std::move(delivery));
+  for (auto& [when, delivery] : std::exchange(queue_, {})) {
+    push(std::min(when.first, now + latency_), std::move(delivery));
   }
 }
 

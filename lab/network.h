@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Three buses on which things go wrong: an event queue ordered by (time, insertion).
+// Three buses on which things go wrong: messages on their way, ordered by (time, insertion).
 //
 // What happens to a message on a link follows from the seed, the link and how many messages the
 // link has carried, and from nothing else. One event carries a message to all whom it reaches at
@@ -8,10 +8,12 @@
 
 #include <bitset>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
-#include <queue>
 #include <span>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/ids.h"
@@ -20,13 +22,10 @@
 
 namespace ergocast::lab {
 
-/// Where a process sits: agents 0 … agents − 1, then coordinator, world, recorder.
+/// A process: agents 0 … agents − 1, then coordinator, world, logger.
 using NodeId = int;
 inline constexpr int kMaxNodes = kMaxAgents + 3;
 using NodeSet = std::bitset<kMaxNodes>;
-
-/// How long a message takes that nothing happens to. Above 0, so that no loop stops time.
-inline constexpr PacingClock::duration kLatency = std::chrono::microseconds(200);
 
 /// What was done to messages, counted per link.
 struct MessageFaults {
@@ -34,33 +33,35 @@ struct MessageFaults {
                clogs = 0, clogged = 0;
 };
 
+/// What comes of the bytes of a message.
+using Decoded = std::variant<Message, Refusal>;
+
 struct Delivery {
-  Instant at;
-  std::uint64_t order;  ///< of insertion
   Bus bus;
   AgentId transmitter;
   NodeSet to;
-  std::shared_ptr<const Message> message;
+  std::shared_ptr<Decoded> read;  ///< holds a Message
 };
 
 class Network {
  public:
-  Network(std::uint64_t seed, const Faults& faults, int nodes);
+  /// @param latency  how long a message takes that nothing happens to
+  Network(std::uint64_t seed, const Faults& faults, int nodes, PacingClock::duration latency);
 
   /// Puts a message on its way from one node to others.
   /// @param transmitter  as receivers see it
   /// @return  how many copies are to be corrupted; they are the caller's to damage and to refuse
   int send(Instant now, NodeId from, const NodeSet& to, Bus bus, AgentId transmitter,
-           const std::shared_ptr<const Message>& message);
+           std::shared_ptr<Decoded> read);
 
   /// Instant::max() if nothing is on its way.
-  Instant next() const { return queue_.empty() ? Instant::max() : queue_.top().at; }
+  Instant next() const { return queue_.empty() ? Instant::max() : queue_.begin()->first.first; }
   Delivery pop();
 
   /// From now on, `from` is not heard by `to`, until join() has been called as often.
-  void cut(NodeId from, NodeId to) { ++link_cuts_[pair_index(from, to)]; }
-  void join(NodeId from, NodeId to) { --link_cuts_[pair_index(from, to)]; }
-  /// No more faults: cuts end, and what clogged links hold arrives within kLatency.
+  void cut(NodeId from, NodeId to) { ++link_cuts_[pair_index(from, to)], ++cuts_; }
+  void join(NodeId from, NodeId to) { --link_cuts_[pair_index(from, to)], --cuts_; }
+  /// No more faults: cuts end, and what clogged links hold arrives within the latency.
   void heal(Instant now);
 
   const MessageFaults& counted() const { return counted_; }
@@ -74,11 +75,6 @@ class Network {
     std::optional<Instant> arrives, arrives_again, is_replayed;
     bool corrupted = false;
   };
-  struct Later {
-    bool operator()(const Delivery& a, const Delivery& b) const {
-      return a.at != b.at ? a.at > b.at : a.order > b.order;
-    }
-  };
 
   std::size_t pair_index(NodeId from, NodeId to) const {
     const int index = from * nodes_ + to;
@@ -86,16 +82,17 @@ class Network {
   }
   Fate fate_of(Instant now, std::size_t pair, Bus bus);
   Instant arrival(Instant now, Link& link, std::uint32_t link_index, double reorders, double clogs);
-  void push(Instant at, Bus bus, AgentId transmitter, const NodeSet& to,
-            const std::shared_ptr<const Message>& message);
+  void push(Instant at, Delivery delivery);
 
   std::uint64_t seed_;
   Faults faults_;
-  bool quiet_;  // nothing can happen to a message
+  bool quiet_;  // nothing can happen to a message, but that it is cut off
   int nodes_;
+  PacingClock::duration latency_;
   std::vector<Link> links_;
   std::vector<int> link_cuts_;
-  std::priority_queue<Delivery, std::vector<Delivery>, Later> queue_;
+  int cuts_ = 0;  // their sum
+  std::map<std::pair<Instant, std::uint64_t>, Delivery> queue_;
   std::uint64_t pushed_ = 0;
   MessageFaults counted_;
 };

@@ -1,130 +1,298 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the team's views after the healing, and decides which failures the faults excuse.
+// Tells the invariants all that happens in a simulation, compares the team's views after the
+// healing, and decides which failures the faults excuse.
 #include "lab/trial.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "lab/flight.h"
+#include "team/plan.h"
 
 namespace ergocast::lab {
 namespace {
 
+/// Above 0, so that no loop stops time.
+constexpr PacingClock::duration kLatency = std::chrono::microseconds(200);
 /// How often the team's views are compared after healing.
 constexpr auto kCheckPeriod = std::chrono::seconds(1);
+/// After the last tick: how long the slowest process may take to end.
+constexpr double kLinger_s = 10;
+/// More messages than this in a virtual second are a storm.
+constexpr std::int64_t kMostMessagesPer_s = 100000;
 
-}  // namespace
+class Trial : SimulationObserver {
+ public:
+  Trial(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics)
+      : faults_(options.faults),
+        mission_(std::get<Mission>(decode_plan(options.plan))),
+        invariants_(mission_),
+        agents_(mission_.starts_m.size()),
+        simulation_(std::move(options), trajectory, metrics, this) {}
 
-TableView Flight::view_of(NodeId node) {
-  const Agent& one = agent(node);
-  return {one.author(), one.coverage(), &one.team_coverage(), &one.follower().roster(), one.tick(),
-          one.roster_revision(), &one.foreseen_coverage()};
-}
+  TrialResult run();
 
-std::vector<TableView> Flight::living() {
-  std::vector<TableView> living;
-  for (NodeId node = 0; node < agents_count_; ++node) {
-    if (at(node).up && !agent(node).finished()) living.push_back(view_of(node));
+ private:
+  struct Recovery {
+    Instant since;
+    std::vector<std::pair<Author, std::int64_t>> lacks;
+  };
+  struct AgentState {
+    Tick answered = -1;
+    bool judged = false;  // it has finished, and whether it may have is said
+    std::optional<Recovery> recovery;
+  };
+
+  void started(NodeId node, Incarnation incarnation, bool again) override;
+  void says(NodeId node, const Outbox& outbox) override;
+  void decoded(const Decoded& result, bool damaged) override {
+    invariants_.decoded(t_s(), result, damaged);
   }
-  return living;
-}
+  void arrives(NodeId node, const Message& message) override;
+  void received(NodeId node, const Message& message) override;
+  void advanced(NodeId node, bool hurries) override;
+  void healed() override;
 
-/// Also who has reached the plan's end, as all have when their views are measured.
-std::vector<TableView> Flight::present() {
-  std::vector<TableView> present;
-  for (NodeId node = 0; node < agents_count_; ++node) {
-    if (at(node).up) present.push_back(view_of(node));
+  double t_s() const { return in_seconds(simulation_.now()); }
+  bool is_agent(NodeId node) const { return static_cast<std::size_t>(node) < agents_.size(); }
+  AgentState& at(NodeId node) { return agents_[static_cast<std::size_t>(node)]; }
+  TableView view_of(NodeId node) const;
+  std::vector<TableView> views(bool also_finished) const;
+
+  void note_answer(NodeId node, const Command& command, const TableView& view);
+  void expect_back(NodeId node);
+  void look_for_recovery(NodeId node);
+  void check_coordinator();
+  void check_recovered();
+  std::string still_running() const;
+  bool our_doing(Instant at) const;
+  bool evicted(NodeId node) const;
+  bool struck(NodeId node) const;
+  bool failed() const;
+  TrialResult result();
+
+  const Faults faults_;
+  const Mission mission_;
+  Invariants invariants_;
+  std::vector<AgentState> agents_;
+  Simulation simulation_;  // tells us of its starts while it is made
+
+  std::optional<Instant> failed_since_;
+  Tick excused_ = 0;  // ticks whose states may have been kept from the logger
+  Instant next_check_ = Instant::max(), deadline_ = Instant::max();
+  std::optional<Tick> acknowledged_;  // by the logger, as far as it has reached the world that lives
+  bool logger_lost_ = false;          // says that world
+  double recovery_sum_s_ = 0;
+  TrialFigures figures_;
+};
+
+// ---- what happens --------------------------------------------------------------------------------
+
+void Trial::started(NodeId node, Incarnation incarnation, bool again) {
+  if (is_agent(node)) {
+    at(node) = {};
+    invariants_.born({node, incarnation});
+    if (again) expect_back(node);
+  } else if (again && node == simulation_.world_node()) {
+    acknowledged_.reset();
+    logger_lost_ = false;
   }
-  return present;
 }
 
-bool Flight::mission_over() const {
-  return end_said_ || invariants_.last_tick() >= mission_.timing.tick_count;
-}
-
-bool Flight::everybody_finished() {
-  for (NodeId node = 0; node < nodes_; ++node) {
-    if (!at(node).up || !with(node, [](auto& core) { return core.finished(); })) return false;
+void Trial::says(NodeId node, const Outbox& outbox) {
+  // Once for all: c_k is added up for who holds it.
+  const TableView view = is_agent(node) ? view_of(node) : TableView();
+  for (const Outgoing& said : outbox) {
+    invariants_.sent(t_s(), said, view.table != nullptr ? &view : nullptr);
+    const auto* command = std::get_if<Command>(&said.message);
+    if (command != nullptr && is_agent(node)) note_answer(node, *command, view);
   }
-  return true;
 }
 
-/// Like an init system: who could take nothing over starts anew.
-void Flight::supervise_coordinator() {
-  if (!at(coordinator_node()).up || !coordinator_->finished() || mission_over()) return;
-  if (!healed_ && coordinator_->mission() == nullptr) {
-    ++figures_.coordinator_crashes;
-    at(coordinator_node()).up = false;
-    at(coordinator_node()).restart = now_;
-    return;
+/// Once for each tick that an agent answers.
+void Trial::note_answer(NodeId node, const Command& command, const TableView& view) {
+  if (command.header.tick <= at(node).answered) return;
+  at(node).answered = command.header.tick;
+  ++figures_.agent_steps;
+  invariants_.answered(t_s(), view);
+}
+
+void Trial::arrives(NodeId node, const Message& message) {
+  const auto* ack = std::get_if<RecordAck>(&message);
+  if (ack == nullptr || node != simulation_.world_node()) return;
+  acknowledged_ = std::max(acknowledged_.value_or(-1), ack->header.tick);
+}
+
+void Trial::received(NodeId node, const Message& message) {
+  if (!is_agent(node)) return;
+  const Agent& agent = simulation_.agent(node);
+  const auto* digest = std::get_if<Digest>(&message);
+  if (digest != nullptr) invariants_.heard(agent.author(), *digest);
+  invariants_.received({agent.author(), agent.coverage(), nullptr, &agent.follower().roster()},
+                       message);
+}
+
+void Trial::advanced(NodeId node, bool hurries) {
+  invariants_.wakeup(t_s(), simulation_.name_of(node), hurries);
+  if (is_agent(node)) {
+    const Agent& agent = simulation_.agent(node);
+    invariants_.refused(t_s(), agent.author(), agent.refused());
+    look_for_recovery(node);
+    if (!agent.finished() || at(node).judged) return;
+    at(node).judged = true;  // by what is wrong at this moment
+    const bool over = simulation_.mission_over() || evicted(node);
+    invariants_.finished(t_s(), agent.author(), agent.reason(), over);
+  } else if (node == simulation_.world_node()) {
+    const World& world = simulation_.world();
+    if (world.logger_lost() && !logger_lost_) {
+      invariants_.gave_up_logger(t_s(), acknowledged_, world.tick());
+    }
+    logger_lost_ = world.logger_lost();
   }
-  invariants_.finished(in_seconds(now_), {kCoordinator, 0}, coordinator_->reason(), false);
 }
 
-void Flight::check_recovered() {
-  if (now_ < next_check_) return;
-  next_check_ = now_ + kCheckPeriod;
-  if (mission_over() || options_.faults.lasting_share >= 1) return;
-  const double t_s = in_seconds(now_);
-  invariants_.recovered(t_s, living());
-  invariants_.coordinated(t_s, *coordinator_, at(coordinator_node()).clock.local(now_), living());
+void Trial::healed() {
+  if (!spares_the_record(faults_)) excused_ = invariants_.last_tick() + 1;
+  next_check_ = simulation_.now() + seconds(recovery_bound_s(mission_, faults_));
+  // Without coordinator and agents the world ends by itself, and only then the logger.
+  const double cut_off_s = 2 * (mission_.timing.lockstep_timeout_s + kFarewellPatience_s);
+  deadline_ = next_check_ + seconds((simulation_.planned_s() + cut_off_s + kLinger_s) /
+                                    (1 - faults_.clock_rate_error));
 }
 
-std::string Flight::still_running() {
+// ---- who is back ---------------------------------------------------------------------------------
+
+void Trial::expect_back(NodeId node) {
+  Recovery recovery{simulation_.now(), {}};
+  const auto team = views(false);
+  for (const Author& author : invariants_.authors()) {
+    if (author.agent != node) continue;
+    std::int64_t most = 0;
+    for (const TableView& view : team) {
+      if (view.table != nullptr) most = std::max(most, steps_of(*view.table, author));
+    }
+    if (most > 0) recovery.lacks.emplace_back(author, most);
+  }
+  at(node).recovery = std::move(recovery);
+}
+
+void Trial::look_for_recovery(NodeId node) {
+  auto& recovery = at(node).recovery;
+  const CoverageTable* table = simulation_.agent(node).coverage();
+  if (!recovery || table == nullptr) return;
+  std::erase_if(recovery->lacks,
+                [&](const auto& lack) { return steps_of(*table, lack.first) >= lack.second; });
+  if (!recovery->lacks.empty()) return;
+  const double took_s = t_s() - in_seconds(recovery->since);
+  recovery_sum_s_ += took_s;
+  figures_.recovery_max_s = std::max(figures_.recovery_max_s, took_s);
+  ++figures_.recoveries;
+  recovery.reset();
+}
+
+TableView Trial::view_of(NodeId node) const {
+  const Agent& agent = simulation_.agent(node);
+  return {agent.author(), agent.coverage(), &agent.team_coverage(), &agent.follower().roster(),
+          agent.tick(), agent.roster_revision(), &agent.foreseen_coverage()};
+}
+
+/// Of all agents that are up. Who has reached the plan's end has finished.
+std::vector<TableView> Trial::views(bool also_finished) const {
+  std::vector<TableView> views;
+  for (NodeId node = 0; is_agent(node); ++node) {
+    if (!simulation_.up(node)) continue;
+    if (also_finished || !simulation_.finished(node)) views.push_back(view_of(node));
+  }
+  return views;
+}
+
+// ---- judgement -----------------------------------------------------------------------------------
+
+void Trial::check_coordinator() {
+  const NodeId node = simulation_.coordinator_node();
+  if (failed() && !failed_since_) failed_since_ = simulation_.now();
+  if (!simulation_.up(node) || !simulation_.finished(node) || simulation_.mission_over()) return;
+  invariants_.finished(t_s(), {kCoordinator, 0}, simulation_.coordinator().reason(), false);
+}
+
+void Trial::check_recovered() {
+  if (simulation_.now() < next_check_) return;
+  next_check_ = simulation_.now() + kCheckPeriod;
+  if (simulation_.mission_over() || faults_.lasting_share >= 1) return;
+  const auto living = views(false);
+  invariants_.recovered(t_s(), living);
+  invariants_.coordinated(t_s(), simulation_.coordinator(),
+                          simulation_.local_time(simulation_.coordinator_node()), living);
+}
+
+std::string Trial::still_running() const {
   std::string names;
-  for (NodeId node = 0; node < nodes_; ++node) {
-    if (with(node, [](auto& core) { return core.finished(); })) continue;
-    names += (names.empty() ? "" : ", ") + name_of(node);
+  for (NodeId node = 0; node < simulation_.node_count(); ++node) {
+    if (simulation_.finished(node)) continue;
+    names += (names.empty() ? "" : ", ") + simulation_.name_of(node);
   }
   return names;
 }
 
-/// Somebody is down or cut off, or messages are so late or so few that nobody can tell.
-void Flight::note_hindrance() {
-  const bool away = std::any_of(processes_.begin(), processes_.end(),
-                                [](const Process& process) { return !process.up; });
-  const bool poor = !healed_ && hinders(options_.faults, mission_.timing.lockstep_timeout_s);
-  if (away || poor || !fault_ends_.empty()) hindered_ = now_;
-}
-
 /// Whether what went wrong then may be due to what we have done: after each hindrance everybody has
 /// the time to recover.
-bool Flight::our_doing(Instant at) const {
-  return hindered_ && at < *hindered_ + seconds(recovery_bound_s(mission_, options_.faults));
+bool Trial::our_doing(Instant at) const {
+  const auto hindered = simulation_.hindered();
+  return hindered && at < *hindered + seconds(recovery_bound_s(mission_, faults_));
 }
-
-/// Whether a mission was given up because of what we did to it.
-bool Flight::timed_out() const { return failed_since_ && our_doing(*failed_since_); }
 
 /// Whether it has left the team as the scenario says, after it could not answer in time.
-bool Flight::evicted(NodeId node) {
-  return mission_.timing.on_timeout == OnTimeout::kEvict && struck(node) && our_doing(now_);
+bool Trial::evicted(NodeId node) const {
+  return mission_.timing.on_timeout == OnTimeout::kEvict && struck(node) &&
+         our_doing(simulation_.now());
 }
 
-bool Flight::struck(NodeId node) {
-  const RosterEntry* entry = agent(node).follower().entry_of(agent(node).author().incarnation);
+/// From the roster.
+bool Trial::struck(NodeId node) const {
+  const Agent& agent = simulation_.agent(node);
+  const RosterEntry* entry = agent.follower().entry_of(agent.author().incarnation);
   return entry != nullptr && entry->active_until >= 0;
 }
 
 /// A coordinator that came back when all was over has no mission that could fail.
-bool Flight::failed() const {
-  return coordinator_->state() == MissionState::kFailed && coordinator_->mission() != nullptr;
+bool Trial::failed() const {
+  const Coordinator& coordinator = simulation_.coordinator();
+  return coordinator.state() == MissionState::kFailed && coordinator.mission() != nullptr;
 }
 
-TrialResult Flight::result() {
+TrialResult Trial::run() {
+  const auto storm = [this] {
+    return static_cast<double>(simulation_.counts().messages) >
+           kMostMessagesPer_s * (simulation_.progress_s() + 1);
+  };
+  while (!invariants_.violation() && simulation_.step(std::min(next_check_, deadline_))) {
+    check_coordinator();
+    check_recovered();
+    if (simulation_.now() >= deadline_ || storm()) break;
+  }
+  return result();
+}
+
+TrialResult Trial::result() {
   TrialResult result;
-  result.timed_out = timed_out();
-  const double t_s = in_seconds(now_);
+  // A mission was given up because of what we did to it.
+  result.timed_out = failed_since_ && our_doing(*failed_since_);
   if (!result.timed_out && !invariants_.violation()) {
-    if (options_.faults.lasting_share < 1) invariants_.recovered(t_s, living());
-    invariants_.compare_views(present());
-    invariants_.ended(t_s, still_running(), failed() ? coordinator_->reason() : "", recorder_.facts(), excused_);
+    if (faults_.lasting_share < 1) invariants_.recovered(t_s(), views(false));
+    invariants_.compare_views(views(true));
+    const std::string failure = failed() ? simulation_.coordinator().reason() : "";
+    invariants_.ended(t_s(), still_running(), failure, simulation_.recorder().facts(), excused_);
   }
   result.violation = invariants_.violation();
-  figures_.virtual_s = t_s;
-  figures_.ergodic_metric = recorder_.facts().ergodic_metric_last;
+  static_cast<SimulationCounts&>(figures_) = simulation_.counts();
+  figures_.seed = mission_.seed;
+  figures_.virtual_s = t_s();
+  figures_.ergodic_metric = simulation_.recorder().facts().ergodic_metric_last;
   figures_.view_error = invariants_.largest_view_error();
-  figures_.faults = network_.counted();
-  for (NodeId node = 0; node < agents_count_; ++node) figures_.evictions += agent(node).finished() && struck(node);
+  for (NodeId node = 0; is_agent(node); ++node) {
+    figures_.evictions += simulation_.finished(node) && struck(node);
+  }
   if (figures_.recoveries > 0) {
     figures_.recovery_mean_s = recovery_sum_s_ / static_cast<double>(figures_.recoveries);
   }
@@ -132,8 +300,11 @@ TrialResult Flight::result() {
   return result;
 }
 
-TrialResult fly_trial(const TrialOptions& options, std::ostream& trajectory, std::ostream& metrics) {
-  return Flight(options, trajectory, metrics).run();
+}  // namespace
+
+TrialResult run_trial(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics) {
+  options.latency = kLatency;
+  return Trial(std::move(options), trajectory, metrics).run();
 }
 
 }  // namespace ergocast::lab

@@ -10,7 +10,7 @@
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/ideal_team.h"
-#include "lab/swarm.h"
+#include "lab/simulation.h"
 #include "logger/nowhere.h"
 #include "lab/studies/study_measure.h"
 #include "team/plan.h"
@@ -29,11 +29,12 @@ std::int64_t broadcasts_of(const Mission& mission) {
 
 int blocks_of(const Basis& basis) { return (basis.mode_count() + kBlockSize - 1) / kBlockSize; }
 
-/// Sees a swarm as its logger does, and adds up coverage as an ideal team does.
-class Observer {
+/// Hears what the logger hears, and adds up coverage as an ideal team does.
+class Observer : public lab::SimulationObserver {
  public:
   explicit Observer(const Mission& mission)
       : mission_(mission),
+        logger_(static_cast<lab::NodeId>(mission.starts_m.size()) + 2),
         measure_(mission),
         controller_(mission),
         table_(mission.basis, mission.timing.dt_s),
@@ -42,8 +43,8 @@ class Observer {
     for (std::size_t i = 0; i < vehicles_.size(); ++i) table_.add_row(author(i));
   }
 
-  /// Each message once, when it reaches the logger.
-  void hear(const Message& message) {
+  void received(lab::NodeId node, const Message& message) override {
+    if (node != logger_) return;
     if (std::holds_alternative<Contribution>(message)) ++contributions_;
     if (const auto* world = std::get_if<WorldState>(&message)) hear(*world);
   }
@@ -88,6 +89,7 @@ class Observer {
   }
 
   const Mission& mission_;
+  const lab::NodeId logger_;
   StudyMeasure measure_;
   Controller controller_;
   CoverageTable table_;
@@ -117,15 +119,8 @@ StudyFigures fly_without_messages(const Mission& mission) {
 StudyFigures fly_with_messages(std::span<const std::byte> plan) {
   const Mission mission = std::get<Mission>(decode_plan(plan));
   Observer observer(mission);
-  lab::Options options;
-  options.plan.assign(plan.begin(), plan.end());
-  options.agents = static_cast<int>(mission.starts_m.size());
-  options.delivers = [&observer](const Message& message, int seat) {
-    if (seat == lab::kLoggerSeat) observer.hear(message);
-    return true;
-  };
   Nowhere nowhere;
-  lab::Swarm(std::move(options), nowhere, nowhere).run();
+  lab::Simulation({.plan = {plan.begin(), plan.end()}}, nowhere, nowhere, &observer).run();
   return observer.figures();
 }
 

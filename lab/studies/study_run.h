@@ -44,7 +44,7 @@ struct StudyFigures {
 };
 
 /// Flies the mission of a compiled plan: without messages where that is the same (IdealTeam), else
-/// with the real cores and codec in virtual time (Swarm), whatever its pace.
+/// with the real cores and codec in virtual time (Simulation), whatever its pace.
 /// @pre the plan decodes
 StudyFigures fly_study_run(std::span<const std::byte> plan);
 

@@ -6,16 +6,10 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "core/basis.h"
-#include "lab/swarm.h"
-#include "lab/trial.h"
-#include "scenario/scenario.h"
-#include "tests/support/paper_team.h"
-#include "team/plan.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {
@@ -25,10 +19,6 @@ using lab::Faults;
 std::string text_of(const std::string& file) {
   std::ifstream stream(std::string(ERGOCAST_SOURCE_DIR) + '/' + file);
   return {std::istreambuf_iterator<char>(stream), {}};
-}
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  return at == text.npos ? throw std::logic_error(from) : text.replace(at, from.size(), to);
 }
 Scenario scenario_of(const std::string& text, const Overrides& overrides = {}) {
   return std::get<Scenario>(Scenario::parse(text, "foresight", overrides));
@@ -57,14 +47,11 @@ class LockstepForesight : public ::testing::TestWithParam<Telling> {
   }
 
   std::string trajectory(const Faults& faults) const {
-    std::ostringstream trajectory, metrics;
-    const Scenario flown = scenario();
-    const auto result = lab::fly_trial({encode_plan(flown.with_seed(7).mission()), faults, "test"},
-                                       trajectory, metrics);
-    EXPECT_EQ(result.violation ? to_string(*result.violation) : "", "");
-    EXPECT_FALSE(result.timed_out);
-    figures_ = result.figures;
-    return trajectory.str();
+    const TriedTeam tried(faults, 7, scenario());
+    EXPECT_EQ(tried.problem(), "");
+    EXPECT_FALSE(tried.result.timed_out);
+    figures_ = tried.result.figures;
+    return tried.trajectory;
   }
 
   mutable lab::TrialFigures figures_;
@@ -128,23 +115,18 @@ double metric_after_a_death(const std::string& law, const std::string& agents, s
   Overrides overrides;
   overrides.duration_s = 600;
   overrides.seed = seed;
-  const Scenario scenario = scenario_of(text, overrides);
-  const Mission& mission = scenario.mission();
-  lab::Options options;
-  options.plan = encode_plan(scenario.mission());
-  options.agents = 4;
-  options.delivers = [](const Message& message, int) {
-    return header_of(message).sender != 3 || header_of(message).tick < 1500;
-  };
-  std::ostringstream trajectory, metrics;
-  lab::Swarm swarm(std::move(options), trajectory, metrics);
-  swarm.run();
-  EXPECT_EQ(swarm.agent(0).tick(), 6000);
+  const Mission mission = scenario_of(text, overrides).mission();
+  SimulatedTeam team(mission, [](const Message& message, int) {
+    return header_of(message).sender == 3 && header_of(message).tick >= 1500;
+  });
+  team.run();
+  const Agent &agent = team.simulation.agent(0), &dead = team.simulation.agent(3);
+  EXPECT_EQ(agent.tick(), 6000);
   // All that it sent until then, and nothing since.
-  const auto held = swarm.agent(0).coverage()->steps_held(swarm.agent(3).author());
+  const auto held = agent.coverage()->steps_held(dead.author());
   EXPECT_GT(held.value_or(0), 1500 - 21);
   EXPECT_LE(held.value_or(0), 1500);
-  return ergodic_metric(swarm.agent(0).team_coverage(), mission.target_coefficients,
+  return ergodic_metric(agent.team_coverage(), mission.target_coefficients,
                         sobolev_weights(mission.basis, mission.domain));
 }
 

@@ -6,14 +6,10 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "lab/trial.h"
-#include "scenario/scenario.h"
-#include "team/plan.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {
@@ -25,20 +21,15 @@ using lab::TrialResult;
 /// The faulty team, with something else in its scenario's text.
 Scenario team(Pace pace, const std::string& from = "", const std::string& to = "") {
   std::ifstream file(ERGOCAST_SCENARIO_DIR "/faulty_team.textproto");
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto at = text.find(from);
-  if (at == text.npos) throw std::logic_error(from);
-  text.replace(at, from.size(), to);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
   Overrides overrides;
   overrides.pace = pace;
-  return std::get<Scenario>(Scenario::parse(text, "faulty_team", overrides));
+  return std::get<Scenario>(Scenario::parse(with(text, from, to), "faulty_team", overrides));
 }
 
 TrialResult fly(const Scenario& scenario, std::uint64_t seed, const Faults& faults,
                 const SubscriptionTable& subscriptions = kSubscriptions) {
-  std::ostringstream trajectory, metrics;
-  return lab::fly_trial({encode_plan(scenario.with_seed(seed).mission()), faults, "test", subscriptions},
-                        trajectory, metrics);
+  return TriedTeam(faults, seed, scenario, subscriptions).result;
 }
 
 std::optional<Invariant> broken(const TrialResult& result) {

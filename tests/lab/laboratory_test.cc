@@ -1,29 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Missions under faults: what a seed gives it gives again, every kind of fault happens, and without
-// any the laboratory flies the mission that lab/swarm.h flies.
+// any the laboratory flies the mission that `ergocast simulate` flies.
 #include <gtest/gtest.h>
 
 #include <set>
-#include <sstream>
 #include <string>
 
 #include "lab/clock.h"
 #include "lab/network.h"
-#include "lab/swarm.h"
-#include "lab/trial.h"
-#include "scenario/scenario.h"
-#include "team/plan.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {
 
 using lab::Faults;
 using lab::TrialFigures;
-using lab::TrialResult;
 
 const Scenario& faulty_team() {
-  static const Scenario scenario =
-      std::get<Scenario>(Scenario::load(ERGOCAST_SCENARIO_DIR "/faulty_team.textproto"));
+  static const Scenario scenario = shipped_scenario("faulty_team");
   return scenario;
 }
 
@@ -32,33 +26,18 @@ const Scenario& in_lockstep() {
     Overrides overrides;
     overrides.pace = Pace::kLockstep;
     overrides.duration_s = 20;
-    return std::get<Scenario>(
-        Scenario::load(ERGOCAST_SCENARIO_DIR "/paper_fig2b.textproto", overrides));
+    return shipped_scenario("paper_fig2b", overrides);
   }();
   return scenario;
 }
 
-struct Flight {
-  TrialResult result;
-  std::string trajectory;
-};
-
-Flight fly(const Faults& faults, std::uint64_t seed, const Scenario& scenario = faulty_team()) {
-  std::ostringstream trajectory, metrics;
-  Flight flight;
-  flight.result = lab::fly_trial({encode_plan(scenario.with_seed(seed).mission()), faults, "test"},
-                                 trajectory, metrics);
-  flight.trajectory = trajectory.str();
-  return flight;
-}
-
-std::string problem(const TrialResult& result) {
-  return result.violation ? to_string(*result.violation) : "";
+TriedTeam fly(const Faults& faults, std::uint64_t seed, const Scenario& scenario = faulty_team()) {
+  return TriedTeam(faults, seed, scenario);
 }
 
 TEST(Laboratory, TheSameSeedGivesTheSameMission) {
   for (const std::uint64_t seed : {1U, 10U, 17U}) {
-    const Flight first = fly(lab::drawn(seed), seed), second = fly(lab::drawn(seed), seed);
+    const TriedTeam first = fly(lab::drawn(seed), seed), second = fly(lab::drawn(seed), seed);
     EXPECT_EQ(first.trajectory, second.trajectory) << seed;
     EXPECT_EQ(first.result.figures.messages, second.result.figures.messages) << seed;
     EXPECT_EQ(first.result.figures.faults.lost, second.result.figures.faults.lost) << seed;
@@ -72,17 +51,17 @@ TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
   faults.loss = 0.3;
   for (const double share : {0.6, 1.0}) {
     faults.lasting_share = share;
-    const TrialResult result = fly(faults, 1).result;
-    EXPECT_EQ(problem(result), "");
-    EXPECT_GT(result.figures.view_error, 0) << "what was said last, at different ticks, is not all";
-    EXPECT_LT(result.figures.view_error, 0.1);
+    const TriedTeam tried = fly(faults, 1);
+    EXPECT_EQ(tried.problem(), "");
+    EXPECT_GT(tried.result.figures.view_error, 0) << "what was said last, at different ticks, is not all";
+    EXPECT_LT(tried.result.figures.view_error, 0.1);
   }
 }
 
 TEST(Laboratory, WithoutFaultsNothingIsDone) {
-  const TrialResult result = fly({}, 1).result;
-  EXPECT_EQ(problem(result), "");
-  const TrialFigures& f = result.figures;
+  const TriedTeam tried = fly({}, 1);
+  EXPECT_EQ(tried.problem(), "");
+  const TrialFigures& f = tried.result.figures;
   EXPECT_EQ(f.faults.lost + f.faults.cut + f.faults.duplicated + f.faults.replayed + f.faults.corrupted +
                 f.faults.delayed + f.faults.reordered + f.faults.clogged + f.faults.clogs,
             0);
@@ -93,15 +72,11 @@ TEST(Laboratory, WithoutFaultsNothingIsDone) {
   EXPECT_EQ(f.relayed, 0);
 }
 
-TEST(Laboratory, WithoutFaultsItFliesWhatTheFastSimulationFlies) {
+TEST(Laboratory, LatencyAloneChangesNoLockstepTrajectory) {
   const Scenario& scenario = in_lockstep();
-  std::ostringstream trajectory, metrics;
-  lab::Options options;
-  options.plan = encode_plan(scenario.mission());
-  options.agents = static_cast<int>(scenario.mission().starts_m.size());
-  lab::Swarm swarm(std::move(options), trajectory, metrics);
-  swarm.run();
-  EXPECT_EQ(fly({}, scenario.mission().seed, scenario).trajectory, trajectory.str());
+  SimulatedTeam simulated(scenario.mission());
+  simulated.run();
+  EXPECT_EQ(fly({}, scenario.mission().seed, scenario).trajectory, simulated.trajectory.str());
 }
 
 TEST(Laboratory, LostAndLateMessagesChangeNoLockstepTrajectory) {
@@ -113,8 +88,8 @@ TEST(Laboratory, LostAndLateMessagesChangeNoLockstepTrajectory) {
   faults.reordering_max_s = 0.05;
   faults.replay = 0.3;
   faults.replay_max_s = 60;
-  const Flight faulty = fly(faults, 3, in_lockstep()), clean = fly({}, 3, in_lockstep());
-  EXPECT_EQ(problem(faulty.result), "");
+  const TriedTeam faulty = fly(faults, 3, in_lockstep()), clean = fly({}, 3, in_lockstep());
+  EXPECT_EQ(faulty.problem(), "");
   EXPECT_GT(faulty.result.figures.faults.lost, 1000);
   EXPECT_EQ(faulty.trajectory, clean.trajectory);
 }
@@ -159,9 +134,9 @@ class EachFault : public ::testing::TestWithParam<Kind> {};
 TEST_P(EachFault, HappensAndIsSurvived) {
   Faults faults;
   GetParam().set(faults);
-  const TrialResult result = fly(faults, 5).result;
-  EXPECT_GT(GetParam().happened(result.figures), 0);
-  EXPECT_EQ(problem(result), "");
+  const TriedTeam tried = fly(faults, 5);
+  EXPECT_GT(GetParam().happened(tried.result.figures), 0);
+  EXPECT_EQ(tried.problem(), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Laboratory, EachFault, ::testing::ValuesIn(kKinds),
@@ -172,9 +147,7 @@ TEST(Laboratory, TheLawsOptionsBreakNoInvariant) {
   for (const char* option : {"law.ends_with_plan", "law.paired_pushes"}) {
     overrides.fields.push_back({option, "true", option});
   }
-  const auto scenario =
-      std::get<Scenario>(Scenario::load(ERGOCAST_SCENARIO_DIR "/faulty_team.textproto", overrides));
-  EXPECT_EQ(problem(fly(lab::drawn(7), 7, scenario).result), "");
+  EXPECT_EQ(fly(lab::drawn(7), 7, shipped_scenario("faulty_team", overrides)).problem(), "");
 }
 
 TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

@@ -3,7 +3,7 @@
 // the sets that hold the classical law. Medians over seeds, because the noise determines the time.
 #include <gtest/gtest.h>
 
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

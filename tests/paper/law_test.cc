@@ -9,7 +9,7 @@
 #include "core/perturbation.h"
 #include "lab/manifolds.h"
 #include "lab/studies/theorems/confidence.h"
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/noise.h"
 #include "target/target.h"
 #include "lab/studies/theorems/invariance.h"
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

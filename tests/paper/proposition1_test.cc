@@ -16,7 +16,7 @@
 #include "lab/manifolds.h"
 #include "lab/studies/theorems/escape.h"
 #include "lab/studies/theorems/invariance.h"
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

@@ -2,7 +2,7 @@
 // Our recommended law, ε relative to the residual, from the starts that hold the classical law.
 #include <gtest/gtest.h>
 
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

@@ -17,7 +17,7 @@
 #include "lab/studies/theorems/confidence.h"
 #include "lab/studies/theorems/escape.h"
 #include "lab/studies/theorems/invariance.h"
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "lab/studies/theorems/bounds.h"
 #include "lab/studies/theorems/confidence.h"
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "logger/slope.h"
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {

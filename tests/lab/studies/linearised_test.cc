@@ -9,7 +9,7 @@
 #include "core/ideal_team.h"
 #include "lab/manifolds.h"
 #include "lab/studies/theorems/escape.h"
-#include "tests/support/paper_team.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::studies {
 namespace {

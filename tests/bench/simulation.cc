@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "lab/swarm.h"
+#include "lab/simulation.h"
 #include "logger/nowhere.h"
 #include "scenario/scenario.h"
 #include "team/plan.h"
@@ -16,14 +16,7 @@
 namespace ergocast::bench {
 namespace {
 
-lab::Options options_of(const Scenario& scenario) {
-  lab::Options options;
-  options.plan = encode_plan(scenario.mission());
-  options.agents = static_cast<int>(scenario.mission().starts_m.size());
-  return options;
-}
-
-void Swarm(benchmark::State& state, const std::string& name) {
+void Simulation(benchmark::State& state, const std::string& name) {
   const std::string file = std::string(ERGOCAST_SCENARIO_DIR) + '/' + name + ".textproto";
   Overrides overrides;
   overrides.duration_s = 600;  // long enough for the start not to count
@@ -35,13 +28,14 @@ void Swarm(benchmark::State& state, const std::string& name) {
   std::int64_t messages = 0, agent_steps = 0;
   for (auto _ : state) {
     state.PauseTiming();  // reading the plan and integrating the target are no steps
-    std::optional<lab::Swarm> swarm(std::in_place, options_of(*scenario), nowhere, nowhere);
+    std::optional<lab::Simulation> simulation;
+    simulation.emplace(lab::SimulationOptions{.plan = encode_plan(scenario->mission())}, nowhere, nowhere);
     state.ResumeTiming();
-    swarm->run();
+    simulation->run();
     state.PauseTiming();
-    messages += swarm->messages_sent();
-    agent_steps += swarm->recorder().facts().ticks * options_of(*scenario).agents;
-    swarm.reset();
+    messages += simulation->counts().messages;
+    agent_steps += simulation->recorder().facts().ticks * simulation->agent_count();
+    simulation.reset();
     state.ResumeTiming();
   }
   using benchmark::Counter;
@@ -50,8 +44,8 @@ void Swarm(benchmark::State& state, const std::string& name) {
       static_cast<double>(messages) / static_cast<double>(agent_steps);
 }
 
-BENCHMARK_CAPTURE(Swarm, paper_fig1a, "paper_fig1a")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Swarm, quadrimodal_corners, "quadrimodal_corners")
+BENCHMARK_CAPTURE(Simulation, paper_fig1a, "paper_fig1a")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Simulation, quadrimodal_corners, "quadrimodal_corners")
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

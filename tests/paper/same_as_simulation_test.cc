@@ -5,10 +5,7 @@
 
 #include <sstream>
 
-#include "lab/swarm.h"
-#include "logger/recorder.h"
-#include "tests/support/paper_team.h"
-#include "team/plan.h"
+#include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
 namespace {
@@ -34,17 +31,13 @@ std::vector<std::vector<Eigen::Vector3d>> positions(const std::string& table) {
 
 void expect_same(const std::string& name, Overrides overrides = {}) {
   overrides.duration_s = 60;
-  const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
-  const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
-  std::ostringstream trajectory, metrics;
-  lab::Options options;
-  options.plan = encode_plan(scenario.mission());
-  options.agents = static_cast<int>(scenario.mission().starts_m.size());
-  lab::Swarm(std::move(options), trajectory, metrics).run();
+  const Mission mission = shipped_mission(name, overrides);
+  SimulatedTeam simulated(mission);
+  simulated.run();
 
-  const auto recorded = positions(trajectory.str());
+  const auto recorded = positions(simulated.trajectory.str());
   ASSERT_EQ(recorded.size(), 600U);
-  PaperTeam team(scenario.mission());
+  PaperTeam team(mission);
   for (std::size_t tick = 0; tick < recorded.size(); ++tick) {
     for (std::size_t i = 0; i < team.size(); ++i) {
       ASSERT_EQ(recorded[tick][i], team.x_m(i)) << name << ", tick " << tick << ", agent " << i;
@@ -53,11 +46,11 @@ void expect_same(const std::string& name, Overrides overrides = {}) {
   }
 }
 
-TEST(SameAsSwarm, ClassicalLaw) { expect_same("paper_fig1b"); }
-TEST(SameAsSwarm, PapersLaw) { expect_same("paper_fig2a"); }
-TEST(SameAsSwarm, RecommendedLaw) { expect_same("quadrimodal_corners"); }
+TEST(SameAsSimulation, ClassicalLaw) { expect_same("paper_fig1b"); }
+TEST(SameAsSimulation, PapersLaw) { expect_same("paper_fig2a"); }
+TEST(SameAsSimulation, RecommendedLaw) { expect_same("quadrimodal_corners"); }
 // Their world's state comes in two parts.
-TEST(SameAsSwarm, RecommendedLawOfTwentyAgents) {
+TEST(SameAsSimulation, RecommendedLawOfTwentyAgents) {
   Overrides overrides;
   overrides.agents = 20;
   expect_same("quadrimodal_corners", overrides);

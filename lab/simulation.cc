@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Jumps to the earliest event, delivers what is due, and advances every process that heard
+// something or wakes up.
+#include "lab/simulation.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/noise.h"
+#include "lcmtypes/codec.h"
+#include "team/plan.h"
+
+namespace ergocast::lab {
+namespace {
+
+std::uint64_t identity(const Mission& mission, std::uint32_t who, std::uint32_t start) {
+  return random_words(mission.seed, Purpose::kIncarnation, who, start).first | 1;
+}
+
+}  // namespace
+
+void SimulationObserver::advanced(NodeId, bool hurries) {
+  if (hurries) throw std::logic_error("a process asks to be woken in the past");
+}
+
+Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics,
+                       SimulationObserver* observer)
+    : options_(std::move(options)),
+      trajectory_(trajectory),
+      metrics_(metrics),
+      observer_(observer),
+      mission_(std::get<Mission>(decode_plan(options_.plan))),
+      run_(identity(mission_, ~0U, 0)),
+      agent_count_(static_cast<int>(mission_.starts_m.size())),
+      network_(mission_.seed, options_.faults, node_count(), options_.latency),
+      nodes_(static_cast<std::size_t>(node_count())) {
+  set_up_faults();
+  for (NodeId node = 0; node < node_count(); ++node) start(node);
+  for (NodeId node = 0; node < node_count(); ++node) {
+    const Subscriptions& subscriptions = subscriptions_of(role_of(node), options_.subscriptions);
+    for (std::size_t bus = 0; bus < kBusCount; ++bus) {
+      on_bus_[bus].set(static_cast<std::size_t>(node), subscriptions[bus] != 0);
+      for (std::size_t type = 0; type < kMessageTypeCount; ++type) {
+        if ((subscriptions[bus] >> type & 1) != 0) listeners_[bus][type].push_back(node);
+      }
+    }
+  }
+}
+
+void Simulation::start(NodeId id) {
+  Node& node = at(id);
+  const bool again = node.starts > 0;
+  const Incarnation incarnation =
+      identity(mission_, static_cast<std::uint32_t>(id), node.starts++);
+  if (id < agent_count_) {
+    node.core = std::make_unique<Agent>(
+        AgentIdentity{run_, id, incarnation, options_.host, options_.version});
+  } else if (id == coordinator_node()) {
+    node.core = std::make_unique<Coordinator>(
+        CoordinatorIdentity{run_, incarnation, options_.host, options_.version},
+        again ? std::vector<std::byte>() : options_.plan,
+        again ? Takeover::kMust : Takeover::kNever);
+  } else if (id == world_node()) {
+    node.core = std::make_unique<World>(run_, incarnation);
+  } else {
+    node.core = std::make_unique<Recorder>(run_, incarnation, trajectory_, metrics_);
+  }
+  node.up = true;
+  node.answered = false;
+  node.wakeup = now_;
+  if (observer_ != nullptr) observer_->started(id, incarnation, again);
+}
+
+Role Simulation::role_of(NodeId node) const {
+  if (node < agent_count_) return Role::kAgent;
+  if (node == coordinator_node()) return Role::kCoordinator;
+  return node == world_node() ? Role::kWorld : Role::kLogger;
+}
+
+std::string Simulation::name_of(NodeId node) const {
+  if (node < agent_count_) return "agent " + std::to_string(node);
+  if (node == coordinator_node()) return "the coordinator";
+  return node == world_node() ? "the world" : "the logger";
+}
+
+bool Simulation::finished(NodeId node) const {
+  return std::visit([](const auto& core) { return core->finished(); }, at(node).core);
+}
+
+bool Simulation::everybody_finished() const {
+  for (NodeId node = 0; node < node_count(); ++node) {
+    if (!at(node).up || !finished(node)) return false;
+  }
+  return true;
+}
+
+void Simulation::end(std::string reason) {
+  Node& node = at(coordinator_node());
+  std::get<std::unique_ptr<Coordinator>>(node.core)->end(false, std::move(reason),
+                                                         node.clock.local(now_));
+  node.wakeup = now_;
+}
+
+SimulationCounts Simulation::counts() const {
+  SimulationCounts counts = counts_;
+  counts.faults = network_.counted();
+  return counts;
+}
+
+// ---- time ----------------------------------------------------------------------------------------
+
+void Simulation::run(PacingClock::duration limit) {
+  while (now_.time_since_epoch() < limit && step()) {
+  }
+}
+
+bool Simulation::step(Instant until) {
+  if (everybody_finished()) return false;
+  const Instant next = std::min(next_event(), until);
+  if (next == Instant::max()) return false;
+  now_ = std::max(now_, next);
+  do_faults();
+  deliver_due();
+  advance_due();
+  supervise_coordinator();
+  return true;
+}
+
+Instant Simulation::next_event() const {
+  Instant next = std::min(network_.next(), next_fault());
+  for (const Node& node : nodes_) next = std::min(next, node.up ? node.wakeup : node.restart);
+  return next;
+}
+
+void Simulation::advance_due() {
+  for (NodeId node = 0; node < node_count(); ++node) {
+    if (at(node).up && (at(node).heard || at(node).wakeup <= now_)) advance(node);
+  }
+}
+
+void Simulation::advance(NodeId id) {
+  Node& node = at(id);
+  const Instant local = node.clock.local(now_);
+  node.heard = false;
+  const Instant next = std::visit(
+      [&](auto& core) {
+        core->advance(local, outbox_);
+        return core->finished() ? Instant::max() : core->next_wakeup();
+      },
+      node.core);
+  publish(id);
+  node.wakeup = node.clock.when(next);
+  SimulationObserver nobody;
+  (observer_ != nullptr ? *observer_ : nobody).advanced(id, next <= local);
+}
+
+// ---- messages ------------------------------------------------------------------------------------
+
+void Simulation::publish(NodeId from) {
+  if (outbox_.empty()) return;
+  if (observer_ != nullptr) observer_->says(from, outbox_);
+  for (const Outgoing& said : outbox_) {
+    encode(said.message, bytes_);
+    auto decoded = read(bytes_);
+    if (observer_ != nullptr) observer_->decoded(*decoded, false);
+    if (std::holds_alternative<Refusal>(*decoded)) continue;
+    note(from, said);
+    const AgentId sender = header_of(said.message).sender;
+    const int corrupted = network_.send(
+        now_, from, on_bus_[static_cast<std::size_t>(said.bus)], said.bus,
+        said.relayer != kUnassigned ? said.relayer : sender, std::move(decoded));
+    for (int i = 0; i < corrupted; ++i) {
+      damaged_ = bytes_;
+      damage(damaged_, mission_.seed, static_cast<std::uint64_t>(network_.counted().corrupted - i));
+      if (observer_ != nullptr) observer_->decoded(decode(damaged_, run_), true);
+    }
+  }
+  outbox_.clear();
+}
+
+/// A message takes a kilobyte: it is decoded to where it stays, and that is used again.
+std::shared_ptr<Decoded> Simulation::read(std::span<const std::byte> bytes) {
+  if (spare_.empty()) return std::make_shared<Decoded>(decode(bytes, run_));
+  auto decoded = std::move(spare_.back());
+  spare_.pop_back();
+  std::destroy_at(decoded.get());
+  ::new (decoded.get()) Decoded(decode(bytes, run_));
+  return decoded;
+}
+
+/// What the faults and the counts go by.
+void Simulation::note(NodeId from, const Outgoing& said) {
+  ++counts_.messages;
+  counts_.relayed += said.relayer != kUnassigned;
+  counts_.contributions += std::holds_alternative<Contribution>(said.message);
+  counts_.digests += std::holds_alternative<Digest>(said.message);
+  if (const auto* world = std::get_if<WorldState>(&said.message)) {
+    last_tick_ = std::max(last_tick_, world->header.tick);
+  }
+  if (const auto* part = std::get_if<MissionPart>(&said.message)) {
+    end_said_ |= part->state == MissionState::kEnded || part->state == MissionState::kFailed;
+  }
+  const auto* command = std::get_if<Command>(&said.message);
+  at(from).answered |= command != nullptr && command->header.tick >= 0;
+}
+
+void Simulation::deliver_due() {
+  while (network_.next() <= now_) {
+    Delivery delivery = network_.pop();
+    const Message& message = std::get<Message>(*delivery.read);
+    const auto reaches = [&](NodeId node) {
+      return delivery.to[static_cast<std::size_t>(node)] && at(node).up;
+    };
+    for (NodeId node = 0; observer_ != nullptr && node < node_count(); ++node) {
+      if (reaches(node)) observer_->arrives(node, message);
+    }
+    // Everything on a bus arrives; what no subscription names goes no further.
+    for (NodeId node : listeners_[static_cast<std::size_t>(delivery.bus)][message.index()]) {
+      if (reaches(node)) deliver(node, message, delivery);
+    }
+    if (delivery.read.use_count() == 1) spare_.push_back(std::move(delivery.read));
+  }
+}
+
+void Simulation::deliver(NodeId to, const Message& message, const Delivery& delivery) {
+  if (options_.drop && options_.drop(message, to)) return;
+  Node& node = at(to);
+  node.heard = true;
+  std::visit(
+      [&](auto& core) {
+        core->receive(message, delivery.bus, delivery.transmitter, node.clock.local(now_));
+      },
+      node.core);
+  if (observer_ != nullptr) observer_->received(to, message);
+}
+
+}  // namespace ergocast::lab

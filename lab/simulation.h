@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A whole team in one process: the cores and the codec of the real processes, in virtual time.
+// Everything follows from the plan, its seed and the faults.
+//
+// A step jumps to the next event, delivers what is due and advances every process that heard
+// something or wakes up. Without latency and faults, messages arrive in the order in which they were
+// sent, and before time passes. simulation.cc has time and messages, simulation_faults.cc what is
+// done to processes and links.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "agent/agent.h"
+#include "coordinator/coordinator.h"
+#include "lab/clock.h"
+#include "lab/faults.h"
+#include "lab/network.h"
+#include "logger/recorder.h"
+#include "sim/world.h"
+#include "team/subscriptions.h"
+
+namespace ergocast::lab {
+
+inline double in_seconds(Instant at) {
+  return std::chrono::duration<double>(at.time_since_epoch()).count();
+}
+
+struct SimulationOptions {
+  std::vector<std::byte> plan;  ///< compiled; its seed is the simulation's
+  Faults faults{};
+  std::string version{};
+  SubscriptionTable subscriptions = kSubscriptions;  ///< what tests take away is not heard
+  std::string host = "laboratory";
+  PacingClock::duration latency{};  ///< of a message that nothing happens to
+  /// For tests: whether a message that `to` subscribes to does not reach it. Healing does not end it.
+  std::function<bool(const Message&, NodeId to)> drop{};
+};
+
+/// What was said and done so far.
+struct SimulationCounts {
+  std::int64_t messages = 0, contributions = 0, digests = 0, relayed = 0;
+  MessageFaults faults;
+  std::int64_t splits = 0, one_way_cuts = 0;
+  std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
+};
+
+/// Hears of what happens in a simulation, at once.
+class SimulationObserver {
+ public:
+  virtual ~SimulationObserver() = default;
+  /// `again`: in place of a process that crashed.
+  virtual void started(NodeId, Incarnation, bool /*again*/) {}
+  /// All that a process says at this moment, before any of it is encoded.
+  virtual void says(NodeId, const Outbox&) {}
+  virtual void decoded(const Decoded&, bool /*damaged*/) {}
+  /// Also what the process does not subscribe to, or what is dropped.
+  virtual void arrives(NodeId, const Message&) {}
+  virtual void received(NodeId, const Message&) {}
+  /// `hurries`: the process asks to be woken at a time that has passed. It would run at full load, and
+  /// time would not pass here: unless this is overridden, it throws std::logic_error.
+  virtual void advanced(NodeId, bool hurries);
+  virtual void healed() {}
+};
+
+class Simulation {
+ public:
+  /// @param trajectory, metrics  what the recorder writes
+  /// @param observer  outlives the simulation; may be null
+  /// @pre options.plan decodes, and both streams are good.
+  Simulation(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics,
+             SimulationObserver* observer = nullptr);
+
+  /// Passes on to the next event, at most to `until`. False, and nothing happens, once everybody has
+  /// finished, or waits for what never comes.
+  bool step(Instant until = Instant::max());
+  /// Until nothing happens any more, or `limit` of virtual time has passed.
+  void run(PacingClock::duration limit = PacingClock::duration::max());
+  /// Has the coordinator end the mission in order.
+  void end(std::string reason);
+
+  // ---- who is there ----
+
+  int agent_count() const { return agent_count_; }
+  int node_count() const { return agent_count_ + 3; }
+  NodeId coordinator_node() const { return agent_count_; }
+  NodeId world_node() const { return agent_count_ + 1; }
+  NodeId logger_node() const { return agent_count_ + 2; }
+  std::string name_of(NodeId node) const;
+  /// The newest incarnation of each, also while it is down.
+  const Agent& agent(NodeId node) const { return core<Agent>(node); }
+  const Coordinator& coordinator() const { return core<Coordinator>(coordinator_node()); }
+  const World& world() const { return core<World>(world_node()); }
+  const Recorder& recorder() const { return core<Recorder>(logger_node()); }
+  bool up(NodeId node) const { return at(node).up; }
+  bool finished(NodeId node) const;
+
+  // ---- how far it is ----
+
+  Instant now() const { return now_; }
+  Instant local_time(NodeId node) const { return at(node).clock.local(now_); }
+  /// What the schedule of the faults goes by. A lockstep mission flies in no time where nobody is
+  /// late, so there it is mission time; but a mission that stands still is to be healed as well.
+  double progress_s() const;
+  /// Virtual time that the whole mission takes.
+  double planned_s() const;
+  /// Of the world; −1 before its first.
+  Tick last_tick() const { return last_tick_; }
+  /// The last tick was published, or a coordinator has said the end.
+  bool mission_over() const { return end_said_ || last_tick_ >= mission_.timing.tick_count; }
+  /// The last moment at which a process was down or cut off, or messages were so late or so few that
+  /// nobody can tell.
+  std::optional<Instant> hindered() const { return hindered_; }
+  SimulationCounts counts() const;
+
+ private:
+  struct Node {
+    std::variant<std::unique_ptr<Agent>, std::unique_ptr<Coordinator>, std::unique_ptr<World>,
+                 std::unique_ptr<Recorder>>
+        core;
+    SkewedClock clock;
+    Instant wakeup{}, restart{};  // the latter while it is down
+    std::uint32_t starts = 0;
+    bool up = false, heard = false;
+    bool answered = false;  // an agent that lives: a tick
+  };
+  struct FaultEnd {
+    Instant at;
+    FaultEvent event;
+  };
+
+  Node& at(NodeId node) { return nodes_[static_cast<std::size_t>(node)]; }
+  const Node& at(NodeId node) const { return nodes_[static_cast<std::size_t>(node)]; }
+  template <class Core>
+  const Core& core(NodeId node) const {
+    return *std::get<std::unique_ptr<Core>>(at(node).core);
+  }
+  Role role_of(NodeId node) const;
+  void start(NodeId node);
+
+  bool everybody_finished() const;
+  Instant next_event() const;
+  void deliver_due();
+  void deliver(NodeId to, const Message& message, const Delivery& delivery);
+  void advance_due();
+  void advance(NodeId node);
+  void publish(NodeId from);
+  std::shared_ptr<Decoded> read(std::span<const std::byte> bytes);
+  void note(NodeId from, const Outgoing& said);
+
+  // What is done to processes and links.
+  void set_up_faults();
+  Instant next_fault() const;
+  bool comes(double at_s) const;
+  void do_faults();
+  void begin_events();
+  void end_events();
+  void begin(const FaultEvent& event);
+  void cut(const FaultEvent& event, bool join);
+  bool anybody_else_knows_the_mission(NodeId but) const;
+  bool may_crash(NodeId node) const;
+  bool crash(NodeId node, double lasts_s);
+  void heal();
+  void supervise_coordinator();
+
+  SimulationOptions options_;
+  std::ostream &trajectory_, &metrics_;
+  SimulationObserver* observer_;
+  Mission mission_;
+  RunId run_;
+  int agent_count_;
+  Network network_;
+  std::vector<Node> nodes_;
+  NodeSet on_bus_[kBusCount];  // whoever listens to anything there
+  std::vector<NodeId> listeners_[kBusCount][kMessageTypeCount];
+
+  Instant now_{};
+  Tick last_tick_ = -1;
+  bool end_said_ = false;  // by a coordinator
+  Outbox outbox_;
+  std::vector<std::byte> bytes_, damaged_;
+  std::vector<std::shared_ptr<Decoded>> spare_;  // to use again
+  SimulationCounts counts_;
+
+  std::vector<FaultEvent> events_;
+  std::size_t next_fault_ = 0;
+  std::vector<FaultEnd> fault_ends_;
+  double faulty_s_;  // of progress_s(), until all is healed
+  bool healed_ = false;
+  bool hinders_;  // even what happens to messages alone
+  std::optional<Instant> hindered_;
+};
+
+}  // namespace ergocast::lab
