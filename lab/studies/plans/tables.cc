@@ -67,7 +67,7 @@ struct Pairs {
   std::vector<double> law, plans;
 };
 
-/// The first setting also with its φ².
+/// The first setting also with its φ²; others that have not flown the row get a dash.
 void print_row(const fs::path& folder, const std::vector<std::string>& settings,
                const std::string& row) {
   const Pairs first(folder, settings.front(), row);
@@ -75,8 +75,10 @@ void print_row(const fs::path& folder, const std::vector<std::string>& settings,
   std::replace(name.begin(), name.end(), '_', ' ');
   std::printf("| %s | %s | %s |", name.c_str(), spread(first.law).c_str(),
               spread(first.plans).c_str());
-  for (const std::string& setting : settings)
-    std::printf(" %s |", Pairs(folder, setting, row).against().c_str());
+  for (const std::string& setting : settings) {
+    const bool flown = fs::exists(folder / (setting + "-" + row + ".csv"));
+    std::printf(" %s |", flown ? Pairs(folder, setting, row).against().c_str() : "–");
+  }
   std::printf("\n");
 }
 
