@@ -202,7 +202,7 @@ void Agent::advance(Instant now, Outbox& out) {
   if (phase() == AgentPhase::kRunning) fly(*in_mission(), now, out);
   if (!finished() && mission_repeat_.due(now)) repeat_mission(now, out);
   if (InMission* const flight = in_mission()) {
-    help_others(*flight, now, out);
+    answer_digests(*flight, now, out);
     if (flight->next_status.due(now, flight->step.tick)) publish_status(*flight, now, out);
   }
   if (auto* const end = std::get_if<Finished>(&state_)) {
@@ -237,11 +237,11 @@ Instant Agent::next_wakeup() const {
 
 /// Nobody can tell two joining processes apart by an id that neither has been given: only who was
 /// admitted has last words.
-void Agent::finish(bool failed, std::string reason, bool stand_still) {
+void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   if (finished()) return;
   Finished end{failed, std::move(reason), {}, {}};
   if (InMission* const flight = in_mission()) {
-    if (stand_still) {  // the last word to the vehicle, whose driver may know no STOP
+    if (send_zero_velocity) {  // the last word to the vehicle, whose driver may know no STOP
       flight->last_command.position_m = flight->step.x_m;
       flight->last_command.velocity_mps.setZero();
       me_.publish(Bus::kCommand, flight->last_command, flight->step.tick, end.last_words);
@@ -331,7 +331,7 @@ void Agent::publish_status(InMission& flight, Instant now, Outbox& out) {
                                     mission().timing.dt_s, flight.step.tick);
 }
 
-std::string Agent::obstacle() const {
+std::string Agent::blocked_reason() const {
   if (finished()) return "";
   if (follower().revision() < 0) return "no coordinator is heard";
   const std::string as_agent = "admitted as agent " + std::to_string(me_.id()) + ", waiting for ";

@@ -61,7 +61,7 @@ class Agent {
   const std::string& reason() const;
   bool failed() const;
   /// What keeps it from taking part in the mission, in words; empty if nothing does.
-  std::string obstacle() const;
+  std::string blocked_reason() const;
 
   RunId run() const { return me_.run(); }
   AgentId id() const { return me_.id(); }
@@ -81,7 +81,7 @@ class Agent {
 
   /// What the transport counted; shown in the status.
   void count_refused(Refusal refusal) { me_.count_refused(refusal); }
-  void note_babbler(AgentId agent) { status_.babbler = agent; }
+  void note_rate_offender(AgentId agent) { status_.rate_offender = agent; }
   void set_kernel_drops(std::int64_t drops) { status_.kernel_drops = drops; }
   /// How late or deaf its process was; the next status tells the worst since the last.
   void note_loop_lag(double lag_s) { status_.loop_lag_s = std::max(status_.loop_lag_s, lag_s); }
@@ -165,7 +165,7 @@ class Agent {
   Tick oldest_news(const InMission& flight) const;
   AgentStatus status_of(const InMission& flight, AgentPhase phase);
   void publish_status(InMission& flight, Instant now, Outbox& out);
-  void finish(bool failed, std::string reason, bool stand_still = false);
+  void finish(bool failed, std::string reason, bool send_zero_velocity = false);
 
   void fly(InMission& flight, Instant now, Outbox& out);
   void note_places(InMission& flight, const WorldState& world);
@@ -175,8 +175,8 @@ class Agent {
   void repeat(InMission& flight, Outbox& out);
   bool may_answer(InMission& flight) const;
   void answer(InMission& flight, Outbox& out);
-  void help_others(InMission& flight, Instant now, Outbox& out);
-  void tell_world(InMission& flight, Outbox& out);
+  void answer_digests(InMission& flight, Instant now, Outbox& out);
+  void report_position(InMission& flight, Outbox& out);
 
   Participant me_;
   AgentId requested_id_;

@@ -20,14 +20,14 @@ constexpr auto kComplaintLife = 5s;
 constexpr std::size_t kMaxComplaints = 8192;
 constexpr int kToleratedPeriods = 2;
 
-/// Whether who holds `steps` and `mark` of a row of ours is worth an answer.
+/// Whether who holds `steps` and `state_hash` of a row of ours is worth an answer.
 bool lacks_something(const CoverageTable& table, std::size_t row, bool will_speak,
-                     std::int64_t steps, std::uint64_t mark) {
+                     std::int64_t steps, std::uint64_t state_hash) {
   if (will_speak && table.min_steps(row) <= steps) return false;  // nearly always
-  const CoverageTable::Holding ours = table.holding(row);
+  const CoverageTable::RowSummary ours = table.holding(row);
   if (will_speak) return ours.steps - steps > kToleratedPeriods * ours.announced_period;
   // Two may each hold a block that the other lacks, and both say the same number of steps.
-  return ours.steps > steps || (mark != ours.mark && ours.newest_steps > steps);
+  return ours.steps > steps || (state_hash != ours.state_hash && ours.newest_steps > steps);
 }
 
 }  // namespace
@@ -40,9 +40,9 @@ std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
       digests.emplace_back();
     }
     Digest& digest = digests.back();
-    const CoverageTable::Holding held = table.holding(entry.author);
+    const CoverageTable::RowSummary held = table.holding(entry.author);
     digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {entry.author, held.steps,
-                                                                      held.mark};
+                                                                      held.state_hash};
   }
   return digests;
 }
@@ -58,7 +58,7 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
   // Digest, roster and table all ascend by author: one walk along all three.
   std::size_t row = 0, member = 0;
   for (int i = 0; i < theirs.entry_count; ++i) {
-    const auto& [author, steps, mark] = theirs.entries[static_cast<std::size_t>(i)];
+    const auto& [author, steps, state_hash] = theirs.entries[static_cast<std::size_t>(i)];
     while (member < roster.size() && roster[member].author < author) ++member;
     while (row < table.row_count() && table.author(row) < author) ++row;
     if (member == roster.size() || row == table.row_count()) return;
@@ -66,7 +66,7 @@ void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
     if (author == self_ || author == requester || roster[member].author != author) continue;
     if (table.author(row) != author) continue;
     const bool will_speak = roster[member].active_until < 0;
-    const bool lacks = lacks_something(table, row, will_speak, steps, mark);
+    const bool lacks = lacks_something(table, row, will_speak, steps, state_hash);
     consider(requester, author, lacks, theirs.header.sequence, now, tick);
   }
 }
@@ -81,7 +81,7 @@ void AntiEntropy::consider(const Author& requester, const Author& author, bool l
   }
   const auto former = complaints_.find(key);
   if (former == complaints_.end()) {
-    if (complaints_.size() < kMaxComplaints) complaints_.emplace(key, Complaint{sequence, now});
+    if (complaints_.size() < kMaxComplaints) complaints_.emplace(key, RowRequest{sequence, now});
     return;
   }
   if (sequence <= former->second.sequence) return;

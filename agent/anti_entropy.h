@@ -47,7 +47,7 @@ class AntiEntropy {
   std::int64_t relayed() const { return relayed_; }
 
  private:
-  struct Complaint {
+  struct RowRequest {
     std::int64_t sequence;  // of the digest it was in
     Instant at;
   };
@@ -60,7 +60,7 @@ class AntiEntropy {
   Author self_;
   std::uint64_t seed_;
   double dt_s_;
-  std::map<std::pair<Author, Author>, Complaint> complaints_;  // (who lacks, whose coverage)
+  std::map<std::pair<Author, Author>, RowRequest> complaints_;  // (who lacks, whose coverage)
   std::map<Author, Deadline> answers_;
   Deadline next_window_;
   std::size_t window_answers_ = 0;

@@ -153,9 +153,9 @@ void Agent::answer(InMission& flight, Outbox& out) {
   me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
 }
 
-void Agent::help_others(InMission& flight, Instant now, Outbox& out) {
+void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {
   const Tick tick = flight.step.tick;
-  if (flight.world_asks) tell_world(flight, out);
+  if (flight.world_asks) report_position(flight, out);
   for (const Contribution& block : flight.anti_entropy.answers_due(flight.table, now, tick)) {
     me_.relay(Bus::kSwarm, block, out);
   }
@@ -167,7 +167,7 @@ void Agent::help_others(InMission& flight, Instant now, Outbox& out) {
   }
 }
 
-void Agent::tell_world(InMission& flight, Outbox& out) {
+void Agent::report_position(InMission& flight, Outbox& out) {
   for (Command command : {flight.command_before, flight.last_command}) {
     command.asked_by = *flight.world_asks;
     me_.publish(Bus::kCommand, command, command.header.tick, out);

@@ -18,7 +18,7 @@ namespace {
 class WaitingLog {
  public:
   void look(const Agent& agent, Instant now) {
-    const std::string obstacle = agent.obstacle();
+    const std::string obstacle = agent.blocked_reason();
     if (obstacle.empty() || next_ == Instant{}) next_ = now + kFirst;
     if (obstacle.empty() || now < next_) return;
     next_ = now + kPeriod;
@@ -58,7 +58,7 @@ int run(const NodeOptions& node, AgentId requested_id) {
     }
     if (watch.look(now())) {
       agent.set_kernel_drops(watch.kernel_drops());
-      agent.note_babbler(transport.babbler());
+      agent.note_rate_offender(transport.rate_offender());
       waiting.look(agent, now());
     }
     if (agent.phase() == logged) return;

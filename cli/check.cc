@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "runtime/node.h"
 #include "team/plan.h"

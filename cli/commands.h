@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 #include "runtime/event_log.h"
 #include "runtime/lcm_url.h"
 #include "scenario/scenario.h"
@@ -28,7 +28,7 @@ struct MissionOptions {
   std::filesystem::path out;     ///< empty: runs/<scenario>-<time>
   Overrides overrides;
   std::optional<LcmUrl> url;     ///< nothing: this host only, on ports that the run reserves
-  Seal seal;
+  MessageAuthenticator seal;
   std::string key_file;          ///< the file of the key in `seal`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
 };

@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/key_pair.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
@@ -93,13 +93,13 @@ int write_files(const std::vector<TextFile>& files, const fs::path& folder) {
   fs::create_directories(folder, error);
   for (const TextFile& file : files) {
     if (!fs::exists(fs::symlink_status(folder / file.name, error))) continue;
-    return complain(kExitBadInput, to_string(Problem{"--out " + folder.string(),
+    return report_error(kExitBadInput, to_string(Problem{"--out " + folder.string(),
                                                      file.name + " is there already",
                                                      "give a new folder, or remove the file"}));
   }
   for (const TextFile& file : files) {
     const fs::path path = folder / file.name;
-    if (const auto problem = write_file(path, file.text)) return complain(kExitBadInput, *problem);
+    if (const auto problem = write_file(path, file.text)) return report_error(kExitBadInput, *problem);
     const auto mode = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
     if (file.executable) fs::permissions(path, mode, fs::perm_options::add, error);
     std::printf("%s\n", path.c_str());
@@ -111,7 +111,7 @@ int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, {});
   if (!scenario) return kExitBadInput;
   const auto read = read_hosts(options.hosts);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return complain(kExitBadInput, *problems);
+  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return report_error(kExitBadInput, *problems);
   const auto& hosts = std::get<std::vector<DeployHost>>(read);
 
   std::vector<Problem> problems;
@@ -122,9 +122,9 @@ int deploy(const DeployOptions& options) {
   for (Problem& problem : problems_of(hosts, mission, options.hosts.string(), apart)) {
     problems.push_back(std::move(problem));
   }
-  if (!problems.empty()) return complain(kExitBadInput, problems);
+  if (!problems.empty()) return report_error(kExitBadInput, problems);
   if (!options.keys.empty()) {
-    if (const auto problem = problem_of_key_pair(options.keys)) return complain(kExitBadInput, *problem);
+    if (const auto problem = problem_of_key_pair(options.keys)) return report_error(kExitBadInput, *problem);
     mission.keys = fs::absolute(options.keys).lexically_normal();
   }
   const auto render = options.to == "ssh"       ? ssh_files

@@ -24,7 +24,7 @@ using doctor::Level;
 
 struct DoctorOptions {
   LcmUrl url;
-  Seal seal;
+  MessageAuthenticator seal;
   std::optional<int> peer_seconds;
   bool json = false;
 };
@@ -51,7 +51,7 @@ Finding not_tried(const doctor::Examination& host, int seconds) {
               "'   # on every host"};
 }
 
-doctor::PeerTest try_peers(const LcmUrl& url, const Seal& seal, int seconds) {
+doctor::PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal, int seconds) {
   if (isatty(STDERR_FILENO) == 1) {
     std::fprintf(stderr,
                  "Listening for other hosts for %d s. Start the same there now:\n"

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/key_pair.h"
 #include "runtime/key_file.h"
 #include "runtime/node.h"
@@ -16,10 +16,10 @@ int make_keys(const std::string& name) {
   const std::string team = team_key_file(name), coordinator = coordinator_key_file(name);
   const MissionKey key = make_mission_key();
   // The coordinator's file first: the team's file is useless without it.
-  if (const auto problem = write_key_file(coordinator, key_text(key, true))) return complain(kExitBadInput, *problem);
+  if (const auto problem = write_key_file(coordinator, key_text(key, true))) return report_error(kExitBadInput, *problem);
   if (const auto problem = write_key_file(team, key_text(key, false))) {
     std::remove(coordinator.c_str());
-    return complain(kExitBadInput, *problem);
+    return report_error(kExitBadInput, *problem);
   }
   std::printf(
       "%s: for every agent, world, driver, logger and whoever watches\n"

@@ -94,8 +94,8 @@ void Launcher::attend(Instant now, Stage stage) {
     }
   }
   if (!end_expected_) return;
-  if (pressed_ < 1 && now - *end_expected_ > kEndPatience) press(1);
-  if (pressed_ < 2 && now - *end_expected_ > kEndPatience + kPoliteness) press(2);
+  if (escalated_ < 1 && now - *end_expected_ > kEndPatience) escalate(1);
+  if (escalated_ < 2 && now - *end_expected_ > kEndPatience + kPoliteness) escalate(2);
 }
 
 void Launcher::take_note(Process& process, Instant now, Stage stage) {
@@ -207,8 +207,8 @@ void Launcher::expect_end(Instant now) {
   if (!end_expected_) end_expected_ = now;
 }
 
-void Launcher::press(int how_hard) {
-  pressed_ = std::max(pressed_, how_hard);
+void Launcher::escalate(int how_hard) {
+  escalated_ = std::max(escalated_, how_hard);
   for (Process& process : processes_) {
     if (!process.child || !process.child->running()) continue;
     display_.say(process.name + ": " + (how_hard == 1 ? "asked to end" : "killed"));

@@ -64,7 +64,7 @@ class Launcher {
   std::string losses() const;
 
   /// Ends the remaining processes: 1 by SIGTERM, 2 by SIGKILL.
-  void press(int how_hard);
+  void escalate(int how_hard);
 
   int restarts() const;
   std::vector<ProcessFate> fates() const;
@@ -101,7 +101,7 @@ class Launcher {
   std::vector<Process> processes_;
   std::optional<std::string> failure_;
   std::optional<Instant> end_expected_;
-  int pressed_ = 0;
+  int escalated_ = 0;
 };
 
 }  // namespace ergocast::cli

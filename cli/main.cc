@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "text/read_number.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/progress.h"
-#include "cli/stop_word.h"
+#include "cli/stop_request.h"
 #include "core/ids.h"
 #include "team/messages.h"
 #include "core/mission.h"
@@ -72,7 +72,7 @@ class MissionWatch {
   std::string reason_;
   Instant tick_since_{};  // when the last tick or stage was reached
 
-  std::optional<StopWord> stop_;
+  std::optional<StopRequest> stop_;
   std::optional<Instant> stopping_since_;
 };
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "runtime/node.h"
 
@@ -15,7 +15,7 @@ int report(const std::filesystem::path& run_dir) {
   const auto mission = recorded_mission_or_complain(run_dir);
   if (!mission) return kExitBadInput;
   if (const auto problem = write_report(run_dir, *mission)) {
-    return complain(kExitBadInput, *problem);
+    return report_error(kExitBadInput, *problem);
   }
   std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());
   return kExitDone;

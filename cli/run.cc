@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/launcher.h"
 #include "cli/mission_watch.h"
 #include "cli/progress.h"
@@ -35,8 +35,8 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
     if (const int count = signals.take(); count > 0) {
       asked += count;
       if (asked == 1) display.say("ending the mission in order; once more to end it now");
-      if (asked == 2) launcher.press(1);
-      if (asked > 2) launcher.press(2);
+      if (asked == 2) launcher.escalate(1);
+      if (asked > 2) launcher.escalate(2);
       mission.stop(false, "Ctrl-C or SIGTERM");
     }
     if (mission.stopping()) launcher.expect_end(now());
@@ -108,7 +108,7 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
 }
 
 /// Runs the mission. LCM works and the run directory is ready.
-int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal,
+int fly(const Scenario& scenario, const Launcher::Setup& setup, const MessageAuthenticator& seal,
         StopSignals& signals) {
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display);
@@ -118,13 +118,13 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal
                                   mission.receive(message, bus, transmitter, now());
                                 }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
-    return complain(kExitUnavailable, *problem);
+    return report_error(kExitUnavailable, *problem);
   }
   announce(setup, scenario, display);
   Launcher launcher(setup, display);
   if (const auto problem = launcher.start()) {
-    launcher.press(2);
-    return complain(kExitFailed, *problem);
+    launcher.escalate(2);
+    return report_error(kExitFailed, *problem);
   }
   supervise(launcher, mission, *std::get<0>(opened), signals, display);
   display.end();
@@ -132,7 +132,7 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal
   const auto summary = amended_summary(scenario, setup, launcher, mission);
   const auto unwritten = write_file(setup.run_dir / kSummaryFile, to_text(summary));
   conclude(setup.run_dir, summary, scenario);
-  if (unwritten) return complain(kExitFailed, *unwritten);
+  if (unwritten) return report_error(kExitFailed, *unwritten);
   return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;
 }
 
@@ -141,7 +141,7 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const Seal& seal
 int run(const MissionOptions& options) {
   const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
-  if (!options.seal.can_sign()) return complain(kExitBadInput, cannot_sign(options.key_file));
+  if (!options.seal.can_sign()) return report_error(kExitBadInput, cannot_sign(options.key_file));
   StopSignals signals;
   Launcher::Setup setup;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
@@ -150,15 +150,15 @@ int run(const MissionOptions& options) {
   if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
   setup.event_log_mib = options.event_log_mib;
   setup.url = options.url.value_or(LcmUrl{});
-  if (const auto problem = why_unreachable(setup.url)) return complain(kExitUnavailable, *problem);
+  if (const auto problem = why_unreachable(setup.url)) return report_error(kExitUnavailable, *problem);
   const auto ports = options.url ? std::nullopt : PortReservation::take(setup.run);
   if (!options.url) {
-    if (!ports) return complain(kExitUnavailable, "no free ports in 24000 to 26999; give --lcm-url");
+    if (!ports) return report_error(kExitUnavailable, "no free ports in 24000 to 26999; give --lcm-url");
     setup.url.base_port = ports->base_port();
   }
   const auto prepared = prepare_run_directory(options.out, *scenario);
   if (const auto* problem = std::get_if<std::string>(&prepared)) {
-    return complain(kExitBadInput, *problem);
+    return report_error(kExitBadInput, *problem);
   }
   setup.run_dir = std::get<fs::path>(prepared);
   return fly(*scenario, setup, options.seal, signals);

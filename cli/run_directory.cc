@@ -10,7 +10,7 @@
 #include <iterator>
 #include <span>
 
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "report/report.h"
 #include "logger/run_record.h"
 #include "report/target_density.h"
@@ -93,25 +93,25 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
   auto loaded = Scenario::load(file, overrides);
   if (auto* scenario = std::get_if<Scenario>(&loaded)) return std::move(*scenario);
   const auto& problems = std::get<std::vector<Problem>>(loaded);
-  complain(kExitBadInput, problems);
-  complain(kExitBadInput, std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems"));
+  report_error(kExitBadInput, problems);
+  report_error(kExitBadInput, std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems"));
   return std::nullopt;
 }
 
 std::optional<Mission> recorded_mission_or_complain(const fs::path& run_dir) {
   if (const auto why = why_not_regular(run_dir / kPlanFile)) {
-    complain(kExitBadInput, (run_dir / kPlanFile).string() + ": " + *why);
+    report_error(kExitBadInput, (run_dir / kPlanFile).string() + ": " + *why);
     return std::nullopt;
   }
   std::ifstream file(run_dir / kPlanFile, std::ios::binary);
   const std::string plan((std::istreambuf_iterator<char>(file)), {});
   if (!file.is_open()) {
-    complain(kExitBadInput, (run_dir / kPlanFile).string() + ": missing or not readable: is this a run directory?");
+    report_error(kExitBadInput, (run_dir / kPlanFile).string() + ": missing or not readable: is this a run directory?");
     return std::nullopt;
   }
   auto read = decode_plan(std::as_bytes(std::span(plan)));
   if (auto* mission = std::get_if<Mission>(&read)) return std::move(*mission);
-  complain(kExitBadInput, (run_dir / kPlanFile).string() + ": " + std::get<std::string>(read));
+  report_error(kExitBadInput, (run_dir / kPlanFile).string() + ": " + std::get<std::string>(read));
   return std::nullopt;
 }
 
@@ -143,7 +143,7 @@ void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scen
   std::printf("  record    %s\n", run_dir.c_str());
   if (!problem) std::printf("  report    %s\n", (fs::absolute(run_dir) / "report.html").c_str());
   std::fflush(stdout);
-  if (problem) complain(kExitDone, "no report: " + *problem);
+  if (problem) report_error(kExitDone, "no report: " + *problem);
 }
 
 }  // namespace ergocast::cli

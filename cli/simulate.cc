@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/progress.h"
 #include "cli/run_directory.h"
 #include "lab/simulation.h"
@@ -64,12 +64,12 @@ int simulate(const MissionOptions& options) {
   if (!scenario) return kExitBadInput;
   const auto prepared = prepare_run_directory(options.out, *scenario);
   if (const auto* problem = std::get_if<std::string>(&prepared)) {
-    return complain(kExitBadInput, *problem);
+    return report_error(kExitBadInput, *problem);
   }
   const auto& folder = std::get<std::filesystem::path>(prepared);
   auto created = RunRecord::create(folder);
   if (const auto* problem = std::get_if<std::string>(&created)) {
-    return complain(kExitBadInput, *problem);
+    return report_error(kExitBadInput, *problem);
   }
   RunRecord& record = *std::get<0>(created);
   lab::Simulation simulation({.plan = encode_plan(scenario->mission()), .version = version(), .host = host_name()},
@@ -80,7 +80,7 @@ int simulate(const MissionOptions& options) {
   const auto summary = summary_of(simulation.recorder(), *scenario, started, wall_time_s);
   auto error = record.flush();
   if (!error) error = write_file(folder / kSummaryFile, to_text(summary));
-  if (error) return complain(kExitFailed, *error + "; the record is incomplete");
+  if (error) return report_error(kExitFailed, *error + "; the record is incomplete");
   conclude(folder, summary, *scenario);
   return simulation.coordinator().state() == MissionState::kFailed ? kExitFailed : kExitDone;
 }

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "ops/deploy/script.h"
 #include "runtime/lcm_url.h"
 #include "runtime/node.h"
@@ -101,13 +101,13 @@ int print_command(const Viewer& viewer) {
 int spy(const SpyOptions& options) {
   Viewer viewer = viewer_for(options);
   if (!viewer.packages.empty()) {
-    return complain(kExitUnavailable,
+    return report_error(kExitUnavailable,
         "lcm-spy needs Debian packages that are not installed. As root:\n"
         "  apt-get install" +
         viewer.packages);
   }
   if (viewer.jar_missing) {
-    return complain(kExitUnavailable,
+    return report_error(kExitUnavailable,
         "ergocast-spy.jar was not built, because a JDK or lcm.jar was missing. As root:\n"
         "  apt-get install default-jdk liblcm-java\n"
         "Then configure and build again: cmake BUILD && cmake --build BUILD --target spy");
@@ -115,16 +115,16 @@ int spy(const SpyOptions& options) {
   if (options.print) return print_command(viewer);
   const char* display = std::getenv("DISPLAY");
   if (display == nullptr || *display == '\0') {
-    return complain(kExitUnavailable,
+    return report_error(kExitUnavailable,
         "lcm-spy draws windows, and there is no screen: DISPLAY is not set. Start it from a "
         "desktop, or log in with ssh -X");
   }
-  if (const auto problem = why_unreachable(options.url)) return complain(kExitUnavailable, *problem);
+  if (const auto problem = why_unreachable(options.url)) return report_error(kExitUnavailable, *problem);
   std::vector<char*> arguments;
   for (std::string& word : viewer.command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   execv(arguments.front(), arguments.data());
-  return complain(kExitUnavailable, viewer.command.front() + ": " + std::strerror(errno));
+  return report_error(kExitUnavailable, viewer.command.front() + ": " + std::strerror(errno));
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
-#include "cli/nobody.h"
-#include "cli/team_ears.h"
+#include "cli/report_error.h"
+#include "cli/diagnose_silence.h"
+#include "cli/team_monitor.h"
 #include "cli/team_screen.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
@@ -83,7 +83,7 @@ int choose(const Listener& listener) {
             (picture.scenario.empty() ? "a mission not heard yet" : picture.scenario) + ", " +
             std::to_string(picture.agents_alive) + " agents, tick " + std::to_string(picture.tick);
   }
-  return complain(kExitBadInput, text);
+  return report_error(kExitBadInput, text);
 }
 
 /// Returns when all expected messages have come, or after kPatience. False if a signal came.
@@ -101,7 +101,7 @@ bool listen_around(Listener& listener, StopSignals& signals) {
 int once(const StatusOptions& options, Listener& listener, StopSignals& signals) {
   if (!listen_around(listener, signals)) return kExitDone;
   if (listener.runs().empty())
-    return complain(kExitFailed, why_nobody(options, listener.transport()));
+    return report_error(kExitFailed, why_nobody(options, listener.transport()));
   if (listener.runs().size() > 1) return choose(listener);
   const TeamPicture picture = listener.runs().begin()->second.picture(now());
   TeamScreen(options.json).print(picture);
@@ -158,7 +158,7 @@ int watch(const StatusOptions& options, Listener& listener, StopSignals& signals
 int status(const StatusOptions& options) {
   StopSignals signals;
   Listener listener(options);
-  if (const auto problem = listener.open()) return complain(kExitUnavailable, *problem);
+  if (const auto problem = listener.open()) return report_error(kExitUnavailable, *problem);
   return options.watch ? watch(options, listener, signals) : once(options, listener, signals);
 }
 

@@ -10,10 +10,10 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
-#include "cli/nobody.h"
-#include "cli/stop_word.h"
-#include "cli/team_ears.h"
+#include "cli/report_error.h"
+#include "cli/diagnose_silence.h"
+#include "cli/stop_request.h"
+#include "cli/team_monitor.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 /// Longer than any agent is silent, so that every other run on this URL is detected.
 constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 /// How long to wait for any process, and for a coordinator.
-constexpr auto kHearing = 3s;
+constexpr auto kListeningTime = 3s;
 /// How long a coordinator may take to end the mission; then how long the team may take to exit.
 constexpr auto kAnswerPatience = 5s;
 constexpr auto kLongest = 15s;
@@ -61,7 +61,7 @@ class Stopping {
 
   /// Finds the run, stops it and reports the result; returns the exit code.
   int stop() {
-    while (!found() && now() < since_ + kHearing) {
+    while (!found() && now() < since_ + kListeningTime) {
       if (!listen()) return kExitFailed;
     }
     if (runs_.size() > 1 && !options_.at_once) return choose();
@@ -95,21 +95,21 @@ class Stopping {
   /// Stops the selected run. In an emergency it stops all runs on the URL, also those received
   /// later, because there is no time to choose.
   int insist() {
-    std::map<RunId, StopWord> words;
+    std::map<RunId, StopRequest> words;
     std::map<RunId, int> codes;
     do {
       for (const auto& [run, team] : runs_) {
         if (!codes.contains(run)) say(run, team, words);
       }
       say_to_the_crowd();
-      if (!listen()) return complain(kExitFailed, "interrupted before the team was seen to end");
+      if (!listen()) return report_error(kExitFailed, "interrupted before the team was seen to end");
       for (const auto& [run, word] : words) {
         if (codes.contains(run)) continue;
         if (const auto code = verdict(runs_.at(run))) codes[run] = *code;
       }
     } while (codes.size() < runs_.size());
     if (crowded_) {
-      return complain(kExitFailed, "more than " + std::to_string(kMostRuns) +
+      return report_error(kExitFailed, "more than " + std::to_string(kMostRuns) +
                                        " runs were heard, recordings of former ones perhaps; all "
                                        "were told, but not all were seen to obey: say it again "
                                        "with --run-id");
@@ -123,13 +123,13 @@ class Stopping {
   void say_to_the_crowd() {
     if (!options_.at_once) return;
     for (const RunId run : crowd_) {
-      StopWord(run, false, kAtOnce + host_name()).repeat(*transport_, now(), true);
+      StopRequest(run, false, kAtOnce + host_name()).repeat(*transport_, now(), true);
     }
     crowded_ = crowded_ || !crowd_.empty();
     crowd_.clear();
   }
 
-  void say(RunId run, const RunHeard& team, std::map<RunId, StopWord>& words) {
+  void say(RunId run, const MonitoredRun& team, std::map<RunId, StopRequest>& words) {
     const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
     const auto [word, is_new] = words.try_emplace(run, run, false, how + host_name());
     if (is_new) {
@@ -144,41 +144,41 @@ class Stopping {
   }
 
   /// The exit code, or nothing while it is unknown.
-  std::optional<int> verdict(const RunHeard& team) const {
+  std::optional<int> verdict(const MonitoredRun& team) const {
     const auto waited = now() - since_;
     const auto left = team.still_there(now());
     const bool obeyed = options_.at_once ? waited >= kLeastInsistence : team.over();
-    if (team.unheard()) return waited < kHearing ? std::nullopt : std::optional(nobody());
+    if (team.unheard()) return waited < kListeningTime ? std::nullopt : std::optional(nobody());
     if (obeyed && left.empty()) return conclude(team);
     if (waited >= kLongest) {
-      return complain(kExitFailed,
+      return report_error(kExitFailed,
                       "still heard: " + listed(left) +
                           (options_.at_once ? ": end them on their hosts"
                                             : ": ergocast stop --now stops them at once"));
     }
     if (obeyed || options_.at_once) return std::nullopt;
-    if (!team.coordinator_heard() && waited >= kHearing) {
-      return complain(kExitFailed,
+    if (!team.coordinator_heard() && waited >= kListeningTime) {
+      return report_error(kExitFailed,
                       "no coordinator is heard, and nobody else ends a mission in order: "
                       "ergocast stop --now stops the team at once");
     }
     if (waited >= kAnswerPatience) {
-      return complain(kExitFailed,
+      return report_error(kExitFailed,
                       "the coordinator does not end the mission: ergocast stop --now stops "
                       "the team at once");
     }
     return std::nullopt;
   }
 
-  int conclude(const RunHeard& team) const {
+  int conclude(const MonitoredRun& team) const {
     // A mission that never started has moved no vehicle.
     if (options_.at_once && !team.world_heard() && team.tick() > 0) {
-      return complain(kExitFailed, "nobody is heard any more, but no world or driver was heard "
+      return report_error(kExitFailed, "nobody is heard any more, but no world or driver was heard "
                                    "before either: whether the vehicles stand still is not known: "
                                    "look at them");
     }
     if (options_.at_once && !team.stands_still()) {
-      return complain(kExitFailed, "the world is silent, and in its last state, of tick " +
+      return report_error(kExitFailed, "the world is silent, and in its last state, of tick " +
                                        std::to_string(team.tick()) +
                                        ", vehicles still move: look at them");
     }
@@ -191,7 +191,7 @@ class Stopping {
     return kExitDone;
   }
 
-  int nobody() const { return complain(kExitFailed, why_nobody(options_, *transport_)); }
+  int nobody() const { return report_error(kExitFailed, why_nobody(options_, *transport_)); }
 
   int choose() const {
     std::string text = "several runs are heard on this URL; choose one with --run-id:";
@@ -199,23 +199,23 @@ class Stopping {
       text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) +
               " agents, tick " + std::to_string(team.tick());
     }
-    return complain(kExitBadInput, text);
+    return report_error(kExitBadInput, text);
   }
 
   const StopOptions& options_;
   StopSignals& signals_;
   std::unique_ptr<Transport> transport_;
-  std::map<RunId, RunHeard> runs_;
+  std::map<RunId, MonitoredRun> runs_;
   std::set<RunId> crowd_;  // beyond kMostRuns, received since the last turn
   bool crowded_ = false;
   Instant since_{};
 };
 
 int stop(const StopOptions& options) {
-  if (!options.seal.can_sign()) return complain(kExitBadInput, cannot_sign(options.key_file));
+  if (!options.seal.can_sign()) return report_error(kExitBadInput, cannot_sign(options.key_file));
   StopSignals signals;
   Stopping stopping(options, signals);
-  if (const auto problem = stopping.open()) return complain(kExitUnavailable, *problem);
+  if (const auto problem = stopping.open()) return report_error(kExitUnavailable, *problem);
   return stopping.stop();
 }
 

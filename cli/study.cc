@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/progress_line.h"
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
@@ -42,9 +42,9 @@ std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds,
 }
 
 /// Simulates the missing runs and writes each result when it arrives.
-class Campaign {
+class StudyRunner {
  public:
-  Campaign(const StudyPoints& points, std::vector<Run> missing, StudyDirectory& directory)
+  StudyRunner(const StudyPoints& points, std::vector<Run> missing, StudyDirectory& directory)
       : points_(points), missing_(std::move(missing)), directory_(directory) {}
 
   void fly(int processes) {
@@ -139,15 +139,15 @@ std::optional<std::string> show_results(const StudyIdentity& identity,
 }
 
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
-void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
+void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
                      const StudyOptions& options) {
-  std::printf("\n%zu runs flown now, %zu in %s\n", campaign.flown(), directory.rows().size(),
+  std::printf("\n%zu runs flown now, %zu in %s\n", runner.flown(), directory.rows().size(),
               (options.out / "study.csv").c_str());
   std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
-  if (campaign.missing() == 0) return;
-  std::printf("%zu runs are missing%s: the same command flies them\n", campaign.missing(),
-              campaign.failed() > 0
-                  ? (", " + std::to_string(campaign.failed()) + " of them failed").c_str()
+  if (runner.missing() == 0) return;
+  std::printf("%zu runs are missing%s: the same command flies them\n", runner.missing(),
+              runner.failed() > 0
+                  ? (", " + std::to_string(runner.failed()) + " of them failed").c_str()
                   : "");
 }
 
@@ -156,31 +156,31 @@ void say_how_it_went(const Campaign& campaign, const StudyDirectory& directory,
 int study(const StudyOptions& options) {
   const auto compiled = study_points(options);
   if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) {
-    return complain(kExitBadInput, *problems);
+    return report_error(kExitBadInput, *problems);
   }
   const auto& points = std::get<StudyPoints>(compiled);
   const std::size_t count = points.scenarios.size();
   if (options.seeds.count() > kMostStudyRuns / count) {
-    return complain(kExitBadInput, "--seeds: " + std::to_string(count) + " points with " +
+    return report_error(kExitBadInput, "--seeds: " + std::to_string(count) + " points with " +
                                        std::to_string(options.seeds.count()) +
                                        " seeds each are above the limit, " +
                                        std::to_string(kMostStudyRuns) + " runs (give fewer)");
   }
   auto opened = StudyDirectory::open(options.out, points.identity);
-  if (const auto* problem = std::get_if<std::string>(&opened)) return complain(kExitBadInput, *problem);
+  if (const auto* problem = std::get_if<std::string>(&opened)) return report_error(kExitBadInput, *problem);
   StudyDirectory& directory = *std::get<0>(opened);
 
-  Campaign campaign(points, missing_runs(count, options.seeds, directory.done()), directory);
-  campaign.fly(options.jobs);
-  std::optional<std::string> problem = campaign.problem();
+  StudyRunner runner(points, missing_runs(count, options.seeds, directory.done()), directory);
+  runner.fly(options.jobs);
+  std::optional<std::string> problem = runner.problem();
   if (!problem) problem = directory.sort();
   if (!problem) problem = show_results(points.identity, directory, options);
   if (problem) {
     tell(*problem + "; the same command goes on");
     return kExitFailed;
   }
-  say_how_it_went(campaign, directory, options);
-  return campaign.failed() > 0 ? kExitFailed : kExitDone;
+  say_how_it_went(runner, directory, options);
+  return runner.failed() > 0 ? kExitFailed : kExitDone;
 }
 
 }  // namespace ergocast::cli

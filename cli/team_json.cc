@@ -34,7 +34,7 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
   for (std::size_t i = 0; i < status.refused.size(); ++i) {
     json["refused"][to_string(static_cast<Refusal>(i))] = status.refused[i];
   }
-  json["babbler"] = or_null(status.babbler != kUnassigned, status.babbler);
+  json["babbler"] = or_null(status.rate_offender != kUnassigned, status.rate_offender);
   return json;
 }
 

@@ -81,14 +81,14 @@ void TrajectoryComparison::read_next() {
 void TrajectoryComparison::compare_row(const std::string& simulated) {
   const auto key = key_of(simulated), last = key_of(last_);
   const bool same_tick = last && last->first == key->first;
-  if (!recorded_ || (halted_ && !same_tick)) {
+  if (!recorded_ || (emergency_stopped_ && !same_tick)) {
     recorded_over_ = true;
     amid_tick_ = same_tick;
     return;
   }
-  const bool stands = halt_expected_ && *recorded_ != simulated && stands_where(simulated);
+  const bool stands = emergency_stop_expected_ && *recorded_ != simulated && stands_where(simulated);
   if (*recorded_ == simulated || stands) {
-    halted_ = halted_ || stands;
+    emergency_stopped_ = emergency_stopped_ || stands;
     last_ = simulated;
     ++rows_;
     return read_next();

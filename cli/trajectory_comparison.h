@@ -26,7 +26,7 @@ class TrajectoryComparison {
 
   /// Expects an emergency stop: in the last tick the vehicles stand still, which no simulation
   /// does.
-  void expect_halt() { halt_expected_ = true; }
+  void expect_halt() { emergency_stop_expected_ = true; }
   /// Why the record cannot be read; nothing if it can.
   const std::optional<std::string>& problem() const { return lines_.problem(); }
   /// Compares as many whole lines as there are; false at the first difference.
@@ -38,7 +38,7 @@ class TrajectoryComparison {
   /// Whether the record continues after the simulation's end.
   bool has_more() const { return recorded_.has_value(); }
   /// Whether its last tick has rows that stand still.
-  bool halted() const { return halted_; }
+  bool emergency_stopped() const { return emergency_stopped_; }
   /// Whether the record ends within a line, or within the rows of a tick.
   bool torn() const { return lines_.torn() || amid_tick_; }
   /// "tick 12, agent 3" of the first line that differs.
@@ -59,7 +59,7 @@ class TrajectoryComparison {
   bool stands_where(const std::string& simulated) const;
 
   TableLines lines_;
-  bool halt_expected_ = false, halted_ = false;
+  bool emergency_stop_expected_ = false, emergency_stopped_ = false;
   std::optional<std::string> recorded_;  // the row to be compared next
   std::string recorded_place_;
   bool same_ = true, recorded_over_ = false, amid_tick_ = false;

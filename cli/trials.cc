@@ -7,7 +7,7 @@
 #include <map>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/fault_file.h"
 #include "cli/progress_line.h"
 #include "cli/run_directory.h"
@@ -15,7 +15,7 @@
 #include "cli/workers.h"
 #include "ops/deploy/script.h"
 #include "lab/trial.h"
-#include "logger/nowhere.h"
+#include "logger/null_buffer.h"
 #include "runtime/node.h"
 #include "team/plan.h"
 
@@ -33,7 +33,7 @@ std::optional<std::function<lab::Faults(std::uint64_t)>> faults_by_seed(const st
   if (source.empty()) return [](std::uint64_t) { return lab::Faults(); };
   const auto read = read_faults(source);
   if (const auto* problems = std::get_if<std::vector<std::string>>(&read)) {
-    complain(kExitBadInput, *problems);
+    report_error(kExitBadInput, *problems);
     return std::nullopt;
   }
   return [faults = std::get<lab::Faults>(read)](std::uint64_t) { return faults; };
@@ -133,9 +133,9 @@ int trials(const TrialsOptions& options) {
   const auto& path = options.mission.out;
   std::ofstream csv;
   if (!path.empty()) csv.open(path);
-  if (!path.empty() && !csv) return complain(kExitBadInput, path.string() + ": cannot be written (--out takes a file here)");
+  if (!path.empty() && !csv) return report_error(kExitBadInput, path.string() + ": cannot be written (--out takes a file here)");
 
-  Nowhere nowhere;
+  NullBuffer nowhere;
   const auto run = [&](std::uint64_t job) {
     const std::uint64_t seed = options.seeds.first + job;
     const Mission mission = scenario->with_seed(seed).mission();
@@ -164,7 +164,7 @@ int trials(const TrialsOptions& options) {
   std::printf("%lld of %llu missions flown in %.1f s\n%s", static_cast<long long>(totals.trials),
               static_cast<unsigned long long>(options.seeds.count()), wall_s,
               totals.describe(wall_s).c_str());
-  if (!path.empty() && !csv) return complain(kExitBadInput, path.string() + ": writing failed; rows are missing");
+  if (!path.empty() && !csv) return report_error(kExitBadInput, path.string() + ": writing failed; rows are missing");
   return totals.failed > 0 ? kExitFailed : kExitDone;
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/record_comparison.h"
 #include "cli/run_directory.h"
 #include "cli/trajectory_comparison.h"
@@ -203,10 +203,10 @@ int verify(const fs::path& run_dir) {
   TrajectoryComparison comparison(run_dir);
   const TableLines metrics(run_dir, kMetricsFile, kMetricsHeader);
   for (const auto& problem : {comparison.problem(), metrics.problem()}) {
-    if (problem) return complain(kExitBadInput, *problem);
+    if (problem) return report_error(kExitBadInput, *problem);
   }
   auto read = read_summary(run_dir);
-  if (const auto* problem = std::get_if<std::string>(&read)) return complain(kExitBadInput, *problem);
+  if (const auto* problem = std::get_if<std::string>(&read)) return report_error(kExitBadInput, *problem);
   Json& summary = std::get<Json>(read);
   Repetition repetition(*mission);
   if (!summary.is_object()) {
@@ -215,7 +215,7 @@ int verify(const fs::path& run_dir) {
     summary = Json::object();
   } else if (!is_simulated(summary, repetition.simulation.recorder())) {
     const auto reason = why_not_repeatable(summary, *mission);
-    if (!reason.empty()) return complain(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
+    if (!reason.empty()) return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
   }
 
   std::vector<FileComparison> files = compare_sources(run_dir, *mission, summary);
@@ -224,7 +224,7 @@ int verify(const fs::path& run_dir) {
   }
   if (summary.value("emergency_stop", Json()) == true) comparison.expect_halt();
   repetition.run(comparison);
-  if (const auto& problem = comparison.problem()) return complain(kExitBadInput, *problem);
+  if (const auto& problem = comparison.problem()) return report_error(kExitBadInput, *problem);
   if (const auto difference = difference_of(comparison, run_dir, summary); !difference.empty()) {
     const std::string where = comparison.same() ? "" : ", first at " + comparison.place();
     return report_difference(run_dir, difference, summary, where);

@@ -30,21 +30,21 @@ using Parcel = std::array<std::byte, sizeof(std::uint64_t) + kMostResultBytes>;
 static_assert(sizeof(Parcel) <= PIPE_BUF);
 
 /// Jobs first … last.
-struct Stretch {
+struct JobRange {
   std::uint64_t first, last;
 };
 
 struct Worker {
   pid_t pid = 0;
   int pipe = -1;
-  Stretch jobs;  // those without a result yet
+  JobRange jobs;  // those without a result yet
 };
 
-[[noreturn]] void work(const Stretch& stretch, int pipe, const Jobs& jobs) {
+[[noreturn]] void work(const JobRange& range, int pipe, const Jobs& jobs) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   Parcel parcel;
   const std::size_t size = sizeof(std::uint64_t) + jobs.result_bytes;
-  for (std::uint64_t job = stretch.first; job <= stretch.last; ++job) {
+  for (std::uint64_t job = range.first; job <= range.last; ++job) {
     alarm(jobs.patience_s);
     std::memcpy(parcel.data(), &job, sizeof job);
     jobs.work(job, parcel.data() + sizeof job);
@@ -53,7 +53,7 @@ struct Worker {
   _exit(0);
 }
 
-Worker hire(const Stretch& stretch, const Jobs& jobs) {
+Worker hire(const JobRange& range, const Jobs& jobs) {
   int ends[2];
   if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   std::fflush(nullptr);
@@ -61,10 +61,10 @@ Worker hire(const Stretch& stretch, const Jobs& jobs) {
   if (pid < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (pid == 0) {
     close(ends[0]);
-    work(stretch, ends[1], jobs);
+    work(range, ends[1], jobs);
   }
   close(ends[1]);
-  return {pid, ends[0], stretch};
+  return {pid, ends[0], range};
 }
 
 std::string how_it_died(int status, unsigned patience_s) {
@@ -140,7 +140,7 @@ class Pool {
 
   const Jobs& jobs_;
   std::size_t processes_;
-  std::deque<Stretch> todo_;
+  std::deque<JobRange> todo_;
   std::vector<Worker> workers_;
 };
 

@@ -8,7 +8,7 @@
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kMaxStrangers = 64;
+constexpr std::size_t kMaxVersionMismatches = 64;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ RosterEntry* Coordinator::active_entry(AgentId id) {
 
 /// Whether a member that counts as alive has sent nothing since `since`. It may be dead, and its
 /// number free soon.
-bool Coordinator::doubtful(Instant since, Instant now) const {
+bool Coordinator::may_have_stopped(Instant since, Instant now) const {
   return std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return alive(entry, now) && last_sign(entry.author) < since;
   });
@@ -29,7 +29,7 @@ bool Coordinator::doubtful(Instant since, Instant now) const {
 
 std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
   // A restarted process may succeed a member that still counts as alive, so it waits while a member
-  // is doubtful.
+  // is may_have_stopped.
   if (newcomers_.asked.size() >= kMaxRosterEntries) {
     auto& asked = newcomers_.asked;
     asked.erase(std::min_element(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
@@ -37,7 +37,7 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
     }));
   }
   const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
-  if (doubtful(since, now)) return std::nullopt;
+  if (may_have_stopped(since, now)) return std::nullopt;
   for (AgentId id = 0; id < kMaxAgents; ++id) {
     const RosterEntry* holder = active_entry(id);
     if (holder == nullptr || !alive(*holder, now)) return id;
@@ -54,8 +54,8 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
   if (nonce == 0 || hello.header.sender < kUnassigned) return;  // no incarnation, or no agent
   if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
   if (hello.version != name_.version) {
-    auto& strangers = newcomers_.strangers;
-    if (strangers.size() < kMaxStrangers) strangers.emplace(hello.host, hello.version);
+    auto& version_mismatches = newcomers_.version_mismatches;
+    if (version_mismatches.size() < kMaxVersionMismatches) version_mismatches.emplace(hello.host, hello.version);
     return;
   }
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {

@@ -22,20 +22,20 @@ constexpr auto kTeamStatusPeriod = 250ms;
 /// Older messages of an agent are out of date.
 constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 /// How long the end is repeated.
-constexpr auto kFarewell = 1s;
+constexpr auto kLinger = 1s;
 /// Real time: the notice that the team gets before a change takes effect.
 constexpr double kNotice_s = 2;
 
 }  // namespace
 
-const char* to_string(Presence presence) {
+const char* to_string(MemberState member_state) {
   constexpr const char* kNames[] = {"alive", "silent", "gone"};
-  return kNames[static_cast<int>(presence)];
+  return kNames[static_cast<int>(member_state)];
 }
 
-Presence Coordinator::presence(const RosterEntry& entry, Instant now) const {
-  if (entry.active_until >= 0) return Presence::kGone;
-  return alive(entry, now) ? Presence::kAlive : Presence::kSilent;
+MemberState Coordinator::member_state(const RosterEntry& entry, Instant now) const {
+  if (entry.active_until >= 0) return MemberState::kGone;
+  return alive(entry, now) ? MemberState::kAlive : MemberState::kSilent;
 }
 
 Coordinator::Coordinator(CoordinatorIdentity identity, std::vector<std::byte> plan,
@@ -144,7 +144,7 @@ AgentId Coordinator::waits_for(const RosterEntry& entry) const {
   return at != members_.end() && at->second.status ? at->second.status->waiting_for : kUnassigned;
 }
 
-RosterEntry* Coordinator::culprit(Instant now) {
+RosterEntry* Coordinator::straggler(Instant now) {
   // A restarted world lacks the answers that the former incarnation may have received.
   const bool asks = now - world_.asked <= kOverdue;
   RosterEntry* unheard = asks ? active_entry(world_.unheard) : nullptr;
@@ -184,7 +184,7 @@ void Coordinator::check_admission(Instant now) {
 
 void Coordinator::check_tick(Instant now) {
   if (now - world_.tick_since < seconds(timing().lockstep_timeout_s)) return;
-  RosterEntry* late = culprit(now);
+  RosterEntry* late = straggler(now);
   std::ostringstream since_text;
   since_text << " for " << timing().lockstep_timeout_s << " s";
   const std::string since = since_text.str();
@@ -287,7 +287,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
     said_.last_mission = now;
     said_.next_mission = now + (ending_.since ? kMissionGap : kMissionPeriod);
   }
-  ending_.finished = ending_.since && now - *ending_.since >= kFarewell;
+  ending_.finished = ending_.since && now - *ending_.since >= kLinger;
 }
 
 /// A process lacks the newest revision. kMissionGap limits the repetitions, so that HELLO messages

@@ -29,8 +29,8 @@ enum class Takeover {
 };
 
 /// The state of a present or former member of the roster.
-enum class Presence { kAlive, kSilent, kGone };
-const char* to_string(Presence presence);
+enum class MemberState { kAlive, kSilent, kGone };
+const char* to_string(MemberState member_state);
 
 struct CoordinatorIdentity {
   RunId run = 0;  ///< of its mission; 0, unless kNever: the run that is found, else `incarnation`
@@ -69,9 +69,9 @@ class Coordinator {
   MissionState state() const { return state_; }
   const std::string& reason() const { return ending_.reason; }
   const std::vector<RosterEntry>& roster() const { return roster_; }
-  Presence presence(const RosterEntry& entry, Instant now) const;
+  MemberState member_state(const RosterEntry& entry, Instant now) const;
   /// Hosts and versions of agents that were refused because their version differs from ours.
-  const std::set<std::pair<std::string, std::string>>& strangers() const { return newcomers_.strangers; }
+  const std::set<std::pair<std::string, std::string>>& version_mismatches() const { return newcomers_.version_mismatches; }
   Tick tick() const { return world_.tick; }
 
  private:
@@ -102,7 +102,7 @@ class Coordinator {
   };
   struct Newcomers {
     std::map<Incarnation, Instant> asked;  // without a number: time of the first request
-    std::set<std::pair<std::string, std::string>> strangers;
+    std::set<std::pair<std::string, std::string>> version_mismatches;
   };
   /// The newest information about the world.
   struct WorldSeen {
@@ -140,7 +140,7 @@ class Coordinator {
   const Timing& timing() const { return flown_.mission->timing; }
   Instant last_sign(const Author& author) const;
   void admit(const Author& author, Instant now);
-  bool doubtful(Instant since, Instant now) const;
+  bool may_have_stopped(Instant since, Instant now) const;
   std::optional<AgentId> free_id(Incarnation newcomer, Instant now);
   RosterEntry* active_entry(AgentId id);
   bool alive(const RosterEntry& entry, Instant now) const;
@@ -163,7 +163,7 @@ class Coordinator {
   void check_admission(Instant now);
   void check_tick(Instant now);
   AgentId waits_for(const RosterEntry& entry) const;
-  RosterEntry* culprit(Instant now);
+  RosterEntry* straggler(Instant now);
   void announce() { say_anew(), revisions_.who_may_join = revisions_.current; }
   void say_anew() { ++revisions_.current, said_.next_mission = Instant{}; }
   /// Any change but an admission: newcomers must know the new revision, so that no recording is

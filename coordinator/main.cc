@@ -26,13 +26,13 @@ class RosterLog {
   void look(const Coordinator& coordinator, Instant now) {
     for (const RosterEntry& entry : coordinator.roster()) {
       look_at_coverage(entry);
-      const Presence presence = coordinator.presence(entry, now);
-      const auto [known, is_new] = seen_.try_emplace(entry.author, presence);
-      if (!is_new && known->second == presence) continue;
-      known->second = presence;
-      spdlog::log(presence == Presence::kAlive ? spdlog::level::info : spdlog::level::warn,
+      const MemberState member_state = coordinator.member_state(entry, now);
+      const auto [known, is_new] = seen_.try_emplace(entry.author, member_state);
+      if (!is_new && known->second == member_state) continue;
+      known->second = member_state;
+      spdlog::log(member_state == MemberState::kAlive ? spdlog::level::info : spdlog::level::warn,
                   "agent {} ({}) is {} at tick {}", entry.author.agent,
-                  to_hex(entry.author.incarnation), to_string(presence), coordinator.tick());
+                  to_hex(entry.author.incarnation), to_string(member_state), coordinator.tick());
     }
   }
 
@@ -45,18 +45,18 @@ class RosterLog {
                  entry.forgotten ? "is forgotten" : "counts again", entry.since_tick);
   }
 
-  std::map<Author, Presence> seen_;
+  std::map<Author, MemberState> seen_;
   std::set<Author> forgotten_;
 };
 
 /// Logs one line for each host and version whose agents are refused.
-class StrangersLog {
+class VersionMismatchLog {
  public:
   void look(const Coordinator& coordinator) {
-    if (coordinator.strangers().size() == seen_.size()) return;
-    for (const auto& stranger : coordinator.strangers()) {
-      if (!seen_.insert(stranger).second) continue;
-      const auto& [host, theirs] = stranger;
+    if (coordinator.version_mismatches().size() == seen_.size()) return;
+    for (const auto& mismatch : coordinator.version_mismatches()) {
+      if (!seen_.insert(mismatch).second) continue;
+      const auto& [host, theirs] = mismatch;
       spdlog::warn("agent on {} runs version {}, this mission is flown by {}: install {} there", host,
                    theirs, version(), version());
     }
@@ -107,7 +107,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   if (takeover != Takeover::kNever) spdlog::info("looking for a mission on {}", node.url.base());
 
   RosterLog roster;
-  StrangersLog strangers;
+  VersionMismatchLog version_mismatches;
   MissionLog mission;
   const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
   live(coordinator, transport, signals, stop, [&] {
@@ -117,7 +117,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
     }
     watch.look(now());
     roster.look(coordinator, now());
-    strangers.look(coordinator);
+    version_mismatches.look(coordinator);
     mission.look(coordinator);
   });
   return coordinator.state() == MissionState::kFailed ? kExitFailed : kExitDone;

@@ -214,24 +214,24 @@ std::int64_t CoverageTable::Row::max_steps() const {
   return most;
 }
 
-std::uint64_t CoverageTable::Row::mark() const {
-  std::uint64_t mark = 0;
+std::uint64_t CoverageTable::Row::state_hash() const {
+  std::uint64_t state_hash = 0;
   for (const Block& block : blocks) {
-    mark = (mark ^ static_cast<std::uint64_t>(block.steps)) * 0x9e3779b97f4a7c15;
-    mark ^= mark >> 32;
+    state_hash = (state_hash ^ static_cast<std::uint64_t>(block.steps)) * 0x9e3779b97f4a7c15;
+    state_hash ^= state_hash >> 32;
   }
-  return mark;
+  return state_hash;
 }
 
-CoverageTable::Holding CoverageTable::Row::holding() const {
-  return {author, min_steps(), max_steps(), announced_period(), mark()};
+CoverageTable::RowSummary CoverageTable::Row::holding() const {
+  return {author, min_steps(), max_steps(), announced_period(), state_hash()};
 }
 
-CoverageTable::Holding CoverageTable::holding(std::size_t i) const { return rows_[i].holding(); }
+CoverageTable::RowSummary CoverageTable::holding(std::size_t i) const { return rows_[i].holding(); }
 
-CoverageTable::Holding CoverageTable::holding(const Author& author) const {
+CoverageTable::RowSummary CoverageTable::holding(const Author& author) const {
   const Row* row = find(author);
-  return row == nullptr ? Holding{author, 0, 0, 0, 0} : row->holding();
+  return row == nullptr ? RowSummary{author, 0, 0, 0, 0} : row->holding();
 }
 
 const double* CoverageTable::sums_of(const Author& author) const {

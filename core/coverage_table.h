@@ -63,20 +63,20 @@ class CoverageTable {
   Tick announced_period(const Author& author) const;
 
   /// One row as a digest describes it.
-  struct Holding {
+  struct RowSummary {
     Author author;
     std::int64_t steps;         ///< the fewest among its blocks
     std::int64_t newest_steps;  ///< the most
     Tick announced_period;
-    std::uint64_t mark;         ///< equal for equal steps of every block
+    std::uint64_t state_hash;         ///< equal for equal steps of every block
   };
   /// Row `i` of row_count(), in ascending order of authors.
-  Holding holding(std::size_t i) const;
+  RowSummary holding(std::size_t i) const;
   const Author& author(std::size_t i) const { return rows_[i].author; }
   bool counts(std::size_t i) const { return rows_[i].counts; }
   std::int64_t min_steps(std::size_t i) const { return rows_[i].min_steps(); }
   /// The row of `author`; all 0 if it is unknown.
-  Holding holding(const Author& author) const;
+  RowSummary holding(const Author& author) const;
 
   /// One block of a row, and what it has gained.
   struct BlockView {
@@ -121,8 +121,8 @@ class CoverageTable {
     std::vector<double> gains;  // likewise
     std::int64_t min_steps() const;
     std::int64_t max_steps() const;
-    std::uint64_t mark() const;
-    Holding holding() const;
+    std::uint64_t state_hash() const;
+    RowSummary holding() const;
     Tick announced_period() const;
   };
 

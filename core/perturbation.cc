@@ -11,7 +11,7 @@ namespace ergocast {
 namespace {
 
 /// √s for the curvature vᵀHv and the part v·B of the field.
-double share_along(double epsilon, double curvature, double part) {
+double push_gain(double epsilon, double curvature, double part) {
   if (!(curvature < 0)) return 0;
   // hypot and a ratio: ε falls with the residual, and its square would be lost first.
   const double length = std::hypot(epsilon, part);
@@ -19,7 +19,7 @@ double share_along(double epsilon, double curvature, double part) {
 }
 
 /// The principal direction in which H bends upwards the most, of length 1.
-Eigen::Vector2d steepest_bend(const Eigen::Vector2d& difference, double spread) {
+Eigen::Vector2d principal_direction(const Eigen::Vector2d& difference, double spread) {
   // Its angle is half that of (H_xx − H_yy, 2 H_xy); for a round H any direction is as good.
   const double cos_twice = spread > 0 ? difference.x() / spread : 1;
   return {std::sqrt(std::max(0.0, 0.5 * (1 + cos_twice))),
@@ -33,9 +33,9 @@ Eigen::Vector2d push_in_plane(double epsilon, const Eigen::Matrix2d& hessian,
   const double mean = 0.5 * (hessian(0, 0) + hessian(1, 1));
   const Eigen::Vector2d difference(0.5 * (hessian(0, 0) - hessian(1, 1)), hessian(0, 1));
   const double spread = std::hypot(difference.x(), difference.y());
-  const Eigen::Vector2d v = steepest_bend(difference, spread), w(-v.y(), v.x());
-  const double along_v = share_along(epsilon, mean + spread, gradient.dot(v));
-  const double along_w = share_along(epsilon, mean - spread, gradient.dot(w));
+  const Eigen::Vector2d v = principal_direction(difference, spread), w(-v.y(), v.x());
+  const double along_v = push_gain(epsilon, mean + spread, gradient.dot(v));
+  const double along_w = push_gain(epsilon, mean - spread, gradient.dot(w));
   return along_v * eta.dot(v) * v + along_w * eta.dot(w) * w;
 }
 
@@ -46,7 +46,7 @@ Eigen::Vector3d push_in_space(double epsilon, const FieldAt& field, const Eigen:
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d v = principal.eigenvectors().col(i);
     const double curvature = principal.eigenvalues()[i];
-    push += share_along(epsilon, curvature, field.gradient.dot(v)) * eta.dot(v) * v;
+    push += push_gain(epsilon, curvature, field.gradient.dot(v)) * eta.dot(v) * v;
   }
   return push;
 }

@@ -193,8 +193,8 @@ void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant
                              const std::vector<TableView>& living) {
   for (const TableView& holder : living) {
     const RosterEntry* entry = entry_of(coordinator.roster(), holder.self);
-    const char* taken_for = entry == nullptr ? "nobody" : to_string(coordinator.presence(*entry, now));
-    if (entry != nullptr && coordinator.presence(*entry, now) == Presence::kAlive) continue;
+    const char* taken_for = entry == nullptr ? "nobody" : to_string(coordinator.member_state(*entry, now));
+    if (entry != nullptr && coordinator.member_state(*entry, now) == MemberState::kAlive) continue;
     violate(t_s, Invariant::kTheLivingAreKnown, "the coordinator",
             text("takes ", name_of(holder.self), " for ", taken_for));
   }

@@ -80,7 +80,7 @@ const Decoder* decoder_for(std::uint64_t wanted) {
 
 }  // namespace
 
-void encode(const Message& message, std::vector<std::byte>& out, const Seal& seal,
+void encode(const Message& message, std::vector<std::byte>& out, const MessageAuthenticator& seal,
             std::string_view channel) {
   std::visit(
       [&](const auto& plain) {
@@ -95,7 +95,7 @@ void encode(const Message& message, std::vector<std::byte>& out, const Seal& sea
       message);
 }
 
-std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run, const Seal& seal,
+std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run, const MessageAuthenticator& seal,
                                       std::string_view channel, KnownSignatures* known) noexcept {
   if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return Refusal::kSize;
   const Decoder* decoder = decoder_for(read64(bytes.data()));

@@ -95,7 +95,7 @@ struct Fields<AgentStatus> {
     io.count(m.contributions_relayed);
     io.count(m.missed_ticks);
     for (auto& count : m.refused) io.count(count);
-    io.within(m.babbler, kUnassigned, kMaxAgents - 1);
+    io.within(m.rate_offender, kUnassigned, kMaxAgents - 1);
     io.count(m.kernel_drops);
     io.quantity(m.loop_lag_s);
     io.text(m.host, kMaxHostLength);
@@ -178,7 +178,7 @@ struct Fields<Digest> {
       io.within(entry.author.agent, 0, kMaxAgents - 1);
       io.number(entry.author.incarnation);
       io.count(entry.steps);
-      io.number(entry.mark);
+      io.number(entry.state_hash);
     }
   }
 };

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/require.h"
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 
 namespace ergocast {
 

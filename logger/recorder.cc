@@ -31,7 +31,7 @@ constexpr std::size_t kMaxStates = static_cast<std::size_t>(kLeadTicks);
 /// Lockstep: how long to wait for the repetition of a state that may be lost for good.
 constexpr auto kRepeatPatience = 500ms;
 /// How long after the end, or the last row, a missing state or an agent's last status may arrive.
-constexpr auto kFarewell = 1s;
+constexpr auto kLinger = 1s;
 
 /// 17 significant digits: reading them back gives the same double.
 void append_number(std::string& line, double value) {
@@ -191,7 +191,7 @@ void Recorder::advance(Instant now, Outbox& out) {
       ending_.reason = "mission complete";
     }
   }
-  if (ending_.since && now - std::max(*ending_.since, progress_) >= kFarewell) close();
+  if (ending_.since && now - std::max(*ending_.since, progress_) >= kLinger) close();
   if (abandoned(now)) {
     stop("neither the world nor the coordinator can be heard, and the mission must be over by now");
   }

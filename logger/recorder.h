@@ -47,7 +47,7 @@ class Recorder {
   /// Writes to streams that outlive it; the caller repairs bad streams and calls go_on().
   /// @param run  the run to record; 0: the run of the first mission received
   /// @pre both streams are good: a stream that is bad from the beginning would never be written. To
-  /// discard the tables, pass a Nowhere (logger/nowhere.h).
+  /// discard the tables, pass a NullBuffer (logger/null_buffer.h).
   Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory, std::ostream& metrics);
 
   /// Continues the record of a former process, all its segments, or none. Its rows are added to the

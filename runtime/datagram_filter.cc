@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 
 namespace ergocast {
 namespace {

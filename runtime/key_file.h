@@ -12,7 +12,7 @@
 #include <string>
 #include <variant>
 
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 
 namespace ergocast {
 

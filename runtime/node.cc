@@ -91,7 +91,7 @@ void add_url_option(CLI::App& app, LcmUrl& url) {
       ->type_name("URL");
 }
 
-void add_key_option(CLI::App& app, Seal& seal, std::string* file) {
+void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file) {
   const CLI::Option* option = app.add_option_function<std::string>(
          "--key-file",
          [&seal, file](const std::string& name) {
@@ -102,7 +102,7 @@ void add_key_option(CLI::App& app, Seal& seal, std::string* file) {
            if (const auto* problem = std::get_if<std::string>(&key)) {
              throw CLI::ValidationError("--key-file", *problem);
            }
-           seal = Seal(std::get<MissionKey>(key));
+           seal = MessageAuthenticator(std::get<MissionKey>(key));
            if (file != nullptr) *file = name;
          },
          "Mission key of the team, as `ergocast keygen` writes it; without one, anybody on the "

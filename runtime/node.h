@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/ids.h"
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast {
@@ -24,7 +24,7 @@ enum ExitCode {
 struct BusOptions {
   LcmUrl url;
   RunId run = 0;  ///< 0: not given
-  Seal seal;      ///< without a key unless one was given
+  MessageAuthenticator seal;      ///< without a key unless one was given
   std::string key_file;
 };
 
@@ -33,7 +33,7 @@ void add_url_option(CLI::App& app, LcmUrl& url);
 
 /// --key-file (default: $ERGOCAST_KEY_FILE, or no key; an empty variable is refused). `file` gets
 /// its name. Uses the command's parse-complete callback.
-void add_key_option(CLI::App& app, Seal& seal, std::string* file = nullptr);
+void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file = nullptr);
 
 /// The error text for a command that needs the coordinator's key file.
 std::string cannot_sign(const std::string& key_file);

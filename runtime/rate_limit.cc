@@ -28,14 +28,14 @@ double parts(std::size_t count, int of) {
 
 }  // namespace
 
-Allowance allowance_of(const Mission& mission, std::size_t members) {
+RateBudget allowance_of(const Mission& mission, std::size_t members) {
   const Timing& timing = mission.timing;
   const double blocks = parts(static_cast<std::size_t>(mission.basis.mode_count()), kBlockSize);
   const double digests = parts(members, kMaxDigestEntriesPerMessage);
   const double repeats =
       timing.pace == Pace::kLockstep ? kLockstepRepeatsPerSecond : kRealtimeRepeatsPerSecond;
   const double relayed = static_cast<double>(members) * blocks;
-  Allowance allowance;
+  RateBudget allowance;
   allowance.per_tick = kMargin * (blocks / timing.broadcast_period_ticks + 1 +
                                   (1 + digests + relayed) * std::min(1.0, timing.dt_s));
   allowance.per_second = kMargin * (repeats * (blocks + 1) + relayed + digests + kOthersPerSecond);

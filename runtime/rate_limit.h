@@ -12,7 +12,7 @@ namespace ergocast {
 
 /// The rate budget of one agent on all buses together: so many messages a second and so many a
 /// tick. `most` limits the sum, which is large enough for the backlog of a delayed process.
-struct Allowance {
+struct RateBudget {
   double per_second = 0, per_tick = 0, most = 0;
 };
 
@@ -20,13 +20,13 @@ struct Allowance {
 /// whenever a tick is repeated, its commands, relayed blocks, digests and statuses. Ticks count
 /// separately, because lockstep has as many a second as the machine can do.
 /// @param members  entries of the roster, former members included
-Allowance allowance_of(const Mission& mission, std::size_t members);
+RateBudget allowance_of(const Mission& mission, std::size_t members);
 
 /// One budget for each agent, refilled by time and ticks.
 class RateLimit {
  public:
   /// @param tick  the newest tick that the world is known to have reached
-  void allow(const Allowance& allowance, Tick tick) { allowance_ = allowance, tick_ = tick; }
+  void allow(const RateBudget& allowance, Tick tick) { allowance_ = allowance, tick_ = tick; }
 
   /// Takes one message off a budget of `from`; false if the budget is empty. Repeats have a
   /// separate budget, because other processes may send them. Processes other than agents have no
@@ -40,7 +40,7 @@ class RateLimit {
     Tick tick = 0;
     bool begun = false;
   };
-  Allowance allowance_;
+  RateBudget allowance_;
   Tick tick_ = 0;
   std::array<std::array<Budget, kMaxAgents>, 2> budgets_{};
 };

@@ -60,17 +60,17 @@ bool TrafficWatch::look(Instant now) {
                  key_advice(refused, transport_.keyed()));
   }
   constexpr auto kRate = static_cast<std::size_t>(Refusal::kRate);
-  const std::int64_t repeated = refused[kRate] - transport_.babbled();
-  if (transport_.babbled() != logged_babble_) {
+  const std::int64_t repeated = refused[kRate] - transport_.over_rate();
+  if (transport_.over_rate() != logged_over_rate_) {
     spdlog::warn("agent {} babbles: it sends more than eight times what the mission asks of an agent, "
                  "and the rest is refused; stop it, or mend its program",
-                 transport_.babbler());
+                 transport_.rate_offender());
   }
   if (repeated != logged_repeats_) {
     spdlog::warn("somebody repeats what the team has said, far more often than it would, and the rest "
                  "is refused: look for who records on this network");
   }
-  logged_babble_ = transport_.babbled();
+  logged_over_rate_ = transport_.over_rate();
   logged_repeats_ = repeated;
   if (kernel_drops_ != logged_drops_) {
     spdlog::warn("the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "

@@ -25,7 +25,7 @@ class TrafficWatch {
   Transport& transport_;
   Instant next_look_{}, next_log_{}, next_warning_{};
   std::int64_t warned_unknown_ = 0;
-  std::int64_t kernel_drops_ = 0, logged_drops_ = 0, logged_babble_ = 0, logged_repeats_ = 0;
+  std::int64_t kernel_drops_ = 0, logged_drops_ = 0, logged_over_rate_ = 0, logged_repeats_ = 0;
   RefusalCounts logged_{};
 };
 

@@ -61,14 +61,14 @@ std::int64_t drops_of(const std::vector<int>& sockets) {
 
 class LcmTransport final : public Transport {
  public:
-  LcmTransport(RunId run, const Seal& seal, Handlers handlers)
+  LcmTransport(RunId run, const MessageAuthenticator& seal, Handlers handlers)
       : run_(run), seal_(seal), handlers_(std::move(handlers)) {}
 
   std::optional<std::string> connect(const LcmUrl& url, const Subscriptions& hears);
 
   void set_run(RunId run) override { run_ = run; }
   void publish(const Outgoing& outgoing) override;
-  void limit_agents(const Allowance& allowance, Tick tick) override { rates_.allow(allowance, tick); }
+  void limit_agents(const RateBudget& allowance, Tick tick) override { rates_.allow(allowance, tick); }
   Instant deliver_until(Instant deadline, int wake_fd) override;
   bool keyed() const override { return seal_.keyed(); }
   bool filtered() const override { return filtered_; }
@@ -106,7 +106,7 @@ class LcmTransport final : public Transport {
   void count_cut(Line& line) noexcept;
 
   RunId run_;
-  Seal seal_;
+  MessageAuthenticator seal_;
   Handlers handlers_;
   RateLimit rates_;
   bool filtered_ = true;
@@ -217,7 +217,7 @@ void LcmTransport::take(Line& line, const lcm::ReceiveBuffer* buffer,
     const bool is_news = line.guard.is_news(header_of(message), heard);
     if (line.guard.count(header_of(message), is_news, heard)) cut_repeats(line);
     if (!rates_.admit(*transmitter, is_news, heard)) {
-      if (is_news) babbler_ = *transmitter, ++babbled_;
+      if (is_news) rate_offender_ = *transmitter, ++over_rate_;
       return refuse(Refusal::kRate);
     }
     if (handlers_.on_accepted) handlers_.on_accepted(line.bus, channel, bytes);
@@ -252,7 +252,7 @@ Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
-    const LcmUrl& url, RunId run, const Seal& seal, const Subscriptions& hears,
+    const LcmUrl& url, RunId run, const MessageAuthenticator& seal, const Subscriptions& hears,
     Handlers handlers) {
   if (const auto problem = why_unreachable(url)) return *problem;
   auto transport = std::make_unique<LcmTransport>(run, seal, std::move(handlers));

@@ -15,7 +15,7 @@
 #include "core/ids.h"
 #include "team/messages.h"
 #include "team/subscriptions.h"
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 #include "runtime/rate_limit.h"
 
@@ -39,14 +39,14 @@ class Transport {
   /// @param run  the only run accepted; 0 accepts any until set_run()
   /// @param seal  signs and tags published messages; messages that it does not verify are refused
   static std::variant<std::unique_ptr<Transport>, std::string> open(
-      const LcmUrl& url, RunId run, const Seal& seal, const Subscriptions& hears,
+      const LcmUrl& url, RunId run, const MessageAuthenticator& seal, const Subscriptions& hears,
       Handlers handlers);
   virtual ~Transport() = default;
 
   virtual void set_run(RunId run) = 0;
   virtual void publish(const Outgoing& outgoing) = 0;
   /// Sets the rate budget of agents and the world's tick; without a call nothing is limited.
-  virtual void limit_agents(const Allowance& allowance, Tick tick) = 0;
+  virtual void limit_agents(const RateBudget& allowance, Tick tick) = 0;
 
   /// Waits until a message arrives, `deadline` has come or `wake_fd` (−1: none) is readable, at
   /// most kLongestWait, and passes on what has arrived. The number of datagrams is limited, so that
@@ -71,9 +71,9 @@ class Transport {
 
   /// The last agent that exceeded its rate budget, so that messages were refused; kUnassigned:
   /// none.
-  AgentId babbler() const { return babbler_; }
+  AgentId rate_offender() const { return rate_offender_; }
   /// Refused messages of agents that exceeded their budget themselves, without repeats by others.
-  std::int64_t babbled() const { return babbled_; }
+  std::int64_t over_rate() const { return over_rate_; }
 
   /// Datagrams that the kernel dropped at our sockets for want of buffer space.
   virtual std::int64_t kernel_drops() const = 0;
@@ -84,8 +84,8 @@ class Transport {
  protected:
   RefusalCounts refused_{};
   UnknownFormat unknown_format_;
-  AgentId babbler_ = kUnassigned;
-  std::int64_t babbled_ = 0;
+  AgentId rate_offender_ = kUnassigned;
+  std::int64_t over_rate_ = 0;
 };
 
 }  // namespace ergocast

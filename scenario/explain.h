@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "scenario/salvage.h"
+#include "scenario/error_recovery.h"
 #include "scenario/scenario.h"
 
 namespace ergocast {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "scenario/salvage.h"
+#include "scenario/error_recovery.h"
 #include "scenario/scenario.h"
 #include "text/shortest.h"
 

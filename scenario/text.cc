@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "scenario/explain.h"
-#include "scenario/salvage.h"
+#include "scenario/error_recovery.h"
 #include "scenario/utf8.h"
 
 namespace ergocast {

@@ -26,7 +26,7 @@ constexpr auto kQuestionPeriod = 100ms;
 constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
 /// How long the end is repeated to whoever has not heard of it, after the record's last progress.
-constexpr auto kFarewell = 2s;
+constexpr auto kLinger = 2s;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void World::receive(const Message& message, Bus bus, AgentId transmitter, Instan
 }
 
 void World::on(const MissionPart&, const Arrival& arrival) {
-  if (halted_ || !arrival.mission_changed) return;
+  if (emergency_stopped_ || !arrival.mission_changed) return;
   if (follower().plan_problem()) return finish(*follower().plan_problem());
   // At its own end the world stays until the record, too, has the last states.
   if (follower().over() && (!over_since_ || record_.complete(tick_))) return finish(follower().reason());
@@ -51,14 +51,14 @@ void World::on(const MissionPart&, const Arrival& arrival) {
 void World::on(const RecordAck& ack, const Arrival& arrival) {
   if (!arrival.fresh) return;
   record_.acknowledge(ack, arrival.now);
-  if (over_since_ && (halted_ || follower().over()) && record_.complete(tick_)) finish(why_over());
+  if (over_since_ && (emergency_stopped_ || follower().over()) && record_.complete(tick_)) finish(why_over());
 }
 
 void World::on(const Stop& stop, const Arrival&) {
   if (me_.run() == 0) return;  // of a run that it does not know
-  if (!stop.now || halted_ || over_since_) return;  // in order, the coordinator ends the mission
+  if (!stop.now || emergency_stopped_ || over_since_) return;  // in order, the coordinator ends the mission
   if (!begun_at_) return finish(stop.reason);
-  halted_ = stop.reason;
+  emergency_stopped_ = stop.reason;
 }
 
 // ---- beginning -----------------------------------------------------------------------------------
@@ -84,7 +84,7 @@ void World::ask(Tick known, AgentId whom, Outbox& out) {
 
 void World::ask_team(Instant now, Outbox& out) {
   // With no answer at all nobody could answer a tick either, and we would begin at the wrong one.
-  const bool heard = std::any_of(bodies_.begin(), bodies_.end(),
+  const bool heard = std::any_of(vehicles_.begin(), vehicles_.end(),
                                  [](const auto& one) { return one.second.command.has_value(); });
   if (!heard) question_.since = now;
   // In lockstep a tick waits for everybody anyway. Whoever alone had heard our predecessor's last
@@ -101,9 +101,9 @@ void World::ask_team(Instant now, Outbox& out) {
 /// The first member that has not answered with its last two commands, or with one that says that
 /// there is none; kUnassigned: all have.
 AgentId World::first_unheard() const {
-  for (const auto& [id, body] : bodies_) {
-    const bool heard = body.command_before || (body.command && body.answered() < 0);
-    if (body.author.incarnation != 0 && !heard) return id;
+  for (const auto& [id, slot] : vehicles_) {
+    const bool heard = slot.command_before || (slot.command && slot.answered() < 0);
+    if (slot.author.incarnation != 0 && !heard) return id;
   }
   return kUnassigned;
 }
@@ -113,42 +113,42 @@ void World::begin(Instant now) {
   record_.start(now);
   schedule_.next_tick = now;
   schedule_.repeat_period = kRepeatPeriod;
-  for (const auto& [id, body] : bodies_) tick_ = std::max(tick_, body.answered());
+  for (const auto& [id, slot] : vehicles_) tick_ = std::max(tick_, slot.answered());
   // Even if only newcomers have answered: not before what the roster says has happened.
   for (const RosterEntry& entry : follower().roster()) {
     tick_ = std::max({tick_, entry.active_from, entry.active_until});
   }
   tick_ = std::min(tick_, mission().timing.tick_count);  // whatever the roster says
   begun_at_ = tick_;
-  for (auto& [id, body] : bodies_) recall(id, body);
+  for (auto& [id, slot] : vehicles_) recall(id, slot);
 }
 
-/// Puts a body where it was at tick_, by its agent's last two commands.
-void World::recall(AgentId id, Body& body) {
-  if (body.answered() < 0) return;
+/// Puts a slot where it was at tick_, by its agent's last two commands.
+void World::recall(AgentId id, VehicleSlot& slot) {
+  if (slot.answered() < 0) return;
   const bool hold = mission().timing.pace == Pace::kRealtime;
-  body.x_m = body.command->position_m;
+  slot.x_m = slot.command->position_m;
   const bool in_a_row =
-      body.command_before && body.command_before->header.tick + 1 == body.answered();
+      slot.command_before && slot.command_before->header.tick + 1 == slot.answered();
   if (in_a_row) {
-    body.applied_mps = within_speed_limit(mission(), body.command_before->velocity_mps);
+    slot.applied_mps = within_speed_limit(mission(), slot.command_before->velocity_mps);
   }
-  for (Tick tick = body.answered(); tick < tick_; ++tick) move(id, body, tick, hold);
+  for (Tick tick = slot.answered(); tick < tick_; ++tick) move(id, slot, tick, hold);
 }
 
 void World::take_roster() {
   const Mission& mission = me_.mission();
   for (const RosterEntry& entry : follower().roster()) {
-    const auto known = bodies_.find(entry.author.agent);
+    const auto known = vehicles_.find(entry.author.agent);
     if (entry.active_until >= 0) {
-      if (known != bodies_.end() && known->second.author == entry.author) {
+      if (known != vehicles_.end() && known->second.author == entry.author) {
         known->second.author.incarnation = 0;  // nobody drives it; its place is kept
       }
     }
   }
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.active_until >= 0) continue;
-    auto [at, is_new] = bodies_.try_emplace(entry.author.agent);
+    auto [at, is_new] = vehicles_.try_emplace(entry.author.agent);
     if (is_new) at->second.x_m = start_of(mission, entry.author.agent);
     if (at->second.author != entry.author) {
       at->second.command.reset();
@@ -159,11 +159,11 @@ void World::take_roster() {
 }
 
 void World::on(const Command& command, const Arrival&) {
-  const auto at = bodies_.find(command.header.sender);
-  if (at == bodies_.end() || at->second.author.incarnation != command.header.incarnation) return;
+  const auto at = vehicles_.find(command.header.sender);
+  if (at == vehicles_.end() || at->second.author.incarnation != command.header.incarnation) return;
   // Recorded commands, and answers to a world before us, do not say where the team is now.
   if (question_.since && command.asked_by != me_.incarnation()) return;
-  Body& body = at->second;
+  VehicleSlot& slot = at->second;
   const Mission& mission = me_.mission();
   const Eigen::Vector3d step_m = command.velocity_mps * mission.timing.dt_s;
   // Numbers that only overflow here are no velocities; and nobody answers a tick that was not said.
@@ -178,22 +178,22 @@ void World::on(const Command& command, const Arrival&) {
   const auto newer_than = [&](const std::optional<Command>& known) {
     return !known || command.header.tick > known->header.tick;
   };
-  const bool again = body.command && command.header.tick == body.answered();
+  const bool again = slot.command && command.header.tick == slot.answered();
   if (again && command.velocity_mps.isZero(0)) {
-    body.command->velocity_mps.setZero();  // the one second thought that an agent may have
-  } else if (newer_than(body.command)) {
-    body.command_before = std::exchange(body.command, command);
-  } else if (command.header.tick < body.answered() && newer_than(body.command_before)) {
-    body.command_before = command;  // overtaken by the one after it
+    slot.command->velocity_mps.setZero();  // the one second thought that an agent may have
+  } else if (newer_than(slot.command)) {
+    slot.command_before = std::exchange(slot.command, command);
+  } else if (command.header.tick < slot.answered() && newer_than(slot.command_before)) {
+    slot.command_before = command;  // overtaken by the one after it
   }
 }
 
 bool World::everyone_answered() const {
   // With nobody left, the tick waits for a restarted agent or for the coordinator's patience.
   bool driven = false;
-  for (const auto& [id, body] : bodies_) {
-    if (body.author.incarnation == 0) continue;
-    if (body.answered() != tick_) return false;
+  for (const auto& [id, slot] : vehicles_) {
+    if (slot.author.incarnation == 0) continue;
+    if (slot.answered() != tick_) return false;
     driven = true;
   }
   return driven;
@@ -206,7 +206,7 @@ bool World::record_is_close(Instant now) {
 }
 
 void World::advance(Instant now, Outbox& out) {
-  if (over_since_ && now - std::max(*over_since_, record_.progress()) > kFarewell) {
+  if (over_since_ && now - std::max(*over_since_, record_.progress()) > kLinger) {
     return finish(why_over());
   }
   if (finished_) return;
@@ -216,7 +216,7 @@ void World::advance(Instant now, Outbox& out) {
   }
   if (question_.since) ask_team(now, out);
   if (question_.since) return;
-  if (halted_ && !over_since_) return stand_still(now, out);
+  if (emergency_stopped_ && !over_since_) return send_zero_velocity(now, out);
   if (mission().timing.pace == Pace::kLockstep || over_since_) {
     advance_lockstep(now, out);
   } else {
@@ -259,8 +259,8 @@ void World::advance_realtime(Instant now, Outbox& out) {
     schedule_.next_tick += (late - timing.catch_up_limit_ticks) * period;
   }
   while (now >= schedule_.next_tick && tick_ < timing.tick_count) {
-    for (const auto& [id, body] : bodies_) {
-      if (body.author.incarnation != 0 && body.answered() < tick_) ++counted_.missed_deadlines;
+    for (const auto& [id, slot] : vehicles_) {
+      if (slot.author.incarnation != 0 && slot.answered() < tick_) ++counted_.missed_deadlines;
     }
     step(true);
     remember_and_publish(now, out);
@@ -270,53 +270,53 @@ void World::advance_realtime(Instant now, Outbox& out) {
 }
 
 /// One more tick, in which nobody moves.
-void World::stand_still(Instant now, Outbox& out) {
+void World::send_zero_velocity(Instant now, Outbox& out) {
   if (!schedule_.published) remember_and_publish(now, out);  // where the last step led
-  for (auto& [id, body] : bodies_) body.applied_mps.setZero();
+  for (auto& [id, slot] : vehicles_) slot.applied_mps.setZero();
   ++tick_;
   over_since_ = now;
   remember_and_publish(now, out);
 }
 
 std::string World::why_over() const {
-  if (halted_) return *halted_;
+  if (emergency_stopped_) return *emergency_stopped_;
   return follower().over() ? follower().reason() : "mission complete";
 }
 
-Eigen::Vector3d World::command_of(const Body& body, Tick tick, bool hold_old_commands) const {
-  if (body.answered() < 0 || body.author.incarnation == 0) return {0, 0, 0};
+Eigen::Vector3d World::command_of(const VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
+  if (slot.answered() < 0 || slot.author.incarnation == 0) return {0, 0, 0};
   const Timing& timing = mission().timing;
-  const double age_s = static_cast<double>(tick - body.answered()) * timing.dt_s;
+  const double age_s = static_cast<double>(tick - slot.answered()) * timing.dt_s;
   if (age_s > (hold_old_commands ? timing.command_hold_s : 0)) return {0, 0, 0};
-  return body.command->velocity_mps;
+  return slot.command->velocity_mps;
 }
 
 void World::step(bool hold_old_commands) {
-  for (auto& [id, body] : bodies_) {
-    move(id, body, tick_, hold_old_commands);
-    if (body.applied_mps != command_of(body, tick_, hold_old_commands)) ++counted_.clamped_commands;
+  for (auto& [id, slot] : vehicles_) {
+    move(id, slot, tick_, hold_old_commands);
+    if (slot.applied_mps != command_of(slot, tick_, hold_old_commands)) ++counted_.clamped_commands;
   }
   ++tick_;
 }
 
-void World::move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const {
+void World::move(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
   const Mission& mission = me_.mission();
-  body.applied_mps = within_speed_limit(mission, command_of(body, tick, hold_old_commands));
-  body.x_m = reflect(moved(mission, id, tick, body.x_m, body.applied_mps), mission.domain);
+  slot.applied_mps = within_speed_limit(mission, command_of(slot, tick, hold_old_commands));
+  slot.x_m = reflect(moved(mission, id, tick, slot.x_m, slot.applied_mps), mission.domain);
 }
 
 std::vector<WorldState> World::snapshot() const {
   const auto parts = std::max<std::size_t>(
-      1, (bodies_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState);
+      1, (vehicles_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState);
   std::vector<WorldState> states(parts);
   std::size_t i = 0;
-  for (const auto& [id, body] : bodies_) {
+  for (const auto& [id, slot] : vehicles_) {
     WorldState& state = states[i++ / kMaxVehiclesPerState];
     Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(state.vehicle_count++)];
     vehicle.id = id;
-    vehicle.answered_tick = body.answered();
-    vehicle.position_m = body.x_m;
-    vehicle.velocity_mps = body.applied_mps;
+    vehicle.answered_tick = slot.answered();
+    vehicle.position_m = slot.x_m;
+    vehicle.velocity_mps = slot.applied_mps;
   }
   for (std::size_t part = 0; part < parts; ++part) {
     states[part].part = static_cast<std::int32_t>(part);
@@ -344,11 +344,11 @@ void World::repeat(Instant now, Outbox& out) {
     record_.newest() = snapshot();
     for (WorldState& part : record_.newest()) part.roster_revision = flown_by;
   } else if (!record_.empty()) {
-    // The bodies have moved on already.
+    // The slots have moved on already.
     for (WorldState& part : record_.newest()) {
       for (int i = 0; i < part.vehicle_count; ++i) {
         Vehicle& vehicle = part.vehicles[static_cast<std::size_t>(i)];
-        vehicle.answered_tick = bodies_.at(vehicle.id).answered();
+        vehicle.answered_tick = vehicles_.at(vehicle.id).answered();
       }
     }
   }

@@ -55,7 +55,7 @@ class World {
   bool logger_lost() const { return record_.lost(); }
 
  private:
-  struct Body {
+  struct VehicleSlot {
     Author author;
     Eigen::Vector3d x_m{0, 0, 0};
     Eigen::Vector3d applied_mps{0, 0, 0};
@@ -93,19 +93,19 @@ class World {
   void ask(Tick known, AgentId whom, Outbox& out);
   AgentId first_unheard() const;
   void begin(Instant now);
-  void recall(AgentId id, Body& body);
-  void move(AgentId id, Body& body, Tick tick, bool hold_old_commands) const;
+  void recall(AgentId id, VehicleSlot& slot);
+  void move(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   bool everyone_answered() const;
   bool record_is_close(Instant now);
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
   void step(bool hold_old_commands);
-  Eigen::Vector3d command_of(const Body& body, Tick tick, bool hold_old_commands) const;
+  Eigen::Vector3d command_of(const VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   std::vector<WorldState> snapshot() const;
   void publish(const std::vector<WorldState>& states, Outbox& out);
   void remember_and_publish(Instant now, Outbox& out);
   void repeat(Instant now, Outbox& out);
-  void stand_still(Instant now, Outbox& out);
+  void send_zero_velocity(Instant now, Outbox& out);
   std::string why_over() const;
   void finish(std::string reason);
 
@@ -113,12 +113,12 @@ class World {
   bool started_ = false, finished_ = false;
   std::string reason_;
   Tick tick_ = 0;
-  std::map<AgentId, Body> bodies_;
+  std::map<AgentId, VehicleSlot> vehicles_;
   Question question_;
   std::optional<Tick> begun_at_;
   Schedule schedule_;
   std::optional<Instant> over_since_;  // nobody moves any more
-  std::optional<std::string> halted_;  // by a STOP at once: why
+  std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
   RecordWindow record_;
   Counted counted_;
 };

@@ -60,11 +60,11 @@ std::vector<double> levels_of(const std::vector<Edge>& edges, double height) {
   return levels;
 }
 
-/// Tracks which polygons a walk from left to right is inside of. A point is free if it is inside
+/// Tracks which polygons a sweep from left to right is inside of. A point is free if it is inside
 /// the first `wanted` polygons and outside the others.
-class Walk {
+class PlaneSweep {
  public:
-  Walk(std::size_t polygons, std::size_t wanted) : inside_(polygons), wanted_(wanted) {}
+  PlaneSweep(std::size_t polygons, std::size_t wanted) : inside_(polygons), wanted_(wanted) {}
 
   void cross(std::size_t polygon) {
     inside_[polygon] = !inside_[polygon];
@@ -103,13 +103,13 @@ std::vector<Trapezoid> cut_up(const std::vector<Polygon>& shapes, std::size_t wa
     std::stable_sort(across.begin(), across.end(), [&](const Edge* a, const Edge* b) {
       return a->x_at(middle) < b->x_at(middle);
     });
-    Walk walk(shapes.size(), wanted);
+    PlaneSweep sweep(shapes.size(), wanted);
     const Edge* left = nullptr;
     for (const Edge* edge : across) {
-      if (walk.free() && left->x_at(middle) < edge->x_at(middle)) {
+      if (sweep.free() && left->x_at(middle) < edge->x_at(middle)) {
         pieces.push_back(piece(*left, *edge, low, high));
       }
-      walk.cross(edge->polygon);
+      sweep.cross(edge->polygon);
       left = edge;
     }
   }

@@ -2,7 +2,7 @@
 // The part of the domain that is inside one polygon and outside others, cut into trapezoids.
 //
 // Horizontals through every corner and every crossing of edges cut the domain into slabs in which
-// no two edges cross. There the edges have one order from left to right. A walk in this order
+// no two edges cross. There the edges have one order from left to right. A sweep in this order
 // counts which polygons it is inside of, and so finds every piece: unions, differences and holes
 // alike. A rounding error of a corner moves a piece's side by the same distance and breaks nothing.
 #pragma once

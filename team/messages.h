@@ -76,7 +76,7 @@ struct MissionPart {
 struct DigestEntry {
   Author author;
   std::int64_t steps = 0;  ///< of the oldest block held; 0: nothing
-  std::uint64_t mark = 0;  ///< a hash of the steps of all blocks held
+  std::uint64_t state_hash = 0;  ///< a hash of the steps of all blocks held
 };
 
 /// The coverage that an agent holds: one entry for each (agent, incarnation) of the roster, in as
@@ -102,7 +102,7 @@ struct AgentStatus {
   std::int64_t contributions_relayed = 0;  ///< blocks of others that it relayed
   std::int64_t missed_ticks = 0;         ///< world ticks that passed without a command
   RefusalCounts refused{};
-  AgentId babbler = kUnassigned;  ///< the last agent whose messages were refused as kRate
+  AgentId rate_offender = kUnassigned;  ///< the last agent whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
   double loop_lag_s = 0;  ///< the longest delay or busy time of its process since its last status
   std::string host;

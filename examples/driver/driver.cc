@@ -21,7 +21,7 @@ void Driver::receive(const Message& message, Bus bus, AgentId transmitter, Insta
 void Driver::on(const Stop& over, const Arrival&) {
   if (!over.now || me_.run() == 0) return;  // in order, the coordinator ends the mission
   stop(over.reason);
-  halted_ = running_;
+  emergency_stopped_ = running_;
 }
 
 void Driver::on(const MissionPart& part, const Arrival& arrival) {
@@ -51,7 +51,7 @@ void Driver::take_roster() {
   }
   for (const auto& [id, author] : members) {
     const Robot robot(start_of(me_.mission(), id), speed_limit_mps_);
-    Drive& drive = drives_.try_emplace(id, Drive{author, robot}).first->second;
+    VehicleSlot& drive = drives_.try_emplace(id, VehicleSlot{author, robot}).first->second;
     if (drive.author != author) drive.answered = -1;
     drive.author = author;
   }
@@ -60,7 +60,7 @@ void Driver::take_roster() {
 void Driver::on(const Command& command, const Arrival&) {
   const auto at = drives_.find(command.header.sender);
   if (at == drives_.end() || at->second.author.incarnation != command.header.incarnation) return;
-  Drive& drive = at->second;
+  VehicleSlot& drive = at->second;
   // Standing still is the one second thought that an agent may have of a tick.
   const bool halt = command.header.tick == drive.answered && command.velocity_mps.isZero(0);
   if (halt) drive.robot.drive({0, 0, 0});
@@ -72,8 +72,8 @@ void Driver::on(const Command& command, const Arrival&) {
 }
 
 void Driver::advance(Instant now, Outbox& out) {
-  if (halted_) {  // the last state: nobody is driven any more
-    halted_ = false;
+  if (emergency_stopped_) {  // the last state: nobody is driven any more
+    emergency_stopped_ = false;
     pass_tick();
     return say_where(out);
   }

@@ -48,7 +48,7 @@ class Driver {
   const Robot& robot(AgentId id) const { return drives_.at(id).robot; }
 
  private:
-  struct Drive {
+  struct VehicleSlot {
     Author author;  ///< the agent that may command this robot; incarnation 0: nobody
     Robot robot;
     Tick answered = -1;  ///< newest tick that a command was for
@@ -65,9 +65,9 @@ class Driver {
 
   Participant me_;
   double speed_limit_mps_;
-  std::map<AgentId, Drive> drives_;
+  std::map<AgentId, VehicleSlot> drives_;
   bool running_ = false, said_ = false, finished_ = false, failed_ = false;
-  bool halted_ = false;  // by a STOP at once: the last state is still to be said
+  bool emergency_stopped_ = false;  // by a STOP at once: the last state is still to be said
   std::string reason_;
   Tick tick_ = 0;
   Instant next_tick_{};

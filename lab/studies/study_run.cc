@@ -11,7 +11,7 @@
 #include "core/coverage_table.h"
 #include "core/ideal_team.h"
 #include "lab/simulation.h"
-#include "logger/nowhere.h"
+#include "logger/null_buffer.h"
 #include "lab/studies/study_measure.h"
 #include "team/plan.h"
 
@@ -119,7 +119,7 @@ StudyFigures fly_without_messages(const Mission& mission) {
 StudyFigures fly_with_messages(std::span<const std::byte> plan) {
   const Mission mission = std::get<Mission>(decode_plan(plan));
   Observer observer(mission);
-  Nowhere nowhere;
+  NullBuffer nowhere;
   lab::Simulation({.plan = {plan.begin(), plan.end()}}, nowhere, nowhere, &observer).run();
   return observer.figures();
 }

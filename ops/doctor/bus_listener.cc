@@ -132,7 +132,7 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
   return {"swarm bus", Level::kOk, "nobody speaks on " + where, "", ""};
 }
 
-Overheard listen_to_swarm(const LcmUrl& url, const Seal& seal, std::chrono::milliseconds duration,
+Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal, std::chrono::milliseconds duration,
                           std::string& error) {
   Overheard overheard(seal);
   const Socket socket = group_listener(url.group, url.base_port, error);

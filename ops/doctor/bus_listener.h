@@ -12,7 +12,7 @@
 
 #include "team/messages.h"
 #include "ops/doctor/finding.h"
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {
@@ -28,7 +28,7 @@ struct HeardRun {
 /// Counts datagrams of the swarm bus. It does not trust their content.
 class Overheard {
  public:
-  explicit Overheard(const Seal& seal = {}) : seal_(seal) {}
+  explicit Overheard(const MessageAuthenticator& seal = {}) : seal_(seal) {}
 
   void take(std::span<const std::byte> datagram);
   /// @param free_port  a free base port, if one is known
@@ -39,7 +39,7 @@ class Overheard {
   void take(const Message& message);
   std::optional<Finding> key_finding() const;
 
-  Seal seal_;
+  MessageAuthenticator seal_;
   std::map<RunId, HeardRun> runs_;
   std::int64_t other_key_ = 0, unkeyed_ = 0;  // ours by their format, but refused by our seal
   std::int64_t foreign_messages_ = 0;  // LCM's, but not of Ergocast
@@ -47,7 +47,7 @@ class Overheard {
 };
 
 /// Listens for `duration`. `error` tells why nothing can be received, if so.
-Overheard listen_to_swarm(const LcmUrl& url, const Seal& seal, std::chrono::milliseconds duration,
+Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal, std::chrono::milliseconds duration,
                           std::string& error);
 
 /// Reports whether messages are checked with a team's key.

@@ -30,7 +30,7 @@ std::optional<int> some_free_base_port() {
 }
 
 /// Checks ports and swarm bus.
-void examine_bus(const LcmUrl& url, const Seal& seal, Examination& all) {
+void examine_bus(const LcmUrl& url, const MessageAuthenticator& seal, Examination& all) {
   const auto everybody = holders("/proc", url);
   std::string refusal;
   Overheard overheard(seal);
@@ -42,7 +42,7 @@ void examine_bus(const LcmUrl& url, const Seal& seal, Examination& all) {
   if (!all.lcm_usable || !refusal.empty()) return;
   all.findings.push_back(overheard.finding(url, free));
   // Another `ergocast` on the port is a doctor like this one.
-  const bool held = std::any_of(everybody.begin(), everybody.end(), [&url](const Holder& one) {
+  const bool held = std::any_of(everybody.begin(), everybody.end(), [&url](const SocketOwner& one) {
     return one.port == url.base_port && one.program != "ergocast";
   });
   if (held || overheard.anything()) {
@@ -54,7 +54,7 @@ void examine_bus(const LcmUrl& url, const Seal& seal, Examination& all) {
 
 }  // namespace
 
-Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts) {
+Examination examine(const LcmUrl& url, const MessageAuthenticator& seal, bool several_hosts) {
   Examination all;
   Findings& findings = all.findings;
   const auto every = interfaces();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ops/doctor/finding.h"
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {
@@ -17,6 +17,6 @@ struct Examination {
 
 /// @param seal  the team's, if it has a key
 /// @param several_hosts  whether the team uses other hosts, too
-Examination examine(const LcmUrl& url, const Seal& seal, bool several_hosts);
+Examination examine(const LcmUrl& url, const MessageAuthenticator& seal, bool several_hosts);
 
 }  // namespace ergocast::doctor

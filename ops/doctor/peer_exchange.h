@@ -8,7 +8,7 @@
 
 #include "ops/doctor/finding.h"
 #include "ops/doctor/peer_ledger.h"
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {
@@ -21,7 +21,7 @@ struct PeerTest {
 };
 
 /// Sends kProbesPerSecond for `duration`. @pre at most kMaxPeerSeconds
-PeerTest try_peers(const LcmUrl& url, const Seal& seal, std::chrono::seconds duration);
+PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal, std::chrono::seconds duration);
 
 /// One finding for each peer, or one if no peer was received.
 /// @param version  ours

@@ -69,10 +69,10 @@ class PeerLedger {
   std::uint64_t key_;
   std::vector<Instant> sent_at_;
   std::map<std::uint64_t, Row> rows_;
-  struct Rumour {
+  struct SecondHandPeer {
     std::uint32_t first = 0, last = 0;
   };
-  std::map<std::uint64_t, Rumour> rumours_;  // by nonce, the peers that other hosts report
+  std::map<std::uint64_t, SecondHandPeer> rumours_;  // by nonce, the peers that other hosts report
 };
 
 }  // namespace ergocast::doctor

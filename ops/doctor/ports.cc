@@ -44,7 +44,7 @@ std::string program_of(const fs::path& process) {
 /// Adds `process` once for each port if it holds one of `wanted`, and records the inodes in
 /// `found`.
 void look_into(const fs::path& process, long pid, const std::map<unsigned long, int>& wanted,
-               std::set<unsigned long>& found, std::vector<Holder>& holders) {
+               std::set<unsigned long>& found, std::vector<SocketOwner>& holders) {
   std::set<int> ports;
   std::error_code error;
   for (fs::directory_iterator at(process / "fd", error), end; !error && at != end;
@@ -59,20 +59,20 @@ void look_into(const fs::path& process, long pid, const std::map<unsigned long, 
   }
 }
 
-std::string described(const Holder& holder) {
+std::string described(const SocketOwner& holder) {
   const std::string who = holder.program.empty()
                               ? "another user's program"
                               : holder.program + " (pid " + std::to_string(holder.pid) + ")";
   return std::to_string(holder.port) + ": " + who;
 }
 
-bool is_ours(const Holder& holder) { return holder.program.starts_with("ergocast"); }
+bool is_ours(const SocketOwner& holder) { return holder.program.starts_with("ergocast"); }
 
 /// "24000: a (pid 1), 24000: b (pid 2) and 7 more".
-std::string described(const std::vector<Holder>& holders) {
+std::string described(const std::vector<SocketOwner>& holders) {
   constexpr std::size_t kShown = 4;
   std::vector<std::string> texts;
-  for (const Holder& holder : holders) {
+  for (const SocketOwner& holder : holders) {
     if (texts.size() < kShown) texts.push_back(described(holder));
   }
   const std::size_t more = holders.size() - texts.size();
@@ -81,7 +81,7 @@ std::string described(const std::vector<Holder>& holders) {
 
 }  // namespace
 
-std::vector<Holder> holders(const fs::path& proc, const LcmUrl& url) {
+std::vector<SocketOwner> holders(const fs::path& proc, const LcmUrl& url) {
   std::map<unsigned long, int> wanted;
   for (const char* table : {"net/udp", "net/udp6"}) {
     for (const UdpSocket& socket : parse_socket_table(text_of(proc / table))) {
@@ -89,7 +89,7 @@ std::vector<Holder> holders(const fs::path& proc, const LcmUrl& url) {
       wanted[socket.inode] = socket.port;
     }
   }
-  std::vector<Holder> all;
+  std::vector<SocketOwner> all;
   if (wanted.empty()) return all;
   std::set<unsigned long> found;
   std::error_code error;
@@ -100,13 +100,13 @@ std::vector<Holder> holders(const fs::path& proc, const LcmUrl& url) {
   for (const auto& [inode, port] : wanted) {
     if (!found.contains(inode)) all.push_back({port, "", 0});
   }
-  std::sort(all.begin(), all.end(), [](const Holder& a, const Holder& b) {
+  std::sort(all.begin(), all.end(), [](const SocketOwner& a, const SocketOwner& b) {
     return std::tie(a.port, a.pid) < std::tie(b.port, b.pid);
   });
   return all;
 }
 
-Finding ports_finding(const LcmUrl& url, const std::vector<Holder>& holders,
+Finding ports_finding(const LcmUrl& url, const std::vector<SocketOwner>& holders,
                       const std::string& refusal, std::optional<int> free_port) {
   const std::string range =
       std::to_string(url.base_port) + " to " + std::to_string(url.base_port + kBusCount - 1);

@@ -13,7 +13,7 @@
 
 namespace ergocast::doctor {
 
-struct Holder {
+struct SocketOwner {
   int port = 0;
   std::string program;  ///< empty: another user's process, whose name is not readable
   long pid = 0;
@@ -21,11 +21,11 @@ struct Holder {
 
 /// The processes that hold one of the URL's ports; one entry for each process and port.
 /// @param proc  /proc, or a folder like it
-std::vector<Holder> holders(const std::filesystem::path& proc, const LcmUrl& url);
+std::vector<SocketOwner> holders(const std::filesystem::path& proc, const LcmUrl& url);
 
 /// @param refusal    why the base port cannot be opened beside these processes; empty if it can
 /// @param free_port  a free base port, if one is known
-Finding ports_finding(const LcmUrl& url, const std::vector<Holder>& holders,
+Finding ports_finding(const LcmUrl& url, const std::vector<SocketOwner>& holders,
                       const std::string& refusal, std::optional<int> free_port);
 
 }  // namespace ergocast::doctor

@@ -137,21 +137,21 @@ TEST(AgentJoining, SaysWhatItWaitsFor) {
   const Mission mission = small_mission(2);
   announce(mission);
   Agent agent(identity_of(1));
-  EXPECT_EQ(agent.obstacle(), "no coordinator is heard");
+  EXPECT_EQ(agent.blocked_reason(), "no coordinator is heard");
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
-  EXPECT_EQ(agent.obstacle(), "waiting to be admitted");
+  EXPECT_EQ(agent.blocked_reason(), "waiting to be admitted");
   give(agent, mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
-  EXPECT_EQ(agent.obstacle(), "waiting to be admitted: the roster has another agent 1, which may have "
+  EXPECT_EQ(agent.blocked_reason(), "waiting to be admitted: the roster has another agent 1, which may have "
                               "died and not be missed yet");
   give(agent, mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
-  EXPECT_EQ(agent.obstacle(), "admitted as agent 1, waiting for the quorum");
+  EXPECT_EQ(agent.blocked_reason(), "admitted as agent 1, waiting for the quorum");
   give(agent, mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));
-  EXPECT_EQ(agent.obstacle(), "admitted as agent 1, waiting for the world");
+  EXPECT_EQ(agent.blocked_reason(), "admitted as agent 1, waiting for the world");
   give(agent, world_state(0, mission.starts_m), at(0s));
   advance(agent, at(0s));
-  EXPECT_EQ(agent.obstacle(), "");
+  EXPECT_EQ(agent.blocked_reason(), "");
   agent.leave("enough");
-  EXPECT_EQ(agent.obstacle(), "");
+  EXPECT_EQ(agent.blocked_reason(), "");
 }
 
 TEST(Agent, IgnoresAndCountsAPlanThatIsNotItsRuns) {

@@ -72,7 +72,7 @@ class KeyedTeam {
     Says says;
     std::map<AgentId, AgentStatus> agents;
     const auto ear = std::get<0>(
-        Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, Seal(key_),
+        Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, MessageAuthenticator(key_),
                         subscriptions_of(Role::kMonitor),
                         {.on_message = [&](const Message& message, Bus, AgentId) {
                           if (const auto* state = std::get_if<WorldState>(&message)) {

@@ -32,14 +32,14 @@ Message message_of(std::int64_t kind) {
   return block;
 }
 
-const Seal& seal_of(bool keyed) {
-  static const Seal kSeals[] = {Seal(), Seal(make_mission_key())};
+const MessageAuthenticator& seal_of(bool keyed) {
+  static const MessageAuthenticator kSeals[] = {MessageAuthenticator(), MessageAuthenticator(make_mission_key())};
   return kSeals[keyed];
 }
 
 void Close(benchmark::State& state) {
   const Message message = message_of(state.range(0));
-  const Seal& seal = seal_of(state.range(1) != 0);
+  const MessageAuthenticator& seal = seal_of(state.range(1) != 0);
   const std::string& channel = channel_of(message);
   std::vector<std::byte> bytes;
   for (auto _ : state) {
@@ -51,7 +51,7 @@ void Close(benchmark::State& state) {
 
 void Open(benchmark::State& state) {
   const Message message = message_of(state.range(0));
-  const Seal& seal = seal_of(state.range(1) != 0);
+  const MessageAuthenticator& seal = seal_of(state.range(1) != 0);
   const std::string& channel = channel_of(message);
   std::vector<std::byte> bytes;
   encode(message, bytes, seal, channel);

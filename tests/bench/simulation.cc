@@ -9,7 +9,7 @@
 #include <string>
 
 #include "lab/simulation.h"
-#include "logger/nowhere.h"
+#include "logger/null_buffer.h"
 #include "scenario/scenario.h"
 #include "team/plan.h"
 
@@ -24,7 +24,7 @@ void Simulation(benchmark::State& state, const std::string& name) {
   const auto* scenario = std::get_if<Scenario>(&loaded);
   if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
 
-  Nowhere nowhere;
+  NullBuffer nowhere;
   std::int64_t messages = 0, agent_steps = 0;
   for (auto _ : state) {
     state.PauseTiming();  // reading the plan and integrating the target are no steps

@@ -115,11 +115,11 @@ class DoctorCanFail : public OnHosts {
 
 
   std::filesystem::path key_file(const char* name) const { return folder_ / name; }
-  Seal seal(const char* name) const { return Seal(std::get<MissionKey>(read_key_file(key_file(name)))); }
+  MessageAuthenticator seal(const char* name) const { return MessageAuthenticator(std::get<MissionKey>(read_key_file(key_file(name)))); }
 
   /// Sends `message` while the doctor listens.
   template <class M>
-  std::function<Speaker(int)> says(M message, const Seal& seal = {}) {
+  std::function<Speaker(int)> says(M message, const MessageAuthenticator& seal = {}) {
     return [message, seal](int port) -> Speaker {
       const auto url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?ttl=1";
       return [stranger = std::make_shared<Stranger>(url, seal), message] { stranger->say(Bus::kSwarm, message); };

@@ -9,7 +9,7 @@
 #include "scenario/scenario.h"
 #include "tests/process/mission.h"
 #include "tests/process/stranger.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -25,8 +25,8 @@ class RefusalsCanBeSeen : public FlyingMission {
   static void write(const std::filesystem::path& file, const MissionKey& key, bool for_coordinator) {
     EXPECT_EQ(write_key_file(file, key_text(key, for_coordinator)), std::nullopt);
   }
-  static Seal seal(const std::filesystem::path& file) {
-    return Seal(std::get<MissionKey>(read_key_file(file)));
+  static MessageAuthenticator seal(const std::filesystem::path& file) {
+    return MessageAuthenticator(std::get<MissionKey>(read_key_file(file)));
   }
 
   /// Receives the mission's parts, which also contain its run.
@@ -54,17 +54,17 @@ class RefusalsCanBeSeen : public FlyingMission {
   void say_raw(std::size_t bytes) {
     Stranger(kUrl).say(Bus::kSwarm, "ERGOCAST_HELLO", std::vector<std::byte>(bytes));
   }
-  void say(const Seal& seal, const Message& message, Bus bus = Bus::kSwarm) {
+  void say(const MessageAuthenticator& seal, const Message& message, Bus bus = Bus::kSwarm) {
     Stranger(kUrl, seal).say(bus, message);
   }
 
-  void babble() {
+  void exceed_rate() {
     AgentStatus status;
     status.header = from(3, run());
     status.host = "stranger";
     // Not all at once: what exceeds the agents' socket buffers is lost, not refused.
     for (int turn = 0; turn < 200; ++turn) {
-      for (int i = 0; i < 20; ++i) babbler_->say(Bus::kSwarm, status);
+      for (int i = 0; i < 20; ++i) rate_offender_->say(Bus::kSwarm, status);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
@@ -108,13 +108,13 @@ class RefusalsCanBeSeen : public FlyingMission {
 
   const std::filesystem::path coordinator_ = folder_ / "c.key", team_ = folder_ / "t.key", other_ = folder_ / "o.key";
   MissionFollower follower_;
-  std::unique_ptr<Stranger> babbler_;
+  std::unique_ptr<Stranger> rate_offender_;
 };
 
 TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
   Child mission = launch_endless(scenario(), {"--realtime=2", "--key-file", coordinator_, "--lcm-url", kUrl});
   learn_mission();
-  babbler_ = std::make_unique<Stranger>(kUrl, seal(team_));
+  rate_offender_ = std::make_unique<Stranger>(kUrl, seal(team_));
   const std::map<Refusal, std::function<void()>> plants = {
       // Longer than any message; the kernel drops much shorter or longer datagrams.
       {Refusal::kSize, [this] { say_raw(1230); }},
@@ -125,7 +125,7 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
       {Refusal::kRun, [this] { say(seal(team_), hello(run() + 1)); }},
       // An agent that sends the places of all vehicles.
       {Refusal::kRange, [this] { say(seal(team_), world_of(3), Bus::kWorld); }},
-      {Refusal::kRate, [this] { babble(); }},
+      {Refusal::kRate, [this] { exceed_rate(); }},
       {Refusal::kLimit, [this] { crowd(); }},
   };
   // In the order of the program's own list; the last one changes the roster, and so comes last.

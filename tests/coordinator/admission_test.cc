@@ -238,12 +238,12 @@ TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
   give(coordinator, hello, at(0s));
   give(coordinator, hello, at(0s));
   EXPECT_TRUE(coordinator.roster().empty());
-  EXPECT_EQ(coordinator.strangers(), (std::set<std::pair<std::string, std::string>>{{"somewhere", "9.9.9"}}));
+  EXPECT_EQ(coordinator.version_mismatches(), (std::set<std::pair<std::string, std::string>>{{"somewhere", "9.9.9"}}));
   for (int i = 0; i < 1000; ++i) {
     hello.host = std::to_string(i);
     give(coordinator, hello, at(0s));
   }
-  EXPECT_EQ(coordinator.strangers().size(), 64u) << "whoever invents hosts costs no memory";
+  EXPECT_EQ(coordinator.version_mismatches().size(), 64u) << "whoever invents hosts costs no memory";
   give(coordinator, hello_of(0), at(0s));
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }

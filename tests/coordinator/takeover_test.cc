@@ -291,8 +291,8 @@ TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
 TEST(TookOver, EverybodyHasTimeToSpeakAndTheTickHasItsTimeAnew) {
   Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 7));
   for (const RosterEntry& entry : coordinator.roster()) {
-    EXPECT_EQ(coordinator.presence(entry, at(3999ms)), Presence::kAlive);
-    EXPECT_EQ(coordinator.presence(entry, at(4s)), Presence::kSilent);
+    EXPECT_EQ(coordinator.member_state(entry, at(3999ms)), MemberState::kAlive);
+    EXPECT_EQ(coordinator.member_state(entry, at(4s)), MemberState::kSilent);
   }
   advance(coordinator, at(10999ms));
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);

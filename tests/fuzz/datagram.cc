@@ -43,7 +43,7 @@ void check_accepted(const Message& message, std::string_view channel,
 }
 
 void take(std::span<const std::byte> bytes, std::string_view channel) {
-  static const Seal seal(MissionKey{{std::byte{7}}, {std::byte{8}}, {}});
+  static const MessageAuthenticator seal(MissionKey{{std::byte{7}}, {std::byte{8}}, {}});
   ERGOCAST_REQUIRE(std::holds_alternative<Refusal>(decode(bytes, 0, seal, channel)));
   const auto decoded = decode(bytes, 0);
   if (const auto* message = std::get_if<Message>(&decoded))

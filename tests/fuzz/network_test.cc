@@ -8,13 +8,13 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "runtime/key_file.h"
-#include "tests/fuzz/vandal.h"
+#include "tests/fuzz/adversary.h"
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
 
-using fuzz::Vandal;
+using fuzz::Adversary;
 
 long setting(const char* name, long otherwise) {
   const char* text = std::getenv(name);
@@ -46,7 +46,7 @@ long largest_kb(const std::vector<pid_t>& pids) {
 }
 
 /// How many messages the logger has accepted, and how many of those were forged.
-std::pair<int, int> accepted(const std::filesystem::path& folder, const Vandal& vandal) {
+std::pair<int, int> accepted(const std::filesystem::path& folder, const Adversary& adversary) {
   int all = 0, forged = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     if (file.path().extension() != ".lcm") continue;
@@ -54,7 +54,7 @@ std::pair<int, int> accepted(const std::filesystem::path& folder, const Vandal& 
     while (const lcm::LogEvent* event = log.good() ? log.readNextEvent() : nullptr) {
       const auto* data = static_cast<const std::uint8_t*>(event->data);
       ++all;
-      if (vandal.forged(event->channel, {data, static_cast<std::size_t>(event->datalen)})) ++forged;
+      if (adversary.forged(event->channel, {data, static_cast<std::size_t>(event->datalen)})) ++forged;
     }
   }
   return {all, forged};
@@ -72,35 +72,35 @@ class HostileNetwork : public FlyingMission {
   };
 
   /// Listens for so long and sends so many damaged datagrams, if any.
-  static Stretch spend(Vandal& vandal, std::chrono::duration<double> time, long strikes) {
-    const Tick tick = vandal.tick();
-    const std::int64_t missed = vandal.missed_deadlines();
+  static Stretch spend(Adversary& adversary, std::chrono::duration<double> time, long strikes) {
+    const Tick tick = adversary.tick();
+    const std::int64_t missed = adversary.missed_deadlines();
     const auto begin = std::chrono::steady_clock::now();
     for (long done = 0; done < strikes || std::chrono::steady_clock::now() < begin + time;) {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
       const long due =
           std::min(strikes, static_cast<long>(static_cast<double>(strikes) * (spent / time)));
-      for (; done < due; ++done) vandal.strike();
-      vandal.listen();
+      for (; done < due; ++done) adversary.strike();
+      adversary.listen();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    return {vandal.tick() - tick, vandal.missed_deadlines() - missed};
+    return {adversary.tick() - tick, adversary.missed_deadlines() - missed};
   }
 
-  void fly_among_vandals(const std::vector<std::string>& more, const Seal& seal) {
+  void fly_among_adversaries(const std::vector<std::string>& more, const MessageAuthenticator& seal) {
     const long strikes = setting("ERGOCAST_FUZZ_DATAGRAMS", 20000);
     const std::chrono::duration<double> time(
         static_cast<double>(strikes) / static_cast<double>(setting("ERGOCAST_FUZZ_PER_S", 4000)));
     std::vector<std::string> arguments{"--realtime", "--lcm-url", kUrl};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Child mission = launch_endless(scenario(), arguments);
-    Vandal vandal(std::get<LcmUrl>(LcmUrl::parse(kUrl)), seal, 1);
+    Adversary adversary(std::get<LcmUrl>(LcmUrl::parse(kUrl)), seal, 1);
     const std::vector<pid_t> before = crew();
     ASSERT_EQ(before.size(), 7U);
     const long memory_kb = largest_kb(before);
-    ASSERT_TRUE(eventually([&] { return vandal.listen(), vandal.heard() > 100; }));
-    const Stretch quiet = spend(vandal, std::max(time / 4, std::chrono::duration<double>(3)), 0);
-    const Stretch stormy = spend(vandal, time, strikes);
+    ASSERT_TRUE(eventually([&] { return adversary.listen(), adversary.heard() > 100; }));
+    const Stretch quiet = spend(adversary, std::max(time / 4, std::chrono::duration<double>(3)), 0);
+    const Stretch stormy = spend(adversary, time, strikes);
     ASSERT_TRUE(moves_on()) << said();
     EXPECT_EQ(crew(), before) << said();
     std::printf(
@@ -109,12 +109,12 @@ class HostileNetwork : public FlyingMission {
         strikes, time.count(), quiet.share(), stormy.share(), memory_kb, largest_kb(before));
     mission.send(SIGINT);
     EXPECT_EQ(wait_for(mission), 0) << said();
-    check(vandal, strikes);
+    check(adversary, strikes);
   }
 
-  void check(const Vandal& vandal, long strikes) {
-    EXPECT_EQ(vandal.sent(), strikes);
-    const auto [all, forged] = accepted(out(), vandal);
+  void check(const Adversary& adversary, long strikes) {
+    EXPECT_EQ(adversary.sent(), strikes);
+    const auto [all, forged] = accepted(out(), adversary);
     EXPECT_GT(all, 1000);
     EXPECT_EQ(forged, 0);
     EXPECT_EQ(summary()["restarts"], 0);
@@ -126,13 +126,13 @@ class HostileNetwork : public FlyingMission {
   }
 };
 
-TEST_F(HostileNetwork, WhatFailsTheHashIsRefused) { fly_among_vandals({}, {}); }
+TEST_F(HostileNetwork, WhatFailsTheHashIsRefused) { fly_among_adversaries({}, {}); }
 
 TEST_F(HostileNetwork, WithAKeyAlsoWhatHasTheRightHashIs) {
   const std::filesystem::path file = folder_ / "c.key";
   const MissionKey key = make_mission_key();
   ASSERT_EQ(write_key_file(file, key_text(key, true)), std::nullopt);
-  fly_among_vandals({"--key-file", file}, Seal(key));
+  fly_among_adversaries({"--key-file", file}, MessageAuthenticator(key));
   EXPECT_GT(summary()["messages"]["refused"]["unkeyed"], 0);
 }
 

@@ -2,7 +2,7 @@
 // Fragments of LCM's with crafted headers, which crash a program inside liblcm.
 #include "runtime/socket.h"
 #include "tests/process/mission.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -85,16 +85,16 @@ TEST_F(Fragments, CrashAnAgentOnceWhoIsStartedAgainAndGetsItsSumBack) {
   // A datagram to this host alone reaches the socket that was bound last.
   kill_next(agent(2));
   ASSERT_TRUE(logs("agent-2", ": running", 2)) << said();
-  Witness witness(kUrl);
-  const auto member = [&witness] { return witness.member(2); };
-  ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 0; }));
+  BusObserver observer(kUrl);
+  const auto member = [&observer] { return observer.member(2); };
+  ASSERT_TRUE(observer.hears([&] { return observer.said(member()) > 0; }));
   const Author former = member();
   send_to("127.0.0.1", Bus::kWorld, crafted_fragment("ERGOCAST_HELLO"));
-  ASSERT_TRUE(witness.hears([&] { return said("agent-2") && said("was killed by SIGSEGV"); }))
+  ASSERT_TRUE(observer.hears([&] { return said("agent-2") && said("was killed by SIGSEGV"); }))
       << said();
-  ASSERT_TRUE(witness.hears([&] { return member() != former; })) << said();
+  ASSERT_TRUE(observer.hears([&] { return member() != former; })) << said();
   EXPECT_TRUE(
-      witness.hears([&] { return witness.held(member(), former) >= witness.said(former); }));
+      observer.hears([&] { return observer.held(member(), former) >= observer.said(former); }));
   EXPECT_TRUE(moves_on()) << said();
   mission.send(SIGTERM);
   EXPECT_EQ(wait_for(mission), 0) << said();

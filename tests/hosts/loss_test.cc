@@ -35,11 +35,11 @@ TEST_F(Loss, InRealTimeLeavesNobodyBehindByMoreThanTheAnnouncedPeriods) {
   // A digest may be a mission second old, and its author sends contributions in between.
   constexpr std::int64_t kTolerated = 2 * kPeriodTicks + 10 + kPeriodTicks;
   start(mission(kEndless, std::string(kRealtime) + " broadcast_period_ticks: 5"));
-  Witness witness = witness_on(1);
+  BusObserver observer = witness_on(1);
   lan_->lose(30, {1});
   const auto up_to_date = [&](AgentId who, AgentId whose) {
-    const std::int64_t held = witness.held(witness.member(who), witness.member(whose));
-    return held > 0 && witness.said(witness.member(whose)) - held <= kTolerated;
+    const std::int64_t held = observer.held(observer.member(who), observer.member(whose));
+    return held > 0 && observer.said(observer.member(whose)) - held <= kTolerated;
   };
   const auto all_up_to_date = [&](AgentId who) {
     for (AgentId whose = 0; whose < 4; ++whose) {
@@ -48,8 +48,8 @@ TEST_F(Loss, InRealTimeLeavesNobodyBehindByMoreThanTheAnnouncedPeriods) {
     return true;
   };
   for (int round = 1; round <= 5; ++round) {
-    ASSERT_TRUE(witness.hears([&] { return witness.said(witness.member(0)) > 100 * round; }));
-    EXPECT_TRUE(witness.hears([&] {
+    ASSERT_TRUE(observer.hears([&] { return observer.said(observer.member(0)) > 100 * round; }));
+    EXPECT_TRUE(observer.hears([&] {
       return all_up_to_date(0) && all_up_to_date(1) && all_up_to_date(2) && all_up_to_date(3);
     }));
   }

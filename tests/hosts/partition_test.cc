@@ -10,29 +10,29 @@ constexpr Tick kTicksPerSecond = 50;  // of wall time, at kRealtime
 
 class Partition : public TeamOnHosts {
  protected:
-  /// Steps of each of the four agents, as `witness` received them.
+  /// Steps of each of the four agents, as `observer` received them.
   using Coverage = std::array<std::int64_t, 4>;
-  static Coverage said(const Witness& witness) {
+  static Coverage said(const BusObserver& observer) {
     Coverage coverage{};
     for (AgentId id = 0; id < 4; ++id) {
-      coverage[static_cast<std::size_t>(id)] = witness.said(witness.member(id));
+      coverage[static_cast<std::size_t>(id)] = observer.said(observer.member(id));
     }
     return coverage;
   }
   /// Whether `who` reports that it holds at least so much of all other agents.
-  static bool holds(const Witness& witness, AgentId who, const Coverage& coverage) {
+  static bool holds(const BusObserver& observer, AgentId who, const Coverage& coverage) {
     for (AgentId whose = 0; whose < 4; ++whose) {
-      const std::int64_t held = witness.held(witness.member(who), witness.member(whose));
+      const std::int64_t held = observer.held(observer.member(who), observer.member(whose));
       if (held == 0 || held < coverage[static_cast<std::size_t>(whose)]) return false;
     }
     return true;
   }
-  static bool all_hold(const Witness& witness, const Coverage& coverage) {
-    return holds(witness, 0, coverage) && holds(witness, 1, coverage) &&
-           holds(witness, 2, coverage) && holds(witness, 3, coverage);
+  static bool all_hold(const BusObserver& observer, const Coverage& coverage) {
+    return holds(observer, 0, coverage) && holds(observer, 1, coverage) &&
+           holds(observer, 2, coverage) && holds(observer, 3, coverage);
   }
-  static bool agree_on(Witness& witness, const Coverage& coverage) {
-    return witness.hears([&] { return all_hold(witness, coverage); });
+  static bool agree_on(BusObserver& observer, const Coverage& coverage) {
+    return observer.hears([&] { return all_hold(observer, coverage); });
   }
   /// The coverage of all agents so far and a little more.
   static Coverage more_than(Coverage coverage, std::int64_t steps) {
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Hosts, CutOffHost, ::testing::Values(0, 2), [](const au
 TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
   start_all_but_agents(mission(kEndless, kRealtime), GetParam());
   start_agents();
-  Witness with_world = witness_on(1), cut_off = witness_on(2);
+  BusObserver with_world = witness_on(1), cut_off = witness_on(2);
   ASSERT_TRUE(agree_on(with_world, {1, 1, 1, 1})) << coordinator_->said();
   ASSERT_TRUE(agree_on(cut_off, {1, 1, 1, 1}));
 
@@ -88,7 +88,7 @@ TEST_P(CutOffHost, HoldsStillFor20SecondsAndThenEverybodyAgreesAgain) {
 
 TEST_F(Partition, InAChainOfHostsTheOneBetweenPassesOnWhatTheOthersCover) {
   start(mission(kEndless, kRealtime));
-  Witness between = witness_on(1);
+  BusObserver between = witness_on(1);
   ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->said();
   lan_->block(0, 2);
   lan_->block(2, 0);
@@ -100,7 +100,7 @@ TEST_F(Partition, InAChainOfHostsTheOneBetweenPassesOnWhatTheOthersCover) {
 
 TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThird) {
   start(mission(kEndless, kRealtime));
-  Witness between = witness_on(1);
+  BusObserver between = witness_on(1);
   ASSERT_TRUE(agree_on(between, {1, 1, 1, 1})) << coordinator_->said();
   lan_->block(0, 2);
   EXPECT_TRUE(agree_on(between, more_than(said(between), 5 * kTicksPerSecond)));
@@ -110,11 +110,11 @@ TEST_F(Partition, AHostThatIsHeardButDoesNotHearAnotherGetsItsCoverageFromTheThi
 
 TEST_F(Partition, InLockstepEverybodyWaitsForACutOffHostAndNotABitChanges) {
   start(mission(kEndless));
-  Witness witness = witness_on(1);
+  BusObserver observer = witness_on(1);
   ASSERT_TRUE(recorded(30000)) << coordinator_->said();
   lan_->unplug(2);
-  ASSERT_TRUE(witness.hears([&] {
-    return witness.stands_still(witness.member(0)) && witness.stands_still(witness.member(1));
+  ASSERT_TRUE(observer.hears([&] {
+    return observer.stands_still(observer.member(0)) && observer.stands_still(observer.member(1));
   }));
   lan_->heal();
   expect_all_to_go_on_and_end_when_told();

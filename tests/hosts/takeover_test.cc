@@ -38,31 +38,31 @@ TEST_F(Takeover, AWorldOnAnotherHostGoesOnWhereTheAgentsWere) {
 
 TEST_F(Takeover, TheSuccessorsOfADeadHostsAgentsGetBackWhatThoseHadCovered) {
   start(mission(kEndless, kRealtime));
-  Witness witness = witness_on(1);
+  BusObserver observer = witness_on(1);
   const auto knows = [&](AgentId who, const Author& whose) {
-    return witness.held(witness.member(who), whose) >=
-           std::max<std::int64_t>(1, witness.said(whose));
+    return observer.held(observer.member(who), whose) >=
+           std::max<std::int64_t>(1, observer.said(whose));
   };
-  ASSERT_TRUE(witness.hears([&] {
-    return knows(0, witness.member(2)) && knows(0, witness.member(3));
+  ASSERT_TRUE(observer.hears([&] {
+    return knows(0, observer.member(2)) && knows(0, observer.member(3));
   })) << coordinator_->said();
 
-  const Author former[] = {witness.member(2), witness.member(3)};
+  const Author former[] = {observer.member(2), observer.member(3)};
   lan_->unplug(2);
   for (const std::size_t id : {2U, 3U}) {
     agents_[id]->child.send(SIGKILL);
     wait_for(agents_[id]->child);
   }
   agents_ = {agents_[0], agents_[1], &agent_on(0, 2), &agent_on(1, 3)};
-  ASSERT_TRUE(witness.hears([&] {
-    const Author two = witness.member(2), three = witness.member(3);
-    return two != former[0] && three != former[1] && witness.said(two) > 50 &&
-           witness.said(three) > 50;
+  ASSERT_TRUE(observer.hears([&] {
+    const Author two = observer.member(2), three = observer.member(3);
+    return two != former[0] && three != former[1] && observer.said(two) > 50 &&
+           observer.said(three) > 50;
   })) << coordinator_->said();
   for (const Author& dead : former) {
     for (const AgentId id : {0, 1, 2, 3}) {
-      EXPECT_TRUE(witness.hears([&] { return knows(id, dead); })) << id << " of " << dead.agent;
-      EXPECT_EQ(witness.held(witness.member(id), dead), witness.said(dead)) << "no more than that";
+      EXPECT_TRUE(observer.hears([&] { return knows(id, dead); })) << id << " of " << dead.agent;
+      EXPECT_EQ(observer.held(observer.member(id), dead), observer.said(dead)) << "no more than that";
     }
   }
   end_mission();

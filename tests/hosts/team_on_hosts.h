@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "tests/process/mission.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 #include "tests/support/lan.h"
 
 namespace ergocast::test {
@@ -35,9 +35,9 @@ class OnHosts : public ByHand {
     const auto there = lan_->visit(host);
     return hand(program, std::move(arguments));
   }
-  Witness witness_on(int host) const {
+  BusObserver witness_on(int host) const {
     const auto there = lan_->visit(host);
-    return Witness(url_);
+    return BusObserver(url_);
   }
 
   std::optional<Lan> lan_;

@@ -81,7 +81,7 @@ inline AgentStatus agent_status() {
   m.missed_ticks = 10;
   m.contributions_relayed = 18;
   m.refused = {11, 12, 13, 14, 15, 16, 19, 20, 21};
-  m.babbler = 22;
+  m.rate_offender = 22;
   m.kernel_drops = 17;
   m.loop_lag_s = 0.25;
   m.host = "host.example";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A recorder whose streams refuse all data for a while, as on a full disk.
-#include "logger/nowhere.h"
+#include "logger/null_buffer.h"
 #include "tests/logger/record.h"
 
 namespace ergocast {
@@ -110,7 +110,7 @@ TEST(FullDisk, UntilTheEndOfTheMissionTheRecordIsWhatFitted) {
 }
 
 TEST(FullDisk, NoStreamIsFullFromTheBeginning) {
-  Nowhere nowhere;
+  NullBuffer nowhere;
   const auto record_to = [](std::ostream& trajectory, std::ostream& metrics) {
     Recorder(kRun, kLoggerLife, trajectory, metrics);
   };

@@ -26,9 +26,9 @@ Mission noiseless(Mission mission, double epsilon) {
 // ---- the potential in time ---------------------------------------------------------------------
 
 /// E and its parts, of a team in flight, from the places of its agents.
-class Witness {
+class BusObserver {
  public:
-  explicit Witness(const Mission& mission)
+  explicit BusObserver(const Mission& mission)
       : mission_(mission),
         weights_(sobolev_weights(mission.basis, mission.domain)),
         sums_(Coefficients::Zero(mission.basis.mode_count())) {
@@ -91,19 +91,19 @@ TEST(LookingAhead, ThePotentialFallsByTheTeamsDescentAndRisesByWhatTimeAdds) {
         {310, 420, 0}, {900, 1500, 0}, {1333, 222, 0}, {1700, 1650, 0}, {1000, 930, 0}};
     mission.timing.dt_s = finer ? 1e-3 : 1e-2;
     PaperTeam team(mission, lab::Edges::kNone);
-    Witness witness(mission);
+    BusObserver observer(mission);
     double error = 0, scale = 0;
     for (double t_s = 0; t_s < 20; t_s += mission.timing.dt_s) {
-      witness.sample(team);
-      const double before = witness.potential(team), inflow = witness.inflow(team);
-      const double ahead_s = witness.ahead_s(team);
+      observer.sample(team);
+      const double before = observer.potential(team), inflow = observer.inflow(team);
+      const double ahead_s = observer.ahead_s(team);
       team.step();
       double descent = 0;
       for (std::size_t i = 0; i < team.size(); ++i)
         descent += ahead_s * team.b(i).dot(team.v_mps(i));
       ASSERT_LE(descent, 0);
       // One more step: the next sample's contribution is included.
-      Witness next = witness;
+      BusObserver next = observer;
       next.sample(team);
       const double rate = (next.potential(team) - before) / mission.timing.dt_s;
       error = std::max(error, std::abs(rate - descent - inflow));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Programs that people start one by one, without `ergocast run`.
 #include "tests/process/mission.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -29,16 +29,16 @@ class StartedByHand : public ByHand {
 
 TEST_F(StartedByHand, AnAgentThatIsToldToLeaveIsReportedAndNotWaitedFor) {
   Program& coordinator = begin_mission(endless_pair());
-  Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
-  const Author left = witness.member(1);
+  BusObserver observer(kUrl);
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > 0; }));
+  const Author left = observer.member(1);
   signal_to(agent(1), SIGTERM);
-  ASSERT_TRUE(witness.hears([&] {
-    const RosterEntry* entry = witness.entry(left);
+  ASSERT_TRUE(observer.hears([&] {
+    const RosterEntry* entry = observer.entry(left);
     return entry != nullptr && entry->active_until >= 0;
   })) << coordinator.said();
-  const Tick tick = witness.entry(left)->active_until;
-  EXPECT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > tick + 100; }));
+  const Tick tick = observer.entry(left)->active_until;
+  EXPECT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > tick + 100; }));
   EXPECT_TRUE(coordinator.says("agent 1 (" + to_hex(left.incarnation) + ") is gone at tick"))
       << coordinator.said();
 }

@@ -85,9 +85,9 @@ TEST_F(Fault, YoungerOfTwoAgentsWithOneIdStopsAndSaysWhy) {
 }
 
 /// Datagrams that must have no effect: noise, other runs' messages, flipped bits.
-class Vandal {
+class Adversary {
  public:
-  explicit Vandal(const LcmUrl& url)
+  explicit Adversary(const LcmUrl& url)
       : buses_{lcm::LCM(url.of(Bus::kSwarm)), lcm::LCM(url.of(Bus::kWorld)),
                lcm::LCM(url.of(Bus::kCommand))} {}
 
@@ -122,8 +122,8 @@ class Vandal {
 
 TEST_F(Fault, ForeignAndDamagedDatagramsAreCountedAndHaveNoEffect) {
   Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
-  Vandal vandal(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
-  for (std::uint64_t round = 0; round < 200; ++round) vandal.strike(round);
+  Adversary adversary(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
+  for (std::uint64_t round = 0; round < 200; ++round) adversary.strike(round);
   ASSERT_TRUE(moves_on(200000)) << said();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << said();

@@ -9,7 +9,7 @@
 #include "runtime/socket.h"
 #include "tests/process/mission.h"
 #include "tests/process/replayer.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -79,13 +79,13 @@ TEST_F(Flood, NamesOfChannelsThatAreNobodysCostNoMemory) {
 }
 
 /// Repeats agent 3's messages without end, or sends new ones at that rate in its place.
-class Babbler {
+class RateOffender {
  public:
-  Babbler(const std::string& url, bool in_its_place)
+  RateOffender(const std::string& url, bool in_its_place)
       : bus_(std::get<LcmUrl>(LcmUrl::parse(url)).of(Bus::kSwarm)), in_its_place_(in_its_place) {
-    bus_.subscribe("ERGOCAST_AGENT_STATUS_3", &Babbler::hear, this)->setQueueCapacity(0);
+    bus_.subscribe("ERGOCAST_AGENT_STATUS_3", &RateOffender::hear, this)->setQueueCapacity(0);
   }
-  void babble() {
+  void exceed_rate() {
     bus_.handleTimeout(5);
     for (int i = 0; i < 50 && !bytes_.empty(); ++i) {
       if (in_its_place_) renew();
@@ -123,11 +123,11 @@ class Babble : public Flood {
 TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFliesOn) {
   Child mission = launch_endless(scenario(), {"--realtime=1", "--lcm-url", kUrl});
   for (const auto& agent : agents()) EXPECT_EQ(agent["refused"]["rate"], 0) << agent;
-  Babbler babbler(kUrl, true);
-  ASSERT_TRUE(eventually([&] { return babbler.babble(), babbler.has_heard(); }));
+  RateOffender rate_offender(kUrl, true);
+  ASSERT_TRUE(eventually([&] { return rate_offender.exceed_rate(), rate_offender.has_heard(); }));
   signal_to(agent(3), SIGSTOP);
   ASSERT_TRUE(eventually([&] {
-    babbler.babble();
+    rate_offender.exceed_rate();
     return log_of("agent-0").find("agent 3 babbles") != std::string::npos;
   })) << log_of("agent-0");
   for (const auto& agent : agents()) {
@@ -145,9 +145,9 @@ TEST_F(Babble, AnAgentThatSaysAHundredTimesAsMuchIsLimitedAndNamedAndTheTeamFlie
 
 TEST_F(Babble, WhatOthersRepeatOfAnAgentIsLimitedAndNotItsFault) {
   Child mission = launch_endless(scenario(), {"--realtime=1", "--lcm-url", kUrl});
-  Babbler babbler(kUrl, false);
+  RateOffender rate_offender(kUrl, false);
   ASSERT_TRUE(eventually([&] {
-    babbler.babble();
+    rate_offender.exceed_rate();
     return log_of("agent-0").find("rate=") != std::string::npos;
   })) << log_of("agent-0");
   for (const auto& agent : agents()) {
@@ -223,9 +223,9 @@ TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
   Child mission = launch_endless(scenario("broadcast_period_ticks: 5"),
                                  {"--lcm-url", kUrl, "--event-log-limit", "128"});
   kill_next(agent(2));
-  Witness witness(kUrl);
-  const auto fly_to = [&witness](Tick tick) {
-    return witness.hears([&] { return witness.answered(witness.member(0)) >= tick; });
+  BusObserver observer(kUrl);
+  const auto fly_to = [&observer](Tick tick) {
+    return observer.hears([&] { return observer.answered(observer.member(0)) >= tick; });
   };
   ASSERT_TRUE(fly_to(kWarmUp)) << said();
   std::map<std::string, std::pair<pid_t, long>> before;

@@ -3,7 +3,7 @@
 // laptop with its lid closed: no process is lost, and in lockstep not a bit changes. No mission
 // here ends before the test ends it.
 #include "tests/process/mission.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -31,17 +31,17 @@ TEST_P(FreezeInLockstep, EverybodyWaitsOrGoesOnAndTheTrajectoryIsTheSame) {
 
 TEST_F(Freeze, InRealTimeTheTeamGoesOnWithoutAnAgentThatThenAgreesAgain) {
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
-  Witness witness(kUrl);
-  const auto knows = [&witness](AgentId who, AgentId whose, std::int64_t steps) {
-    return witness.held(witness.member(who), witness.member(whose)) > steps;
+  BusObserver observer(kUrl);
+  const auto knows = [&observer](AgentId who, AgentId whose, std::int64_t steps) {
+    return observer.held(observer.member(who), observer.member(whose)) > steps;
   };
-  ASSERT_TRUE(witness.hears([&] { return knows(1, 0, 0) && knows(0, 1, 0); }));
+  ASSERT_TRUE(observer.hears([&] { return knows(1, 0, 0) && knows(0, 1, 0); }));
   signal_to(agent(1), SIGSTOP);
-  const std::int64_t frozen_at = witness.said(witness.member(1));
-  const std::int64_t meanwhile = witness.said(witness.member(0)) + 5 * 50;
-  ASSERT_TRUE(witness.hears([&] { return knows(2, 0, meanwhile); })) << "the team goes on";
+  const std::int64_t frozen_at = observer.said(observer.member(1));
+  const std::int64_t meanwhile = observer.said(observer.member(0)) + 5 * 50;
+  ASSERT_TRUE(observer.hears([&] { return knows(2, 0, meanwhile); })) << "the team goes on";
   signal_to(agent(1), SIGCONT);
-  ASSERT_TRUE(witness.hears([&] {
+  ASSERT_TRUE(observer.hears([&] {
     return knows(1, 0, meanwhile) && knows(1, 2, meanwhile) && knows(0, 1, frozen_at + 10) &&
            knows(2, 1, frozen_at + 10);
   })) << said();

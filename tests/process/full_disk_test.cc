@@ -6,7 +6,7 @@
 
 #include "tests/process/mission.h"
 #include "tests/process/record.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -55,8 +55,8 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
   const auto bytes = recorded_bytes();
   const Tick full_at = recorded_rows(out()).rbegin()->first;
   // Twice as many ticks as a recorder buffers: some of them it had not yet tried to write.
-  Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > full_at + 2200; }))
+  BusObserver observer(kUrl);
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > full_at + 2200; }))
       << said();
   EXPECT_LT(recorded_bytes(), bytes + 200000);
   ASSERT_TRUE(resize_disk(kRoomy));

@@ -73,7 +73,7 @@ class Outsider {
     const std::size_t at = random(2) % one.bytes.size();
     one.bytes[at < kTagOffset || at >= kHeaderEnd ? at : 8] ^= std::byte{1};
     send(one);
-    Seal().close(one.bytes, false, "");
+    MessageAuthenticator().close(one.bytes, false, "");
     send(one);
     one.channel.back() = static_cast<char>('0' + random(3) % 4);
     send(one);
@@ -97,8 +97,8 @@ class Keyed : public ByHand {
     EXPECT_EQ(write_key_file(coordinator_, key_text(key, true)), std::nullopt);
     EXPECT_EQ(write_key_file(team_, key_text(key, false)), std::nullopt);
   }
-  Seal seal(const std::filesystem::path& file) const {
-    return Seal(std::get<MissionKey>(read_key_file(file)));
+  MessageAuthenticator seal(const std::filesystem::path& file) const {
+    return MessageAuthenticator(std::get<MissionKey>(read_key_file(file)));
   }
   /// The id of the mission that is flying.
   static RunId run_id() {

@@ -3,7 +3,7 @@
 #include <sys/resource.h>
 
 #include "tests/process/mission.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -163,10 +163,10 @@ TEST_F(DamagedRecord, WithoutAReadablePlanIsNobodysAndTheTeamGoesOnWithoutOne) {
   ASSERT_TRUE(comes_to_say("logger exited with code 2 after 3 restarts: the team goes on without a record"))
       << said();
   EXPECT_TRUE(logs("logger", "plan.binpb", 3)) << log_of("logger");
-  Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
-  const Tick tick = witness.answered(witness.member(0));
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > tick + 20; }));
+  BusObserver observer(kUrl);
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > 0; }));
+  const Tick tick = observer.answered(observer.member(0));
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > tick + 20; }));
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 4) << said();
   EXPECT_EQ(summary()["record_complete"], false);

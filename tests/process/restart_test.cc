@@ -4,7 +4,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "tests/process/mission.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -66,31 +66,31 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
   const bool lockstep = std::string(GetParam()) == "--lockstep";
   Child mission = launch_endless(scenario("broadcast_period_ticks: 5"),
                                  {GetParam(), "--lcm-url", kUrl});
-  Witness witness(kUrl);
-  const auto member = [&witness] { return witness.member(1); };
-  ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 0 && witness.answered(member()) > 0; }));
+  BusObserver observer(kUrl);
+  const auto member = [&observer] { return observer.member(1); };
+  ASSERT_TRUE(observer.hears([&] { return observer.said(member()) > 0 && observer.answered(member()) > 0; }));
   const Author former = member();
   // An agent that does not answer holds the tick until the last messages have been repeated.
   if (lockstep) signal_to(agent(2), SIGSTOP);
-  ASSERT_TRUE(witness.hears([&] { return !lockstep || witness.stands_still(former); }));
+  ASSERT_TRUE(observer.hears([&] { return !lockstep || observer.stands_still(former); }));
   kill_next(agent(1));
   const Instant killed = now();
   const auto since_kill = [killed] { return std::to_string((now() - killed) / 1.0s); };
   if (lockstep) signal_to(agent(2), SIGCONT);
-  ASSERT_TRUE(witness.hears([&] { return member() != former && member().incarnation != 0; }));
+  ASSERT_TRUE(observer.hears([&] { return member() != former && member().incarnation != 0; }));
   RecordProperty("admitted_after_s", since_kill());
-  ASSERT_TRUE(witness.hears([&] { return witness.held(member(), former) >= witness.said(former); }));
+  ASSERT_TRUE(observer.hears([&] { return observer.held(member(), former) >= observer.said(former); }));
   RecordProperty("recovered_after_s", since_kill());
-  ASSERT_TRUE(witness.hears([&] { return witness.said(member()) > 10; }));
+  ASSERT_TRUE(observer.hears([&] { return observer.said(member()) > 10; }));
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << said();
 
-  EXPECT_EQ(witness.held(member(), former), witness.said(former)) << "no more than it had said";
-  EXPECT_LT(witness.answered(former), witness.block(former).next_broadcast_tick)
+  EXPECT_EQ(observer.held(member(), former), observer.said(former)) << "no more than it had said";
+  EXPECT_LT(observer.answered(former), observer.block(former).next_broadcast_tick)
       << "lost is only what it covered since its last broadcast";
   for (const Author& life : {former, member()}) {
-    const Contribution block = witness.block(life);
-    const Tick ticks = block.header.tick + 1 - witness.entry(life)->active_from;
+    const Contribution block = observer.block(life);
+    const Tick ticks = block.header.tick + 1 - observer.entry(life)->active_from;
     EXPECT_LE(block.steps, ticks);
     EXPECT_TRUE(!lockstep || block.steps == ticks) << block.steps << " of " << ticks;
     EXPECT_NEAR(block.sums[0], 0.1 * static_cast<double>(block.steps), 1e-9 * block.sums[0]);
@@ -145,10 +145,10 @@ TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
   kill_next(kSimProcess);
   ASSERT_TRUE(logs("sim", "moving from tick", 2)) << said();
   ASSERT_TRUE(moves_on()) << said();
-  Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] { return witness.recorded() > 0; }));
+  BusObserver observer(kUrl);
+  ASSERT_TRUE(observer.hears([&] { return observer.recorded() > 0; }));
   kill_next(kLoggerProcess);
-  EXPECT_GE(last_tick(out() / "trajectory.csv"), witness.recorded()) << "what it had acknowledged";
+  EXPECT_GE(last_tick(out() / "trajectory.csv"), observer.recorded()) << "what it had acknowledged";
   ASSERT_TRUE(moves_on()) << said();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << said();
@@ -217,10 +217,10 @@ TEST_F(Restart, WithoutALoggerTheTeamGoesOnAndTheRunSaysThatTheRecordIsNotComple
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
   kill_for_good(kLoggerProcess);
   ASSERT_TRUE(eventually([this] { return said("the team goes on without a record"); })) << said();
-  Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > 0; }));
-  const Tick tick = witness.answered(witness.member(0));
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > tick + 20; }));
+  BusObserver observer(kUrl);
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > 0; }));
+  const Tick tick = observer.answered(observer.member(0));
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > tick + 20; }));
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 4) << said();
   EXPECT_EQ(summary()["record_complete"], false);

@@ -16,7 +16,7 @@ namespace ergocast::test {
 
 class Stranger {
  public:
-  explicit Stranger(const std::string& url, const Seal& seal = {})
+  explicit Stranger(const std::string& url, const MessageAuthenticator& seal = {})
       : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
         transport_(std::get<0>(
             Transport::open(url_, 0, seal, Subscriptions{}, {.on_message = [](const Message&, Bus, AgentId) {}}))) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Teams of one and two, and teams that grow while they fly.
 #include "tests/process/mission.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -25,12 +25,12 @@ TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
 TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
   Child mission =
       launch_endless(scenario(), {"--agents", "2", "--realtime=5", "--lcm-url", kUrl});
-  Witness witness(kUrl);
+  BusObserver observer(kUrl);
   for (const AgentId id : {0, 1}) {
-    const auto held = [&] { return witness.held(witness.member(id), witness.member(1 - id)); };
-    ASSERT_TRUE(witness.hears([&] { return held() > 0; }));
+    const auto held = [&] { return observer.held(observer.member(id), observer.member(1 - id)); };
+    ASSERT_TRUE(observer.hears([&] { return held() > 0; }));
     const std::int64_t before = held();
-    EXPECT_TRUE(witness.hears([&] { return held() > before; })) << "and ever more of it";
+    EXPECT_TRUE(observer.hears([&] { return held() > before; })) << "and ever more of it";
   }
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << said();
@@ -56,13 +56,13 @@ TEST_F(TeamSize, OneNeedsNobody) {
 class LateAgent : public ByHand {
  protected:
   /// It is a member, holds the others' coverage, and they hold its coverage.
-  static void expect_to_take_part(Witness& witness, AgentId newcomer, AgentId veteran) {
-    ASSERT_TRUE(witness.hears([&] { return witness.member(newcomer).incarnation != 0; }));
-    const Author late = witness.member(newcomer), early = witness.member(veteran);
-    EXPECT_GT(witness.entry(late)->active_from, 0) << "the mission was under way";
-    EXPECT_TRUE(witness.hears([&] {
-      return witness.held(late, early) >= witness.entry(late)->active_from / 2 &&
-             witness.held(early, late) > 0 && witness.answered(late) > 0;
+  static void expect_to_take_part(BusObserver& observer, AgentId newcomer, AgentId veteran) {
+    ASSERT_TRUE(observer.hears([&] { return observer.member(newcomer).incarnation != 0; }));
+    const Author late = observer.member(newcomer), early = observer.member(veteran);
+    EXPECT_GT(observer.entry(late)->active_from, 0) << "the mission was under way";
+    EXPECT_TRUE(observer.hears([&] {
+      return observer.held(late, early) >= observer.entry(late)->active_from / 2 &&
+             observer.held(early, late) > 0 && observer.answered(late) > 0;
     }));
   }
 };
@@ -77,8 +77,8 @@ TEST_F(LateAgent, TakesTheFreePlaceInATeamThatBeganWithAQuorum) {
   hand("ergocast-coordinator", {file});
   ASSERT_TRUE(recorded(30000)) << output();
   hand("ergocast-agent");
-  Witness witness(kUrl);
-  expect_to_take_part(witness, 2, 0);
+  BusObserver observer(kUrl);
+  expect_to_take_part(observer, 2, 0);
 }
 
 struct LateAgentInEitherPace : LateAgent, ::testing::WithParamInterface<const char*> {};
@@ -88,8 +88,8 @@ INSTANTIATE_TEST_SUITE_P(Paces, LateAgentInEitherPace, ::testing::Values("--lock
 TEST_P(LateAgentInEitherPace, IsWelcomeBeyondThePlan) {
   Child mission = launch_endless(scenario(), {"--agents", "2", GetParam(), "--lcm-url", kUrl});
   hand("ergocast-agent");
-  Witness witness(kUrl);
-  expect_to_take_part(witness, 2, 1);
+  BusObserver observer(kUrl);
+  expect_to_take_part(observer, 2, 1);
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_EQ(summary()["agents"].size(), 3U);

@@ -4,7 +4,7 @@
 #include "runtime/node.h"
 #include "tests/process/mission.h"
 #include "tests/process/stranger.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -58,7 +58,7 @@ TEST_F(OtherVersion, OfACoordinatorEndsEverybodyWithBothVersionsNamed) {
 
 TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
   Program& coordinator = hand("ergocast-coordinator", {scenario(), "--run-id", to_hex(kTheirRun)});
-  Witness witness(kUrl);
+  BusObserver observer(kUrl);
   const Hello theirs{{kTheirRun, kUnassigned, 73, 0, 0}, 2, "old-robot", "9.9.9"};
   const std::string warning = "agent on old-robot runs version 9.9.9, this mission is flown by " +
                               version() + ": install " + version() + " there";
@@ -68,11 +68,11 @@ TEST_F(OtherVersion, OfAnAgentIsNotAdmittedAndNamedOnce) {
   })) << coordinator.said();
   // A valid agent of our version gets the number that the other has asked for.
   hand("ergocast-agent", {"--id", "2"});
-  ASSERT_TRUE(witness.hears([&] {
+  ASSERT_TRUE(observer.hears([&] {
     stranger_.say(Bus::kSwarm, theirs);
-    return witness.member(2).incarnation != 0;
+    return observer.member(2).incarnation != 0;
   })) << coordinator.said();
-  EXPECT_EQ(witness.entry({2, 73}), nullptr);
+  EXPECT_EQ(observer.entry({2, 73}), nullptr);
   const std::string said = coordinator.said();
   EXPECT_EQ(said.find(warning), said.rfind(warning)) << "once";
 }

@@ -4,7 +4,7 @@
 
 #include "tests/process/mission.h"
 #include "tests/process/record.h"
-#include "tests/process/witness.h"
+#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -22,13 +22,13 @@ TEST_P(SilentAgent, ItsVehicleStandsOnceItsLastCommandIsTooOld) {
   hand_all_but_agents(scenario(std::string("command_hold_s: 4.05 duration_s: ") + kEndless +
                                " pace: REALTIME realtime_factor: 5"));
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
-  Witness witness(kUrl);
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(1)) > 20; }));
-  const Author silent = witness.member(1);
+  BusObserver observer(kUrl);
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(1)) > 20; }));
+  const Author silent = observer.member(1);
   signal_to(agent(1), GetParam());
-  const Tick others = witness.answered(witness.member(0));
-  ASSERT_TRUE(witness.hears([&] { return witness.answered(witness.member(0)) > others + 200; }));
-  const Tick last = witness.answered(silent);
+  const Tick others = observer.answered(observer.member(0));
+  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > others + 200; }));
+  const Tick last = observer.answered(silent);
   ASSERT_TRUE(eventually([&] {
     const auto rows = recorded_rows(out());
     return !rows.empty() && rows.rbegin()->first > last + kHoldTicks + 100;

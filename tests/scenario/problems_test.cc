@@ -246,7 +246,7 @@ TEST(Limits, TooLongADescription) {
 }
 
 // An unreadable field is unknown, not missing: it must not cause a second problem.
-TEST(Salvage, UnreadableFieldsAreNotMissingAsWell) {
+TEST(ErrorRecovery, UnreadableFieldsAreNotMissingAsWell) {
   for (const char* text : {"domain { size_x_m: a size_y_m: b }", "domain: 5", "domain 5"}) {
     const std::string said =
         joined(problems_of(small_with("domain { size_x_m: 100 size_y_m: 50 }", text)));
@@ -260,7 +260,7 @@ TEST(Salvage, UnreadableFieldsAreNotMissingAsWell) {
       has(joined(problems_of(small_with("starts {", "random_count: a starts: {"))), "empty"));
 }
 
-TEST(Salvage, UnterminatedTextEndsWithItsLine) {
+TEST(ErrorRecovery, UnterminatedTextEndsWithItsLine) {
   const std::string said = joined(problems_of(small_with("law {", "name: \"abc\nspeed: 3 law {")));
   EXPECT_TRUE(has(said, "f:4:7: name: "));
   EXPECT_TRUE(has(said, "f:5:6: unknown field \"speed\""));

@@ -62,12 +62,12 @@ TEST(BusListener, OtherLcmTrafficIsAWarningWithItsChannels) {
 
 TEST(BusListener, ATeamWithAKeyIsToldFromAStranger) {
   MissionKey key;
-  const Seal ours(key);
+  const MessageAuthenticator ours(key);
   key.shared[0] = std::byte{1};
-  const Seal theirs(key);
+  const MessageAuthenticator theirs(key);
   AgentStatus status;
   status.header = {0xabc, 3, 77, 1, 0};
-  const auto overheard = [&](const Seal& said_with, const Seal& heard_with) {
+  const auto overheard = [&](const MessageAuthenticator& said_with, const MessageAuthenticator& heard_with) {
     std::vector<std::byte> bytes;
     encode(status, bytes, said_with, "ERGOCAST_AGENT_STATUS_3");
     Overheard ear(heard_with);
@@ -76,10 +76,10 @@ TEST(BusListener, ATeamWithAKeyIsToldFromAStranger) {
     return ear.finding(url_of("ttl=1"), {});
   };
   EXPECT_TRUE(contains(overheard(ours, ours).found, "run 0000000000000abc"));
-  EXPECT_TRUE(contains(overheard(ours, Seal()).found, "a team with a mission key"));
-  EXPECT_EQ(overheard(ours, Seal()).level, Level::kNote);
-  EXPECT_EQ(overheard(Seal(), ours).level, Level::kWarning);
-  EXPECT_TRUE(contains(overheard(Seal(), ours).found, "without a mission key"));
+  EXPECT_TRUE(contains(overheard(ours, MessageAuthenticator()).found, "a team with a mission key"));
+  EXPECT_EQ(overheard(ours, MessageAuthenticator()).level, Level::kNote);
+  EXPECT_EQ(overheard(MessageAuthenticator(), ours).level, Level::kWarning);
+  EXPECT_TRUE(contains(overheard(MessageAuthenticator(), ours).found, "without a mission key"));
   EXPECT_EQ(overheard(theirs, ours).level, Level::kWarning);
   EXPECT_TRUE(contains(overheard(theirs, ours).found, "does not open"));
 }

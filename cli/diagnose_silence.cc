@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks the possible causes of silence in order, keys first, and describes the first that applies.
-#include "cli/nobody.h"
+#include "cli/diagnose_silence.h"
 
 namespace ergocast::cli {
 namespace {

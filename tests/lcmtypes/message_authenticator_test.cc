@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The guarantees of a mission key: an outsider can at most repeat a member's message, unchanged and
 // on its own channel, and a member cannot send as the coordinator.
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 
 #include <sodium.h>
 
@@ -27,9 +27,9 @@ MissionKey member_of(MissionKey key) {
   return key;
 }
 
-const Seal kCoordinatorSeal{key_of(1)};
-const Seal kMemberSeal{member_of(key_of(1))};
-const Seal kOtherTeam{key_of(2)};
+const MessageAuthenticator kCoordinatorSeal{key_of(1)};
+const MessageAuthenticator kMemberSeal{member_of(key_of(1))};
+const MessageAuthenticator kOtherTeam{key_of(2)};
 
 Message unsigned_copy(Message message) {
   if (auto* part = std::get_if<MissionPart>(&message)) part->signature = {};
@@ -40,16 +40,16 @@ bool is_signed(const Message& message) {
   return std::holds_alternative<MissionPart>(message) || std::holds_alternative<Stop>(message);
 }
 
-Bytes sealed(const Message& message, const Seal& seal, AgentId relayer = kUnassigned) {
+Bytes sealed(const Message& message, const MessageAuthenticator& seal, AgentId relayer = kUnassigned) {
   Bytes bytes;
   encode(message, bytes, seal, channel_of(message, relayer));
   return bytes;
 }
-std::string opened(const Bytes& bytes, const Seal& seal, std::string_view channel) {
+std::string opened(const Bytes& bytes, const MessageAuthenticator& seal, std::string_view channel) {
   return verdict(decode(bytes, kRun, seal, channel));
 }
 
-TEST(Seal, EveryMessageOfTheTeamIsOpenedByEveryMember) {
+TEST(MessageAuthenticator, EveryMessageOfTheTeamIsOpenedByEveryMember) {
   for (const Message& message : every_message()) {
     const Bytes bytes = sealed(unsigned_copy(message), kCoordinatorSeal);
     EXPECT_EQ(opened(bytes, kMemberSeal, channel_of(message)), "accepted") << message.index();
@@ -57,26 +57,26 @@ TEST(Seal, EveryMessageOfTheTeamIsOpenedByEveryMember) {
   }
 }
 
-TEST(Seal, FingerprintsAreEqualForEqualKeysOnly) {
+TEST(MessageAuthenticator, FingerprintsAreEqualForEqualKeysOnly) {
   EXPECT_EQ(kMemberSeal.fingerprint(), kCoordinatorSeal.fingerprint());
   EXPECT_NE(kMemberSeal.fingerprint(), kOtherTeam.fingerprint());
   EXPECT_NE(kMemberSeal.fingerprint(), 0u);
-  EXPECT_EQ(Seal().fingerprint(), 0u);
+  EXPECT_EQ(MessageAuthenticator().fingerprint(), 0u);
   MissionKey half = key_of(1);
   half.coordinator = key_of(2).coordinator;
-  EXPECT_NE(Seal(half).fingerprint(), kMemberSeal.fingerprint()) << "obeys somebody else";
+  EXPECT_NE(MessageAuthenticator(half).fingerprint(), kMemberSeal.fingerprint()) << "obeys somebody else";
 }
 
-TEST(Seal, WhatHasNoKeyOrAnotherIsRefusedByName) {
+TEST(MessageAuthenticator, WhatHasNoKeyOrAnotherIsRefusedByName) {
   for (const Message& message : every_message()) {
     const std::string& channel = channel_of(message);
-    EXPECT_EQ(opened(sealed(message, Seal()), kMemberSeal, channel), "unkeyed");
+    EXPECT_EQ(opened(sealed(message, MessageAuthenticator()), kMemberSeal, channel), "unkeyed");
     EXPECT_EQ(opened(sealed(unsigned_copy(message), kOtherTeam), kMemberSeal, channel), "tag");
-    EXPECT_EQ(opened(sealed(unsigned_copy(message), kCoordinatorSeal), Seal(), channel), "tag");
+    EXPECT_EQ(opened(sealed(unsigned_copy(message), kCoordinatorSeal), MessageAuthenticator(), channel), "tag");
   }
 }
 
-TEST(Seal, NoChangedBitIsAccepted) {
+TEST(MessageAuthenticator, NoChangedBitIsAccepted) {
   for (const Message& message : every_message()) {
     const Bytes good = sealed(unsigned_copy(message), kCoordinatorSeal);
     for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
@@ -89,7 +89,7 @@ TEST(Seal, NoChangedBitIsAccepted) {
   }
 }
 
-TEST(Seal, ARepeatUnderAnotherNameIsRefused) {
+TEST(MessageAuthenticator, ARepeatUnderAnotherNameIsRefused) {
   const Bytes bytes = sealed(contribution(), kMemberSeal);
   EXPECT_EQ(opened(bytes, kMemberSeal, "ERGOCAST_CONTRIBUTION_3"), "accepted");
   for (const char* channel : {"ERGOCAST_CONTRIBUTION_4", "ERGOCAST_CONTRIBUTION", ""}) {
@@ -100,7 +100,7 @@ TEST(Seal, ARepeatUnderAnotherNameIsRefused) {
             "accepted");
 }
 
-TEST(Seal, AMemberCannotSpeakForTheCoordinator) {
+TEST(MessageAuthenticator, AMemberCannotSpeakForTheCoordinator) {
   for (const Message& message : every_message()) {
     if (!is_signed(message)) continue;
     const std::string& channel = channel_of(message);
@@ -109,7 +109,7 @@ TEST(Seal, AMemberCannotSpeakForTheCoordinator) {
   }
 }
 
-TEST(Seal, AMemberRepeatsWhatTheCoordinatorSignedButCannotChangeIt) {
+TEST(MessageAuthenticator, AMemberRepeatsWhatTheCoordinatorSignedButCannotChangeIt) {
   const Message said = unsigned_copy(mission_part());
   const Bytes bytes = sealed(said, kCoordinatorSeal);
   const auto decoded = decode(bytes, kRun, kMemberSeal, channel_of(said));
@@ -119,7 +119,7 @@ TEST(Seal, AMemberRepeatsWhatTheCoordinatorSignedButCannotChangeIt) {
   EXPECT_EQ(opened(sealed(part, kMemberSeal), kMemberSeal, channel_of(said)), "unsigned");
 }
 
-TEST(Seal, ASignatureIsOfOneMessageOfOneRun) {
+TEST(MessageAuthenticator, ASignatureIsOfOneMessageOfOneRun) {
   Stop stop;
   stop.header = header_of_sender(kOperator);
   const auto decoded = decode(sealed(stop, kCoordinatorSeal), kRun, kMemberSeal, channel_of(stop));
@@ -131,10 +131,10 @@ TEST(Seal, ASignatureIsOfOneMessageOfOneRun) {
 
 /// The same team with another coordinator's public key: the first one's signatures are invalid for
 /// it.
-Seal obeying_another() {
+MessageAuthenticator obeying_another() {
   MissionKey key = member_of(key_of(1));
   key.coordinator = key_of(2).coordinator;
-  return Seal(key);
+  return MessageAuthenticator(key);
 }
 
 TEST(KnownSignatures, ASignatureThatHasHeldIsNotCheckedAgain) {
@@ -191,20 +191,20 @@ TEST(KnownSignatures, HaveRoomForSoManyAndCheckTheOthersAgain) {
   EXPECT_GE(checked_again, many - static_cast<int>(KnownSignatures::kCapacity));
 }
 
-TEST(Seal, ShortMessagesWithoutRoomForASignatureAreRefused) {
+TEST(MessageAuthenticator, ShortMessagesWithoutRoomForASignatureAreRefused) {
   Bytes bytes = sealed(stop(), kCoordinatorSeal);
   bytes.resize(kHeaderBytes + 63);
   kMemberSeal.close(bytes, false, channel_of(stop()));
   EXPECT_EQ(opened(bytes, kMemberSeal, channel_of(stop())), "unsigned");
 }
 
-TEST(Seal, WithoutAKeyTheTagIsThatOfTheFormat) {
+TEST(MessageAuthenticator, WithoutAKeyTheTagIsThatOfTheFormat) {
   for (const Message& message : every_message()) {
-    EXPECT_EQ(sealed(message, Seal()), retagged(encoded(message)));
+    EXPECT_EQ(sealed(message, MessageAuthenticator()), retagged(encoded(message)));
   }
 }
 
-TEST(Seal, TheKeyedTagIsBlake2bOverMessageAndChannel) {
+TEST(MessageAuthenticator, TheKeyedTagIsBlake2bOverMessageAndChannel) {
   const Bytes bytes = sealed(command(), kMemberSeal);
   Bytes hashed = bytes;
   std::fill_n(hashed.begin() + 44, 16, std::byte{0});

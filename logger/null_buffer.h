@@ -9,9 +9,9 @@ namespace ergocast {
 
 /// Accepts everything and is always good, like a file on an unlimited disk. A stream without a
 /// buffer would be bad from the beginning, as on a full disk.
-class Nowhere : public std::ostream {
+class NullBuffer : public std::ostream {
  public:
-  Nowhere() : std::ostream(nullptr) { rdbuf(&buffer_); }
+  NullBuffer() : std::ostream(nullptr) { rdbuf(&buffer_); }
 
  private:
   struct Buffer : std::streambuf {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stores the last message of every process of a run, and detects by silence that a process has
 // ended.
-#include "cli/team_ears.h"
+#include "cli/team_monitor.h"
 
 #include <algorithm>
 #include <iterator>
@@ -30,9 +30,9 @@ std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
                          {.on_message = std::move(hear)});
 }
 
-RunHeard::RunHeard(RunId run) : me_(kRole, {run, kUnassigned, 0}) {}
+MonitoredRun::MonitoredRun(RunId run) : me_(kRole, {run, kUnassigned, 0}) {}
 
-void RunHeard::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
+void MonitoredRun::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   const auto arrival = me_.accept(message, bus, transmitter, now);
   if (!arrival) return;
   tick_ = std::max(tick_, arrival->from.tick);
@@ -40,7 +40,7 @@ void RunHeard::receive(const Message& message, Bus bus, AgentId transmitter, Ins
 }
 
 /// An agent may repeat a part long after the coordinator exited; a repetition changes nothing.
-void RunHeard::on(const MissionPart& part, const Arrival&) {
+void MonitoredRun::on(const MissionPart& part, const Arrival&) {
   over_ = over_ || part.state == MissionState::kEnded || part.state == MissionState::kFailed;
   if (over_ && !part.reason.empty()) reason_ = part.reason;
   for (const RosterEntry& entry : part.roster) {
@@ -49,14 +49,14 @@ void RunHeard::on(const MissionPart& part, const Arrival&) {
   }
 }
 
-void RunHeard::on(const AgentStatus& status, const Arrival& arrival) {
+void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
   const Author author{status.header.sender, status.header.incarnation};
   if (!arrival.fresh || author.agent < 0) return;
   if (agents_.size() >= kMostLives && !agents_.contains(author)) return;
   agents_[author] = status.phase == AgentPhase::kFinished;
 }
 
-void RunHeard::on(const WorldState& world, const Arrival& arrival) {
+void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
   const Tick tick = world.header.tick;
   if (!arrival.fresh || tick < world_tick_) return;
   if (tick > world_tick_) velocities_mps_.clear();
@@ -67,18 +67,18 @@ void RunHeard::on(const WorldState& world, const Arrival& arrival) {
   }
 }
 
-bool RunHeard::unheard() const {
+bool MonitoredRun::unheard() const {
   return agents_.empty() && !over_ &&
          std::none_of(std::begin(kProcesses), std::end(kProcesses),
                       [this](AgentId process) { return heard(process); });
 }
 
-bool RunHeard::stands_still() const {
+bool MonitoredRun::stands_still() const {
   return std::all_of(velocities_mps_.begin(), velocities_mps_.end(),
                      [](const auto& one) { return one.second.isZero(0); });
 }
 
-std::vector<std::string> RunHeard::still_there(Instant now) const {
+std::vector<std::string> MonitoredRun::still_there(Instant now) const {
   std::vector<std::string> names;
   for (const auto& [author, finished] : agents_) {
     if (!finished && !me_.silent(author, now)) names.push_back(name_of(author.agent));
@@ -89,7 +89,7 @@ std::vector<std::string> RunHeard::still_there(Instant now) const {
   return names;
 }
 
-std::vector<std::string> RunHeard::lost(Instant now) const {
+std::vector<std::string> MonitoredRun::lost(Instant now) const {
   std::vector<std::string> names;
   for (const auto& [author, finished] : agents_) {
     if (!finished && me_.silent(author, now)) names.push_back(name_of(author.agent));

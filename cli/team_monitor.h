@@ -30,11 +30,11 @@ std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
     const BusOptions& options, Hear hear);
 
 /// The messages received of one run.
-class RunHeard {
+class MonitoredRun {
  public:
   static constexpr Role kRole = Role::kMonitor;
 
-  explicit RunHeard(RunId run);
+  explicit MonitoredRun(RunId run);
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 

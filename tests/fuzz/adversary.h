@@ -7,18 +7,18 @@
 #include <unordered_set>
 #include <vector>
 
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 #include "runtime/socket.h"
 #include "tests/fuzz/datagrams.h"
 
 namespace ergocast::fuzz {
 
-class Vandal {
+class Adversary {
  public:
   /// @param seal  the team's, only for reading its state. If it has a key, some forgeries get the
   ///              tag that is valid without one.
-  Vandal(const LcmUrl& url, const Seal& seal, std::uint64_t seed);
+  Adversary(const LcmUrl& url, const MessageAuthenticator& seal, std::uint64_t seed);
 
   /// Reads the waiting datagrams. They are recorded until the first one was sent.
   void listen();
@@ -49,7 +49,7 @@ class Vandal {
   std::vector<std::uint8_t> wrapped(const Packet& packet);
 
   LcmUrl url_;
-  Seal seal_;
+  MessageAuthenticator seal_;
   Dice dice_;
   std::vector<Socket> ears_;
   Socket mouth_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Records recent datagrams, changes one to four things in a copy, and sends the copy in LCM's
 // format.
-#include "tests/fuzz/vandal.h"
+#include "tests/fuzz/adversary.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ constexpr std::size_t kMostBytes = 9000;
 
 }  // namespace
 
-Vandal::Vandal(const LcmUrl& url, const Seal& seal, std::uint64_t seed)
+Adversary::Adversary(const LcmUrl& url, const MessageAuthenticator& seal, std::uint64_t seed)
     : url_(url), seal_(seal), dice_(seed), mouth_(AF_INET, SOCK_DGRAM) {
   for (int bus = 0; bus < kBusCount; ++bus) {
     std::string error;
@@ -29,12 +29,12 @@ Vandal::Vandal(const LcmUrl& url, const Seal& seal, std::uint64_t seed)
   }
 }
 
-std::uint64_t Vandal::mark(const std::string& channel, std::span<const std::uint8_t> message) {
+std::uint64_t Adversary::mark(const std::string& channel, std::span<const std::uint8_t> message) {
   const std::string_view text(reinterpret_cast<const char*>(message.data()), message.size());
   return std::hash<std::string_view>()(text) * 31 + std::hash<std::string>()(channel);
 }
 
-void Vandal::listen() {
+void Adversary::listen() {
   std::array<std::uint8_t, 2048> space;
   for (int bus = 0; bus < kBusCount; ++bus) {
     for (;;) {
@@ -46,7 +46,7 @@ void Vandal::listen() {
   }
 }
 
-void Vandal::take(int bus, std::span<const std::uint8_t> datagram) {
+void Adversary::take(int bus, std::span<const std::uint8_t> datagram) {
   if (datagram.size() <= kLcmHeaderBytes || std::memcmp(datagram.data(), "LC02", 4) != 0) return;
   const auto rest = datagram.subspan(kLcmHeaderBytes);
   const auto end = std::find(rest.begin(), rest.end(), std::uint8_t{0});
@@ -63,7 +63,7 @@ void Vandal::take(int bus, std::span<const std::uint8_t> datagram) {
 }
 
 /// The packet with one to four changes, so that it differs from all recorded ones.
-Vandal::Packet Vandal::damaged(const Packet& original) {
+Adversary::Packet Adversary::damaged(const Packet& original) {
   Packet packet = original;
   const std::size_t size = packet.message.size();
   packet.message.resize(size + 64);
@@ -81,7 +81,7 @@ Vandal::Packet Vandal::damaged(const Packet& original) {
   return packet;
 }
 
-std::vector<std::uint8_t> Vandal::wrapped(const Packet& packet) {
+std::vector<std::uint8_t> Adversary::wrapped(const Packet& packet) {
   std::vector<std::uint8_t> datagram = {'L', 'C', '0', '2'};
   for (int i = 0; i < 4; ++i) datagram.push_back(static_cast<std::uint8_t>(dice_.next()));
   datagram.insert(datagram.end(), packet.channel.begin(), packet.channel.end());
@@ -90,7 +90,7 @@ std::vector<std::uint8_t> Vandal::wrapped(const Packet& packet) {
   return datagram;
 }
 
-void Vandal::strike() {
+void Adversary::strike() {
   Packet packet = damaged(heard_[dice_.below(heard_.size())]);
   const std::size_t what = dice_.below(32);
   if (what == 0) {  // noise under a good name

@@ -25,21 +25,21 @@ inline void tell(const std::string& text) {
 }
 
 /// Writes one line on standard error; returns the exit code.
-inline int complain(ExitCode code, const std::string& problem) {
+inline int report_error(ExitCode code, const std::string& problem) {
   tell(problem);
   return code;
 }
 
 /// Writes one line for each problem.
-inline int complain(ExitCode code, const std::vector<std::string>& problems) {
+inline int report_error(ExitCode code, const std::vector<std::string>& problems) {
   for (std::size_t i = 0; i < std::min(problems.size(), kMostLines); ++i) tell(problems[i]);
   if (problems.size() > kMostLines) tell("and " + std::to_string(problems.size() - kMostLines) + " more");
   return code;
 }
-inline int complain(ExitCode code, const std::vector<Problem>& problems) {
+inline int report_error(ExitCode code, const std::vector<Problem>& problems) {
   std::vector<std::string> lines;
   for (const Problem& problem : problems) lines.push_back(to_string(problem));
-  return complain(code, lines);
+  return report_error(code, lines);
 }
 
 }  // namespace ergocast::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Splits the text into tokens and finds the field around an error by its name, brackets and
 // separators.
-#include "scenario/salvage.h"
+#include "scenario/error_recovery.h"
 
 #include <algorithm>
 #include <map>

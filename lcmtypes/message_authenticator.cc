@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hashes a message with its tag and signature masked by zeros, and stores which signatures were
 // valid.
-#include "lcmtypes/seal.h"
+#include "lcmtypes/message_authenticator.h"
 
 #include <sodium.h>
 #include <xxhash.h>
@@ -29,9 +29,9 @@ auto raw(Bytes& bytes) {
 }
 
 /// A message with `count` bytes, from the tag on, masked by zeros.
-class Blanked {
+class MaskedBytes {
  public:
-  Blanked(std::span<const std::byte> bytes, std::size_t count) : size_(bytes.size()) {
+  MaskedBytes(std::span<const std::byte> bytes, std::size_t count) : size_(bytes.size()) {
     ERGOCAST_REQUIRE(bytes.size() >= kTagOffset + count && bytes.size() <= bytes_.size());
     std::copy(bytes.begin(), bytes.end(), bytes_.begin());
     std::fill_n(bytes_.begin() + kTagOffset, count, std::byte{0});
@@ -46,7 +46,7 @@ class Blanked {
 
 constexpr std::size_t kUnsignedBytes = kTagBytes + sizeof(Signature);
 
-Tag hash_of(const Blanked& message) {
+Tag hash_of(const MaskedBytes& message) {
   XXH128_canonical_t canonical;
   XXH128_canonicalFromHash(&canonical, XXH3_128bits(message.data(), message.size()));
   Tag tag;
@@ -54,7 +54,7 @@ Tag hash_of(const Blanked& message) {
   return tag;
 }
 
-Tag keyed_hash_of(const Blanked& message, std::string_view channel, const MissionKey& key) {
+Tag keyed_hash_of(const MaskedBytes& message, std::string_view channel, const MissionKey& key) {
   crypto_generichash_state state;
   crypto_generichash_init(&state, raw(key.shared), key.shared.size(), kTagBytes);
   crypto_generichash_update(&state, message.data(), message.size());
@@ -66,11 +66,11 @@ Tag keyed_hash_of(const Blanked& message, std::string_view channel, const Missio
 
 }  // namespace
 
-Seal::Seal(const MissionKey& key) : key_(std::make_shared<const MissionKey>(key)) {
+MessageAuthenticator::MessageAuthenticator(const MissionKey& key) : key_(std::make_shared<const MissionKey>(key)) {
   ERGOCAST_REQUIRE(sodium_init() >= 0);
 }
 
-std::uint64_t Seal::fingerprint() const {
+std::uint64_t MessageAuthenticator::fingerprint() const {
   if (!keyed()) return 0;
   Tag hash;
   crypto_generichash(raw(hash), hash.size(), raw(key_->coordinator), key_->coordinator.size(),
@@ -80,26 +80,26 @@ std::uint64_t Seal::fingerprint() const {
   return fingerprint;
 }
 
-void Seal::close(std::span<std::byte> bytes, bool has_signature, std::string_view channel) const {
+void MessageAuthenticator::close(std::span<std::byte> bytes, bool has_signature, std::string_view channel) const {
   if (has_signature && keyed() && key_->signing) sign(bytes);
-  const Blanked message(bytes, kTagBytes);
+  const MaskedBytes message(bytes, kTagBytes);
   const Tag tag = keyed() ? keyed_hash_of(message, channel, *key_) : hash_of(message);
   std::copy(tag.begin(), tag.end(), bytes.begin() + kTagOffset);
 }
 
-void Seal::sign(std::span<std::byte> bytes) const {
+void MessageAuthenticator::sign(std::span<std::byte> bytes) const {
   const std::span<std::byte> signature = bytes.subspan(kHeaderEnd, sizeof(Signature));
   const bool is_empty = std::all_of(signature.begin(), signature.end(),
                                     [](std::byte b) { return b == std::byte{0}; });
   if (!is_empty) return;  // a repeated message keeps its signature
-  const Blanked message(bytes, kUnsignedBytes);
+  const MaskedBytes message(bytes, kUnsignedBytes);
   crypto_sign_detached(raw(signature), nullptr, message.data(), message.size(),
                        raw(*key_->signing));
 }
 
-std::optional<Refusal> Seal::check_tag(std::span<const std::byte> bytes,
+std::optional<Refusal> MessageAuthenticator::check_tag(std::span<const std::byte> bytes,
                                        std::string_view channel) const {
-  const Blanked message(bytes, kTagBytes);
+  const MaskedBytes message(bytes, kTagBytes);
   const auto fits = [&bytes](const Tag& tag) {
     return sodium_memcmp(tag.data(), bytes.data() + kTagOffset, kTagBytes) == 0;
   };
@@ -108,11 +108,11 @@ std::optional<Refusal> Seal::check_tag(std::span<const std::byte> bytes,
   return keyed() && fits(hash_of(message)) ? Refusal::kUnkeyed : Refusal::kTag;
 }
 
-bool Seal::signature_holds(std::span<const std::byte> bytes, KnownSignatures* known) const {
+bool MessageAuthenticator::signature_holds(std::span<const std::byte> bytes, KnownSignatures* known) const {
   if (!keyed()) return true;
   if (bytes.size() < kHeaderEnd + sizeof(Signature)) return false;
   if (known != nullptr && known->contains(bytes)) return true;
-  const Blanked message(bytes, kUnsignedBytes);
+  const MaskedBytes message(bytes, kUnsignedBytes);
   const bool holds = crypto_sign_verify_detached(raw(bytes) + kHeaderEnd, message.data(), message.size(),
                                                  raw(key_->coordinator)) == 0;
   if (holds && known != nullptr) known->add(bytes);

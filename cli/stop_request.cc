@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sends the same STOP every 0.1 s, each time with a new sequence number.
-#include "cli/stop_word.h"
+#include "cli/stop_request.h"
 
 #include <chrono>
 #include <utility>
@@ -14,13 +14,13 @@ constexpr auto kPeriod = std::chrono::milliseconds(100);
 
 }  // namespace
 
-StopWord::StopWord(RunId run, bool failed, std::string reason) {
+StopRequest::StopRequest(RunId run, bool failed, std::string reason) {
   stop_.header = {run, kOperator, random_identity(), 0, 0};
   stop_.failed = failed;
   stop_.reason = std::move(reason);
 }
 
-void StopWord::repeat(Transport& transport, Instant now, bool at_once) {
+void StopRequest::repeat(Transport& transport, Instant now, bool at_once) {
   if (now < next_ && stop_.now == at_once) return;
   next_ = now + kPeriod;
   stop_.now = at_once;

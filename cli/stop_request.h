@@ -10,10 +10,10 @@
 
 namespace ergocast::cli {
 
-class StopWord {
+class StopRequest {
  public:
   /// @param failed  whether the mission is to count as failed
-  StopWord(RunId run, bool failed, std::string reason);
+  StopRequest(RunId run, bool failed, std::string reason);
 
   /// Sends STOP on every bus with a receiver for it, if the last one was long enough ago.
   /// @param at_once  all processes stop at once and the vehicles stand still; otherwise only the

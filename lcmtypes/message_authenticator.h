@@ -59,10 +59,10 @@ class KnownSignatures {
 /// bytes and the name of the channel. An outsider can then only repeat a member's message
 /// unchanged, on its own channel. The signature is Ed25519 over the message with zeros in place of
 /// tag and signature, so that a teammate can repeat a signed message.
-class Seal {
+class MessageAuthenticator {
  public:
-  Seal() = default;
-  explicit Seal(const MissionKey& key);
+  MessageAuthenticator() = default;
+  explicit MessageAuthenticator(const MissionKey& key);
 
   bool keyed() const { return key_ != nullptr; }
   /// Lets two hosts compare their keys without revealing them; 0 without a key.

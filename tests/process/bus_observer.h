@@ -17,9 +17,9 @@
 
 namespace ergocast::test {
 
-class Witness {
+class BusObserver {
  public:
-  explicit Witness(const std::string& url, const Seal& seal = {}) {
+  explicit BusObserver(const std::string& url, const MessageAuthenticator& seal = {}) {
     transport_ = std::get<0>(Transport::open(
         std::get<LcmUrl>(LcmUrl::parse(url)), 0, seal,
         {kTypes<MissionPart, Contribution, Digest, AgentStatus>, 0, kTypes<Command, RecordAck>},
