@@ -31,6 +31,11 @@ Eigen::Vector2d uniform_of(const RandomBits& words) {
   return {to_open_unit(words.first), to_open_unit(words.second)};
 }
 
+Eigen::Vector2d second_uniform_pair(std::uint64_t seed, Purpose purpose, std::uint32_t who,
+                                    std::uint64_t step) {
+  return uniform_of(words_at(seed, static_cast<std::uint32_t>(purpose) | kSecondPair, who, step));
+}
+
 Eigen::Vector2d normal_of(const Eigen::Vector2d& u) {
   const double radius = std::sqrt(-2 * std::log(u.x()));
   const double angle = 2 * std::numbers::pi * u.y();
@@ -52,15 +57,6 @@ Eigen::Vector2d normal_pair(std::uint64_t seed, Purpose purpose, std::uint32_t w
                             std::uint64_t step) {
   return normal_of(uniform_pair(seed, purpose, who, step));
 }
-
-namespace {
-
-Eigen::Vector2d second_uniform_pair(std::uint64_t seed, Purpose purpose, std::uint32_t who,
-                                    std::uint64_t step) {
-  return uniform_of(words_at(seed, static_cast<std::uint32_t>(purpose) | kSecondPair, who, step));
-}
-
-}  // namespace
 
 Eigen::Vector3d uniform_in(const Box& domain, std::uint64_t seed, Purpose purpose,
                            std::uint32_t who, std::uint64_t step) {
