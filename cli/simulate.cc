@@ -72,7 +72,9 @@ int simulate(const MissionOptions& options) {
     return report_error(kExitBadInput, *problem);
   }
   RunRecord& record = *std::get<0>(created);
-  lab::Simulation simulation({.plan = encode_plan(scenario->mission()), .version = version(), .host = host_name()},
+  lab::Simulation simulation({.plan = encode_plan(scenario->mission()),
+                              .version = version(),
+                              .host = host_name()},
                              record.trajectory(), record.metrics());
 
   const std::string started = wall_clock_text();
