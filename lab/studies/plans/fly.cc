@@ -80,7 +80,7 @@ void run(const std::string& kind, Row row, const std::string& file, int words, c
   if (kind != "law" && kind != "plans") throw std::runtime_error("neither law nor plans: " + kind);
   PlanSetting setting;
   for (int i = 0; i < words; ++i) set(word[i], setting, row);
-  if (std::filesystem::exists(file)) {
+  if (std::filesystem::exists(file) && std::filesystem::file_size(file) > 0) {
     row.first = static_cast<int>(read_table(file).at("seed").back()) + 1;
   }
   std::ofstream out(file, std::ios::app);
