@@ -71,7 +71,8 @@ const Agent::InMission* Agent::flight() const {
   return end->mission ? &*end->mission : nullptr;
 }
 
-// ---- the mission ---------------------------------------------------------------------------------
+// ---- the mission
+// ---------------------------------------------------------------------------------
 
 void Agent::on(const MissionPart& part, const Arrival& arrival) {
   mission_repeat_.overheard(part.revision, follower().revision(), arrival.now, me_.received());
@@ -128,9 +129,11 @@ void Agent::on(const Stop& stop, const Arrival&) {
   finish(stop.failed, stop.reason, phase() == AgentPhase::kRunning && tick() >= 0);
 }
 
-// ---- what teammates and the world say ------------------------------------------------------------
+// ---- what teammates and the world say
+// ------------------------------------------------------------
 
-std::int64_t Agent::max_steps(const InMission& flight, const RosterEntry& author, Instant now) const {
+std::int64_t Agent::max_steps(const InMission& flight, const RosterEntry& author,
+                              Instant now) const {
   const Timing& timing = mission().timing;
   const Tick tick = flight.step.tick;
   Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
@@ -158,17 +161,23 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
   // We do not know yet how late it is.
   if (flight->step.tick < 0 && theirs.steps > limit) return;
   switch (flight->table.merge(theirs, limit)) {
-    case Merge::kRefusedRange: return count_refused(Refusal::kRange);
-    case Merge::kRefusedLimit: return count_refused(Refusal::kLimit);
-    case Merge::kNewer: flight->news[theirs.author()] = flight->step.tick; return;
-    case Merge::kStale: return;
+    case Merge::kRefusedRange:
+      return count_refused(Refusal::kRange);
+    case Merge::kRefusedLimit:
+      return count_refused(Refusal::kLimit);
+    case Merge::kNewer:
+      flight->news[theirs.author()] = flight->step.tick;
+      return;
+    case Merge::kStale:
+      return;
   }
 }
 
 void Agent::on(const Digest& theirs, const Arrival& arrival) {
   InMission* const flight = in_mission();
   if (flight == nullptr || !arrival.fresh || me_.member(theirs.header) == nullptr) return;
-  flight->anti_entropy.on(theirs, flight->table, follower().roster(), arrival.now, flight->step.tick);
+  flight->anti_entropy.on(theirs, flight->table, follower().roster(), arrival.now,
+                          flight->step.tick);
 }
 
 void Agent::on(const WorldState& world, const Arrival& arrival) {
@@ -195,7 +204,8 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
   }
 }
 
-// ---- acting --------------------------------------------------------------------------------------
+// ---- acting
+// --------------------------------------------------------------------------------------
 
 void Agent::advance(Instant now, Outbox& out) {
   ask_for_admission(now, out);
@@ -231,8 +241,8 @@ Instant Agent::next_wakeup() const {
   const Instant next = std::min(may_ask() ? hellos_.next : Instant::max(), mission_repeat_.next());
   const auto* const flight = std::get_if<InMission>(&state_);
   if (flight == nullptr) return next;
-  return std::min({next, flight->next_status.at, flight->next_digest.at,
-                   flight->anti_entropy.next_answer()});
+  return std::min(
+      {next, flight->next_status.at, flight->next_digest.at, flight->anti_entropy.next_answer()});
 }
 
 /// Nobody can tell two joining processes apart by an id that neither has been given: only who was
@@ -253,7 +263,8 @@ void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   state_ = std::move(end);
 }
 
-// ---- what it says of itself ----------------------------------------------------------------------
+// ---- what it says of itself
+// ----------------------------------------------------------------------
 
 AgentPhase Agent::phase() const {
   if (finished()) return AgentPhase::kFinished;

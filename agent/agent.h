@@ -70,7 +70,8 @@ class Agent {
   Tick tick() const { return flight() ? flight()->step.tick : -1; }
   /// Null before it is admitted.
   const CoverageTable* coverage() const { return flight() ? &flight()->table : nullptr; }
-  /// c_k of the rows that it holds, added up when it is asked for: a law that looks ahead needs ĉ_k.
+  /// c_k of the rows that it holds, added up when it is asked for: a law that looks ahead needs
+  /// ĉ_k.
   const Coefficients& team_coverage() const;
   /// What its last command answers to: ĉ_k if the law looks ahead, else c_k.
   const Coefficients& foreseen_coverage() const;
@@ -125,7 +126,7 @@ class Agent {
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
     Tick next_broadcast_tick = 0;
-    std::map<Author, Tick> news;          // when a member's coverage last grew for us
+    std::map<Author, Tick> news;  // when a member's coverage last grew for us
     std::optional<Instant> running_since;
     Instant stalled_said{};
     std::optional<WorldView> pending;

@@ -88,9 +88,9 @@ void AntiEntropy::consider(const Author& requester, const Author& author, bool l
   const bool in_a_row = now - former->second.at <= kComplaintLife;
   former->second = {sequence, now};
   if (!in_a_row || answers_.count(author) != 0 || !may_answer(now, tick)) return;
-  const double delay_s = kLongestDelay_s * uniform_pair(seed_, Purpose::kAnswer,
-                                                        static_cast<std::uint32_t>(self_.agent),
-                                                        ++draws_).x();
+  const double delay_s =
+      kLongestDelay_s *
+      uniform_pair(seed_, Purpose::kAnswer, static_cast<std::uint32_t>(self_.agent), ++draws_).x();
   answers_.emplace(author, Deadline::in(seconds(delay_s), now, delay_s, dt_s_, tick));
 }
 

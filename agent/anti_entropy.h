@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/coverage_table.h"
-#include "team/deadline.h"
 #include "core/ids.h"
+#include "team/deadline.h"
 #include "team/messages.h"
 
 namespace ergocast {

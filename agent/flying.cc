@@ -28,17 +28,19 @@ void Agent::fly(InMission& flight, Instant now, Outbox& out) {
     broadcast(flight, out);
   }
   if (!me_.cut_off(step.tick, now)) return;
-  finish(true, "neither the world nor the coordinator can be heard, and the mission must be over by "
-               "now: check this host's network");
+  finish(true,
+         "neither the world nor the coordinator can be heard, and the mission must be over by "
+         "now: check this host's network");
 }
 
-/// Where the others are, as far as they are heard. Nobody drives a vehicle whose answers have stopped
-/// for as long as the world goes on with an old one; in lockstep the world waits for them.
+/// Where the others are, as far as they are heard. Nobody drives a vehicle whose answers have
+/// stopped for as long as the world goes on with an old one; in lockstep the world waits for them.
 void Agent::note_places(InMission& flight, const WorldState& world) {
   const Timing& timing = mission().timing;
   const Tick tick = world.header.tick;
   flight.state_parts.see(world);
-  const auto hold = static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
+  const auto hold =
+      static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (!radio_.hears(me_.id(), vehicle.id)) continue;
@@ -76,8 +78,8 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   return true;
 }
 
-/// Whether the ticks have stopped coming: then what we have is said now and then without waiting for
-/// more. In lockstep nobody may hear of a tick before the broadcast that was announced.
+/// Whether the ticks have stopped coming: then what we have is said now and then without waiting
+/// for more. In lockstep nobody may hear of a tick before the broadcast that was announced.
 bool Agent::stalled(const InMission& flight, Instant now) const {
   return mission().timing.pace == Pace::kRealtime && flight.step.tick >= flight.active_from &&
          now - std::max(flight.step.begun, flight.stalled_said) >= kStallPeriod;
@@ -110,7 +112,8 @@ bool Agent::may_answer(InMission& flight) const {
   step.waiting_for = kUnassigned;
   if (mission().timing.pace == Pace::kRealtime) return true;
   // What a command depends on is the same for whoever hears the world's state in another order.
-  const bool reckons = flight.forecast && mission().dead_reckoning && step.tick >= flight.active_from;
+  const bool reckons =
+      flight.forecast && mission().dead_reckoning && step.tick >= flight.active_from;
   if (reckons && !flight.state_parts.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;

@@ -33,12 +33,13 @@ class WaitingLog {
 int run(const NodeOptions& node, AgentId requested_id) {
   StopSignals signals;
   Agent agent({node.run, requested_id, random_identity(), host_name(), version()});
-  auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Agent::kRole),
-      {.on_message = [&agent](const Message& message, Bus bus, AgentId transmitter) {
-         agent.receive(message, bus, transmitter, now());
-       },
-       .on_refused = [&agent](Refusal refusal) { agent.count_refused(refusal); }});
+  auto opened =
+      Transport::open(node.url, node.run, node.seal, subscriptions_of(Agent::kRole),
+                      {.on_message =
+                           [&agent](const Message& message, Bus bus, AgentId transmitter) {
+                             agent.receive(message, bus, transmitter, now());
+                           },
+                       .on_refused = [&agent](Refusal refusal) { agent.count_refused(refusal); }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;
@@ -50,23 +51,28 @@ int run(const NodeOptions& node, AgentId requested_id) {
   AgentPhase logged = AgentPhase::kJoining;
   spdlog::info("joining on {}", node.url.base());
 
-  live(agent, transport, signals, [&] { agent.leave("told to stop by a signal"); }, [&] {
-    transport.set_run(agent.run());
-    agent.note_loop_lag(lag.take_s());
-    if (const auto& mission = agent.follower().mission()) {
-      transport.limit_agents(allowance_of(*mission, agent.follower().roster().size()), agent.tick());
-    }
-    if (watch.look(now())) {
-      agent.set_kernel_drops(watch.kernel_drops());
-      agent.note_rate_offender(transport.rate_offender());
-      waiting.look(agent, now());
-    }
-    if (agent.phase() == logged) return;
-    logged = agent.phase();
-    if (!agent.finished()) {
-      spdlog::info("agent {} of run {}: {}", agent.id(), to_hex(agent.run()), to_string(logged));
-    }
-  }, lag);
+  live(
+      agent, transport, signals, [&] { agent.leave("told to stop by a signal"); },
+      [&] {
+        transport.set_run(agent.run());
+        agent.note_loop_lag(lag.take_s());
+        if (const auto& mission = agent.follower().mission()) {
+          transport.limit_agents(allowance_of(*mission, agent.follower().roster().size()),
+                                 agent.tick());
+        }
+        if (watch.look(now())) {
+          agent.set_kernel_drops(watch.kernel_drops());
+          agent.note_rate_offender(transport.rate_offender());
+          waiting.look(agent, now());
+        }
+        if (agent.phase() == logged) return;
+        logged = agent.phase();
+        if (!agent.finished()) {
+          spdlog::info("agent {} of run {}: {}", agent.id(), to_hex(agent.run()),
+                       to_string(logged));
+        }
+      },
+      lag);
   spdlog::log(agent.failed() ? spdlog::level::err : spdlog::level::info, "finished at tick {}: {}",
               agent.tick(), agent.reason());
   return agent.failed() ? kExitFailed : kExitDone;
@@ -77,8 +83,9 @@ int run(const NodeOptions& node, AgentId requested_id) {
 
 int main(int argc, char** argv) {
   using namespace ergocast;
-  CLI::App app("One agent: joins the team on the URL, is given the mission over the wire, and steers.",
-               "ergocast-agent");
+  CLI::App app(
+      "One agent: joins the team on the URL, is given the mission over the wire, and steers.",
+      "ergocast-agent");
   NodeOptions node;
   std::string id = "auto";
   add_node_options(app, node);

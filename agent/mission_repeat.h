@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When an agent repeats the mission to whoever asks for it: after a random moment, unless a teammate
-// is faster, and not too often.
+// When an agent repeats the mission to whoever asks for it: after a random moment, unless a
+// teammate is faster, and not too often.
 #pragma once
 
 #include <chrono>
@@ -47,8 +47,8 @@ class MissionRepeat {
 
   void plan(Instant now, PacingClock::duration gap, std::int64_t draw) {
     if (due_ || (last_ && now - *last_ < gap)) return;
-    const double share = uniform_pair(incarnation_, Purpose::kAnswer, 0,
-                                      static_cast<std::uint64_t>(draw)).x();
+    const double share =
+        uniform_pair(incarnation_, Purpose::kAnswer, 0, static_cast<std::uint64_t>(draw)).x();
     due_ = now + std::chrono::duration_cast<PacingClock::duration>(share * kLongestDelay);
   }
 

@@ -23,10 +23,11 @@ int check(const std::filesystem::path& file, bool print) {
   }
   const Mission& mission = scenario->mission();
   const std::vector<std::byte> plan = encode_plan(mission);
-  std::printf("%s: no problems. %zu agents, %d x %d modes, %lld ticks of %g s, plan %s (%zu bytes)\n",
-              file.c_str(), mission.starts_m.size(), mission.basis.modes_x, mission.basis.modes_y,
-              static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
-              plan_hash(plan).c_str(), plan.size());
+  std::printf(
+      "%s: no problems. %zu agents, %d x %d modes, %lld ticks of %g s, plan %s (%zu bytes)\n",
+      file.c_str(), mission.starts_m.size(), mission.basis.modes_x, mission.basis.modes_y,
+      static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
+      plan_hash(plan).c_str(), plan.size());
   return kExitDone;
 }
 

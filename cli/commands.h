@@ -25,11 +25,11 @@ using Action = std::function<int()>;
 /// The options of `run` and `simulate`.
 struct MissionOptions {
   std::filesystem::path scenario;
-  std::filesystem::path out;     ///< empty: runs/<scenario>-<time>
+  std::filesystem::path out;  ///< empty: runs/<scenario>-<time>
   Overrides overrides;
-  std::optional<LcmUrl> url;     ///< nothing: this host only, on ports that the run reserves
+  std::optional<LcmUrl> url;  ///< nothing: this host only, on ports that the run reserves
   MessageAuthenticator seal;
-  std::string key_file;          ///< the file of the key in `seal`; empty: none
+  std::string key_file;                       ///< the file of the key in `seal`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
 };
 

@@ -10,13 +10,13 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/key_pair.h"
+#include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
-#include "text/regular_file.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
+#include "text/regular_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -71,8 +71,9 @@ std::variant<std::vector<DeployHost>, std::vector<Problem>> read_hosts(const fs:
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (text.size() > kMaxHostsBytes) {
-    return std::vector<Problem>{{file.string(), "is longer than the limit, " +
-                                 std::to_string(kMaxHostsBytes) + " bytes", "is it a list of hosts?"}};
+    return std::vector<Problem>{
+        {file.string(), "is longer than the limit, " + std::to_string(kMaxHostsBytes) + " bytes",
+         "is it a list of hosts?"}};
   }
   if (!in.is_open() || in.bad())
     return std::vector<Problem>{{file.string(), "cannot be read", "check the name and the folder"}};
@@ -94,12 +95,13 @@ int write_files(const std::vector<TextFile>& files, const fs::path& folder) {
   for (const TextFile& file : files) {
     if (!fs::exists(fs::symlink_status(folder / file.name, error))) continue;
     return report_error(kExitBadInput, to_string(Problem{"--out " + folder.string(),
-                                                     file.name + " is there already",
-                                                     "give a new folder, or remove the file"}));
+                                                         file.name + " is there already",
+                                                         "give a new folder, or remove the file"}));
   }
   for (const TextFile& file : files) {
     const fs::path path = folder / file.name;
-    if (const auto problem = write_file(path, file.text)) return report_error(kExitBadInput, *problem);
+    if (const auto problem = write_file(path, file.text))
+      return report_error(kExitBadInput, *problem);
     const auto mode = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
     if (file.executable) fs::permissions(path, mode, fs::perm_options::add, error);
     std::printf("%s\n", path.c_str());
@@ -111,7 +113,8 @@ int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, {});
   if (!scenario) return kExitBadInput;
   const auto read = read_hosts(options.hosts);
-  if (const auto* problems = std::get_if<std::vector<Problem>>(&read)) return report_error(kExitBadInput, *problems);
+  if (const auto* problems = std::get_if<std::vector<Problem>>(&read))
+    return report_error(kExitBadInput, *problems);
   const auto& hosts = std::get<std::vector<DeployHost>>(read);
 
   std::vector<Problem> problems;
@@ -124,7 +127,8 @@ int deploy(const DeployOptions& options) {
   }
   if (!problems.empty()) return report_error(kExitBadInput, problems);
   if (!options.keys.empty()) {
-    if (const auto problem = problem_of_key_pair(options.keys)) return report_error(kExitBadInput, *problem);
+    if (const auto problem = problem_of_key_pair(options.keys))
+      return report_error(kExitBadInput, *problem);
     mission.keys = fs::absolute(options.keys).lexically_normal();
   }
   const auto render = options.to == "ssh"       ? ssh_files

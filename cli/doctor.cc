@@ -102,7 +102,8 @@ void add_doctor(CLI::App& app, Action& action) {
       ->type_name("SECONDS");
   command->add_flag("--json", options->json, "For programs");
   command->footer(
-      "Changes nothing on this host. Only with --peer does anything leave it: 20 datagrams a second\n"
+      "Changes nothing on this host. Only with --peer does anything leave it: 20 datagrams a "
+      "second\n"
       "to the URL's first port, unless somebody is there.\n"
       "Exit codes: 0 nothing worse than notes; 1 warnings or problems; 2 bad arguments;\n"
       "3 LCM cannot be used on this host.");

@@ -31,7 +31,8 @@ std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
     }
     char range[64];
     std::snprintf(range, sizeof range, "0 to %g", field.most);
-    return item.fullname() + ": \"" + text + "\" is not a number in range (write one from " + range + ")";
+    return item.fullname() + ": \"" + text + "\" is not a number in range (write one from " +
+           range + ")";
   }
   return item.fullname() + ": there is no such fault (write one of " + known_names() + ")";
 }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/key_pair.h"
+#include "cli/report_error.h"
 #include "runtime/key_file.h"
 #include "runtime/node.h"
 
@@ -16,7 +16,8 @@ int make_keys(const std::string& name) {
   const std::string team = team_key_file(name), coordinator = coordinator_key_file(name);
   const MissionKey key = make_mission_key();
   // The coordinator's file first: the team's file is useless without it.
-  if (const auto problem = write_key_file(coordinator, key_text(key, true))) return report_error(kExitBadInput, *problem);
+  if (const auto problem = write_key_file(coordinator, key_text(key, true)))
+    return report_error(kExitBadInput, *problem);
   if (const auto problem = write_key_file(team, key_text(key, false))) {
     std::remove(coordinator.c_str());
     return report_error(kExitBadInput, *problem);
@@ -39,7 +40,8 @@ void add_keygen(CLI::App& app, Action& action) {
   command->add_option("NAME", *name, "Writes NAME.key and NAME.coordinator.key, never over others")
       ->capture_default_str();
   command->footer(
-      "Whoever has NAME.key can speak for any agent; only NAME.coordinator.key signs what begins and\n"
+      "Whoever has NAME.key can speak for any agent; only NAME.coordinator.key signs what begins "
+      "and\n"
       "ends missions. Nothing is encrypted.\n"
       "Exit codes: 0 done; 2 a file is there already or cannot be written.");
   command->callback([name, &action] { action = [name] { return make_keys(*name); }; });

@@ -53,8 +53,9 @@ void Launcher::plan(Role role, std::string name, const std::string& program,
 }
 
 std::optional<std::string> Launcher::start() {
-  plan(Role::kLogger, "logger", "ergocast-logger", {"--out", setup_.run_dir.string(),
-                                                 "--event-log-limit", std::to_string(setup_.event_log_mib)});
+  plan(Role::kLogger, "logger", "ergocast-logger",
+       {"--out", setup_.run_dir.string(), "--event-log-limit",
+        std::to_string(setup_.event_log_mib)});
   plan(Role::kWorld, "sim", "ergocast-sim", {});
   plan(Role::kCoordinator, "coordinator", "ergocast-coordinator",
        {(setup_.run_dir / "scenario.textproto").string()});
@@ -161,7 +162,8 @@ void Launcher::try_again(Process& process, Instant now, Stage stage, bool execut
   if (process.without_program_since && now - *process.without_program_since >= kLaunchPatience) {
     return give_up(process, stage);
   }
-  if (process.refusals == 0) display_.say(process.name + ": is started as soon as that is possible");
+  if (process.refusals == 0)
+    display_.say(process.name + ": is started as soon as that is possible");
   process.restart_at = now + back_off(process.restarts + process.refusals++);
 }
 
@@ -198,8 +200,7 @@ void Launcher::fail(std::string reason) {
 
 bool Launcher::all_ended() {
   return std::all_of(processes_.begin(), processes_.end(), [this](Process& process) {
-    return (!process.child || !process.child->running()) &&
-           (end_expected_ || !process.restart_at);
+    return (!process.child || !process.child->running()) && (end_expected_ || !process.restart_at);
   });
 }
 

@@ -27,7 +27,7 @@ struct ProcessFate {
 class Launcher {
  public:
   struct Setup {
-    std::filesystem::path programs;    ///< folder of the ergocast-* executables
+    std::filesystem::path programs;  ///< folder of the ergocast-* executables
     std::filesystem::path run_dir;
     LcmUrl url;
     RunId run = 0;

@@ -8,10 +8,10 @@
 
 #include "cli/commands.h"
 #include "cli/report_error.h"
-#include "text/read_number.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 #include "scenario/override_options.h"
+#include "text/read_number.h"
 
 namespace ergocast::cli {
 namespace {
@@ -36,16 +36,17 @@ void add_mission_options(CLI::App& command, MissionOptions& options) {
 }
 
 void add_url_option(CLI::App& command, MissionOptions& options) {
-  command.add_option_function<std::string>(
-             "--lcm-url",
-             [&options](const std::string& text) {
-               auto parsed = LcmUrl::parse(text);
-               if (const auto* problem = std::get_if<std::string>(&parsed)) {
-                 throw CLI::ValidationError("--lcm-url", *problem);
-               }
-               options.url = std::get<LcmUrl>(parsed);
-             },
-             "Base URL of the three buses (default: this host, free ports of the run's own)")
+  command
+      .add_option_function<std::string>(
+          "--lcm-url",
+          [&options](const std::string& text) {
+            auto parsed = LcmUrl::parse(text);
+            if (const auto* problem = std::get_if<std::string>(&parsed)) {
+              throw CLI::ValidationError("--lcm-url", *problem);
+            }
+            options.url = std::get<LcmUrl>(parsed);
+          },
+          "Base URL of the three buses (default: this host, free ports of the run's own)")
       ->type_name("URL");
 }
 
@@ -68,14 +69,16 @@ Seeds parse_seeds(const std::string& text) {
 }
 
 void add_trial_options(CLI::App& command, TrialsOptions& options) {
-  auto* seeds = command
-                    .add_option_function<std::string>(
-                        "--seeds",
-                        [&options](const std::string& text) { options.seeds = parse_seeds(text); },
-                        "One mission for each seed, in the laboratory; --out is a CSV file then")
-                    ->type_name("FIRST:LAST")
-                    ->excludes("--seed");
-  command.add_option("--faults", options.faults, "What goes wrong: a file, or \"swarm\": each seed draws")
+  auto* seeds =
+      command
+          .add_option_function<std::string>(
+              "--seeds", [&options](const std::string& text) { options.seeds = parse_seeds(text); },
+              "One mission for each seed, in the laboratory; --out is a CSV file then")
+          ->type_name("FIRST:LAST")
+          ->excludes("--seed");
+  command
+      .add_option("--faults", options.faults,
+                  "What goes wrong: a file, or \"swarm\": each seed draws")
       ->type_name("FILE|swarm")
       ->needs(seeds);
   command.add_option("--jobs", options.jobs, "Worker processes (default: one a processor)")
@@ -96,7 +99,8 @@ Variation parse_variation(const std::string& text) {
     const std::string value = text.substr(begin, end - begin);
     if (value.find_first_not_of(" \t") == std::string::npos) refuse("has an empty value");
     const auto& values = variation.values;
-    if (std::find(values.begin(), values.end(), value) != values.end()) refuse("has " + value + " twice");
+    if (std::find(values.begin(), values.end(), value) != values.end())
+      refuse("has " + value + " twice");
     variation.values.push_back(value);
     begin = end + 1;
   }
@@ -112,7 +116,8 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
       .add_option_function<std::vector<std::string>>(
           "--vary",
           [&options](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) options.variations.push_back(parse_variation(text));
+            for (const std::string& text : texts)
+              options.variations.push_back(parse_variation(text));
           },
           "A field and its values, such as law.noise_intensity=0,0.1,1; again for another field")
       ->allow_extra_args(false)
@@ -163,8 +168,8 @@ int parse_and_do(int argc, char** argv) {
     };
   });
 
-  auto* study_command =
-      app.add_subcommand("study", "Compare many simulated missions: scenarios, varied fields, seeds");
+  auto* study_command = app.add_subcommand(
+      "study", "Compare many simulated missions: scenarios, varied fields, seeds");
   StudyOptions study_options;
   study_options.jobs = processors;
   add_study_options(*study_command, study_options);

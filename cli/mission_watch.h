@@ -8,11 +8,11 @@
 #include "cli/progress.h"
 #include "cli/stop_request.h"
 #include "core/ids.h"
-#include "team/messages.h"
 #include "core/mission.h"
-#include "team/participant.h"
 #include "runtime/transport.h"
 #include "scenario/scenario.h"
+#include "team/messages.h"
+#include "team/participant.h"
 
 namespace ergocast::cli {
 

@@ -17,7 +17,8 @@ std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
   if (at.world_silent) said.push_back("waiting for the world");
   if (at.coordinator_silent) said.push_back("no coordinator");
   if (under_way) {
-    said.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) + " left");
+    said.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) +
+                   " left");
   }
   if (at.ergodic_metric > 0) said.push_back(text_of("phi^2 = %.3g", at.ergodic_metric));
   if (at.silent_agent != kUnassigned && !at.coordinator_silent) {

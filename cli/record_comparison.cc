@@ -12,14 +12,14 @@
 #include <utility>
 
 #include "cli/trajectory_comparison.h"
-#include "report/report.h"
 #include "logger/mission_text.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "report/report.h"
 #include "report/target_density.h"
-#include "text/regular_file.h"
 #include "runtime/node.h"
 #include "team/plan.h"
+#include "text/regular_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -49,12 +49,14 @@ std::string line_of(const std::string& text, std::size_t number) {
 std::string text_difference(const fs::path& file, const std::string& recorded,
                             const std::string& expected) {
   if (recorded == expected) return "";
-  const auto at = std::mismatch(recorded.begin(), recorded.end(), expected.begin(), expected.end()).first;
+  const auto at =
+      std::mismatch(recorded.begin(), recorded.end(), expected.begin(), expected.end()).first;
   const auto line = 1 + std::count(recorded.begin(), at, '\n');
   const auto line_begin = std::find(std::reverse_iterator(at), recorded.rend(), '\n').base();
   const auto number = static_cast<std::size_t>(line);
   return file.string() + ':' + std::to_string(line) + ':' + std::to_string(at - line_begin + 1) +
-         "\nrecorded:  " + line_of(recorded, number) + "\nexpected:  " + line_of(expected, number) + '\n';
+         "\nrecorded:  " + line_of(recorded, number) + "\nexpected:  " + line_of(expected, number) +
+         '\n';
 }
 
 FileComparison compare_text(const fs::path& run_dir, const std::string& name,
@@ -72,26 +74,31 @@ bool lacks_a_map(const std::vector<Problem>& problems) {
 }
 
 /// Compares plan.binpb with the plan that the scenario compiles to.
-FileComparison compare_plan(const fs::path& run_dir, const Mission& mission, const Scenario& scenario,
-                            const FileComparison& hash) {
+FileComparison compare_plan(const fs::path& run_dir, const Mission& mission,
+                            const Scenario& scenario, const FileComparison& hash) {
   const fs::path file = run_dir / kPlanFile;
   FileComparison plan_file = hash;
   plan_file.compared = "with the scenario, compiled anew";
-  const std::vector<std::byte> recorded = encode_plan(mission), expected = encode_plan(scenario.mission());
+  const std::vector<std::byte> recorded = encode_plan(mission),
+                               expected = encode_plan(scenario.mission());
   if (!plan_file.difference.empty() || recorded == expected) return plan_file;
-  const auto at = std::mismatch(recorded.begin(), recorded.end(), expected.begin(), expected.end()).first -
-                  recorded.begin();
-  plan_file.difference = file.string() + ": not what " + kScenarioFile + " compiles to, first at byte " +
-                         std::to_string(at) + "\nrecorded:  " + plan_hash(recorded) +
+  const auto at =
+      std::mismatch(recorded.begin(), recorded.end(), expected.begin(), expected.end()).first -
+      recorded.begin();
+  plan_file.difference = file.string() + ": not what " + kScenarioFile +
+                         " compiles to, first at byte " + std::to_string(at) +
+                         "\nrecorded:  " + plan_hash(recorded) +
                          "\nexpected:  " + plan_hash(expected) + '\n';
   return plan_file;
 }
 
 /// Values that depend on the wall clock and the machine.
-constexpr std::array kOfTheMachine{"/started", "/build", "/cpu_fma", "/wall_time_s", "/ticks_per_s"};
+constexpr std::array kOfTheMachine{"/started", "/build", "/cpu_fma", "/wall_time_s",
+                                   "/ticks_per_s"};
 /// Values that depend on the network and its faults.
-constexpr std::array kOfTheNetwork{"/reason",   "/interruptions",   "/events_removed", "/restarts",
-                                   "/messages", "/record_complete", "/processes",      "/authenticated"};
+constexpr std::array kOfTheNetwork{"/reason",    "/interruptions", "/events_removed",
+                                   "/restarts",  "/messages",      "/record_complete",
+                                   "/processes", "/authenticated"};
 /// An agent's values that roster and plan determine; its other values come from its last status.
 constexpr std::array kOfTheRoster{"/id", "/active_from", "/active_until"};
 
@@ -108,7 +115,8 @@ bool is_free(const std::string& pointer, const Json& recorded, const Expectation
   const bool of_an_agent = pointer.starts_with("/agents/");
   if (names_one_of(kOfTheMachine, pointer) || (of_an_agent && last == "/host")) return true;
   if (expectation.whole) return false;
-  if (of_an_agent) return std::find(kOfTheRoster.begin(), kOfTheRoster.end(), last) == kOfTheRoster.end();
+  if (of_an_agent)
+    return std::find(kOfTheRoster.begin(), kOfTheRoster.end(), last) == kOfTheRoster.end();
   if (pointer == "/run_id" && recorded.value("mode", Json()) != "simulate") return true;
   // A launcher can report a failed mission although its record is complete.
   if (pointer == "/result") return recorded.value("result", Json()) == "failed";
@@ -150,19 +158,21 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Missi
     hash.compared = "with the summary's hash";
     const std::string expected = plan_hash(encode_plan(mission));
     if (summary["scenario_hash"] != expected) {
-      hash.difference = place_of(run_dir / kSummaryFile, "/scenario_hash") + "\nrecorded:  " +
-                        summary["scenario_hash"].dump() + "\nexpected:  \"" + expected + "\" of " +
-                        (run_dir / kPlanFile).string() + '\n';
+      hash.difference = place_of(run_dir / kSummaryFile, "/scenario_hash") +
+                        "\nrecorded:  " + summary["scenario_hash"].dump() + "\nexpected:  \"" +
+                        expected + "\" of " + (run_dir / kPlanFile).string() + '\n';
     }
   }
   const auto text = text_of(run_dir / kScenarioFile);
   if (!text) return {hash, {kScenarioFile, "", "is not there", ""}};
-  if (*text == mission_text(mission)) return {hash, {kScenarioFile, "all but the target, which it lacks", "", ""}};
+  if (*text == mission_text(mission))
+    return {hash, {kScenarioFile, "all but the target, which it lacks", "", ""}};
   const auto loaded = Scenario::load(run_dir / kScenarioFile);
   if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {
     const std::string problem = to_string(problems->front());
     if (lacks_a_map(*problems)) {
-      return {hash, {kScenarioFile, "", problem, ""},
+      return {hash,
+              {kScenarioFile, "", problem, ""},
               {kTargetDensityFile, "", "its maps are gone", ""}};
     }
     return {hash, {kScenarioFile, "", "", problem + '\n'}};
@@ -193,7 +203,8 @@ FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expec
       return metrics;
     }
     if (cells(recorded) != cells(expected)) {
-      metrics.difference = first_difference(lines.place(), kMetricsHeader, cells(recorded), cells(expected));
+      metrics.difference =
+          first_difference(lines.place(), kMetricsHeader, cells(recorded), cells(expected));
       return metrics;
     }
     ++rows;
@@ -211,16 +222,17 @@ FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expec
   return metrics;
 }
 
-FileComparison compare_summary(const fs::path& run_dir, const Mission& mission, const Json& recorded,
-                               const Expectation& expectation) {
+FileComparison compare_summary(const fs::path& run_dir, const Mission& mission,
+                               const Json& recorded, const Expectation& expectation) {
   const Json expected = expected_summary(recorded, mission, run_dir, expectation);
   const Json left = recorded.flatten(), right = expected.flatten();
   FileComparison summary{kSummaryFile, "", "", ""};
   int compared = 0, free = 0;
   const auto differ = [&](const std::string& pointer) {
     const auto said = [&](const Json& flat) {
-      return flat.contains(pointer) ? flat[pointer].dump(-1, ' ', false, Json::error_handler_t::replace)
-                                    : std::string("nothing");
+      return flat.contains(pointer)
+                 ? flat[pointer].dump(-1, ' ', false, Json::error_handler_t::replace)
+                 : std::string("nothing");
     };
     summary.difference = place_of(run_dir / kSummaryFile, pointer) + "\nrecorded:  " + said(left) +
                          "\nexpected:  " + said(right) + '\n';
@@ -246,7 +258,8 @@ FileComparison compare_summary(const fs::path& run_dir, const Mission& mission, 
 
 std::vector<FileComparison> compare_report(const fs::path& run_dir, const Mission& mission) {
   const auto drawn = draw_report(run_dir, mission);
-  if (const auto* problem = std::get_if<std::string>(&drawn)) return {{kReportFile, "", "", *problem + '\n'}};
+  if (const auto* problem = std::get_if<std::string>(&drawn))
+    return {{kReportFile, "", "", *problem + '\n'}};
   const bool sources_are_there =
       fs::exists(run_dir / kSummaryFile) && fs::exists(run_dir / kTargetDensityFile);
   std::vector<FileComparison> files;

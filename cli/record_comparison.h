@@ -25,11 +25,11 @@ struct FileComparison {
 /// What a record should contain, computed by a recorder that received the recorded trajectory.
 struct Expectation {
   const Recorder& recorder;
-  std::string metrics;       ///< what it wrote to metrics.csv
-  bool simulation = false;   ///< the record is of a simulation
-  bool whole = false;        ///< the simulation is complete: no network and no Ctrl-C affected it
-  bool complete = false;     ///< it has the plan's last tick
-  bool closed = false;       ///< its recorder ended in order: no row may be missing at its end
+  std::string metrics;      ///< what it wrote to metrics.csv
+  bool simulation = false;  ///< the record is of a simulation
+  bool whole = false;       ///< the simulation is complete: no network and no Ctrl-C affected it
+  bool complete = false;    ///< it has the plan's last tick
+  bool closed = false;      ///< its recorder ended in order: no row may be missing at its end
   std::int64_t clamped_commands = 0;  ///< of the simulation; counts if `complete`
 };
 
@@ -37,11 +37,13 @@ struct Expectation {
 /// hash.
 /// @param mission  read from plan.binpb
 /// @param summary  an object
-std::vector<FileComparison> compare_sources(const std::filesystem::path& run_dir, const Mission& mission,
+std::vector<FileComparison> compare_sources(const std::filesystem::path& run_dir,
+                                            const Mission& mission,
                                             const nlohmann::ordered_json& summary);
 
 /// metrics.csv, all segments.
-FileComparison compare_metrics(const std::filesystem::path& run_dir, const Expectation& expectation);
+FileComparison compare_metrics(const std::filesystem::path& run_dir,
+                               const Expectation& expectation);
 
 /// summary.json, value by value.
 /// @param recorded  an object

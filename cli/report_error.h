@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "text/printable.h"
 #include "runtime/node.h"
 #include "scenario/scenario.h"
+#include "text/printable.h"
 
 namespace ergocast::cli {
 
@@ -33,7 +33,8 @@ inline int report_error(ExitCode code, const std::string& problem) {
 /// Writes one line for each problem.
 inline int report_error(ExitCode code, const std::vector<std::string>& problems) {
   for (std::size_t i = 0; i < std::min(problems.size(), kMostLines); ++i) tell(problems[i]);
-  if (problems.size() > kMostLines) tell("and " + std::to_string(problems.size() - kMostLines) + " more");
+  if (problems.size() > kMostLines)
+    tell("and " + std::to_string(problems.size() - kMostLines) + " more");
   return code;
 }
 inline int report_error(ExitCode code, const std::vector<Problem>& problems) {

@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/launcher.h"
 #include "cli/mission_watch.h"
 #include "cli/progress.h"
+#include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
@@ -72,8 +72,9 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
                                        const Launcher& launcher, const MissionWatch& mission) {
   auto read = read_summary(setup.run_dir);
   const auto* written = std::get_if<nlohmann::ordered_json>(&read);
-  auto summary = written != nullptr && written->is_object() ? *written
-                                                            : makeshift_summary(scenario, setup.run);
+  auto summary = written != nullptr && written->is_object()
+                     ? *written
+                     : makeshift_summary(scenario, setup.run);
   const auto fail = [&summary](const std::string& reason) {
     summary["result"] = "failed";
     summary["reason"] = reason;
@@ -92,7 +93,8 @@ nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher:
   summary["record_complete"] = !launcher.record_broken() && !cut_short;
   auto processes = nlohmann::ordered_json::array();
   for (const ProcessFate& process : launcher.fates()) {
-    processes.push_back({{"name", process.name}, {"restarts", process.restarts}, {"end", process.fate}});
+    processes.push_back(
+        {{"name", process.name}, {"restarts", process.restarts}, {"end", process.fate}});
   }
   summary["processes"] = std::move(processes);
   return summary;
@@ -104,7 +106,8 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
   display.say("  swarm    " + setup.url.of(Bus::kSwarm));
   display.say("  world    " + setup.url.of(Bus::kWorld));
   display.say("  command  " + setup.url.of(Bus::kCommand));
-  display.say("  key      " + (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
+  display.say("  key      " +
+              (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
 /// Runs the mission. LCM works and the run directory is ready.
@@ -112,11 +115,11 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const MessageAut
         StopSignals& signals) {
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display);
-  auto opened = Transport::open(setup.url, setup.run, seal, subscriptions_of(MissionWatch::kRole),
-                                {.on_message = [&mission](const Message& message, Bus bus,
-                                                          AgentId transmitter) {
-                                  mission.receive(message, bus, transmitter, now());
-                                }});
+  auto opened = Transport::open(
+      setup.url, setup.run, seal, subscriptions_of(MissionWatch::kRole),
+      {.on_message = [&mission](const Message& message, Bus bus, AgentId transmitter) {
+        mission.receive(message, bus, transmitter, now());
+      }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     return report_error(kExitUnavailable, *problem);
   }
@@ -133,7 +136,8 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const MessageAut
   const auto unwritten = write_file(setup.run_dir / kSummaryFile, to_text(summary));
   conclude(setup.run_dir, summary, scenario);
   if (unwritten) return report_error(kExitFailed, *unwritten);
-  return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed : kExitDone;
+  return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed
+                                                                             : kExitDone;
 }
 
 }  // namespace
@@ -150,10 +154,12 @@ int run(const MissionOptions& options) {
   if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
   setup.event_log_mib = options.event_log_mib;
   setup.url = options.url.value_or(LcmUrl{});
-  if (const auto problem = why_unreachable(setup.url)) return report_error(kExitUnavailable, *problem);
+  if (const auto problem = why_unreachable(setup.url))
+    return report_error(kExitUnavailable, *problem);
   const auto ports = options.url ? std::nullopt : PortReservation::take(setup.run);
   if (!options.url) {
-    if (!ports) return report_error(kExitUnavailable, "no free ports in 24000 to 26999; give --lcm-url");
+    if (!ports)
+      return report_error(kExitUnavailable, "no free ports in 24000 to 26999; give --lcm-url");
     setup.url.base_port = ports->base_port();
   }
   const auto prepared = prepare_run_directory(options.out, *scenario);

@@ -11,12 +11,12 @@
 #include <span>
 
 #include "cli/report_error.h"
-#include "report/report.h"
 #include "logger/run_record.h"
+#include "report/report.h"
 #include "report/target_density.h"
-#include "text/regular_file.h"
 #include "runtime/node.h"
 #include "team/plan.h"
+#include "text/regular_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -31,7 +31,8 @@ fs::path default_folder(const std::string& scenario) {
   std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
   const std::string stem = scenario + '-' + stamp;
   fs::path folder = fs::path("runs") / stem;
-  for (int i = 2; fs::exists(folder); ++i) folder = fs::path("runs") / (stem + '-' + std::to_string(i));
+  for (int i = 2; fs::exists(folder); ++i)
+    folder = fs::path("runs") / (stem + '-' + std::to_string(i));
   return folder;
 }
 
@@ -94,7 +95,8 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
   if (auto* scenario = std::get_if<Scenario>(&loaded)) return std::move(*scenario);
   const auto& problems = std::get<std::vector<Problem>>(loaded);
   report_error(kExitBadInput, problems);
-  report_error(kExitBadInput, std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems"));
+  report_error(kExitBadInput,
+               std::to_string(problems.size()) + (problems.size() == 1 ? " problem" : " problems"));
   return std::nullopt;
 }
 
@@ -106,7 +108,8 @@ std::optional<Mission> recorded_mission_or_complain(const fs::path& run_dir) {
   std::ifstream file(run_dir / kPlanFile, std::ios::binary);
   const std::string plan((std::istreambuf_iterator<char>(file)), {});
   if (!file.is_open()) {
-    report_error(kExitBadInput, (run_dir / kPlanFile).string() + ": missing or not readable: is this a run directory?");
+    report_error(kExitBadInput, (run_dir / kPlanFile).string() +
+                                    ": missing or not readable: is this a run directory?");
     return std::nullopt;
   }
   auto read = decode_plan(std::as_bytes(std::span(plan)));

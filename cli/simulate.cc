@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/progress.h"
+#include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "lab/simulation.h"
 #include "logger/run_record.h"
@@ -72,10 +72,9 @@ int simulate(const MissionOptions& options) {
     return report_error(kExitBadInput, *problem);
   }
   RunRecord& record = *std::get<0>(created);
-  lab::Simulation simulation({.plan = encode_plan(scenario->mission()),
-                              .version = version(),
-                              .host = host_name()},
-                             record.trajectory(), record.metrics());
+  lab::Simulation simulation(
+      {.plan = encode_plan(scenario->mission()), .version = version(), .host = host_name()},
+      record.trajectory(), record.metrics());
 
   const std::string started = wall_clock_text();
   const double wall_time_s = run(simulation, scenario->mission(), record);

@@ -93,7 +93,8 @@ Viewer viewer_for(const SpyOptions& options) {
 
 int print_command(const Viewer& viewer) {
   std::string line;
-  for (const std::string& word : viewer.command) line += (line.empty() ? "" : " ") + shell_word(word);
+  for (const std::string& word : viewer.command)
+    line += (line.empty() ? "" : " ") + shell_word(word);
   std::printf("%s\n", line.c_str());
   return kExitDone;
 }
@@ -102,12 +103,13 @@ int spy(const SpyOptions& options) {
   Viewer viewer = viewer_for(options);
   if (!viewer.packages.empty()) {
     return report_error(kExitUnavailable,
-        "lcm-spy needs Debian packages that are not installed. As root:\n"
-        "  apt-get install" +
-        viewer.packages);
+                        "lcm-spy needs Debian packages that are not installed. As root:\n"
+                        "  apt-get install" +
+                            viewer.packages);
   }
   if (viewer.jar_missing) {
-    return report_error(kExitUnavailable,
+    return report_error(
+        kExitUnavailable,
         "ergocast-spy.jar was not built, because a JDK or lcm.jar was missing. As root:\n"
         "  apt-get install default-jdk liblcm-java\n"
         "Then configure and build again: cmake BUILD && cmake --build BUILD --target spy");
@@ -115,11 +117,13 @@ int spy(const SpyOptions& options) {
   if (options.print) return print_command(viewer);
   const char* display = std::getenv("DISPLAY");
   if (display == nullptr || *display == '\0') {
-    return report_error(kExitUnavailable,
+    return report_error(
+        kExitUnavailable,
         "lcm-spy draws windows, and there is no screen: DISPLAY is not set. Start it from a "
         "desktop, or log in with ssh -X");
   }
-  if (const auto problem = why_unreachable(options.url)) return report_error(kExitUnavailable, *problem);
+  if (const auto problem = why_unreachable(options.url))
+    return report_error(kExitUnavailable, *problem);
   std::vector<char*> arguments;
   for (std::string& word : viewer.command) arguments.push_back(word.data());
   arguments.push_back(nullptr);

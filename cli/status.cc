@@ -9,16 +9,16 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/diagnose_silence.h"
+#include "cli/report_error.h"
 #include "cli/team_monitor.h"
 #include "cli/team_screen.h"
+#include "cli/team_view.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
 #include "scenario/scenario.h"
-#include "cli/team_view.h"
 
 namespace ergocast::cli {
 namespace {
@@ -41,8 +41,8 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(
-        options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+    auto opened =
+        listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
           hear(message, bus, transmitter);
         });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/diagnose_silence.h"
+#include "cli/report_error.h"
 #include "cli/stop_request.h"
 #include "cli/team_monitor.h"
 #include "runtime/clock.h"
@@ -49,8 +49,8 @@ class Stopping {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened = listen_to_teams(
-        options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+    auto opened =
+        listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
           hear(message, bus, transmitter);
         });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
@@ -102,21 +102,23 @@ class Stopping {
         if (!codes.contains(run)) say(run, team, words);
       }
       say_to_the_crowd();
-      if (!listen()) return report_error(kExitFailed, "interrupted before the team was seen to end");
+      if (!listen())
+        return report_error(kExitFailed, "interrupted before the team was seen to end");
       for (const auto& [run, word] : words) {
         if (codes.contains(run)) continue;
         if (const auto code = verdict(runs_.at(run))) codes[run] = *code;
       }
     } while (codes.size() < runs_.size());
     if (crowded_) {
-      return report_error(kExitFailed, "more than " + std::to_string(kMostRuns) +
-                                       " runs were heard, recordings of former ones perhaps; all "
-                                       "were told, but not all were seen to obey: say it again "
-                                       "with --run-id");
+      return report_error(kExitFailed,
+                          "more than " + std::to_string(kMostRuns) +
+                              " runs were heard, recordings of former ones perhaps; all "
+                              "were told, but not all were seen to obey: say it again "
+                              "with --run-id");
     }
-    return std::max_element(codes.begin(), codes.end(), [](const auto& a, const auto& b) {
-             return a.second < b.second;
-           })->second;
+    return std::max_element(codes.begin(), codes.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->second;
   }
 
   /// Runs beyond kMostRuns must stop, too. Other runs, or recordings of them, may fill the table.
@@ -152,20 +154,20 @@ class Stopping {
     if (obeyed && left.empty()) return conclude(team);
     if (waited >= kLongest) {
       return report_error(kExitFailed,
-                      "still heard: " + listed(left) +
-                          (options_.at_once ? ": end them on their hosts"
-                                            : ": ergocast stop --now stops them at once"));
+                          "still heard: " + listed(left) +
+                              (options_.at_once ? ": end them on their hosts"
+                                                : ": ergocast stop --now stops them at once"));
     }
     if (obeyed || options_.at_once) return std::nullopt;
     if (!team.coordinator_heard() && waited >= kListeningTime) {
       return report_error(kExitFailed,
-                      "no coordinator is heard, and nobody else ends a mission in order: "
-                      "ergocast stop --now stops the team at once");
+                          "no coordinator is heard, and nobody else ends a mission in order: "
+                          "ergocast stop --now stops the team at once");
     }
     if (waited >= kAnswerPatience) {
       return report_error(kExitFailed,
-                      "the coordinator does not end the mission: ergocast stop --now stops "
-                      "the team at once");
+                          "the coordinator does not end the mission: ergocast stop --now stops "
+                          "the team at once");
     }
     return std::nullopt;
   }
@@ -173,14 +175,15 @@ class Stopping {
   int conclude(const MonitoredRun& team) const {
     // A mission that never started has moved no vehicle.
     if (options_.at_once && !team.world_heard() && team.tick() > 0) {
-      return report_error(kExitFailed, "nobody is heard any more, but no world or driver was heard "
-                                   "before either: whether the vehicles stand still is not known: "
-                                   "look at them");
+      return report_error(kExitFailed,
+                          "nobody is heard any more, but no world or driver was heard "
+                          "before either: whether the vehicles stand still is not known: "
+                          "look at them");
     }
     if (options_.at_once && !team.stands_still()) {
       return report_error(kExitFailed, "the world is silent, and in its last state, of tick " +
-                                       std::to_string(team.tick()) +
-                                       ", vehicles still move: look at them");
+                                           std::to_string(team.tick()) +
+                                           ", vehicles still move: look at them");
     }
     const auto lost = team.lost(now());
     const std::string but = lost.empty() ? "" : "; " + listed(lost) + " did not say so";

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/ids.h"
-#include "team/messages.h"
 #include "runtime/transport.h"
+#include "team/messages.h"
 
 namespace ergocast::cli {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/progress_line.h"
+#include "cli/report_error.h"
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
 #include "cli/workers.h"
@@ -134,8 +134,9 @@ std::optional<std::string> show_results(const StudyIdentity& identity,
                                         const StudyOptions& options) {
   const auto summaries = studies::summarize(identity.study, directory.rows());
   std::printf("%s", studies::study_text(identity.study, summaries).c_str());
-  return write_file(options.out / "report.html",
-                    studies::study_page({identity.study, version(), command_of(options)}, summaries));
+  return write_file(
+      options.out / "report.html",
+      studies::study_page({identity.study, version(), command_of(options)}, summaries));
 }
 
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
@@ -162,12 +163,13 @@ int study(const StudyOptions& options) {
   const std::size_t count = points.scenarios.size();
   if (options.seeds.count() > kMostStudyRuns / count) {
     return report_error(kExitBadInput, "--seeds: " + std::to_string(count) + " points with " +
-                                       std::to_string(options.seeds.count()) +
-                                       " seeds each are above the limit, " +
-                                       std::to_string(kMostStudyRuns) + " runs (give fewer)");
+                                           std::to_string(options.seeds.count()) +
+                                           " seeds each are above the limit, " +
+                                           std::to_string(kMostStudyRuns) + " runs (give fewer)");
   }
   auto opened = StudyDirectory::open(options.out, points.identity);
-  if (const auto* problem = std::get_if<std::string>(&opened)) return report_error(kExitBadInput, *problem);
+  if (const auto* problem = std::get_if<std::string>(&opened))
+    return report_error(kExitBadInput, *problem);
   StudyDirectory& directory = *std::get<0>(opened);
 
   StudyRunner runner(points, missing_runs(count, options.seeds, directory.done()), directory);

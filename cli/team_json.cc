@@ -61,7 +61,7 @@ std::string team_json(const TeamPicture& at) {
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {
-    json["processes"][row.name] = {{"state", row.trouble ? "silent"
+    json["processes"][row.name] = {{"state", row.trouble  ? "silent"
                                              : !row.heard ? "not heard"
                                              : at.over    ? "ended"
                                                           : "alive"},

@@ -24,8 +24,8 @@ std::string name_of(AgentId sender) {
 
 }  // namespace
 
-std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
-    const BusOptions& options, Hear hear) {
+std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
+                                                                      Hear hear) {
   return Transport::open(options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
                          {.on_message = std::move(hear)});
 }

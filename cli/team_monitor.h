@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "team/messages.h"
-#include "team/participant.h"
 #include "runtime/node.h"
 #include "runtime/transport.h"
+#include "team/messages.h"
+#include "team/participant.h"
 
 namespace ergocast::cli {
 
@@ -26,8 +26,8 @@ inline constexpr std::size_t kMostRuns = 16;
 using Hear = std::function<void(const Message&, Bus, AgentId transmitter)>;
 
 /// Receives all messages about the state of teams. An error tells why LCM cannot be used.
-std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(
-    const BusOptions& options, Hear hear);
+std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
+                                                                      Hear hear);
 
 /// The messages received of one run.
 class MonitoredRun {
@@ -65,7 +65,7 @@ class MonitoredRun {
   }
 
   Participant me_;
-  std::map<Author, bool> agents_;  // whether it reported that it finished
+  std::map<Author, bool> agents_;                      // whether it reported that it finished
   std::map<AgentId, Eigen::Vector3d> velocities_mps_;  // in the newest state
   Tick tick_ = 0, world_tick_ = -1;
   bool over_ = false;  // the coordinator reported it

@@ -124,7 +124,8 @@ std::vector<Cell> cells_of(const AgentRow& row) {
   cells[8] = count_cell(status.contributions_lost);
   cells[9] = count_cell(status.kernel_drops);
   cells[11] = {refused_text(status.refused), Tint::kLook};
-  if (status.rate_offender != kUnassigned) cells[11].text += " of agent " + std::to_string(status.rate_offender);
+  if (status.rate_offender != kUnassigned)
+    cells[11].text += " of agent " + std::to_string(status.rate_offender);
   return cells;
 }
 

@@ -38,9 +38,7 @@ std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
 }  // namespace
 
 TeamView::TeamView(RunId run, Instant since, bool authenticated)
-    : me_(kRole, {run, kUnassigned, 0}),
-      authenticated_(authenticated),
-      since_(since) {}
+    : me_(kRole, {run, kUnassigned, 0}), authenticated_(authenticated), since_(since) {}
 
 void TeamView::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   const auto arrival = me_.accept(message, bus, transmitter, now);

@@ -46,7 +46,7 @@ struct ProcessRow {
 
 struct TeamPicture {
   RunId run = 0;
-  bool authenticated = false;  ///< else any host on the network may have sent it
+  bool authenticated = false;         ///< else any host on the network may have sent it
   std::string scenario;               ///< empty: MISSION was not received
   std::optional<MissionState> state;  ///< nothing: not received
   std::string reason;                 ///< why it ended, or why its plan cannot be read

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "text/read_number.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
+#include "text/read_number.h"
 
 namespace ergocast::cli {
 namespace {
@@ -43,8 +43,8 @@ std::string_view take_cell(std::string_view& row) {
 
 }  // namespace
 
-std::string first_difference(std::string place, const std::string& header, const std::string& recorded,
-                             const std::string& simulated) {
+std::string first_difference(std::string place, const std::string& header,
+                             const std::string& recorded, const std::string& simulated) {
   place.resize(place.find_last_not_of(": ") + 1);
   std::string_view names = header, left = recorded, right = simulated;
   while (!names.empty()) {
@@ -86,7 +86,8 @@ void TrajectoryComparison::compare_row(const std::string& simulated) {
     amid_tick_ = same_tick;
     return;
   }
-  const bool stands = emergency_stop_expected_ && *recorded_ != simulated && stands_where(simulated);
+  const bool stands =
+      emergency_stop_expected_ && *recorded_ != simulated && stands_where(simulated);
   if (*recorded_ == simulated || stands) {
     emergency_stopped_ = emergency_stopped_ || stands;
     last_ = simulated;

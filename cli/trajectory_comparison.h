@@ -16,8 +16,8 @@ namespace ergocast::cli {
 /// "FILE:LINE, column NAME\nrecorded:  …\nsimulated: …\n".
 /// @param place   of the recorded row, as TableLines::place() formats it
 /// @param header  the names of the columns
-std::string first_difference(std::string place, const std::string& header, const std::string& recorded,
-                             const std::string& simulated);
+std::string first_difference(std::string place, const std::string& header,
+                             const std::string& recorded, const std::string& simulated);
 
 /// Missing rows of the record are counted and not a difference.
 class TrajectoryComparison {

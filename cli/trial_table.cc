@@ -26,21 +26,27 @@ constexpr Count kCounts[] = {
     {"relayed", nullptr, [](TrialFigures& f) -> std::int64_t& { return f.relayed; }},
     {"lost", "messages lost", [](TrialFigures& f) -> std::int64_t& { return f.faults.lost; }},
     {"cut", "lost at a partition", [](TrialFigures& f) -> std::int64_t& { return f.faults.cut; }},
-    {"duplicated", "duplicated", [](TrialFigures& f) -> std::int64_t& { return f.faults.duplicated; }},
+    {"duplicated", "duplicated",
+     [](TrialFigures& f) -> std::int64_t& { return f.faults.duplicated; }},
     {"replayed", "replayed", [](TrialFigures& f) -> std::int64_t& { return f.faults.replayed; }},
     {"corrupted", "corrupted", [](TrialFigures& f) -> std::int64_t& { return f.faults.corrupted; }},
     {"delayed", "delayed", [](TrialFigures& f) -> std::int64_t& { return f.faults.delayed; }},
     {"reordered", "reordered", [](TrialFigures& f) -> std::int64_t& { return f.faults.reordered; }},
-    {"clogged", "held on clogged links", [](TrialFigures& f) -> std::int64_t& { return f.faults.clogged; }},
+    {"clogged", "held on clogged links",
+     [](TrialFigures& f) -> std::int64_t& { return f.faults.clogged; }},
     {"clogs", "links clogged", [](TrialFigures& f) -> std::int64_t& { return f.faults.clogs; }},
     {"splits", "partitions", [](TrialFigures& f) -> std::int64_t& { return f.splits; }},
-    {"one_way_cuts", "one-way cuts", [](TrialFigures& f) -> std::int64_t& { return f.one_way_cuts; }},
+    {"one_way_cuts", "one-way cuts",
+     [](TrialFigures& f) -> std::int64_t& { return f.one_way_cuts; }},
     {"evictions", "agents evicted", [](TrialFigures& f) -> std::int64_t& { return f.evictions; }},
-    {"agent_crashes", "agents crashed", [](TrialFigures& f) -> std::int64_t& { return f.agent_crashes; }},
+    {"agent_crashes", "agents crashed",
+     [](TrialFigures& f) -> std::int64_t& { return f.agent_crashes; }},
     {"coordinator_crashes", "coordinators crashed",
      [](TrialFigures& f) -> std::int64_t& { return f.coordinator_crashes; }},
-    {"world_crashes", "worlds crashed", [](TrialFigures& f) -> std::int64_t& { return f.world_crashes; }},
-    {"skewed_clocks", "clocks skewed", [](TrialFigures& f) -> std::int64_t& { return f.skewed_clocks; }},
+    {"world_crashes", "worlds crashed",
+     [](TrialFigures& f) -> std::int64_t& { return f.world_crashes; }},
+    {"skewed_clocks", "clocks skewed",
+     [](TrialFigures& f) -> std::int64_t& { return f.skewed_clocks; }},
     {"recoveries", nullptr, [](TrialFigures& f) -> std::int64_t& { return f.recoveries; }},
 };
 
@@ -96,7 +102,8 @@ std::string TrialTotals::describe(double wall_s) const {
   TrialFigures figures = sums;
   text += "What was done to them:\n";
   for (const Count& count : kCounts) {
-    if (count.meaning != nullptr) row(count.meaning, "%14.0f", static_cast<double>(count.of(figures)));
+    if (count.meaning != nullptr)
+      row(count.meaning, "%14.0f", static_cast<double>(count.of(figures)));
   }
   text += "What came of it:\n";
   row("greatest phi^2 at the end", "%14.4g", worst_metric);

@@ -7,15 +7,15 @@
 #include <map>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/fault_file.h"
 #include "cli/progress_line.h"
+#include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "cli/trial_table.h"
 #include "cli/workers.h"
-#include "ops/deploy/script.h"
 #include "lab/trial.h"
 #include "logger/null_buffer.h"
+#include "ops/deploy/script.h"
 #include "runtime/node.h"
 #include "team/plan.h"
 
@@ -133,7 +133,9 @@ int trials(const TrialsOptions& options) {
   const auto& path = options.mission.out;
   std::ofstream csv;
   if (!path.empty()) csv.open(path);
-  if (!path.empty() && !csv) return report_error(kExitBadInput, path.string() + ": cannot be written (--out takes a file here)");
+  if (!path.empty() && !csv)
+    return report_error(kExitBadInput,
+                        path.string() + ": cannot be written (--out takes a file here)");
 
   NullBuffer nowhere;
   const auto run = [&](std::uint64_t job) {
@@ -164,7 +166,8 @@ int trials(const TrialsOptions& options) {
   std::printf("%lld of %llu missions flown in %.1f s\n%s", static_cast<long long>(totals.trials),
               static_cast<unsigned long long>(options.seeds.count()), wall_s,
               totals.describe(wall_s).c_str());
-  if (!path.empty() && !csv) return report_error(kExitBadInput, path.string() + ": writing failed; rows are missing");
+  if (!path.empty() && !csv)
+    return report_error(kExitBadInput, path.string() + ": writing failed; rows are missing");
   return totals.failed > 0 ? kExitFailed : kExitDone;
 }
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/report_error.h"
 #include "cli/record_comparison.h"
+#include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "cli/trajectory_comparison.h"
 #include "core/ids.h"
@@ -48,8 +48,7 @@ struct Repetition {
 
 /// A recorder that received only the recorded rows, and the tables that it writes.
 struct Observer {
-  Observer(RunData rows, const MissionFollower& heard)
-      : recorder(0, 1, trajectory, metrics) {
+  Observer(RunData rows, const MissionFollower& heard) : recorder(0, 1, trajectory, metrics) {
     recorder.resume(std::move(rows));
     for (const MissionPart& part : heard.parts()) {
       recorder.receive(part, Bus::kSwarm, kCoordinator, Instant{});
@@ -88,7 +87,8 @@ std::string what_cannot_be_repeated(const Json& summary, const Mission& mission)
     }
     const auto switched = agent.value("coverage_switched_at", nlohmann::ordered_json());
     if (!switched.is_null()) {
-      return "what " + who + " covered did not count for a while: it was last forgotten or remembered at tick " +
+      return "what " + who +
+             " covered did not count for a while: it was last forgotten or remembered at tick " +
              switched.dump();
     }
   }
@@ -105,23 +105,28 @@ std::string why_not_repeatable(const Json& summary, const Mission& mission) {
 }
 
 /// What is wrong with the trajectory as a whole; empty if nothing is.
-std::string difference_of(const TrajectoryComparison& comparison, const fs::path& run_dir, const Json& summary) {
+std::string difference_of(const TrajectoryComparison& comparison, const fs::path& run_dir,
+                          const Json& summary) {
   const std::string file = (run_dir / kTrajectoryFile).string();
   const bool complete = summary.value("result", Json()) == "done";
   if (!comparison.same()) return comparison.difference();
   if (comparison.recorded_over() && complete) {
-    return file + ": its run is done, says the summary, but it ends after tick " + comparison.last_tick() + '\n';
+    return file + ": its run is done, says the summary, but it ends after tick " +
+           comparison.last_tick() + '\n';
   }
-  if (comparison.has_more()) return file + ": goes on after the plan's last tick, or after all stood still\n";
+  if (comparison.has_more())
+    return file + ": goes on after the plan's last tick, or after all stood still\n";
   const Json gaps = summary.value("gaps", Json()), segments = summary.value("segments", Json());
   const bool tells_of_gaps = gaps.is_number_integer() && segments.is_number_integer();
   // A segment begins where a logger was killed, possibly within the rows of a tick.
   if (tells_of_gaps && comparison.missing() > gaps.get<Tick>() + segments.get<Tick>() - 1) {
     return file + ": lacks rows, first those of " + comparison.first_missing() + "; " +
-           std::to_string(comparison.missing()) + " ticks do, of " + gaps.dump() + " that the summary tells of\n";
+           std::to_string(comparison.missing()) + " ticks do, of " + gaps.dump() +
+           " that the summary tells of\n";
   }
   if (comparison.torn() && !summary.empty()) {
-    return file + ": ends amid tick " + comparison.last_tick() + ", and yet its logger ended in order\n";
+    return file + ": ends amid tick " + comparison.last_tick() +
+           ", and yet its logger ended in order\n";
   }
   return "";
 }
@@ -145,7 +150,8 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
   }
   std::printf("not compared:\n");
   for (const FileComparison& file : files) {
-    if (!file.left_out.empty()) std::printf("  %-28s %s\n", file.file.c_str(), printable(file.left_out).c_str());
+    if (!file.left_out.empty())
+      std::printf("  %-28s %s\n", file.file.c_str(), printable(file.left_out).c_str());
   }
   for (const auto& entry : fs::directory_iterator(run_dir)) {
     const std::string name = entry.path().filename().string();
@@ -155,21 +161,21 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
 }
 
 /// Compares everything else that follows from the compared trajectory.
-std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission, RunData rows,
-                                             const Repetition& repetition,
-                                             const TrajectoryComparison& comparison, const Json& summary) {
+std::vector<FileComparison> compare_the_rest(const fs::path& run_dir, const Mission& mission,
+                                             RunData rows, const Repetition& repetition,
+                                             const TrajectoryComparison& comparison,
+                                             const Json& summary) {
   const Recorder& simulated = repetition.simulation.recorder();
   const bool complete = !comparison.recorded_over();
   const bool whole = complete && comparison.missing() == 0 && is_simulated(summary, simulated);
   const Observer observer(std::move(rows), simulated.follower());
-  const Expectation expectation{
-      .recorder = whole ? simulated : observer.recorder,
-      .metrics = (whole ? repetition.metrics : observer.metrics).str(),
-      .simulation = is_simulated(summary, simulated),
-      .whole = whole,
-      .complete = complete,
-      .closed = !summary.empty(),
-      .clamped_commands = simulated.facts().clamped_commands};
+  const Expectation expectation{.recorder = whole ? simulated : observer.recorder,
+                                .metrics = (whole ? repetition.metrics : observer.metrics).str(),
+                                .simulation = is_simulated(summary, simulated),
+                                .whole = whole,
+                                .complete = complete,
+                                .closed = !summary.empty(),
+                                .clamped_commands = simulated.facts().clamped_commands};
   std::vector<FileComparison> files{compare_metrics(run_dir, expectation)};
   if (!files.back().difference.empty()) return files;
   files.push_back(summary.empty() ? FileComparison{kSummaryFile, "", "is not there", ""}
@@ -189,7 +195,8 @@ int conclude_verification(const fs::path& run_dir, const TrajectoryComparison& c
   std::printf("%s: identical to its simulation, byte for byte, up to tick %s%s\n", run_dir.c_str(),
               comparison.last_tick().c_str(), complete ? "" : ", where the record ends");
   if (const Tick missing = comparison.missing(); missing > 0) {
-    std::printf("%lld ticks before that are missing in the record\n", static_cast<long long>(missing));
+    std::printf("%lld ticks before that are missing in the record\n",
+                static_cast<long long>(missing));
   }
   list(run_dir, files);
   return kExitDone;
@@ -206,7 +213,8 @@ int verify(const fs::path& run_dir) {
     if (problem) return report_error(kExitBadInput, *problem);
   }
   auto read = read_summary(run_dir);
-  if (const auto* problem = std::get_if<std::string>(&read)) return report_error(kExitBadInput, *problem);
+  if (const auto* problem = std::get_if<std::string>(&read))
+    return report_error(kExitBadInput, *problem);
   Json& summary = std::get<Json>(read);
   Repetition repetition(*mission);
   if (!summary.is_object()) {
@@ -215,7 +223,8 @@ int verify(const fs::path& run_dir) {
     summary = Json::object();
   } else if (!is_simulated(summary, repetition.simulation.recorder())) {
     const auto reason = why_not_repeatable(summary, *mission);
-    if (!reason.empty()) return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
+    if (!reason.empty())
+      return report_error(kExitBadInput, run_dir.string() + " cannot be verified: " + reason);
   }
 
   std::vector<FileComparison> files = compare_sources(run_dir, *mission, summary);
@@ -234,8 +243,8 @@ int verify(const fs::path& run_dir) {
   if (const auto* problem = std::get_if<std::string>(&rows)) {
     return report_difference(run_dir, *problem + '\n', summary);
   }
-  auto rest = compare_the_rest(run_dir, *mission, std::get<RunData>(std::move(rows)), repetition, comparison,
-                               summary);
+  auto rest = compare_the_rest(run_dir, *mission, std::get<RunData>(std::move(rows)), repetition,
+                               comparison, summary);
   for (FileComparison& file : rest) files.push_back(std::move(file));
   return conclude_verification(run_dir, comparison, summary, files);
 }

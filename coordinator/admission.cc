@@ -32,9 +32,8 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
   // is may_have_stopped.
   if (newcomers_.asked.size() >= kMaxRosterEntries) {
     auto& asked = newcomers_.asked;
-    asked.erase(std::min_element(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
-      return a.second < b.second;
-    }));
+    asked.erase(std::min_element(asked.begin(), asked.end(),
+                                 [](const auto& a, const auto& b) { return a.second < b.second; }));
   }
   const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
   if (may_have_stopped(since, now)) return std::nullopt;
@@ -55,7 +54,8 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
   if (hello.requested_id < kUnassigned || hello.requested_id >= kMaxAgents) return;
   if (hello.version != name_.version) {
     auto& version_mismatches = newcomers_.version_mismatches;
-    if (version_mismatches.size() < kMaxVersionMismatches) version_mismatches.emplace(hello.host, hello.version);
+    if (version_mismatches.size() < kMaxVersionMismatches)
+      version_mismatches.emplace(hello.host, hello.version);
     return;
   }
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {

@@ -126,9 +126,8 @@ Instant Coordinator::last_sign(const Author& author) const {
 }
 
 int Coordinator::alive_count(Instant now) const {
-  return static_cast<int>(std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& e) {
-    return alive(e, now);
-  }));
+  return static_cast<int>(std::count_if(roster_.begin(), roster_.end(),
+                                        [&](const RosterEntry& e) { return alive(e, now); }));
 }
 
 void Coordinator::end(bool failed, std::string reason, Instant now) {
@@ -178,8 +177,10 @@ void Coordinator::check_admission(Instant now) {
     if (entry != nullptr && alive(*entry, now)) continue;
     missing += (missing.empty() ? "" : ", ") + std::to_string(id);
   }
-  end(true, "only " + std::to_string(alive_count(now)) + " of the quorum of " +
-                std::to_string(flown_.mission->quorum) + " agents were admitted; missing: " + missing, now);
+  end(true,
+      "only " + std::to_string(alive_count(now)) + " of the quorum of " +
+          std::to_string(flown_.mission->quorum) + " agents were admitted; missing: " + missing,
+      now);
 }
 
 void Coordinator::check_tick(Instant now) {
@@ -192,8 +193,10 @@ void Coordinator::check_tick(Instant now) {
     if (alive_count(now) == 0) {
       return end(true, "no agent is left to answer tick " + std::to_string(world_.tick), now);
     }
-    return end(true, world_.heard ? "the world has not gone beyond tick " + std::to_string(world_.tick) + since
-                                  : "no world was heard" + since + ": is one running on this URL?",
+    return end(true,
+               world_.heard
+                   ? "the world has not gone beyond tick " + std::to_string(world_.tick) + since
+                   : "no world was heard" + since + ": is one running on this URL?",
                now);
   }
   const std::string who = "agent " + std::to_string(late->author.agent) +
@@ -255,7 +258,8 @@ void Coordinator::switch_coverage(RosterEntry& entry, bool forgotten) {
   const double notice_s = timing.pace == Pace::kLockstep ? 0 : kNotice_s;
   change();
   entry.forgotten = forgotten;
-  entry.since_tick = world_.tick + 1 + static_cast<Tick>(notice_s * timing.realtime_factor / timing.dt_s);
+  entry.since_tick =
+      world_.tick + 1 + static_cast<Tick>(notice_s * timing.realtime_factor / timing.dt_s);
   entry.since_revision = revisions_.current;
 }
 

@@ -14,18 +14,18 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "team/messages.h"
 #include "core/mission.h"
+#include "team/messages.h"
 #include "team/participant.h"
 
 namespace ergocast {
 
 /// The reaction of a coordinator to a mission that is already under way on its buses.
 enum class Takeover {
-  kNever,     ///< starts a mission of its own at once
+  kNever,      ///< starts a mission of its own at once
   kIfRunning,  ///< listens for a moment; leaves if a coordinator leads the mission, else takes the
-              ///< mission over, or starts its own if there is none
-  kMust,      ///< takes over, also from a running coordinator, or fails
+               ///< mission over, or starts its own if there is none
+  kMust,       ///< takes over, also from a running coordinator, or fails
 };
 
 /// The state of a present or former member of the roster.
@@ -71,7 +71,9 @@ class Coordinator {
   const std::vector<RosterEntry>& roster() const { return roster_; }
   MemberState member_state(const RosterEntry& entry, Instant now) const;
   /// Hosts and versions of agents that were refused because their version differs from ours.
-  const std::set<std::pair<std::string, std::string>>& version_mismatches() const { return newcomers_.version_mismatches; }
+  const std::set<std::pair<std::string, std::string>>& version_mismatches() const {
+    return newcomers_.version_mismatches;
+  }
   Tick tick() const { return world_.tick; }
 
  private:
@@ -109,14 +111,14 @@ class Coordinator {
     bool heard = false;
     Tick tick = 0;
     Instant tick_since{};
-    std::int64_t revision = 0;  // the roster revision of that tick
+    std::int64_t revision = 0;           // the roster revision of that tick
     std::int64_t newest_revision = 0;    // of any state, …
     std::optional<Instant> newer_since;  // … and since when it is newer than ours
     std::int64_t missed_deadlines = 0;
     std::map<AgentId, Tick> answered;
-    Incarnation begun = 0;         // the incarnation that asked last for the team's state, …
-    AgentId unheard = kUnassigned; // … the agent that it waited for in that question, …
-    Instant asked{};               // … and the time of the question
+    Incarnation begun = 0;          // the incarnation that asked last for the team's state, …
+    AgentId unheard = kUnassigned;  // … the agent that it waited for in that question, …
+    Instant asked{};                // … and the time of the question
   };
   struct Said {
     std::optional<Instant> first;  // when it began to lead

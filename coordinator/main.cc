@@ -57,8 +57,8 @@ class VersionMismatchLog {
     for (const auto& mismatch : coordinator.version_mismatches()) {
       if (!seen_.insert(mismatch).second) continue;
       const auto& [host, theirs] = mismatch;
-      spdlog::warn("agent on {} runs version {}, this mission is flown by {}: install {} there", host,
-                   theirs, version(), version());
+      spdlog::warn("agent on {} runs version {}, this mission is flown by {}: install {} there",
+                   host, theirs, version(), version());
     }
   }
 
@@ -93,11 +93,11 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   StopSignals signals;
   Coordinator coordinator({node.run, random_identity(), host_name(), version()}, std::move(plan),
                           takeover);
-  auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Coordinator::kRole),
-      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
-        coordinator.receive(message, bus, transmitter, now());
-      }});
+  auto opened =
+      Transport::open(node.url, node.run, node.seal, subscriptions_of(Coordinator::kRole),
+                      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
+                        coordinator.receive(message, bus, transmitter, now());
+                      }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;
@@ -141,16 +141,19 @@ int main(int argc, char** argv) {
   bool resume = false;
   add_node_options(app, node);
   auto* scenario =
-      app.add_option("SCENARIO", file, "Scenario file, or the name of a shipped one; not needed with --resume")
+      app.add_option("SCENARIO", file,
+                     "Scenario file, or the name of a shipped one; not needed with --resume")
           ->transform(shipped_scenario())
           ->type_name("FILE");
   Overrides overrides;
   add_override_options(app, overrides);
-  app.add_flag("--resume", resume,
-               "Take over the mission that the agents are flying, also from a living coordinator, or fail");
-  app.footer("Without --run-id and --resume: takes over this scenario's mission if it is under way "
-             "on the URL and nobody leads it, else starts a new one. Ends with code 4 if another "
-             "coordinator leads a mission there.");
+  app.add_flag(
+      "--resume", resume,
+      "Take over the mission that the agents are flying, also from a living coordinator, or fail");
+  app.footer(
+      "Without --run-id and --resume: takes over this scenario's mission if it is under way "
+      "on the URL and nobody leads it, else starts a new one. Ends with code 4 if another "
+      "coordinator leads a mission there.");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("coordinator", node.log_level);
   if (!node.seal.can_sign()) {

@@ -28,7 +28,9 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
     return;
   }
   // If two coordinators took over at once, one stays.
-  if (std::pair(part.revision, part.header.incarnation) <= std::pair(revisions_.current, me_.incarnation())) return;
+  if (std::pair(part.revision, part.header.incarnation) <=
+      std::pair(revisions_.current, me_.incarnation()))
+    return;
   if (rival_lives(arrival.now) && rival_->header.incarnation == part.header.incarnation) {
     return leave("another coordinator has taken the mission over", arrival.now);
   }
@@ -64,7 +66,8 @@ bool Coordinator::rival_leads(Instant now) const {
   const auto leads = [](MissionState state) {
     return state == MissionState::kWaiting || state == MissionState::kRunning;
   };
-  return rival_lives(now) && leads(rival_->state) && (me_.run() == 0 || rival_->header.run == me_.run());
+  return rival_lives(now) && leads(rival_->state) &&
+         (me_.run() == 0 || rival_->header.run == me_.run());
 }
 
 std::string Coordinator::led_by_rival() const {
@@ -100,7 +103,8 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
 
 Instant Coordinator::next_look() const {
   if (!search_.since) return Instant{};
-  return std::min(search_.next_question, search_.found ? *search_.found + kSecondOpinions : Instant::max());
+  return std::min(search_.next_question,
+                  search_.found ? *search_.found + kSecondOpinions : Instant::max());
 }
 
 void Coordinator::begin_own() {
@@ -132,12 +136,14 @@ void Coordinator::take_over(Instant now) {
   ending_.reason = me_.follower().reason();
   // The tick of the predecessor or the agents counts if the world has sent nothing meanwhile; the
   // world may have died, too.
-  for (const MissionPart& part : me_.follower().parts()) world_.tick = std::max(world_.tick, part.header.tick);
+  for (const MissionPart& part : me_.follower().parts())
+    world_.tick = std::max(world_.tick, part.header.tick);
   team_tick_ = std::min(team_tick_, timing().tick_count);
   world_.tick = std::max(std::min(world_.tick, timing().tick_count), team_tick_);
   // Our revision must exceed those of former successors, also those that only unreachable agents
   // know. So a later takeover gets higher revisions.
-  revisions_.current = std::max(me_.follower().revision() + kRevisionLead, (world_.tick + 1) * kRevisionLead);
+  revisions_.current =
+      std::max(me_.follower().revision() + kRevisionLead, (world_.tick + 1) * kRevisionLead);
   revisions_.who_may_join = revisions_.current;
   if (me_.follower().over()) ending_.since = now;
   world_.tick_since = now;

@@ -59,15 +59,14 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
   auto at = std::lower_bound(rows_.begin(), rows_.end(), author,
                              [](const Row& row, const Author& a) { return row.author < a; });
   if (at != rows_.end() && at->author == author) return &*at;
-  const auto incarnations = std::count_if(rows_.begin(), rows_.end(), [&](const Row& row) {
-    return row.author.agent == author.agent;
-  });
+  const auto incarnations = std::count_if(
+      rows_.begin(), rows_.end(), [&](const Row& row) { return row.author.agent == author.agent; });
   if (incarnations >= kMaxIncarnationsPerAgent) return nullptr;
   if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
   const auto blocks = static_cast<std::size_t>(block_count_);
-  return &*rows_.insert(at, Row{author, true, std::vector<Block>(blocks),
-                                std::vector<double>(blocks * kBlockSize),
-                                std::vector<double>(blocks * kBlockSize)});
+  return &*rows_.insert(
+      at, Row{author, true, std::vector<Block>(blocks), std::vector<double>(blocks * kBlockSize),
+              std::vector<double>(blocks * kBlockSize)});
 }
 
 void CoverageTable::add_row(const Author& author) {
@@ -98,9 +97,10 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   return Merge::kNewer;
 }
 
-/// Writes what `theirs` adds to the block held before; returns over how many steps, 0 if no agent can
-/// have gained that in them.
-std::int64_t CoverageTable::take_gains(const Contribution& theirs, const Block& before, Row& row) const {
+/// Writes what `theirs` adds to the block held before; returns over how many steps, 0 if no agent
+/// can have gained that in them.
+std::int64_t CoverageTable::take_gains(const Contribution& theirs, const Block& before,
+                                       Row& row) const {
   const bool comparable = before.tick >= joined_;
   const std::int64_t steps = theirs.steps - (comparable ? before.steps : 0);
   const double margin_s = static_cast<double>(theirs.steps) * dt_s_ * rounding_margin(theirs.steps);
@@ -119,7 +119,11 @@ CoverageTable::BlockView CoverageTable::view(std::size_t row, int block) const {
   const Row& one = rows_[row];
   const Block& held = one.blocks[static_cast<std::size_t>(block)];
   const std::ptrdiff_t first = std::ptrdiff_t{block} * kBlockSize;
-  return {one.sums.data() + first, one.gains.data() + first, held.steps, held.gained_steps, held.tick,
+  return {one.sums.data() + first,
+          one.gains.data() + first,
+          held.steps,
+          held.gained_steps,
+          held.tick,
           held.next_broadcast_tick - held.tick};
 }
 

@@ -25,8 +25,8 @@ class CoverageTable {
   ///                holder joined, so no block is compared with one said before that tick.
   CoverageTable(const Basis& basis, double dt_s, Tick joined = 0);
 
-  /// From now on nothing is noted of what blocks gain, and view() says that no gains are possible: for
-  /// who does not look ahead.
+  /// From now on nothing is noted of what blocks gain, and view() says that no gains are possible:
+  /// for who does not look ahead.
   void forgo_gains() { notes_gains_ = false; }
 
   int block_count() const { return block_count_; }
@@ -39,15 +39,16 @@ class CoverageTable {
   void add_sample(const Author& author, const BasisAt& at);
 
   /// Takes in one block. Refused, without effect: another number of modes, a block that does not
-  /// exist, an elapsed time that is not steps·dt, an S_00 that is not the elapsed time, |S| > elapsed
-  /// (both but for rounding, 1e-9 and half an ulp a step), more steps than `max_steps` (a forged
-  /// future would win for ever), a full table.
+  /// exist, an elapsed time that is not steps·dt, an S_00 that is not the elapsed time, |S| >
+  /// elapsed (both but for rounding, 1e-9 and half an ulp a step), more steps than `max_steps` (a
+  /// forged future would win for ever), a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
   /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.
   Contribution block(const Author& author, int block) const;
 
-  /// From now on the row of `author` does not count, even if it arrives later. It is kept and relayed.
+  /// From now on the row of `author` does not count, even if it arrives later. It is kept and
+  /// relayed.
   void forget(const Author& author);
   /// From now on the row counts again, with all blocks that arrived meanwhile.
   void remember(const Author& author);
@@ -68,7 +69,7 @@ class CoverageTable {
     std::int64_t steps;         ///< the fewest among its blocks
     std::int64_t newest_steps;  ///< the most
     Tick announced_period;
-    std::uint64_t state_hash;         ///< equal for equal steps of every block
+    std::uint64_t state_hash;  ///< equal for equal steps of every block
   };
   /// Row `i` of row_count(), in ascending order of authors.
   RowSummary holding(std::size_t i) const;
@@ -80,11 +81,11 @@ class CoverageTable {
 
   /// One block of a row, and what it has gained.
   struct BlockView {
-    const double* sums;         ///< kBlockSize of them [s]
-    const double* gains;        ///< sums less those of the block held before [s]
+    const double* sums;   ///< kBlockSize of them [s]
+    const double* gains;  ///< sums less those of the block held before [s]
     std::int64_t steps;
-    std::int64_t gained_steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their time,
-                                ///< or not noted
+    std::int64_t gained_steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their
+                                ///< time, or not noted
     Tick tick;                  ///< when it was said
     Tick period;                ///< until its author speaks again, as announced
   };

@@ -22,12 +22,12 @@ class LookAhead {
   /// Whether the mission's law looks ahead at all.
   bool any() const { return alone_s_ > 0; }
 
-  /// h = a s / (u_max √n) [s] for a team of `n`; with ends_with_plan at most the time left at `tick`,
-  /// which is 0 after the end.
+  /// h = a s / (u_max √n) [s] for a team of `n`; with ends_with_plan at most the time left at
+  /// `tick`, which is 0 after the end.
   double horizon_s(int n, Tick tick) const;
 
-  /// For how long [s] a teammate's rate over `span` ticks, last known `age` ticks ago, is assumed to
-  /// hold, past and future together:
+  /// For how long [s] a teammate's rate over `span` ticks, last known `age` ticks ago, is assumed
+  /// to hold, past and future together:
   ///   w = h + min(span dt, cap) + age dt,   0 if age dt > max(h, cap),   cap = 8 periods
   /// @param period  announced by the teammate, any number; it is limited to what the plan allows
   double weight_s(double horizon_s, Tick span, Tick age, Tick period) const;

@@ -26,15 +26,15 @@ enum class Perturbation {
 struct ControlLaw {
   double u_max_mps = 1;
   Regularization regularization = Regularization::kAbsolute;
-  double epsilon = 0;                         ///< 0 is the classical law (5), u = 0 where B = 0
+  double epsilon = 0;  ///< 0 is the classical law (5), u = 0 where B = 0
   Perturbation perturbation = Perturbation::kConstant;
-  double noise_intensity = 0;                 ///< σ [m/√s]; adaptive: its least value
-  double noise_ceiling = 0;                   ///< adaptive: its greatest value [m/√s]
-  double contraction_gain_per_s = 0;          ///< k
+  double noise_intensity = 0;         ///< σ [m/√s]; adaptive: its least value
+  double noise_ceiling = 0;           ///< adaptive: its greatest value [m/√s]
+  double contraction_gain_per_s = 0;  ///< k
   Eigen::Vector3d contraction_center_m{0, 0, 0};
-  double anticipation = 0;     ///< a of core/look_ahead.h; 0: agents answer to the known coverage c
-  bool ends_with_plan = false; ///< no agent looks beyond the mission's end
-  bool paired_pushes = false;  ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
+  double anticipation = 0;  ///< a of core/look_ahead.h; 0: agents answer to the known coverage c
+  bool ends_with_plan = false;  ///< no agent looks beyond the mission's end
+  bool paired_pushes = false;   ///< adaptive: agent 2j + 1 is pushed the opposite way of agent 2j
 
   /// What σ never exceeds [m/√s].
   double max_noise() const {
@@ -47,14 +47,14 @@ enum class OnTimeout { kEndMission, kEvict };
 
 struct Timing {
   double dt_s = 0.1;
-  Tick tick_count = 0;  ///< the mission has ticks 0 … tick_count − 1
+  Tick tick_count = 0;             ///< the mission has ticks 0 … tick_count − 1
   int broadcast_period_ticks = 1;  ///< an agent broadcasts its coverage every so many ticks
   Pace pace = Pace::kLockstep;
-  double realtime_factor = 1;         ///< mission seconds per wall second
-  double lockstep_timeout_s = 10;     ///< wall time a tick may stay unanswered
-  double command_hold_s = 0.5;        ///< mission time for which the world holds an old command
-  double admission_timeout_s = 30;    ///< wall time the quorum may take
-  int catch_up_limit_ticks = 5;       ///< late ticks the world makes up for; the rest are skipped
+  double realtime_factor = 1;       ///< mission seconds per wall second
+  double lockstep_timeout_s = 10;   ///< wall time a tick may stay unanswered
+  double command_hold_s = 0.5;      ///< mission time for which the world holds an old command
+  double admission_timeout_s = 30;  ///< wall time the quorum may take
+  int catch_up_limit_ticks = 5;     ///< late ticks the world makes up for; the rest are skipped
   OnTimeout on_timeout = OnTimeout::kEndMission;
 };
 
@@ -68,13 +68,14 @@ struct Mission {
   Timing timing;
   std::vector<Eigen::Vector3d> starts_m;  ///< where agent i begins; one per planned agent
   int quorum = 1;                         ///< agents that must be admitted before the start
-  double forget_silent_after_s = 0;       ///< wall time; 0: a silent agent's coverage counts for ever
-  double goal_ergodic_metric = 0;         ///< the goal for φ²; 0: none
-  double disturbance_intensity = 0;       ///< actuation noise in the world [m/√s]
-  double radio_range_m = 0;               ///< how far agents hear each other; 0: everywhere
-  double speed_limit_mps = 0;             ///< the limit of every vehicle; 0: none
-  bool dead_reckoning = false;            ///< whether forecasts use teammates' places, core/forecast.h
-  bool wait_for_logger = true;            ///< lockstep: the world runs a bounded number of ticks ahead of the record
+  double forget_silent_after_s = 0;  ///< wall time; 0: a silent agent's coverage counts for ever
+  double goal_ergodic_metric = 0;    ///< the goal for φ²; 0: none
+  double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
+  double radio_range_m = 0;          ///< how far agents hear each other; 0: everywhere
+  double speed_limit_mps = 0;        ///< the limit of every vehicle; 0: none
+  bool dead_reckoning = false;       ///< whether forecasts use teammates' places, core/forecast.h
+  bool wait_for_logger =
+      true;  ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
 
 /// The velocity that a vehicle executes for the command `v_mps`: the command, bit for bit, or the

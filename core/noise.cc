@@ -12,12 +12,15 @@ namespace ergocast {
 namespace {
 
 /// The top 53 bits, moved off 0 by half a unit so that a logarithm is always finite.
-double to_open_unit(std::uint64_t word) { return (static_cast<double>(word >> 11) + 0.5) * 0x1p-53; }
+double to_open_unit(std::uint64_t word) {
+  return (static_cast<double>(word >> 11) + 0.5) * 0x1p-53;
+}
 
 /// The second pair of numbers of a step has a counter that no first pair has.
 constexpr std::uint32_t kSecondPair = 0x8000'0000;
 
-RandomBits words_at(std::uint64_t seed, std::uint32_t purpose, std::uint32_t who, std::uint64_t step) {
+RandomBits words_at(std::uint64_t seed, std::uint32_t purpose, std::uint32_t who,
+                    std::uint64_t step) {
   const r123::Philox4x32::ctr_type counter = {
       {static_cast<std::uint32_t>(step), static_cast<std::uint32_t>(step >> 32), who, purpose}};
   const r123::Philox4x32::key_type key = {
@@ -44,7 +47,8 @@ Eigen::Vector2d normal_of(const Eigen::Vector2d& u) {
 
 }  // namespace
 
-RandomBits random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who, std::uint64_t step) {
+RandomBits random_words(std::uint64_t seed, Purpose purpose, std::uint32_t who,
+                        std::uint64_t step) {
   return words_at(seed, static_cast<std::uint32_t>(purpose), who, step);
 }
 

@@ -3,9 +3,9 @@
 //
 // Where agents must choose between two sides, the field does not decide: on a corner B vanishes, on
 // a midline or diagonal its part across vanishes. There the potential
-// U = Σ λ (c − μ) f, which agents descend, bends down across the set, and a deviation δ along such a
-// direction v grows by itself, δ' = −u_max (vᵀHv) / √(‖B‖² + ε²) · δ, where H = ∇B is the curvature
-// of U. Noise has to start this growth. Everywhere else it only blurs.
+// U = Σ λ (c − μ) f, which agents descend, bends down across the set, and a deviation δ along such
+// a direction v grows by itself, δ' = −u_max (vᵀHv) / √(‖B‖² + ε²) · δ, where H = ∇B is the
+// curvature of U. Noise has to start this growth. Everywhere else it only blurs.
 #pragma once
 
 #include <Eigen/Core>

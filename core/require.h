@@ -6,10 +6,10 @@
 #include <cstdlib>
 
 /// Aborts with the broken condition and its place when `condition` is false: a bug in the caller.
-#define ERGOCAST_REQUIRE(condition)                                                              \
-  do {                                                                                           \
-    if (!(condition)) {                                                                          \
-      std::fprintf(stderr, "%s:%d: broken precondition: %s\n", __FILE__, __LINE__, #condition);  \
-      std::abort();                                                                              \
-    }                                                                                            \
+#define ERGOCAST_REQUIRE(condition)                                                             \
+  do {                                                                                          \
+    if (!(condition)) {                                                                         \
+      std::fprintf(stderr, "%s:%d: broken precondition: %s\n", __FILE__, __LINE__, #condition); \
+      std::abort();                                                                             \
+    }                                                                                           \
   } while (false)

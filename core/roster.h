@@ -11,7 +11,7 @@ namespace ergocast {
 struct RosterEntry {
   Author author;
   Tick active_from = 0;
-  Tick active_until = -1;  ///< first tick without it; −1 while it is a member
+  Tick active_until = -1;           ///< first tick without it; −1 while it is a member
   bool forgotten = false;           ///< whether its coverage stops counting, or counts again, …
   Tick since_tick = 0;              ///< … from this tick on, …
   std::int64_t since_revision = 0;  ///< … once the world flies by this revision or a later one

@@ -99,7 +99,7 @@ bool hinders(const Faults& f, double patience_s) {
 }
 
 std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, int agents,
-                                double horizon_s) {
+                                     double horizon_s) {
   std::vector<FaultEvent> all;
   const auto draw = [&](Stream stream, double per_s, double max_s, auto kind_and_who) {
     RandomStream random(seed, stream);

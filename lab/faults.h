@@ -13,12 +13,12 @@ namespace ergocast::lab {
 /// Probabilities are per message and link (one transmitter, one receiver, one bus) unless they say
 /// otherwise. Times are virtual. By default nothing goes wrong.
 struct Faults {
-  double loss = 0;          ///< never arrives
-  double duplication = 0;   ///< arrives twice
-  double corruption = 0;    ///< arrives with bytes changed, cut off or added
-  double delay_mean_s = 0;  ///< every message: exponential; the order on a link is kept
-  double delay_max_s = 0;   ///< cut off there
-  double reordering = 0;    ///< held back alone, so that later ones overtake it
+  double loss = 0;              ///< never arrives
+  double duplication = 0;       ///< arrives twice
+  double corruption = 0;        ///< arrives with bytes changed, cut off or added
+  double delay_mean_s = 0;      ///< every message: exponential; the order on a link is kept
+  double delay_max_s = 0;       ///< cut off there
+  double reordering = 0;        ///< held back alone, so that later ones overtake it
   double reordering_max_s = 0;  ///< for up to so long, uniform
   double clogging = 0;          ///< begins to hold its whole link back; then all arrive at once
   double clog_max_s = 0;        ///< for up to so long, uniform
@@ -27,13 +27,13 @@ struct Faults {
   double partitions_per_s = 0;  ///< the processes fall into two parts that do not hear each other
   double partition_max_s = 0;   ///< for up to so long, uniform
   double one_way_share = 0;     ///< of the partitions: only one part is deaf to the other
-  double agent_crashes_per_s = 0;        ///< of the whole team
+  double agent_crashes_per_s = 0;  ///< of the whole team
   double coordinator_crashes_per_s = 0;
   double world_crashes_per_s = 0;
-  double downtime_max_s = 0;     ///< until a crashed process is started again, uniform
-  double clock_rate_error = 0;   ///< a process's clock goes by 1 ± so much, uniform
-  double clock_offset_max_s = 0; ///< and began up to so long before, uniform
-  double swarm_bus_only = 0;     ///< above 0: a vehicle and its agent share no radio, but a wire
+  double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
+  double clock_rate_error = 0;    ///< a process's clock goes by 1 ± so much, uniform
+  double clock_offset_max_s = 0;  ///< and began up to so long before, uniform
+  double swarm_bus_only = 0;      ///< above 0: a vehicle and its agent share no radio, but a wire
   /// Of the mission's time, until all is healed; 1: nothing is, and nobody has to recover.
   double lasting_share = 0.6;
 };
@@ -60,13 +60,13 @@ Faults drawn(std::uint64_t seed);
 struct FaultEvent {
   enum class Kind { kSplit, kOneWayCut, kAgentCrash, kCoordinatorCrash, kWorldCrash };
   Kind kind;
-  double at_s;        ///< after the mission's begin
+  double at_s;  ///< after the mission's begin
   double lasts_s;
   std::uint64_t who;  ///< splits and cuts: bit i: node i is in the first part; crash: which agent
 };
 
 /// The events of `horizon_s` seconds, by time.
 std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, int agents,
-                                double horizon_s);
+                                     double horizon_s);
 
 }  // namespace ergocast::lab

@@ -15,7 +15,8 @@ namespace ergocast::lab {
 std::string to_string(const Violation& v) {
   char t_text[32];
   std::snprintf(t_text, sizeof t_text, "%.4f", v.t_s);
-  return std::string(name_of(v.invariant)) + ": " + v.who + " at t = " + t_text + " s: " + v.numbers;
+  return std::string(name_of(v.invariant)) + ": " + v.who + " at t = " + t_text +
+         " s: " + v.numbers;
 }
 
 double recovery_bound_s(const Mission& mission, const Faults& faults) {
@@ -50,7 +51,8 @@ void Invariants::born(const Author& author) {
   ++lives_[author.agent];
 }
 
-// ---- safety: what is said ------------------------------------------------------------------------
+// ---- safety: what is said
+// ------------------------------------------------------------------------
 
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
@@ -126,8 +128,8 @@ void Invariants::check(double t_s, const Contribution& block, AgentId relayer,
       block.block == 0 && std::abs(block.sums[0] - covered_s) > covered_s * rounding(block.steps);
   if (!(largest_s <= most_s) || zeroth_is_off) {
     violate(t_s, Invariant::kSumsBounded, name_of(block.author()),
-            text("largest |S| = ", largest_s, " s, S_00 = ", block.sums[0], " s, steps dt = ",
-                 covered_s, " s, block ", block.block));
+            text("largest |S| = ", largest_s, " s, S_00 = ", block.sums[0],
+                 " s, steps dt = ", covered_s, " s, block ", block.block));
   }
   if (relayer == kUnassigned || speaker == nullptr) return;
   ++relayed_;
@@ -187,13 +189,15 @@ void Invariants::gave_up_logger(double t_s, std::optional<Tick> acknowledged, Ti
                " has reached it"));
 }
 
-// ---- liveness ------------------------------------------------------------------------------------
+// ---- liveness
+// ------------------------------------------------------------------------------------
 
 void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant now,
                              const std::vector<TableView>& living) {
   for (const TableView& holder : living) {
     const RosterEntry* entry = entry_of(coordinator.roster(), holder.self);
-    const char* taken_for = entry == nullptr ? "nobody" : to_string(coordinator.member_state(*entry, now));
+    const char* taken_for =
+        entry == nullptr ? "nobody" : to_string(coordinator.member_state(*entry, now));
     if (entry != nullptr && coordinator.member_state(*entry, now) == MemberState::kAlive) continue;
     violate(t_s, Invariant::kTheLivingAreKnown, "the coordinator",
             text("takes ", name_of(holder.self), " for ", taken_for));

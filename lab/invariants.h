@@ -19,11 +19,11 @@
 
 #include "coordinator/coordinator.h"
 #include "core/mission.h"
-#include "team/mission_follower.h"
 #include "lab/faults.h"
-#include "lab/table_view.h"
 #include "lab/shadow.h"
+#include "lab/table_view.h"
 #include "logger/recorder.h"
+#include "team/mission_follower.h"
 
 namespace ergocast::lab {
 
@@ -96,7 +96,8 @@ constexpr std::string_view name_of(Invariant invariant) {
 }
 constexpr bool all_are_named() {
   for (std::size_t i = 0; i < kInvariants.size(); ++i) {
-    if (kInvariants[i].first != static_cast<Invariant>(i) || kInvariants[i].second.empty()) return false;
+    if (kInvariants[i].first != static_cast<Invariant>(i) || kInvariants[i].second.empty())
+      return false;
   }
   return true;
 }
@@ -111,8 +112,9 @@ struct Violation {
 /// "<invariant>: <who> at t = <t_s> s: <numbers>".
 std::string to_string(const Violation& violation);
 
-/// Until a row is known a hop further: two digests, 1 s apart, the first up to 1 s after an admission;
-/// the answer waits up to 0.25 s. Whoever learns a row late passes it on late: one more round.
+/// Until a row is known a hop further: two digests, 1 s apart, the first up to 1 s after an
+/// admission; the answer waits up to 0.25 s. Whoever learns a row late passes it on late: one more
+/// round.
 inline constexpr double kHop_s = 2 * 2.25;
 
 /// Virtual time after healing by which every living agent is back in the mission and knows what
@@ -159,9 +161,9 @@ class Invariants {
   /// what the authors that still speak may not have said or delivered yet. Between two calls nobody
   /// repeats anything.
   ///
-  /// With a radio range an agent learns what another has, through others too, only where each on the
-  /// way has heard the next for long enough: then it holds what the other held that long ago. δ is
-  /// what it lacks, and repeats may go on.
+  /// With a radio range an agent learns what another has, through others too, only where each on
+  /// the way has heard the next for long enough: then it holds what the other held that long ago. δ
+  /// is what it lacks, and repeats may go on.
   void recovered(double t_s, const std::vector<TableView>& living);
   /// To be called with it: what the coordinator thinks of everybody who lives.
   void coordinated(double t_s, const Coordinator& coordinator, Instant now,
@@ -215,7 +217,7 @@ class Invariants {
   std::vector<Author> authors_;
   std::map<AgentId, int> lives_;
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
-  std::map<Author, Shadow> shadows_;  // of each life of an agent
+  std::map<Author, Shadow> shadows_;                       // of each life of an agent
   std::map<Author, std::int64_t> relays_allowed_;
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // with a radio range only, as what follows
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first
@@ -224,7 +226,7 @@ class Invariants {
     std::map<Author, std::map<Author, std::int64_t>> held;  // as held_
   };
   std::vector<Memory> memories_;  // of each call of recovered()
-  std::int64_t relayed_ = 0;  // since the last recovered()
+  std::int64_t relayed_ = 0;      // since the last recovered()
   bool recovered_ = false;
   Tick last_tick_ = -1;
   double largest_view_error_ = 0;

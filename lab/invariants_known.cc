@@ -13,7 +13,8 @@ constexpr Tick kTicksBetweenAverages = 11;
 
 }  // namespace
 
-// ---- safety: what is known -----------------------------------------------------------------------
+// ---- safety: what is known
+// -----------------------------------------------------------------------
 
 void Invariants::received(const TableView& listener, const Message& message) {
   if (mission_.law.anticipation <= 0) return;
@@ -26,7 +27,8 @@ void Invariants::answered(double t_s, const TableView& holder) {
   check_steps(t_s, holder);
   const bool looks_ahead = mission_.law.anticipation > 0 && holder.foreseen != nullptr;
   if (looks_ahead) shadows_[holder.self].answer(mission_, holder);
-  // Costs as much as the control step itself: now and then is enough to find what is wrong for good.
+  // Costs as much as the control step itself: now and then is enough to find what is wrong for
+  // good.
   if (holder.answered % kTicksBetweenAverages != 0) return;
   check_average(t_s, holder);
   if (looks_ahead) check_forecast(t_s, holder);
@@ -78,7 +80,8 @@ void Invariants::check_forecast(double t_s, const TableView& holder) {
           text("differs by ", error, " at tick ", holder.answered));
 }
 
-// ---- liveness ------------------------------------------------------------------------------------
+// ---- liveness
+// ------------------------------------------------------------------------------------
 
 /// The newest of each author's blocks that anybody holds. Forgotten rows do not count any more.
 std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
@@ -135,7 +138,8 @@ void Invariants::recovered(double t_s, const std::vector<TableView>& living) {
   check_quiet(t_s);
 }
 
-void Invariants::check_counted(double t_s, const TableView& holder, const std::vector<TableView>& living) {
+void Invariants::check_counted(double t_s, const TableView& holder,
+                               const std::vector<TableView>& living) {
   for (const TableView& other : living) {
     const RosterEntry* entry = entry_of(*holder.roster, other.self);
     if (entry == nullptr || !is_forgotten(*entry, holder)) continue;
@@ -178,16 +182,17 @@ void Invariants::check_view(double t_s, const TableView& holder,
   const double error = (c - c_true).cwiseAbs().maxCoeff();
   if (covered_s <= stale_s || error <= 2 * stale_s / (covered_s - stale_s)) return;
   violate(t_s, Invariant::kViewsAgree, name_of(holder.self),
-          text("|c - c_true| = ", error, " > ", 2 * stale_s / (covered_s - stale_s), " with ", stale_s,
-               " s of ", covered_s, " s unknown"));
+          text("|c - c_true| = ", error, " > ", 2 * stale_s / (covered_s - stale_s), " with ",
+               stale_s, " s of ", covered_s, " s unknown"));
 }
 
 void Invariants::check_rows(double t_s, const TableView& holder,
                             const std::map<Author, std::vector<Best>>& best) {
   for (const auto& [author, blocks] : best) {
-    const auto newest = std::min_element(blocks.begin(), blocks.end(), [](const Best& a, const Best& b) {
-                          return a.steps < b.steps;
-                        })->steps;
+    const auto newest =
+        std::min_element(blocks.begin(), blocks.end(), [](const Best& a, const Best& b) {
+          return a.steps < b.steps;
+        })->steps;
     const RosterEntry* entry = entry_of(*holder.roster, author);
     // Whoever a coordinator admitted that died before it told anybody else is nobody to the team.
     if (entry == nullptr) continue;
@@ -206,7 +211,8 @@ void Invariants::check_rows(double t_s, const TableView& holder,
 void Invariants::check_neighbours(double t_s, const std::vector<TableView>& living) {
   Memory& present = memories_.emplace_back(Memory{t_s, {}});
   for (const TableView& holder : living) {
-    for (const Author& author : authors_) present.held[holder.self][author] = steps_of(*holder.table, author);
+    for (const Author& author : authors_)
+      present.held[holder.self][author] = steps_of(*holder.table, author);
   }
   for (int hops = 1; hops < static_cast<int>(living.size()); ++hops) {
     const double takes_s = hops * kHop_s;
@@ -251,8 +257,8 @@ void Invariants::check_learned(double t_s, const TableView& holder, const Author
     const std::int64_t held = steps_of(*holder.table, author);
     if (held + tolerated >= then) continue;
     violate(t_s, Invariant::kEverybodyLearnsEveryRow, name_of(holder.self),
-            text("holds ", held, " steps of ", name_of(author), ", of whom ", name_of(other), ", ", hops,
-                 " hops away, has long held ", then));
+            text("holds ", held, " steps of ", name_of(author), ", of whom ", name_of(other), ", ",
+                 hops, " hops away, has long held ", then));
   }
 }
 

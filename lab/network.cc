@@ -25,8 +25,7 @@ bool quiet(const Faults& f) {
 
 }  // namespace
 
-Network::Network(std::uint64_t seed, const Faults& faults, int nodes,
-                 PacingClock::duration latency)
+Network::Network(std::uint64_t seed, const Faults& faults, int nodes, PacingClock::duration latency)
     : seed_(seed),
       faults_(faults),
       quiet_(quiet(faults)),
@@ -77,7 +76,9 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
   const auto index = static_cast<std::uint32_t>(pair) * kBusCount + static_cast<std::uint32_t>(bus);
   Link& link = links_[index];
   const RandomBits random = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);
-  const auto upper = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word >> 32)); };
+  const auto upper = [](std::uint64_t word) {
+    return unit(static_cast<std::uint32_t>(word >> 32));
+  };
   const auto lower = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word)); };
   Fate fate;
   const auto replay = uniform_pair(seed_, Purpose::kFault, kReplay | index, link.sent);
@@ -150,11 +151,18 @@ void damage(std::vector<std::byte>& bytes, std::uint64_t seed, std::uint64_t cop
   const RandomBits random = random_words(seed, Purpose::kFault, kDamage, copy);
   const std::size_t where = random.first % bytes.size();
   switch (random.second % 4) {
-    case 0: bytes.resize(where); return;
-    case 1: bytes.resize(bytes.size() + 1 + where, std::byte{0}); return;
-    case 2: bytes[where] ^= std::byte{1} << (random.second >> 2) % 8; return;
+    case 0:
+      bytes.resize(where);
+      return;
+    case 1:
+      bytes.resize(bytes.size() + 1 + where, std::byte{0});
+      return;
+    case 2:
+      bytes[where] ^= std::byte{1} << (random.second >> 2) % 8;
+      return;
     default:
-      for (std::size_t i = where; i < std::min(where + 16, bytes.size()); ++i) bytes[i] ^= std::byte{0x5a};
+      for (std::size_t i = where; i < std::min(where + 16, bytes.size()); ++i)
+        bytes[i] ^= std::byte{0x5a};
   }
 }
 

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "team/messages.h"
 #include "lab/faults.h"
+#include "team/messages.h"
 
 namespace ergocast::lab {
 
@@ -29,8 +29,8 @@ using NodeSet = std::bitset<kMaxNodes>;
 
 /// What was done to messages, counted per link.
 struct MessageFaults {
-  std::int64_t lost = 0, cut = 0, duplicated = 0, replayed = 0, corrupted = 0, delayed = 0, reordered = 0,
-               clogs = 0, clogged = 0;
+  std::int64_t lost = 0, cut = 0, duplicated = 0, replayed = 0, corrupted = 0, delayed = 0,
+               reordered = 0, clogs = 0, clogged = 0;
 };
 
 /// What comes of the bytes of a message.

@@ -15,9 +15,9 @@
 
 #include "core/basis.h"
 #include "core/ids.h"
-#include "team/messages.h"
 #include "core/mission.h"
 #include "lab/table_view.h"
+#include "team/messages.h"
 
 namespace ergocast::lab {
 

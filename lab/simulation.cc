@@ -50,8 +50,7 @@ Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std:
 void Simulation::start(NodeId id) {
   Node& node = at(id);
   const bool again = node.starts > 0;
-  const Incarnation incarnation =
-      identity(mission_, static_cast<std::uint32_t>(id), node.starts++);
+  const Incarnation incarnation = identity(mission_, static_cast<std::uint32_t>(id), node.starts++);
   if (id < agent_count_) {
     node.core = std::make_unique<Agent>(
         AgentIdentity{run_, id, incarnation, options_.host, options_.version});
@@ -107,7 +106,8 @@ SimulationCounts Simulation::counts() const {
   return counts;
 }
 
-// ---- time ----------------------------------------------------------------------------------------
+// ---- time
+// ----------------------------------------------------------------------------------------
 
 void Simulation::run(PacingClock::duration limit) {
   while (now_.time_since_epoch() < limit && step()) {
@@ -154,7 +154,8 @@ void Simulation::advance(NodeId id) {
   (observer_ != nullptr ? *observer_ : nobody).advanced(id, next <= local);
 }
 
-// ---- messages ------------------------------------------------------------------------------------
+// ---- messages
+// ------------------------------------------------------------------------------------
 
 void Simulation::publish(NodeId from) {
   if (outbox_.empty()) return;
@@ -166,9 +167,9 @@ void Simulation::publish(NodeId from) {
     if (std::holds_alternative<Refusal>(*decoded)) continue;
     note(from, said);
     const AgentId sender = header_of(said.message).sender;
-    const int corrupted = network_.send(
-        now_, from, on_bus_[static_cast<std::size_t>(said.bus)], said.bus,
-        said.relayer != kUnassigned ? said.relayer : sender, std::move(decoded));
+    const int corrupted =
+        network_.send(now_, from, on_bus_[static_cast<std::size_t>(said.bus)], said.bus,
+                      said.relayer != kUnassigned ? said.relayer : sender, std::move(decoded));
     for (int i = 0; i < corrupted; ++i) {
       damaged_ = bytes_;
       damage(damaged_, mission_.seed, static_cast<std::uint64_t>(network_.counted().corrupted - i));

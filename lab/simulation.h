@@ -3,9 +3,9 @@
 // Everything follows from the plan, its seed and the faults.
 //
 // A step jumps to the next event, delivers what is due and advances every process that heard
-// something or wakes up. Without latency and faults, messages arrive in the order in which they were
-// sent, and before time passes. simulation.cc has time and messages, simulation_faults.cc what is
-// done to processes and links.
+// something or wakes up. Without latency and faults, messages arrive in the order in which they
+// were sent, and before time passes. simulation.cc has time and messages, simulation_faults.cc what
+// is done to processes and links.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,8 @@ struct SimulationOptions {
   SubscriptionTable subscriptions = kSubscriptions;  ///< what tests take away is not heard
   std::string host = "laboratory";
   PacingClock::duration latency{};  ///< of a message that nothing happens to
-  /// For tests: whether a message that `to` subscribes to does not reach it. Healing does not end it.
+  /// For tests: whether a message that `to` subscribes to does not reach it. Healing does not end
+  /// it.
   std::function<bool(const Message&, NodeId to)> drop{};
 };
 
@@ -64,8 +65,8 @@ class SimulationObserver {
   /// Also what the process does not subscribe to, or what is dropped.
   virtual void arrives(NodeId, const Message&) {}
   virtual void received(NodeId, const Message&) {}
-  /// `hurries`: the process asks to be woken at a time that has passed. It would run at full load, and
-  /// time would not pass here: unless this is overridden, it throws std::logic_error.
+  /// `hurries`: the process asks to be woken at a time that has passed. It would run at full load,
+  /// and time would not pass here: unless this is overridden, it throws std::logic_error.
   virtual void advanced(NodeId, bool hurries);
   virtual void healed() {}
 };
@@ -78,8 +79,8 @@ class Simulation {
   Simulation(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics,
              SimulationObserver* observer = nullptr);
 
-  /// Passes on to the next event, at most to `until`. False, and nothing happens, once everybody has
-  /// finished, or waits for what never comes.
+  /// Passes on to the next event, at most to `until`. False, and nothing happens, once everybody
+  /// has finished, or waits for what never comes.
   bool step(Instant until = Instant::max());
   /// Until nothing happens any more, or `limit` of virtual time has passed.
   void run(PacingClock::duration limit = PacingClock::duration::max());
@@ -115,8 +116,8 @@ class Simulation {
   Tick last_tick() const { return last_tick_; }
   /// The last tick was published, or a coordinator has said the end.
   bool mission_over() const { return end_said_ || last_tick_ >= mission_.timing.tick_count; }
-  /// The last moment at which a process was down or cut off, or messages were so late or so few that
-  /// nobody can tell.
+  /// The last moment at which a process was down or cut off, or messages were so late or so few
+  /// that nobody can tell.
   std::optional<Instant> hindered() const { return hindered_; }
   SimulationCounts counts() const;
 

@@ -93,7 +93,9 @@ void Simulation::begin(const FaultEvent& event) {
     case kCoordinatorCrash:
       counts_.coordinator_crashes += crash(coordinator_node(), event.lasts_s);
       return;
-    case kWorldCrash: counts_.world_crashes += crash(world_node(), event.lasts_s); return;
+    case kWorldCrash:
+      counts_.world_crashes += crash(world_node(), event.lasts_s);
+      return;
   }
 }
 

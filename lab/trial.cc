@@ -81,13 +81,15 @@ class Trial : SimulationObserver {
   std::optional<Instant> failed_since_;
   Tick excused_ = 0;  // ticks whose states may have been kept from the logger
   Instant next_check_ = Instant::max(), deadline_ = Instant::max();
-  std::optional<Tick> acknowledged_;  // by the logger, as far as it has reached the world that lives
-  bool logger_lost_ = false;          // says that world
+  std::optional<Tick>
+      acknowledged_;          // by the logger, as far as it has reached the world that lives
+  bool logger_lost_ = false;  // says that world
   double recovery_sum_s_ = 0;
   TrialFigures figures_;
 };
 
-// ---- what happens --------------------------------------------------------------------------------
+// ---- what happens
+// --------------------------------------------------------------------------------
 
 void Trial::started(NodeId node, Incarnation incarnation, bool again) {
   if (is_agent(node)) {
@@ -161,7 +163,8 @@ void Trial::healed() {
                                     (1 - faults_.clock_rate_error));
 }
 
-// ---- who is back ---------------------------------------------------------------------------------
+// ---- who is back
+// ---------------------------------------------------------------------------------
 
 void Trial::expect_back(NodeId node) {
   Recovery recovery{simulation_.now(), {}};
@@ -193,8 +196,13 @@ void Trial::look_for_recovery(NodeId node) {
 
 TableView Trial::view_of(NodeId node) const {
   const Agent& agent = simulation_.agent(node);
-  return {agent.author(), agent.coverage(), &agent.team_coverage(), &agent.follower().roster(),
-          agent.tick(), agent.roster_revision(), &agent.foreseen_coverage()};
+  return {agent.author(),
+          agent.coverage(),
+          &agent.team_coverage(),
+          &agent.follower().roster(),
+          agent.tick(),
+          agent.roster_revision(),
+          &agent.foreseen_coverage()};
 }
 
 /// Of all agents that are up. Who has reached the plan's end has finished.
@@ -207,7 +215,8 @@ std::vector<TableView> Trial::views(bool also_finished) const {
   return views;
 }
 
-// ---- judgement -----------------------------------------------------------------------------------
+// ---- judgement
+// -----------------------------------------------------------------------------------
 
 void Trial::check_coordinator() {
   const NodeId node = simulation_.coordinator_node();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One mission under faults, held against all invariants.
 //
-// The first Faults::lasting_share of the mission is the safety half. Then all is healed at once: faults off,
-// crashed processes started, links whole (clocks stay skewed); the rest is the liveness half.
+// The first Faults::lasting_share of the mission is the safety half. Then all is healed at once:
+// faults off, crashed processes started, links whole (clocks stay skewed); the rest is the liveness
+// half.
 #pragma once
 
 #include <cstdint>

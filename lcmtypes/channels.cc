@@ -12,8 +12,8 @@ namespace ergocast {
 namespace {
 
 constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames = {
-    "ERGOCAST_HELLO", "ERGOCAST_MISSION",     "ERGOCAST_CONTRIBUTION", "ERGOCAST_AGENT_STATUS",
-    "ERGOCAST_TEAM_STATUS", "ERGOCAST_STOP",  "ERGOCAST_WORLD_STATE",  "ERGOCAST_COMMAND",
+    "ERGOCAST_HELLO",       "ERGOCAST_MISSION", "ERGOCAST_CONTRIBUTION", "ERGOCAST_AGENT_STATUS",
+    "ERGOCAST_TEAM_STATUS", "ERGOCAST_STOP",    "ERGOCAST_WORLD_STATE",  "ERGOCAST_COMMAND",
     "ERGOCAST_RECORD_ACK",  "ERGOCAST_DIGEST"};
 
 template <class T>
@@ -61,14 +61,16 @@ const std::string& channel_of(const Message& message, AgentId relayer) {
 std::span<const ChannelName> channel_names() {
   static const auto stems = [] {
     std::array<std::string, kNames.size()> all;
-    for (std::size_t kind = 0; kind < kNames.size(); ++kind) all[kind] = std::string(kNames[kind]) + "_";
+    for (std::size_t kind = 0; kind < kNames.size(); ++kind)
+      all[kind] = std::string(kNames[kind]) + "_";
     return all;
   }();
   static const auto names = []<std::size_t... Kind>(std::index_sequence<Kind...>) {
     return std::array{(kPerAgent<std::variant_alternative_t<Kind, Message>>
                            ? ChannelName{stems[Kind], true}
                            : ChannelName{kNames[Kind], false})...};
-  }(std::make_index_sequence<kNames.size()>());
+  }
+  (std::make_index_sequence<kNames.size()>());
   return names;
 }
 

@@ -69,7 +69,7 @@ Decoder entry() {
 
 const Decoder* decoder_for(std::uint64_t wanted) {
   static const std::array kDecoders = {
-      entry<Contribution>(), entry<WorldState>(), entry<Command>(),    entry<AgentStatus>(),
+      entry<Contribution>(), entry<WorldState>(),  entry<Command>(),    entry<AgentStatus>(),
       entry<RecordAck>(),    entry<MissionPart>(), entry<TeamStatus>(), entry<Hello>(),
       entry<Stop>(),         entry<Digest>()};
   const auto at = std::find_if(kDecoders.begin(), kDecoders.end(), [&](const Decoder& decoder) {
@@ -95,8 +95,9 @@ void encode(const Message& message, std::vector<std::byte>& out, const MessageAu
       message);
 }
 
-std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run, const MessageAuthenticator& seal,
-                                      std::string_view channel, KnownSignatures* known) noexcept {
+std::variant<Message, Refusal> decode(std::span<const std::byte> bytes, RunId run,
+                                      const MessageAuthenticator& seal, std::string_view channel,
+                                      KnownSignatures* known) noexcept {
   if (bytes.size() < kHeaderEnd || bytes.size() > kMaxDatagramBytes) return Refusal::kSize;
   const Decoder* decoder = decoder_for(read64(bytes.data()));
   if (decoder == nullptr) return Refusal::kType;

@@ -66,7 +66,8 @@ Tag keyed_hash_of(const MaskedBytes& message, std::string_view channel, const Mi
 
 }  // namespace
 
-MessageAuthenticator::MessageAuthenticator(const MissionKey& key) : key_(std::make_shared<const MissionKey>(key)) {
+MessageAuthenticator::MessageAuthenticator(const MissionKey& key)
+    : key_(std::make_shared<const MissionKey>(key)) {
   ERGOCAST_REQUIRE(sodium_init() >= 0);
 }
 
@@ -80,7 +81,8 @@ std::uint64_t MessageAuthenticator::fingerprint() const {
   return fingerprint;
 }
 
-void MessageAuthenticator::close(std::span<std::byte> bytes, bool has_signature, std::string_view channel) const {
+void MessageAuthenticator::close(std::span<std::byte> bytes, bool has_signature,
+                                 std::string_view channel) const {
   if (has_signature && keyed() && key_->signing) sign(bytes);
   const MaskedBytes message(bytes, kTagBytes);
   const Tag tag = keyed() ? keyed_hash_of(message, channel, *key_) : hash_of(message);
@@ -98,7 +100,7 @@ void MessageAuthenticator::sign(std::span<std::byte> bytes) const {
 }
 
 std::optional<Refusal> MessageAuthenticator::check_tag(std::span<const std::byte> bytes,
-                                       std::string_view channel) const {
+                                                       std::string_view channel) const {
   const MaskedBytes message(bytes, kTagBytes);
   const auto fits = [&bytes](const Tag& tag) {
     return sodium_memcmp(tag.data(), bytes.data() + kTagOffset, kTagBytes) == 0;
@@ -108,13 +110,14 @@ std::optional<Refusal> MessageAuthenticator::check_tag(std::span<const std::byte
   return keyed() && fits(hash_of(message)) ? Refusal::kUnkeyed : Refusal::kTag;
 }
 
-bool MessageAuthenticator::signature_holds(std::span<const std::byte> bytes, KnownSignatures* known) const {
+bool MessageAuthenticator::signature_holds(std::span<const std::byte> bytes,
+                                           KnownSignatures* known) const {
   if (!keyed()) return true;
   if (bytes.size() < kHeaderEnd + sizeof(Signature)) return false;
   if (known != nullptr && known->contains(bytes)) return true;
   const MaskedBytes message(bytes, kUnsignedBytes);
-  const bool holds = crypto_sign_verify_detached(raw(bytes) + kHeaderEnd, message.data(), message.size(),
-                                                 raw(key_->coordinator)) == 0;
+  const bool holds = crypto_sign_verify_detached(raw(bytes) + kHeaderEnd, message.data(),
+                                                 message.size(), raw(key_->coordinator)) == 0;
   if (holds && known != nullptr) known->add(bytes);
   return holds;
 }

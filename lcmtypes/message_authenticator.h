@@ -76,7 +76,8 @@ class MessageAuthenticator {
 
   /// Nothing if the tag is valid, or kTag, or kUnkeyed for a sender without a key.
   /// @pre kHeaderEnd to kMaxDatagramBytes bytes
-  std::optional<Refusal> check_tag(std::span<const std::byte> bytes, std::string_view channel) const;
+  std::optional<Refusal> check_tag(std::span<const std::byte> bytes,
+                                   std::string_view channel) const;
   /// Whether the holder of the signing key has signed it; true without a key.
   /// @param known  valid signatures, to skip the check and to extend; may be null
   /// @pre check_tag() found nothing wrong

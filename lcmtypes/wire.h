@@ -127,7 +127,9 @@ class Reader {
   }
   void count(std::int64_t& value) { number(value), holds(value >= 0 && value <= kMostEver); }
   void capped_count(std::int64_t& value) { count(value); }
-  void count_or_none(std::int64_t& value) { number(value), holds(value >= -1 && value <= kMostEver); }
+  void count_or_none(std::int64_t& value) {
+    number(value), holds(value >= -1 && value <= kMostEver);
+  }
   void finite(double& value) { number(value), holds(std::isfinite(value)); }
   void quantity(double& value) { number(value), holds(std::isfinite(value) && value >= 0); }
   void within(std::int32_t& value, std::int32_t least, std::int32_t most) {

@@ -47,10 +47,12 @@ std::variant<Past, std::string> read_past(const fs::path& folder) {
   const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
   const bool known = std::holds_alternative<Mission>(decode_plan(past.plan));
   if (!known && (begun || !past.plan.empty())) {
-    return (folder / kPlanFile).string() + ": missing or not readable, so nobody can tell which mission's "
-                                           "record this is; copy it back, or choose another folder with --out";
+    return (folder / kPlanFile).string() +
+           ": missing or not readable, so nobody can tell which mission's "
+           "record this is; copy it back, or choose another folder with --out";
   }
-  if (damage) spdlog::warn("{}; the record goes on in a fresh segment, with what stands before", *damage);
+  if (damage)
+    spdlog::warn("{}; the record goes on in a fresh segment, with what stands before", *damage);
   return past;
 }
 
@@ -115,7 +117,9 @@ class RunLogger {
     note(problem);
     if (events_.removed() > 0 && !removal_said_) {
       removal_said_ = true;
-      spdlog::warn("the event log has reached its limit: from now on its oldest segment goes for each new one");
+      spdlog::warn(
+          "the event log has reached its limit: from now on its oldest segment goes for each new "
+          "one");
     }
   }
 
@@ -141,7 +145,8 @@ class RunLogger {
     context.refused = transport.refused();
     context.kernel_drops = transport.kernel_drops();
     context.cpu_has_fma = cpu_has_fma();
-    const auto problem = write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context)));
+    const auto problem =
+        write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context)));
     if (problem) note(problem);
   }
 
@@ -157,7 +162,8 @@ class RunLogger {
     stuck_ = problem.has_value();
     if (stuck_) {
       ++interruptions_;
-      spdlog::error("{}; the team goes on, and the record will once it can be written again", *problem);
+      spdlog::error("{}; the team goes on, and the record will once it can be written again",
+                    *problem);
     } else {
       spdlog::warn("the record can be written again and goes on at tick {}", recorder_.next_row());
     }
@@ -198,21 +204,25 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLi
   std::optional<Past> past;
   if (resume) {
     auto read = read_past(folder);
-    if (const auto* problem = std::get_if<std::string>(&read)) return refuse(kExitBadInput, *problem);
+    if (const auto* problem = std::get_if<std::string>(&read))
+      return refuse(kExitBadInput, *problem);
     past = std::get<Past>(std::move(read));
   }
   auto created = resume ? RunRecord::go_on(folder) : RunRecord::create(folder);
-  if (const auto* problem = std::get_if<std::string>(&created)) return refuse(kExitBadInput, *problem);
+  if (const auto* problem = std::get_if<std::string>(&created))
+    return refuse(kExitBadInput, *problem);
   RunLogger logger(node.run, *std::get<0>(created), std::move(past), limits);
   Recorder& recorder = logger.recorder();
   auto opened = Transport::open(
       node.url, node.run, node.seal, subscriptions_of(Recorder::kRole),
-      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
-         recorder.receive(message, bus, transmitter, now());
-       },
-       .on_accepted = [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
-         logger.keep_event(bus, channel, bytes);
-       }});
+      {.on_message =
+           [&](const Message& message, Bus bus, AgentId transmitter) {
+             recorder.receive(message, bus, transmitter, now());
+           },
+       .on_accepted =
+           [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
+             logger.keep_event(bus, channel, bytes);
+           }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     logger.discard();
     return refuse(kExitUnavailable, *problem);
@@ -225,15 +235,17 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLi
   live(recorder, transport, signals, stop, [&] {
     transport.set_run(recorder.run());
     if (const auto& mission = recorder.follower().mission()) {
-      transport.limit_agents(allowance_of(*mission, recorder.follower().roster().size()), recorder.newest());
+      transport.limit_agents(allowance_of(*mission, recorder.follower().roster().size()),
+                             recorder.newest());
     }
     logger.attend(now());
     if (watch.look(now())) logger.flush(now());
   });
   if (logger.wrong_mission()) {
     logger.discard();
-    return refuse(kExitBadInput, folder.string() + ": the record here is of another mission than the "
-                                                   "one that is heard; choose another folder with --out");
+    return refuse(kExitBadInput, folder.string() +
+                                     ": the record here is of another mission than the "
+                                     "one that is heard; choose another folder with --out");
   }
   if (const auto& problem = recorder.follower().plan_problem()) {
     logger.discard();
@@ -264,7 +276,8 @@ int main(int argc, char** argv) {
   app.add_option("--out", folder, "Existing folder, without a record unless it is resumed")
       ->required()
       ->check(CLI::ExistingDirectory);
-  app.add_flag("--resume", resume, "Go on with the record of this mission in the folder, if there is one");
+  app.add_flag("--resume", resume,
+               "Go on with the record of this mission in the folder, if there is one");
   std::int64_t event_log_mib = kEventLogMib;
   add_event_log_option(app, event_log_mib);
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;

@@ -19,8 +19,8 @@ class Observer {
   /// A member was at `x_m` for a tick. Places outside of the domain cover nothing.
   void see(const Mission& mission, const Eigen::Vector3d& x_m) {
     if (!mission.domain.contains(x_m)) return;
-    accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis, mission.timing.dt_s,
-                     sums_s_.data());
+    accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis,
+                     mission.timing.dt_s, sums_s_.data());
     covered_s_ += mission.timing.dt_s;
   }
   bool has_seen_any() const { return covered_s_ > 0; }

@@ -48,9 +48,7 @@ bool Recorder::State::complete() const {
 
 Recorder::Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory,
                    std::ostream& metrics)
-    : me_(kRole, {run, kLogger, incarnation}),
-      trajectory_(trajectory),
-      metrics_(metrics) {
+    : me_(kRole, {run, kLogger, incarnation}), trajectory_(trajectory), metrics_(metrics) {
   ERGOCAST_REQUIRE(writing());
   trajectory_ << kTrajectoryHeader << '\n';
   metrics_ << kMetricsHeader << '\n';
@@ -208,7 +206,8 @@ void Recorder::write_rows(Instant now) {
 
 void Recorder::acknowledge(Instant now, Outbox& out) {
   const Tick recorded = next_row_ - 1;
-  const bool progress = recorded > acked_.tick + kAckEveryTicks - 1 || (ending_.finished && recorded > acked_.tick);
+  const bool progress =
+      recorded > acked_.tick + kAckEveryTicks - 1 || (ending_.finished && recorded > acked_.tick);
   if (!progress && now < acked_.next) return;
   trajectory_.flush();
   metrics_.flush();
@@ -274,7 +273,8 @@ bool Recorder::write_next_row() {
 
 /// Whether a state that may be lost for good is missing and newer ones have arrived.
 bool Recorder::gap_ahead() const {
-  if (!me_.knows_mission() || next_row_ >= mission().timing.tick_count || states_.empty()) return false;
+  if (!me_.knows_mission() || next_row_ >= mission().timing.tick_count || states_.empty())
+    return false;
   const Tick missing = holds(next_row_) ? next_row_ + 1 : next_row_;
   return states_.rbegin()->first > missing && (!is_lockstep() || missing < heard_.lost_before);
 }

@@ -54,14 +54,15 @@ std::optional<std::string> read_table(
                      : "expected 7 numbers separated by commas, found " + in_quotes(line);
     }
     if (damage) continue;
-    damage = wrong ? lines.place() + *wrong + ": copy the file again from where it was recorded, or "
-                                              "cut it off before this line"
+    damage = wrong ? lines.place() + *wrong +
+                         ": copy the file again from where it was recorded, or "
+                         "cut it off before this line"
                    : lines.problem();
   } while (lines.skip_segment());
   return damage;
 }
 
-constexpr double kExact = 0x1p53;    // larger whole numbers are not all doubles
+constexpr double kExact = 0x1p53;     // larger whole numbers are not all doubles
 constexpr double kMostSaid = 0x1p62;  // more than all agents together can report
 
 bool is_count(double value, double most = kExact) {
@@ -115,10 +116,12 @@ std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_
 }
 
 std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run) {
-  const auto trajectory = read_table({run_dir, kTrajectoryFile, kTrajectoryHeader},
-                                     [&run](const Fields& fields) { return add_point(run, fields); });
-  const auto metrics = read_table({run_dir, kMetricsFile, kMetricsHeader},
-                                  [&run](const Fields& fields) { return add_metrics(run, fields); });
+  const auto trajectory =
+      read_table({run_dir, kTrajectoryFile, kTrajectoryHeader},
+                 [&run](const Fields& fields) { return add_point(run, fields); });
+  const auto metrics =
+      read_table({run_dir, kMetricsFile, kMetricsHeader},
+                 [&run](const Fields& fields) { return add_metrics(run, fields); });
   return trajectory ? trajectory : metrics;
 }
 

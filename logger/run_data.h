@@ -58,8 +58,7 @@ std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_
 std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run);
 
 /// Visits trajectory.csv's rows in their order: ascending by tick, then by agent.
-void for_each_row(const RunData& run,
-                  const std::function<void(AgentId, const TrackPoint&)>& visit);
+void for_each_row(const RunData& run, const std::function<void(AgentId, const TrackPoint&)>& visit);
 
 /// φ² over the last decade of time, as slope.h fits it.
 std::optional<PowerLaw> fit_last_decade(const RunData& run);

@@ -44,7 +44,8 @@ int segment_count(const fs::path& folder) {
   return count;
 }
 
-RunRecord::RunRecord(fs::path folder, int segment) : folder_(std::move(folder)), segment_(segment) {}
+RunRecord::RunRecord(fs::path folder, int segment)
+    : folder_(std::move(folder)), segment_(segment) {}
 
 RunRecord::Created RunRecord::create(const fs::path& folder) {
   return begin(folder, 0,
@@ -76,7 +77,8 @@ fs::path RunRecord::trajectory_file() const {
 fs::path RunRecord::metrics_file() const { return segment_file(folder_, kMetricsFile, segment_); }
 
 std::optional<std::string> RunRecord::flush() {
-  for (auto [stream, file] : {std::pair{&trajectory_, trajectory_file()}, {&metrics_, metrics_file()}}) {
+  for (auto [stream, file] :
+       {std::pair{&trajectory_, trajectory_file()}, {&metrics_, metrics_file()}}) {
     stream->clear();
     if (!stream->flush()) return error_at(file, stream->error());
   }

@@ -47,7 +47,8 @@ std::optional<PowerLaw> fit_last_decade(std::span<const double> t_s,
     log_t.push_back(std::log(t_s[i]));
     log_value.push_back(std::log(values[i]));
   }
-  if (log_t.size() < kFewestRows || log_t.back() - log_t.front() < std::log(kShortestSpan)) return {};
+  if (log_t.size() < kFewestRows || log_t.back() - log_t.front() < std::log(kShortestSpan))
+    return {};
 
   PowerLaw law;
   const std::vector<double> share = shares(log_t);

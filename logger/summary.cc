@@ -25,12 +25,13 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 Json agents(const Recorder& recorder) {
   Json list = Json::array();
   for (const RosterEntry& entry : recorder.follower().roster()) {
-    Json agent{{"id", entry.author.agent},
-               {"incarnation", to_hex(entry.author.incarnation)},
-               {"active_from", entry.active_from},
-               {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)},
-               {"forgotten", entry.forgotten},
-               {"coverage_switched_at", entry.since_tick > 0 ? Json(entry.since_tick) : Json(nullptr)}};
+    Json agent{
+        {"id", entry.author.agent},
+        {"incarnation", to_hex(entry.author.incarnation)},
+        {"active_from", entry.active_from},
+        {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)},
+        {"forgotten", entry.forgotten},
+        {"coverage_switched_at", entry.since_tick > 0 ? Json(entry.since_tick) : Json(nullptr)}};
     const auto known = recorder.statuses().find(entry.author);
     if (known != recorder.statuses().end()) {
       const AgentStatus& status = known->second;
@@ -66,7 +67,10 @@ Json messages(const Recorder& recorder, const RunContext& context) {
   for (std::size_t i = 0; i < refused.size(); ++i) {
     reasons[to_string(static_cast<Refusal>(i))] = refused[i];
   }
-  return {{"sent", sent}, {"received", received}, {"lost", lost}, {"kernel_drops", drops},
+  return {{"sent", sent},
+          {"received", received},
+          {"lost", lost},
+          {"kernel_drops", drops},
           {"refused", std::move(reasons)}};
 }
 
@@ -92,8 +96,8 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
 std::string reason_of(const Recorder& recorder) {
   const RunFacts& facts = recorder.facts();
   const auto agents = static_cast<double>(recorder.follower().roster().size());
-  const double share =
-      static_cast<double>(facts.missed_deadlines) / std::max(1.0, static_cast<double>(facts.ticks) * agents);
+  const double share = static_cast<double>(facts.missed_deadlines) /
+                       std::max(1.0, static_cast<double>(facts.ticks) * agents);
   if (share < kNotableShare) return recorder.reason();
   char text[80];
   std::snprintf(text, sizeof text, "; %.0f %% of the commands came too late for their tick",
@@ -105,12 +109,9 @@ std::string reason_of(const Recorder& recorder) {
 
 Json summarize(const Recorder& recorder, const RunContext& context) {
   const RunFacts& facts = recorder.facts();
-  Json summary{{"run_id", to_hex(context.run)},
-               {"result", recorder.result()},
-               {"reason", reason_of(recorder)},
-               {"started", context.started},
-               {"version", context.version},
-               {"build", context.build},
+  Json summary{{"run_id", to_hex(context.run)}, {"result", recorder.result()},
+               {"reason", reason_of(recorder)}, {"started", context.started},
+               {"version", context.version},    {"build", context.build},
                {"cpu_fma", context.cpu_has_fma}};
   const auto& mission = recorder.follower().mission();
   if (mission) add_mission(*mission, context, summary);

@@ -7,23 +7,23 @@
 #include <string>
 #include <variant>
 
-#include "team/messages.h"
 #include "logger/recorder.h"
+#include "team/messages.h"
 
 namespace ergocast {
 
 /// The facts that the recorder cannot know.
 struct RunContext {
   RunId run = 0;
-  std::string started;        ///< wall-clock time, ISO 8601
+  std::string started;  ///< wall-clock time, ISO 8601
   std::string version, build;
   std::string scenario_hash;  ///< of the compiled plan
   bool simulated = false;     ///< in one process, without a network
   double wall_time_s = 0;     ///< of the current segment
   int segments = 1;
-  int interruptions = 0;      ///< how often the files could not be written for a time
-  int events_removed = 0;     ///< segments of the event log, removed because of its limit
-  RefusalCounts refused{};    ///< by the recording process
+  int interruptions = 0;    ///< how often the files could not be written for a time
+  int events_removed = 0;   ///< segments of the event log, removed because of its limit
+  RefusalCounts refused{};  ///< by the recording process
   std::int64_t kernel_drops = 0;
   bool cpu_has_fma = false;
 };

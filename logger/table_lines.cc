@@ -28,8 +28,9 @@ bool TableLines::open_next() {
   }
   in_ = std::ifstream(file_, std::ios::binary);
   if (in_) return true;
-  problem_ = file_.string() + ": cannot be opened: give the directory of a run, with trajectory.csv "
-                              "and metrics.csv readable in it";
+  problem_ = file_.string() +
+             ": cannot be opened: give the directory of a run, with trajectory.csv "
+             "and metrics.csv readable in it";
   return false;
 }
 

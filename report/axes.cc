@@ -54,13 +54,13 @@ std::vector<AxisMark> log_marks(const Axis& axis) {
     for (int digit = 1; digit <= 9; ++digit) {
       const double value = digit * std::pow(10, decade);
       if (value * kSlack < axis.low || value > axis.high * kSlack) continue;
-      const bool labelled =
-          digit == 1 ? decade % stride == 0 : few && (digit == 2 || digit == 5);
+      const bool labelled = digit == 1 ? decade % stride == 0 : few && (digit == 2 || digit == 5);
       if (!labelled && stride > 1) continue;
       std::string label;
       if (labelled && digit == 1) label = power_of_ten(decade, plain);
       if (labelled && digit != 1) {
-        label = plain ? readable(value) : std::to_string(digit) + " × " + power_of_ten(decade, false);
+        label =
+            plain ? readable(value) : std::to_string(digit) + " × " + power_of_ten(decade, false);
       }
       result.push_back({value, label});
     }

@@ -23,7 +23,7 @@ struct Axis {
   std::string title;
   double low = 0, high = 1;
   Scale scale = Scale::kLinear;
-  double label_unit = 1;  ///< labels are values divided by this
+  double label_unit = 1;             ///< labels are values divided by this
   std::vector<std::string> names{};  ///< names of the values 1, 2 …; if any, the only marks
 
   /// 0 at the low end, 1 at the high end.

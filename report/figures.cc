@@ -10,17 +10,20 @@ namespace ergocast {
 
 std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target) {
   const Coefficients coverage = coverage_of(run, mission);
-  return {trajectories_figure(run, mission, target), metric_figure(run, mission),
-          coverage_figure(coverage, mission),        coefficients_figure(coverage, mission),
-          speeds_figure(run, mission),               communication_figure(run, mission)};
+  return {trajectories_figure(run, mission, target),
+          metric_figure(run, mission),
+          coverage_figure(coverage, mission),
+          coefficients_figure(coverage, mission),
+          speeds_figure(run, mission),
+          communication_figure(run, mission)};
 }
 
 std::string conventions_line(const Basis& basis) {
   const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
   return std::string("λ = (1 + |k|") + (squared ? "²" : "") + ")^−" +
          readable(basis.sobolev_exponent) + ", f " + (basis.normalized ? "" : "not ") +
-         "divided by hₖ, " + std::to_string(basis.modes_x) + " × " +
-         std::to_string(basis.modes_y) + " modes";
+         "divided by hₖ, " + std::to_string(basis.modes_x) + " × " + std::to_string(basis.modes_y) +
+         " modes";
 }
 
 std::string agent_color(AgentId agent) {

@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "core/mission.h"
-#include "report/raster.h"
 #include "logger/run_data.h"
+#include "report/raster.h"
 #include "report/svg.h"
 
 namespace ergocast {
 
 struct Figure {
-  std::string name;     ///< of its file, without ".svg"
+  std::string name;  ///< of its file, without ".svg"
   std::string title;
   std::string caption;  ///< what it shows, in a sentence or two; plain text
   std::string svg;
-  bool wide = false;    ///< needs the width of two other figures
+  bool wide = false;  ///< needs the width of two other figures
 };
 
 /// The agents' tracks over the target density: crosses are starts, circles are ends.

@@ -16,7 +16,8 @@ constexpr const char* kNarrowSpace = "\u202f";
 
 std::string plain_fixed(double value, int decimals) {
   char text[400];
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
   return {text, end.ptr};
 }
 
@@ -32,7 +33,7 @@ std::string typeset(std::string digits) {
   if (negative) digits.erase(0, 1);
   const std::size_t whole = std::min(digits.find('.'), digits.size());
   if (whole >= 5) {
-    for (std::size_t i = whole - 3; i > 0 && i < whole; i = i > 3 ? i - 3 : 0) {
+    for (std::size_t i = whole - 3; i > 0 && i<whole; i = i> 3 ? i - 3 : 0) {
       digits.insert(i, kNarrowSpace);
     }
   }
@@ -54,11 +55,21 @@ std::string escape(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
       default:
         if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') {
           out += "\ufffd";
@@ -124,7 +135,9 @@ std::string power_of_ten(int exponent, bool plain) {
 
 double text_width(std::string_view text, double size) {
   constexpr double kMeanAdvance = 0.56;  // of the size, for digits and lower case
-  const auto starts_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
+  const auto starts_character = [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  };
   const auto characters = std::count_if(text.begin(), text.end(), starts_character);
   return kMeanAdvance * size * static_cast<double>(characters);
 }

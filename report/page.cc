@@ -44,8 +44,9 @@ std::string result_line(const Json& summary) {
   if (result == "failed") word = "Failed", css_class = "failed";
   if (text.empty() && result == "done") text = "The mission came to its last tick.";
   if (summary.is_null()) {
-    text = "There is no summary.json: the run has not ended yet or was killed. What was recorded "
-           "up to then is shown.";
+    text =
+        "There is no summary.json: the run has not ended yet or was killed. What was recorded "
+        "up to then is shown.";
   }
   return "<p class=\"result " + css_class + "\"><b>" + word + ".</b> " + text + "</p>\n";
 }
@@ -66,10 +67,10 @@ std::optional<std::string> slope_text(const RunData& run) {
 
 std::string cards(const RunData& run, const Mission& mission, const Json& summary) {
   Facts facts("cards");
-  facts.add("φ², first → last",
-            run.metrics.empty() ? "–"
-                                : readable(run.metrics.front().ergodic_metric) + " → " +
-                                      readable(run.metrics.back().ergodic_metric));
+  facts.add("φ², first → last", run.metrics.empty()
+                                    ? "–"
+                                    : readable(run.metrics.front().ergodic_metric) + " → " +
+                                          readable(run.metrics.back().ergodic_metric));
   facts.add("φ² falls like", slope_text(run));
   facts.add("ticks", ticks_text(run, mission));
   facts.add("mission time", duration(run.end_s()));
@@ -104,20 +105,18 @@ double path_length_m(const Track& track) {
 }
 
 std::string motion_table(const RunData& run) {
-  std::vector<Column> columns{{"agent", true},        {"start [m]", false},
-                              {"end [m]", false},     {"distance", false},
-                              {"mean speed", false},  {"ticks", false}};
+  std::vector<Column> columns{{"agent", true},     {"start [m]", false},  {"end [m]", false},
+                              {"distance", false}, {"mean speed", false}, {"ticks", false}};
   for (const auto& [agent, track] : run.tracks) {
     const double length_m = path_length_m(track), time_s = track.back().t_s - track.front().t_s;
     const std::string dot =
         "<span class=\"dot\" style=\"background:" + agent_color(agent) + "\"></span>";
-    const std::vector<std::string> cells{
-        dot + std::to_string(agent),
-        point_text(track.front().x_m),
-        point_text(track.back().x_m),
-        with_unit(length_m, "m"),
-        time_s > 0 ? with_unit(length_m / time_s, "m/s") : "–",
-        readable(static_cast<double>(track.size()))};
+    const std::vector<std::string> cells{dot + std::to_string(agent),
+                                         point_text(track.front().x_m),
+                                         point_text(track.back().x_m),
+                                         with_unit(length_m, "m"),
+                                         time_s > 0 ? with_unit(length_m / time_s, "m/s") : "–",
+                                         readable(static_cast<double>(track.size()))};
     for (std::size_t i = 0; i < cells.size(); ++i) columns[i].cells.push_back(cells[i]);
   }
   return table(std::move(columns), run.tracks.size());
@@ -220,10 +219,11 @@ std::string conventions_section(const Mission& mission) {
   Facts facts("facts");
   facts.add("metric", basis.normalized ? sum + " / h<sub>k</sub>²" : sum);
   facts.add("weights", weights_text(basis));
-  facts.add("basis", "f<sub>mn</sub> = cos(mπx/L<sub>x</sub>) cos(nπy/L<sub>y</sub>) from the "
-                     "domain’s lower left corner, m = 0 … " +
-                         std::to_string(basis.modes_x - 1) + ", n = 0 … " +
-                         std::to_string(basis.modes_y - 1));
+  facts.add("basis",
+            "f<sub>mn</sub> = cos(mπx/L<sub>x</sub>) cos(nπy/L<sub>y</sub>) from the "
+            "domain’s lower left corner, m = 0 … " +
+                std::to_string(basis.modes_x - 1) + ", n = 0 … " +
+                std::to_string(basis.modes_y - 1));
   facts.add("h<sub>k</sub>", basis.normalized
                                  ? "√(Π L<sub>i</sub> · (½)<sup>[k<sub>i</sub> &gt; 0]</sup>)"
                                  : "not used: f is not normalised");
@@ -235,8 +235,9 @@ std::string conventions_section(const Mission& mission) {
   facts.add("time step", readable(mission.timing.dt_s) +
                              " s; a recorded row is the position at its tick, and the command "
                              "computed there");
-  facts.add("maps", "Σ c<sub>k</sub> f<sub>k</sub> with f of unit norm, in multiples of the "
-                    "uniform density");
+  facts.add("maps",
+            "Σ c<sub>k</sub> f<sub>k</sub> with f of unit norm, in multiples of the "
+            "uniform density");
   return "<section><h2>Conventions</h2>\n<p>A φ² can be compared with another only if the "
          "weights, the modes and h<sub>k</sub> are the same.</p>\n" +
          facts.html() + "</section>\n";
@@ -252,12 +253,14 @@ std::string identity_section(const Json& summary) {
   if (!mode || *mode != "realtime") {
     commands += "# simulate it again and compare every position\nergocast verify .\n";
   }
-  commands += "# the same mission as a new run\n"
-              "ergocast simulate scenario.textproto --out ../again\n"
-              "# make this page again\nergocast report .\n";
+  commands +=
+      "# the same mission as a new run\n"
+      "ergocast simulate scenario.textproto --out ../again\n"
+      "# make this page again\nergocast report .\n";
   if (mode && *mode != "simulate") {
-    commands += "# send its messages again, as for lcm-spy, on a port of their own\n"
-                "lcm-logplayer --lcm-url=\"udpm://239.255.76.67:7777?ttl=0\" -s 0.1 events-000.lcm\n";
+    commands +=
+        "# send its messages again, as for lcm-spy, on a port of their own\n"
+        "lcm-logplayer --lcm-url=\"udpm://239.255.76.67:7777?ttl=0\" -s 0.1 events-000.lcm\n";
   }
   return "<section><h2>How to reproduce</h2>\n<p>In the run’s directory:</p>\n<pre>" + commands +
          "</pre>\n" + facts.html() + "</section>\n";
@@ -270,19 +273,18 @@ std::string figures_section(const std::vector<Figure>& figures) {
   for (const Figure& figure : figures) {
     html += std::string("<figure") + (figure.wide ? " class=\"wide\"" : "") + "><h2>" +
             escape(figure.title) + "</h2>\n<div class=\"scroll\">" + figure.svg +
-            "</div><figcaption>" +
-            escape(figure.caption) + "</figcaption></figure>\n";
+            "</div><figcaption>" + escape(figure.caption) + "</figcaption></figure>\n";
   }
   return html + "</section>\n";
 }
 
-std::string framed_page(const std::string& title, const std::string& kind, const std::string& header,
-                        const std::string& content) {
+std::string framed_page(const std::string& title, const std::string& kind,
+                        const std::string& header, const std::string& content) {
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n";
   html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
   html += element("title", escape(title) + " – Ergocast") + element("style", kPageStyle);
-  html += "</head><body><main>\n<header><p>" + escape(kind) + "</p>\n" + element("h1", escape(title)) +
-          header + "</header>\n";
+  html += "</head><body><main>\n<header><p>" + escape(kind) + "</p>\n" +
+          element("h1", escape(title)) + header + "</header>\n";
   return html + content + "</main></body></html>\n";
 }
 
@@ -296,9 +298,9 @@ std::string report_page(const RunData& run, const Mission& mission, const Json& 
   origin.add("run", said(summary, "run_id"));
   origin.add("scenario hash", said(summary, "scenario_hash"));
 
-  const std::string content = cards(run, mission, summary) + origin.html() + figures_section(figures) +
-                              agents_section(run, summary) + conventions_section(mission) +
-                              identity_section(summary);
+  const std::string content = cards(run, mission, summary) + origin.html() +
+                              figures_section(figures) + agents_section(run, summary) +
+                              conventions_section(mission) + identity_section(summary);
   return framed_page(mission.name.empty() ? "unnamed mission" : mission.name, "Ergocast run",
                      result_line(summary), content);
 }

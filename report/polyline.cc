@@ -72,9 +72,9 @@ Polyline thin_columns(const Polyline& points) {
     const double column = std::floor(points[begin].x());
     while (end < points.size() && std::floor(points[end].x()) == column) ++end;
     const auto first = points.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto [low, high] = std::minmax_element(
-        first, points.begin() + static_cast<std::ptrdiff_t>(end),
-        [](const auto& a, const auto& b) { return a.y() < b.y(); });
+    const auto [low, high] =
+        std::minmax_element(first, points.begin() + static_cast<std::ptrdiff_t>(end),
+                            [](const auto& a, const auto& b) { return a.y() < b.y(); });
     std::array<std::size_t, 4> picked{begin, static_cast<std::size_t>(low - points.begin()),
                                       static_cast<std::size_t>(high - points.begin()), end - 1};
     std::sort(picked.begin(), picked.end());

@@ -2,11 +2,11 @@
 // Reads record, summary and target, draws the figures, and writes them and the page.
 #include "report/report.h"
 
-#include "report/figures.h"
-#include "report/page.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "report/figures.h"
+#include "report/page.h"
 #include "report/target_density.h"
 
 namespace ergocast {
@@ -28,8 +28,8 @@ std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& r
   for (const Figure& figure : figures) {
     files.push_back({fs::path("figures") / (figure.name + ".svg"), figure.svg});
   }
-  files.push_back({kReportFile, report_page(data, mission, std::get<nlohmann::ordered_json>(summary),
-                                            figures)});
+  files.push_back({kReportFile,
+                   report_page(data, mission, std::get<nlohmann::ordered_json>(summary), figures)});
   return files;
 }
 

@@ -116,7 +116,8 @@ class Filter {
 
   /// All kept datagrams arrive here, with the offset of the message in X.
   void drop_repeats(std::span<const Repeated> flooded) {
-    for (const std::size_t from : keeps_) code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
+    for (const std::size_t from : keeps_)
+      code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
     load(BPF_LD | BPF_W | BPF_IND, kSequenceAt);
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0));
     end(kKeepAll);  // no sender has reached so high a sequence
@@ -134,7 +135,8 @@ class Filter {
       });
     }
     end(kKeepAll);
-    for (const std::size_t from : repeats) code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
+    for (const std::size_t from : repeats)
+      code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
     load(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_RANDOM));
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, UINT32_MAX / kShareThatPasses, 0, 1));
     end(0);

@@ -7,11 +7,11 @@
 #include <functional>
 #include <utility>
 
-#include "team/messages.h"
 #include "runtime/clock.h"
 #include "runtime/loop_lag.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
+#include "team/messages.h"
 
 namespace ergocast {
 
@@ -43,8 +43,9 @@ void live(Core& core, Transport& transport, StopSignals& signals,
 }
 
 template <class Core>
-void live(Core& core, Transport& transport, StopSignals& signals,
-          const std::function<void()>& on_signal, const std::function<void()>& each_turn = [] {}) {
+void live(
+    Core& core, Transport& transport, StopSignals& signals, const std::function<void()>& on_signal,
+    const std::function<void()>& each_turn = [] {}) {
   LoopLag nobody_asks;
   live(core, transport, signals, on_signal, each_turn, nobody_asks);
 }

@@ -162,9 +162,9 @@ std::optional<std::string> write_key_file(const std::filesystem::path& file,
     return name + ": " + std::strerror(errno) +
            (exists ? "; choose another name, or remove it when no team uses it any more" : "");
   }
-  const bool written = ::write(created.fd(), text.data(), text.size()) ==
-                           static_cast<ssize_t>(text.size()) &&
-                       ::fsync(created.fd()) == 0;
+  const bool written =
+      ::write(created.fd(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      ::fsync(created.fd()) == 0;
   if (written) return std::nullopt;
   const std::string why = std::strerror(errno);
   ::unlink(file.c_str());

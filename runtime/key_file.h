@@ -28,6 +28,7 @@ std::string key_text(const MissionKey& key, bool for_coordinator);
 std::variant<MissionKey, std::string> read_key_file(const std::filesystem::path& file);
 
 /// Writes a file that only its owner may read; never replaces one. An error names the remedy.
-std::optional<std::string> write_key_file(const std::filesystem::path& file, const std::string& text);
+std::optional<std::string> write_key_file(const std::filesystem::path& file,
+                                          const std::string& text);
 
 }  // namespace ergocast

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <utility>
 
-#include "text/read_number.h"
 #include "runtime/socket.h"
+#include "text/read_number.h"
 
 namespace ergocast {
 namespace {
@@ -88,8 +88,7 @@ std::variant<LcmUrl, std::string> LcmUrl::parse(std::string_view text) {
   if (colon == rest.npos) return wrong("the port is missing");
   url.group = rest.substr(0, colon);
   in_addr group{};
-  if (inet_pton(AF_INET, url.group.c_str(), &group) != 1 ||
-      !IN_MULTICAST(ntohl(group.s_addr))) {
+  if (inet_pton(AF_INET, url.group.c_str(), &group) != 1 || !IN_MULTICAST(ntohl(group.s_addr))) {
     return wrong("the group must be an IPv4 multicast address, 224.0.0.0 to 239.255.255.255");
   }
   const auto port = number(rest.substr(colon + 1), 1, 65533);
@@ -117,7 +116,8 @@ std::optional<std::string> why_unreachable(const LcmUrl& url) {
       "  ip link set lo up\n"
       "  ip link set lo multicast on\n"
       "  ip route add 224.0.0.0/4 dev lo      # one host; several: the interface they share\n"
-      "Check: ip route get " + url.group;
+      "Check: ip route get " +
+      url.group;
   const auto failed = [&](const char* what) {
     return url.base() + ": " + what + ": " + std::strerror(errno) + "\n" + remedy;
   };
@@ -145,10 +145,12 @@ std::optional<std::string> why_unreachable(const LcmUrl& url) {
   }
   pollfd ready{socket.fd(), POLLIN, 0};
   if (poll(&ready, 1, 1000) == 1) return std::nullopt;
-  return url.base() + ": a datagram to the group did not come back within 1 s\n"
+  return url.base() +
+         ": a datagram to the group did not come back within 1 s\n"
          "A firewall drops what comes in. As root:\n"
          "  nft list ruleset\n"
-         "Check: ergocast doctor --lcm-url '" + url.base() + "'";
+         "Check: ergocast doctor --lcm-url '" +
+         url.base() + "'";
 }
 
 std::optional<PortReservation> PortReservation::take(RunId run) {

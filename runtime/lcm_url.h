@@ -21,8 +21,8 @@ inline constexpr int kLastBasePort = 26997;
 struct LcmUrl {
   std::string group = "239.255.76.67";
   int base_port = 7667;
-  int ttl = 0;                    ///< 0 stays on this host, 1 reaches the local network
-  int receive_buffer_bytes = 0;   ///< 0: LCM's default
+  int ttl = 0;                   ///< 0 stays on this host, 1 reaches the local network
+  int receive_buffer_bytes = 0;  ///< 0: LCM's default
 
   /// The URL, or what is wrong with it and how to write it.
   static std::variant<LcmUrl, std::string> parse(std::string_view text);

@@ -14,10 +14,10 @@
 #include <ctime>
 #include <sstream>
 
-#include "text/likeness.h"
-#include "text/printable.h"
 #include "runtime/key_file.h"
 #include "runtime/logging.h"
+#include "text/likeness.h"
+#include "text/printable.h"
 
 namespace ergocast {
 namespace {
@@ -42,8 +42,9 @@ void read_run_id(const std::string& text, RunId& run) {
 void refuse_empty_key_variable(const CLI::Option& option) {
   const char* file = std::getenv(kKeyVariable);
   if (file == nullptr || *file != '\0' || option.count() > 0) return;
-  throw CLI::ValidationError(kKeyVariable, "is set, and empty; name the key file in it, or unset it to "
-                                           "fly without a key");
+  throw CLI::ValidationError(kKeyVariable,
+                             "is set, and empty; name the key file in it, or unset it to "
+                             "fly without a key");
 }
 
 /// "did you mean NAME?", or how to list all names.
@@ -66,7 +67,8 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
         for (const std::string& name : one->get_lnames()) names.push_back("--" + name);
       }
       if (std::find(names.begin(), names.end(), option) != names.end()) continue;
-      return command->get_name() + ": there is no option " + option + "; " + remedy_for(option, names);
+      return command->get_name() + ": there is no option " + option + "; " +
+             remedy_for(option, names);
     }
     const auto commands = command->get_subcommands([](const CLI::App*) { return true; });
     if (commands.empty() || word.starts_with('-')) continue;
@@ -92,29 +94,32 @@ void add_url_option(CLI::App& app, LcmUrl& url) {
 }
 
 void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file) {
-  const CLI::Option* option = app.add_option_function<std::string>(
-         "--key-file",
-         [&seal, file](const std::string& name) {
-           if (name.empty()) {
-             throw CLI::ValidationError("--key-file", "no name; leave it out to fly without a key");
-           }
-           const auto key = read_key_file(name);
-           if (const auto* problem = std::get_if<std::string>(&key)) {
-             throw CLI::ValidationError("--key-file", *problem);
-           }
-           seal = MessageAuthenticator(std::get<MissionKey>(key));
-           if (file != nullptr) *file = name;
-         },
-         "Mission key of the team, as `ergocast keygen` writes it; without one, anybody on the "
-         "network can speak for the team")
-      ->envname(kKeyVariable)
-      ->type_name("FILE");
+  const CLI::Option* option =
+      app.add_option_function<std::string>(
+             "--key-file",
+             [&seal, file](const std::string& name) {
+               if (name.empty()) {
+                 throw CLI::ValidationError("--key-file",
+                                            "no name; leave it out to fly without a key");
+               }
+               const auto key = read_key_file(name);
+               if (const auto* problem = std::get_if<std::string>(&key)) {
+                 throw CLI::ValidationError("--key-file", *problem);
+               }
+               seal = MessageAuthenticator(std::get<MissionKey>(key));
+               if (file != nullptr) *file = name;
+             },
+             "Mission key of the team, as `ergocast keygen` writes it; without one, anybody on the "
+             "network can speak for the team")
+          ->envname(kKeyVariable)
+          ->type_name("FILE");
   app.parse_complete_callback([option] { refuse_empty_key_variable(*option); });
 }
 
 std::string cannot_sign(const std::string& key_file) {
-  return key_file + ": cannot begin or end missions; take the file NAME.coordinator.key that "
-                    "`ergocast keygen` wrote together with it";
+  return key_file +
+         ": cannot begin or end missions; take the file NAME.coordinator.key that "
+         "`ergocast keygen` wrote together with it";
 }
 
 void add_bus_options(CLI::App& app, BusOptions& options) {

@@ -23,8 +23,8 @@ enum ExitCode {
 
 struct BusOptions {
   LcmUrl url;
-  RunId run = 0;  ///< 0: not given
-  MessageAuthenticator seal;      ///< without a key unless one was given
+  RunId run = 0;              ///< 0: not given
+  MessageAuthenticator seal;  ///< without a key unless one was given
   std::string key_file;
 };
 

@@ -22,7 +22,8 @@ constexpr double kOthersPerSecond = 40;
 constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
 double parts(std::size_t count, int of) {
-  const std::size_t whole = (count + static_cast<std::size_t>(of) - 1) / static_cast<std::size_t>(of);
+  const std::size_t whole =
+      (count + static_cast<std::size_t>(of) - 1) / static_cast<std::size_t>(of);
   return static_cast<double>(whole);
 }
 
@@ -39,7 +40,8 @@ RateBudget allowance_of(const Mission& mission, std::size_t members) {
   allowance.per_tick = kMargin * (blocks / timing.broadcast_period_ticks + 1 +
                                   (1 + digests + relayed) * std::min(1.0, timing.dt_s));
   allowance.per_second = kMargin * (repeats * (blocks + 1) + relayed + digests + kOthersPerSecond);
-  allowance.most = kBacklog_s * allowance.per_second + kBacklogTicks * allowance.per_tick + kBacklogMessages;
+  allowance.most =
+      kBacklog_s * allowance.per_second + kBacklogTicks * allowance.per_tick + kBacklogMessages;
   return allowance;
 }
 

@@ -14,10 +14,10 @@
 #include <span>
 #include <vector>
 
-#include "team/liveness.h"
 #include "core/ids.h"
-#include "team/messages.h"
 #include "runtime/datagram_filter.h"
+#include "team/liveness.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

@@ -18,11 +18,14 @@ namespace {
 
 /// Explains refusals caused by keys, with the likely fault in the hosts of a team.
 std::string key_advice(const RefusalCounts& refused, bool keyed) {
-  const auto some = [&refused](Refusal kind) { return refused[static_cast<std::size_t>(kind)] > 0; };
+  const auto some = [&refused](Refusal kind) {
+    return refused[static_cast<std::size_t>(kind)] > 0;
+  };
   std::string advice;
   if (some(Refusal::kUnkeyed)) advice += "; unkeyed: somebody speaks without our --key-file";
   if (some(Refusal::kUnsigned)) {
-    advice += "; unsigned: somebody without the coordinator's --key-file tries to begin or end missions";
+    advice +=
+        "; unsigned: somebody without the coordinator's --key-file tries to begin or end missions";
   }
   if (some(Refusal::kTag)) {
     advice += keyed ? "; tag: damaged, or somebody has another --key-file"
@@ -35,15 +38,17 @@ std::string key_advice(const RefusalCounts& refused, bool keyed) {
 
 TrafficWatch::TrafficWatch(Transport& transport) : transport_(transport) {
   if (!transport.filtered()) {
-    spdlog::warn("the kernel does not keep foreign datagrams from LCM, which some can crash: "
-                 "`ergocast doctor` names a firewall rule that does");
+    spdlog::warn(
+        "the kernel does not keep foreign datagrams from LCM, which some can crash: "
+        "`ergocast doctor` names a firewall rule that does");
   }
 }
 
 bool TrafficWatch::look(Instant now) {
   if (now < next_look_) return false;
   next_look_ = now + 1s;
-  if (transport_.renew_membership()) spdlog::warn("listening on another network interface from now on");
+  if (transport_.renew_membership())
+    spdlog::warn("listening on another network interface from now on");
   kernel_drops_ = transport_.kernel_drops();
   warn_of_unknown_format(now);
   const RefusalCounts& refused = transport_.refused();
@@ -52,8 +57,8 @@ bool TrafficWatch::look(Instant now) {
   std::string reasons;
   for (std::size_t i = 0; i < refused.size(); ++i) {
     if (refused[i] == 0) continue;
-    reasons += std::string(" ") + to_string(static_cast<Refusal>(i)) + '=' +
-               std::to_string(refused[i]);
+    reasons +=
+        std::string(" ") + to_string(static_cast<Refusal>(i)) + '=' + std::to_string(refused[i]);
   }
   if (refused != logged_) {
     spdlog::warn("messages refused since the start:{}{}", reasons,
@@ -62,19 +67,23 @@ bool TrafficWatch::look(Instant now) {
   constexpr auto kRate = static_cast<std::size_t>(Refusal::kRate);
   const std::int64_t repeated = refused[kRate] - transport_.over_rate();
   if (transport_.over_rate() != logged_over_rate_) {
-    spdlog::warn("agent {} babbles: it sends more than eight times what the mission asks of an agent, "
-                 "and the rest is refused; stop it, or mend its program",
-                 transport_.rate_offender());
+    spdlog::warn(
+        "agent {} babbles: it sends more than eight times what the mission asks of an agent, "
+        "and the rest is refused; stop it, or mend its program",
+        transport_.rate_offender());
   }
   if (repeated != logged_repeats_) {
-    spdlog::warn("somebody repeats what the team has said, far more often than it would, and the rest "
-                 "is refused: look for who records on this network");
+    spdlog::warn(
+        "somebody repeats what the team has said, far more often than it would, and the rest "
+        "is refused: look for who records on this network");
   }
   logged_over_rate_ = transport_.over_rate();
   logged_repeats_ = repeated;
   if (kernel_drops_ != logged_drops_) {
-    spdlog::warn("the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "
-                 "recv_buf_size in the URL", kernel_drops_);
+    spdlog::warn(
+        "the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "
+        "recv_buf_size in the URL",
+        kernel_drops_);
   }
   logged_ = refused;
   logged_drops_ = kernel_drops_;
@@ -86,8 +95,10 @@ void TrafficWatch::warn_of_unknown_format(Instant now) {
   if (unknown.count == warned_unknown_ || now < next_warning_) return;
   warned_unknown_ = unknown.count;
   next_warning_ = now + 10s;
-  spdlog::warn("{} arrives in a format that version {} does not know: another version of Ergocast is "
-               "on this URL", unknown.channel, version());
+  spdlog::warn(
+      "{} arrives in a format that version {} does not know: another version of Ergocast is "
+      "on this URL",
+      unknown.channel, version());
 }
 
 }  // namespace ergocast

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/ids.h"
-#include "team/messages.h"
 #include "runtime/transport.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

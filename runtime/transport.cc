@@ -68,7 +68,9 @@ class LcmTransport final : public Transport {
 
   void set_run(RunId run) override { run_ = run; }
   void publish(const Outgoing& outgoing) override;
-  void limit_agents(const RateBudget& allowance, Tick tick) override { rates_.allow(allowance, tick); }
+  void limit_agents(const RateBudget& allowance, Tick tick) override {
+    rates_.allow(allowance, tick);
+  }
   Instant deliver_until(Instant deadline, int wake_fd) override;
   bool keyed() const override { return seal_.keyed(); }
   bool filtered() const override { return filtered_; }
@@ -114,7 +116,7 @@ class LcmTransport final : public Transport {
   KnownSignatures signatures_;
   std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
   std::array<Line, kBusCount> lines_{};
-  std::vector<pollfd> ready_;             // the listened buses, then the caller's descriptor
+  std::vector<pollfd> ready_;  // the listened buses, then the caller's descriptor
   std::vector<lcm::LCM*> listened_;
   std::optional<GroupMembership> membership_;
   std::vector<std::byte> bytes_;
@@ -135,7 +137,8 @@ std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscr
     // Runs LCM's self test: a subscription after a failed test would abort the process later.
     const int fd = buses_[at]->getFileno();
     if (fd < 0) {
-      return url.of(bus) + ": " + scarce.value_or(std::string("LCM's self test failed\n") + kFirewall);
+      return url.of(bus) + ": " +
+             scarce.value_or(std::string("LCM's self test failed\n") + kFirewall);
     }
     const auto sockets = sockets_at(url.base_port + b, 1);
     for (const int socket : sockets) {
@@ -230,8 +233,8 @@ void LcmTransport::take(Line& line, const lcm::ReceiveBuffer* buffer,
 Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
   using std::chrono::nanoseconds;
   const Instant start = now();
-  const nanoseconds wait = deadline <= start ? nanoseconds(0)
-                                             : std::min<nanoseconds>(deadline - start, kLongestWait);
+  const nanoseconds wait =
+      deadline <= start ? nanoseconds(0) : std::min<nanoseconds>(deadline - start, kLongestWait);
   ready_.back().fd = wake_fd;
   const timespec timeout{static_cast<time_t>(wait.count() / 1000000000),
                          static_cast<long>(wait.count() % 1000000000)};

@@ -13,11 +13,11 @@
 #include <variant>
 
 #include "core/ids.h"
-#include "team/messages.h"
-#include "team/subscriptions.h"
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 #include "runtime/rate_limit.h"
+#include "team/messages.h"
+#include "team/subscriptions.h"
 
 namespace ergocast {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "target/raster_integral.h"
-#include "target/map_file.h"
 #include "scenario/convert.h"
+#include "target/map_file.h"
+#include "target/raster_integral.h"
 
 namespace ergocast {
 namespace {
@@ -129,8 +129,8 @@ class TargetCompiler {
     const double error = normalized(sum_).error_bound;
     if (error <= kMaxTargetError) return;
     checks_.problem("target",
-                    "its coefficients can be off by " + shortest(error) +
-                        ", more than the limit " + shortest(kMaxTargetError),
+                    "its coefficients can be off by " + shortest(error) + ", more than the limit " +
+                        shortest(kMaxTargetError),
                     "use wider or less correlated Gaussians");
   }
 

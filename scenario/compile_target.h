@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "target/density_picture.h"
 #include "scenario/checks.h"
 #include "scenario/scenario.pb.h"
+#include "target/density_picture.h"
 
 namespace ergocast {
 

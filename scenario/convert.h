@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/mission.h"
-#include "target/target.h"
 #include "scenario/scenario.pb.h"
+#include "target/target.h"
 
 namespace ergocast {
 

@@ -75,8 +75,8 @@ constexpr int kReckonedPeriodTicks = 10;
 /// How far ahead agents look, and how often they broadcast, if the law is ours and not the paper's.
 void fill_foresight(proto::Scenario& scenario) {
   proto::Law& law = *scenario.mutable_law();
-  const bool is_ours = law.regularization() == proto::Law::RELATIVE &&
-                       law.perturbation() == proto::Law::ADAPTIVE;
+  const bool is_ours =
+      law.regularization() == proto::Law::RELATIVE && law.perturbation() == proto::Law::ADAPTIVE;
   if (!law.has_anticipation()) law.set_anticipation(is_ours ? kAnticipation : 0);
   const bool looks_ahead = is_ours && law.anticipation() > 0;
   if (!law.has_ends_with_plan()) law.set_ends_with_plan(looks_ahead);

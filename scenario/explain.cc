@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "text/likeness.h"
 #include "scenario/scenario.pb.h"
+#include "text/likeness.h"
 
 namespace ergocast {
 namespace {
@@ -104,7 +104,8 @@ Problem wrong_value(const std::string& subject, const std::string& text,
 }  // namespace
 
 std::optional<MeantField> field_meant(const Descriptor& message, const std::string& wrong) {
-  if (const FieldDescriptor* near = nearest_field(message, wrong)) return MeantField{"", near->name()};
+  if (const FieldDescriptor* near = nearest_field(message, wrong))
+    return MeantField{"", near->name()};
   const std::string block = block_with(*proto::Scenario::descriptor(), wrong, "");
   if (block.empty()) return std::nullopt;
   return MeantField{block, wrong};

@@ -23,8 +23,8 @@ int side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector
 
 struct Edge {
   Eigen::Vector2d from, to;
-  int ring;       // 0: the outline; then the holes
-  int number;     // its index in the ring
+  int ring;    // 0: the outline; then the holes
+  int number;  // its index in the ring
 };
 
 bool boxes_apart(const Edge& e, const Edge& f) {
@@ -80,11 +80,11 @@ std::optional<PolygonFlaw> flaw_of_ring(const Ring& ring, int hole) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const std::size_t next = (i + 1) % ring.size();
     if (ring[i] != ring[next]) continue;
-    return PolygonFlaw{hole,
-                       "vertices[" + std::to_string(i) + "] and vertices[" + std::to_string(next) +
-                           "] are the same",
-                       next == 0 ? "leave out the last: a ring closes by itself"
-                                 : "leave out one of them"};
+    return PolygonFlaw{
+        hole,
+        "vertices[" + std::to_string(i) + "] and vertices[" + std::to_string(next) +
+            "] are the same",
+        next == 0 ? "leave out the last: a ring closes by itself" : "leave out one of them"};
   }
   return {};
 }
@@ -130,10 +130,10 @@ std::optional<PolygonFlaw> flaw_of(const Polygon& polygon, double min_area_m2) {
   if (auto flaw = flaw_of_holes(polygon)) return flaw;
   const double area = area_m2(polygon);
   if (area >= min_area_m2) return {};
-  return PolygonFlaw{-1,
-                     "its area, " + shortest(area) + " m², is below the limit " +
-                         shortest(min_area_m2) + " m²",
-                     "widen it"};
+  return PolygonFlaw{
+      -1,
+      "its area, " + shortest(area) + " m², is below the limit " + shortest(min_area_m2) + " m²",
+      "widen it"};
 }
 
 }  // namespace ergocast

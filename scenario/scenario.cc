@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs the steps text, defaults, validation, target and plan, and stops at the first step that
 // finds problems.
-#include "text/regular_file.h"
 #include "scenario/scenario.h"
 
 #include <fstream>
@@ -16,6 +15,7 @@
 #include "scenario/text.h"
 #include "scenario/validate.h"
 #include "scenario/warnings.h"
+#include "text/regular_file.h"
 
 namespace ergocast {
 namespace {

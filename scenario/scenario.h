@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "target/density_picture.h"
 #include "core/mission.h"
+#include "target/density_picture.h"
 
 namespace ergocast {
 

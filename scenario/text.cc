@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "scenario/explain.h"
 #include "scenario/error_recovery.h"
+#include "scenario/explain.h"
 #include "scenario/utf8.h"
 
 namespace ergocast {

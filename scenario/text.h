@@ -15,7 +15,8 @@ namespace ergocast {
 /// @return false if the text cannot be read: `scenario` is then unusable
 bool read_text(std::string_view text, proto::Scenario& scenario, Findings& findings);
 
-/// Every set field. Doubles in the fewest digits that read back exactly; a start or vertex takes one line.
+/// Every set field. Doubles in the fewest digits that read back exactly; a start or vertex takes
+/// one line.
 std::string print_text(const proto::Scenario& scenario);
 
 }  // namespace ergocast

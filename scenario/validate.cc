@@ -17,11 +17,11 @@
 namespace ergocast {
 namespace {
 
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
 using limits::kMaxOriginPerSize;
 using limits::kMaxTicks;
 using limits::kMinWallStep_s;
-using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
 
 constexpr std::size_t kMaxDescriptionBytes = 2000;
 
@@ -101,7 +101,8 @@ class Validator {
     const bool is_x = field.name().ends_with("x_m");
     const double low_m = is_x ? domain.origin_x_m() : domain.origin_y_m();
     const double size_m = is_x ? domain.size_x_m() : domain.size_y_m();
-    if (!rule.range.contains(low_m) || !(size_m > 0) || !rule.range.contains(size_m)) return "in the domain";
+    if (!rule.range.contains(low_m) || !(size_m > 0) || !rule.range.contains(size_m))
+      return "in the domain";
     return "in the domain, " + shortest(low_m) + " to " + shortest(low_m + size_m);
   }
 
@@ -286,8 +287,10 @@ class Validator {
   void starts() {
     const proto::Domain& domain = scenario_.domain();
     // Each axis separately: a problem of one hides no problem of the other.
-    const bool x_known = domain.has_size_x_m() && sound("domain.origin_x_m") && sound("domain.size_x_m");
-    const bool y_known = domain.has_size_y_m() && sound("domain.origin_y_m") && sound("domain.size_y_m");
+    const bool x_known =
+        domain.has_size_x_m() && sound("domain.origin_x_m") && sound("domain.size_x_m");
+    const bool y_known =
+        domain.has_size_y_m() && sound("domain.origin_y_m") && sound("domain.size_y_m");
     for (int i = 0; i < scenario_.agents().starts_size(); ++i) {
       const proto::Start& start = scenario_.agents().starts(i);
       const std::string path = indexed("agents.starts", i);

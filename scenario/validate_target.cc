@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "target/map_file.h"
 #include "scenario/convert.h"
 #include "scenario/polygon_flaw.h"
+#include "target/map_file.h"
 
 namespace ergocast {
 namespace {
@@ -49,10 +49,10 @@ class TargetValidator {
  private:
   void at_most(const std::string& what, int count, int limit) {
     if (count <= limit) return;
-    checks_.problem("target",
-                    std::to_string(count) + " " + what + " are above the limit " +
-                        std::to_string(limit),
-                    "leave out the least important");
+    checks_.problem(
+        "target",
+        std::to_string(count) + " " + what + " are above the limit " + std::to_string(limit),
+        "leave out the least important");
   }
 
   // Gaussians.
@@ -73,8 +73,9 @@ class TargetValidator {
 
   void deviation(const std::string& path, double sigma_m) {
     if (!checks_.sound(path) || longer_side_m_ == 0) return;
-    checks_.in_range(path, sigma_m,
-                     limits::between(kSigmaPerSide.low * longer_side_m_, kSigmaPerSide.high * longer_side_m_));
+    checks_.in_range(
+        path, sigma_m,
+        limits::between(kSigmaPerSide.low * longer_side_m_, kSigmaPerSide.high * longer_side_m_));
   }
 
   void covariance(const proto::Covariance& c, const std::string& path) {

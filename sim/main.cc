@@ -14,11 +14,11 @@ namespace {
 int run(const NodeOptions& node) {
   StopSignals signals;
   World world(node.run, random_identity());
-  auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(World::kRole),
-      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
-        world.receive(message, bus, transmitter, now());
-      }});
+  auto opened =
+      Transport::open(node.url, node.run, node.seal, subscriptions_of(World::kRole),
+                      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
+                        world.receive(message, bus, transmitter, now());
+                      }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;
@@ -32,7 +32,8 @@ int run(const NodeOptions& node) {
   live(world, transport, signals, stop, [&] {
     transport.set_run(world.run());
     if (const auto& mission = world.follower().mission()) {
-      transport.limit_agents(allowance_of(*mission, world.follower().roster().size()), world.tick());
+      transport.limit_agents(allowance_of(*mission, world.follower().roster().size()),
+                             world.tick());
     }
     watch.look(now());
     if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());

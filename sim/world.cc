@@ -43,7 +43,8 @@ void World::on(const MissionPart&, const Arrival& arrival) {
   if (emergency_stopped_ || !arrival.mission_changed) return;
   if (follower().plan_problem()) return finish(*follower().plan_problem());
   // At its own end the world stays until the record, too, has the last states.
-  if (follower().over() && (!over_since_ || record_.complete(tick_))) return finish(follower().reason());
+  if (follower().over() && (!over_since_ || record_.complete(tick_)))
+    return finish(follower().reason());
   if (started_) take_roster();
   if (!started_ && follower().state() == MissionState::kRunning) start(arrival.now);
 }
@@ -51,17 +52,20 @@ void World::on(const MissionPart&, const Arrival& arrival) {
 void World::on(const RecordAck& ack, const Arrival& arrival) {
   if (!arrival.fresh) return;
   record_.acknowledge(ack, arrival.now);
-  if (over_since_ && (emergency_stopped_ || follower().over()) && record_.complete(tick_)) finish(why_over());
+  if (over_since_ && (emergency_stopped_ || follower().over()) && record_.complete(tick_))
+    finish(why_over());
 }
 
 void World::on(const Stop& stop, const Arrival&) {
   if (me_.run() == 0) return;  // of a run that it does not know
-  if (!stop.now || emergency_stopped_ || over_since_) return;  // in order, the coordinator ends the mission
+  if (!stop.now || emergency_stopped_ || over_since_)
+    return;  // in order, the coordinator ends the mission
   if (!begun_at_) return finish(stop.reason);
   emergency_stopped_ = stop.reason;
 }
 
-// ---- beginning -----------------------------------------------------------------------------------
+// ---- beginning
+// -----------------------------------------------------------------------------------
 
 void World::start(Instant now) {
   started_ = true;
@@ -89,8 +93,8 @@ void World::ask_team(Instant now, Outbox& out) {
   if (!heard) question_.since = now;
   // In lockstep a tick waits for everybody anyway. Whoever alone had heard our predecessor's last
   // tick would never answer an earlier one.
-  const bool may_begin_without = mission().timing.pace == Pace::kRealtime &&
-                                 now - *question_.since >= kQuestionPatience;
+  const bool may_begin_without =
+      mission().timing.pace == Pace::kRealtime && now - *question_.since >= kQuestionPatience;
   const AgentId unheard = first_unheard();
   if (unheard == kUnassigned || may_begin_without) return begin(now);
   if (now < question_.next) return;
@@ -283,7 +287,8 @@ std::string World::why_over() const {
   return follower().over() ? follower().reason() : "mission complete";
 }
 
-Eigen::Vector3d World::command_of(const VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
+Eigen::Vector3d World::command_of(const VehicleSlot& slot, Tick tick,
+                                  bool hold_old_commands) const {
   if (slot.answered() < 0 || slot.author.incarnation == 0) return {0, 0, 0};
   const Timing& timing = mission().timing;
   const double age_s = static_cast<double>(tick - slot.answered()) * timing.dt_s;

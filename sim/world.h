@@ -117,7 +117,7 @@ class World {
   Question question_;
   std::optional<Tick> begun_at_;
   Schedule schedule_;
-  std::optional<Instant> over_since_;  // nobody moves any more
+  std::optional<Instant> over_since_;             // nobody moves any more
   std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
   RecordWindow record_;
   Counted counted_;

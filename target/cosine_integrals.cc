@@ -51,8 +51,8 @@ void add_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double density
       const double sc = mid_x.sine[m] * mid_y.cosine[n], cs = mid_x.cosine[m] * mid_y.sine[n];
       const double hsc = half_x.sine[m] * half_y.cosine[n], hcs = half_x.cosine[m] * half_y.sine[n];
       const double zx = m * half.x(), zy = n * half.y();
-      sums(m, n) += scale * ((sc + cs) * sinc(zx + zy, hsc + hcs) +
-                             (sc - cs) * sinc(zx - zy, hsc - hcs));
+      sums(m, n) +=
+          scale * ((sc + cs) * sinc(zx + zy, hsc + hcs) + (sc - cs) * sinc(zx - zy, hsc - hcs));
     }
   }
 }

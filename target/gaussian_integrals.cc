@@ -3,8 +3,8 @@
 // two dimensions.
 #include "target/gaussian_integrals.h"
 
-#include <algorithm>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -37,8 +37,9 @@ Interval reached(double mean, double deviation, double low, double length) {
 /// The number of panels that resolves both the Gaussian and the fastest cosine to rounding.
 int panels_for(const Interval& over, double deviation, int modes, double length) {
   const double wavelength = 2 * length / std::max(1, modes - 1);
-  return std::clamp(static_cast<int>(std::ceil(over.length() / std::min(deviation, wavelength))),
-                    1, 4096) * 2;
+  return std::clamp(static_cast<int>(std::ceil(over.length() / std::min(deviation, wavelength))), 1,
+                    4096) *
+         2;
 }
 
 /// ∫ cos(mπ(x − low)/length) N(x; mean, deviation²) dx over the domain's side, m = 0 … modes − 1.
@@ -128,7 +129,9 @@ class AcrossAt {
         slope_(g.covariance_m2(0, 1) / g.covariance_m2(1, 1)),
         deviation_x_(std::sqrt(g.covariance_m2.determinant() / g.covariance_m2(1, 1))) {}
 
-  double density_y(double y) const { return normal((y - mean_m_.y()) / deviation_y_) / deviation_y_; }
+  double density_y(double y) const {
+    return normal((y - mean_m_.y()) / deviation_y_) / deviation_y_;
+  }
   double density_x(double x, double y) const {
     return normal((x - mean_x(y)) / deviation_x_) / deviation_x_;
   }

@@ -15,7 +15,7 @@
 
 namespace ergocast {
 
-inline constexpr int kMaxMapSide = 8192;     ///< columns, and rows
+inline constexpr int kMaxMapSide = 8192;      ///< columns, and rows
 inline constexpr double kMaxMapValue = 1e30;  ///< so that no sum of values overflows
 
 /// Why a map cannot be used.

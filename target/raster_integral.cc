@@ -6,8 +6,8 @@
 #include <array>
 #include <utility>
 
-#include "target/cosine_integrals.h"
 #include "core/require.h"
+#include "target/cosine_integrals.h"
 
 namespace ergocast {
 namespace {
@@ -90,8 +90,9 @@ void RasterIntegral::add_piece(const Trapezoid& piece, std::span<const double> v
   const auto end = column_at(std::lower_bound(low_.begin(), low_.end(), right), low_);
   const auto whole_begin = std::clamp(
       column_at(std::lower_bound(low_.begin(), low_.end(), inner_left), low_), begin, end);
-  const auto whole_end = std::clamp(
-      column_at(std::upper_bound(high_.begin(), high_.end(), inner_right), high_), whole_begin, end);
+  const auto whole_end =
+      std::clamp(column_at(std::upper_bound(high_.begin(), high_.end(), inner_right), high_),
+                 whole_begin, end);
   for (std::size_t i = begin; i < whole_begin; ++i) add_cut_cell(i, piece, values[i]);
   sums_ += sum_of(values, whole_begin, whole_end) *
            cosine_integrals(piece.low, piece.high, size_m_.y(), static_cast<int>(sums_.cols()))

@@ -46,11 +46,11 @@ class RasterIntegral {
   Eigen::VectorXd sum_of(std::span<const double> values, std::size_t begin, std::size_t end) const;
 
   RasterGrid grid_;
-  Eigen::Vector2d size_m_;      // of the domain
+  Eigen::Vector2d size_m_;  // of the domain
   Eigen::Vector2d cell_m_;
-  Eigen::Vector2d origin_m_;    // of the grid, from the domain's lower left corner
+  Eigen::Vector2d origin_m_;        // of the grid, from the domain's lower left corner
   std::vector<double> low_, high_;  // of each column, clipped to the domain
-  Eigen::MatrixXd along_x_;     // modes_x, and zeros to a round number, × columns
+  Eigen::MatrixXd along_x_;         // modes_x, and zeros to a round number, × columns
   std::vector<Trapezoid> free_;
   PlaneCoefficients sums_;
   double whole_ = 0, rounding_ = 0;

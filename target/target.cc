@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "core/require.h"
 #include "target/cosine_integrals.h"
 #include "target/gaussian_integrals.h"
-#include "core/require.h"
 #include "target/trapezoids.h"
 
 namespace ergocast {

@@ -37,7 +37,7 @@ struct TargetDensity {
 
 struct TargetCoefficients {
   PlaneCoefficients values;  ///< μ_mn; values(0,0) = 1
-  double error_bound = 0;  ///< how far any entry may be off
+  double error_bound = 0;    ///< how far any entry may be off
 };
 
 /// μ_mn = ∫ f_mn ρ over the domain, f not divided by h_k.

@@ -125,8 +125,12 @@ Trapezoid Trapezoid::between(double from, double to) const {
     if (y >= high) return x_high;
     return x_low + (y - low) / height * (x_high - x_low);
   };
-  return {from, to, at(left_low, left_high, from), at(left_low, left_high, to),
-          at(right_low, right_high, from), at(right_low, right_high, to)};
+  return {from,
+          to,
+          at(left_low, left_high, from),
+          at(left_low, left_high, to),
+          at(right_low, right_high, from),
+          at(right_low, right_high, to)};
 }
 
 std::array<Eigen::Vector2d, 4> Trapezoid::corners() const {

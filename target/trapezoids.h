@@ -19,9 +19,9 @@ namespace ergocast {
 /// An area between two horizontals and two straight sides; lengths from the domain's lower left
 /// corner [m].
 struct Trapezoid {
-  double low, high;               ///< y of the horizontals
-  double left_low, left_high;     ///< x of the left side at low and at high
-  double right_low, right_high;   ///< x of the right side
+  double low, high;              ///< y of the horizontals
+  double left_low, left_high;    ///< x of the left side at low and at high
+  double right_low, right_high;  ///< x of the right side
 
   /// The part between y = `from` and y = `to`, both within [low, high].
   Trapezoid between(double from, double to) const;

@@ -59,9 +59,7 @@ bool Liveness::record(const Header& from, Bus bus, Instant now, bool is_sign) {
   return true;
 }
 
-void Liveness::presume_alive(const Author& life, Instant now) {
-  lives_[life].sign = now;
-}
+void Liveness::presume_alive(const Author& life, Instant now) { lives_[life].sign = now; }
 
 std::optional<Instant> Liveness::last_sign(const Author& life) const {
   const auto at = lives_.find(life);

@@ -36,7 +36,8 @@ PacingClock::duration heartbeat_of(AgentId sender, CoordinatorSign sign, const T
 /// the logger (six ticks for a world in real time if that is longer). The coordinator is silent
 /// after 1.5 s without TEAM_STATUS, or after 6 s without MISSION for a process without a
 /// subscription to TEAM_STATUS.
-PacingClock::duration silence_of(AgentId sender, CoordinatorSign sign = CoordinatorSign::kTeamStatus,
+PacingClock::duration silence_of(AgentId sender,
+                                 CoordinatorSign sign = CoordinatorSign::kTeamStatus,
                                  const Timing* timing = nullptr);
 
 /// How long after the planned end a restarted world or coordinator may still appear [wall s].

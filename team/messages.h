@@ -28,15 +28,15 @@ inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::mill
 
 /// Why bytes that arrived had no effect.
 enum class Refusal {
-  kSize,   ///< shorter or longer than its type and counts say
-  kType,   ///< an unknown type, or one that its channel does not carry
-  kTag,    ///< damaged, or of a sender with another mission key
+  kSize,      ///< shorter or longer than its type and counts say
+  kType,      ///< an unknown type, or one that its channel does not carry
+  kTag,       ///< damaged, or of a sender with another mission key
   kUnkeyed,   ///< sound, but of a sender without a mission key
   kUnsigned,  ///< without the signature of the coordinator's key
-  kRun,    ///< of another run
-  kRange,  ///< an impossible number: NaN, |S| > elapsed, a coverage from the future
-  kLimit,  ///< a table is full
-  kRate,   ///< its sender exceeds its rate budget
+  kRun,       ///< of another run
+  kRange,     ///< an impossible number: NaN, |S| > elapsed, a coverage from the future
+  kLimit,     ///< a table is full
+  kRate,      ///< its sender exceeds its rate budget
 };
 inline constexpr int kRefusalKinds = 9;
 const char* to_string(Refusal refusal);
@@ -67,15 +67,15 @@ struct MissionPart {
   std::int64_t revision = 0;  ///< of roster and state together
   MissionState state = MissionState::kWaiting;
   std::int32_t part = 0, parts = 1;
-  std::vector<RosterEntry> roster;   ///< this part's share
-  std::vector<std::byte> plan;       ///< this part's share of the compiled plan
-  std::string reason;                ///< why it ended or failed
-  Signature signature{};             ///< the coordinator's, which teammates repeat
+  std::vector<RosterEntry> roster;  ///< this part's share
+  std::vector<std::byte> plan;      ///< this part's share of the compiled plan
+  std::string reason;               ///< why it ended or failed
+  Signature signature{};            ///< the coordinator's, which teammates repeat
 };
 
 struct DigestEntry {
   Author author;
-  std::int64_t steps = 0;  ///< of the oldest block held; 0: nothing
+  std::int64_t steps = 0;        ///< of the oldest block held; 0: nothing
   std::uint64_t state_hash = 0;  ///< a hash of the steps of all blocks held
 };
 
@@ -93,14 +93,14 @@ const char* to_string(AgentPhase phase);
 struct AgentStatus {
   Header header;
   AgentPhase phase = AgentPhase::kJoining;
-  double ergodic_metric = 0;             ///< φ² of its known coverage, once answered_tick ≥ 0
-  double max_staleness_s = 0;            ///< age of the oldest teammate's contribution
-  AgentId waiting_for = kUnassigned;     ///< whose block the tick waits for; kWorld: no state comes
-  std::int64_t answered_tick = -1;       ///< last tick that got a command
+  double ergodic_metric = 0;          ///< φ² of its known coverage, once answered_tick ≥ 0
+  double max_staleness_s = 0;         ///< age of the oldest teammate's contribution
+  AgentId waiting_for = kUnassigned;  ///< whose block the tick waits for; kWorld: no state comes
+  std::int64_t answered_tick = -1;    ///< last tick that got a command
   std::int64_t contributions_received = 0, contributions_lost = 0, messages_sent = 0,
                messages_received = 0;
   std::int64_t contributions_relayed = 0;  ///< blocks of others that it relayed
-  std::int64_t missed_ticks = 0;         ///< world ticks that passed without a command
+  std::int64_t missed_ticks = 0;           ///< world ticks that passed without a command
   RefusalCounts refused{};
   AgentId rate_offender = kUnassigned;  ///< the last agent whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
@@ -115,8 +115,8 @@ struct TeamStatus {
   std::int32_t agents_alive = 0, agents_expected = 0;
   double ergodic_metric = 0;  ///< median of the agents' own φ²; 0 until one has answered a tick
   AgentId silent_agent = kUnassigned;  ///< the first that is not alive, if any
-  std::int64_t missed_deadlines = 0;  ///< as the world counts them
-  std::string host;                   ///< the coordinator's
+  std::int64_t missed_deadlines = 0;   ///< as the world counts them
+  std::string host;                    ///< the coordinator's
 };
 
 /// Ends a run for good. Without `now` only the coordinator obeys, and ends the mission in order;
@@ -125,15 +125,15 @@ struct Stop {
   Header header;
   bool failed = false;  ///< whether the mission failed, or was only ended
   std::string reason;
-  bool now = false;     ///< emergency: all vehicles stand still at once
+  bool now = false;  ///< emergency: all vehicles stand still at once
   Signature signature{};
 };
 
 struct Vehicle {
   AgentId id = 0;
-  std::int64_t answered_tick = -1;         ///< newest tick its commands have answered
+  std::int64_t answered_tick = -1;  ///< newest tick its commands have answered
   Eigen::Vector3d position_m{0, 0, 0};
-  Eigen::Vector3d velocity_mps{0, 0, 0};   ///< applied in the step that led here
+  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< applied in the step that led here
 };
 
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.
@@ -150,8 +150,8 @@ struct WorldState {
 
 /// A restarted world learns tick and position from it.
 struct Command {
-  Header header;                           ///< header.tick is the tick it answers; −1: none yet
-  Eigen::Vector3d position_m{0, 0, 0};     ///< from which it was computed
+  Header header;                        ///< header.tick is the tick it answers; −1: none yet
+  Eigen::Vector3d position_m{0, 0, 0};  ///< from which it was computed
   Eigen::Vector3d velocity_mps{0, 0, 0};
   Incarnation asked_by = 0;  ///< the world that asked; 0: it answers a tick
 };

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "team/messages.h"
 #include "core/mission.h"
+#include "team/messages.h"
 
 namespace ergocast {
 

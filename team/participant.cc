@@ -45,7 +45,8 @@ const RosterEntry* Participant::member(const Header& from) const {
 
 CoordinatorSign Participant::coordinator_sign() const {
   const MessageTypes heard = subscriptions_of(role_)[static_cast<std::size_t>(Bus::kSwarm)];
-  return (heard & kTypes<TeamStatus>) != 0 ? CoordinatorSign::kTeamStatus : CoordinatorSign::kMission;
+  return (heard & kTypes<TeamStatus>) != 0 ? CoordinatorSign::kTeamStatus
+                                           : CoordinatorSign::kMission;
 }
 
 bool Participant::silent(const Author& life, Instant now) const {

@@ -48,7 +48,8 @@ class Participant {
   /// Refusal::kRange.
   std::optional<Arrival> accept(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
-  // ---- the mission, as far as it is known ----------------------------------------------------------
+  // ---- the mission, as far as it is known
+  // ----------------------------------------------------------
   const MissionFollower& follower() const { return follower_; }
   /// From now on accepts only this plan.
   /// @pre no part of the mission has been received
@@ -60,7 +61,8 @@ class Participant {
   /// The sender's roster entry if it is a present or former member under its own number; else null.
   const RosterEntry* member(const Header& from) const;
 
-  // ---- the others --------------------------------------------------------------------------------
+  // ---- the others
+  // --------------------------------------------------------------------------------
   const Liveness& liveness() const { return liveness_; }
   /// Counts an incarnation as alive at `now`; see Liveness.
   void presume_alive(const Author& life, Instant now) { liveness_.presume_alive(life, now); }
@@ -74,7 +76,8 @@ class Participant {
   /// @param newest  the newest known tick
   bool cut_off(Tick newest, Instant now) const;
 
-  // ---- ourselves ---------------------------------------------------------------------------------
+  // ---- ourselves
+  // ---------------------------------------------------------------------------------
   Role role() const { return role_; }
   RunId run() const { return self_.run; }
   void set_run(RunId run) { self_.run = run; }
@@ -99,7 +102,9 @@ class Participant {
 
   void count_refused(Refusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
   const RefusalCounts& refused() const { return refused_; }
-  std::int64_t refused(Refusal refusal) const { return refused_[static_cast<std::size_t>(refusal)]; }
+  std::int64_t refused(Refusal refusal) const {
+    return refused_[static_cast<std::size_t>(refusal)];
+  }
   /// Messages accepted, and published.
   std::int64_t received() const { return received_; }
   std::int64_t sent() const { return sequences_[0] + sequences_[1] + sequences_[2]; }

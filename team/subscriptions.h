@@ -16,7 +16,7 @@ enum class Role {
   kAgent,
   kCoordinator,
   kWorld,
-  kDriver,    ///< robots in the world's place
+  kDriver,  ///< robots in the world's place
   kLogger,
   kLauncher,  ///< `ergocast run`
   kMonitor,   ///< `ergocast status`, `ergocast stop`

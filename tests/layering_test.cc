@@ -72,8 +72,8 @@ const std::vector<Rule> kRules = {
      {kJson, kFiles, kSystem}},
     {"ops/deploy", {"text", "core", "scenario", "runtime", "ops/deploy"}, {kFiles}},
     {"cli",
-     {"text", "core", "target", "team", "lcmtypes", "scenario", "runtime", "logger", "report", "lab",
-      "lab/studies", "ops/doctor", "ops/deploy", "cli"},
+     {"text", "core", "target", "team", "lcmtypes", "scenario", "runtime", "logger", "report",
+      "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     // The example to copy: a participant with its main.
     {"examples/driver", {"core", "team", "examples/driver"}, {}},
@@ -101,16 +101,19 @@ const std::vector<Kind> kKinds = {
     {kGenerator, {"Random123/*"}},
     {kPng, {"png.h"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},
-    {kSystem,
-     {"thread", "mutex", "shared_mutex", "condition_variable", "future", "semaphore", "latch",
-      "barrier", "stop_token", "random", "ctime", "csignal", "sys/*", "netinet/*", "arpa/*", "net/*",
-      "linux/*", "fcntl.h", "ifaddrs.h", "poll.h", "pthread.h", "signal.h", "spawn.h", "time.h", "unistd.h"}},
+    {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
+               "future",     "semaphore", "latch",        "barrier",
+               "stop_token", "random",    "ctime",        "csignal",
+               "sys/*",      "netinet/*", "arpa/*",       "net/*",
+               "linux/*",    "fcntl.h",   "ifaddrs.h",    "poll.h",
+               "pthread.h",  "signal.h",  "spawn.h",      "time.h",
+               "unistd.h"}},
 };
 
 // The time or a random device needs no special #include: <chrono> is allowed everywhere.
-const std::string_view kClocksAndDice[] = {
-    "_clock::now",   "clock_gettime", "gettimeofday", "std::time(",
-    "random_device", "std::rand(",    "sleep_for",    "sleep_until"};
+const std::string_view kClocksAndDice[] = {"_clock::now", "clock_gettime", "gettimeofday",
+                                           "std::time(",  "random_device", "std::rand(",
+                                           "sleep_for",   "sleep_until"};
 
 bool matches(std::string_view name, std::string_view pattern) {
   if (pattern.ends_with('*')) return name.starts_with(pattern.substr(0, pattern.size() - 1));
@@ -131,7 +134,8 @@ const Rule* rule_of(const std::string& path) {
 std::string_view folder_of(std::string_view header) {
   std::string_view found = header.substr(0, header.find('/'));
   for (const Rule& rule : kRules) {
-    const bool inside = header.starts_with(rule.who) && header.substr(rule.who.size()).starts_with('/');
+    const bool inside =
+        header.starts_with(rule.who) && header.substr(rule.who.size()).starts_with('/');
     if (inside && rule.who.size() > found.size()) found = rule.who;
   }
   return found;
@@ -173,7 +177,8 @@ std::vector<std::string> violations_in(const std::string& path, const std::strin
   std::istringstream lines(text);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
-    const std::string where = path + ":" + std::to_string(++number) + ": " + std::string(rule->who) + " ";
+    const std::string where =
+        path + ":" + std::to_string(++number) + ": " + std::string(rule->who) + " ";
     const auto [header, quoted] = include_in(line);
     const std::string why = header.empty() ? "" : objection(*rule, header, quoted);
     if (!why.empty()) found.push_back(where + why);
@@ -302,7 +307,8 @@ TEST(LayeringChecker, NamesFileAndLineOfEveryPlantedViolation) {
       {"core/noise.cc", "  std::random_device device;"},
       {"hosts/new.cc", "int x;"},
   };
-  for (const auto& [path, line] : planted) EXPECT_NE(said_of(path, line), "") << path << ": " << line;
+  for (const auto& [path, line] : planted)
+    EXPECT_NE(said_of(path, line), "") << path << ": " << line;
 }
 
 TEST(LayeringChecker, LetsThroughWhatTheArchitectureAllows) {

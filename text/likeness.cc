@@ -30,8 +30,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& names
   int least = most_typos_in(word) + 1;
   for (const std::string& name : names) {
     // The beginning of a name counts as one slip.
-    const int distance =
-        word.size() >= 3 && name.starts_with(word) ? 1 : edit_distance(word, name);
+    const int distance = word.size() >= 3 && name.starts_with(word) ? 1 : edit_distance(word, name);
     if (distance >= least) continue;
     best = name;
     least = distance;

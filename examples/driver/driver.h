@@ -14,9 +14,9 @@
 #include <string>
 
 #include "core/ids.h"
+#include "examples/driver/robot.h"
 #include "team/messages.h"
 #include "team/participant.h"
-#include "examples/driver/robot.h"
 
 namespace ergocast::example {
 

@@ -13,11 +13,11 @@ namespace {
 int run(const NodeOptions& node, double speed_limit_mps) {
   StopSignals signals;
   Driver driver(node.run, random_identity(), speed_limit_mps);
-  auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Driver::kRole),
-      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
-        driver.receive(message, bus, transmitter, now());
-      }});
+  auto opened =
+      Transport::open(node.url, node.run, node.seal, subscriptions_of(Driver::kRole),
+                      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
+                        driver.receive(message, bus, transmitter, now());
+                      }});
   if (const auto* problem = std::get_if<std::string>(&opened)) {
     spdlog::error("{}", *problem);
     return kExitUnavailable;
@@ -25,14 +25,15 @@ int run(const NodeOptions& node, double speed_limit_mps) {
   Transport& transport = *std::get<0>(opened);
   spdlog::info("waiting for a mission on {}", node.url.base());
 
-  live(driver, transport, signals, [&] { driver.stop("the driver was told to stop"); },
-       [&] {
-         transport.set_run(driver.run());
-         if (const auto& mission = driver.follower().mission()) {
-           transport.limit_agents(allowance_of(*mission, driver.follower().roster().size()),
-                                  driver.tick());
-         }
-       });
+  live(
+      driver, transport, signals, [&] { driver.stop("the driver was told to stop"); },
+      [&] {
+        transport.set_run(driver.run());
+        if (const auto& mission = driver.follower().mission()) {
+          transport.limit_agents(allowance_of(*mission, driver.follower().roster().size()),
+                                 driver.tick());
+        }
+      });
   spdlog::log(driver.failed() ? spdlog::level::err : spdlog::level::info,
               "finished at tick {}: {}; {} commands too late, {} cut to the speed limit",
               driver.tick(), driver.reason(), driver.missed_deadlines(), driver.clamped_commands());

@@ -11,9 +11,9 @@
 namespace ergocast::studies {
 
 struct Curve {
-  std::string color;           ///< "#rrggbb"
-  Polyline points;             ///< ascending in x
-  std::string dashes = "none"; ///< as stroke-dasharray
+  std::string color;            ///< "#rrggbb"
+  Polyline points;              ///< ascending in x
+  std::string dashes = "none";  ///< as stroke-dasharray
 };
 /// A dot, and a line from low to high.
 struct Interval {

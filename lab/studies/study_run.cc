@@ -11,8 +11,8 @@
 #include "core/coverage_table.h"
 #include "core/ideal_team.h"
 #include "lab/simulation.h"
-#include "logger/null_buffer.h"
 #include "lab/studies/study_measure.h"
+#include "logger/null_buffer.h"
 #include "team/plan.h"
 
 namespace ergocast::studies {

@@ -11,9 +11,9 @@ namespace ergocast::studies {
 
 using Table = std::map<std::string, std::vector<double>>;
 
-/// A file of `ergocast simulate --seeds … --out FILE` or of a part of a study: numbers by column, in
-/// the order of the file. Throws std::runtime_error, which names the file, if it cannot be read, has
-/// no rows or a torn one, or if one of its missions failed.
+/// A file of `ergocast simulate --seeds … --out FILE` or of a part of a study: numbers by column,
+/// in the order of the file. Throws std::runtime_error, which names the file, if it cannot be read,
+/// has no rows or a torn one, or if one of its missions failed.
 Table read_table(const std::filesystem::path& file);
 
 /// All runs of one point of a study, ascending by seed.
@@ -26,7 +26,8 @@ struct StudyRuns {
   std::vector<double> escape_times_s() const;
 };
 
-/// The study.csv of `ergocast study`, point by point in the order of the file. Throws as read_table().
+/// The study.csv of `ergocast study`, point by point in the order of the file. Throws as
+/// read_table().
 std::vector<StudyRuns> read_study(const std::filesystem::path& file);
 
 }  // namespace ergocast::studies

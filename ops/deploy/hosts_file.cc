@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/ids.h"
-#include "text/read_number.h"
 #include "ops/deploy/deploy.h"
+#include "text/read_number.h"
 
 namespace ergocast {
 namespace {

@@ -10,8 +10,8 @@
 #include <cinttypes>
 #include <cstdio>
 
-#include "ops/doctor/group_listener.h"
 #include "lcmtypes/codec.h"
+#include "ops/doctor/group_listener.h"
 #include "runtime/clock.h"
 
 namespace ergocast::doctor {
@@ -96,7 +96,8 @@ std::optional<Finding> Overheard::key_finding() const {
     return Finding{"swarm bus", Level::kWarning, "messages that this key does not open",
                    "They are damaged, or their senders have another key and refuse all that this "
                    "host says.",
-                   "head -n 3 FILE | sha256sum   # of --key-file, on every host: what both files of a key share"};
+                   "head -n 3 FILE | sha256sum   # of --key-file, on every host: what both files "
+                   "of a key share"};
   }
   if (other_key_ > 0) {
     return Finding{"swarm bus", Level::kNote, "a team with a mission key, or damage",
@@ -132,8 +133,8 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
   return {"swarm bus", Level::kOk, "nobody speaks on " + where, "", ""};
 }
 
-Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal, std::chrono::milliseconds duration,
-                          std::string& error) {
+Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal,
+                          std::chrono::milliseconds duration, std::string& error) {
   Overheard overheard(seal);
   const Socket socket = group_listener(url.group, url.base_port, error);
   if (!error.empty()) return overheard;

@@ -10,10 +10,10 @@
 #include <span>
 #include <string>
 
-#include "team/messages.h"
-#include "ops/doctor/finding.h"
 #include "lcmtypes/message_authenticator.h"
+#include "ops/doctor/finding.h"
 #include "runtime/lcm_url.h"
+#include "team/messages.h"
 
 namespace ergocast::doctor {
 
@@ -33,7 +33,9 @@ class Overheard {
   void take(std::span<const std::byte> datagram);
   /// @param free_port  a free base port, if one is known
   Finding finding(const LcmUrl& url, std::optional<int> free_port) const;
-  bool anything() const { return !runs_.empty() || foreign_messages_ > 0 || other_key_ > 0 || unkeyed_ > 0; }
+  bool anything() const {
+    return !runs_.empty() || foreign_messages_ > 0 || other_key_ > 0 || unkeyed_ > 0;
+  }
 
  private:
   void take(const Message& message);
@@ -42,13 +44,13 @@ class Overheard {
   MessageAuthenticator seal_;
   std::map<RunId, HeardRun> runs_;
   std::int64_t other_key_ = 0, unkeyed_ = 0;  // ours by their format, but refused by our seal
-  std::int64_t foreign_messages_ = 0;  // LCM's, but not of Ergocast
+  std::int64_t foreign_messages_ = 0;         // LCM's, but not of Ergocast
   std::set<std::string> foreign_channels_;
 };
 
 /// Listens for `duration`. `error` tells why nothing can be received, if so.
-Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal, std::chrono::milliseconds duration,
-                          std::string& error);
+Overheard listen_to_swarm(const LcmUrl& url, const MessageAuthenticator& seal,
+                          std::chrono::milliseconds duration, std::string& error);
 
 /// Reports whether messages are checked with a team's key.
 Finding authentication_finding(bool keyed);

@@ -2,8 +2,8 @@
 // Runs all checks of this host, in order. Changes nothing on it.
 #pragma once
 
-#include "ops/doctor/finding.h"
 #include "lcmtypes/message_authenticator.h"
+#include "ops/doctor/finding.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {

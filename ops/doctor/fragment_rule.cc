@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "team/messages.h"
 #include "ops/doctor/command_output.h"
+#include "team/messages.h"
 
 namespace ergocast::doctor {
 namespace {

@@ -48,7 +48,8 @@ void hear_until(Instant deadline, const Socket& listener, PeerLedger& ledger) {
 
 }  // namespace
 
-PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal, std::chrono::seconds duration) {
+PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal,
+                   std::chrono::seconds duration) {
   PeerTest test;
   const Socket listener = group_listener(url.group, url.base_port, test.error);
   if (!test.error.empty()) return test;

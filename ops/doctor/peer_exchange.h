@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/message_authenticator.h"
 #include "ops/doctor/finding.h"
 #include "ops/doctor/peer_ledger.h"
-#include "lcmtypes/message_authenticator.h"
 #include "runtime/lcm_url.h"
 
 namespace ergocast::doctor {
@@ -21,7 +21,8 @@ struct PeerTest {
 };
 
 /// Sends kProbesPerSecond for `duration`. @pre at most kMaxPeerSeconds
-PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal, std::chrono::seconds duration);
+PeerTest try_peers(const LcmUrl& url, const MessageAuthenticator& seal,
+                   std::chrono::seconds duration);
 
 /// One finding for each peer, or one if no peer was received.
 /// @param version  ours

@@ -113,9 +113,10 @@ Finding nobody(const LcmUrl& url, const PeerTest& test) {
 Findings peer_findings(const LcmUrl& url, const PeerTest& test, const std::string& version,
                        std::uint64_t key) {
   if (!test.error.empty()) {
-    return {{"peers", Level::kProblem, test.error,
-             "No probe could be sent, or none be listened for: no route, or a firewall.",
-             "ip route get " + url.group + "\nnft list ruleset   # as root: what drops outgoing udp?"}};
+    return {
+        {"peers", Level::kProblem, test.error,
+         "No probe could be sent, or none be listened for: no route, or a firewall.",
+         "ip route get " + url.group + "\nnft list ruleset   # as root: what drops outgoing udp?"}};
   }
   if (test.peers.empty()) return {nobody(url, test)};
   Findings findings;

@@ -59,7 +59,8 @@ void PeerLedger::take(const Probe& probe, const std::string& address, Instant no
     if (echo.nonce == nonce_) {
       take_echo(echo, now, row);
     } else if (rumours_.contains(echo.nonce) || rumours_.size() < kMostRumours) {
-      auto& rumour = rumours_.try_emplace(echo.nonce, SecondHandPeer{echo.last, echo.last}).first->second;
+      auto& rumour =
+          rumours_.try_emplace(echo.nonce, SecondHandPeer{echo.last, echo.last}).first->second;
       rumour.last = std::max(rumour.last, echo.last);
     }
   }

@@ -10,8 +10,8 @@
 #include <set>
 #include <tuple>
 
-#include "text/read_number.h"
 #include "ops/doctor/socket_table.h"
+#include "text/read_number.h"
 
 namespace ergocast::doctor {
 namespace {
@@ -28,8 +28,7 @@ unsigned long inode_of(const std::string& link) {
   constexpr std::string_view kPrefix = "socket:[";
   const std::string_view text = link;
   if (!text.starts_with(kPrefix) || !text.ends_with(']')) return 0;
-  return read_number<unsigned long>(
-             text.substr(kPrefix.size(), text.size() - kPrefix.size() - 1))
+  return read_number<unsigned long>(text.substr(kPrefix.size(), text.size() - kPrefix.size() - 1))
       .value_or(0);
 }
 

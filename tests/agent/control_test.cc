@@ -12,7 +12,8 @@ namespace {
 
 using namespace test;
 
-// ---- the control step ----------------------------------------------------------------------------
+// ---- the control step
+// ----------------------------------------------------------------------------
 
 TEST(AgentTick, FirstSampleIsWhereItStandsAtTheStart) {
   const Mission mission = small_mission(1);
@@ -113,7 +114,8 @@ TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
   EXPECT_TRUE(only<Contribution>(out).empty());
 }
 
-// ---- lockstep ------------------------------------------------------------------------------------
+// ---- lockstep
+// ------------------------------------------------------------------------------------
 
 TEST(AgentInLockstep, AnswersOnlyWhenEveryDueBlockOfEveryTeammateIsThere) {
   const Mission mission = two_block_mission(3);
@@ -260,7 +262,8 @@ TEST(AgentInLockstep, LateOldBlocksChangeNothing) {
   EXPECT_EQ(status_after(agent, at(0s)).refused, RefusalCounts{}) << "stale is not refused";
 }
 
-// ---- real time -----------------------------------------------------------------------------------
+// ---- real time
+// -----------------------------------------------------------------------------------
 
 TEST(AgentInRealTime, AnswersWithWhatItHas) {
   Mission mission = small_mission(4);

@@ -148,8 +148,8 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
   LiveTeam team(mission);
   fly(team, 2, 0, 20);
   team.kill(0);
-  const MissionPart news = mission_part(
-      1, MissionState::kRunning, {{former, 0, 20}, {reborn, 20, -1}, {author_of(1), 0, -1}});
+  const MissionPart news = mission_part(1, MissionState::kRunning,
+                                        {{former, 0, 20}, {reborn, 20, -1}, {author_of(1), 0, -1}});
   AgentIdentity identity = identity_of(0);
   identity.incarnation = reborn.incarnation;
   team.revive(0, Agent(identity));
@@ -174,7 +174,8 @@ TEST(LostBroadcast, IsMendedByATeammateWhoHeardIt) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   fly(team, 3, 0, 10);
-  team.hear_by([](AgentId listener, AgentId transmitter) { return listener != 0 || transmitter != 2; });
+  team.hear_by(
+      [](AgentId listener, AgentId transmitter) { return listener != 0 || transmitter != 2; });
   fly(team, 3, 10, 11);
   team.kill(2);
   auto roster = roster_of(3);

@@ -99,8 +99,10 @@ TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
 TEST(AgentForgets, NeverItself) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  give(agent, mission_part(1, MissionState::kRunning,
-                             {{author_of(0), 0, -1, true, 0}, {author_of(1), 0, 0}}), at(0s));
+  give(agent,
+       mission_part(1, MissionState::kRunning,
+                    {{author_of(0), 0, -1, true, 0}, {author_of(1), 0, 0}}),
+       at(0s));
   EXPECT_EQ(only<Command>(tell(agent, world_at(0))).size(), 1u);
   EXPECT_EQ(agent.team_coverage()[0], 1) << "it lives, whatever the coordinator has heard";
 }

@@ -12,7 +12,8 @@ namespace {
 
 using namespace test;
 
-// ---- what is refused -----------------------------------------------------------------------------
+// ---- what is refused
+// -----------------------------------------------------------------------------
 
 /// Sends one false contribution and expects: no row, no block, one more refusal for `why`.
 void expect_refused(const Contribution& lie, Refusal why) {
@@ -99,7 +100,8 @@ TEST(AgentRefuses, ItsOwnEcho) {
   EXPECT_EQ(agent.coverage()->row_count(), 1u);
 }
 
-// ---- what the status counts ----------------------------------------------------------------------
+// ---- what the status counts
+// ----------------------------------------------------------------------
 
 TEST(AgentStatusReport, CountsGapsInATeammatesSequenceAsLost) {
   const Mission mission = small_mission(2);

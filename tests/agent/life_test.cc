@@ -12,7 +12,8 @@ namespace {
 
 using namespace test;
 
-// ---- joining -------------------------------------------------------------------------------------
+// ---- joining
+// -------------------------------------------------------------------------------------
 
 TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
   announce(small_mission(4));
@@ -28,8 +29,10 @@ TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
   EXPECT_EQ(only<Hello>(advance(agent, at(250ms))).size(), 1u);
 
   // A roster without us changes nothing.
-  EXPECT_EQ(only<Hello>(tell(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
-                .size(), 1u);
+  EXPECT_EQ(
+      only<Hello>(tell(agent, mission_part(0, MissionState::kWaiting, roster_of(3)), at(500ms)))
+          .size(),
+      1u);
   EXPECT_EQ(agent.phase(), AgentPhase::kJoining);
 
   tell(agent, mission_part(1, MissionState::kWaiting, roster_of(4)), at(600ms));
@@ -141,8 +144,9 @@ TEST(AgentJoining, SaysWhatItWaitsFor) {
   give(agent, mission_part(0, MissionState::kWaiting, roster_of(1)), at(0s));
   EXPECT_EQ(agent.blocked_reason(), "waiting to be admitted");
   give(agent, mission_part(1, MissionState::kWaiting, {{{1, 77}, 0, -1}}), at(0s));
-  EXPECT_EQ(agent.blocked_reason(), "waiting to be admitted: the roster has another agent 1, which may have "
-                              "died and not be missed yet");
+  EXPECT_EQ(agent.blocked_reason(),
+            "waiting to be admitted: the roster has another agent 1, which may have "
+            "died and not be missed yet");
   give(agent, mission_part(2, MissionState::kWaiting, roster_of(2)), at(0s));
   EXPECT_EQ(agent.blocked_reason(), "admitted as agent 1, waiting for the quorum");
   give(agent, mission_part(3, MissionState::kRunning, roster_of(2)), at(0s));
@@ -173,7 +177,8 @@ TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
   EXPECT_EQ(only<AgentStatus>(advance(agent, at(20s))).at(0).loop_lag_s, 0);
 }
 
-// ---- restarts and the end ------------------------------------------------------------------------
+// ---- restarts and the end
+// ------------------------------------------------------------------------
 
 TEST(AgentHears, CoverageOfMembersOnly) {
   const Mission mission = small_mission(2);
@@ -194,8 +199,9 @@ TEST(AgentHears, CoverageOfMembersOnly) {
 TEST(AgentHears, NoMoreOfAnEvictedTeammateThanItsTimeAllows) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);
-  give(agent, mission_part(5, MissionState::kRunning,
-                             {{author_of(0), 0, -1}, {author_of(1), 0, 2}}), at(0s));
+  give(agent,
+       mission_part(5, MissionState::kRunning, {{author_of(0), 0, -1}, {author_of(1), 0, 2}}),
+       at(0s));
   tell(agent, world_state(9, {{100, 500, 0}, {200, 500, 0}}));
   const auto hear = [&](std::size_t steps) {
     give(agent, block_of(mission, 1, std::vector<Eigen::Vector3d>(steps, {200, 500, 0}), 1),
@@ -214,8 +220,8 @@ TEST(AgentInLockstep, WaitsForTheRosterThatTheWorldGoesBy) {
   WorldState world = world_state(0, {{100, 500, 0}});
   world.roster_revision = 3;
   EXPECT_TRUE(only<Command>(tell(agent, world)).empty());
-  EXPECT_EQ(only<Command>(tell(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(),
-            1u);
+  EXPECT_EQ(
+      only<Command>(tell(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(), 1u);
 }
 
 TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
@@ -376,14 +382,15 @@ TEST(AgentEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   mission.timing.realtime_factor = 2;
   Agent agent = running_agent(mission);
   tell(agent, world_state(40, {{100, 500, 0}}), at(5s));  // 60 ticks of 0.05 s are left
-  give(agent, status_of(1, 1), at(37s));  // a teammate may be cut off as we are
+  give(agent, status_of(1, 1), at(37s));                  // a teammate may be cut off as we are
   advance(agent, at(38s));
   EXPECT_FALSE(agent.finished());
   const auto last = only<AgentStatus>(advance(agent, at(38s + 1ms)));
   EXPECT_TRUE(agent.finished());
   EXPECT_TRUE(agent.failed());
-  EXPECT_EQ(agent.reason(), "neither the world nor the coordinator can be heard, and the mission must "
-                            "be over by now: check this host's network");
+  EXPECT_EQ(agent.reason(),
+            "neither the world nor the coordinator can be heard, and the mission must "
+            "be over by now: check this host's network");
   ASSERT_EQ(last.size(), 1u);
   EXPECT_EQ(last[0].phase, AgentPhase::kFinished);
 }

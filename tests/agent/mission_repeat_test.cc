@@ -40,7 +40,10 @@ Agent informed_agent(const Mission& mission = small_mission(2)) {
 
 /// With sequences above those of all former messages in the tests.
 Hello question_of(AgentId who, Tick tick) {
-  return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, 1000 + next_sequence(), tick}, kUnassigned, "", ""};
+  return {{kRun, who, who == kWorld ? kWorldLife : kCoordinatorLife, 1000 + next_sequence(), tick},
+          kUnassigned,
+          "",
+          ""};
 }
 
 std::size_t repeated_after(Agent& agent, const Message& message) {
@@ -150,7 +153,8 @@ TEST(MissionRepeat, ComesToWhoAsksAlsoJustAfterAnOldOneWasCorrected) {
   EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 201ms))).size(), 4u);
 }
 
-// ---- where it was --------------------------------------------------------------------------------
+// ---- where it was
+// --------------------------------------------------------------------------------
 
 TEST(WorldQuestion, GetsTheLastTwoCommandsWithTheirTicksAndPlaces) {
   Mission mission = small_mission(1);
@@ -187,7 +191,8 @@ TEST(WorldQuestion, IsNotForTheCoordinatorToAsk) {
   EXPECT_TRUE(only<Command>(tell(agent, question_of(kCoordinator, 0))).empty());
 }
 
-// ---- lost from the roster ------------------------------------------------------------------------
+// ---- lost from the roster
+// ------------------------------------------------------------------------
 
 TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   Mission mission = small_mission(2);

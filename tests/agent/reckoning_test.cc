@@ -39,8 +39,8 @@ Path their_path(Tick from, Tick until) {
 Coefficients sums_of(const Mission& mission, const Path& path_m) {
   Coefficients sums = Coefficients::Zero(20);
   for (const Eigen::Vector3d& x_m : path_m) {
-    accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis, mission.timing.dt_s,
-                     sums.data());
+    accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis,
+                     mission.timing.dt_s, sums.data());
   }
   return sums;
 }
@@ -87,7 +87,8 @@ class Reckoning : public ::testing::Test {
   }
   void expect_foreseen(const Coefficients& expected) const {
     EXPECT_LT((agent_->foreseen_coverage() - expected).cwiseAbs().maxCoeff(), 1e-13)
-        << agent_->foreseen_coverage() << "\n\nbut expected\n" << expected;
+        << agent_->foreseen_coverage() << "\n\nbut expected\n"
+        << expected;
   }
 
   Mission mission_;
@@ -169,7 +170,8 @@ TEST_F(Reckoning, APlaceBeyondTheRadiosRangeIsNone) {
 TEST_F(Reckoning, InRealTimeAVehicleThatNobodyDrivesAnyMoreIsNotItsDriver) {
   begin(reckoning_mission(Pace::kRealtime));  // an old command is held for 5 ticks
   hear_block(their_path(0, 1));
-  for (Tick tick = 0; tick < 12; ++tick) tell(*agent_, world_answered(tick, std::min<Tick>(tick - 1, 3)));
+  for (Tick tick = 0; tick < 12; ++tick)
+    tell(*agent_, world_answered(tick, std::min<Tick>(tick - 1, 3)));
   expect_foreseen(foreseen(mission_, 0, 11, their_path(0, 9), 1, 3));
 }
 

@@ -24,9 +24,8 @@ class Repair : public ::testing::Test {
   /// Rosters ascend by author.
   void admit(const RosterEntry& entry) {
     roster.push_back(entry);
-    std::sort(roster.begin(), roster.end(), [](const RosterEntry& a, const RosterEntry& b) {
-      return a.author < b.author;
-    });
+    std::sort(roster.begin(), roster.end(),
+              [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   }
   /// Agent 0 has received `steps` of `author`, which broadcasts every `period` ticks.
   void hold(const Author& author, std::int64_t steps, Tick period = 1) {
@@ -68,7 +67,8 @@ class Repair : public ::testing::Test {
   const std::vector<Author> two{author_of(2)};
 };
 
-// ---- digests -------------------------------------------------------------------------------------
+// ---- digests
+// -------------------------------------------------------------------------------------
 
 TEST_F(Repair, ADigestNamesEverybodyInTheRosterWithNothingForWhatIsNotHeld) {
   const Author former{3, 33};
@@ -109,7 +109,8 @@ TEST_F(Repair, ALargeTeamTakesSeveralDigests) {
     }
     EXPECT_EQ(named.size(), static_cast<std::size_t>(members));
     EXPECT_EQ(AntiEntropy::digests(table, roster_of(members)).size(),
-              static_cast<std::size_t>((members + kMaxDigestEntriesPerMessage - 1) / kMaxDigestEntriesPerMessage));
+              static_cast<std::size_t>((members + kMaxDigestEntriesPerMessage - 1) /
+                                       kMaxDigestEntriesPerMessage));
   }
 }
 
@@ -142,7 +143,8 @@ TEST(AgentDigests, AndEachMissionSecondHoweverFastTheClockOfTheMission) {
   EXPECT_EQ(digests, 4) << "40 ticks of 0.1 s";
 }
 
-// ---- which gap is worth an answer ----------------------------------------------------------------
+// ---- which gap is worth an answer
+// ----------------------------------------------------------------
 
 TEST_F(Repair, AnswersTheSecondOfTwoDigestsInARow) {
   hold(author_of(2), 20);
@@ -304,7 +306,8 @@ TEST_F(Repair, SaysWhatItHoldsWhenItSpeaksNotWhenItDecided) {
   EXPECT_EQ(blocks[0].steps, 25);
 }
 
-// ---- digests that cannot be true -----------------------------------------------------------------
+// ---- digests that cannot be true
+// -----------------------------------------------------------------
 
 TEST_F(Repair, StrangersInADigestAreNobody) {
   const Author stranger{2, 4711};

@@ -40,7 +40,8 @@ class Timings {
     double sum = 0;
     for (std::vector<double>& seconds : seconds_) {
       const std::size_t middle = seconds.size() / 2;
-      std::nth_element(seconds.begin(), std::next(seconds.begin(), static_cast<std::ptrdiff_t>(middle)),
+      std::nth_element(seconds.begin(),
+                       std::next(seconds.begin(), static_cast<std::ptrdiff_t>(middle)),
                        seconds.end());
       sum += seconds.at(middle);
       seconds.clear();

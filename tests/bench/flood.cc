@@ -71,19 +71,17 @@ class KeyedTeam {
   Says ask() const {
     Says says;
     std::map<AgentId, AgentStatus> agents;
-    const auto ear = std::get<0>(
-        Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, MessageAuthenticator(key_),
-                        subscriptions_of(Role::kMonitor),
-                        {.on_message = [&](const Message& message, Bus, AgentId) {
-                          if (const auto* state = std::get_if<WorldState>(&message)) {
-                            says.tick = state->header.tick;
-                            says.late = state->missed_deadlines;
-                          }
-                          if (const auto* status = std::get_if<AgentStatus>(&message)) {
-                            if (status->phase == AgentPhase::kRunning)
-                              agents[status->header.sender] = *status;
-                          }
-                        }}));
+    const auto ear = std::get<0>(Transport::open(
+        std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, MessageAuthenticator(key_),
+        subscriptions_of(Role::kMonitor), {.on_message = [&](const Message& message, Bus, AgentId) {
+          if (const auto* state = std::get_if<WorldState>(&message)) {
+            says.tick = state->header.tick;
+            says.late = state->missed_deadlines;
+          }
+          if (const auto* status = std::get_if<AgentStatus>(&message)) {
+            if (status->phase == AgentPhase::kRunning) agents[status->header.sender] = *status;
+          }
+        }}));
     while (agents.size() < kAgents || says.tick < 0) ear->deliver_until(now() + 10ms, -1);
     for (const auto& [id, status] : agents) {
       says.lost += status.contributions_lost;

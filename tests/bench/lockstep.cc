@@ -18,9 +18,9 @@
 #include <thread>
 #include <variant>
 
-#include "tests/bench/ping_pong.h"
 #include "runtime/child.h"
 #include "scenario/scenario.h"
+#include "tests/bench/ping_pong.h"
 #include "tests/support/own_host.h"
 
 namespace ergocast::bench {
@@ -54,10 +54,11 @@ class TemporaryFolder {
 std::variant<double, std::string> run_mission() {
   const TemporaryFolder folder;
   const fs::path record = folder.path() / "run", log = folder.path() / "log";
-  auto started = Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", kScenario,
-                                           "--duration", std::to_string(kDuration_s), "--out", record},
-                               .log = log,
-                               .signal_if_orphaned = SIGTERM});
+  auto started =
+      Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", kScenario, "--duration",
+                                std::to_string(kDuration_s), "--out", record},
+                    .log = log,
+                    .signal_if_orphaned = SIGTERM});
   if (const auto* problem = std::get_if<std::string>(&started)) return *problem;
   Child& launcher = std::get<Child>(started);
   while (launcher.running()) std::this_thread::sleep_for(std::chrono::milliseconds(20));

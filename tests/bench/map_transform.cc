@@ -23,8 +23,8 @@ std::span<const double> row_of(const std::vector<double>& rows, int columns, int
 }
 
 void report(benchmark::State& state, int side) {
-  state.counters["cells_per_s"] = benchmark::Counter(
-      static_cast<double>(side) * side, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["cells_per_s"] = benchmark::Counter(static_cast<double>(side) * side,
+                                                     benchmark::Counter::kIsIterationInvariantRate);
 }
 
 /// A square map of range(0)² cells into range(1)² modes.
@@ -64,8 +64,13 @@ BENCHMARK(MapTransform)
     ->Args({8192, 16})
     ->Args({8192, 64})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(MemoryFloor)->ArgName("side")->Arg(256)->Arg(1024)->Arg(4096)->Arg(8192)->Unit(
-    benchmark::kMillisecond);
+BENCHMARK(MemoryFloor)
+    ->ArgName("side")
+    ->Arg(256)
+    ->Arg(1024)
+    ->Arg(4096)
+    ->Arg(8192)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace ergocast::bench

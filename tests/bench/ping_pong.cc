@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/forked.h"
 #include "core/coverage_table.h"
 #include "lcmtypes/codec.h"
 #include "runtime/node.h"
 #include "sim/world.h"
+#include "tests/bench/forked.h"
 
 namespace ergocast::bench {
 namespace {
@@ -85,11 +85,10 @@ class RawAgent {
 
 [[noreturn]] void live_as_logger(Carrier carrier, const Traffic& traffic, const LcmUrl& url) {
   Tick newest = -1, acked = -1;
-  const auto buses =
-      RawBuses::open(carrier, url, {Bus::kSwarm, Bus::kWorld, Bus::kCommand},
-                     [&](Bus bus, const Stamp& stamp) {
-                       if (bus == Bus::kWorld) newest = std::max(newest, stamp.tick);
-                     });
+  const auto buses = RawBuses::open(carrier, url, {Bus::kSwarm, Bus::kWorld, Bus::kCommand},
+                                    [&](Bus bus, const Stamp& stamp) {
+                                      if (bus == Bus::kWorld) newest = std::max(newest, stamp.tick);
+                                    });
   while (true) {
     const bool heard = buses->wait(kRepeatAck_ms);
     if (heard && newest < acked + kAckEveryTicks) continue;

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <optional>
 
-#include "tests/bench/raw_buses.h"
 #include "core/ids.h"
 #include "core/mission.h"
+#include "tests/bench/raw_buses.h"
 
 namespace ergocast::bench {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/ids.h"
-#include "team/messages.h"
 #include "runtime/lcm_url.h"
+#include "team/messages.h"
 
 namespace ergocast::bench {
 

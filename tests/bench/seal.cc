@@ -33,7 +33,8 @@ Message message_of(std::int64_t kind) {
 }
 
 const MessageAuthenticator& seal_of(bool keyed) {
-  static const MessageAuthenticator kSeals[] = {MessageAuthenticator(), MessageAuthenticator(make_mission_key())};
+  static const MessageAuthenticator kSeals[] = {MessageAuthenticator(),
+                                                MessageAuthenticator(make_mission_key())};
   return kSeals[keyed];
 }
 

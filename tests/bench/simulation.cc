@@ -3,12 +3,13 @@
 //
 // An iteration is one mission from the first HELLO to the last row of its record. The record is
 // written as in a run, but discarded.
+#include "lab/simulation.h"
+
 #include <benchmark/benchmark.h>
 
 #include <optional>
 #include <string>
 
-#include "lab/simulation.h"
 #include "logger/null_buffer.h"
 #include "scenario/scenario.h"
 #include "team/plan.h"
@@ -29,7 +30,8 @@ void Simulation(benchmark::State& state, const std::string& name) {
   for (auto _ : state) {
     state.PauseTiming();  // reading the plan and integrating the target are no steps
     std::optional<lab::Simulation> simulation;
-    simulation.emplace(lab::SimulationOptions{.plan = encode_plan(scenario->mission())}, nowhere, nowhere);
+    simulation.emplace(lab::SimulationOptions{.plan = encode_plan(scenario->mission())}, nowhere,
+                       nowhere);
     state.ResumeTiming();
     simulation->run();
     state.PauseTiming();

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/look_ahead.h"
-#include "team/messages.h"
 #include "core/mission.h"
 #include "core/perturbation.h"
+#include "team/messages.h"
 
 namespace ergocast::bench {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/step_floor.h"
-#include "scenario/scenario.h"
 #include "lab/studies/study_run.h"
+#include "scenario/scenario.h"
+#include "tests/bench/step_floor.h"
 
 namespace ergocast::bench {
 namespace {

@@ -19,7 +19,7 @@
 
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 /// `real_x` is the program's own function, and `bug_x` stands in its place.
-#define WRAPPED(result, x, symbol, ...)              \
+#define WRAPPED(result, x, symbol, ...)               \
   result real_##x(__VA_ARGS__) asm("__real_" symbol); \
   result bug_##x(__VA_ARGS__) asm("__wrap_" symbol);
 // NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
@@ -59,7 +59,8 @@ using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
 // clang-format on
 
-// ---- control and world ---------------------------------------------------------------------------
+// ---- control and world
+// ---------------------------------------------------------------------------
 
 Eigen::Vector3d bug_command(Controller* self, AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
                             const BasisAt& at) {
@@ -73,7 +74,8 @@ Eigen::Vector3d bug_reflect(const Eigen::Vector3d& x_m, const Box& domain) {
   return back_m + (back_m - domain.center_m());
 }
 
-// ---- coverage ------------------------------------------------------------------------------------
+// ---- coverage
+// ------------------------------------------------------------------------------------
 
 void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at) {
   if (bug("a backup is put back")) {
@@ -153,7 +155,8 @@ void bug_average(const CoverageTable* self, Coefficients& coverage) {
   if (bug("the average is off")) coverage[2] += 1e-6;
 }
 
-// ---- forecasts -----------------------------------------------------------------------------------
+// ---- forecasts
+// -----------------------------------------------------------------------------------
 
 namespace {
 
@@ -198,8 +201,8 @@ void bug_make_forecast(Forecast* self, const Mission& mission, const Author& aut
   real_make_forecast(self, changed, foresees_itself() ? Author{} : author);
 }
 
-void bug_look_ahead(Forecast* self, const CoverageTable& table, const std::vector<RosterEntry>& roster,
-                    Tick tick, Coefficients& coverage) {
+void bug_look_ahead(Forecast* self, const CoverageTable& table,
+                    const std::vector<RosterEntry>& roster, Tick tick, Coefficients& coverage) {
   const bool mistakes_it = the_dead_are_foreseen() || foresees_itself() ||
                            bug("a late block becomes the one before") ||
                            bug("a relayed block becomes the one before");
@@ -207,7 +210,8 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table, const std::vecto
   real_look_ahead(self, mistaken(table, tick), roster, tick, coverage);
 }
 
-// ---- agents --------------------------------------------------------------------------------------
+// ---- agents
+// --------------------------------------------------------------------------------------
 
 namespace {
 
@@ -235,7 +239,8 @@ void bug_advance(Agent* self, Instant now, Outbox& out) {
   real_advance(self, now, out);
   const bool is_one_of_them = self->author().agent == 2;
   if (bug("a newcomer is mute") && is_one_of_them) {
-    std::erase_if(out, [](const Outgoing& one) { return std::holds_alternative<Hello>(one.message); });
+    std::erase_if(out,
+                  [](const Outgoing& one) { return std::holds_alternative<Hello>(one.message); });
   }
   if (self->coverage() == nullptr || self->tick() < kUnderWay) return;
   if (bug("a digest exaggerates")) {
@@ -255,7 +260,8 @@ Instant bug_next_wakeup(const Agent* self) {
   return now ? Instant{} : real_next_wakeup(self);
 }
 
-// ---- coordinator and world -----------------------------------------------------------------------
+// ---- coordinator and world
+// -----------------------------------------------------------------------
 
 void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
   const bool due = self->state() == MissionState::kRunning && self->tick() > kUnderWay;
@@ -267,12 +273,16 @@ void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
 void bug_tell_coordinator(Coordinator* self, const Message& message, Bus bus, AgentId transmitter,
                           Instant now) {
   const auto* status = std::get_if<AgentStatus>(&message);
-  if (bug("the coordinator does not hear an agent") && status != nullptr && status->header.sender == 2) return;
+  if (bug("the coordinator does not hear an agent") && status != nullptr &&
+      status->header.sender == 2)
+    return;
   real_tell_coordinator(self, message, bus, transmitter, now);
 }
 
-void bug_tell_world(World* self, const Message& message, Bus bus, AgentId transmitter, Instant now) {
-  if (bug("the world does not hear the logger") && std::holds_alternative<RecordAck>(message)) return;
+void bug_tell_world(World* self, const Message& message, Bus bus, AgentId transmitter,
+                    Instant now) {
+  if (bug("the world does not hear the logger") && std::holds_alternative<RecordAck>(message))
+    return;
   real_tell_world(self, message, bus, transmitter, now);
 }
 
@@ -288,7 +298,8 @@ bool hangs(const World& world) {
 void bug_turn_world(World* self, Instant now, Outbox& out) {
   if (!hangs(*self)) real_turn_world(self, now, out);
   if (bug("the world keeps a tick to itself") && self->tick() == kUnderWay) {
-    std::erase_if(out, [](const Outgoing& one) { return std::holds_alternative<WorldState>(one.message); });
+    std::erase_if(
+        out, [](const Outgoing& one) { return std::holds_alternative<WorldState>(one.message); });
   }
 }
 
@@ -296,7 +307,8 @@ Instant bug_next_turn_of_world(const World* self) {
   return hangs(*self) ? Instant::max() : real_next_turn_of_world(self);
 }
 
-// ---- codec ---------------------------------------------------------------------------------------
+// ---- codec
+// ---------------------------------------------------------------------------------------
 
 Decoded bug_decode(std::span<const std::byte> bytes, RunId run, const MessageAuthenticator& seal,
                    std::string_view channel, KnownSignatures* known) {

@@ -102,8 +102,10 @@ std::vector<Mistake> mistakes_between_fields() {
       {kLaw, "law { contraction_gain_per_s: 0.1", "law.u_max_mps: 5 is too weak"},
       {"u_max_mps: 5", "u_max_mps: 500 contraction_gain_per_s: 11",
        "law.contraction_gain_per_s: 11 makes"},
-      {kLaw, "law { contraction_center: POINT contraction_y_m: 3", "law.contraction_x_m: is missing"},
-      {kLaw, "law { contraction_center: POINT contraction_x_m: 3", "law.contraction_y_m: is missing"},
+      {kLaw, "law { contraction_center: POINT contraction_y_m: 3",
+       "law.contraction_x_m: is missing"},
+      {kLaw, "law { contraction_center: POINT contraction_x_m: 3",
+       "law.contraction_y_m: is missing"},
       {kLaw, "law { contraction_x_m: 3", "law.contraction_x_m: has no effect"},
       {kTime, "duration_s: 0.04", "time.duration_s: 0.04 is less than one step"},
       {kTime, "duration_s: 1001 dt_s: 1e-5", "time.duration_s: 100100000 steps"},
@@ -114,7 +116,8 @@ std::vector<Mistake> mistakes_between_fields() {
       {"agents {", "agents { quorum: 2", "agents.quorum: 2 is above"},
       {"{ x_m: 10", "{ x_m: 101", "agents.starts[0].x_m: 101 is outside"},
       {"y_m: 20", "y_m: -1", "agents.starts[0].y_m: -1 is outside"},
-      {"agents {", "world { disturbance_intensity: 1000 } agents {", "world.disturbance_intensity: 1000"},
+      {"agents {", "world { disturbance_intensity: 1000 } agents {",
+       "world.disturbance_intensity: 1000"},
   };
 }
 
@@ -134,8 +137,11 @@ std::vector<Mistake> mistakes_of_targets() {
        "target.gaussians[0].covariance.yy_m2: 9e-05 is below"},
       {kUniform, bell + "covariance { xx_m2: 25 yy_m2: 25 xy_m2: 25 } }",
        "target.gaussians[0].covariance.xy_m2: 25 leaves too little"},
-      {kUniform, "gaussians { mean_x_m: 500 mean_y_m: 5 sigma_m: 5 }", "target: only 0 of its weight"},
-      {kUniform, "gaussians { mean_x_m: 100.047 mean_y_m: 25 covariance { xx_m2: 1e-4 yy_m2: 1e-4 xy_m2: 8.9999e-5 } }",
+      {kUniform, "gaussians { mean_x_m: 500 mean_y_m: 5 sigma_m: 5 }",
+       "target: only 0 of its weight"},
+      {kUniform,
+       "gaussians { mean_x_m: 100.047 mean_y_m: 25 covariance { xx_m2: 1e-4 yy_m2: 1e-4 xy_m2: "
+       "8.9999e-5 } }",
        "target: its coefficients can be off by"},
       {kUniform, repeated(65, bell + "sigma_m: 5 } "), "target: 65 Gaussians are above the limit"},
       {kUniform, repeated(17, map_of("even.csv")), "target: 17 maps are above the limit"},
@@ -151,16 +157,18 @@ std::vector<Mistake> mistakes_of_targets() {
        "target.regions[0].polygon: vertices[1] and vertices[2] are the same"},
       {kUniform, polygon(kSquare + " 10 10"),
        "target.regions[0].polygon: vertices[4] and vertices[0] are the same"},
-      {kUniform, polygon("10 10 40 40 40 10 10 40"), "target.regions[0].polygon: the edges that begin at"},
+      {kUniform, polygon("10 10 40 40 40 10 10 40"),
+       "target.regions[0].polygon: the edges that begin at"},
       {kUniform, polygon(kSquare, hole("50 10 60 10 60 20")),
        "target.regions[0].polygon.holes[0]: the hole is outside"},
       {kUniform, polygon(kSquare, hole("20 20 30 20 30 30 20 30") + hole("24 24 25 24 25 25")),
        "target.regions[0].polygon.holes[1]: the hole is inside"},
       {kUniform, polygon("10 10 10.001 10 10.001 10.001"), "target.regions[0].polygon: its area"},
       {kUniform, polygon("200 10 300 10 300 20"), "target.regions[0]: nothing of it is left"},
-      {kUniform, polygon("10 10 20 10 20 20") +
-                     " keep_outs { vertices { x_m: 5 y_m: 5 } vertices { x_m: 45 y_m: 5 } vertices { x_m: 45 "
-                     "y_m: 45 } vertices { x_m: 5 y_m: 45 } }",
+      {kUniform,
+       polygon("10 10 20 10 20 20") +
+           " keep_outs { vertices { x_m: 5 y_m: 5 } vertices { x_m: 45 y_m: 5 } vertices { x_m: 45 "
+           "y_m: 45 } vertices { x_m: 5 y_m: 45 } }",
        "target.regions[0]: nothing of it is left"},
   };
 }
@@ -173,23 +181,29 @@ std::vector<Mistake> mistakes_of_maps() {
   std::vector<Mistake> all = {
       {kUniform, "maps { " + extent + " }", at + "is missing"},
       {kUniform, map_of("even.tif"), at},
-      {kUniform, map_of("good.asc", extent), "target.maps[0].origin_x_m: an ESRI ASCII grid states"},
-      {kUniform, map_of("good.asc", "first_row: SOUTH"), "target.maps[0].first_row: an ESRI ASCII grid"},
+      {kUniform, map_of("good.asc", extent),
+       "target.maps[0].origin_x_m: an ESRI ASCII grid states"},
+      {kUniform, map_of("good.asc", "first_row: SOUTH"),
+       "target.maps[0].first_row: an ESRI ASCII grid"},
       {kUniform, map_of("even.csv", "origin_x_m: 500 origin_y_m: 0 size_x_m: 1 size_y_m: 1"),
        "target.maps[0]: nothing of it is left"},
   };
   for (const char* name : {"origin_x_m", "origin_y_m", "size_x_m", "size_y_m"}) {
     std::string others = extent;
-    const auto begin = others.find(name), end = std::min(others.find(' ', others.find(' ', begin) + 1), others.size());
+    const auto begin = others.find(name),
+               end = std::min(others.find(' ', others.find(' ', begin) + 1), others.size());
     others.erase(begin, end - begin);
-    all.push_back({kUniform, map_of("even.csv", others), std::string("target.maps[0].") + name + ": is missing"});
+    all.push_back({kUniform, map_of("even.csv", others),
+                   std::string("target.maps[0].") + name + ": is missing"});
     all.push_back({kUniform, map_of("good.asc", std::string(name) + ": 1"),
                    std::string("target.maps[0].") + name + ": an ESRI ASCII grid states"});
   }
-  for (const char* bad : {"none.csv", "folder.csv", "locked.csv", "empty.csv", "wide.csv", "long.csv", "ragged.csv",
-                          "zero.csv", "words.csv", "negative.csv", "huge.csv", "nan.csv", "key.asc", "twice.asc",
-                          "bare.asc", "lacks.asc", "both.asc", "half.asc", "flat.asc", "short.asc", "more.asc",
-                          "text.png", "cut.png", "palette.png", "colour.png", "bits.png", "laced.png"}) {
+  for (const char* bad :
+       {"none.csv",   "folder.csv", "locked.csv", "empty.csv",    "wide.csv", "long.csv",
+        "ragged.csv", "zero.csv",   "words.csv",  "negative.csv", "huge.csv", "nan.csv",
+        "key.asc",    "twice.asc",  "bare.asc",   "lacks.asc",    "both.asc", "half.asc",
+        "flat.asc",   "short.asc",  "more.asc",   "text.png",     "cut.png",  "palette.png",
+        "colour.png", "bits.png",   "laced.png"}) {
     all.push_back({kUniform, map_of(bad), at});
   }
   return all;
@@ -252,7 +266,8 @@ class Scenarios : public OwnHost {
     write("s.textproto", text.replace(at, mistake.from.size(), mistake.to));
     EXPECT_EQ(ergocast({"check", file_}), 2) << mistake.to.substr(0, 200) << output();
     const std::string begin = file_.string() + ":";
-    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
+    const auto line =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
     bool found = false;
     for (const std::string& said : note(output())) {
       if (said.find(mistake.said) == said.npos) continue;
@@ -277,7 +292,8 @@ class Scenarios : public OwnHost {
   std::vector<std::string> said_, said_of_flags_;
 };
 
-// ---- fields by themselves ------------------------------------------------------------------------
+// ---- fields by themselves
+// ------------------------------------------------------------------------
 
 /// A scenario with every block and every number.
 constexpr const char* kRich = R"(
@@ -305,8 +321,9 @@ world { disturbance_intensity: 0.1 radio_range_m: 30 speed_limit_mps: 100 }
 )";
 
 /// Calls `visit` for each field that takes a number or a word, with its block.
-void each_field(Block& message, const std::string& path,
-                const std::function<void(Block&, const FieldDescriptor&, const std::string&)>& visit) {
+void each_field(
+    Block& message, const std::string& path,
+    const std::function<void(Block&, const FieldDescriptor&, const std::string&)>& visit) {
   const auto* reflection = message.GetReflection();
   for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor& field = *message.GetDescriptor()->field(i);
@@ -331,17 +348,18 @@ class CheckCanFail : public Scenarios {
                    const std::function<void(Block&, const FieldDescriptor&)>& spoil) {
     proto::Scenario scenario;
     ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &scenario));
-    each_field(scenario, "", [&](Block& block, const FieldDescriptor& field, const std::string& at) {
-      if (at == path) spoil(block, field);
-    });
+    each_field(scenario, "",
+               [&](Block& block, const FieldDescriptor& field, const std::string& at) {
+                 if (at == path) spoil(block, field);
+               });
     std::string text;
     google::protobuf::TextFormat::PrintToString(scenario, &text);
     write("s.textproto", text);
     EXPECT_EQ(ergocast({"check", file_}), 2) << path << what;
     bool found = false;
     for (const std::string& line : note(output())) {
-      found = found || (line.starts_with(file_.string() + ":") && line.find(" " + path + ": ") != line.npos &&
-                        line.find(what) != line.npos);
+      found = found || (line.starts_with(file_.string() + ":") &&
+                        line.find(" " + path + ": ") != line.npos && line.find(what) != line.npos);
     }
     EXPECT_TRUE(found) << path << ": " << what << ":\n" << output();
   }
@@ -397,7 +415,8 @@ class CheckCanFail : public Scenarios {
       for (int j = 0; j < file->message_type(i)->field_count(); ++j) {
         const FieldDescriptor& field = *file->message_type(i)->field(j);
         if (field.message_type() != nullptr) continue;
-        EXPECT_TRUE(covered.contains(field.full_name())) << field.full_name() << ": add it to kRich";
+        EXPECT_TRUE(covered.contains(field.full_name()))
+            << field.full_name() << ": add it to kRich";
       }
     }
   }
@@ -405,8 +424,8 @@ class CheckCanFail : public Scenarios {
   void plant_in_the_text() {
     write("s.textproto", kGood);
     EXPECT_EQ(ergocast({"check", file_}), 0) << output();
-    for (const auto& mistakes : {mistakes_of_the_text(), mistakes_between_fields(), mistakes_of_targets(),
-                                 mistakes_of_maps()}) {
+    for (const auto& mistakes : {mistakes_of_the_text(), mistakes_between_fields(),
+                                 mistakes_of_targets(), mistakes_of_maps()}) {
       for (const Mistake& mistake : mistakes) expect_mistake(mistake);
     }
   }
@@ -424,7 +443,8 @@ class CheckCanFail : public Scenarios {
     expect_refused({"check", folder_}, ": is a folder, not a file");
     expect_refused({"check", "/dev/zero"}, "/dev/zero: is not a regular file");
     expect_refused({"check", "/proc/self/mem"}, "/proc/self/mem: cannot be read");
-    expect_refused({"simulate", file_, "--agents", "129", "--out", out()}, "--agents: 129 is outside");
+    expect_refused({"simulate", file_, "--agents", "129", "--out", out()},
+                   "--agents: 129 is outside");
     const std::pair<const char*, const char*> flags[] = {
         {"name=a,b", "is a text"},
         {"law.epsilom=1", "did you mean law.epsilon?"},

@@ -34,18 +34,21 @@ class PretendedPeer {
     std::string version = ergocast::version();
     std::uint64_t key = 0;
     bool answers = true;
-    std::uint32_t most = doctor::kMaxProbes;                            ///< probes it sends
+    std::uint32_t most = doctor::kMaxProbes;  ///< probes it sends
     std::function<bool(std::uint32_t)> leaves_out = [](auto) { return false; };  ///< by sequence
     bool twice = false;
     bool gossips = false;  ///< of a peer that the doctor never receives
   };
   PretendedPeer(int port, Manners manners)
-      : manners_(std::move(manners)), to_(address_of(kTeamsGroup, port)), socket_(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) {
+      : manners_(std::move(manners)),
+        to_(address_of(kTeamsGroup, port)),
+        socket_(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK) {
     const int yes = 1;
     setsockopt(socket_.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     EXPECT_EQ(bind(socket_.fd(), reinterpret_cast<const sockaddr*>(&to_), sizeof to_), 0);
     const ip_mreq membership{to_.sin_addr, {htonl(INADDR_ANY)}};
-    EXPECT_EQ(setsockopt(socket_.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership), 0);
+    EXPECT_EQ(
+        setsockopt(socket_.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership), 0);
   }
 
   /// Answers each probe of the doctor with its own probe.
@@ -73,7 +76,8 @@ class PretendedPeer {
     std::vector<std::byte> bytes;
     doctor::write(own, bytes);
     for (int i = 0; i < (manners_.twice ? 2 : 1); ++i) {
-      sendto(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
+      sendto(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to_),
+             sizeof to_);
     }
   }
 
@@ -89,16 +93,16 @@ struct Plant {
   std::string check = "", found = "";  ///< of the finding
   std::string level = "";
   int exit_code = 1;
-  std::string set_up = "";                 ///< a shell's command on the host
+  std::string set_up = "";  ///< a shell's command on the host
   std::string url_options = "ttl=1";
   std::vector<std::string> arguments = {};
-  std::string wrapper = "";                ///< a shell's command before the program's
-  std::vector<int> held_ports = {};        ///< by a socket of the test, after the URL's port
-  bool alone = false;                      ///< which has them for itself
+  std::string wrapper = "";                       ///< a shell's command before the program's
+  std::vector<int> held_ports = {};               ///< by a socket of the test, after the URL's port
+  bool alone = false;                             ///< which has them for itself
   std::function<Speaker(int port)> speaker = {};  ///< made on another host
   int agents = 0;                                 ///< ours, at the same ports, without a mission
   bool as_nobody = false, on_a_terminal = false;
-  int port = 0;                                   ///< if it matters
+  int port = 0;  ///< if it matters
 };
 
 class DoctorCanFail : public OnHosts {
@@ -113,16 +117,19 @@ class DoctorCanFail : public OnHosts {
   std::vector<Plant> plants_on_the_bus();
   std::vector<Plant> plants_of_peers();
 
-
   std::filesystem::path key_file(const char* name) const { return folder_ / name; }
-  MessageAuthenticator seal(const char* name) const { return MessageAuthenticator(std::get<MissionKey>(read_key_file(key_file(name)))); }
+  MessageAuthenticator seal(const char* name) const {
+    return MessageAuthenticator(std::get<MissionKey>(read_key_file(key_file(name))));
+  }
 
   /// Sends `message` while the doctor listens.
   template <class M>
   std::function<Speaker(int)> says(M message, const MessageAuthenticator& seal = {}) {
     return [message, seal](int port) -> Speaker {
       const auto url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?ttl=1";
-      return [stranger = std::make_shared<Stranger>(url, seal), message] { stranger->say(Bus::kSwarm, message); };
+      return [stranger = std::make_shared<Stranger>(url, seal), message] {
+        stranger->say(Bus::kSwarm, message);
+      };
     };
   }
   static std::function<Speaker(int)> peer(PretendedPeer::Manners manners) {
@@ -134,13 +141,15 @@ class DoctorCanFail : public OnHosts {
   void start(std::size_t i, const Plant& plant) {
     const int host = static_cast<int>(i), port = plant.port > 0 ? plant.port : 24000 + 3 * host;
     std::string set_up = plant.set_up;
-    if (const auto at = set_up.find("$PORT"); at != set_up.npos) set_up.replace(at, 5, std::to_string(port));
+    if (const auto at = set_up.find("$PORT"); at != set_up.npos)
+      set_up.replace(at, 5, std::to_string(port));
     if (!set_up.empty()) lan_->on_host(host, set_up);
     if (plant.speaker) {
       const auto elsewhere = lan_->visit(lan_->hosts() - 1);
       speakers_.push_back(plant.speaker(port));
     }
-    const std::string url = "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?" + plant.url_options;
+    const std::string url =
+        "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?" + plant.url_options;
     const auto there = lan_->visit(host);
     for (const int offset : plant.held_ports) hold(port + offset, !plant.alone);
     for (int agent = 0; agent < plant.agents; ++agent) {
@@ -150,11 +159,14 @@ class DoctorCanFail : public OnHosts {
     const auto sockets = [] { return text_of("/proc/thread-self/net/udp"); };
     EXPECT_TRUE(eventually([&] { return std::ranges::count(sockets(), '\n') > 2 * plant.agents; }));
     const auto program = plant.as_nobody ? folder_ / "ergocast" : program_folder() / "ergocast";
-    std::string command = plant.wrapper + " " + program.string() + " doctor --lcm-url '" + url + "'";
+    std::string command =
+        plant.wrapper + " " + program.string() + " doctor --lcm-url '" + url + "'";
     for (const std::string& argument : plant.arguments) command += " " + argument;
-    command = plant.on_a_terminal ? "script -qefc \"" + command + "\" /dev/null" : command + " --json";
+    command =
+        plant.on_a_terminal ? "script -qefc \"" + command + "\" /dev/null" : command + " --json";
     logs_.push_back(folder_ / ("host-" + std::to_string(i)));
-    doctors_.push_back(std::get<Child>(Child::start({{"/bin/sh", "-c", "exec " + command}, logs_.back(), SIGKILL})));
+    doctors_.push_back(std::get<Child>(
+        Child::start({{"/bin/sh", "-c", "exec " + command}, logs_.back(), SIGKILL})));
   }
 
   void hold(int port, bool shared) {
@@ -169,23 +181,28 @@ class DoctorCanFail : public OnHosts {
   void wait_for_all() {
     EXPECT_TRUE(eventually([this] {
       for (const Speaker& speak : speakers_) speak();
-      return std::none_of(doctors_.begin(), doctors_.end(), [](Child& one) { return one.running(); });
+      return std::none_of(doctors_.begin(), doctors_.end(),
+                          [](Child& one) { return one.running(); });
     }));
   }
 
   void expect_finding(std::size_t i, const Plant& plant) {
     const std::string told = text_of(logs_[i]);
-    EXPECT_EQ(doctors_[i].exit_code().value_or(-1), plant.exit_code) << plant.check << ": " << plant.found;
+    EXPECT_EQ(doctors_[i].exit_code().value_or(-1), plant.exit_code)
+        << plant.check << ": " << plant.found;
     said_.push_back(told);
     const json report = json::parse(told, nullptr, false);
     if (report.is_discarded()) return;  // for people
     bool found = false;
     for (const json& one : report["findings"]) {
-      const std::string check = one["check"], what = one["found"], why = one["why"], remedy = one["remedy"];
+      const std::string check = one["check"], what = one["found"], why = one["why"],
+                        remedy = one["remedy"];
       said_.push_back(check + "\n" + what + "\n" + why + "\n" + remedy);
-      found = found || (check == plant.check && one["level"] == plant.level && what.find(plant.found) != what.npos);
+      found = found || (check == plant.check && one["level"] == plant.level &&
+                        what.find(plant.found) != what.npos);
     }
-    EXPECT_TRUE(found) << plant.level << " " << plant.check << ": " << plant.found << " is not in\n" << told;
+    EXPECT_TRUE(found) << plant.level << " " << plant.check << ": " << plant.found << " is not in\n"
+                       << told;
   }
 
   std::deque<Socket> held_;
@@ -211,35 +228,73 @@ std::vector<Plant> DoctorCanFail::plants_of_routes() {
       {"route", ", and not over br1", "note", 0, kSecondInterface},
       {"interface", "is not set to multicast", "problem", 1, "ip link set eth0 multicast off"},
       {"interface", "has no carrier", "problem", 1,
-       "ip link add v0 type veth peer name v1 && ip addr add 10.0.9.1/24 dev v0 && ip link set v0 up && "
+       "ip link add v0 type veth peer name v1 && ip addr add 10.0.9.1/24 dev v0 && ip link set v0 "
+       "up && "
        "ip route replace 224.0.0.0/4 dev v0"},
       {"MTU", "eth0: 1000 bytes", "warning", 1, "ip link set eth0 mtu 1000"},
       {"TTL", "never leaves this host", "note", 0, "", "ttl=0"},
       {"self test", "did not come back", "problem", 3,
-       "nft 'add table inet wall; add chain inet wall in { type filter hook input priority 0; policy drop; }'"},
-      {"firewall", "drops incoming traffic", "note", 0, "", "ttl=1", {},
+       "nft 'add table inet wall; add chain inet wall in { type filter hook input priority 0; "
+       "policy drop; }'"},
+      {"firewall",
+       "drops incoming traffic",
+       "note",
+       0,
+       "",
+       "ttl=1",
+       {},
        "env PATH=" + (folder_ / "iptables").string() + ":$PATH"},
   };
 }
 
 std::vector<Plant> DoctorCanFail::plants_of_kernels() {
   const std::string sysctl = "/proc/sys/net/ipv4/";
-  const std::string drop = "nft 'add table inet t; add chain inet t i { type filter hook input priority 0; }'";
+  const std::string drop =
+      "nft 'add table inet t; add chain inet t i { type filter hook input priority 0; }'";
   return {
       {"receive buffer", "the kernel grants", "warning", 1, "", "ttl=1&recv_buf_size=1073741823"},
       {"receive buffer", "holds about", "note", 0, "", "ttl=1&recv_buf_size=65536"},
       {"fragments", "20000 bytes for fragments", "note", 0,
-       "echo 10000 > " + sysctl + "ipfrag_low_thresh; echo 20000 > " + sysctl + "ipfrag_high_thresh"},
+       "echo 10000 > " + sysctl + "ipfrag_low_thresh; echo 20000 > " + sysctl +
+           "ipfrag_high_thresh"},
       {"source check", "rp_filter=1 (strict)", "note", 0,
        "echo 0 > " + sysctl + "conf/all/rp_filter; echo 1 > " + sysctl + "conf/eth0/rp_filter"},
-      {"bridges", "br1: snooping without a querier", "note", 0, kSecondInterface, "ttl=1", {},
+      {"bridges",
+       "br1: snooping without a querier",
+       "note",
+       0,
+       kSecondInterface,
+       "ttl=1",
+       {},
        "unshare -m sh -c 'mount -t sysfs sysfs /sys && exec \"$@\"' _"},
       {"LCM fragments", "no rule drops them", "note", 0},
-      {.check = "LCM fragments", .found = "no rule drops them", .level = "note", .exit_code = 0, .port = 30000},
+      {.check = "LCM fragments",
+       .found = "no rule drops them",
+       .level = "note",
+       .exit_code = 0,
+       .port = 30000},
       {"LCM fragments", "at 1 of our 3 ports", "note", 0,
        drop + "; nft 'add rule inet t i udp dport $PORT @th,64,32 0x4c433033 drop'"},
-      {"LCM fragments", "only root can tell", "note", 0, "", "ttl=1", {}, kAsNobody, {}, false, {}, 0, true},
-      {"clock", "not synchronised", "note", 0, "", "ttl=1", {},
+      {"LCM fragments",
+       "only root can tell",
+       "note",
+       0,
+       "",
+       "ttl=1",
+       {},
+       kAsNobody,
+       {},
+       false,
+       {},
+       0,
+       true},
+      {"clock",
+       "not synchronised",
+       "note",
+       0,
+       "",
+       "ttl=1",
+       {},
        std::string("env LD_PRELOAD=") + ERGOCAST_UNSYNCHRONISED_CLOCK},
       {"lcm-spy", "missing: java", "note", 0, "", "ttl=1", {}, "env PATH=/nowhere"},
   };
@@ -256,14 +311,74 @@ std::vector<Plant> DoctorCanFail::plants_on_the_bus() {
       {"ports", ": hosts_tests (pid ", "warning", 1, "", "ttl=1", {}, "", {0, 1, 2}},
       {.check = "ports", .found = " and 2 more", .level = "note", .exit_code = 0, .agents = 3},
       {"ports", "cannot open the port", "problem", 1, "", "ttl=1", {}, "", {0}, true},
-      {"ports", "another user's program", "warning", 1, "", "ttl=1", {}, kAsNobody, {1}, false, {}, 0, true},
-      {"swarm bus", "run 000000000000004d, 1 agent on elsewhere, version 9.9", "note", 0, "", "ttl=1", {}, "", {},
-       false, says(hello)},
-      {"swarm bus", "a team without a mission key", "warning", 1, "", "ttl=1", with_key, "", {}, false, says(hello)},
-      {"swarm bus", "messages that this key does not open", "warning", 1, "", "ttl=1", with_key, "", {}, false,
+      {"ports",
+       "another user's program",
+       "warning",
+       1,
+       "",
+       "ttl=1",
+       {},
+       kAsNobody,
+       {1},
+       false,
+       {},
+       0,
+       true},
+      {"swarm bus",
+       "run 000000000000004d, 1 agent on elsewhere, version 9.9",
+       "note",
+       0,
+       "",
+       "ttl=1",
+       {},
+       "",
+       {},
+       false,
+       says(hello)},
+      {"swarm bus",
+       "a team without a mission key",
+       "warning",
+       1,
+       "",
+       "ttl=1",
+       with_key,
+       "",
+       {},
+       false,
+       says(hello)},
+      {"swarm bus",
+       "messages that this key does not open",
+       "warning",
+       1,
+       "",
+       "ttl=1",
+       with_key,
+       "",
+       {},
+       false,
        says(hello, seal("other"))},
-      {"swarm bus", "a team with a mission key", "note", 0, "", "ttl=1", {}, "", {}, false, says(hello, seal("ours"))},
-      {"swarm bus", "other LCM traffic: LIDAR", "warning", 1, "", "ttl=1", {}, "", {}, false, foreign},
+      {"swarm bus",
+       "a team with a mission key",
+       "note",
+       0,
+       "",
+       "ttl=1",
+       {},
+       "",
+       {},
+       false,
+       says(hello, seal("ours"))},
+      {"swarm bus",
+       "other LCM traffic: LIDAR",
+       "warning",
+       1,
+       "",
+       "ttl=1",
+       {},
+       "",
+       {},
+       false,
+       foreign},
       {"mission key", "none: unauthenticated", "note", 0},
   };
 }
@@ -271,9 +386,19 @@ std::vector<Plant> DoctorCanFail::plants_on_the_bus() {
 std::vector<Plant> DoctorCanFail::plants_of_peers() {
   const std::vector<std::string> test = {"--peer", "3"};
   const std::vector<std::string> keyed = {"--peer", "3", "--key-file", key_file("ours")};
-  const auto plant = [&](const char* check, const char* found, const char* level, PretendedPeer::Manners manners,
+  const auto plant = [&](const char* check, const char* found, const char* level,
+                         PretendedPeer::Manners manners,
                          const std::vector<std::string>& arguments) {
-    return Plant{check, found, level, std::string(level) == "note" ? 0 : 1, "", "ttl=1", arguments, "", {}, false,
+    return Plant{check,
+                 found,
+                 level,
+                 std::string(level) == "note" ? 0 : 1,
+                 "",
+                 "ttl=1",
+                 arguments,
+                 "",
+                 {},
+                 false,
                  peer(std::move(manners))};
   };
   const auto every_fourth = [](std::uint32_t sequence) { return doctor::is_large(sequence); };
@@ -284,13 +409,16 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
        "nft 'add table inet w; add chain inet w o { type filter hook output priority 0; }; "
        "add rule inet w o udp dport $PORT drop'",
        "ttl=1", test},
-      {"peers", "not tried: LCM cannot be used", "problem", 3, "ip route del 224.0.0.0/4", "ttl=1", test},
+      {"peers", "not tried: LCM cannot be used", "problem", 3, "ip route del 224.0.0.0/4", "ttl=1",
+       test},
       {"peers", "not tried: the port is in use", "warning", 1, "", "ttl=1", test, "", {0}},
       plant("peer stranger", "one-way", "problem", {.answers = false}, test),
       plant("peer stranger", "heard too briefly", "note", {.answers = false, .most = 3}, test),
-      plant("peer stranger", "only short datagrams arrive", "problem", {.leaves_out = every_fourth}, test),
+      plant("peer stranger", "only short datagrams arrive", "problem", {.leaves_out = every_fourth},
+            test),
       plant("peer stranger", "it has version 9.9", "warning", {.version = "9.9"}, test),
-      plant("peer stranger", "it has a mission key and this host has none", "warning", {.key = 5}, test),
+      plant("peer stranger", "it has a mission key and this host has none", "warning", {.key = 5},
+            test),
       plant("peer stranger", "it has another mission key", "warning", {.key = 5}, keyed),
       plant("peer stranger", "it has no mission key and this host has one", "warning", {}, keyed),
       plant("peer stranger", ", lost: ", "warning", {.leaves_out = every_fifth}, test),
@@ -303,14 +431,16 @@ std::vector<Plant> DoctorCanFail::plants_of_peers() {
 
 std::vector<Plant> DoctorCanFail::plants() {
   std::vector<Plant> all;
-  for (const auto& some : {plants_of_routes(), plants_of_kernels(), plants_on_the_bus(), plants_of_peers()}) {
+  for (const auto& some :
+       {plants_of_routes(), plants_of_kernels(), plants_on_the_bus(), plants_of_peers()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
 }
 
 const std::vector<Unsayable> kUnsayable = {
-    {"ops/doctor/group_listener.cc", "cannot listen to the group", "the self test, which joins it first, fails then"},
+    {"ops/doctor/group_listener.cc", "cannot listen to the group",
+     "the self test, which joins it first, fails then"},
     {"ops/doctor/ports.cc", "ss -ulpn", "a thousand ports would have to be taken"},
 };
 
@@ -324,7 +454,8 @@ TEST_F(DoctorCanFail, InEachOfItsFindings) {
   fs::copy_file(program_folder() / "ergocast", folder_ / "ergocast");
   // A host without nft, whose iptables drops.
   fs::create_directory(folder_ / "iptables");
-  for (const auto& [tool, does] : {std::pair("nft", "exit 1"), std::pair("iptables", "echo '-P INPUT DROP'")}) {
+  for (const auto& [tool, does] :
+       {std::pair("nft", "exit 1"), std::pair("iptables", "echo '-P INPUT DROP'")}) {
     std::ofstream(folder_ / "iptables" / tool) << "#!/bin/sh\n" << does << "\n";
     fs::permissions(folder_ / "iptables" / tool, fs::perms::owner_all);
   }

@@ -24,8 +24,10 @@ enum class Words { kAreTheirOwn, kMayBeShared };
 
 /// Fails for each text of `files` that is in none of `said`, except the unsayable ones, and for
 /// each unsayable one that was produced.
-inline void expect_all_said(const std::vector<std::string>& files, const std::vector<std::string>& said,
-                            const std::vector<Unsayable>& unsayable, Words words_of_two = Words::kAreTheirOwn) {
+inline void expect_all_said(const std::vector<std::string>& files,
+                            const std::vector<std::string>& said,
+                            const std::vector<Unsayable>& unsayable,
+                            Words words_of_two = Words::kAreTheirOwn) {
   const std::vector<Saying> sayings = sayings_of(files);
   EXPECT_FALSE(sayings.empty());
   std::set<const Unsayable*> used;
@@ -34,7 +36,8 @@ inline void expect_all_said(const std::vector<std::string>& files, const std::ve
       return words.starts_with(one.file + ":") && words.find(one.words) != words.npos;
     });
     if (reason == unsayable.end()) {
-      ADD_FAILURE() << "nothing planted brings out " << words << "\n(tests/checks_can_fail/README.md)";
+      ADD_FAILURE() << "nothing planted brings out " << words
+                    << "\n(tests/checks_can_fail/README.md)";
     } else {
       used.insert(&*reason);
     }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each invariant of the laboratory, and each goal, against a bug that breaks it: the real program
 // flies the same seeds with the bug (bugs.cc) and without.
+#include "lab/invariants.h"
+
 #include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
 
-#include "lab/invariants.h"
 #include "tests/checks_can_fail/words.h"
 #include "tests/process/programs.h"
 
@@ -40,14 +41,18 @@ const Plant kPlants[] = {
     {Invariant::kHeldNeverShrinks, "a backup is put back"},
     {Invariant::kNoStepCountsTwice, "a sample counts twice"},
     {Invariant::kAverageOfWhatIsHeld, "the average is off"},
-    {Invariant::kForecastOfWhatIsKnown, "a late block becomes the one before", kLateBlocks, kByRowsAlone},
-    {Invariant::kForecastOfWhatIsKnown, "a relayed block becomes the one before", kLateBlocks, kByRowsAlone},
+    {Invariant::kForecastOfWhatIsKnown, "a late block becomes the one before", kLateBlocks,
+     kByRowsAlone},
+    {Invariant::kForecastOfWhatIsKnown, "a relayed block becomes the one before", kLateBlocks,
+     kByRowsAlone},
     {Invariant::kForecastOfWhatIsKnown, "the dead are foreseen for ever", kDeadAgents},
-    {Invariant::kForecastOfWhatIsKnown, "the dead are foreseen for ever", kDeadAgents, kByRowsAlone},
+    {Invariant::kForecastOfWhatIsKnown, "the dead are foreseen for ever", kDeadAgents,
+     kByRowsAlone},
     {Invariant::kForecastOfWhatIsKnown, "an agent foresees itself"},
     {Invariant::kForecastOfWhatIsKnown, "an agent foresees itself", "", kByRowsAlone},
     {Invariant::kForecastOfWhatIsKnown, "a block's age counts from its arrival", kLateBlocks},
-    {Invariant::kForecastOfWhatIsKnown, "a block's age counts from its arrival", kLateBlocks, kByRowsAlone},
+    {Invariant::kForecastOfWhatIsKnown, "a block's age counts from its arrival", kLateBlocks,
+     kByRowsAlone},
     {Invariant::kZerothIsOne, "a receiver rounds"},
     {Invariant::kHonestMessagesAccepted, "an honest block is refused"},
     {Invariant::kNoEarlyEnd, "an agent gives up"},
@@ -55,10 +60,11 @@ const Plant kPlants[] = {
     {Invariant::kHeardLoggerIsKept, "the world does not hear the logger"},
     {Invariant::kEverybodyIsBack, "a newcomer is mute", "", "agents { quorum: 3 }"},
     {Invariant::kTheLivingAreKnown, "the coordinator does not hear an agent"},
-    {Invariant::kTheLivingCount, "the coordinator does not hear an agent", "", "agents { forget_silent_after_s: 1 }"},
+    {Invariant::kTheLivingCount, "the coordinator does not hear an agent", "",
+     "agents { forget_silent_after_s: 1 }"},
     {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped", "", "", ", a member"},
-    {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped", "", "world { radio_range_m: 200 }",
-     "hops away, has long held"},
+    {Invariant::kEverybodyLearnsEveryRow, "one agent's rows are dropped", "",
+     "world { radio_range_m: 200 }", "hops away, has long held"},
     {Invariant::kViewsAgree, "a receiver mixes up modes", "", "law { anticipation: 0 }"},
     {Invariant::kRelaysStop, "an agent repeats what all have"},
     {Invariant::kEverybodyEnds, "the world hangs"},
@@ -82,8 +88,8 @@ class InvariantsCanFail : public OwnHost {
     std::ofstream(scenario) << text;
     std::ofstream(faults) << plant.faults << '\n';
     setenv("ERGOCAST_BUG", bug, 1);
-    const int code = run("ergocast-with-bugs", {"simulate", scenario, "--seeds", "1:2", "--jobs", "1",
-                                                "--faults", faults});
+    const int code = run("ergocast-with-bugs", {"simulate", scenario, "--seeds", "1:2", "--jobs",
+                                                "1", "--faults", faults});
     unsetenv("ERGOCAST_BUG");
     return code;
   }
@@ -141,7 +147,8 @@ TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
     sources += text_of(std::filesystem::path(ERGOCAST_SOURCE_DIR) / file);
   }
   const std::regex report("violate\\(\\w+, Invariant::\\w+");
-  const auto places = std::distance(std::sregex_iterator(sources.begin(), sources.end(), report), {});
+  const auto places =
+      std::distance(std::sregex_iterator(sources.begin(), sources.end(), report), {});
   std::set<std::pair<Invariant, std::string>> planted;
   for (const Plant& plant : kPlants) planted.emplace(plant.broken, plant.says);
   EXPECT_EQ(places, std::ssize(planted));

@@ -4,12 +4,12 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
-#include "team/mission_follower.h"
 #include "runtime/key_file.h"
 #include "scenario/scenario.h"
+#include "team/mission_follower.h"
+#include "tests/process/bus_observer.h"
 #include "tests/process/mission.h"
 #include "tests/process/stranger.h"
-#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -22,7 +22,8 @@ class RefusalsCanBeSeen : public FlyingMission {
     write(team_, key, false);
     write(other_, make_mission_key(), false);
   }
-  static void write(const std::filesystem::path& file, const MissionKey& key, bool for_coordinator) {
+  static void write(const std::filesystem::path& file, const MissionKey& key,
+                    bool for_coordinator) {
     EXPECT_EQ(write_key_file(file, key_text(key, for_coordinator)), std::nullopt);
   }
   static MessageAuthenticator seal(const std::filesystem::path& file) {
@@ -106,13 +107,15 @@ class RefusalsCanBeSeen : public FlyingMission {
     return 0;
   }
 
-  const std::filesystem::path coordinator_ = folder_ / "c.key", team_ = folder_ / "t.key", other_ = folder_ / "o.key";
+  const std::filesystem::path coordinator_ = folder_ / "c.key", team_ = folder_ / "t.key",
+                              other_ = folder_ / "o.key";
   MissionFollower follower_;
   std::unique_ptr<Stranger> rate_offender_;
 };
 
 TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
-  Child mission = launch_endless(scenario(), {"--realtime=2", "--key-file", coordinator_, "--lcm-url", kUrl});
+  Child mission =
+      launch_endless(scenario(), {"--realtime=2", "--key-file", coordinator_, "--lcm-url", kUrl});
   learn_mission();
   rate_offender_ = std::make_unique<Stranger>(kUrl, seal(team_));
   const std::map<Refusal, std::function<void()>> plants = {
@@ -121,7 +124,10 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
       {Refusal::kType, [this] { say_raw(200); }},
       {Refusal::kTag, [this] { say(seal(other_), hello(run())); }},
       {Refusal::kUnkeyed, [this] { say({}, hello(run())); }},
-      {Refusal::kUnsigned, [this] { say(seal(team_), Stop{from(kOperator, run()), false, "no key"}); }},
+      {Refusal::kUnsigned,
+       [this] {
+         say(seal(team_), Stop{from(kOperator, run()), false, "no key"});
+       }},
       {Refusal::kRun, [this] { say(seal(team_), hello(run() + 1)); }},
       // An agent that sends the places of all vehicles.
       {Refusal::kRange, [this] { say(seal(team_), world_of(3), Bus::kWorld); }},
@@ -143,7 +149,9 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
     EXPECT_TRUE(eventually([&] {
       plant->second();
       return refused(name) > 0;
-    })) << name << ":\n" << output();
+    })) << name
+        << ":\n"
+        << output();
   }
   // A warning lists all kinds since the start, at most every 10 s. It does not list the refusals of
   // an agent's tables, which only its status has.

@@ -16,7 +16,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Lines = std::vector<std::string>;
 
-void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 void edit(const fs::path& file, const std::function<void(std::string&)>& change) {
   std::string text = text_of(file);
@@ -41,7 +43,8 @@ void edit_summary(const fs::path& run, const std::function<void(Json&)>& change)
 }
 
 /// Makes it look like a run over LCM, which `verify` then checks for what it cannot repeat.
-void call_it_a_run(const fs::path& run, const std::function<void(Json&)>& change = [](Json&) {}) {
+void call_it_a_run(
+    const fs::path& run, const std::function<void(Json&)>& change = [](Json&) {}) {
   edit_summary(run, [&](Json& summary) {
     summary["run_id"] = "0123456789abcdef";
     change(summary);
@@ -49,7 +52,8 @@ void call_it_a_run(const fs::path& run, const std::function<void(Json&)>& change
 }
 
 void change_a_cell(const fs::path& table) {
-  edit_lines(table, [](Lines& lines) { lines.at(3).back() = lines.at(3).back() == '9' ? '8' : '9'; });
+  edit_lines(table,
+             [](Lines& lines) { lines.at(3).back() = lines.at(3).back() == '9' ? '8' : '9'; });
 }
 
 struct Lie {
@@ -67,19 +71,25 @@ std::vector<Lie> lies_of_the_summary() {
       {"its summary names no agents", 2,
        [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s.erase("agents"); }); }},
       {"its roster has 5 entries", 2,
-       [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s["agents"].push_back(s["agents"][0]); }); }},
+       [](const fs::path& run) {
+         call_it_a_run(run, [](Json& s) { s["agents"].push_back(s["agents"][0]); });
+       }},
       {"left or was evicted at tick 5", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("active_until", 5)); }},
       {"covered did not count for a while", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("coverage_switched_at", 7)); }},
-      {"joined at tick 3", 2, [=](const fs::path& run) { call_it_a_run(run, agent("active_from", 3)); }},
+      {"joined at tick 3", 2,
+       [=](const fs::path& run) { call_it_a_run(run, agent("active_from", 3)); }},
       {"is not one that ergocast wrote", 2,
-       [](const fs::path& run) { call_it_a_run(run, [](Json& s) { s["agents"][0].erase("id"); }); }},
+       [](const fs::path& run) {
+         call_it_a_run(run, [](Json& s) { s["agents"][0].erase("id"); });
+       }},
       {"summary.json, /ticks", 1,
        [](const fs::path& run) { edit_summary(run, [](Json& s) { s["ticks"] = 49; }); }},
       {"summary.json, /scenario_hash", 1,
        [](const fs::path& run) { edit_summary(run, [](Json& s) { s["scenario_hash"] = "0"; }); }},
-      {"so nothing is known of restarts", 0, [](const fs::path& run) { fs::remove(run / "summary.json"); }},
+      {"so nothing is known of restarts", 0,
+       [](const fs::path& run) { fs::remove(run / "summary.json"); }},
       {"another kind of processor", 1,
        [](const fs::path& run) {
          edit_summary(run, [](Json& s) { s["cpu_fma"] = !s["cpu_fma"].get<bool>(); });
@@ -98,11 +108,16 @@ std::vector<Lie> lies_of_the_tables() {
     });
   };
   return {
-      {", first at tick 0, agent ", 1, [](const fs::path& run) { change_a_cell(run / "trajectory.csv"); }},
-      {"but it ends after tick 30", 1, [=](const fs::path& run) { keep(run, "trajectory.csv", 30); }},
+      {", first at tick 0, agent ", 1,
+       [](const fs::path& run) { change_a_cell(run / "trajectory.csv"); }},
+      {"but it ends after tick 30", 1,
+       [=](const fs::path& run) { keep(run, "trajectory.csv", 30); }},
       {"goes on after the plan's last tick", 1,
-       [](const fs::path& run) { edit_lines(run / "trajectory.csv", [](Lines& l) { l.push_back("999" + l.back()); }); }},
-      {"lacks rows, first those of tick 20", 1, [=](const fs::path& run) { keep(run, "trajectory.csv", 1000, 20); }},
+       [](const fs::path& run) {
+         edit_lines(run / "trajectory.csv", [](Lines& l) { l.push_back("999" + l.back()); });
+       }},
+      {"lacks rows, first those of tick 20", 1,
+       [=](const fs::path& run) { keep(run, "trajectory.csv", 1000, 20); }},
       {"ends amid tick", 1,
        [](const fs::path& run) {
          edit_summary(run, [](Json& s) { s["result"] = "stopped"; });
@@ -117,11 +132,17 @@ std::vector<Lie> lies_of_the_tables() {
        }},
       {"metrics.csv:4, column", 1, [](const fs::path& run) { change_a_cell(run / "metrics.csv"); }},
       {"goes on after the trajectory's end", 1,
-       [](const fs::path& run) { edit_lines(run / "metrics.csv", [](Lines& l) { l.push_back("999" + l.back()); }); }},
+       [](const fs::path& run) {
+         edit_lines(run / "metrics.csv", [](Lines& l) { l.push_back("999" + l.back()); });
+       }},
       {"ends before the trajectory does", 1,
-       [](const fs::path& run) { edit_lines(run / "metrics.csv", [](Lines& lines) { lines.pop_back(); }); }},
+       [](const fs::path& run) {
+         edit_lines(run / "metrics.csv", [](Lines& lines) { lines.pop_back(); });
+       }},
       {"the header is", 1,
-       [](const fs::path& run) { edit_lines(run / "metrics.csv", [](Lines& lines) { lines[0] = "time"; }); }},
+       [](const fs::path& run) {
+         edit_lines(run / "metrics.csv", [](Lines& lines) { lines[0] = "time"; });
+       }},
       {"cannot be opened", 2, [](const fs::path& run) { fs::remove(run / "trajectory.csv"); }},
   };
 }
@@ -137,10 +158,15 @@ void write_plan(const fs::path& run, const Mission& mission) {
 
 std::vector<Lie> lies_of_the_sources() {
   return {
-      {"damaged or of a much newer version", 2, [](const fs::path& run) { write(run / "plan.binpb", "rubbish"); }},
+      {"damaged or of a much newer version", 2,
+       [](const fs::path& run) { write(run / "plan.binpb", "rubbish"); }},
       {"is of version 9.9.9, this program is", 2,
        [](const fs::path& run) {
-         edit(run / "plan.binpb", [](std::string& plan) { plan.replace(0, 2 + plan.at(1), "\x0a\x05" "9.9.9"); });
+         edit(run / "plan.binpb", [](std::string& plan) {
+           plan.replace(0, 2 + plan.at(1),
+                        "\x0a\x05"
+                        "9.9.9");
+         });
        }},
       {"but breaks that version's rules", 2,
        [](const fs::path& run) {
@@ -150,13 +176,21 @@ std::vector<Lie> lies_of_the_sources() {
        }},
       {"not what scenario.textproto compiles to", 1,
        [](const fs::path& run) {
-         edit(run / "scenario.textproto", [](std::string& text) { text.insert(text.find("seed: ") + 6, "1"); });
+         edit(run / "scenario.textproto",
+              [](std::string& text) { text.insert(text.find("seed: ") + 6, "1"); });
        }},
       {"scenario.textproto:", 1,
-       [](const fs::path& run) { edit(run / "scenario.textproto", [](std::string& text) { text += "# more\n"; }); }},
+       [](const fs::path& run) {
+         edit(run / "scenario.textproto", [](std::string& text) { text += "# more\n"; });
+       }},
       {"(the file has ended)", 1,
-       [](const fs::path& run) { edit_lines(run / "target_density.csv", [](Lines& lines) { lines.pop_back(); }); }},
-      {"report.html:", 1, [](const fs::path& run) { edit(run / "report.html", [](std::string& text) { text += "!"; }); }},
+       [](const fs::path& run) {
+         edit_lines(run / "target_density.csv", [](Lines& lines) { lines.pop_back(); });
+       }},
+      {"report.html:", 1,
+       [](const fs::path& run) {
+         edit(run / "report.html", [](std::string& text) { text += "!"; });
+       }},
       {"scenario.textproto           is not there", 0,
        [](const fs::path& run) { fs::remove(run / "scenario.textproto"); }},
       // As a manually started logger leaves it, which has received only the plan.
@@ -199,7 +233,8 @@ TEST_F(VerifyCanFail, InEachOfItsFindings) {
     for (const Lie& lie : lies) expect_seen(lie);
   }
 
-  const fs::path over_lcm = folder_ / "over_lcm", in_real_time = folder_ / "in_real_time", with_map = folder_ / "with_map";
+  const fs::path over_lcm = folder_ / "over_lcm", in_real_time = folder_ / "in_real_time",
+                 with_map = folder_ / "with_map";
   record({"run", scenario}, over_lcm);
   expect(over_lcm, 0, ", the machine and the network");
   record({"simulate", scenario, "--realtime"}, in_real_time);
@@ -207,8 +242,9 @@ TEST_F(VerifyCanFail, InEachOfItsFindings) {
   expect(in_real_time, 2, "it ran in real time");
   write(folder_ / "even.csv", "1,2\n");
   std::string text = text_of(scenario);
-  text.replace(text.find("gaussians"), 0,
-               "maps { file: \"even.csv\" origin_x_m: 0 origin_y_m: 0 size_x_m: 2000 size_y_m: 2000 }\n");
+  text.replace(
+      text.find("gaussians"), 0,
+      "maps { file: \"even.csv\" origin_x_m: 0 origin_y_m: 0 size_x_m: 2000 size_y_m: 2000 }\n");
   write(folder_ / "with_map.textproto", text);
   record({"simulate", folder_ / "with_map.textproto"}, with_map);
   fs::remove(folder_ / "even.csv");
@@ -216,7 +252,8 @@ TEST_F(VerifyCanFail, InEachOfItsFindings) {
 
   expect_all_said({"cli/verify.cc", "cli/record_comparison.cc", "cli/trajectory_comparison.cc",
                    "logger/table_lines.cc", "team/plan.cc"},
-                  said_, {{"team/plan.cc", "out of memory", "nothing here is large enough"}}, Words::kMayBeShared);
+                  said_, {{"team/plan.cc", "out of memory", "nothing here is large enough"}},
+                  Words::kMayBeShared);
 }
 
 }  // namespace

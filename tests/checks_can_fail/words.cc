@@ -65,7 +65,9 @@ Tokens tokens_of(const std::string& source) {
       end = end_of_quoted(source, i);
     } else if (in_word(c)) {
       // 1'000 is one number.
-      while (end < source.size() && (in_word(source[end]) || (source[end] == '\'' && std::isdigit(c)))) ++end;
+      while (end < source.size() &&
+             (in_word(source[end]) || (source[end] == '\'' && std::isdigit(c))))
+        ++end;
       tokens.push_back({Token::kWord, source.substr(i, end - i), line});
     } else if (source.compare(i, 2, "::") == 0) {
       end = i + 2;
@@ -73,8 +75,9 @@ Tokens tokens_of(const std::string& source) {
     } else if (std::isspace(static_cast<unsigned char>(c)) == 0) {
       tokens.push_back({Token::kSign, std::string(1, c), line});
     }
-    line += static_cast<int>(std::count(source.begin() + static_cast<std::ptrdiff_t>(i),
-                                        source.begin() + static_cast<std::ptrdiff_t>(std::min(end, source.size())), '\n'));
+    line += static_cast<int>(std::count(
+        source.begin() + static_cast<std::ptrdiff_t>(i),
+        source.begin() + static_cast<std::ptrdiff_t>(std::min(end, source.size())), '\n'));
     i = end;
   }
   return tokens;
@@ -90,7 +93,8 @@ std::string on_one_line(const std::string& text) {
 std::vector<std::string> pieces_of(const std::string& text) {
   static const std::regex kConversion("%[-+#0-9.*]*(ll|l|z)?[dufgsxXc%]?|\\{\\}");
   std::vector<std::string> pieces;
-  for (std::sregex_token_iterator at(text.begin(), text.end(), kConversion, -1), end; at != end; ++at) {
+  for (std::sregex_token_iterator at(text.begin(), text.end(), kConversion, -1), end; at != end;
+       ++at) {
     if (at->length() > 0) pieces.push_back(on_one_line(*at));
   }
   return pieces;
@@ -126,12 +130,13 @@ class Branches {
 struct Reader {
   std::string path;
   Tokens tokens;
-  std::vector<std::size_t> opened;         // for each token: the "(" it stands in, or npos
-  std::vector<std::string> function;       // for each token: the function it stands in
+  std::vector<std::size_t> opened;    // for each token: the "(" it stands in, or npos
+  std::vector<std::string> function;  // for each token: the function it stands in
   std::vector<std::pair<std::string, Saying>> statements;  // with their functions
   static constexpr std::size_t kNone = std::string::npos;
 
-  Reader(std::string file, const std::string& source) : path(std::move(file)), tokens(tokens_of(source)) {
+  Reader(std::string file, const std::string& source)
+      : path(std::move(file)), tokens(tokens_of(source)) {
     find_places();
     read_statements();
   }
@@ -141,10 +146,13 @@ struct Reader {
   }
 
   /// The function whose body the brace at `at` opens; empty if it opens none.
-  std::string function_opened(std::size_t at, const std::map<std::size_t, std::size_t>& open_of) const {
+  std::string function_opened(std::size_t at,
+                              const std::map<std::size_t, std::size_t>& open_of) const {
     static const std::set<std::string> kNoFunction = {"if", "for", "while", "switch", "catch", ""};
     std::size_t i = at;
-    while (i > 0 && (word_before(i) == "const" || word_before(i) == "override" || word_before(i) == "noexcept")) --i;
+    while (i > 0 && (word_before(i) == "const" || word_before(i) == "override" ||
+                     word_before(i) == "noexcept"))
+      --i;
     if (i == 0 || tokens[i - 1].text != ")") return "";
     const auto open = open_of.find(i - 1);
     const std::string name = open == open_of.end() ? "" : word_before(open->second);
@@ -174,8 +182,8 @@ struct Reader {
 
   /// Whether the text at `i` is only searched for, and not printed.
   bool is_asked_for(std::size_t i) const {
-    static const std::set<std::string> kAsking = {"starts_with", "ends_with", "find",  "contains",
-                                                  "sound",       "getenv",    "at",    "value",
+    static const std::set<std::string> kAsking = {"starts_with", "ends_with", "find", "contains",
+                                                  "sound",       "getenv",    "at",   "value",
                                                   "output_of",   "rfind",     "regex"};
     for (std::size_t open = opened[i]; open != kNone; open = opened[open]) {
       if (kAsking.contains(word_before(open))) return true;
@@ -190,7 +198,8 @@ struct Reader {
     for (std::size_t i = 0; i < tokens.size(); ++i) {
       const Token& token = tokens[i];
       if (token.text == "kOk") all_is_well = true;
-      if (token.text == "kNote" || token.text == "kWarning" || token.text == "kProblem") all_is_well = false;
+      if (token.text == "kNote" || token.text == "kWarning" || token.text == "kProblem")
+        all_is_well = false;
       if (token.kind == Token::kSign) branches.pass(token.text, saying.alternatives);
       if (token.kind == Token::kText && is_words(token.text) && !is_asked_for(i)) {
         if (saying.place.empty()) saying.place = path + ":" + std::to_string(token.line);
@@ -209,7 +218,8 @@ struct Reader {
   /// The texts between the "(" at `open` and its ")".
   std::vector<std::string> texts_of_call(std::size_t open) const {
     std::vector<std::string> texts;
-    for (std::size_t i = open + 1; i < tokens.size() && opened[i] != kNone && opened[i] >= open; ++i) {
+    for (std::size_t i = open + 1; i < tokens.size() && opened[i] != kNone && opened[i] >= open;
+         ++i) {
       if (tokens[i].kind == Token::kText && !is_asked_for(i)) texts.push_back(tokens[i].text);
     }
     return texts;
@@ -223,7 +233,8 @@ std::map<std::string, std::vector<Saying>> words_by_function(const std::vector<R
   for (const Reader& reader : readers) {
     for (const auto& [function, saying] : reader.statements) words[function][saying.place] = saying;
     for (std::size_t i = 0; i + 1 < reader.tokens.size(); ++i) {
-      if (reader.tokens[i + 1].text == "(") calls.emplace(reader.function[i], reader.tokens[i].text);
+      if (reader.tokens[i + 1].text == "(")
+        calls.emplace(reader.function[i], reader.tokens[i].text);
     }
   }
   words.erase("");
@@ -252,12 +263,15 @@ std::vector<Saying> sayings_of_calls(const Reader& reader,
   std::vector<Saying> sayings;
   for (std::size_t i = 0; i + 1 < reader.tokens.size(); ++i) {
     const auto called = words.find(reader.tokens[i].text);
-    if (called == words.end() || reader.tokens[i + 1].text != "(" || reader.function[i].empty()) continue;
+    if (called == words.end() || reader.tokens[i + 1].text != "(" || reader.function[i].empty())
+      continue;
     const std::vector<std::string> texts = reader.texts_of_call(i + 1);
     const bool is_path = !texts.empty() && texts.front().find('/') != std::string::npos;
     if (texts.empty() || texts.front().size() < 3 || is_path) continue;
     if (std::any_of(texts.begin(), texts.end(), is_words)) continue;
-    sayings.push_back({reader.path + ":" + std::to_string(reader.tokens[i].line), {texts.front()}, {},
+    sayings.push_back({reader.path + ":" + std::to_string(reader.tokens[i].line),
+                       {texts.front()},
+                       {},
                        called->second});
   }
   return sayings;
@@ -306,11 +320,12 @@ bool Saying::in(const std::string& text) const {
       std::none_of(alternatives.begin(), alternatives.end(), said)) {
     return false;
   }
-  return or_else.empty() ||
-         std::any_of(or_else.begin(), or_else.end(), [&text](const Saying& one) { return one.in(text); });
+  return or_else.empty() || std::any_of(or_else.begin(), or_else.end(),
+                                        [&text](const Saying& one) { return one.in(text); });
 }
 
-std::vector<std::string> sources_in(const std::string& folder, const std::vector<std::string>& without) {
+std::vector<std::string> sources_in(const std::string& folder,
+                                    const std::vector<std::string>& without) {
   namespace fs = std::filesystem;
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(fs::path(ERGOCAST_SOURCE_DIR) / folder)) {
@@ -335,7 +350,8 @@ std::vector<Saying> sayings_in(const std::string& path, const std::string& text)
   return sayings_of(std::vector<Reader>{Reader(path, text)});
 }
 
-std::vector<std::string> never_said(const std::vector<Saying>& sayings, std::vector<std::string> said) {
+std::vector<std::string> never_said(const std::vector<Saying>& sayings,
+                                    std::vector<std::string> said) {
   for (std::string& text : said) text = on_one_line(text);
   std::vector<std::string> missing;
   for (const Saying& saying : sayings) {

@@ -31,7 +31,8 @@ std::vector<std::string> sources_in(const std::string& folder,
 
 /// "place: text" of every text, and of every alternative of one, that is in none of `said`. Line
 /// breaks are ignored.
-std::vector<std::string> never_said(const std::vector<Saying>& sayings, std::vector<std::string> said);
+std::vector<std::string> never_said(const std::vector<Saying>& sayings,
+                                    std::vector<std::string> said);
 
 /// "place and place: text" where two statements have the same text of two words or more, so that
 /// the output does not tell them apart.

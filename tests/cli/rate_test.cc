@@ -18,7 +18,8 @@ TEST(Rate, OfAnUnevenPaceIsSteadyAndRightInTheMean) {
   rate.measure(count, now);
   for (int turn = 0; turn < 200; ++turn) {
     now += 500ms;
-    count += turn % 2 == 0 ? 100 : 900;  // half a second as slow as 200/s, another as fast as 1800/s
+    count +=
+        turn % 2 == 0 ? 100 : 900;  // half a second as slow as 200/s, another as fast as 1800/s
     const double per_s = rate.measure(count, now);
     if (turn < 60) continue;
     least = std::min(least, per_s);

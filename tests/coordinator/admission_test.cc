@@ -126,8 +126,10 @@ TEST(CoordinatorAdmits, WhoeverDoesNotCareAsTheSuccessorOfOneThatFallsSilent) {
   give(coordinator, status_of(1, 1), at(600ms));
   EXPECT_EQ(ask_at(at(2999ms)), 2u) << "agent 0 may be dead";
   ASSERT_EQ(ask_at(at(3s)), 3u);
-  EXPECT_TRUE(std::any_of(coordinator.roster().begin(), coordinator.roster().end(),
-                          [](const auto& entry) { return entry.author == Author{0, 99}; }));
+  EXPECT_TRUE(
+      std::any_of(coordinator.roster().begin(), coordinator.roster().end(), [](const auto& entry) {
+        return entry.author == Author{0, 99};
+      }));
 }
 
 TEST(CoordinatorAdmits, WhoeverDoesNotCareOnceAllMembersHaveSpoken) {
@@ -238,12 +240,14 @@ TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
   give(coordinator, hello, at(0s));
   give(coordinator, hello, at(0s));
   EXPECT_TRUE(coordinator.roster().empty());
-  EXPECT_EQ(coordinator.version_mismatches(), (std::set<std::pair<std::string, std::string>>{{"somewhere", "9.9.9"}}));
+  EXPECT_EQ(coordinator.version_mismatches(),
+            (std::set<std::pair<std::string, std::string>>{{"somewhere", "9.9.9"}}));
   for (int i = 0; i < 1000; ++i) {
     hello.host = std::to_string(i);
     give(coordinator, hello, at(0s));
   }
-  EXPECT_EQ(coordinator.version_mismatches().size(), 64u) << "whoever invents hosts costs no memory";
+  EXPECT_EQ(coordinator.version_mismatches().size(), 64u)
+      << "whoever invents hosts costs no memory";
   give(coordinator, hello_of(0), at(0s));
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }

@@ -13,7 +13,8 @@ namespace {
 
 using namespace test;
 
-// ---- what it repeats -----------------------------------------------------------------------------
+// ---- what it repeats
+// -----------------------------------------------------------------------------
 
 TEST(CoordinatorRepeats, TheWholeMissionOnceASecondOnBothBuses) {
   Coordinator coordinator = running_coordinator(small_mission(1));
@@ -108,7 +109,8 @@ TEST(CoordinatorRepeats, HowTheTeamIs) {
   EXPECT_TRUE(teams[0].ergodic_metric == 3 || teams[0].ergodic_metric == 5) << "a median";
 }
 
-// ---- time-outs -----------------------------------------------------------------------------------
+// ---- time-outs
+// -----------------------------------------------------------------------------------
 
 Mission impatient(int agents, OnTimeout on_timeout = OnTimeout::kEndMission) {
   Mission mission = small_mission(agents);
@@ -120,8 +122,10 @@ Mission impatient(int agents, OnTimeout on_timeout = OnTimeout::kEndMission) {
 /// Each agent sends at `now` a status with the agent that it waits for.
 void all_alive(Coordinator& coordinator, const std::vector<AgentId>& waiting_for, Instant now) {
   for (std::size_t id = 0; id < waiting_for.size(); ++id) {
-    give(coordinator, status_of(static_cast<AgentId>(id), now.time_since_epoch().count() + 1, -1,
-                                  waiting_for[id]), now);
+    give(coordinator,
+         status_of(static_cast<AgentId>(id), now.time_since_epoch().count() + 1, -1,
+                   waiting_for[id]),
+         now);
   }
 }
 
@@ -303,7 +307,8 @@ TEST(CoordinatorTimeOut, DoesNotExistInRealTime) {
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
 }
 
-// ---- the end -------------------------------------------------------------------------------------
+// ---- the end
+// -------------------------------------------------------------------------------------
 
 TEST(CoordinatorEnds, WhenTheWorldHasReachedTheLastTick) {
   Coordinator coordinator = running_coordinator(small_mission(1));

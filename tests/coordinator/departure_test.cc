@@ -24,7 +24,8 @@ std::optional<std::int64_t> said_revision(Coordinator& coordinator, Instant now)
   return parts.empty() ? std::nullopt : std::optional(parts[0].revision);
 }
 
-// ---- leaving -------------------------------------------------------------------------------------
+// ---- leaving
+// -------------------------------------------------------------------------------------
 
 AgentStatus farewell_of(AgentId id, Tick tick) {
   AgentStatus status = status_of(id, 1000);
@@ -70,7 +71,8 @@ TEST(Leaving, AFormerLifesFarewellDoesNotConcernItsSuccessor) {
   EXPECT_EQ(entry_of(coordinator, {1, 99}).active_until, -1);
 }
 
-// ---- forgetting ----------------------------------------------------------------------------------
+// ---- forgetting
+// ----------------------------------------------------------------------------------
 
 Mission forgetful(Pace pace = Pace::kRealtime) {
   Mission mission = small_mission(2);
@@ -86,7 +88,9 @@ void speaks(Coordinator& coordinator, const Author& author, Instant now) {
   status.header.incarnation = author.incarnation;
   give(coordinator, status, now);
 }
-void only_0_speaks(Coordinator& coordinator, Instant now) { speaks(coordinator, author_of(0), now); }
+void only_0_speaks(Coordinator& coordinator, Instant now) {
+  speaks(coordinator, author_of(0), now);
+}
 
 /// The world at `tick`, which uses roster `revision`.
 WorldState flown_by(std::int64_t revision, Tick tick) {
@@ -170,7 +174,8 @@ TEST(Forgetting, IsNotRevokedByATakeover) {
   Mission mission = forgetful();
   announce(mission);
   Coordinator coordinator({0, 0xc1, "here", kVersion}, announced_plan, Takeover::kMust);
-  MissionPart memory = mission_part(7, MissionState::kRunning, {{author_of(0), 0, -1}, {author_of(1), 0, -1, true, 5, 3}});
+  MissionPart memory = mission_part(7, MissionState::kRunning,
+                                    {{author_of(0), 0, -1}, {author_of(1), 0, -1, true, 5, 3}});
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, memory, at(0s));
@@ -187,7 +192,8 @@ TEST(Forgetting, IsNotRevokedByATakeover) {
 TEST(Forgetting, NobodyByACoordinatorThatHearsNobody) {
   Coordinator coordinator = running_coordinator(forgetful());
   for (int s = 1; s < 60; ++s) advance(coordinator, at(s * 1s));
-  for (const AgentId id : {0, 1}) EXPECT_FALSE(entry_of(coordinator, author_of(id)).forgotten) << id;
+  for (const AgentId id : {0, 1})
+    EXPECT_FALSE(entry_of(coordinator, author_of(id)).forgotten) << id;
   only_0_speaks(coordinator, at(60s));
   advance(coordinator, at(60s));
   EXPECT_FALSE(entry_of(coordinator, author_of(1)).forgotten) << "its cable was pulled, not theirs";

@@ -56,7 +56,8 @@ const MissionPart& said_by(const Outbox& out) {
   return nothing;
 }
 
-// ---- listening -----------------------------------------------------------------------------------
+// ---- listening
+// -----------------------------------------------------------------------------------
 
 TEST(TakeoverNever, SpeaksAtOnce) {
   Coordinator coordinator = coordinator_of(small_mission(2));
@@ -128,8 +129,7 @@ TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
   EXPECT_TRUE(advance(coordinator, at(30s)).empty());
   EXPECT_TRUE(coordinator.finished());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
-  EXPECT_EQ(coordinator.reason(),
-            "no agent on this URL knows a mission that could be taken over");
+  EXPECT_EQ(coordinator.reason(), "no agent on this URL knows a mission that could be taken over");
 }
 
 TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
@@ -147,7 +147,8 @@ TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
 // ---- a living predecessor -----------------------------------------------------------------------
 
 constexpr const char* kLedByAnother =
-    "run 0000000000001234 is led by the coordinator on there: leave it to that one, choose another URL, "
+    "run 0000000000001234 is led by the coordinator on there: leave it to that one, choose another "
+    "URL, "
     "or take the mission over with --resume";
 
 TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
@@ -156,7 +157,8 @@ TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
   give(coordinator, status_of(0, 1), at(0s));
   give(coordinator, alive(kCoordinatorLife), at(100ms));
   give(coordinator, memory_of(3), at(100ms));
-  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(700ms))).empty()) << "and says nothing to its team";
+  EXPECT_TRUE(only<MissionPart>(advance(coordinator, at(700ms))).empty())
+      << "and says nothing to its team";
   EXPECT_TRUE(coordinator.finished());
   EXPECT_TRUE(coordinator.left());
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
@@ -192,7 +194,8 @@ TEST(TakeoverMust, TakesOverFromALivingOneToo) {
   EXPECT_TRUE(coordinator.took_over());
 }
 
-// ---- what it takes over --------------------------------------------------------------------------
+// ---- what it takes over
+// --------------------------------------------------------------------------
 
 TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   auto roster = roster_of(3);
@@ -264,14 +267,14 @@ TEST(Takeover, RefusesAnotherPlanWithASentenceAndLeavesItsTeamAlone) {
     EXPECT_TRUE(only<MissionPart>(out).empty());
     EXPECT_TRUE(coordinator.finished());
     EXPECT_EQ(coordinator.state(), MissionState::kFailed);
-    EXPECT_EQ(coordinator.reason(), "run 0000000000001234 of another plan (small) is flying on this "
-                                    "URL: choose another URL, or wait for its end");
+    EXPECT_EQ(coordinator.reason(),
+              "run 0000000000001234 of another plan (small) is flying on this "
+              "URL: choose another URL, or wait for its end");
   }
 }
 
 TEST(Takeover, OfAMissionThatWaitsStartsItWhenTheQuorumIsThere) {
-  Coordinator coordinator =
-      taken_over(memory_of(3, roster_of(1), 0, MissionState::kWaiting));
+  Coordinator coordinator = taken_over(memory_of(3, roster_of(1), 0, MissionState::kWaiting));
   EXPECT_EQ(coordinator.state(), MissionState::kWaiting);
   give(coordinator, status_of(0, 2), at(1s));
   give(coordinator, hello_of(1), at(1s));
@@ -286,7 +289,8 @@ TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
   EXPECT_TRUE(coordinator.finished());
 }
 
-// ---- afterwards ----------------------------------------------------------------------------------
+// ---- afterwards
+// ----------------------------------------------------------------------------------
 
 TEST(TookOver, EverybodyHasTimeToSpeakAndTheTickHasItsTimeAnew) {
   Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 7));
@@ -360,7 +364,8 @@ TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
   EXPECT_EQ(coordinator.reason(), "mission complete");
 }
 
-// ---- the one that was taken over -----------------------------------------------------------------
+// ---- the one that was taken over
+// -----------------------------------------------------------------
 
 TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
   Coordinator coordinator = running_coordinator(small_mission(2));

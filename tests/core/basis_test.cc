@@ -111,8 +111,8 @@ double difference_bound(const PlaneCoefficients& weights, double unit_x, double 
     for (int n = 0; n < weights.cols(); ++n) {
       const double k = along_x ? m * unit_x : n * unit_y;
       const double value_error = cosine_bound(m) + cosine_bound(n);
-      bound += std::abs(weights(m, n)) *
-               (k * k * k * h * h / 6 + value_error / h + 4 * k * value_error);
+      bound +=
+          std::abs(weights(m, n)) * (k * k * k * h * h / 6 + value_error / h + 4 * k * value_error);
     }
   }
   // Adding up K products of at most |w| rounds at most K times more.
@@ -198,8 +198,7 @@ TEST(GradientEnergies, GiveTheMeanSquareOfTheGradientByParseval) {
     }
   }
   mean /= kPoints * kPoints;
-  const double parseval =
-      weights.cwiseAbs2().cwiseProduct(gradient_energies(basis, kDomain)).sum();
+  const double parseval = weights.cwiseAbs2().cwiseProduct(gradient_energies(basis, kDomain)).sum();
   // Each of the 256 squares is of 30 products with 2 · cosine_bound relative error, added up.
   EXPECT_NEAR(mean / parseval, 1, 30 * 4 * cosine_bound(5) + 256 * kRounding);
 }

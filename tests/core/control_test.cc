@@ -60,7 +60,8 @@ Eigen::Vector3d command_at(Controller& controller, const Mission& mission,
   return controller.command(agent, tick, x_m, BasisAt(x_m, mission.domain, mission.basis));
 }
 
-// ---- (8) by itself -------------------------------------------------------------------------------
+// ---- (8) by itself
+// -------------------------------------------------------------------------------
 
 TEST(SmoothInput, IsEquation8) {
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -111,7 +112,8 @@ TEST(SmoothInput, NeverExceedsItsLimit) {
   }
 }
 
-// ---- the command, (6), (8) and (10), written out ---------------------------------------------------
+// ---- the command, (6), (8) and (10), written out
+// ---------------------------------------------------
 
 /// B, term by term, with the library's cosines and sines.
 Eigen::Vector3d reference_gradient(const Mission& mission, const Eigen::Vector3d& x_m,
@@ -244,12 +246,12 @@ TEST(Command, GradientIsTheSlopeOfPhiSquaredInTheNewestSample) {
                  (2 * std::abs(coverage[i] - mission.target_coefficients[i]) + 6.0 / 8) / 8;
       }
     }
-    const double bound =
-        h * h / 6 * third + 63 * 20 * kRounding * controller.metric(coverage) / h;
+    const double bound = h * h / 6 * third + 63 * 20 * kRounding * controller.metric(coverage) / h;
     ASSERT_LT(bound, 1e-4 * slope.norm()) << "the comparison is worth it";
     for (int axis = 0; axis < 2; ++axis) {
       const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(axis);
-      EXPECT_NEAR(slope[axis], (metric_with(x_m + step) - metric_with(x_m - step)) / (2 * h), bound);
+      EXPECT_NEAR(slope[axis], (metric_with(x_m + step) - metric_with(x_m - step)) / (2 * h),
+                  bound);
     }
   }
 }
@@ -268,7 +270,8 @@ TEST(Command, LowersPhiSquaredOfTheNextSample) {
   EXPECT_GT(metric_after(x_m - step), metric_after(x_m));
 }
 
-// ---- where the gradient vanishes -----------------------------------------------------------------
+// ---- where the gradient vanishes
+// -----------------------------------------------------------------
 
 TEST(Command, OfTheClassicalLawIsExactlyZeroAtTheOriginsCorner) {
   // Every slope is exactly 0 there; 0/0 would poison the team.
@@ -309,7 +312,8 @@ TEST(Command, NextToAnEdgeIsFiniteHoweverClose) {
   }
 }
 
-// ---- relative regularization ---------------------------------------------------------------------
+// ---- relative regularization
+// ---------------------------------------------------------------------
 
 TEST(RelativeEpsilon, IsAShareOfTheResidualGradientsRms) {
   for (Mission mission : every_law()) {
@@ -349,7 +353,8 @@ TEST(AbsoluteEpsilon, IsWhatTheScenarioSays) {
   EXPECT_EQ(controller.epsilon(), 1.5e-3);
 }
 
-// ---- noise and contraction -----------------------------------------------------------------------
+// ---- noise and contraction
+// -----------------------------------------------------------------------
 
 TEST(Command, AddsTheNoiseOfItsAgentAndTickAsAVelocity) {
   Mission mission = uneven_mission();
@@ -358,9 +363,9 @@ TEST(Command, AddsTheNoiseOfItsAgentAndTickAsAVelocity) {
   Controller noisy(mission);
   for (const AgentId agent : {0, 5}) {
     for (const Tick tick : {Tick{0}, Tick{1}, Tick{1} << 40}) {
-      const Eigen::Vector2d xi = normal_pair(mission.seed, Purpose::kPerturbation,
-                                             static_cast<std::uint32_t>(agent),
-                                             static_cast<std::uint64_t>(tick));
+      const Eigen::Vector2d xi =
+          normal_pair(mission.seed, Purpose::kPerturbation, static_cast<std::uint32_t>(agent),
+                      static_cast<std::uint64_t>(tick));
       const Eigen::Vector3d v = command_at(noisy, mission, {100, 600, 0}, coverage, agent, tick);
       EXPECT_EQ(v, on_ground((0.75 / std::sqrt(0.125)) * xi));
     }
@@ -386,7 +391,8 @@ TEST(Command, PushesTwoOfAPairInOppositeWays) {
     EXPECT_EQ(pushed(3, tick, true), -pushed(2, tick, true));
     EXPECT_NE(pushed(2, tick, true), pushed(0, tick, true));
     EXPECT_NE(pushed(1, tick, false), -pushed(0, tick, false));
-    EXPECT_EQ(pushed(2, tick, true), pushed(2, tick, false)) << "the first of a pair is nobody's mirror";
+    EXPECT_EQ(pushed(2, tick, true), pushed(2, tick, false))
+        << "the first of a pair is nobody's mirror";
   }
 }
 
@@ -399,7 +405,8 @@ TEST(Command, PullsTowardsTheCentreOfContraction) {
             Eigen::Vector3d(-40, -250, 0));
 }
 
-// ---- symmetry ------------------------------------------------------------------------------------
+// ---- symmetry
+// ------------------------------------------------------------------------------------
 
 /// Four agents, mirrored in both midlines, under a target that is mirrored too.
 using Team = std::array<Eigen::Vector3d, 4>;
@@ -434,7 +441,8 @@ TEST(Symmetry, OfPlacesIsKeptUnderASymmetricTarget) {
   }
   EXPECT_GT((team[0] - start[0]).norm(), 50) << "they have moved";
   // A step's rounding, at most 1e-12 m (a few ulps of 2000 m), is carried on by u's slope: the
-  // largest gradient of u is u_max |∇B|/ε ≤ 10·1e-5/1e-3 = 0.1/s, so at most e^(0.1·20 s) = 8 times.
+  // largest gradient of u is u_max |∇B|/ε ≤ 10·1e-5/1e-3 = 0.1/s, so at most e^(0.1·20 s) = 8
+  // times.
   const double bound = kTicks * 1e-12 * 8;
   EXPECT_LE((team[1] - Eigen::Vector3d(size - team[0].x(), team[0].y(), 0)).norm(), bound);
   EXPECT_LE((team[2] - Eigen::Vector3d(team[0].x(), size - team[0].y(), 0)).norm(), bound);

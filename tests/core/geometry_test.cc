@@ -67,7 +67,8 @@ TEST(Reflect, FoldsAtBothEdges) {
 }
 
 TEST(Reflect, KeepsTheSmallestStepAwayFromAnEdge) {
-  // An agent that lands a rounding error outside is not set onto the edge, which it would not leave.
+  // An agent that lands a rounding error outside is not set onto the edge, which it would not
+  // leave.
   for (const double tiny : {1e-13, 1e-14, 1e-17, 1e-300, 5e-324}) {
     EXPECT_EQ(reflect({-tiny, 1000, 0}, kUnit).x(), tiny);
   }

@@ -195,7 +195,8 @@ TEST(MergeProperty, WhatIsPassedOnIsWhatWasSaid) {
     pass_on(relay, far);
     expect_same(far, relay);
     std::map<std::pair<Author, std::int64_t>, const Contribution*> originals;
-    for (const Contribution& block : said) originals[{block.author(), block.header.sequence}] = &block;
+    for (const Contribution& block : said)
+      originals[{block.author(), block.header.sequence}] = &block;
     for (const Author& author : kLives) {
       for (int b = 0; b < 2; ++b) {
         const Contribution passed = far.block(author, b);

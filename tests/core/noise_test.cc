@@ -27,7 +27,8 @@ std::vector<Eigen::Vector2d> normal_draws(std::uint64_t seed, std::uint32_t who)
   return draws;
 }
 
-RandomBits words_of(std::uint64_t step, std::uint32_t who, std::uint32_t purpose, std::uint64_t seed) {
+RandomBits words_of(std::uint64_t step, std::uint32_t who, std::uint32_t purpose,
+                    std::uint64_t seed) {
   return random_words(seed, static_cast<Purpose>(purpose), who, step);
 }
 
@@ -53,7 +54,8 @@ TEST(Noise, IsAFunctionOfItsArgumentsAndOfEachOfThem) {
   EXPECT_NE(value, normal_pair(1, Purpose::kPerturbation, 9, 3));
   EXPECT_NE(value, normal_pair(1, Purpose::kPerturbation, 2, 9));
   EXPECT_NE(value, normal_pair(1ull << 32, Purpose::kPerturbation, 2, 3)) << "all bits of the seed";
-  EXPECT_NE(value, normal_pair(1, Purpose::kPerturbation, 2, 3 + (1ull << 32))) << "and of the step";
+  EXPECT_NE(value, normal_pair(1, Purpose::kPerturbation, 2, 3 + (1ull << 32)))
+      << "and of the step";
 }
 
 TEST(Noise, UniformNumbersStayInsideTheOpenInterval) {

@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include "core/require.h"
-#include "ops/doctor/group_listener.h"
 #include "lcmtypes/codec.h"
+#include "ops/doctor/group_listener.h"
 
 namespace ergocast::fuzz {
 namespace {

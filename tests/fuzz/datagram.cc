@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "core/coverage_table.h"
-#include "ops/doctor/bus_listener.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
+#include "ops/doctor/bus_listener.h"
 #include "tests/fuzz/datagrams.h"
 #include "tests/fuzz/target.h"
 

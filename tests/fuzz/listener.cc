@@ -5,12 +5,12 @@
 // The first byte of the input is Features, the second selects the core.
 #include <sstream>
 
-#include "lcmtypes/codec.h"
 #include "cli/team_text.h"
+#include "lcmtypes/codec.h"
+#include "team/plan.h"
 #include "tests/fuzz/small_team.h"
 #include "tests/fuzz/target.h"
 #include "tests/fuzz/turns.h"
-#include "team/plan.h"
 #include "tests/support/team.h"
 
 namespace ergocast::fuzz {
@@ -70,8 +70,9 @@ void coordinator_listens(Input input) {
 
 void world_listens(Input input) {
   World world(test::kRun, test::kWorldLife);
-  listen(input, world,
-         [&world](const Message& message, Instant now, AgentId) { test::give(world, message, now); });
+  listen(input, world, [&world](const Message& message, Instant now, AgentId) {
+    test::give(world, message, now);
+  });
   ERGOCAST_REQUIRE(world.tick() >= 0);
 }
 

@@ -54,7 +54,8 @@ std::pair<int, int> accepted(const std::filesystem::path& folder, const Adversar
     while (const lcm::LogEvent* event = log.good() ? log.readNextEvent() : nullptr) {
       const auto* data = static_cast<const std::uint8_t*>(event->data);
       ++all;
-      if (adversary.forged(event->channel, {data, static_cast<std::size_t>(event->datalen)})) ++forged;
+      if (adversary.forged(event->channel, {data, static_cast<std::size_t>(event->datalen)}))
+        ++forged;
     }
   }
   return {all, forged};
@@ -87,7 +88,8 @@ class HostileNetwork : public FlyingMission {
     return {adversary.tick() - tick, adversary.missed_deadlines() - missed};
   }
 
-  void fly_among_adversaries(const std::vector<std::string>& more, const MessageAuthenticator& seal) {
+  void fly_among_adversaries(const std::vector<std::string>& more,
+                             const MessageAuthenticator& seal) {
     const long strikes = setting("ERGOCAST_FUZZ_DATAGRAMS", 20000);
     const std::chrono::duration<double> time(
         static_cast<double>(strikes) / static_cast<double>(setting("ERGOCAST_FUZZ_PER_S", 4000)));

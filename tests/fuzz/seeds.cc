@@ -7,8 +7,8 @@
 #include <map>
 #include <string>
 
-#include "ops/doctor/peer_ledger.h"
 #include "lcmtypes/channels.h"
+#include "ops/doctor/peer_ledger.h"
 #include "scenario/scenario.h"
 #include "team/plan.h"
 #include "tests/fuzz/small_team.h"
@@ -123,7 +123,8 @@ void plans(const Seeds& seeds) {
   const auto minimal = Scenario::parse(small, "small");
   seeds.add("plan", "small", text_of(encode_plan(std::get<Scenario>(minimal).mission())));
   const auto shipped = Scenario::load(ERGOCAST_SCENARIO_DIR "/quadrimodal_corners.textproto");
-  seeds.add("plan", "quadrimodal_corners", text_of(encode_plan(std::get<Scenario>(shipped).mission())));
+  seeds.add("plan", "quadrimodal_corners",
+            text_of(encode_plan(std::get<Scenario>(shipped).mission())));
 }
 
 void pictures(const Seeds& seeds) {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "cli/team_text.h"
 #include "core/require.h"
 #include "lcmtypes/codec.h"
-#include "cli/team_text.h"
 #include "team/plan.h"
 #include "tests/support/team.h"
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "agent/agent.h"
+#include "cli/team_view.h"
 #include "coordinator/coordinator.h"
 #include "logger/recorder.h"
 #include "sim/world.h"
-#include "cli/team_view.h"
 
 namespace ergocast::fuzz {
 

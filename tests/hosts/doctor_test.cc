@@ -162,9 +162,9 @@ TEST_F(DoctorOnHosts, ATtlOfZeroOnOneSideIsOneWay) {
 }
 
 TEST_F(DoctorOnHosts, AFirewallIsOpenedByTheCommandsGiven) {
-  lan_->on_host(
-      0, "nft 'add table inet wall; "
-         "add chain inet wall in { type filter hook input priority 0; policy drop; }'");
+  lan_->on_host(0,
+                "nft 'add table inet wall; "
+                "add chain inet wall in { type filter hook input priority 0; policy drop; }'");
   const Answer answer = alone(0, 1);
   EXPECT_EQ(answer.exit_code, 3);
   EXPECT_EQ(answer.of("self test")["level"], "problem");
@@ -184,8 +184,9 @@ TEST_F(DoctorOnHosts, ACableThatIsPulledIsNamed) {
 
 TEST_F(DoctorOnHosts, ATunnelIsAnInterfaceToo) {
   if (access("/dev/net/tun", W_OK) != 0) GTEST_SKIP() << "no /dev/net/tun here";
-  lan_->on_host(0, "ip tuntap add dev tun0 mode tun && ip addr add 10.9.0.1/24 dev tun0 && "
-                   "ip link set tun0 up");
+  lan_->on_host(0,
+                "ip tuntap add dev tun0 mode tun && ip addr add 10.9.0.1/24 dev tun0 && "
+                "ip link set tun0 up");
   lan_->route_multicast(0, "tun0");
   const Answer answer = alone(0, 1);
   EXPECT_EQ(answer.exit_code, 1);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fragments of LCM's with crafted headers, which crash a program inside liblcm.
 #include "runtime/socket.h"
-#include "tests/process/mission.h"
 #include "tests/process/bus_observer.h"
+#include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {

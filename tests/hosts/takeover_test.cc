@@ -62,7 +62,8 @@ TEST_F(Takeover, TheSuccessorsOfADeadHostsAgentsGetBackWhatThoseHadCovered) {
   for (const Author& dead : former) {
     for (const AgentId id : {0, 1, 2, 3}) {
       EXPECT_TRUE(observer.hears([&] { return knows(id, dead); })) << id << " of " << dead.agent;
-      EXPECT_EQ(observer.held(observer.member(id), dead), observer.said(dead)) << "no more than that";
+      EXPECT_EQ(observer.held(observer.member(id), dead), observer.said(dead))
+          << "no more than that";
     }
   }
   end_mission();

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "tests/process/mission.h"
 #include "tests/process/bus_observer.h"
+#include "tests/process/mission.h"
 #include "tests/support/lan.h"
 
 namespace ergocast::test {

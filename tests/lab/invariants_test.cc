@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every invariant can fail: states that violate it, and the same states without the violation.
+#include "lab/invariants.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <string>
 
 #include "core/forecast.h"
-#include "lab/invariants.h"
 
 namespace ergocast::test {
 namespace {
 
-using lab::TableView;
 using lab::Invariants;
+using lab::TableView;
 
 /// The name of what was violated.
 std::string violated_by(const Invariants& team) {
@@ -67,7 +68,8 @@ class InvariantsTest : public ::testing::Test {
     return {self, &table, &c, &roster_, 88};
   }
   std::string violated() const { return violated_by(team_); }
-  /// What is violated by a ĉ that is off by so much, after a teammate was heard twice and then seen.
+  /// What is violated by a ĉ that is off by so much, after a teammate was heard twice and then
+  /// seen.
   std::string violated_by_forecast(double off) {
     Invariants team(mission_);
     team.born(kOne);

@@ -94,7 +94,8 @@ TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
   }
 }
 
-// ---- radio range ---------------------------------------------------------------------------------
+// ---- radio range
+// ---------------------------------------------------------------------------------
 
 TEST(RadioRange, IsNoFault) {
   for (const char* range : {"30", "50", "80"}) {
@@ -103,7 +104,8 @@ TEST(RadioRange, IsNoFault) {
           team(pace, "\nlaw {", "\nworld { radio_range_m: " + std::string(range) + " }\nlaw {");
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         // Whether the goal is reached with such a radio is the scenario's affair.
-        for (const TrialResult& result : {fly(limited, seed, {}), fly(limited, seed, lab::drawn(seed))}) {
+        for (const TrialResult& result :
+             {fly(limited, seed, {}), fly(limited, seed, lab::drawn(seed))}) {
           if (broken(result) != Invariant::kGoalReached) {
             EXPECT_EQ(problem(result), "") << range << " m, seed " << seed;
           }
@@ -123,13 +125,15 @@ TEST(RadioRange, ExcusesNobodyFromPassingOnWhatItHears) {
     world { radio_range_m: 40 speed_limit_mps: 0.01 }
     time { duration_s: 60 broadcast_period_ticks: 5 pace: REALTIME }
     agents { starts { x_m: 5 y_m: 50 } starts { x_m: 35 y_m: 50 } starts { x_m: 65 y_m: 50 } starts { x_m: 95 y_m: 50 } }
-  )", "chain"));
+  )",
+                                                        "chain"));
   EXPECT_EQ(problem(fly(chain, 1, {})), "");
   const Heard digests{Role::kAgent, Bus::kSwarm, Message(Digest()).index()};
   EXPECT_EQ(broken(fly(chain, 1, {}, without(digests))), Invariant::kEverybodyLearnsEveryRow);
 }
 
-// ---- time-outs and evictions ---------------------------------------------------------------------
+// ---- time-outs and evictions
+// ---------------------------------------------------------------------
 
 Scenario evicting() {
   return team(Pace::kLockstep, "admission_timeout_s: 3600",
@@ -199,7 +203,8 @@ TEST(TimeOut, OfATickIsAFaultIfNobodyWasAway) {
   harmless.duplication = 0.3;
   harmless.delay_mean_s = 0.01;
   harmless.delay_max_s = 0.05;
-  EXPECT_EQ(broken(fly(team(Pace::kLockstep), 1, harmless, without(states))), Invariant::kMissionDoesNotFail);
+  EXPECT_EQ(broken(fly(team(Pace::kLockstep), 1, harmless, without(states))),
+            Invariant::kMissionDoesNotFail);
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
     faults.lasting_share = share;
     const TriedTeam tried = fly(faults, 1);
     EXPECT_EQ(tried.problem(), "");
-    EXPECT_GT(tried.result.figures.view_error, 0) << "what was said last, at different ticks, is not all";
+    EXPECT_GT(tried.result.figures.view_error, 0)
+        << "what was said last, at different ticks, is not all";
     EXPECT_LT(tried.result.figures.view_error, 0.1);
   }
 }
@@ -62,8 +63,9 @@ TEST(Laboratory, WithoutFaultsNothingIsDone) {
   const TriedTeam tried = fly({}, 1);
   EXPECT_EQ(tried.problem(), "");
   const TrialFigures& f = tried.result.figures;
-  EXPECT_EQ(f.faults.lost + f.faults.cut + f.faults.duplicated + f.faults.replayed + f.faults.corrupted +
-                f.faults.delayed + f.faults.reordered + f.faults.clogged + f.faults.clogs,
+  EXPECT_EQ(f.faults.lost + f.faults.cut + f.faults.duplicated + f.faults.replayed +
+                f.faults.corrupted + f.faults.delayed + f.faults.reordered + f.faults.clogged +
+                f.faults.clogs,
             0);
   EXPECT_EQ(f.splits + f.one_way_cuts + f.agent_crashes + f.coordinator_crashes + f.world_crashes +
                 f.skewed_clocks,

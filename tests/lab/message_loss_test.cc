@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lockstep waits for nothing that is not repeated: whatever kind of message is lost, the mission
-// ends, and its trajectory is the one without losses, bit for bit. Where agents reckon, it is the same
-// however seldom they broadcast, too.
+// ends, and its trajectory is the one without losses, bit for bit. Where agents reckon, it is the
+// same however seldom they broadcast, too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ agents { starts { x_m: 0 y_m: 0 } starts { x_m: 50 y_m: 40 } starts { x_m: 100 y
 
 constexpr int kAgents = 3;
 
-constexpr const char* kKinds[] = {"Hello",      "MissionPart", "Contribution",
+constexpr const char* kKinds[] = {"Hello",       "MissionPart", "Contribution",
                                   "AgentStatus", "TeamStatus",  "Stop",
                                   "WorldState",  "Command",     "RecordAck"};
 
@@ -113,11 +113,13 @@ TEST(MessageLoss, LosingTheLastStateOnceHurtsNobody) {
   // The record is complete with the 192nd row, which is acknowledged at once.
   const std::string text = with(kScenario, "duration_s: 20", "duration_s: 19.2");
   for (const int node : {0, kAgents, kAgents + 2}) {  // an agent, the coordinator, the logger
-    const Outcome outcome = fly([node, lost = false](const Message& message, int to) mutable {
-      const auto* world = std::get_if<WorldState>(&message);
-      if (world == nullptr || world->header.tick < 192 || to != node || lost) return false;
-      return lost = true;
-    }, text);
+    const Outcome outcome = fly(
+        [node, lost = false](const Message& message, int to) mutable {
+          const auto* world = std::get_if<WorldState>(&message);
+          if (world == nullptr || world->header.tick < 192 || to != node || lost) return false;
+          return lost = true;
+        },
+        text);
     EXPECT_EQ(outcome.dropped, 1) << "node " << node;
     EXPECT_EQ(outcome.state, MissionState::kEnded) << "node " << node << ": " << outcome.reason;
     EXPECT_EQ(lines(outcome.trajectory), 1U + 3 * 192) << "node " << node;
@@ -125,9 +127,8 @@ TEST(MessageLoss, LosingTheLastStateOnceHurtsNobody) {
 }
 
 TEST(MessageLoss, ALoggerThatIsNeverHeardHoldsUpNobody) {
-  const Outcome outcome = fly([](const Message& message, int) {
-    return std::holds_alternative<RecordAck>(message);
-  });
+  const Outcome outcome =
+      fly([](const Message& message, int) { return std::holds_alternative<RecordAck>(message); });
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
 }
 
@@ -147,7 +148,8 @@ TEST(MessageLoss, HowOftenAgentsBroadcastDoesNotShowWhereTheyReckon) {
 
 TEST(MessageLoss, NorInATeamWhoseWorldSpeaksInParts) {
   std::string large = with(kScenario, "agents {", "agents { random_count: 15");
-  large = with(with(large, "x: 12 modes_y: 12", "x: 4 modes_y: 4"), "duration_s: 20", "duration_s: 5");
+  large =
+      with(with(large, "x: 12 modes_y: 12", "x: 4 modes_y: 4"), "duration_s: 20", "duration_s: 5");
   const std::string trajectory = fly({}, each(1, large)).trajectory;
   EXPECT_EQ(lines(trajectory), 1U + 18 * 50);
   for (const int period : {2, 13}) {
@@ -173,8 +175,9 @@ struct Knowing {
 };
 std::string scenario_of(const Knowing& knowing) {
   std::string text = with(kScenario, "u_max_mps: 5", std::string("u_max_mps: 5 ") + knowing.law);
-  text = with(text, "agents {", knowing.dead_reckoning ? "agents { dead_reckoning: true"
-                                                       : "agents { dead_reckoning: false");
+  text = with(
+      text, "agents {",
+      knowing.dead_reckoning ? "agents { dead_reckoning: true" : "agents { dead_reckoning: false");
   return each(knowing.period, text);
 }
 
@@ -218,8 +221,7 @@ TEST(MessageLoss, AnAgentThatIsNeverHeardIsNamedAndFailsTheMission) {
 TEST(MessageLoss, OrIsEvictedIfTheScenarioSaysSo) {
   const std::string evicting =
       with(kScenario, "lockstep_timeout_s: 10", "lockstep_timeout_s: 10 on_timeout: EVICT");
-  const Outcome outcome =
-      fly([](const Message& m, int) { return is_command_of(m, 2); }, evicting);
+  const Outcome outcome = fly([](const Message& m, int) { return is_command_of(m, 2); }, evicting);
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
   EXPECT_TRUE(outcome.in_time);
   // It stays where it was; the others go on to the end.

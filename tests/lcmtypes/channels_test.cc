@@ -28,7 +28,8 @@ TEST(Channels, HaveTheDocumentedNames) {
 TEST(Channels, CarryTheirOwnTypeOnly) {
   for (const Message& message : every_message()) {
     for (const Message& other : every_message()) {
-      EXPECT_EQ(transmitter_of(message, channel_of(other)).has_value(), message.index() == other.index())
+      EXPECT_EQ(transmitter_of(message, channel_of(other)).has_value(),
+                message.index() == other.index())
           << "message kind " << message.index() << " on " << channel_of(other);
     }
     EXPECT_FALSE(transmitter_of(message, ""));

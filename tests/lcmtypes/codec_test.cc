@@ -225,8 +225,8 @@ TEST(Codec, StringsAreCutAtTheirLimitsAndAtANul) {
   const auto cut = decoded_as<Hello>(encoded(long_names));
   EXPECT_EQ(cut.host, std::string(kMaxHostLength, 'h'));
   EXPECT_EQ(cut.version, std::string(kMaxVersionLength, 'v'));
-  const auto long_reason = decoded_as<Stop>(
-      encoded(Stop{header_of_sender(kOperator), true, std::string(5000, 'r')}));
+  const auto long_reason =
+      decoded_as<Stop>(encoded(Stop{header_of_sender(kOperator), true, std::string(5000, 'r')}));
   EXPECT_EQ(long_reason.reason, std::string(kMaxReasonLength, 'r'));
   const auto nul = decoded_as<Stop>(
       encoded(Stop{header_of_sender(kOperator), true, std::string("one\0two", 7)}));

@@ -14,7 +14,8 @@ namespace {
 
 using namespace test;
 
-// ---- damaged bytes -------------------------------------------------------------------------------
+// ---- damaged bytes
+// -------------------------------------------------------------------------------
 
 TEST(Codec, EveryTruncationIsRefused) {
   for (const Message& message : every_message()) {
@@ -77,7 +78,8 @@ TEST(Codec, UnknownTypesAreRefusedEvenWithACorrectTag) {
   }
 }
 
-// ---- lying bytes: a correct tag over numbers that are not true -----------------------------------
+// ---- lying bytes: a correct tag over numbers that are not true
+// -----------------------------------
 
 constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
@@ -92,7 +94,8 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
   ASSERT_EQ(with_count(mission_part(), kPlanSize, 300), encoded(mission_part()));
   ASSERT_EQ(with_count(world_state(), kVehicleCount, 2), encoded(world_state()));
   ASSERT_EQ(with_count(digest(), kHeaderBytes, 2), encoded(digest()));
-  for (const std::int32_t count : {-1, 0, 1, 3, 12, 13, 100, 0x01000000, 0x7fffff00, kMost, kLeast}) {
+  for (const std::int32_t count :
+       {-1, 0, 1, 3, 12, 13, 100, 0x01000000, 0x7fffff00, kMost, kLeast}) {
     EXPECT_EQ(verdict(with_count(mission_part(), kRosterCount, count)), "size") << count;
     EXPECT_EQ(verdict(with_count(world_state(), kVehicleCount, count)), "size") << count;
     EXPECT_EQ(verdict(with_count(digest(), kHeaderBytes, count)), "size") << count;
@@ -130,8 +133,8 @@ TEST(Codec, HostileStringLengthsAreRefused) {
   for (const auto& text : strings) {
     ASSERT_EQ(with_count(text.message, text.offset, text.length), encoded(text.message))
         << "the offset is right";
-    for (const std::int32_t length : {-1, 0, 1, text.length - 1, text.length + 1, 64, 65, 1000,
-                                      kMost, kMost - 3, kLeast}) {
+    for (const std::int32_t length :
+         {-1, 0, 1, text.length - 1, text.length + 1, 64, 65, 1000, kMost, kMost - 3, kLeast}) {
       EXPECT_EQ(verdict(with_count(text.message, text.offset, length)), "size")
           << "message kind " << text.message.index() << ", length " << length;
     }
@@ -146,7 +149,8 @@ TEST(Codec, TextsThatMeanSomethingToATerminalAreRefused) {
                                  Message(team_status()), Message(mission_part())}) {
     for (const char control : {'\1', '\a', '\n', '\r', '\x1b', '\x7f'}) {
       Bytes bytes = encoded(message);
-      bytes[bytes.size() - 2] = static_cast<std::byte>(control);  // the last string's last character
+      bytes[bytes.size() - 2] =
+          static_cast<std::byte>(control);  // the last string's last character
       EXPECT_EQ(verdict(retagged(bytes)), "range") << "message kind " << message.index();
     }
   }
@@ -166,12 +170,15 @@ TEST(Codec, SecondControlCharactersAreRefusedInUtf8AndOtherCharactersAreNot) {
 }
 
 TEST(Codec, WhatWeSayOurselvesMeansNothingToATerminal) {
-  const Stop said{header_of_sender(kOperator), true, "a\x1b[2J b\xC2\x9B" "2J \xC3\xA9 \x9B"};
+  const Stop said{header_of_sender(kOperator), true,
+                  "a\x1b[2J b\xC2\x9B"
+                  "2J \xC3\xA9 \x9B"};
   EXPECT_EQ(decoded_as<Stop>(encoded(said)).reason, "a [2J b 2J \xC3\xA9 \x9B");
 }
 
 TEST(Codec, StringsLongerThanTheirLimitAreRefusedEvenIfTheBytesAreThere) {
-  Bytes bytes = encoded(Stop{header_of_sender(kOperator), true, std::string(kMaxReasonLength, 'r')});
+  Bytes bytes =
+      encoded(Stop{header_of_sender(kOperator), true, std::string(kMaxReasonLength, 'r')});
   bytes.insert(bytes.end() - 1, std::byte{'r'});
   put32(bytes, kSignatureEnd + 2, kMaxReasonLength + 2);
   EXPECT_EQ(verdict(retagged(bytes)), "size");
@@ -270,7 +277,8 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<WorldState>(world_state(), [](WorldState& m) { m.skipped_ticks = -1; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.skipped_ticks = kHuge; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.vehicles[1].answered_tick = -2; }),
-      changed<WorldState>(world_state(), [](WorldState& m) { m.vehicles[1].answered_tick = kHuge; }),
+      changed<WorldState>(world_state(),
+                          [](WorldState& m) { m.vehicles[1].answered_tick = kHuge; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.part = -1; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.part = m.parts; }),
       changed<WorldState>(world_state(), [](WorldState& m) { m.part = 0, m.parts = 0; }),
@@ -293,7 +301,8 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<Digest>(digest(), [](Digest& m) { m.entries[1].author.agent = kMaxAgents; }),
       changed<Digest>(digest(), [](Digest& m) { m.entries[1].steps = -1; }),
   };
-  for (std::size_t i = 0; i < std::size(lies); ++i) EXPECT_EQ(verdict(lies[i]), "range") << "lie " << i;
+  for (std::size_t i = 0; i < std::size(lies); ++i)
+    EXPECT_EQ(verdict(lies[i]), "range") << "lie " << i;
 }
 
 TEST(Codec, CountsThatOnlyOverflowAreRefused) {

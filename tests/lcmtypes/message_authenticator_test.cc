@@ -40,7 +40,8 @@ bool is_signed(const Message& message) {
   return std::holds_alternative<MissionPart>(message) || std::holds_alternative<Stop>(message);
 }
 
-Bytes sealed(const Message& message, const MessageAuthenticator& seal, AgentId relayer = kUnassigned) {
+Bytes sealed(const Message& message, const MessageAuthenticator& seal,
+             AgentId relayer = kUnassigned) {
   Bytes bytes;
   encode(message, bytes, seal, channel_of(message, relayer));
   return bytes;
@@ -64,7 +65,8 @@ TEST(MessageAuthenticator, FingerprintsAreEqualForEqualKeysOnly) {
   EXPECT_EQ(MessageAuthenticator().fingerprint(), 0u);
   MissionKey half = key_of(1);
   half.coordinator = key_of(2).coordinator;
-  EXPECT_NE(MessageAuthenticator(half).fingerprint(), kMemberSeal.fingerprint()) << "obeys somebody else";
+  EXPECT_NE(MessageAuthenticator(half).fingerprint(), kMemberSeal.fingerprint())
+      << "obeys somebody else";
 }
 
 TEST(MessageAuthenticator, WhatHasNoKeyOrAnotherIsRefusedByName) {
@@ -72,7 +74,9 @@ TEST(MessageAuthenticator, WhatHasNoKeyOrAnotherIsRefusedByName) {
     const std::string& channel = channel_of(message);
     EXPECT_EQ(opened(sealed(message, MessageAuthenticator()), kMemberSeal, channel), "unkeyed");
     EXPECT_EQ(opened(sealed(unsigned_copy(message), kOtherTeam), kMemberSeal, channel), "tag");
-    EXPECT_EQ(opened(sealed(unsigned_copy(message), kCoordinatorSeal), MessageAuthenticator(), channel), "tag");
+    EXPECT_EQ(
+        opened(sealed(unsigned_copy(message), kCoordinatorSeal), MessageAuthenticator(), channel),
+        "tag");
   }
 }
 
@@ -104,7 +108,8 @@ TEST(MessageAuthenticator, AMemberCannotSpeakForTheCoordinator) {
   for (const Message& message : every_message()) {
     if (!is_signed(message)) continue;
     const std::string& channel = channel_of(message);
-    EXPECT_EQ(opened(sealed(unsigned_copy(message), kMemberSeal), kMemberSeal, channel), "unsigned");
+    EXPECT_EQ(opened(sealed(unsigned_copy(message), kMemberSeal), kMemberSeal, channel),
+              "unsigned");
     EXPECT_EQ(opened(sealed(message, kMemberSeal), kMemberSeal, channel), "unsigned");
   }
 }
@@ -182,7 +187,8 @@ TEST(KnownSignatures, HaveRoomForSoManyAndCheckTheOthersAgain) {
   int checked_again = 0;
   for (int i = 0; i < many; ++i) {
     Bytes bytes(kSignatureEnd);
-    for (std::size_t b = 0; b < 16; ++b) bytes[44 + b] = static_cast<std::byte>(i * 2654435761U >> (b % 4 * 8));
+    for (std::size_t b = 0; b < 16; ++b)
+      bytes[44 + b] = static_cast<std::byte>(i * 2654435761U >> (b % 4 * 8));
     known.add(bytes);
     EXPECT_TRUE(known.contains(bytes)) << "the newest";
     all.push_back(bytes);

@@ -24,7 +24,8 @@ inline constexpr std::size_t kSignatureEnd = 124;
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// ---- honest messages, every field with a value of its own ----------------------------------------
+// ---- honest messages, every field with a value of its own
+// ----------------------------------------
 
 inline Header header_of_sender(AgentId sender) {
   return {kRun, sender, 0x8000000000000123, 4711, 123456789012};
@@ -89,7 +90,14 @@ inline AgentStatus agent_status() {
 }
 
 inline TeamStatus team_status() {
-  return {header_of_sender(kCoordinator), MissionState::kEnded, 1500, 3, 4, 1.0 / 7, 2, 9,
+  return {header_of_sender(kCoordinator),
+          MissionState::kEnded,
+          1500,
+          3,
+          4,
+          1.0 / 7,
+          2,
+          9,
           "base.example"};
 }
 
@@ -110,7 +118,9 @@ inline WorldState world_state() {
   return m;
 }
 
-inline Command command() { return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}, 0xfeedfacecafebeef}; }
+inline Command command() {
+  return {header_of_sender(2), {1.0 / 3, 2, 3}, {-4, 5, 6}, 0xfeedfacecafebeef};
+}
 
 inline RecordAck record_ack() { return {header_of_sender(kLogger)}; }
 
@@ -125,10 +135,11 @@ inline Digest digest() {
 
 inline std::vector<Message> every_message() {
   return {hello(), mission_part(), contribution(), agent_status(), team_status(),
-          stop(),  world_state(),  command(),      record_ack(), digest()};
+          stop(),  world_state(),  command(),      record_ack(),   digest()};
 }
 
-// ---- bytes ---------------------------------------------------------------------------------------
+// ---- bytes
+// ---------------------------------------------------------------------------------------
 
 inline Bytes encoded(const Message& message) {
   Bytes bytes;
@@ -162,7 +173,9 @@ inline std::string verdict(const Decoded& decoded) {
   const auto* refusal = std::get_if<Refusal>(&decoded);
   return refusal == nullptr ? "accepted" : to_string(*refusal);
 }
-inline std::string verdict(const Bytes& bytes, RunId run = kRun) { return verdict(decode(bytes, run)); }
+inline std::string verdict(const Bytes& bytes, RunId run = kRun) {
+  return verdict(decode(bytes, run));
+}
 inline std::string verdict(const Message& message) { return verdict(encoded(message)); }
 
 template <class M>

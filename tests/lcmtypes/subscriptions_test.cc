@@ -23,7 +23,8 @@ using Names = std::set<std::string>;
 
 /// The names of the roles in README.md; the logger receives everything, so no line of the table has
 /// it.
-constexpr const char* kNames[kRoleCount] = {"agents", "coordinator", "world", "driver", "", "run", "status"};
+constexpr const char* kNames[kRoleCount] = {"agents", "coordinator", "world", "driver",
+                                            "",       "run",         "status"};
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" `"), last = text.find_last_not_of(" `");
@@ -40,7 +41,8 @@ std::vector<std::string> split(const std::string& line, char at) {
 /// "agents (`--now`), coordinator" without the text in brackets.
 Names listeners(const std::string& cell) {
   Names names;
-  for (const std::string& part : split(cell, ',')) names.insert(trimmed(part.substr(0, part.find('('))));
+  for (const std::string& part : split(cell, ','))
+    names.insert(trimmed(part.substr(0, part.find('('))));
   names.erase("");
   return names;
 }
@@ -59,7 +61,8 @@ std::map<std::string, std::vector<Names>> readme() {
       ADD_FAILURE() << "not a row of the table: " << line;
       continue;
     }
-    for (std::size_t bus = 0; bus < kBusCount; ++bus) table[cells[1]].push_back(listeners(cells[4 + bus]));
+    for (std::size_t bus = 0; bus < kBusCount; ++bus)
+      table[cells[1]].push_back(listeners(cells[4 + bus]));
   }
   return table;
 }

@@ -37,8 +37,8 @@ class LineFileTest : public ::testing::Test {
   }
 
   rlimit former_{};
-  const fs::path file_ = fs::path(testing::TempDir()) /
-                         ("line_file_test-" + std::to_string(getpid()) + ".csv");
+  const fs::path file_ =
+      fs::path(testing::TempDir()) / ("line_file_test-" + std::to_string(getpid()) + ".csv");
 };
 
 TEST_F(LineFileTest, HalfALineIsTakenBackAndNothingIsLost) {

@@ -14,7 +14,8 @@ namespace {
 
 using namespace test;
 
-// ---- trajectory.csv ------------------------------------------------------------------------------
+// ---- trajectory.csv
+// ------------------------------------------------------------------------------
 
 TEST(Trajectory, RowNHoldsThePlaceOfTickNAndTheCommandAppliedThere) {
   Record record(small_mission(1));
@@ -101,7 +102,8 @@ TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
   EXPECT_EQ(record.trajectory_rows().size(), 1u);
 }
 
-// ---- acknowledgements ----------------------------------------------------------------------------
+// ---- acknowledgements
+// ----------------------------------------------------------------------------
 
 TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
   std::ostringstream trajectory, metrics;
@@ -137,7 +139,8 @@ TEST(Acknowledgement, NeverNamesATickThatIsNotWritten) {
   EXPECT_EQ(acks(advance(record.recorder, at(51s))), (std::vector<Tick>{38}));
 }
 
-// ---- gaps ----------------------------------------------------------------------------------------
+// ---- gaps
+// ----------------------------------------------------------------------------------------
 
 TEST(Gap, InLockstepTheRecordWaitsForTheMissingStateBecauseItIsRepeated) {
   Record record(small_mission(1));
@@ -163,7 +166,8 @@ TEST(Gap, InLockstepARecorderThatWasCutOffAndGivenUpComesBackAndCountsTheRowsItL
   const Instant back = at(seconds(1)) + patience;
   const Outbox said = record.tell(state_of(501), back);
   ASSERT_EQ(acks(said).size(), 1U);
-  EXPECT_NE(header_of(said.front().message).incarnation, kLoggerLife) << "as somebody whom it takes back";
+  EXPECT_NE(header_of(said.front().message).incarnation, kLoggerLife)
+      << "as somebody whom it takes back";
   record.tell(state_of(502), back + seconds(1));
   record.tell(state_of(503), back + seconds(2));
   EXPECT_EQ(number(record.trajectory_rows().back(), 0), 502);
@@ -214,7 +218,8 @@ TEST(Gap, ShortlyBeforeTheEndCostsNoOtherRow) {
   }
 }
 
-// ---- metrics.csv ---------------------------------------------------------------------------------
+// ---- metrics.csv
+// ---------------------------------------------------------------------------------
 
 TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   Mission mission = small_mission(1);
@@ -317,7 +322,8 @@ TEST(Metrics, ShowWhatTheWorldMissedAndSkipped) {
   EXPECT_EQ(record.recorder.facts().skipped_ticks, 2);
 }
 
-// ---- the end -------------------------------------------------------------------------------------
+// ---- the end
+// -------------------------------------------------------------------------------------
 
 TEST(RecordEnd, ComesASecondAfterTheLastTickSoThatLastStatusesCount) {
   Mission mission = small_mission(1);
@@ -373,8 +379,9 @@ TEST(RecordEnd, ComesByItselfOnceThePlansLastTickIsLongPastAndNobodySpeaks) {
   advance(record.recorder, at(76s + 1ms));
   EXPECT_TRUE(record.recorder.finished());
   EXPECT_STREQ(record.recorder.result(), "stopped");
-  EXPECT_EQ(record.recorder.reason(),
-            "neither the world nor the coordinator can be heard, and the mission must be over by now");
+  EXPECT_EQ(
+      record.recorder.reason(),
+      "neither the world nor the coordinator can be heard, and the mission must be over by now");
   EXPECT_EQ(record.trajectory_rows().size(), 1u);
 }
 

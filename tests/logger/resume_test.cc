@@ -48,7 +48,8 @@ std::vector<std::string> observed(const std::vector<std::string>& metrics_rows) 
   return rows;
 }
 
-std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& second) {
+std::vector<std::string> joined(std::vector<std::string> first,
+                                const std::vector<std::string>& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
 }
@@ -86,7 +87,8 @@ class Resume : public testing::Test {
   fs::path dir;
 };
 
-// ---- the same record as without a kill -----------------------------------------------------------
+// ---- the same record as without a kill
+// -----------------------------------------------------------
 
 TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
   const Mission mission = small_mission(3);
@@ -103,7 +105,8 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
     for (Tick tick = 0; tick <= 100; ++tick) resumed.tell(team_at(tick));
     ASSERT_EQ(joined(rows_of(rows), resumed.trajectory_rows()), lived.trajectory_rows()) << cut;
     ASSERT_EQ(observed(joined(rows_of(values), resumed.metrics_rows())),
-              observed(lived.metrics_rows())) << cut;
+              observed(lived.metrics_rows()))
+        << cut;
     const RunFacts &facts = resumed.recorder.facts(), &all = lived.recorder.facts();
     EXPECT_EQ(facts.ticks, 100);
     EXPECT_EQ(facts.gaps, 0);
@@ -176,12 +179,14 @@ TEST_F(Resume, WhatIsAcknowledgedIsInTheFile) {
   EXPECT_EQ(seen, 4);
 }
 
-// ---- gaps in lockstep ----------------------------------------------------------------------------
+// ---- gaps in lockstep
+// ----------------------------------------------------------------------------
 
 TEST_F(Resume, AStateThatIsRepeatedInTimeIsNoGap) {
   Record resumed(small_mission(1), ten_rows());
   EXPECT_EQ(acks(resumed.tell(state_of(30), at(10s))), (std::vector<Tick>{9}));
-  for (Tick tick = 10; tick < 30; ++tick) resumed.tell(state_of(tick), at(10s + (tick - 9) * 200ms));
+  for (Tick tick = 10; tick < 30; ++tick)
+    resumed.tell(state_of(tick), at(10s + (tick - 9) * 200ms));
   EXPECT_EQ(resumed.recorder.next_row(), 30);
   EXPECT_EQ(resumed.recorder.facts().gaps, 0);
 }
@@ -317,7 +322,8 @@ TEST_F(Resume, PartsOfTwoWorldsMakeNoState) {
   EXPECT_EQ(record.trajectory_rows().size(), 2u);
 }
 
-// ---- segments ------------------------------------------------------------------------------------
+// ---- segments
+// ------------------------------------------------------------------------------------
 
 TEST_F(Resume, EachProcessHasFilesOfItsOwn) {
   EXPECT_EQ(segment_count(dir), 0);
@@ -362,8 +368,10 @@ TEST_F(Resume, ATableThatLacksItsOtherIsASegmentThatIsNotOverwritten) {
 }
 
 TEST_F(Resume, OfEachDamagedFileTheRowsBeforeTheDamageCount) {
-  const std::string header = std::string(kTrajectoryHeader) + '\n', values = std::string(kMetricsHeader) + '\n';
-  write("trajectory.csv", header + "0,0,0,1,1,0,0\n1,0.1,0,2,2,0,0\n2,0.2,5,garbage\n3,0.3,0,9,9,0,0\n");
+  const std::string header = std::string(kTrajectoryHeader) + '\n',
+                    values = std::string(kMetricsHeader) + '\n';
+  write("trajectory.csv",
+        header + "0,0,0,1,1,0,0\n1,0.1,0,2,2,0,0\n2,0.2,5,garbage\n3,0.3,0,9,9,0,0\n");
   write("metrics.csv", "another header\n");
   write("trajectory-001.csv", header + "7,0.7,0,3,3,0,0\n");
   write("metrics-001.csv", values + "7,0.7,0.5,0,0,0,0\n");

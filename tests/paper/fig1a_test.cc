@@ -47,8 +47,8 @@ TEST_F(Fig1a, AgentAtTheFarCornerRunsDownTheDiagonalToItsPeak) {
   EXPECT_LT((team_.x_m(3) - Eigen::Vector3d(1450, 1450, 0)).norm(), 200);
 }
 
-// Remark 1 says that such agents end in "only minute oscillations". They keep to their edge for ever,
-// but on it they come to rest only now and then.
+// Remark 1 says that such agents end in "only minute oscillations". They keep to their edge for
+// ever, but on it they come to rest only now and then.
 TEST_F(Fig1a, AgentsOnTheEdgesAlternateBetweenChatteringAndRunsOfHundredMetres) {
   constexpr Tick kWindowTicks = 100;  // 10 s
   int chattering = 0, running = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law that scenarios get by default, from the starts that hold the classical one
-// (lab/studies/law/*.textproto). Statements about probabilities hold but with probability 1e-9 over the
-// choice of seeds; docs/law.md has the figures of many more.
+// (lab/studies/law/*.textproto). Statements about probabilities hold but with probability 1e-9 over
+// the choice of seeds; docs/law.md has the figures of many more.
 #include <gtest/gtest.h>
 
 #include <cmath>

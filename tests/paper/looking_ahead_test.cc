@@ -7,8 +7,8 @@
 
 #include "core/look_ahead.h"
 #include "core/noise.h"
-#include "target/target.h"
 #include "lab/studies/theorems/invariance.h"
+#include "target/target.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {

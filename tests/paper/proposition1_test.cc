@@ -12,10 +12,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "target/target.h"
 #include "lab/manifolds.h"
 #include "lab/studies/theorems/escape.h"
 #include "lab/studies/theorems/invariance.h"
+#include "target/target.h"
 #include "tests/support/simulated_team.h"
 
 namespace ergocast::test {
@@ -35,7 +35,8 @@ Mission classical(std::vector<Eigen::Vector3d> starts_m) {
 
 const InvariantSet& set_named(const std::string& name) {
   const auto sets = studies::invariant_sets();
-  return *std::find_if(sets.begin(), sets.end(), [&name](const InvariantSet& set) { return set.name == name; });
+  return *std::find_if(sets.begin(), sets.end(),
+                       [&name](const InvariantSet& set) { return set.name == name; });
 }
 
 std::vector<std::string> names(bool symmetric_team) {
@@ -60,7 +61,8 @@ std::string letters(const ::testing::TestParamInfo<std::string>& set) {
 
 class Premises : public OnASet {};
 TEST_P(Premises, LeaveOfTheNormalPartOfBNoMoreThanRounding) {
-  // sin(mπ) is m times that of π's rounding, 1.1 units: 16 for the 14th mode, and less in the mean of all.
+  // sin(mπ) is m times that of π's rounding, 1.1 units: 16 for the 14th mode, and less in the mean
+  // of all.
   constexpr double kUnits = 16;
   for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) {
     EXPECT_LE(normal_residual(mission(seed)).units, kUnits) << "place " << seed;
@@ -71,7 +73,8 @@ INSTANTIATE_TEST_SUITE_P(Proposition1, Premises, ::testing::ValuesIn(names(true)
 class WithoutPremises : public OnASet {};
 TEST_P(WithoutPremises, TheNormalPartOfBIsAnything) {
   std::vector<double> shares;
-  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed) shares.push_back(normal_residual(mission(seed)).share_of_b);
+  for (std::uint64_t seed = 1; seed <= kPlaces; ++seed)
+    shares.push_back(normal_residual(mission(seed)).share_of_b);
   EXPECT_GT(median(shares), 0.01);
 }
 INSTANTIATE_TEST_SUITE_P(Proposition1, WithoutPremises, ::testing::ValuesIn(names(false)), letters);
@@ -85,7 +88,8 @@ TEST_P(ExactSet, HoldsAnAgentForTenMinutes) {
     team.run_until(600, [&] { ASSERT_EQ(set->distance_m(team.x_m(0)), 0) << "place " << seed; });
   }
 }
-INSTANTIATE_TEST_SUITE_P(Proposition1, ExactSet, ::testing::Values("origin", "axis-x", "axis-y"), letters);
+INSTANTIATE_TEST_SUITE_P(Proposition1, ExactSet, ::testing::Values("origin", "axis-x", "axis-y"),
+                         letters);
 
 class InexactSet : public OnASet {};
 TEST_P(InexactSet, LosesEveryAgentToRoundingWithinTenMinutes) {
@@ -102,7 +106,8 @@ TEST_P(InexactSet, LosesEveryAgentToRoundingWithinTenMinutes) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Proposition1, InexactSet,
-                         ::testing::Values("far-corner", "far-edge-x", "midline-x", "diagonal"), letters);
+                         ::testing::Values("far-corner", "far-edge-x", "midline-x", "diagonal"),
+                         letters);
 
 TEST(Proposition1, SinesOfMultiplesOfPiAreWhatMovesTheFarCorners) {
   const Mission mission = classical({{2000, 2000, 0}});

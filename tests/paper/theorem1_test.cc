@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Theorem 1: with noise, B·n is not 0 at any time after the start, almost surely.
 //
-// The theorem is about (9), without contraction, and about the set {B·n = 0}. The first test is about
-// that set. The others are about the agent's place, which is what people see, under (10).
+// The theorem is about (9), without contraction, and about the set {B·n = 0}. The first test is
+// about that set. The others are about the agent's place, which is what people see, under (10).
 //
-// What many seeds can show, each statement but with probability 1e-9: how probable escape is at least
-// by the time the test says, and that the time is distributed as the linearised recursion predicts
-// (lab/studies/theorems/linearised.h). No number of seeds shows a probability of 1.
+// What many seeds can show, each statement but with probability 1e-9: how probable escape is at
+// least by the time the test says, and that the time is distributed as the linearised recursion
+// predicts (lab/studies/theorems/linearised.h). No number of seeds shows a probability of 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,14 +35,17 @@ Mission paper_from(const Start& start, double sigma) {
   return mission;
 }
 
-/// The largest difference between the shares of `times_s` and the law's probabilities, step by step.
+/// The largest difference between the shares of `times_s` and the law's probabilities, step by
+/// step.
 double distance(std::vector<double> times_s, const EscapeLaw& law, double until_s) {
   std::sort(times_s.begin(), times_s.end());
   double largest = 0;
   for (double t_s = 0; t_s <= until_s; t_s += 0.1) {
-    const auto escaped = std::upper_bound(times_s.begin(), times_s.end(), t_s + 1e-9) - times_s.begin();
-    largest = std::max(largest, std::abs(static_cast<double>(escaped) / static_cast<double>(times_s.size()) -
-                                         law.probability(t_s)));
+    const auto escaped =
+        std::upper_bound(times_s.begin(), times_s.end(), t_s + 1e-9) - times_s.begin();
+    largest = std::max(largest,
+                       std::abs(static_cast<double>(escaped) / static_cast<double>(times_s.size()) -
+                                law.probability(t_s)));
   }
   return largest;
 }
@@ -122,7 +125,9 @@ TEST(Theorem1, TimeToLeaveAnAxisGrowsWithTheLogarithmOfOneOverSigma) {
     // ln of the growth that the law needs against ln of what the path had by the measured median:
     // what is left is the non-linear last few metres.
     const double needed = std::log(far_m / (0.67448975 * sigma));
-    EXPECT_NEAR(std::log(growth[static_cast<std::size_t>(std::lround(median_s * 10))]), needed, 0.35) << sigma;
+    EXPECT_NEAR(std::log(growth[static_cast<std::size_t>(std::lround(median_s * 10))]), needed,
+                0.35)
+        << sigma;
   }
 }
 
@@ -132,7 +137,8 @@ TEST(Theorem1, AlmostSureEscapeMayTakeLongerThanTheMission) {
   const Mission mission = paper_from(studies::starts()[3], 1e-5);
   const double far_m = lab::escape_distance_m(mission.domain);
   const auto times_s = studies::escape_times_s(mission, kFew, far_m, 150);
-  const auto out = std::count_if(times_s.begin(), times_s.end(), [](double t_s) { return std::isfinite(t_s); });
+  const auto out =
+      std::count_if(times_s.begin(), times_s.end(), [](double t_s) { return std::isfinite(t_s); });
   EXPECT_LT(static_cast<double>(out) / kFew + studies::dkw_distance(kFew, kError), 0.25);
 }
 
@@ -144,7 +150,8 @@ TEST(Theorem1, LastAgentOfFig2aIsStillOnItsDiagonalAtTheEnd) {
   for (mission.seed = 1; mission.seed <= kFew; ++mission.seed) {
     PaperTeam team(mission);
     team.run_until(150);
-    EXPECT_LT(std::abs(team.x_m(3).x() - team.x_m(3).y()) / std::sqrt(2.0), lab::escape_distance_m(mission.domain));
+    EXPECT_LT(std::abs(team.x_m(3).x() - team.x_m(3).y()) / std::sqrt(2.0),
+              lab::escape_distance_m(mission.domain));
   }
   EXPECT_GT(studies::least_probability(kFew, kError), 0.9);
 }

@@ -53,20 +53,22 @@ std::vector<double> squares_m2(Mission mission, Edges edges, int seeds, double t
 
 /// An upper limit for E‖x − c‖² after a start at the centre, given draws of it.
 ///
-/// The norm of a Gaussian vector grows, in distribution, with that of its mean. So by induction no input
-/// and no reflection makes ‖x − c‖ larger, in distribution, than an input that always points outward does
-/// without edges. That one is r + g at most: r = u_max/k, g the norm of a Gaussian vector of variance s²
-/// each way. What lies beyond a limit therefore adds no more than a closed form, and what lies below is
-/// bounded.
+/// The norm of a Gaussian vector grows, in distribution, with that of its mean. So by induction no
+/// input and no reflection makes ‖x − c‖ larger, in distribution, than an input that always points
+/// outward does without edges. That one is r + g at most: r = u_max/k, g the norm of a Gaussian
+/// vector of variance s² each way. What lies beyond a limit therefore adds no more than a closed
+/// form, and what lies below is bounded.
 double upper_limit_m2(const std::vector<double>& squares, const ControlLaw& law, double dt_s) {
   const double reach_m = law.u_max_mps / law.contraction_gain_per_s;
-  const double s_m = law.noise_intensity /
-                     std::sqrt(law.contraction_gain_per_s * (2 - law.contraction_gain_per_s * dt_s));
+  const double s_m = law.noise_intensity / std::sqrt(law.contraction_gain_per_s *
+                                                     (2 - law.contraction_gain_per_s * dt_s));
   const double beyond_m = 7 * s_m, limit_m2 = std::pow(reach_m + beyond_m, 2);
   std::vector<double> cut = squares;
   for (double& square : cut) square = std::min(square, limit_m2);
-  // (r + g)² ≤ 2r² + 2g²; g²/s² is a χ² of two degrees: P(g > b) = e^(−b²/2s²), E[g²; g > b] = (b² + 2s²) P.
-  const double tail_m2 = std::exp(-0.5 * 49) * (2 * reach_m * reach_m + 2 * (beyond_m * beyond_m + 2 * s_m * s_m));
+  // (r + g)² ≤ 2r² + 2g²; g²/s² is a χ² of two degrees: P(g > b) = e^(−b²/2s²), E[g²; g > b] = (b²
+  // + 2s²) P.
+  const double tail_m2 =
+      std::exp(-0.5 * 49) * (2 * reach_m * reach_m + 2 * (beyond_m * beyond_m + 2 * s_m * s_m));
   return studies::upper_mean(cut, limit_m2, kError) + tail_m2;
 }
 
@@ -75,7 +77,8 @@ TEST(Theorem2, MeanSquareStaysUnderTheBoundWithAndWithoutEdges) {
   const Mission mission = loud(200);
   for (const Edges edges : {Edges::kReflect, Edges::kNone}) {
     const auto squares = squares_m2(mission, edges, kSeeds, 30);
-    EXPECT_LE(upper_limit_m2(squares, mission.law, mission.timing.dt_s), mean_square_bound_m2(mission, 0));
+    EXPECT_LE(upper_limit_m2(squares, mission.law, mission.timing.dt_s),
+              mean_square_bound_m2(mission, 0));
   }
 }
 
@@ -85,7 +88,8 @@ TEST(Theorem2, ReflectionMovesNobodyAwayFromACentreInside) {
     PaperTeam team(mission, Edges::kNone);
     team.run_until(20, [&] {
       const Eigen::Vector3d center_m = mission.law.contraction_center_m;
-      EXPECT_LE((reflect(team.x_m(0), mission.domain) - center_m).norm(), (team.x_m(0) - center_m).norm() + 1e-9);
+      EXPECT_LE((reflect(team.x_m(0), mission.domain) - center_m).norm(),
+                (team.x_m(0) - center_m).norm() + 1e-9);
     });
   }
 }
@@ -97,22 +101,26 @@ TEST(Theorem2, BoundIsMetExactlyWhereAStepForgetsThePast) {
   const Mission mission = driven_outward(law_of(10, 3), 0.1, 10);
   const double unit_m2 = 9 * mission.timing.dt_s;
   double sum = 0;
-  for (const double square_m2 : squares_m2(mission, Edges::kNone, kSeeds, 0.3)) sum += square_m2 / unit_m2;
+  for (const double square_m2 : squares_m2(mission, Edges::kNone, kSeeds, 0.3))
+    sum += square_m2 / unit_m2;
   const auto limits = studies::chi_square_limits(2.0 * kSeeds, kSeeds / unit_m2, kError);
   EXPECT_GE(sum, limits.low);
   EXPECT_LE(sum, limits.high);
   EXPECT_NEAR((2 + 1 / unit_m2) * unit_m2, mean_square_bound_m2(mission, 0), 1e-12);
-  EXPECT_GT(limits.low / (kSeeds * (2 + 1 / unit_m2)), 0.92) << "the limits are too wide to say anything";
+  EXPECT_GT(limits.low / (kSeeds * (2 + 1 / unit_m2)), 0.92)
+      << "the limits are too wide to say anything";
 }
 
-// An input in one direction uses up the first summand, and in small steps noise but half of the second: around
-// c + u/k the square is that of u/k and a Gaussian's of variance σ²/(k(2 − k·dt)) each way.
+// An input in one direction uses up the first summand, and in small steps noise but half of the
+// second: around c + u/k the square is that of u/k and a Gaussian's of variance σ²/(k(2 − k·dt))
+// each way.
 TEST(Theorem2, InputInOneDirectionLeavesNoiseHalfOfItsPartInSmallSteps) {
   constexpr int kSeeds = 4000;
   const Mission mission = driven_outward(law_of(0.5, 30), 0.1, 40);
   const double unit_m2 = 900 / (0.5 * (2 - 0.5 * 0.1)), shift = 400 / unit_m2;  // ‖u/k‖² = 400 m²
   double sum = 0;
-  for (const double square_m2 : squares_m2(mission, Edges::kNone, kSeeds, 40)) sum += square_m2 / unit_m2;
+  for (const double square_m2 : squares_m2(mission, Edges::kNone, kSeeds, 40))
+    sum += square_m2 / unit_m2;
   const auto limits = studies::chi_square_limits(2.0 * kSeeds, kSeeds * shift, kError);
   EXPECT_GE(sum, limits.low);
   EXPECT_LE(sum, limits.high);

@@ -27,9 +27,10 @@ agents { starts { x_m: 500 y_m: 20 } }
 TEST_F(BadInput, CheckNamesEveryProblemAtOnceWithItsLine) {
   const auto file = write("bad.textproto", kManyProblems);
   EXPECT_EQ(ergocast({"check", file}), 2);
-  for (const char* part : {"bad.textproto:2:", "size_y_m", "bad.textproto:3:", "uniform_weight", "bad.textproto:4:", "modes_x", "64",
-                           "bad.textproto:5:", "u_max_mps", "bad.textproto:6:", "durration_s",
-                           "duration_s", "bad.textproto:7:", "x_m", "problems"}) {
+  for (const char* part :
+       {"bad.textproto:2:", "size_y_m", "bad.textproto:3:", "uniform_weight",
+        "bad.textproto:4:", "modes_x", "64", "bad.textproto:5:", "u_max_mps",
+        "bad.textproto:6:", "durration_s", "duration_s", "bad.textproto:7:", "x_m", "problems"}) {
     EXPECT_TRUE(said(part)) << part << " in\n" << output();
   }
 }
@@ -64,8 +65,8 @@ TEST_F(BadInput, UnknownCommandsAndOptionsAreRefused) {
 }
 
 TEST_F(BadInput, EveryProgramKnowsHelpAndVersion) {
-  for (const char* program : {"ergocast", "ergocast-agent", "ergocast-coordinator", "ergocast-sim",
-                              "ergocast-logger"}) {
+  for (const char* program :
+       {"ergocast", "ergocast-agent", "ergocast-coordinator", "ergocast-sim", "ergocast-logger"}) {
     EXPECT_EQ(run(program, {"--help"}), 0) << program;
     EXPECT_TRUE(said("--version")) << output();
     EXPECT_EQ(run(program, {"--version"}), 0) << program;

@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
-#include "team/messages.h"
-#include "team/mission_follower.h"
 #include "runtime/clock.h"
 #include "runtime/transport.h"
+#include "team/messages.h"
+#include "team/mission_follower.h"
 #include "tests/process/programs.h"
 
 namespace ergocast::test {

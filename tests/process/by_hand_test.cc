@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Programs that people start one by one, without `ergocast run`.
-#include "tests/process/mission.h"
 #include "tests/process/bus_observer.h"
+#include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
@@ -18,7 +18,8 @@ class StartedByHand : public ByHand {
   /// A scenario of two agents that lasts as long as the test needs.
   std::filesystem::path endless_pair() {
     std::string text = text_of(scenario(std::string("duration_s: ") + kEndless));
-    for (const char* start : {"starts { x_m: 0     y_m: 2000 }", "starts { x_m: 2000  y_m: 2000 }"}) {
+    for (const char* start :
+         {"starts { x_m: 0     y_m: 2000 }", "starts { x_m: 2000  y_m: 2000 }"}) {
       text.erase(text.find(start), std::string(start).size());
     }
     const auto file = folder_ / "pair.textproto";
@@ -76,7 +77,8 @@ TEST_F(StartedByHand, ASecondCoordinatorTakesTheMissionOverWhenItIsToldTo) {
 TEST_F(StartedByHand, ACoordinatorTakesTheMissionOfALauncherOver) {
   Child mission = launch_held(scenario("duration_s: 20"), {"--lcm-url", kUrl});
   hand("ergocast-coordinator", {"--resume"});
-  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
+      << said();
   release();
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_TRUE(said("another coordinator has taken the mission over")) << said();
@@ -96,9 +98,10 @@ TEST_F(StartedByHand, ACoordinatorOfAnotherScenarioIsRefusedAndDisturbsNobody) {
 // the group end with the interface.
 TEST_F(StartedByHand, AMissionGoesOnOnAnotherNetworkInterface) {
   const auto plug_in = [] {
-    return std::system("ip link add wire type veth peer name end && ip addr add 10.1.1.1/24 dev wire && "
-                       "ip link set end up && ip link set wire up && "
-                       "ip route replace 224.0.0.0/4 dev wire");
+    return std::system(
+        "ip link add wire type veth peer name end && ip addr add 10.1.1.1/24 dev wire && "
+        "ip link set end up && ip link set wire up && "
+        "ip route replace 224.0.0.0/4 dev wire");
   };
   ASSERT_EQ(plug_in(), 0);
   Program& coordinator = begin_mission(endless_pair());

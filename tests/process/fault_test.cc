@@ -44,8 +44,9 @@ TEST_F(Fault, LauncherThatSleptThroughTheEndStillNoticesIt) {
 
 TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
   // A buffer too small for the messages that arrive while it is stopped.
-  Child mission = launch_held(scenario("duration_s: 20 lockstep_timeout_s: 10"),
-                              {"--lcm-url", "udpm://239.255.76.67:24699?ttl=0&recv_buf_size=20000"});
+  Child mission =
+      launch_held(scenario("duration_s: 20 lockstep_timeout_s: 10"),
+                  {"--lcm-url", "udpm://239.255.76.67:24699?ttl=0&recv_buf_size=20000"});
   signal_to({"ergocast-logger"}, SIGSTOP);
   release();
   // The world continues without it after its time-out, to the end.
@@ -60,8 +61,9 @@ TEST_F(Fault, LoggerThatWasGivenUpLeavesARecordThatSaysSo) {
 TEST_F(Fault, ParentThatIgnoresItsChildrenIsNoObstacle) {
   signal(SIGCHLD, SIG_IGN);  // is inherited
   EXPECT_EQ(std::system(("exec " + (program_folder() / "ergocast").string() + " run " +
-                         scenario_file("quadrimodal_corners").string() +
-                         " --duration 5 --out " + out().string() + " >/dev/null 2>&1").c_str()),
+                         scenario_file("quadrimodal_corners").string() + " --duration 5 --out " +
+                         out().string() + " >/dev/null 2>&1")
+                            .c_str()),
             -1);  // a parent that ignores SIGCHLD cannot wait for a child
   signal(SIGCHLD, SIG_DFL);
   EXPECT_EQ(summary()["result"], "done");

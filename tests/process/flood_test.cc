@@ -3,13 +3,13 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
-#include "team/messages.h"
 #include "lcmtypes/codec.h"
 #include "runtime/key_file.h"
 #include "runtime/socket.h"
+#include "team/messages.h"
+#include "tests/process/bus_observer.h"
 #include "tests/process/mission.h"
 #include "tests/process/replayer.h"
-#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -185,18 +185,22 @@ class FloodOfRepeats : public Flood, public ::testing::WithParamInterface<const 
 TEST_P(FloodOfRepeats, IsCutByTheKernelAndTheTeamFliesOn) {
   constexpr std::int64_t kEnough = 50000;
   constexpr std::size_t kAtOnce = 200;  // every 5 ms at the most: 40 000 a second
-  Child mission = launch_endless(scenario(), {"--realtime=5", "--key-file", key_file_, "--lcm-url", kUrl});
+  Child mission =
+      launch_endless(scenario(), {"--realtime=5", "--key-file", key_file_, "--lcm-url", kUrl});
   Replayer replayer(std::get<LcmUrl>(LcmUrl::parse(kUrl)), GetParam());
   ASSERT_TRUE(eventually([&] { return replayer.listen(), replayer.kept() >= 4; }));
   std::int64_t refused = 0;
   ASSERT_TRUE(eventually([&] {
     replayer.replay(2 * kEnough);
     return (refused = refused_by_agents()) >= kEnough;
-  })) << refused << " refused\n" << log_of("agent-0");
+  })) << refused
+      << " refused\n"
+      << log_of("agent-0");
   ASSERT_TRUE(eventually([&, from = recorded_bytes()] {
     replayer.replay(kAtOnce);
     return recorded_bytes() > from + 30000;
-  })) << "stands still\n" << said();
+  })) << "stands still\n"
+      << said();
   // A new coordinator asks the agents for the mission, whose parts are repeats, too.
   const pid_t first = pids({"ergocast-coordinator"}).front();
   kill(first, SIGKILL);

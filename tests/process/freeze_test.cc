@@ -2,8 +2,8 @@
 // A process that stands still for five seconds and then continues, as on a machine that swaps or a
 // laptop with its lid closed: no process is lost, and in lockstep not a bit changes. No mission
 // here ends before the test ends it.
-#include "tests/process/mission.h"
 #include "tests/process/bus_observer.h"
+#include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
@@ -52,11 +52,13 @@ TEST_F(Freeze, InRealTimeTheTeamGoesOnWithoutAnAgentThatThenAgreesAgain) {
 
 struct FreezeInEitherPace : Freeze, ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Paces, FreezeInEitherPace, ::testing::Values("--lockstep", "--realtime=5"),
-                         [](const auto& pace) { return pace.index == 0 ? "Lockstep" : "Realtime"; });
+                         [](const auto& pace) {
+                           return pace.index == 0 ? "Lockstep" : "Realtime";
+                         });
 
 TEST_P(FreezeInEitherPace, AnAgentThatIsForgottenMeanwhileCountsAgainAfterwards) {
-  Child mission = launch_endless(scenario("", "forget_silent_after_s: 3"),
-                                 {GetParam(), "--lcm-url", kUrl});
+  Child mission =
+      launch_endless(scenario("", "forget_silent_after_s: 3"), {GetParam(), "--lcm-url", kUrl});
   signal_to(agent(1), SIGSTOP);
   ASSERT_TRUE(logs("coordinator", "covered is forgotten from tick")) << said();
   EXPECT_EQ(ergocast({"status", "--lcm-url", kUrl}), 1) << output();

@@ -4,9 +4,9 @@
 #include <sys/mount.h>
 #include <sys/statvfs.h>
 
+#include "tests/process/bus_observer.h"
 #include "tests/process/mission.h"
 #include "tests/process/record.h"
-#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {
@@ -56,8 +56,9 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
   const Tick full_at = recorded_rows(out()).rbegin()->first;
   // Twice as many ticks as a recorder buffers: some of them it had not yet tried to write.
   BusObserver observer(kUrl);
-  ASSERT_TRUE(observer.hears([&] { return observer.answered(observer.member(0)) > full_at + 2200; }))
-      << said();
+  ASSERT_TRUE(observer.hears([&] {
+    return observer.answered(observer.member(0)) > full_at + 2200;
+  })) << said();
   EXPECT_LT(recorded_bytes(), bytes + 200000);
   ASSERT_TRUE(resize_disk(kRoomy));
   // The buffered rows are written first; the gap comes after them.
@@ -77,8 +78,7 @@ TEST_P(FullDiskInEitherPace, TheTeamGoesOnAndTheRecordResumesWithAGap) {
 TEST_F(FullDisk, ThatStaysFullFailsTheRunAtItsEndAndIsNamed) {
   if (!mount_disk("size=512k")) GTEST_SKIP() << "the small disk this needs cannot be mounted here";
   EXPECT_EQ(
-      ergocast({"run", scenario("lockstep_timeout_s: 10"), "--out", out(), "--duration", "60"}),
-      4);
+      ergocast({"run", scenario("lockstep_timeout_s: 10"), "--out", out(), "--duration", "60"}), 4);
   EXPECT_NE(output().find("No space left"), std::string::npos) << output();
 }
 

@@ -67,8 +67,8 @@ class Outsider {
   void send(const Heard& one) {
     buses_[one.bus].publish(one.channel, one.bytes.data(), static_cast<unsigned>(one.bytes.size()));
   }
-  /// The message with some bytes after the tag changed, under a tag that fits without a key; and the
-  /// same message under a neighbour's channel.
+  /// The message with some bytes after the tag changed, under a tag that fits without a key; and
+  /// the same message under a neighbour's channel.
   void forge(Heard one) {
     const std::size_t at = random(2) % one.bytes.size();
     one.bytes[at < kTagOffset || at >= kHeaderEnd ? at : 8] ^= std::byte{1};
@@ -111,8 +111,8 @@ class Keyed : public ByHand {
 };
 
 TEST_F(Keyed, OutsidersChangeNotOneBitOfTheMission) {
-  Child mission = start("ergocast", {"run", scenario(), "--out", out(), "--duration", "200", "--key-file",
-                                     coordinator_, "--lcm-url", kUrl});
+  Child mission = start("ergocast", {"run", scenario(), "--out", out(), "--duration", "200",
+                                     "--key-file", coordinator_, "--lcm-url", kUrl});
   mission_log_ = log_;
   Outsider outsider(std::get<LcmUrl>(LcmUrl::parse(kUrl)));
   // The world waits until there are enough forgeries, at any speed of the team.

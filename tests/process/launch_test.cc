@@ -2,8 +2,8 @@
 // `ergocast run` on a machine that cannot restart a dead process at once: the mission continues.
 #include <sys/resource.h>
 
-#include "tests/process/mission.h"
 #include "tests/process/bus_observer.h"
+#include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
@@ -75,7 +75,8 @@ class OwnPrograms : public Launch {
   void SetUp() override {
     fs::create_directory(programs());
     fs::copy_file(program_folder() / "ergocast", programs() / "ergocast");
-    for (const char* name : {"ergocast-agent", "ergocast-coordinator", "ergocast-logger", "ergocast-sim"}) {
+    for (const char* name :
+         {"ergocast-agent", "ergocast-coordinator", "ergocast-logger", "ergocast-sim"}) {
       fs::create_symlink(program_folder() / name, programs() / name);
     }
     setenv("ERGOCAST_BIN_DIR", programs().c_str(), 1);
@@ -160,7 +161,8 @@ TEST_F(DamagedRecord, GoesOnInAFreshSegmentWithoutWhatCannotBeRead) {
 TEST_F(DamagedRecord, WithoutAReadablePlanIsNobodysAndTheTeamGoesOnWithoutOne) {
   Child mission = launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl});
   while_the_logger_is_dead(mission, [this] { write("plan.binpb", "no plan"); });
-  ASSERT_TRUE(comes_to_say("logger exited with code 2 after 3 restarts: the team goes on without a record"))
+  ASSERT_TRUE(
+      comes_to_say("logger exited with code 2 after 3 restarts: the team goes on without a record"))
       << said();
   EXPECT_TRUE(logs("logger", "plan.binpb", 3)) << log_of("logger");
   BusObserver observer(kUrl);

@@ -134,9 +134,7 @@ class FlyingMission : public OwnHost {
     });
   }
   /// Waits until the record has grown by `bytes`.
-  bool moves_on(std::uintmax_t bytes = 30000) const {
-    return recorded(recorded_bytes() + bytes);
-  }
+  bool moves_on(std::uintmax_t bytes = 30000) const { return recorded(recorded_bytes() + bytes); }
 
   static void signal_to(const std::vector<std::string>& words, int signal) {
     const auto targets = pids(words);
@@ -145,11 +143,14 @@ class FlyingMission : public OwnHost {
   }
   /// Kills a process as soon as there is one, and waits until it is gone.
   static void kill_next(const std::vector<std::string>& words) {
-    ASSERT_TRUE(eventually([&] { return pids(words).size() == 1; })) << ::testing::PrintToString(words);
+    ASSERT_TRUE(eventually([&] { return pids(words).size() == 1; }))
+        << ::testing::PrintToString(words);
     const pid_t pid = pids(words).front();
     kill(pid, SIGKILL);
-    ASSERT_TRUE(eventually([&] { const auto left = pids(words);
-                                 return left.empty() || left.front() != pid; }));
+    ASSERT_TRUE(eventually([&] {
+      const auto left = pids(words);
+      return left.empty() || left.front() != pid;
+    }));
   }
   /// Stops a process for 5 s.
   static void freeze(const std::vector<std::string>& words) {

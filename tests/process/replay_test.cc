@@ -10,13 +10,17 @@ using Replay = ByHand;
 
 TEST_F(Replay, ShowsTheWholeTeamAndItsEnd) {
   // By the clock, so that the log lasts as long on any machine.
-  ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--realtime", "--duration", "8", "--out", out()}),
-            0) << output();
+  ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--realtime", "--duration", "8",
+                      "--out", out()}),
+            0)
+      << output();
   Program& watch = hand("ergocast", {"status", "--watch"});
   ASSERT_TRUE(watch.says("nobody is heard on ")) << watch.said();
-  Child player = std::get<Child>(Child::start(
-      {{"/usr/bin/lcm-logplayer", std::string("--lcm-url=") + kUrl, (out() / "events-000.lcm").string()},
-       folder_ / "player", SIGKILL}));
+  Child player =
+      std::get<Child>(Child::start({{"/usr/bin/lcm-logplayer", std::string("--lcm-url=") + kUrl,
+                                     (out() / "events-000.lcm").string()},
+                                    folder_ / "player",
+                                    SIGKILL}));
   EXPECT_EQ(wait_for(watch.child), 0) << watch.said();
   const std::string said = watch.said();
   for (const char* process : {"coordinator  alive", "world        alive", "logger       alive"}) {

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "team/messages.h"
 #include "ops/doctor/group_listener.h"
 #include "runtime/lcm_url.h"
 #include "runtime/socket.h"
+#include "team/messages.h"
 
 namespace ergocast::test {
 
@@ -19,7 +19,8 @@ namespace ergocast::test {
 class Replayer {
  public:
   /// @param stem  the beginning of the recorded channels, without ERGOCAST_
-  Replayer(const LcmUrl& url, std::string_view stem) : mouth_(AF_INET, SOCK_DGRAM), url_(url), name_("ERGOCAST_" + std::string(stem)) {
+  Replayer(const LcmUrl& url, std::string_view stem)
+      : mouth_(AF_INET, SOCK_DGRAM), url_(url), name_("ERGOCAST_" + std::string(stem)) {
     for (int bus = 0; bus < kBusCount; ++bus) {
       ears_.push_back(doctor::group_listener(url.group, url.base_port + bus, error_));
     }

@@ -3,8 +3,8 @@
 // it was.
 #include <lcm/lcm-cpp.hpp>
 
-#include "tests/process/mission.h"
 #include "tests/process/bus_observer.h"
+#include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
@@ -59,16 +59,19 @@ TEST_F(Restart, KilledAgentIsNamedAndItsSuccessorTakesPart) {
 
 /// A team whose agents broadcast every five ticks, in either pace.
 class RestartInEitherPace : public Restart, public ::testing::WithParamInterface<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Paces, RestartInEitherPace, ::testing::Values("--lockstep", "--realtime=5"),
-                         [](const auto& pace) { return pace.index == 0 ? "Lockstep" : "Realtime"; });
+INSTANTIATE_TEST_SUITE_P(Paces, RestartInEitherPace,
+                         ::testing::Values("--lockstep", "--realtime=5"), [](const auto& pace) {
+                           return pace.index == 0 ? "Lockstep" : "Realtime";
+                         });
 
 TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
   const bool lockstep = std::string(GetParam()) == "--lockstep";
-  Child mission = launch_endless(scenario("broadcast_period_ticks: 5"),
-                                 {GetParam(), "--lcm-url", kUrl});
+  Child mission =
+      launch_endless(scenario("broadcast_period_ticks: 5"), {GetParam(), "--lcm-url", kUrl});
   BusObserver observer(kUrl);
   const auto member = [&observer] { return observer.member(1); };
-  ASSERT_TRUE(observer.hears([&] { return observer.said(member()) > 0 && observer.answered(member()) > 0; }));
+  ASSERT_TRUE(observer.hears(
+      [&] { return observer.said(member()) > 0 && observer.answered(member()) > 0; }));
   const Author former = member();
   // An agent that does not answer holds the tick until the last messages have been repeated.
   if (lockstep) signal_to(agent(2), SIGSTOP);
@@ -79,7 +82,8 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
   if (lockstep) signal_to(agent(2), SIGCONT);
   ASSERT_TRUE(observer.hears([&] { return member() != former && member().incarnation != 0; }));
   RecordProperty("admitted_after_s", since_kill());
-  ASSERT_TRUE(observer.hears([&] { return observer.held(member(), former) >= observer.said(former); }));
+  ASSERT_TRUE(
+      observer.hears([&] { return observer.held(member(), former) >= observer.said(former); }));
   RecordProperty("recovered_after_s", since_kill());
   ASSERT_TRUE(observer.hears([&] { return observer.said(member()) > 10; }));
   mission.send(SIGINT);
@@ -163,7 +167,8 @@ TEST_F(Restart, InRealTimeTheMissionOutlivesEachOfThem) {
 TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
   Child mission = launch_held(scenario("duration_s: 20"));
   kill_for_good(kCoordinatorProcess);
-  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
+      << said();
   release();
   EXPECT_EQ(wait_for(mission), 0) << said();
   EXPECT_EQ(summary()["result"], "done");
@@ -177,7 +182,8 @@ TEST_F(Restart, WithoutACoordinatorTheTeamEndsByItselfAtTheLastTick) {
 TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
   Child mission = launch_endless(scenario("lockstep_timeout_s: 5"));
   kill_for_good(kCoordinatorProcess);
-  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); })) << said();
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
+      << said();
   kill_next(agent(1));
   EXPECT_EQ(wait_for(mission), 4) << said();
   const std::string reason = summary()["reason"];

@@ -17,7 +17,8 @@ std::size_t lines(const std::string& text) {
 TEST_F(MissionRun, DefaultScenarioLeavesACompleteRecordThatIsTheSimulationsByteForByte) {
   const auto scenario = scenario_file("quadrimodal_corners").string();
   ASSERT_EQ(ergocast({"run", scenario, "--duration", "100", "--out", out()}), 0) << output();
-  ASSERT_EQ(ergocast({"simulate", scenario, "--duration", "100", "--out", folder_ / "simulated"}), 0)
+  ASSERT_EQ(ergocast({"simulate", scenario, "--duration", "100", "--out", folder_ / "simulated"}),
+            0)
       << output();
   const std::string recorded = text_of(out() / "trajectory.csv");
   EXPECT_EQ(lines(recorded), 1U + 4 * 1000);
@@ -43,7 +44,9 @@ TEST_F(MissionRun, DefaultScenarioLeavesACompleteRecordThatIsTheSimulationsByteF
 
 TEST_F(MissionRun, RecordedScenarioRunsAgainToTheSameTrajectory) {
   ASSERT_EQ(ergocast({"run", scenario_file("paper_fig2b").string(), "--duration", "20", "--seed",
-                      "9", "--out", out()}), 0) << output();
+                      "9", "--out", out()}),
+            0)
+      << output();
   ASSERT_EQ(ergocast({"simulate", out() / "scenario.textproto", "--out", folder_ / "again"}), 0)
       << output();
   EXPECT_TRUE(text_of(out() / "trajectory.csv") == text_of(folder_ / "again" / "trajectory.csv"));
@@ -55,7 +58,8 @@ TEST_F(MissionRun, OfAMapIsVerifiedAndReportedWithoutTheMap) {
   std::filesystem::create_directories(folder_ / "maps");
   std::filesystem::copy(shipped / "maps" / "lake.png", folder_ / "maps");
   std::filesystem::copy(shipped / "lake_search.textproto", folder_);
-  ASSERT_EQ(ergocast({"run", folder_ / "lake_search.textproto", "--duration", "10", "--out", out()}), 0)
+  ASSERT_EQ(
+      ergocast({"run", folder_ / "lake_search.textproto", "--duration", "10", "--out", out()}), 0)
       << output();
   const std::string report = text_of(out() / "report.html");
   std::filesystem::remove_all(folder_ / "maps");
@@ -77,7 +81,8 @@ TEST_F(MissionRun, SeventeenAgentsFillTwoWorldStatesATick) {
 // come in two parts.
 TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
   std::vector<std::string> trajectories;
-  for (const std::string telling : {"agents { dead_reckoning: true", "agents { dead_reckoning: false"}) {
+  for (const std::string telling :
+       {"agents { dead_reckoning: true", "agents { dead_reckoning: false"}) {
     for (const std::string period : {"1", "7"}) {
       std::string text = text_of(scenario_file("quadrimodal_corners"));
       text.replace(text.find("time {"), 6, "time { broadcast_period_ticks: " + period);
@@ -86,7 +91,9 @@ TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
       std::filesystem::create_directories(folder);
       std::ofstream(folder / "telling.textproto") << text;
       ASSERT_EQ(ergocast({"run", folder / "telling.textproto", "--duration", "5", "--agents", "18",
-                          "--out", folder / "run"}), 0) << output();
+                          "--out", folder / "run"}),
+                0)
+          << output();
       trajectories.push_back(text_of(folder / "run" / "trajectory.csv"));
       EXPECT_EQ(lines(trajectories.back()), 1U + 18 * 50);
       EXPECT_EQ(ergocast({"verify", folder / "run"}), 0) << output();
@@ -99,7 +106,9 @@ TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
 
 TEST_F(MissionRun, VerifyNamesTheFirstTickAndAgentThatDiffer) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners").string(), "--duration", "10",
-                      "--out", out()}), 0) << output();
+                      "--out", out()}),
+            0)
+      << output();
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   std::string table = text_of(out() / "trajectory.csv");
   const auto row = table.find("\n42,");
@@ -113,7 +122,9 @@ TEST_F(MissionRun, VerifyNamesTheFirstTickAndAgentThatDiffer) {
 
 TEST_F(MissionRun, RealTimeKeepsTheClockAndCountsWhatItMissed) {
   ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners").string(), "--duration", "20",
-                      "--realtime=10", "--out", out()}), 0) << output();
+                      "--realtime=10", "--out", out()}),
+            0)
+      << output();
   const auto facts = summary();
   EXPECT_EQ(facts["result"], "done");
   EXPECT_EQ(facts["mode"], "realtime");
@@ -128,7 +139,9 @@ TEST_F(MissionRun, RealTimeKeepsTheClockAndCountsWhatItMissed) {
 TEST_F(MissionRun, EventsReplayWithLcmLogplayer) {
   const std::string url = "udpm://239.255.76.67:24500?ttl=0";
   ASSERT_EQ(ergocast({"run", scenario_file("quadrimodal_corners").string(), "--duration", "3",
-                      "--out", out()}), 0) << output();
+                      "--out", out()}),
+            0)
+      << output();
   // A second logger records the replay and must make the same record.
   const auto again = folder_ / "again";
   std::filesystem::create_directory(again);
@@ -136,9 +149,11 @@ TEST_F(MissionRun, EventsReplayWithLcmLogplayer) {
   Child listener = start("ergocast-logger", {"--out", again, "--lcm-url", url, "--run-id", run_id});
   const auto log = log_;
   ASSERT_TRUE(eventually([&] { return text_of(log).find("recording") != std::string::npos; }));
-  const auto player = std::get<Child>(Child::start(
-      {{"/usr/bin/lcm-logplayer", "--lcm-url=" + url, "--speed=0.5",
-        (out() / "events-000.lcm").string()}, folder_ / "player", SIGKILL}));
+  const auto player =
+      std::get<Child>(Child::start({{"/usr/bin/lcm-logplayer", "--lcm-url=" + url, "--speed=0.5",
+                                     (out() / "events-000.lcm").string()},
+                                    folder_ / "player",
+                                    SIGKILL}));
   Child playing = player;
   EXPECT_EQ(wait_for(playing), 0) << text_of(folder_ / "player");
   listener.send(SIGTERM);

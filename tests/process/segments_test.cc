@@ -15,7 +15,9 @@ class Segments : public OwnHost {
   /// first part end before `first_end`. So do the metrics, whose second part has not begun.
   void split(const std::string& first_end, const std::string& second) {
     ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "10",
-                        "--out", out()}), 0) << output();
+                        "--out", out()}),
+              0)
+        << output();
     const std::string table = text_of(out() / "trajectory.csv");
     const auto end = table.find('\n' + first_end) + 1, begin = table.find('\n' + second) + 1;
     write("trajectory.csv", table.substr(0, end) + table.substr(end, 7));
@@ -73,7 +75,8 @@ TEST_F(Segments, VerifyFindsThatTheEndIsMissing) {
 }
 
 TEST_F(Segments, TheEventLogBeginsWithTheFirstFreeNumber) {
-  for (const char* old : {"events-000.lcm", "events-001.lcm"}) std::ofstream(folder_ / old) << "torn";
+  for (const char* old : {"events-000.lcm", "events-001.lcm"})
+    std::ofstream(folder_ / old) << "torn";
   EventLog log(folder_);
   log.write("CHANNEL", {});
   EXPECT_EQ(log.flush(), std::nullopt);
@@ -88,8 +91,8 @@ TEST_F(Segments, TheEventLogBeginsWithTheFirstFreeNumber) {
 TEST_F(Segments, ALoggerThatHearsOfNoMissionLeavesTheRecordAsItWas) {
   split("40,", "40,");
   const std::string summary_before = text_of(out() / "summary.json");
-  Child logger = start("ergocast-logger",
-                       {"--out", out(), "--resume", "--lcm-url", "udpm://239.255.76.67:24800?ttl=0"});
+  Child logger = start("ergocast-logger", {"--out", out(), "--resume", "--lcm-url",
+                                           "udpm://239.255.76.67:24800?ttl=0"});
   ASSERT_TRUE(eventually([this] { return said("recording"); })) << output();
   logger.send(SIGTERM);
   EXPECT_EQ(wait_for(logger), 0) << output();
@@ -103,7 +106,8 @@ TEST_F(Segments, ALoggerRefusesToGoOnWithARecordWhosePlanCannotBeRead) {
     std::filesystem::remove(out() / "plan.binpb");
     if (damaged) write("plan.binpb", "no plan");
     EXPECT_EQ(run("ergocast-logger",
-                  {"--out", out(), "--resume", "--lcm-url", "udpm://239.255.76.67:24800?ttl=0"}), 2);
+                  {"--out", out(), "--resume", "--lcm-url", "udpm://239.255.76.67:24800?ttl=0"}),
+              2);
     EXPECT_TRUE(said("plan.binpb: missing or not readable")) << output();
     EXPECT_FALSE(std::filesystem::exists(out() / "trajectory-002.csv"));
     EXPECT_FALSE(std::filesystem::exists(out() / "events-000.lcm"));
@@ -113,7 +117,8 @@ TEST_F(Segments, ALoggerRefusesToGoOnWithARecordWhosePlanCannotBeRead) {
 TEST_F(Segments, ALoggerRefusesToGoOnWithTheRecordOfAnotherMission) {
   split("40,", "40,");
   const std::string url = "udpm://239.255.76.67:24800?ttl=0";
-  Child coordinator = start("ergocast-coordinator", {"--lcm-url", url, scenario_file("paper_fig2b")});
+  Child coordinator =
+      start("ergocast-coordinator", {"--lcm-url", url, scenario_file("paper_fig2b")});
   Child logger = start("ergocast-logger", {"--out", out(), "--resume", "--lcm-url", url});
   EXPECT_EQ(wait_for(logger), 2) << output();
   EXPECT_TRUE(said("of another mission")) << output();

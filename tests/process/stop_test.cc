@@ -55,9 +55,11 @@ class StopCommand : public ByHand {
     rows.erase(std::prev(rows.end()));
     if (!realtime) rows.erase(rows.begin(), std::prev(rows.end()));
     for (const auto& [id, unused] : last) {
-      EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [id = id](const auto& tick) {
-        return tick.second.contains(id) && !tick.second.at(id).stands();
-      })) << "agent " << id;
+      EXPECT_TRUE(std::any_of(rows.begin(), rows.end(),
+                              [id = id](const auto& tick) {
+                                return tick.second.contains(id) && !tick.second.at(id).stands();
+                              }))
+          << "agent " << id;
     }
   }
 };
@@ -213,9 +215,11 @@ TEST_F(StopCommand, InAnEmergencyStopsAllThatAreHeard) {
 // An attacker with recordings of many runs of the same key cannot hide another run behind them.
 TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
   std::set<RunId> told;
-  const auto listener = std::get<0>(Transport::open(
-      std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
-      {.on_message = [&](const Message& stop, Bus, AgentId) { told.insert(header_of(stop).run); }}));
+  const auto listener =
+      std::get<0>(Transport::open(std::get<LcmUrl>(LcmUrl::parse(kUrl)), 0, {}, {kTypes<Stop>},
+                                  {.on_message = [&](const Message& stop, Bus, AgentId) {
+                                    told.insert(header_of(stop).run);
+                                  }}));
   Stranger stranger(kUrl);
   Program& decided = hand("ergocast", {"stop", "--now"});
   ASSERT_TRUE(eventually([&] {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "team/messages.h"
 #include "runtime/lcm_url.h"
 #include "runtime/transport.h"
+#include "team/messages.h"
 
 namespace ergocast::test {
 
@@ -18,8 +18,9 @@ class Stranger {
  public:
   explicit Stranger(const std::string& url, const MessageAuthenticator& seal = {})
       : url_(std::get<LcmUrl>(LcmUrl::parse(url))),
-        transport_(std::get<0>(
-            Transport::open(url_, 0, seal, Subscriptions{}, {.on_message = [](const Message&, Bus, AgentId) {}}))) {}
+        transport_(std::get<0>(Transport::open(
+            url_, 0, seal, Subscriptions{}, {.on_message = [](const Message&, Bus, AgentId) {}}))) {
+  }
 
   void say(Bus bus, Message message) {
     std::visit([this](auto& m) { m.header.sequence = ++sequence_; }, message);

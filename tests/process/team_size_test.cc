@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Teams of one and two, and teams that grow while they fly.
-#include "tests/process/mission.h"
 #include "tests/process/bus_observer.h"
+#include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
@@ -23,8 +23,7 @@ TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
 }
 
 TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
-  Child mission =
-      launch_endless(scenario(), {"--agents", "2", "--realtime=5", "--lcm-url", kUrl});
+  Child mission = launch_endless(scenario(), {"--agents", "2", "--realtime=5", "--lcm-url", kUrl});
   BusObserver observer(kUrl);
   for (const AgentId id : {0, 1}) {
     const auto held = [&] { return observer.held(observer.member(id), observer.member(1 - id)); };
@@ -37,11 +36,15 @@ TEST_F(TeamSize, TwoSayInRealTimeThatTheyHoldEachOthersCoverage) {
 }
 
 TEST_F(TeamSize, HowOftenSeventeenBroadcastDoesNotShowInWhatTheyFly) {
-  ASSERT_EQ(ergocast({"run", scenario("broadcast_period_ticks: 23"), "--agents", "17", "--duration", "5",
-                      "--out", out()}), 0) << output();
+  ASSERT_EQ(ergocast({"run", scenario("broadcast_period_ticks: 23"), "--agents", "17", "--duration",
+                      "5", "--out", out()}),
+            0)
+      << output();
   const auto each_tick = folder_ / "each_tick";
-  ASSERT_EQ(ergocast({"simulate", scenario("broadcast_period_ticks: 1"), "--agents", "17", "--duration",
-                      "5", "--out", each_tick}), 0) << output();
+  ASSERT_EQ(ergocast({"simulate", scenario("broadcast_period_ticks: 1"), "--agents", "17",
+                      "--duration", "5", "--out", each_tick}),
+            0)
+      << output();
   EXPECT_TRUE(text_of(out() / "trajectory.csv") == text_of(each_tick / "trajectory.csv"));
 }
 
@@ -82,8 +85,10 @@ TEST_F(LateAgent, TakesTheFreePlaceInATeamThatBeganWithAQuorum) {
 }
 
 struct LateAgentInEitherPace : LateAgent, ::testing::WithParamInterface<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Paces, LateAgentInEitherPace, ::testing::Values("--lockstep", "--realtime=5"),
-                         [](const auto& pace) { return pace.index == 0 ? "Lockstep" : "Realtime"; });
+INSTANTIATE_TEST_SUITE_P(Paces, LateAgentInEitherPace,
+                         ::testing::Values("--lockstep", "--realtime=5"), [](const auto& pace) {
+                           return pace.index == 0 ? "Lockstep" : "Realtime";
+                         });
 
 TEST_P(LateAgentInEitherPace, IsWelcomeBeyondThePlan) {
   Child mission = launch_endless(scenario(), {"--agents", "2", GetParam(), "--lcm-url", kUrl});

@@ -45,7 +45,8 @@ class Trials : public OwnHost {
     return column;
   }
 
-  /// φ² at the end of the mission that `simulate --seed` flies with these arguments, as it is written.
+  /// φ² at the end of the mission that `simulate --seed` flies with these arguments, as it is
+  /// written.
   std::string simulated(std::vector<std::string> arguments, int seed) {
     const auto folder = folder_ / ("simulated-" + std::to_string(seed));
     arguments.insert(arguments.begin(), "simulate");
@@ -61,7 +62,8 @@ class Trials : public OwnHost {
     const std::string text = output();
     for (auto at = text.find(before); at != text.npos; at = text.find(before, at + 1)) {
       const auto begin = at + before.size();
-      parts.push_back(text.substr(begin, std::min(text.find(after, begin), text.find('\n', begin)) - begin));
+      parts.push_back(
+          text.substr(begin, std::min(text.find(after, begin), text.find('\n', begin)) - begin));
     }
     return parts;
   }
@@ -74,8 +76,8 @@ TEST_F(Trials, AGoalOutOfReachFailsEverySeedWithTheMetricThatSimulateRecords) {
   EXPECT_EQ(told("failures")[0].substr(told("failures")[0].rfind(' ')), " 20") << output();
   std::vector<double> reached;
   for (int seed = 1; seed <= 20; ++seed) {
-    const auto said = told("seed " + std::to_string(seed) +
-                           ": the goal is reached: the team at t = ", " > ");
+    const auto said =
+        told("seed " + std::to_string(seed) + ": the goal is reached: the team at t = ", " > ");
     ASSERT_EQ(said.size(), 1U) << seed << "\n" << output();
     reached.push_back(std::stod(said[0].substr(said[0].find("phi^2 = ") + 8)));
   }
@@ -103,11 +105,14 @@ TEST_F(Trials, EachSeedDrawsItsStartsAsSimulateDoes) {
 }
 
 TEST_F(Trials, ThePrintedCommandFliesTheSameMissionAgain) {
-  const auto mission = write("it's a goal.textproto", std::string(kSwiftMission) + "goal_ergodic_metric: 1e-9\n");
+  const auto mission =
+      write("it's a goal.textproto", std::string(kSwiftMission) + "goal_ergodic_metric: 1e-9\n");
   const auto faults = write("some faults.ini", "loss = 0.2\nagent_crashes_per_s = 0.1\n");
-  for (const auto& pace : {std::vector<std::string>{"--realtime=2"}, {"--realtime"}, {"--lockstep"}}) {
-    std::vector<std::string> words = {"simulate", mission,    "--seeds", "7340000:7340002", "--agents",
-                                      "4",        "--faults", faults,    "--duration",      "20.1"};
+  for (const auto& pace :
+       {std::vector<std::string>{"--realtime=2"}, {"--realtime"}, {"--lockstep"}}) {
+    std::vector<std::string> words = {"simulate",   mission, "--seeds",  "7340000:7340002",
+                                      "--agents",   "4",     "--faults", faults,
+                                      "--duration", "20.1"};
     words.insert(words.end(), pace.begin(), pace.end());
     std::filesystem::remove(folder_ / "again.log");
     EXPECT_EQ(ergocast(words), 4) << output();
@@ -116,8 +121,10 @@ TEST_F(Trials, ThePrintedCommandFliesTheSameMissionAgain) {
     ASSERT_EQ(failed.size(), 3U) << output();
     ASSERT_EQ(again.size(), 3U) << output();
     log_ = folder_ / "again.log";
-    Child child = std::get<Child>(Child::start(
-        {{"/bin/sh", "-c", (program_folder() / "ergocast").string() + ' ' + again[1]}, log_, SIGKILL}));
+    Child child = std::get<Child>(
+        Child::start({{"/bin/sh", "-c", (program_folder() / "ergocast").string() + ' ' + again[1]},
+                      log_,
+                      SIGKILL}));
     EXPECT_EQ(wait_for(child), 4) << again[1];
     EXPECT_EQ(told("seed "), std::vector<std::string>{failed[1]}) << again[1];
   }

@@ -47,10 +47,10 @@ TEST_F(Typing, OneSlipInAScenarioIsOneProblem) {
   struct Slip {
     std::string right, wrong;
   };
-  for (const auto& [right, wrong] : {Slip{"size_x_m", "size_xm"}, Slip{"size_x_m", "width"},
-                                     Slip{"domain {", "domian {"}, Slip{"u_max_mps", "umax_mps"},
-                                     Slip{"duration_s", "duration"}, Slip{"mean_x_m", "x"},
-                                     Slip{"law {", "lwa {"}}) {
+  for (const auto& [right, wrong] :
+       {Slip{"size_x_m", "size_xm"}, Slip{"size_x_m", "width"}, Slip{"domain {", "domian {"},
+        Slip{"u_max_mps", "umax_mps"}, Slip{"duration_s", "duration"}, Slip{"mean_x_m", "x"},
+        Slip{"law {", "lwa {"}}) {
     std::string text = good;
     const auto at = text.find(right);
     ASSERT_NE(at, std::string::npos) << right;
@@ -64,7 +64,8 @@ TEST_F(Typing, PlacesAreSaidByTheDomainAndNotByALimitNobodyMeets) {
   std::string text = text_of(scenario_file("quadrimodal_corners"));
   text.insert(text.find("starts {"), "starts { x_m: 1e20  y_m: 1 }\n  ");
   EXPECT_EQ(ergocast({"check", write("far.textproto", text)}), 2);
-  EXPECT_TRUE(said("1e+20 is far outside the domain (write a number in the domain, 0 to 2000)")) << output();
+  EXPECT_TRUE(said("1e+20 is far outside the domain (write a number in the domain, 0 to 2000)"))
+      << output();
   EXPECT_FALSE(said("1e+13")) << output();
 }
 
@@ -90,7 +91,9 @@ TEST_F(Typing, PipesAreRefusedWhereverAFileIsNamed) {
 }
 
 TEST_F(Typing, PipesInARunDirectoryAreRefused) {
-  ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "3", "--out", out()}), 0);
+  ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "3", "--out",
+                      out()}),
+            0);
   for (const char* file : {"plan.binpb", "summary.json", "trajectory.csv", "metrics.csv"}) {
     const auto path = out() / file, aside = folder_ / "aside";
     std::filesystem::rename(path, aside);
@@ -110,7 +113,8 @@ TEST_F(Typing, WhatFilesContainNeverSteersTheTerminal) {
   const auto hosts = write("hosts", evil + " sim " + evil + "\n");
   const auto key = write("evil.key", evil);
   std::filesystem::permissions(key, std::filesystem::perms::owner_read);
-  const auto text = write("evil.textproto", "name: \"" + std::string("\x1b[2J") + "\" " + "\x1b]0;x\x07: 3\n");
+  const auto text =
+      write("evil.textproto", "name: \"" + std::string("\x1b[2J") + "\" " + "\x1b]0;x\x07: 3\n");
   const std::vector<std::vector<std::string>> commands = {
       {"check", text},
       {"check", folder_ / evil},
@@ -120,9 +124,11 @@ TEST_F(Typing, WhatFilesContainNeverSteersTheTerminal) {
       {"run", scenario, "--" + evil},
       {evil}};
   const auto steers = [](const std::string& words) {
-    return std::any_of(words.begin(), words.end(), [](unsigned char c) {
-      return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f || c == 0xff;
-    }) || words.find("\xc2\x9b") != std::string::npos;
+    return std::any_of(words.begin(), words.end(),
+                       [](unsigned char c) {
+                         return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7f || c == 0xff;
+                       }) ||
+           words.find("\xc2\x9b") != std::string::npos;
   };
   for (const auto& command : commands) {
     EXPECT_EQ(ergocast(command), 2) << ::testing::PrintToString(command);
@@ -143,10 +149,12 @@ TEST_F(Typing, ALongListOfProblemsIsCounted) {
   EXPECT_TRUE(said(" more\n")) << output().substr(0, 1000);
   std::string faults;
   for (int i = 0; i < 5000; ++i) faults += "nonsense_" + std::to_string(i) + " = 1\n";
-  EXPECT_EQ(ergocast({"simulate", scenario, "--faults", write("faults", faults), "--seeds", "1"}), 2);
+  EXPECT_EQ(ergocast({"simulate", scenario, "--faults", write("faults", faults), "--seeds", "1"}),
+            2);
   EXPECT_LE(lines(), 60);
   EXPECT_TRUE(said("and 4950 more\n")) << output().substr(0, 1000);
-  EXPECT_EQ(ergocast({"deploy", scenario, "--to", "ssh", "--hosts", write("hosts", noise + noise)}), 2);
+  EXPECT_EQ(ergocast({"deploy", scenario, "--to", "ssh", "--hosts", write("hosts", noise + noise)}),
+            2);
   EXPECT_TRUE(said("longer than the limit")) << output().substr(0, 1000);
 }
 
@@ -160,7 +168,8 @@ TEST_F(Typing, AnEmptyKeyVariableIsRefused) {
     EXPECT_EQ(run(program, {}), 2) << program;
     EXPECT_TRUE(said("ERGOCAST_KEY_FILE")) << output();
   }
-  EXPECT_EQ(ergocast({"check", scenario}), 0) << "what takes no key does not ask for one: " << output();
+  EXPECT_EQ(ergocast({"check", scenario}), 0)
+      << "what takes no key does not ask for one: " << output();
   unsetenv("ERGOCAST_KEY_FILE");
   EXPECT_FALSE(std::filesystem::exists(out()));
 }
@@ -170,8 +179,8 @@ TEST_F(Typing, TooFewDescriptorsAreCalledByTheirName) {
   int refused = 0;
   for (const int limit : {5, 6, 8, 10, 12, 14, 16, 18, 20}) {
     const auto log = folder_ / ("limit-" + std::to_string(limit));
-    const std::string command = "ulimit -n " + std::to_string(limit) + "; exec timeout -s INT 2 " + agent + " > " +
-                                log.string() + " 2>&1";
+    const std::string command = "ulimit -n " + std::to_string(limit) + "; exec timeout -s INT 2 " +
+                                agent + " > " + log.string() + " 2>&1";
     std::system(("sh -c '" + command + "'").c_str());
     const std::string words = text_of(log);
     EXPECT_EQ(words.find("irewall"), std::string::npos) << limit << ": " << words;

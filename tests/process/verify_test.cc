@@ -18,8 +18,10 @@ class Falsified : public OwnHost {
     std::ofstream(out() / file, std::ios::binary) << text;
   }
   void record(const std::string& command) {
-    ASSERT_EQ(ergocast({command, scenario_file("quadrimodal_corners"), "--duration", "5", "--out", out()}),
-              0) << output();
+    ASSERT_EQ(ergocast({command, scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
+                        out()}),
+              0)
+        << output();
     ASSERT_EQ(ergocast({"verify", out()}), 0) << output();
   }
   /// Expects `verify` to report a difference at `place` when `file` contains `text`.
@@ -47,9 +49,10 @@ class Falsified : public OwnHost {
   void expect_each_value_found(const std::set<std::string>& free) {
     const Json summary = Json::parse(text_of(out() / "summary.json")), flat = summary.flatten();
     for (const auto& [pointer, value] : flat.items()) {
-      const bool is_free = std::any_of(free.begin(), free.end(), [&p = pointer](const std::string& key) {
-        return p.starts_with(key) || p.ends_with(key);
-      });
+      const bool is_free =
+          std::any_of(free.begin(), free.end(), [&p = pointer](const std::string& key) {
+            return p.starts_with(key) || p.ends_with(key);
+          });
       if (is_free) continue;
       Json changed = flat;
       changed[pointer] = value.is_number() ? Json(value.get<double>() + 1) : Json("other");
@@ -65,9 +68,13 @@ class Falsified : public OwnHost {
   }
 };
 
-constexpr const char* kMetricsColumns[] = {
-    "tick", "t_s", "ergodic_metric", "metric_spread", "max_staleness_s", "contributions_received",
-    "contributions_lost"};
+constexpr const char* kMetricsColumns[] = {"tick",
+                                           "t_s",
+                                           "ergodic_metric",
+                                           "metric_spread",
+                                           "max_staleness_s",
+                                           "contributions_received",
+                                           "contributions_lost"};
 
 TEST_F(Falsified, SimulationIsFoundInEveryColumnAndValue) {
   record("simulate");
@@ -76,7 +83,8 @@ TEST_F(Falsified, SimulationIsFoundInEveryColumnAndValue) {
     expect_found("metrics.csv", with_another_digit(metrics, 4, column),
                  std::string("metrics.csv:4, column ") + kMetricsColumns[column]);
   }
-  expect_each_value_found({"/started", "/build", "/cpu_fma", "/wall_time_s", "/ticks_per_s", "/host"});
+  expect_each_value_found(
+      {"/started", "/build", "/cpu_fma", "/wall_time_s", "/ticks_per_s", "/host"});
 }
 
 TEST_F(Falsified, RunIsFoundInAllThatItsSimulationDetermines) {
@@ -93,8 +101,8 @@ TEST_F(Falsified, RunIsFoundInAllThatItsSimulationDetermines) {
     expect_found("summary.json", changed.dump(2), std::string("/") + key);
     changed = summary;
   }
-  for (const char* key : {"scenario_hash", "seed", "dt_s", "tick_count", "ticks", "log_log_slope", "gaps",
-                          "segments", "missed_deadlines", "skipped_ticks"}) {
+  for (const char* key : {"scenario_hash", "seed", "dt_s", "tick_count", "ticks", "log_log_slope",
+                          "gaps", "segments", "missed_deadlines", "skipped_ticks"}) {
     changed[key] = 7;
     expect_found("summary.json", changed.dump(2), std::string("/") + key);
     changed = summary;
@@ -117,7 +125,8 @@ TEST_F(Falsified, RowsAreFoundThatAreSwappedTwiceOrMissing) {
       return text + '\n';
     };
     const auto at = table.find(row(4));
-    const std::string before = table.substr(0, at), after = table.substr(at + row(4).size() + row(5).size());
+    const std::string before = table.substr(0, at),
+                      after = table.substr(at + row(4).size() + row(5).size());
     expect_found(file, before + row(5) + row(4) + after, file + ":");
     expect_found(file, before + row(4) + row(4) + row(5) + after, file + ":5");
     expect_found(file, before + row(4) + after, file);
@@ -131,7 +140,8 @@ TEST_F(Falsified, TrajectoryIsNamedByLineAndColumn) {
   record("simulate");
   const std::string table = text_of(out() / "trajectory.csv");
   expect_found("trajectory.csv", with_another_digit(table, 30, 4), "trajectory.csv:30, column y_m");
-  expect_found("trajectory.csv", with_another_digit(table, 2, 6), "trajectory.csv:2, column vy_mps");
+  expect_found("trajectory.csv", with_another_digit(table, 2, 6),
+               "trajectory.csv:2, column vy_mps");
 }
 
 TEST_F(Falsified, PlanScenarioTargetAndReportAreFound) {
@@ -152,7 +162,9 @@ TEST_F(Falsified, PlanScenarioTargetAndReportAreFound) {
 // A record whose files agree with each other, but not with its plan.
 TEST_F(Falsified, PlanOfAnotherSeedIsFoundThoughEverythingNamesIt) {
   record("simulate");
-  ASSERT_EQ(ergocast({"simulate", out() / "scenario.textproto", "--seed", "99", "--out", folder_ / "other"}), 0);
+  ASSERT_EQ(ergocast({"simulate", out() / "scenario.textproto", "--seed", "99", "--out",
+                      folder_ / "other"}),
+            0);
   for (const char* file : {"plan.binpb", "scenario.textproto"}) {
     std::filesystem::copy_file(folder_ / "other" / file, out() / file,
                                std::filesystem::copy_options::overwrite_existing);
@@ -167,10 +179,12 @@ TEST_F(Falsified, PlanOfAnotherSeedIsFoundThoughEverythingNamesIt) {
 
 TEST_F(Falsified, HonestRecordListsWhatWasComparedAndWhatNot) {
   record("run");
-  const auto compared = output().find("\ncompared:"), not_compared = output().find("\nnot compared:");
+  const auto compared = output().find("\ncompared:"),
+             not_compared = output().find("\nnot compared:");
   ASSERT_TRUE(compared != std::string::npos && not_compared != std::string::npos) << output();
-  for (const char* file : {"plan.binpb", "scenario.textproto", "target_density.csv", "trajectory.csv",
-                           "metrics.csv", "summary.json", "report.html", "figures/coverage.svg"}) {
+  for (const char* file :
+       {"plan.binpb", "scenario.textproto", "target_density.csv", "trajectory.csv", "metrics.csv",
+        "summary.json", "report.html", "figures/coverage.svg"}) {
     const auto at = output().find(std::string("\n  ") + file);
     EXPECT_TRUE(at > compared && at < not_compared) << file << ": " << output();
   }
@@ -182,7 +196,8 @@ TEST_F(Falsified, HonestRecordListsWhatWasComparedAndWhatNot) {
 
 TEST_F(Falsified, MissingFilesAreRefusedOrNamed) {
   record("simulate");
-  for (const char* file : {"report.html", "figures/speeds.svg", "target_density.csv", "scenario.textproto"}) {
+  for (const char* file :
+       {"report.html", "figures/speeds.svg", "target_density.csv", "scenario.textproto"}) {
     std::filesystem::remove(out() / file);
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
     const auto not_compared = output().find("\nnot compared:");

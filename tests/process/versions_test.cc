@@ -2,9 +2,9 @@
 // Hosts with different versions of Ergocast: no process takes part in a mission that it may
 // misunderstand, and both sides report it.
 #include "runtime/node.h"
+#include "tests/process/bus_observer.h"
 #include "tests/process/mission.h"
 #include "tests/process/stranger.h"
-#include "tests/process/bus_observer.h"
 
 namespace ergocast::test {
 namespace {

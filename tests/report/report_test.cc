@@ -14,13 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "target/target.h"
+#include "logger/recorder.h"
+#include "logger/slope.h"
 #include "report/markup.h"
 #include "report/polyline.h"
 #include "report/raster.h"
-#include "logger/recorder.h"
-#include "logger/slope.h"
 #include "report/target_density.h"
+#include "target/target.h"
 
 namespace ergocast {
 namespace {
@@ -48,9 +48,9 @@ testing::AssertionResult well_formed(const std::string& xml) {
   static const std::regex kReference("&(amp|lt|gt|quot|#39);");
   std::vector<std::string> open;
   for (std::size_t at = 0; at < xml.size(); ++at) {
-    if (xml[at] == '&' && !std::regex_search(xml.begin() + static_cast<std::ptrdiff_t>(at),
-                                             xml.end(), kReference,
-                                             std::regex_constants::match_continuous)) {
+    if (xml[at] == '&' &&
+        !std::regex_search(xml.begin() + static_cast<std::ptrdiff_t>(at), xml.end(), kReference,
+                           std::regex_constants::match_continuous)) {
       return testing::AssertionFailure() << "stray & at " << xml.substr(at, 40);
     }
     if (xml[at] != '<') continue;
@@ -142,8 +142,8 @@ TEST_F(Report, HasSixFiguresInOnePageThatLoadsNothing) {
   record(4, 1000);
   ASSERT_EQ(report(), std::nullopt);
   expect_sound();
-  const std::string html = std::regex_replace(
-      page(), std::regex("xmlns=\"http://www.w3.org/2000/svg\""), "");
+  const std::string html =
+      std::regex_replace(page(), std::regex("xmlns=\"http://www.w3.org/2000/svg\""), "");
   EXPECT_EQ(html.find("http:"), std::string::npos);
   EXPECT_EQ(html.find("https:"), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
@@ -177,9 +177,10 @@ TEST_F(Report, SaysWhatTheSummarySaysAndEscapesIt) {
 
 TEST_F(Report, ToleratesASummaryOfOtherTypesOrWithoutKeys) {
   record(1, 100);
-  for (const char* summary : {"{}", "[]", "null", "7", R"({"agents":{"id":1},"messages":[1]})",
-                              R"({"agents":[null,7,{"id":[]}],"result":3,"mode":null})",
-                              R"({"ticks_per_s":null,"wall_time_s":"x","messages":{"refused":[]}})"}) {
+  for (const char* summary :
+       {"{}", "[]", "null", "7", R"({"agents":{"id":1},"messages":[1]})",
+        R"({"agents":[null,7,{"id":[]}],"result":3,"mode":null})",
+        R"({"ticks_per_s":null,"wall_time_s":"x","messages":{"refused":[]}})"}) {
     write(dir / "summary.json", summary);
     EXPECT_EQ(report(), std::nullopt) << summary;
     EXPECT_TRUE(well_formed(page())) << summary;
@@ -235,7 +236,8 @@ TEST_F(Report, SegmentsReadAsOneTable) {
   ASSERT_EQ(report(), std::nullopt);
   const std::string whole = page();
   for (const std::string table : {"trajectory", "metrics"}) {
-    const std::string text = read(dir / (table + ".csv")), header = text.substr(0, text.find('\n') + 1);
+    const std::string text = read(dir / (table + ".csv")),
+                      header = text.substr(0, text.find('\n') + 1);
     const auto first = text.find("\n20,") + 1, second = text.find("\n30,") + 1;
     write(dir / (table + ".csv"), text.substr(0, first) + "20,2,0,1");
     write(dir / (table + "-001.csv"), header + text.substr(first, second - first) + "30,3");
@@ -252,9 +254,9 @@ TEST_F(Report, SegmentsReadAsOneTable) {
 
 TEST_F(Report, MalformedLineIsNamedAndNothingIsWritten) {
   const std::vector<std::string> lines = {
-      "2,0.2,0,1,1,1",     "2,0.2,0,1,1,1,1,1",  "2,0.2,0,nan,1,1,1", "2,0.2,0,1e300,1,1,1",
-      "2,0.2,x,1,1,1,1",   "2,0.2,999,1,1,1,1",  "2,0.2,0,1,1,1,1\r", "0,0.2,0,1,1,1,1",
-      "2.5,0.2,0,1,1,1,1", "2,-1,1,1,1,1,1",     "-2,0.2,1,1,1,1,1",  ""};
+      "2,0.2,0,1,1,1",     "2,0.2,0,1,1,1,1,1", "2,0.2,0,nan,1,1,1", "2,0.2,0,1e300,1,1,1",
+      "2,0.2,x,1,1,1,1",   "2,0.2,999,1,1,1,1", "2,0.2,0,1,1,1,1\r", "0,0.2,0,1,1,1,1",
+      "2.5,0.2,0,1,1,1,1", "2,-1,1,1,1,1,1",    "-2,0.2,1,1,1,1,1",  ""};
   for (const std::string& line : lines) {
     record(1, 2);
     write(dir / "trajectory.csv", read(dir / "trajectory.csv") + line + "\n3,0.3,0,1,1,1,1\n");

@@ -27,7 +27,8 @@ TEST(RateLimit, ABudgetHoldsExactlyWhatItIsAllowed) {
   limit.allow({.per_second = 10, .per_tick = 2, .most = 100}, 3);
   for (int i = 0; i < 6; ++i) EXPECT_TRUE(limit.admit(3, true, at(2s))) << i;
   EXPECT_FALSE(limit.admit(3, true, at(2s)));
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.admit(3, true, at(1000s))) << "no more is saved up";
+  for (int i = 0; i < 100; ++i)
+    EXPECT_TRUE(limit.admit(3, true, at(1000s))) << "no more is saved up";
   EXPECT_FALSE(limit.admit(3, true, at(1000s)));
 }
 

@@ -20,7 +20,8 @@ class MapTarget : public ::testing::Test {
  protected:
   MapTarget() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::absolute(fs::path(::testing::TempDir()) / (std::string("target_") + test->name()));
+    folder_ =
+        fs::absolute(fs::path(::testing::TempDir()) / (std::string("target_") + test->name()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
@@ -35,7 +36,9 @@ class MapTarget : public ::testing::Test {
     return folder_ / "mine.textproto";
   }
   Scenario loaded(const std::string& target) { return good(Scenario::load(scenario_with(target))); }
-  Coefficients mu_of(const std::string& target) { return loaded(target).mission().target_coefficients; }
+  Coefficients mu_of(const std::string& target) {
+    return loaded(target).mission().target_coefficients;
+  }
   std::string said_of(const std::string& target) {
     const Loaded result = Scenario::load(scenario_with(target));
     const auto* problems = std::get_if<std::vector<Problem>>(&result);
@@ -53,7 +56,8 @@ std::string map_of(const std::string& file, const std::string& more = kWhole) {
 TEST_F(MapTarget, ThreeKindsOfFilesOfOneMapAreOneTarget) {
   // 4 × 2 cells of 25 m, the north-east quarter the densest.
   write("a.csv", "0,1,2,9\n3,0,1,4\n");
-  write("a.asc", "ncols 4\nnrows 2\nxllcenter 12.5\nyllcenter 12.5\ncellsize 25\n0 1 2 9\n3 0 1 4\n");
+  write("a.asc",
+        "ncols 4\nnrows 2\nxllcenter 12.5\nyllcenter 12.5\ncellsize 25\n0 1 2 9\n3 0 1 4\n");
   const int values[2][4] = {{0, 1, 2, 9}, {3, 0, 1, 4}};
   write_png(folder_ / "a.png", 4, 2, {.bits = 16},
             [&](int column, int row, int) { return 1000 * values[row][column]; });
@@ -69,7 +73,9 @@ TEST_F(MapTarget, FirstRowSaysWhichWayIsNorth) {
   write("south.csv", "0,0,3\n5,0,1\n1,2,0\n");
   const Coefficients mu = mu_of(map_of("north.csv"));
   EXPECT_EQ(mu_of(map_of("north.csv", std::string(kWhole) + "first_row: NORTH")), mu);
-  EXPECT_LE((mu_of(map_of("south.csv", std::string(kWhole) + "first_row: SOUTH")) - mu).cwiseAbs().maxCoeff(),
+  EXPECT_LE((mu_of(map_of("south.csv", std::string(kWhole) + "first_row: SOUTH")) - mu)
+                .cwiseAbs()
+                .maxCoeff(),
             1e-15);
   EXPECT_GT((mu_of(map_of("south.csv")) - mu).cwiseAbs().maxCoeff(), 0.1);
 }
@@ -81,8 +87,7 @@ TEST_F(MapTarget, ASampledGaussianIsWhereItWas) {
   const TargetDensity bell{{{1, {37, 22}, 36 * Eigen::Matrix2d::Identity()}}, 0};
   const Rectangle domain{{0, 0}, {100, 50}};
   write_png(folder_ / "bell.png", kColumns, kRows, {.bits = 16}, [&](int column, int row, int) {
-    const double density =
-        density_unscaled(bell, domain, {column + 0.5, 50 - (row + 0.5)});
+    const double density = density_unscaled(bell, domain, {column + 0.5, 50 - (row + 0.5)});
     return static_cast<int>(density * 65535 * 2 * 3.14159 * 36);
   });
   const Coefficients mu = mu_of(map_of("bell.png"));
@@ -98,15 +103,20 @@ TEST_F(MapTarget, OfEqualNumbersIsTheUniformTarget) {
   Coefficients expected = Coefficients::Zero(256);
   expected[0] = 1;
   EXPECT_LE((mu_of(map_of("a.csv")) - expected).cwiseAbs().maxCoeff(), 1e-15);
-  EXPECT_LE((mu_of(map_of("a.csv", "origin_x_m: -7 origin_y_m: -900 size_x_m: 300 size_y_m: 1000")) -
-             expected).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LE(
+      (mu_of(map_of("a.csv", "origin_x_m: -7 origin_y_m: -900 size_x_m: 300 size_y_m: 1000")) -
+       expected)
+          .cwiseAbs()
+          .maxCoeff(),
+      1e-15);
 }
 
 TEST_F(MapTarget, PartsAddUpByTheirWeights) {
   write("left.csv", "1,0\n");
   write("right.csv", "0,1\n");
-  const std::string region = "polygon { vertices { x_m: 10 y_m: 10 } vertices { x_m: 20 y_m: 10 } "
-                             "vertices { x_m: 15 y_m: 30 } }";
+  const std::string region =
+      "polygon { vertices { x_m: 10 y_m: 10 } vertices { x_m: 20 y_m: 10 } "
+      "vertices { x_m: 15 y_m: 30 } }";
   const Coefficients left = mu_of(map_of("left.csv")), right = mu_of(map_of("right.csv"));
   const Coefficients triangle = mu_of("regions { " + region + " }");
   const Coefficients all =
@@ -120,8 +130,10 @@ TEST_F(MapTarget, PartsAddUpByTheirWeights) {
 TEST_F(MapTarget, KeepOutsCutMapsAsTheyCutRegions) {
   write("a.csv", "2\n");
   const std::string keep_outs =
-      "keep_outs { vertices { x_m: 40 y_m: -5 } vertices { x_m: 80 y_m: 30 } vertices { x_m: 30 y_m: 40 } }"
-      "keep_outs { vertices { x_m: 50 y_m: 5 } vertices { x_m: 90 y_m: 20 } vertices { x_m: 50 y_m: 45 } }";
+      "keep_outs { vertices { x_m: 40 y_m: -5 } vertices { x_m: 80 y_m: 30 } vertices { x_m: 30 "
+      "y_m: 40 } }"
+      "keep_outs { vertices { x_m: 50 y_m: 5 } vertices { x_m: 90 y_m: 20 } vertices { x_m: 50 "
+      "y_m: 45 } }";
   const Coefficients uniform = mu_of("uniform_weight: 1 " + keep_outs);
   EXPECT_LE((mu_of(map_of("a.csv") + keep_outs) - uniform).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_GT(uniform.cwiseAbs().sum(), 1.5);
@@ -133,7 +145,8 @@ TEST_F(MapTarget, EqualInputsGiveEqualBytesAndThePlanNeedsNoMap) {
   fs::copy(folder_ / "a.csv", folder_ / "b" / "other.csv");
   const Scenario scenario = loaded(map_of("a.csv"));
   EXPECT_EQ(plan_of(loaded(map_of("b/other.csv"))), plan_of(scenario));
-  EXPECT_EQ(plan_of(good(Scenario::parse(scenario.print(), "/elsewhere/mine.textproto"))), plan_of(scenario));
+  EXPECT_EQ(plan_of(good(Scenario::parse(scenario.print(), "/elsewhere/mine.textproto"))),
+            plan_of(scenario));
   EXPECT_TRUE(has(scenario.print(), "file: \"" + (folder_ / "a.csv").string() + "\""));
 
   fs::remove_all(folder_);
@@ -155,7 +168,8 @@ TEST_F(MapTarget, PictureShowsIt) {
   EXPECT_NEAR(density(0, 0), 3 * 8 / 20.0, 1e-12);
 }
 
-// ---- problems ------------------------------------------------------------------------------------
+// ---- problems
+// ------------------------------------------------------------------------------------
 
 TEST_F(MapTarget, ThatCannotBeUsedIsOneProblemAtItsField) {
   write("zero.csv", "0,0\n0,0\n");
@@ -164,25 +178,33 @@ TEST_F(MapTarget, ThatCannotBeUsedIsOneProblemAtItsField) {
   write("good.csv", "1,2\n");
   write("good.asc", "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 10\n1\n");
   write_png(folder_ / "wide.png", 100000, 1, {}, [](int, int, int) { return 1; });
-  const std::string file = "mine.textproto:3:17: target.maps[0].file: ", here = folder_.string() + "/";
+  const std::string file = "mine.textproto:3:17: target.maps[0].file: ",
+                    here = folder_.string() + "/";
   const std::vector<std::pair<std::string, std::string>> mistakes = {
-      {map_of("none.png"), file + here + "none.png: there is no such file (check the name; it counts"},
+      {map_of("none.png"),
+       file + here + "none.png: there is no such file (check the name; it counts"},
       {map_of("zero.csv"), file + here + "zero.csv has no number above 0 ("},
       {map_of("negative.csv"), file + here + "negative.csv, line 2: -4 is negative"},
       {map_of("ragged.csv"), file + here + "ragged.csv, line 2 has 1 numbers"},
       {map_of("wide.png"), file + here + "wide.png has 100000 columns and 1 rows"},
-      {map_of("good.tif"), "target.maps[0].file: " + here + "good.tif does not end in .png, .csv or .asc"},
+      {map_of("good.tif"),
+       "target.maps[0].file: " + here + "good.tif does not end in .png, .csv or .asc"},
       {map_of(""), "target.maps[0].file: is missing"},
       {map_of("good.csv", "origin_x_m: 0 origin_y_m: 0 size_x_m: 1"),
        "mine.textproto:3:10: target.maps[0].size_y_m: is missing (say where the map lies"},
       {map_of("good.csv", "origin_x_m: 0 origin_y_m: 0 size_x_m: 1 size_y_m: -2"),
        "target.maps[0].size_y_m: -2 is below the limit 0.001"},
-      {map_of("good.csv", std::string(kWhole) + "weight: 0"), "target.maps[0].weight: 0 is not above 0"},
+      {map_of("good.csv", std::string(kWhole) + "weight: 0"),
+       "target.maps[0].weight: 0 is not above 0"},
       {map_of("good.csv", "origin_x_m: 200 origin_y_m: 0 size_x_m: 9 size_y_m: 9"),
-       "mine.textproto:3:10: target.maps[0]: nothing of it is left inside the domain: its extent is x 200 "
-       "to 209 m, y 0 to 9 m, the domain x 0 to 100 m, y 0 to 50 m (move its extent over the domain)"},
-      {map_of("good.asc", "size_x_m: 5"), "target.maps[0].size_x_m: an ESRI ASCII grid states its own extent"},
-      {map_of("good.asc", "first_row: SOUTH"), "target.maps[0].first_row: an ESRI ASCII grid always begins"},
+       "mine.textproto:3:10: target.maps[0]: nothing of it is left inside the domain: its extent "
+       "is x 200 "
+       "to 209 m, y 0 to 9 m, the domain x 0 to 100 m, y 0 to 50 m (move its extent over the "
+       "domain)"},
+      {map_of("good.asc", "size_x_m: 5"),
+       "target.maps[0].size_x_m: an ESRI ASCII grid states its own extent"},
+      {map_of("good.asc", "first_row: SOUTH"),
+       "target.maps[0].first_row: an ESRI ASCII grid always begins"},
   };
   for (const auto& [target, expected] : mistakes) {
     const std::string said = said_of(target);
@@ -208,7 +230,8 @@ TEST(PolygonProblems, AreOneEachAtTheirField) {
        "f:3:30: target.regions[0].polygon.vertices[0].y_m: is missing"},
       {"regions { polygon { " + triangle + " holes { vertices { x_m: 1 y_m: 1 } } } }",
        "target.regions[0].polygon.holes[0]: 1 vertices enclose nothing"},
-      {"regions { weight: -1 polygon { " + triangle + " } }", "target.regions[0].weight: -1 is not above 0"},
+      {"regions { weight: -1 polygon { " + triangle + " } }",
+       "target.regions[0].weight: -1 is not above 0"},
       {"uniform_weight: 1 keep_outs { " + triangle + " vertices { x_m: 10 y_m: 10 } }",
        "f:3:28: target.keep_outs[0]: vertices[3] and vertices[0] are the same (leave out the last"},
       {"uniform_weight: 1 keep_outs { vertices { x_m: 0 y_m: 0 } vertices { x_m: 9 y_m: 9 } "
@@ -218,8 +241,9 @@ TEST(PolygonProblems, AreOneEachAtTheirField) {
       {"uniform_weight: 1 keep_outs { vertices { x_m: -1 y_m: -1 } vertices { x_m: 300 y_m: -1 } "
        "vertices { x_m: -1 y_m: 300 } }",
        "target: only 0 of its weight is inside the domain and outside the keep-outs"},
-      {"uniform_weight: 1 regions { polygon { " + triangle + " } } keep_outs { vertices { x_m: 5 y_m: 5 } "
-       "vertices { x_m: 25 y_m: 5 } vertices { x_m: 25 y_m: 45 } vertices { x_m: 5 y_m: 45 } }",
+      {"uniform_weight: 1 regions { polygon { " + triangle +
+           " } } keep_outs { vertices { x_m: 5 y_m: 5 } "
+           "vertices { x_m: 25 y_m: 5 } vertices { x_m: 25 y_m: 45 } vertices { x_m: 5 y_m: 45 } }",
        "target.regions[0]: nothing of it is left inside the domain and outside the keep-outs"},
   };
   for (const auto& [target, expected] : mistakes) {
@@ -236,20 +260,26 @@ TEST(PolygonProblems, LimitsOfCountsAreNamed) {
     return joined(problems_of(small_with("uniform_weight: 1", target)));
   };
   const std::string triangle = kTriangle;
-  EXPECT_TRUE(has(said("regions { polygon { " + triangle + " } } ", 65), "65 regions are above the limit 64"));
-  EXPECT_TRUE(has(said("keep_outs { " + triangle + " } ", 65), "65 keep-outs are above the limit 64"));
+  EXPECT_TRUE(has(said("regions { polygon { " + triangle + " } } ", 65),
+                  "65 regions are above the limit 64"));
+  EXPECT_TRUE(
+      has(said("keep_outs { " + triangle + " } ", 65), "65 keep-outs are above the limit 64"));
   EXPECT_TRUE(has(said("maps { file: \"a.asc\" } ", 17), "17 maps are above the limit 16"));
   std::string vertices;
   for (int i = 0; i < 4097; ++i) vertices += "vertices { x_m: 1 y_m: 1 } ";
-  EXPECT_TRUE(has(said("keep_outs { " + vertices + " } ", 1), "4097 vertices are above the limit 4096"));
+  EXPECT_TRUE(
+      has(said("keep_outs { " + vertices + " } ", 1), "4097 vertices are above the limit 4096"));
 }
 
 TEST(PolygonTarget, PrintsWhatReadsBack) {
   const std::string triangle = kTriangle;
   const Scenario scenario = good(small_with(
-      "uniform_weight: 1", "uniform_weight: 1 keep_outs { " + triangle + " } regions { weight: 2 polygon { "
-      "vertices { x_m: 5 y_m: 5 } vertices { x_m: 90 y_m: 5 } vertices { x_m: 50 y_m: 45 } "
-      "holes { vertices { x_m: 45 y_m: 10 } vertices { x_m: 55 y_m: 10 } vertices { x_m: 50 y_m: 20 } } } }"));
+      "uniform_weight: 1",
+      "uniform_weight: 1 keep_outs { " + triangle +
+          " } regions { weight: 2 polygon { "
+          "vertices { x_m: 5 y_m: 5 } vertices { x_m: 90 y_m: 5 } vertices { x_m: 50 y_m: 45 } "
+          "holes { vertices { x_m: 45 y_m: 10 } vertices { x_m: 55 y_m: 10 } vertices { x_m: 50 "
+          "y_m: 20 } } } }"));
   EXPECT_EQ(plan_of(good(scenario.print())), plan_of(scenario));
   EXPECT_TRUE(has(scenario.print(), "vertices { x_m: 45 y_m: 10 }\n"));
 }

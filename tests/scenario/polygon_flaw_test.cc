@@ -37,7 +37,8 @@ TEST(Polygons, ThatAreSoundAreLetThrough) {
 TEST(Polygons, WithTooFewOrRepeatedVerticesAreNamed) {
   EXPECT_EQ(said_of({{}, {}}), "-1: 0 vertices enclose nothing");
   EXPECT_EQ(said_of({{{0, 0}, {1, 1}}, {}}), "-1: 2 vertices enclose nothing");
-  EXPECT_EQ(said_of({{{0, 0}, {4, 0}, {4, 0}, {0, 4}}, {}}), "-1: vertices[1] and vertices[2] are the same");
+  EXPECT_EQ(said_of({{{0, 0}, {4, 0}, {4, 0}, {0, 4}}, {}}),
+            "-1: vertices[1] and vertices[2] are the same");
   EXPECT_EQ(said_of({box(0, 0, 10), {{{1, 1}, {2, 2}}}}), "0: 2 vertices enclose nothing");
   const auto closed = flaw_of({{{0, 0}, {4, 0}, {0, 4}, {0, 0}}, {}}, 1);
   ASSERT_TRUE(closed);
@@ -55,8 +56,10 @@ TEST(Polygons, ThatCrossOrTouchThemselvesAreNamed) {
 }
 
 TEST(Polygons, WithHolesInTheWrongPlacesAreNamed) {
-  EXPECT_EQ(said_of({box(0, 0, 10), {box(1, 1, 2), box(20, 20, 2)}}), "1: the hole is outside the polygon");
-  EXPECT_EQ(said_of({box(0, 0, 10), {box(1, 1, 6), box(2, 2, 2)}}), "1: the hole is inside holes[0]");
+  EXPECT_EQ(said_of({box(0, 0, 10), {box(1, 1, 2), box(20, 20, 2)}}),
+            "1: the hole is outside the polygon");
+  EXPECT_EQ(said_of({box(0, 0, 10), {box(1, 1, 6), box(2, 2, 2)}}),
+            "1: the hole is inside holes[0]");
   EXPECT_NE(said_of({box(0, 0, 10), {box(8, 8, 4)}}), "");
   EXPECT_NE(said_of({box(0, 0, 10), {box(0, 1, 4)}}), "");  // touches the outline
   EXPECT_NE(said_of({box(0, 0, 10), {box(1, 1, 3), box(3, 3, 3)}}), "");

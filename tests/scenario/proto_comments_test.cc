@@ -55,10 +55,10 @@ bool says(const std::string& comment, double value) {
 /// prevents overflow.
 bool limits_stand_elsewhere(const std::string& name) {
   return name == "Gaussian.sigma_m" || name.starts_with("Covariance.") ||
-         name.starts_with("Start.") || name.starts_with("Vertex.") || name.starts_with("Domain.origin_") ||
-         name == "Law.noise_ceiling" || name == "World.disturbance_intensity" ||
-         name == "Law.contraction_gain_per_s" || name == "Agents.random_count" ||
-         name == "Agents.quorum";
+         name.starts_with("Start.") || name.starts_with("Vertex.") ||
+         name.starts_with("Domain.origin_") || name == "Law.noise_ceiling" ||
+         name == "World.disturbance_intensity" || name == "Law.contraction_gain_per_s" ||
+         name == "Agents.random_count" || name == "Agents.quorum";
 }
 
 bool says_limits(const std::string& comment, const Range& range) {
@@ -110,7 +110,8 @@ TEST(ProtoComments, NameTheDefaultsOfTheTable) {
   each_number([&](const std::string& name, const FieldRule& rule) {
     if (rule.absence != Absence::kDefaulted) return;
     EXPECT_TRUE(says_default(comments.at(name), rule.default_value))
-        << name << " has the default " << rule.default_value << ", its comment:" << comments.at(name);
+        << name << " has the default " << rule.default_value
+        << ", its comment:" << comments.at(name);
   });
 }
 

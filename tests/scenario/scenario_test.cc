@@ -73,7 +73,9 @@ TEST(Defaults, OfALawThatDoesNotLookAheadStayWhatTheyWere) {
         std::pair{"regularization: ABSOLUTE", 0.0}}) {
     SCOPED_TRACE(law);
     const ControlLaw got =
-        good(small_with("law { u_max_mps: 5 }", std::string("law { u_max_mps: 5 ") + law + " }")).mission().law;
+        good(small_with("law { u_max_mps: 5 }", std::string("law { u_max_mps: 5 ") + law + " }"))
+            .mission()
+            .law;
     EXPECT_EQ(got.anticipation, 0);
     EXPECT_EQ(got.epsilon, epsilon);
     EXPECT_FALSE(got.paired_pushes);
@@ -163,8 +165,7 @@ TEST(Reading, TargetAndItsCoefficientsBelongTogether) {
   const Scenario scenario = good(small_with(
       "uniform_weight: 1",
       "gaussians { mean_x_m: 20 mean_y_m: 30 covariance { xx_m2: 25 yy_m2: 16 xy_m2: -4 } }"));
-  const TargetDensity target{
-      {{1, {20, 30}, (Eigen::Matrix2d() << 25, -4, -4, 16).finished()}}, 0};
+  const TargetDensity target{{{1, {20, 30}, (Eigen::Matrix2d() << 25, -4, -4, 16).finished()}}, 0};
   const Mission& mission = scenario.mission();
   EXPECT_EQ(
       mission.target_coefficients,

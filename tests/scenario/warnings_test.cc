@@ -67,11 +67,14 @@ TEST(Warnings, OfCoarseStepsForAgentsThatLookAhead) {
   };
   EXPECT_EQ(warnings_of(stepping("0.5", "")), "");
   EXPECT_EQ(warnings_of(stepping("0.51", "anticipation: 0")), "");
-  EXPECT_EQ(warnings_of(stepping("0.51", "perturbation: CONSTANT")), "") << "it does not look ahead";
-  EXPECT_EQ(warnings_of(stepping("0.51", "")),
-            "small.textproto:5:8: time.dt_s: 0.51 is coarse for agents that look ahead: one step at "
-            "u_max_mps is longer than 5 % of the shorter side, and in the long run a uniform target may be "
-            "covered worse than without looking ahead (write at most 0.5, or law.anticipation: 0)\n");
+  EXPECT_EQ(warnings_of(stepping("0.51", "perturbation: CONSTANT")), "")
+      << "it does not look ahead";
+  EXPECT_EQ(
+      warnings_of(stepping("0.51", "")),
+      "small.textproto:5:8: time.dt_s: 0.51 is coarse for agents that look ahead: one step at "
+      "u_max_mps is longer than 5 % of the shorter side, and in the long run a uniform target may "
+      "be "
+      "covered worse than without looking ahead (write at most 0.5, or law.anticipation: 0)\n");
 }
 
 TEST(Warnings, AreOfNoWeightForAPlan) {

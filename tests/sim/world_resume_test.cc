@@ -14,7 +14,8 @@ namespace {
 
 using namespace test;
 
-// ---- lockstep, with real agents ------------------------------------------------------------------
+// ---- lockstep, with real agents
+// ------------------------------------------------------------------
 
 /// Which of three agents received the tick at which the world died; none of their answers reached
 /// it.
@@ -134,7 +135,8 @@ TEST_P(WorldRestarted, AgainAndAgainChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Disturbance, WorldRestarted, ::testing::Values(0.0, 3.0),
                          [](const auto& of) { return of.param > 0 ? "On" : "Off"; });
 
-// ---- what the team's answers mean ----------------------------------------------------------------
+// ---- what the team's answers mean
+// ----------------------------------------------------------------
 
 /// One of an agent's two answers to the question.
 Command command_from(AgentId id, Tick tick, const Eigen::Vector3d& x_m,
@@ -203,7 +205,9 @@ TEST(WorldAsks, InLockstepUntilEverybodyHasAnswered) {
 
 TEST(WorldAsks, WithTheNumberOfTheFirstThatHasNotAnswered) {
   World world = asking_world(small_mission(3));
-  const auto asked_for = [&](Instant now) { return only<Hello>(advance(world, now)).at(0).requested_id; };
+  const auto asked_for = [&](Instant now) {
+    return only<Hello>(advance(world, now)).at(0).requested_id;
+  };
   EXPECT_EQ(asked_for(at(100ms)), 0);
   nobody_has_moved(world, 1, at(100ms));
   EXPECT_EQ(asked_for(at(200ms)), 1);
@@ -272,7 +276,8 @@ TEST(WorldAsks, NobodyWhoAnswersSomebodyElse) {
       give(world, recording, at(0s));
     }
   }
-  EXPECT_TRUE(states_after(world, at(1ms)).empty()) << "what was said before does not say where it is";
+  EXPECT_TRUE(states_after(world, at(1ms)).empty())
+      << "what was said before does not say where it is";
   for (const Tick tick : {8, 9})
     give(world, command_from(0, tick, {301, 401, 0}, {0, 1, 0}), at(1s));
   EXPECT_EQ(state_after(world, at(1s)).header.tick, 9);
@@ -304,7 +309,8 @@ TEST(WorldAsks, NotTheRosterForATickBeyondThePlan) {
   EXPECT_EQ(world.tick(), mission.timing.tick_count);
 }
 
-// ---- real time -----------------------------------------------------------------------------------
+// ---- real time
+// -----------------------------------------------------------------------------------
 
 TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
   for (const double hold_s : {10.0, 0.1}) {
@@ -326,7 +332,8 @@ TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
   }
 }
 
-// ---- the mission ---------------------------------------------------------------------------------
+// ---- the mission
+// ---------------------------------------------------------------------------------
 
 TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
   World world = world_of(small_mission(1));
@@ -360,7 +367,8 @@ TEST(WorldWithoutAMission, AsksNoMoreOnceItWaitsForTheStart) {
   EXPECT_TRUE(advance(world, at(20s)).empty());
 }
 
-// ---- the record ----------------------------------------------------------------------------------
+// ---- the record
+// ----------------------------------------------------------------------------------
 
 TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   Mission mission = small_mission(1);

@@ -2,11 +2,11 @@
 // The jar for lcm-spy: types, the plan's reader, and pictures of given messages.
 #include <cmath>
 
-#include "target/target.h"
 #include "lcm_types.h"
 #include "scenario/scenario.h"
-#include "tests/spy/spy_desk.h"
+#include "target/target.h"
 #include "team/plan.h"
+#include "tests/spy/spy_desk.h"
 
 namespace ergocast {
 namespace {

@@ -36,17 +36,20 @@ std::string name_of(const FieldDescriptor& field) {
 
 void draw_fields(Block& block, RandomStream& random);
 
-// ---- values --------------------------------------------------------------------------------------
+// ---- values
+// --------------------------------------------------------------------------------------
 
 void set(Block& block, const FieldDescriptor& field, double value) {
   const auto& fields = *block.GetReflection();
   switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE: return fields.SetDouble(&block, &field, value);
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return fields.SetDouble(&block, &field, value);
     case FieldDescriptor::CPPTYPE_INT32:
       return fields.SetInt32(&block, &field, static_cast<std::int32_t>(std::lround(value)));
     case FieldDescriptor::CPPTYPE_UINT64:
       return fields.SetUInt64(&block, &field, static_cast<std::uint64_t>(value));
-    default: throw std::logic_error(name_of(field) + " is no number");
+    default:
+      throw std::logic_error(name_of(field) + " is no number");
   }
 }
 
@@ -72,7 +75,8 @@ Draw either(double neutral, Draw other) {
 Draw word(double first) {
   return [=](Block& block, const FieldDescriptor& field, RandomStream& random) {
     const auto& type = *field.enum_type();
-    const int any = static_cast<int>(random.word() % static_cast<std::uint64_t>(type.value_count()));
+    const int any =
+        static_cast<int>(random.word() % static_cast<std::uint64_t>(type.value_count()));
     block.GetReflection()->SetEnum(&block, &field, type.value(random.uniform() < first ? 0 : any));
   };
 }
@@ -207,7 +211,8 @@ void draw_fields(Block& block, RandomStream& random) {
   }
 }
 
-// ---- what depends on more than one field ---------------------------------------------------------
+// ---- what depends on more than one field
+// ---------------------------------------------------------
 
 /// Around its first vertex.
 template <class Vertices>

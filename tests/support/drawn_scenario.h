@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random scenarios that use every field of scenario.proto, for tests that must hold for all of them.
+// Random scenarios that use every field of scenario.proto, for tests that must hold for all of
+// them.
 #pragma once
 
 #include <cstdint>

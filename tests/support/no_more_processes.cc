@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Preloaded into a program, makes the system refuse new processes while the file
 // $ERGOCAST_TEST_NO_MORE_PROCESSES exists.
-#include <sys/types.h>
-
 #include <dlfcn.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 #include <cerrno>

@@ -75,7 +75,8 @@ std::vector<std::string> processes_in(const std::set<std::string>& networks) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator("/proc", error)) {
     const std::string pid = entry.path().filename();
-    if (pid.find_first_not_of("0123456789") != pid.npos || pid == std::to_string(getpid())) continue;
+    if (pid.find_first_not_of("0123456789") != pid.npos || pid == std::to_string(getpid()))
+      continue;
     if (networks.count(network_of(entry.path())) == 0) continue;
     const auto [state, name] = state_of(entry.path());
     if (state != 'Z' && state != 'X') found.push_back(name + " (pid " + pid + ")");
@@ -83,6 +84,8 @@ std::vector<std::string> processes_in(const std::set<std::string>& networks) {
   return found;
 }
 
-std::vector<std::string> processes_on_own_host() { return processes_in({network_of("/proc/self")}); }
+std::vector<std::string> processes_on_own_host() {
+  return processes_in({network_of("/proc/self")});
+}
 
 }  // namespace ergocast::test

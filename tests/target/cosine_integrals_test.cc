@@ -32,8 +32,8 @@ TEST(CosineIntegrals, AlongAnIntervalAreThePrimitivesDifferences) {
 }
 
 TEST(CosineIntegrals, OfAShortIntervalKeepAllTheirDigits) {
-  // Over so little, cos is its middle's value to (a·length)²/24 < 1e-18; a difference of sines would
-  // have six digits left.
+  // Over so little, cos is its middle's value to (a·length)²/24 < 1e-18; a difference of sines
+  // would have six digits left.
   const double low = 7, length = 1e-9;
   const Eigen::VectorXd integrals = cosine_integrals(low, low + length, 20, 8);
   const double exact_length = (low + length) - low;
@@ -47,8 +47,8 @@ TEST(PolygonIntegrals, AreThoseOfQuadrature) {
   const Ring rings[] = {
       {{2, 1}, {18, 3}, {11, 10}},
       {{0, 0}, {20, 0}, {20, 12}, {0, 12}},
-      {{1, 1}, {12, 1}, {12, 11}, {9, 11}, {9, 4}, {1, 4}},        // an L
-      {{1, 6}, {10, 5}, {19, 6}, {10, 5.5}},                       // a dart, not convex
+      {{1, 1}, {12, 1}, {12, 11}, {9, 11}, {9, 4}, {1, 4}},  // an L
+      {{1, 6}, {10, 5}, {19, 6}, {10, 5.5}},                 // a dart, not convex
       {{3, 3}, {3 + 12.0 / 7 * 4, 3 + 4}, {3, 8}},
   };
   for (const Ring& ring : rings) {
@@ -63,7 +63,8 @@ TEST(PolygonIntegrals, HaveNoPoleWhereAnEdgeFollowsAWave) {
   const double slope = kDomain.size_m.y() / kDomain.size_m.x();
   for (const double off : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e-2}) {
     const Ring ring{{1, 1}, {11, 1}, {11, 1 + 10 * slope * (1 + off)}};
-    EXPECT_LE(largest_difference(closed_form(ring), over_ring(ring, one, kDomain, kBasis, 50)), kTolerance)
+    EXPECT_LE(largest_difference(closed_form(ring), over_ring(ring, one, kDomain, kBasis, 50)),
+              kTolerance)
         << off;
   }
 }

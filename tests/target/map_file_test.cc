@@ -74,7 +74,8 @@ class Maps : public ::testing::Test {
 
 int count_up(int column, int row, int) { return 10 * row + column; }
 
-// ---- PNG -----------------------------------------------------------------------------------------
+// ---- PNG
+// -----------------------------------------------------------------------------------------
 
 TEST_F(Maps, PngOfEightBitsHoldsItsNumbersFromTheTop) {
   write_png(folder_ / "a.png", 3, 2, {}, count_up);
@@ -116,8 +117,9 @@ TEST_F(Maps, PngOfAnotherKindIsRefused) {
 
 TEST_F(Maps, PngThatIsTooLargeIsRefusedByItsHeader) {
   write_png(folder_ / "wide.png", 100000, 1, {}, count_up);
-  expect_said(folder_ / "wide.png",
-              " has 100000 columns and 1 rows; the limits are 1 and 8192 (scale it to at most 8192");
+  expect_said(
+      folder_ / "wide.png",
+      " has 100000 columns and 1 rows; the limits are 1 and 8192 (scale it to at most 8192");
   write_png(folder_ / "high.png", 1, 8193, {}, count_up);
   expect_said(folder_ / "high.png", " has 1 columns and 8193 rows");
   write_png(folder_ / "largest.png", 8192, 1, {}, count_up);
@@ -141,17 +143,20 @@ TEST_F(Maps, PngCutShortOrChangedAnywhereIsRefused) {
   expect_said(written("short.png", "abc"), " is not a PNG");
 }
 
-// ---- CSV -----------------------------------------------------------------------------------------
+// ---- CSV
+// -----------------------------------------------------------------------------------------
 
 TEST_F(Maps, CsvIsReadLineByLine) {
-  EXPECT_EQ(rows_of(written("a.csv", "0,1.5,+2e3\n 3 ,\t4,5\r\n")), (Rows{{0, 1.5, 2000}, {3, 4, 5}}));
+  EXPECT_EQ(rows_of(written("a.csv", "0,1.5,+2e3\n 3 ,\t4,5\r\n")),
+            (Rows{{0, 1.5, 2000}, {3, 4, 5}}));
   EXPECT_EQ(rows_of(written("a.csv", "1,2\n\n3,4")), (Rows{{1, 2}, {3, 4}}));
   EXPECT_EQ(rows_of(written("a.csv", "1,,3\n,5,\n")), (Rows{{1, 0, 3}, {0, 5, 0}}));
   EXPECT_EQ(rows_of(written("a.csv", "7")), (Rows{{7}}));
 }
 
 TEST_F(Maps, CsvThatIsNoneIsRefusedWithItsLine) {
-  expect_said(written("a.csv", "1,2\n\n3,4,5\n"), ", line 3 has 3 numbers, the lines before have 2");
+  expect_said(written("a.csv", "1,2\n\n3,4,5\n"),
+              ", line 3 has 3 numbers, the lines before have 2");
   expect_said(written("a.csv", "1,2\n3\n"), ", line 2 has 1 numbers");
   expect_said(written("a.csv", "1,2\n3,-4\n"), ", line 2: -4 is negative");
   expect_said(written("a.csv", "1,nan\n"), ", line 1: nan is not a finite number");
@@ -172,7 +177,8 @@ TEST_F(Maps, CsvOfAGridReadsBackFromTheNorth) {
   EXPECT_EQ(csv_text(grid), "3,6.25\n2,5\n1,4\n");
 }
 
-// ---- ESRI ASCII grid -----------------------------------------------------------------------------
+// ---- ESRI ASCII grid
+// -----------------------------------------------------------------------------
 
 const std::string kHeader = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner -50\ncellsize 10\n";
 
@@ -184,28 +190,34 @@ TEST_F(Maps, AsciiGridStatesItsExtent) {
 }
 
 TEST_F(Maps, AsciiGridsCentreIsHalfACellInside) {
-  EXPECT_EQ(rows_of(written("a.asc", "NCOLS 1\nNROWS 1\nXLLCENTER 105\nYLLCENTER -45\nCELLSIZE 10\n7")),
-            (Rows{{7}}));
+  EXPECT_EQ(
+      rows_of(written("a.asc", "NCOLS 1\nNROWS 1\nXLLCENTER 105\nYLLCENTER -45\nCELLSIZE 10\n7")),
+      (Rows{{7}}));
   EXPECT_EQ(extent_->origin_m, Eigen::Vector2d(100, -50));
 }
 
 TEST_F(Maps, AsciiGridsMissingDataAreZeroAndItsLineBreaksMeanNothing) {
   EXPECT_EQ(rows_of(written("a.asc", kHeader + "NODATA_value -1\n1 -1 3 4\n5\n-1.0")),
             (Rows{{1, 0, 3}, {4, 5, 0}}));
-  EXPECT_EQ(rows_of(written("a.asc", kHeader + "-9999 2 3\r\n4 5 6\r\n")), (Rows{{0, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(rows_of(written("a.asc", kHeader + "-9999 2 3\r\n4 5 6\r\n")),
+            (Rows{{0, 2, 3}, {4, 5, 6}}));
   EXPECT_EQ(rows_of(written("a.asc", kHeader + "NODATA_value nan\n1 nan 3 4 5 6")),
             (Rows{{1, 0, 3}, {4, 5, 6}}));
 }
 
 TEST_F(Maps, AsciiGridThatIsNoneIsRefused) {
-  expect_said(written("a.asc", kHeader + "1 2 3\n4 5\n"), " ends before its last cell: 2 rows of 3");
+  expect_said(written("a.asc", kHeader + "1 2 3\n4 5\n"),
+              " ends before its last cell: 2 rows of 3");
   expect_said(written("a.asc", kHeader + "1 2 3\n4 5 6\n7\n"), " has more numbers than ncols");
   expect_said(written("a.asc", kHeader + "1 2 3\n4 -5 6\n"), ", line 7: -5 is negative");
   expect_said(written("a.asc", kHeader + "1 2 3\n4 x 6\n"), ", line 7: x is not a number");
-  expect_said(written("a.asc", kHeader + "NODATA_value -1\n1 nan 3\n4 5 6\n"), "nan is not a finite");
-  expect_said(written("a.asc", "ncols 3\nnrows 2\ncellsize 1\n1"), ": its header lacks xllcorner or xll");
+  expect_said(written("a.asc", kHeader + "NODATA_value -1\n1 nan 3\n4 5 6\n"),
+              "nan is not a finite");
+  expect_said(written("a.asc", "ncols 3\nnrows 2\ncellsize 1\n1"),
+              ": its header lacks xllcorner or xll");
   expect_said(written("a.asc", "1 2 3"), ": its header lacks ncols");
-  expect_said(written("a.asc", kHeader + "xllcenter 4\n"), ": its header lacks xllcorner or xllcenter");
+  expect_said(written("a.asc", kHeader + "xllcenter 4\n"),
+              ": its header lacks xllcorner or xllcenter");
   expect_said(written("a.asc", kHeader + "ncols 3\n"), ", line 6: ncols is there twice");
   expect_said(written("a.asc", "ncols x\n"), ", line 1: ncols has no number");
   expect_said(written("a.asc", "ncols 3\nrows 2\n"), ", line 2: no key of an ESRI ASCII grid");
@@ -221,7 +233,8 @@ TEST_F(Maps, AsciiGridThatIsNoneIsRefused) {
   expect_said(written("a.asc", "\x89PNG\r\n\x1a\n"), ", line 1: no key");
 }
 
-// ---- any -----------------------------------------------------------------------------------------
+// ---- any
+// -----------------------------------------------------------------------------------------
 
 TEST_F(Maps, ThatAreNoFilesAreNamed) {
   expect_said(folder_ / "none.csv", ": there is no such file");

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "target/raster_integral.h"
 #include "target/map_file.h"
+#include "target/raster_integral.h"
 #include "tests/support/grey_png.h"
 
 #ifdef __has_feature  // clang's way to say what GCC says with __SANITIZE_ADDRESS__

@@ -63,7 +63,8 @@ TEST(Regions, OfTheWholeDomainAreTheUniformTarget) {
   PlaneCoefficients expected = PlaneCoefficients::Zero(12, 9);
   expected(0, 0) = 1;
   EXPECT_LE(largest_difference(target_coefficients({{}, 0, {{1, domain}}}, kDomain, kBasis).values,
-                               expected), 1e-14);
+                               expected),
+            1e-14);
 }
 
 // Inclusion and exclusion by hand: the two share a box of 100 × 100.
@@ -72,7 +73,8 @@ TEST(KeepOuts, ThatOverlapTakeAwayTheirUnion) {
   const TargetDensity target{{}, 1, {}, {{first, {}}, {second, {}}}};
   PlaneCoefficients expected = PlaneCoefficients::Zero(12, 9);
   expected(0, 0) = 2000 * 1200;
-  expected += area_reference(box(400, 500, 100, 100)) - area_reference(first) - area_reference(second);
+  expected +=
+      area_reference(box(400, 500, 100, 100)) - area_reference(first) - area_reference(second);
   const TargetCoefficients ours = target_coefficients(target, kDomain, kBasis);
   EXPECT_LE(largest_difference(ours.values, expected / expected(0, 0)), 1e-12);
   EXPECT_LE(ours.error_bound, 1e-11);
@@ -85,7 +87,8 @@ TEST(KeepOuts, CutRegionsToo) {
   const Ring inside{{450, 100}, {550, 100}, {800, 350}, {200, 350}};
   const PlaneCoefficients expected = area_reference(region) - area_reference(inside);
   EXPECT_LE(largest_difference(target_coefficients(target, kDomain, kBasis).values,
-                               expected / expected(0, 0)), 1e-12);
+                               expected / expected(0, 0)),
+            1e-12);
 }
 
 // What a triangle takes from a bell, by quadrature on 60 × 60 panels of five nodes each.
@@ -98,7 +101,8 @@ TEST(KeepOuts, OverGaussiansAreWithinTheStatedError) {
     const PlaneCoefficients taken = over_ring(
         triangle, [&](const Eigen::Vector2d& x_m) { return density_unscaled(alone, kDomain, x_m); },
         kDomain, kBasis, 60);
-    const TargetCoefficients ours = target_integrals({{g}, 0, {}, {{triangle, {}}}}, kDomain, kBasis);
+    const TargetCoefficients ours =
+        target_integrals({{g}, 0, {}, {{triangle, {}}}}, kDomain, kBasis);
     EXPECT_LE(largest_difference(ours.values, whole - taken), ours.error_bound + 1e-12);
     EXPECT_LE(ours.error_bound, 1e-11);
     EXPECT_LT(ours.values(0, 0), 0.9 * whole(0, 0));
@@ -110,7 +114,8 @@ TEST(KeepOuts, ThatTouchNothingChangeNothing) {
   TargetDensity with = without;
   with.keep_outs = {{box(5000, 5000, 10, 10), {}}};
   EXPECT_LE(largest_difference(target_coefficients(with, kDomain, kBasis).values,
-                               target_coefficients(without, kDomain, kBasis).values), 1e-13);
+                               target_coefficients(without, kDomain, kBasis).values),
+            1e-13);
 }
 
 TEST(KeepOuts, OverEverythingLeaveNoMass) {
@@ -119,8 +124,10 @@ TEST(KeepOuts, OverEverythingLeaveNoMass) {
 }
 
 TEST(Density, IsZeroInKeepOutsAndUniformInRegions) {
-  const TargetDensity target{
-      {}, 1.2, {{2, {box(0, 100, 100, 100), {}}}}, {{box(50, 150, 100, 100), {box(60, 160, 10, 10)}}}};
+  const TargetDensity target{{},
+                             1.2,
+                             {{2, {box(0, 100, 100, 100), {}}}},
+                             {{box(50, 150, 100, 100), {box(60, 160, 10, 10)}}}};
   const double floor = 1.2 / (2000 * 1200), inside = 2.0 / 10000;
   EXPECT_DOUBLE_EQ(density_unscaled(target, kDomain, {1000, 600}), floor);
   EXPECT_DOUBLE_EQ(density_unscaled(target, kDomain, {10, 110}), floor + inside);

@@ -34,7 +34,8 @@ TargetCoefficients shares_of(const RasterGrid& grid, const std::vector<Polygon>&
 Ring cell_ring(const RasterGrid& grid, int column, int row) {
   const Eigen::Vector2d cell(grid.extent.size_m.x() / grid.columns,
                              grid.extent.size_m.y() / grid.rows);
-  const Eigen::Vector2d low = grid.extent.origin_m + cell.cwiseProduct(Eigen::Vector2d(column, row));
+  const Eigen::Vector2d low =
+      grid.extent.origin_m + cell.cwiseProduct(Eigen::Vector2d(column, row));
   return {low, {low.x() + cell.x(), low.y()}, low + cell, {low.x(), low.y() + cell.y()}};
 }
 
@@ -87,8 +88,10 @@ TEST(RasterIntegral, ACellIsWhereItsCentreIs) {
   EXPECT_NEAR(mu(0, 0), 1, 1e-15);
   EXPECT_NEAR(mu(1, 0), std::cos(x) * std::sin(half_x) / half_x, 1e-15);
   EXPECT_NEAR(mu(0, 1), std::cos(y) * std::sin(half_y) / half_y, 1e-15);
-  EXPECT_NEAR(mu(2, 1), std::cos(2 * x) * std::sin(2 * half_x) / (2 * half_x) * std::cos(y) *
-                            std::sin(half_y) / half_y, 1e-15);
+  EXPECT_NEAR(mu(2, 1),
+              std::cos(2 * x) * std::sin(2 * half_x) / (2 * half_x) * std::cos(y) *
+                  std::sin(half_y) / half_y,
+              1e-15);
 }
 
 TEST(RasterIntegral, OfAMirroredMapHasNoOddModes) {
@@ -145,8 +148,9 @@ std::vector<Polygon> keep_outs() {
 
 // Each cell as a region of its own goes another way: cut as a polygon, not along its row.
 TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
-  for (const RasterGrid& grid : {RasterGrid{kDomain, 10, 6}, RasterGrid{{{-60, -20}, {270, 160}}, 31, 23},
-                                 RasterGrid{{{0, 20}, {100, 70}}, 2, 2}}) {
+  for (const RasterGrid& grid :
+       {RasterGrid{kDomain, 10, 6}, RasterGrid{{{-60, -20}, {270, 160}}, 31, 23},
+        RasterGrid{{{0, 20}, {100, 70}}, 2, 2}}) {
     TargetDensity cells;
     cells.keep_outs = keep_outs();
     double whole = 0;

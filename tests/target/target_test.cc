@@ -35,9 +35,11 @@ Gaussian bell(double weight, double x_m, double y_m, double deviation_x_m, doubl
   return g;
 }
 
-// ---- references ----------------------------------------------------------------------------------
+// ---- references
+// ----------------------------------------------------------------------------------
 
-/// ∫ cos(mode·π(x − low)/length) N(x; mean, deviation²) dx over [low, low + length]: Romberg's rule.
+/// ∫ cos(mode·π(x − low)/length) N(x; mean, deviation²) dx over [low, low + length]: Romberg's
+/// rule.
 double axis_integral(int mode, double mean, double deviation, double low, double length) {
   const long double a = std::max<long double>(low, mean - 13.0L * deviation);
   const long double b = std::min<long double>(low + length, mean + 13.0L * deviation);
@@ -122,10 +124,12 @@ PlaneCoefficients brute_force(const TargetDensity& target, const Basis& basis, i
   Eigen::MatrixXd cos_x(basis.modes_x, x.size()), cos_y(basis.modes_y, y.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     for (int m = 0; m < basis.modes_x; ++m) {
-      cos_x(m, i) = std::cos(m * std::numbers::pi * (x[i] - kDomain.origin_m.x()) / kDomain.size_m.x());
+      cos_x(m, i) =
+          std::cos(m * std::numbers::pi * (x[i] - kDomain.origin_m.x()) / kDomain.size_m.x());
     }
     for (int n = 0; n < basis.modes_y; ++n) {
-      cos_y(n, i) = std::cos(n * std::numbers::pi * (y[i] - kDomain.origin_m.y()) / kDomain.size_m.y());
+      cos_y(n, i) =
+          std::cos(n * std::numbers::pi * (y[i] - kDomain.origin_m.y()) / kDomain.size_m.y());
     }
   }
   Eigen::MatrixXd mass(x.size(), y.size());
@@ -141,16 +145,17 @@ double largest_error(const PlaneCoefficients& a, const PlaneCoefficients& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
-// ---- products of two bells -----------------------------------------------------------------------
+// ---- products of two bells
+// -----------------------------------------------------------------------
 
 TEST(TargetCoefficients, OfSeparableBellsAreExact) {
   const Basis basis = basis_of(40, 32);
   const std::vector<TargetDensity> targets = {
-      {{bell(1, 700, 650, 100, 100)}, 0},                                // in the middle
-      {{bell(1, -300, 50, 100, 60)}, 0},                                 // on a corner
-      {{bell(1, 1690, 1240, 150, 300)}, 0},                              // cut by two edges
-      {{bell(1, 200, 300, 4, 2)}, 0},                                    // narrower than any wave
-      {{bell(1, 0, 0, 5000, 8000)}, 0},                                  // nearly flat
+      {{bell(1, 700, 650, 100, 100)}, 0},    // in the middle
+      {{bell(1, -300, 50, 100, 60)}, 0},     // on a corner
+      {{bell(1, 1690, 1240, 150, 300)}, 0},  // cut by two edges
+      {{bell(1, 200, 300, 4, 2)}, 0},        // narrower than any wave
+      {{bell(1, 0, 0, 5000, 8000)}, 0},      // nearly flat
       {{bell(2, 100, 150, 100, 90), bell(0.5, 1500, 1100, 30, 200)}, 0.7},
   };
   for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -181,7 +186,8 @@ TEST(TargetCoefficients, OfAUniformTargetAreZeroButTheFirst) {
 
 TEST(TargetCoefficients, OfAMirroredTargetHaveNoOddModes) {
   // A density sampled at cell corners but transformed as cell centres would be off by half a cell.
-  const TargetDensity mirrored{{bell(1, 700 - 321, 650, 80, 90), bell(1, 700 + 321, 650, 80, 90)}, 0};
+  const TargetDensity mirrored{{bell(1, 700 - 321, 650, 80, 90), bell(1, 700 + 321, 650, 80, 90)},
+                               0};
   const PlaneCoefficients mu = target_coefficients(mirrored, kDomain, basis_of(15, 15)).values;
   for (int m = 0; m < 15; ++m) {
     for (int n = 0; n < 15; ++n) {
@@ -194,9 +200,10 @@ TEST(TargetCoefficients, OfAMirroredTargetHaveNoOddModes) {
 
 TEST(TargetCoefficients, DependOnTheRatiosOfTheWeightsOnly) {
   const auto with_scale = [](double scale) {
-    return target_coefficients({{bell(2 * scale, 100, 150, 100, 90), bell(scale, 900, 700, 50, 60)},
-                                3 * scale},
-                               kDomain, basis_of(8, 8)).values;
+    return target_coefficients(
+               {{bell(2 * scale, 100, 150, 100, 90), bell(scale, 900, 700, 50, 60)}, 3 * scale},
+               kDomain, basis_of(8, 8))
+        .values;
   };
   EXPECT_LE(largest_error(with_scale(1), with_scale(1e6)), 1e-14);
   EXPECT_LE(largest_error(with_scale(1), with_scale(1e-6)), 1e-14);
@@ -214,7 +221,8 @@ TEST(TargetCoefficients, WeighEachBellByItsWeightAndWhatTheDomainLeavesOfIt) {
   EXPECT_GT(largest_error(both, (first + second) / 2), 1e-2);
 }
 
-// ---- correlated bells ----------------------------------------------------------------------------
+// ---- correlated bells
+// ----------------------------------------------------------------------------
 
 TEST(TargetCoefficients, OfACorrelatedBellAreWithinTheirStatedError) {
   const Basis basis = basis_of(15, 15);
@@ -238,8 +246,8 @@ TEST(TargetCoefficients, AHopelesslyNarrowRidgeSaysThatItIsNotExact) {
 
 TEST(TargetCoefficients, OfACorrelatedBellCutByTheEdgesAgreeWithBruteForce) {
   const Basis basis = basis_of(10, 12);
-  const TargetDensity target{{bell(1, -250, 100, 200, 150, 0.7), bell(0.5, 1600, 900, 120, 260, -0.8)},
-                             0.25};
+  const TargetDensity target{
+      {bell(1, -250, 100, 200, 150, 0.7), bell(0.5, 1600, 900, 120, 260, -0.8)}, 0.25};
   const TargetCoefficients ours = target_coefficients(target, kDomain, basis);
   const PlaneCoefficients brute = brute_force(target, basis, 160);
   // Panels of a fifth of the narrowest width: the five-point rule is exact to rounding there.
@@ -250,14 +258,16 @@ TEST(TargetCoefficients, OfACorrelatedBellCutByTheEdgesAgreeWithBruteForce) {
 TEST(TargetCoefficients, OfASlightlyCorrelatedBellAreThoseOfTheSeparableOne) {
   const Basis basis = basis_of(15, 15);
   const auto with = [&](double correlation) {
-    return target_coefficients({{bell(1, 900, 300, 100, 60, correlation)}, 0}, kDomain, basis).values;
+    return target_coefficients({{bell(1, 900, 300, 100, 60, correlation)}, 0}, kDomain, basis)
+        .values;
   };
   // ∂μ/∂(covariance) is at most the product of the highest wave numbers.
   const double slope = 14 * std::numbers::pi / 2000 * 14 * std::numbers::pi / 1200 * 100 * 60;
   EXPECT_LE(largest_error(with(1e-12), with(0)), 1e-12 * slope + 4e-12);
 }
 
-// ---- mass and density ----------------------------------------------------------------------------
+// ---- mass and density
+// ----------------------------------------------------------------------------
 
 TEST(MassInside, IsTheShareThatTheEdgesLeave) {
   EXPECT_NEAR(mass_inside({{bell(1, 700, 650, 50, 50)}, 0}, kDomain), 1, 1e-13);
@@ -269,7 +279,8 @@ TEST(MassInside, IsTheShareThatTheEdgesLeave) {
 }
 
 TEST(Density, IntegratesToTheMassInside) {
-  const TargetDensity target{{bell(1, -250, 100, 200, 150, 0.7), bell(0.5, 1600, 900, 120, 260)}, 0.25};
+  const TargetDensity target{{bell(1, -250, 100, 200, 150, 0.7), bell(0.5, 1600, 900, 120, 260)},
+                             0.25};
   EXPECT_NEAR(brute_force(target, basis_of(1, 1), 100)(0, 0), mass_inside(target, kDomain), 1e-12);
 }
 

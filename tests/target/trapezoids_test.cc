@@ -52,7 +52,8 @@ TEST(FreeArea, LosesWhatKeepOutsShareOnlyOnce) {
 TEST(FreeArea, LosesOnlyWhatIsInside) {
   EXPECT_NEAR(area_of(free_area(kDomain, std::vector<Polygon>{{box(95, -55, 10, 10), {}}})),
               200 - 25, 1e-12);
-  EXPECT_NEAR(area_of(free_area(kDomain, std::vector<Polygon>{{box(0, 0, 10, 10), {}}})), 200, 1e-12);
+  EXPECT_NEAR(area_of(free_area(kDomain, std::vector<Polygon>{{box(0, 0, 10, 10), {}}})), 200,
+              1e-12);
   EXPECT_EQ(area_of(free_area(kDomain, std::vector<Polygon>{{box(90, -60, 40, 40), {}}})), 0);
 }
 
@@ -78,7 +79,8 @@ TEST(FreeArea, OfStarsThatCrossAgreesWithPointsWhereverOneLooks) {
     Ring star;
     for (int i = 0; i < 14; ++i) {
       const double radius = i % 2 == 0 ? 4.1 : 1.3, angle = 0.1 + k + i * std::acos(-1.0) / 7;
-      star.emplace_back(104.3 + 2.7 * k + radius * std::cos(angle), -45.2 + radius * std::sin(angle));
+      star.emplace_back(104.3 + 2.7 * k + radius * std::cos(angle),
+                        -45.2 + radius * std::sin(angle));
     }
     stars.push_back({star, {}});
   }

@@ -100,7 +100,8 @@ TEST(Liveness, WhoIsPresumedAliveWasNotHeard) {
 
 TEST(Liveness, WhoIsPresumedAliveHasAPlaceInAFullTable) {
   Liveness liveness;
-  for (Incarnation life = 1; life <= Liveness::kMostLives; ++life) is_news(liveness, said(0, life, 1));
+  for (Incarnation life = 1; life <= Liveness::kMostLives; ++life)
+    is_news(liveness, said(0, life, 1));
   const Author admitted{3, Liveness::kMostLives + 7};
   liveness.presume_alive(admitted, at(1s));
   EXPECT_EQ(liveness.last_sign(admitted), at(1s));

@@ -27,7 +27,8 @@ MissionPart part_of(std::int64_t revision, int p, int parts = kParts,
   part.roster = {{author_of(mark), 0, -1}};
   const auto place = [&](int i) {
     const auto share = static_cast<std::ptrdiff_t>(announced_plan.size()) / std::max(parts, 1);
-    return announced_plan.begin() + (i == parts ? announced_plan.end() - announced_plan.begin() : share * i);
+    return announced_plan.begin() +
+           (i == parts ? announced_plan.end() - announced_plan.begin() : share * i);
   };
   if (0 <= p && p < parts) part.plan.assign(place(p), place(p + 1));
   return part;
@@ -137,9 +138,9 @@ TEST(MissionFollower, HostileCountsHaveNoEffect) {
   constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
   MissionFollower follower;
   follower.receive(part_of(1, 0, 2));
-  const std::pair<int, int> lies[] = {{0, 0},  {0, -1},    {-1, 2},       {2, 2},        {5, 2},
-                                      {0, kLeast}, {kMost, kMost}, {0, kMost}, {kLeast, 2},
-                                      {0, kMaxPlanParts + 1}};
+  const std::pair<int, int> lies[] = {
+      {0, 0},      {0, -1},        {-1, 2},    {2, 2},      {5, 2},
+      {0, kLeast}, {kMost, kMost}, {0, kMost}, {kLeast, 2}, {0, kMaxPlanParts + 1}};
   for (const auto& [part, parts] : lies) {
     EXPECT_FALSE(follower.receive(part_of(1, part, parts))) << part << " of " << parts;
     EXPECT_FALSE(follower.receive(part_of(2, part, parts))) << part << " of " << parts;
@@ -162,7 +163,8 @@ TEST(MissionFollower, DecodesThePlanOnce) {
   follower.receive(part_of(0, 0, 1));
   ASSERT_TRUE(follower.mission());
   const double* decoded = follower.mission()->target_coefficients.data();
-  for (std::int64_t revision = 1; revision < 5; ++revision) follower.receive(part_of(revision, 0, 1));
+  for (std::int64_t revision = 1; revision < 5; ++revision)
+    follower.receive(part_of(revision, 0, 1));
   EXPECT_EQ(follower.mission()->target_coefficients.data(), decoded) << "the very same";
   EXPECT_EQ(follower.revision(), 4);
 }

@@ -51,7 +51,8 @@ TEST(Participant, EveryRoleHearsTheMissionAndOnlyItsOwnTypes) {
     EXPECT_TRUE(one.knows_mission()) << role;
     const bool all = one.role() == Role::kLogger;
     EXPECT_EQ(accept(one, Digest{{kRun, 1, 1, 1, 0}, 0, {}}).has_value(),
-              all || one.role() == Role::kAgent) << role;
+              all || one.role() == Role::kAgent)
+        << role;
   }
 }
 
@@ -125,8 +126,10 @@ TEST(Participant, AHelloOfAnAgentIsNoSignOfLife) {
     EXPECT_FALSE(coordinator.liveness().last_sign({sender, 7}));
   }
   Participant agent = participant(Role::kAgent);
-  const auto question = accept(agent, Hello{{kRun, kWorld, kWorldLife, 1, -1}, kUnassigned, "", "", -1});
-  EXPECT_TRUE(question && question->fresh) << "it asks what the team knows, and is to be answered once";
+  const auto question =
+      accept(agent, Hello{{kRun, kWorld, kWorldLife, 1, -1}, kUnassigned, "", "", -1});
+  EXPECT_TRUE(question && question->fresh)
+      << "it asks what the team knows, and is to be answered once";
 }
 
 TEST(Participant, WhoWasNotToSpeakYetIsNotSilent) {
@@ -190,7 +193,8 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
   EXPECT_TRUE(agent.silent(kWorld, at(22s)));
 }
 
-// ---- cut off -------------------------------------------------------------------------------------
+// ---- cut off
+// -------------------------------------------------------------------------------------
 
 /// A lockstep mission with a time-out of 5 s, and 30 s for a process that may come back.
 Participant in_mission(Role role, MissionState state = MissionState::kRunning) {
@@ -234,7 +238,8 @@ TEST(Participant, ALoggerThatHearsOnlyARepeatedMissionWaitsAsLong) {
   EXPECT_TRUE(logger.cut_off(3, at(45001ms)));
 }
 
-// ---- what it says --------------------------------------------------------------------------------
+// ---- what it says
+// --------------------------------------------------------------------------------
 
 TEST(Participant, SequencesGrowByOneOnEachBus) {
   Participant agent = participant(Role::kAgent);

@@ -13,8 +13,8 @@
 #include <stdexcept>
 
 #include "core/basis.h"
-#include "core/noise.h"
 #include "core/ideal_team.h"
+#include "core/noise.h"
 #include "report/statistics.h"
 #include "scenario/scenario.h"
 

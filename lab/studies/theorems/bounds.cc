@@ -29,7 +29,9 @@ class Draw {
   double between(double low, double high) {
     return low + (high - low) * uniform_pair(seed_, Purpose::kStart, 0, step_++).x();
   }
-  double decades(double low, double high) { return std::pow(10, between(std::log10(low), std::log10(high))); }
+  double decades(double low, double high) {
+    return std::pow(10, between(std::log10(low), std::log10(high)));
+  }
   int whole(int low, int high) { return std::min(high, static_cast<int>(between(low, high + 1))); }
   Eigen::Vector3d in(const Box& domain) {
     const double x = between(0, domain.size_m.x()), y = between(0, domain.size_m.y());
@@ -60,7 +62,8 @@ double mean_square_bound_m2(const Mission& mission, std::size_t agent) {
                       2 * law.noise_intensity * law.noise_intensity / law.contraction_gain_per_s);
 }
 
-std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds, int points) {
+std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds,
+                                                  int points) {
   const double end_s = static_cast<double>(mission.timing.tick_count) * mission.timing.dt_s;
   const std::size_t agents = mission.starts_m.size();
   std::vector<std::vector<MeanSquare>> result(agents, std::vector<MeanSquare>(points));
@@ -80,7 +83,8 @@ std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges ed
     }
   }
   for (auto& agent : result) {
-    for (MeanSquare& at : agent) at.standard_error_m2 = std::sqrt(at.standard_error_m2 / seeds / (seeds - 1));
+    for (MeanSquare& at : agent)
+      at.standard_error_m2 = std::sqrt(at.standard_error_m2 / seeds / (seeds - 1));
   }
   return result;
 }
@@ -103,8 +107,10 @@ Mission driven_outward(const ControlLaw& law, double dt_s, double duration_s) {
   Mission mission;
   mission.law = law;
   mission.law.epsilon = 0;
-  // u points along x for as long as c_1 > −1 = μ_1 and 0 < x < Lx: the domain is wide enough for both.
-  const double reach = reach_m(law) + 20 * law.noise_intensity / std::sqrt(law.contraction_gain_per_s);
+  // u points along x for as long as c_1 > −1 = μ_1 and 0 < x < Lx: the domain is wide enough for
+  // both.
+  const double reach =
+      reach_m(law) + 20 * law.noise_intensity / std::sqrt(law.contraction_gain_per_s);
   mission.domain.size_m = {8 * reach, 8 * reach, 0};
   mission.law.contraction_center_m = {3 * reach, 4 * reach, 0};
   mission.starts_m = {mission.law.contraction_center_m};
@@ -138,11 +144,13 @@ Contraction contraction_of(const Mission& mission, lab::Edges edges) {
       result.allowance_m = kUnitsPerStep * 0x1p-53 * largest_m * static_cast<double>(team.tick());
       const double distance_m = (team.x_m(i) - center_m).norm();
       const double bound_m = discrete_bound_m(mission, start_distance_m(mission, i), team.tick());
-      const double continuous_m = continuous_bound_m(mission, start_distance_m(mission, i), team.tick());
+      const double continuous_m =
+          continuous_bound_m(mission, start_distance_m(mission, i), team.tick());
       ++result.checked;
       if (distance_m > bound_m + result.allowance_m) ++result.violations;
       result.largest_share = std::max(result.largest_share, distance_m / bound_m);
-      result.largest_continuous_share = std::max(result.largest_continuous_share, distance_m / continuous_m);
+      result.largest_continuous_share =
+          std::max(result.largest_continuous_share, distance_m / continuous_m);
     }
   }
   return result;
@@ -164,11 +172,13 @@ Mission random_mission(std::uint64_t seed) {
   mission.timing.tick_count = 500;
   ControlLaw& law = mission.law;
   law.u_max_mps = draw.decades(0.1, 50);
-  law.regularization = draw.between(0, 1) < 0.5 ? Regularization::kAbsolute : Regularization::kRelative;
+  law.regularization =
+      draw.between(0, 1) < 0.5 ? Regularization::kAbsolute : Regularization::kRelative;
   law.epsilon = draw.between(0, 1) < 0.2 ? 0 : draw.decades(1e-6, 1);
   law.contraction_gain_per_s = draw.decades(1e-4, 1 / mission.timing.dt_s);
   law.contraction_center_m = draw.in(mission.domain);
-  for (int agents = draw.whole(1, 6); agents > 0; --agents) mission.starts_m.push_back(draw.in(mission.domain));
+  for (int agents = draw.whole(1, 6); agents > 0; --agents)
+    mission.starts_m.push_back(draw.in(mission.domain));
   return mission;
 }
 

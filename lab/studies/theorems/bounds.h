@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Theorem 2 and Corollary 1: how far an agent may be from the centre of contraction, and how far it is.
+// Theorem 2 and Corollary 1: how far an agent may be from the centre of contraction, and how far it
+// is.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "core/mission.h"
 #include "core/ideal_team.h"
+#include "core/mission.h"
 
 namespace ergocast::studies {
 
@@ -18,14 +19,15 @@ struct MeanSquare {
   double t_s = 0, mean_m2 = 0, standard_error_m2 = 0;
 };
 /// For seeds 1 … `seeds`, at `points` times up to the mission's end.
-std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds, int points);
+std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds,
+                                                  int points);
 
-/// Per agent, the share of seeds 1 … `seeds` in which it is outside the domain at the mission's end if no
-/// edge turns it back.
+/// Per agent, the share of seeds 1 … `seeds` in which it is outside the domain at the mission's end
+/// if no edge turns it back.
 std::vector<double> shares_outside(Mission mission, int seeds);
 
-/// One agent that is driven in one direction for ever: a single mode, whose target is never reached.
-/// Input, centre and gain are such that it is always `law.u_max_mps` long.
+/// One agent that is driven in one direction for ever: a single mode, whose target is never
+/// reached. Input, centre and gain are such that it is always `law.u_max_mps` long.
 Mission driven_outward(const ControlLaw& law, double dt_s, double duration_s);
 
 /// ‖x_n − c‖ ≤ qⁿ ‖x_0 − c‖ + (u_max/k)(1 − qⁿ), q = 1 − k·dt: the bound of Corollary 1 for the
@@ -35,11 +37,11 @@ double continuous_bound_m(const Mission& mission, double start_distance_m, Tick 
 
 /// How one run without noise keeps to Corollary 1.
 struct Contraction {
-  std::int64_t checked = 0;          ///< agents × steps
-  std::int64_t violations = 0;       ///< of the discrete bound, beyond the allowance for rounding
-  double largest_share = 0;          ///< ‖x_n − c‖ / discrete bound
+  std::int64_t checked = 0;     ///< agents × steps
+  std::int64_t violations = 0;  ///< of the discrete bound, beyond the allowance for rounding
+  double largest_share = 0;     ///< ‖x_n − c‖ / discrete bound
   double largest_continuous_share = 0;  ///< ‖x_n − c‖ / continuous bound, n ≥ 1
-  double allowance_m = 0;            ///< 8 units of rounding of the largest coordinate for each step
+  double allowance_m = 0;  ///< 8 units of rounding of the largest coordinate for each step
 };
 Contraction contraction_of(const Mission& mission, lab::Edges edges);
 

@@ -24,11 +24,13 @@ double upper_mean(const std::vector<double>& draws, double limit, double error) 
   for (const double draw : draws) mean += draw / count;
   for (const double draw : draws) variance += (draw - mean) * (draw - mean) / (count - 1);
   const double exponent = std::log(2 / error);
-  return mean + std::sqrt(2 * variance * exponent / count) + 7 * limit * exponent / (3 * (count - 1));
+  return mean + std::sqrt(2 * variance * exponent / count) +
+         7 * limit * exponent / (3 * (count - 1));
 }
 
 Limits chi_square_limits(double freedom, double shift, double error) {
-  const double exponent = -std::log(error), spread = 2 * std::sqrt((freedom + 2 * shift) * exponent);
+  const double exponent = -std::log(error),
+               spread = 2 * std::sqrt((freedom + 2 * shift) * exponent);
   return {freedom + shift - spread, freedom + shift + spread + 2 * exponent};
 }
 

@@ -11,16 +11,16 @@ namespace ergocast::studies {
 /// farther from the true one than this, but with probability `error`.
 double dkw_distance(std::size_t count, double error);
 
-/// Clopper and Pearson: if all of `count` draws succeed, the probability of success is at least this,
-/// but with probability `error`.
+/// Clopper and Pearson: if all of `count` draws succeed, the probability of success is at least
+/// this, but with probability `error`.
 double least_probability(std::size_t count, double error);
 
-/// Maurer and Pontil's empirical Bernstein inequality: the mean of a quantity between 0 and `limit` is
-/// at most this, but with probability `error`, given independent draws of it.
+/// Maurer and Pontil's empirical Bernstein inequality: the mean of a quantity between 0 and `limit`
+/// is at most this, but with probability `error`, given independent draws of it.
 double upper_mean(const std::vector<double>& draws, double limit, double error);
 
-/// Birgé: a noncentral χ² of `freedom` degrees and noncentrality `shift` is within these limits, each
-/// but with probability `error`.
+/// Birgé: a noncentral χ² of `freedom` degrees and noncentrality `shift` is within these limits,
+/// each but with probability `error`.
 struct Limits {
   double low, high;
 };

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/require.h"
 #include "core/ideal_team.h"
+#include "core/require.h"
 #include "lab/manifolds.h"
 
 namespace ergocast::studies {

@@ -24,16 +24,16 @@ std::span<const Start> starts();
 /// `mission` with one agent, at `start`.
 Mission from(const Start& start, Mission mission);
 
-/// When the mission's first agent is first farther off its set than `far_m` [s]; nothing if it is not
-/// by `until_s`.
+/// When the mission's first agent is first farther off its set than `far_m` [s]; nothing if it is
+/// not by `until_s`.
 std::optional<double> escape_time_s(const Mission& mission, double far_m, double until_s);
 
 /// The same for each seed from 1 on; infinite where it does not escape.
 std::vector<double> escape_times_s(Mission mission, int seeds, double far_m, double until_s);
 
-/// What the linearised recursion says about the time of escape. As long as the spread grows, how far
-/// off an agent gets is its standard deviation times one number z drawn at the beginning, and it
-/// escapes when spread · |z| reaches `far_m`.
+/// What the linearised recursion says about the time of escape. As long as the spread grows, how
+/// far off an agent gets is its standard deviation times one number z drawn at the beginning, and
+/// it escapes when spread · |z| reaches `far_m`.
 class EscapeLaw {
  public:
   /// @param spread  of δ for σ = 1, step by step

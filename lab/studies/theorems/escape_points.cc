@@ -8,9 +8,9 @@
 #include <cstdio>
 
 #include "lab/manifolds.h"
+#include "lab/studies/table.h"
 #include "lab/studies/theorems/escape.h"
 #include "lab/studies/theorems/linearised.h"
-#include "lab/studies/table.h"
 #include "lab/studies/theorems/theorems.h"
 
 namespace ergocast::studies {
@@ -70,7 +70,9 @@ Mission mission_of(const Point& p) {
   return from(starts()[p.start], mission);
 }
 
-double far_m(const Point& p) { return p.near ? kNear_m : lab::escape_distance_m(paper_mission().domain); }
+double far_m(const Point& p) {
+  return p.near ? kNear_m : lab::escape_distance_m(paper_mission().domain);
+}
 
 Spreads spreads_of(const Point& p) {
   const Mission mission = mission_of(p);
@@ -93,7 +95,8 @@ std::vector<Row> read_rows(const std::filesystem::path& folder) {
   for (const Point& p : all_points()) {
     // σ only scales the spread, so one does for all of a set's.
     const bool same = !rows.empty() && p.start == rows.back().point.start &&
-                      p.exponent == rows.back().point.exponent && p.epsilon == rows.back().point.epsilon;
+                      p.exponent == rows.back().point.exponent &&
+                      p.epsilon == rows.back().point.epsilon;
     rows.push_back(row_of(p, same ? rows.back().spreads : spreads_of(p), folder));
   }
   return rows;

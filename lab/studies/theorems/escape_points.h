@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is varied in the study of Theorem 1: the set, the weights, ε and σ; and one such point, measured
-// and predicted.
+// What is varied in the study of Theorem 1: the set, the weights, ε and σ; and one such point,
+// measured and predicted.
 #pragma once
 
 #include <filesystem>
@@ -43,7 +43,8 @@ struct Row {
   Spreads spreads;
   std::vector<double> times_s;  ///< ascending; infinite where an agent did not escape
   double law_median_s = 0, without_past_s = 0;
-  double distance = 0;  ///< the largest between the measured and the predicted share, over all times
+  double distance =
+      0;  ///< the largest between the measured and the predicted share, over all times
 
   double quantile_s(double p) const;
   double share_by(double t_s) const;

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "core/basis.h"
+#include "core/ideal_team.h"
 #include "core/noise.h"
 #include "core/require.h"
-#include "core/ideal_team.h"
 #include "lab/manifolds.h"
 
 namespace ergocast::studies {
@@ -102,7 +102,8 @@ NormalResidual normal_residual(const Mission& mission, Tick tick) {
   while (team.tick() <= tick) team.step();
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   const Coefficients difference = team.coverage() - mission.target_coefficients;
-  const Eigen::Vector2d across = set->normal.isZero() ? Eigen::Vector2d(1, 1) : set->normal.cwiseAbs();
+  const Eigen::Vector2d across =
+      set->normal.isZero() ? Eigen::Vector2d(1, 1) : set->normal.cwiseAbs();
   const Eigen::Vector2d wave =
       std::numbers::pi * across.cwiseQuotient(mission.domain.size_m.head<2>());
   double size = 0;

@@ -12,8 +12,8 @@
 
 namespace ergocast::studies {
 
-/// A set of Proposition 1 and a team whose first agent is on it, while the others, if the premises are
-/// to hold, mirror each other at it.
+/// A set of Proposition 1 and a team whose first agent is on it, while the others, if the premises
+/// are to hold, mirror each other at it.
 struct InvariantSet {
   std::string name, text;
   /// From two numbers in (0, 1).
@@ -23,10 +23,12 @@ struct InvariantSet {
 };
 std::span<const InvariantSet> invariant_sets();
 
-/// `mission` under the classical law (5), without noise or contraction, with a team drawn from `seed`.
+/// `mission` under the classical law (5), without noise or contraction, with a team drawn from
+/// `seed`.
 Mission classical(const InvariantSet& set, Mission mission, std::uint64_t seed);
 
-/// |B·n| of the first agent (|B| where the set is a point), n the normal of the set that it starts on.
+/// |B·n| of the first agent (|B| where the set is a point), n the normal of the set that it starts
+/// on.
 struct NormalResidual {
   /// In units of 2⁻⁵³ Σ |λ_k (c_k − μ_k)| (|n_x| mπ/Lx + |n_y| nπ/Ly): roundings of the summands,
   /// each taken as large as it gets.

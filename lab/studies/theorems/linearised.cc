@@ -18,8 +18,8 @@ Eigen::VectorXd slopes_along(const Eigen::Vector2d& normal, const BasisAt& at, c
   Eigen::VectorXd slopes(basis.mode_count());
   for (int m = 0; m < basis.modes_x; ++m) {
     for (int n = 0; n < basis.modes_y; ++n) {
-      slopes[m * basis.modes_y + n] = normal.x() * at.slope_x[m] * at.cos_y[n] +
-                                      normal.y() * at.cos_x[m] * at.slope_y[n];
+      slopes[m * basis.modes_y + n] =
+          normal.x() * at.slope_x[m] * at.cos_y[n] + normal.y() * at.cos_x[m] * at.slope_y[n];
     }
   }
   return slopes;
@@ -68,7 +68,8 @@ std::vector<LinearStep> linearised(const Mission& mission, Tick steps) {
   return result;
 }
 
-std::vector<double> spread(const std::vector<LinearStep>& steps, const Mission& mission, Past past) {
+std::vector<double> spread(const std::vector<LinearStep>& steps, const Mission& mission,
+                           Past past) {
   const double dt_s = mission.timing.dt_s;
   const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
   // Covariances of δ and of the sums D_k = Σ g_ik δ_i.
@@ -93,7 +94,8 @@ std::vector<double> spread(const std::vector<LinearStep>& steps, const Mission& 
       with_sums += variance * g;
       const Eigen::VectorXd pull = step.memory * weights.cwiseProduct(g);
       const Eigen::VectorXd sums_pulled = of_sums * pull;
-      variance = keep * keep * variance - 2 * keep * pull.dot(with_sums) + pull.dot(sums_pulled) + dt_s;
+      variance =
+          keep * keep * variance - 2 * keep * pull.dot(with_sums) + pull.dot(sums_pulled) + dt_s;
       with_sums = keep * with_sums - sums_pulled;
     }
     result.push_back(std::sqrt(variance));

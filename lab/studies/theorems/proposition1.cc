@@ -6,12 +6,12 @@
 #include <limits>
 
 #include "lab/manifolds.h"
-#include "report/figures.h"
-#include "lab/studies/theorems/escape.h"
-#include "lab/studies/theorems/invariance.h"
 #include "lab/studies/panels.h"
 #include "lab/studies/table.h"
+#include "lab/studies/theorems/escape.h"
+#include "lab/studies/theorems/invariance.h"
 #include "lab/studies/theorems/theorems.h"
+#include "report/figures.h"
 
 namespace ergocast::studies {
 namespace {
@@ -28,13 +28,16 @@ void write_set(const InvariantSet& set, int seeds, std::ostream& out) {
     const Mission mission = classical(set, paper, static_cast<std::uint64_t>(seed));
     const NormalResidual residual = normal_residual(mission);
     out << residual.units << ',' << residual.share_of_b << ','
-        << escape_time_s(mission, lab::escape_distance_m(mission.domain), kUntil_s).value_or(std::numeric_limits<double>::infinity()) << '\n';
+        << escape_time_s(mission, lab::escape_distance_m(mission.domain), kUntil_s)
+               .value_or(std::numeric_limits<double>::infinity())
+        << '\n';
   }
 }
 
 double quantile(std::vector<double> values, double p) {
   std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(p * static_cast<double>(values.size())))];
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(p * static_cast<double>(values.size())))];
 }
 
 std::string seconds_text(double t_s) {
@@ -44,16 +47,18 @@ std::string seconds_text(double t_s) {
 }
 
 double share_by(const std::vector<double>& times_s, double t_s) {
-  return static_cast<double>(std::count_if(times_s.begin(), times_s.end(), [t_s](double t) { return t <= t_s + 1e-9; })) /
+  return static_cast<double>(std::count_if(times_s.begin(), times_s.end(),
+                                           [t_s](double t) { return t <= t_s + 1e-9; })) /
          static_cast<double>(times_s.size());
 }
 
 void print(const InvariantSet& set, const Table& table) {
   const auto& times_s = table.at("escape_s");
   const auto exact = std::count(table.at("units").begin(), table.at("units").end(), 0.0);
-  std::printf("| %s | %zu | %ld | %.2g | %.2g | %.2g | %s | %s | %.1f %% |\n", set.text.c_str(), times_s.size(),
-              static_cast<long>(exact), quantile(table.at("units"), 0.5), quantile(table.at("units"), 1),
-              quantile(table.at("share_of_b"), 1), seconds_text(quantile(times_s, 0)).c_str(),
+  std::printf("| %s | %zu | %ld | %.2g | %.2g | %.2g | %s | %s | %.1f %% |\n", set.text.c_str(),
+              times_s.size(), static_cast<long>(exact), quantile(table.at("units"), 0.5),
+              quantile(table.at("units"), 1), quantile(table.at("share_of_b"), 1),
+              seconds_text(quantile(times_s, 0)).c_str(),
               seconds_text(quantile(times_s, 0.5)).c_str(), 100 * share_by(times_s, kUntil_s));
 }
 
@@ -78,17 +83,23 @@ std::vector<Part> proposition1_parts(int seeds) {
 }
 
 void report_proposition1(const fs::path& folder, const fs::path& images) {
-  std::printf("### The classical law on the sets of Proposition 1\n\n"
-              "| set | places | exactly 0 | median units | largest | largest share of ‖B‖ | first out [s] | median | out by 600 s |\n"
-              "|---|---|---|---|---|---|---|---|---|\n");
-  Panel panel{"Agents that rounding alone has driven off", range_axis("time", "s", 0, kUntil_s),
-              range_axis("share of places", "", 0, 1), {}, {}};
+  std::printf(
+      "### The classical law on the sets of Proposition 1\n\n"
+      "| set | places | exactly 0 | median units | largest | largest share of ‖B‖ | first out [s] "
+      "| median | out by 600 s |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  Panel panel{"Agents that rounding alone has driven off",
+              range_axis("time", "s", 0, kUntil_s),
+              range_axis("share of places", "", 0, 1),
+              {},
+              {}};
   std::vector<KeyEntry> key;
   for (const InvariantSet& set : invariant_sets()) {
     const Table table = read_table(folder / ("invariant-" + set.name + ".csv"));
     print(set, table);
     const bool drawn = set.symmetric_team && set.name != "origin" && set.name != "far-corner" &&
-                       (set.name.ends_with("-x") || set.name.starts_with("diagonal") || set.name == "midline-pair");
+                       (set.name.ends_with("-x") || set.name.starts_with("diagonal") ||
+                        set.name == "midline-pair");
     if (!drawn) continue;
     const std::string color = agent_color(static_cast<AgentId>(key.size()));
     key.push_back({set.text, color});

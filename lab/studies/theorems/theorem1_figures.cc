@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/figures.h"
-#include "lab/studies/theorems/escape.h"
 #include "lab/studies/panels.h"
+#include "lab/studies/theorems/escape.h"
+#include "report/figures.h"
 
 namespace ergocast::studies {
 namespace {
@@ -74,22 +74,29 @@ void draw_medians(const std::vector<Row>& rows, const fs::path& images) {
                                  log_axis("time of escape [s]", 0.5, kUntil_s), &Point::epsilon,
                                  &Point::sigma, kPaperSigma));
   }
-  write_figure(images / "theorem_1_noise.svg",
-               figure("theorem-1-noise", "Time of escape against the noise", key_of_medians(), noise));
-  write_figure(images / "theorem_1_epsilon.svg",
-               figure("theorem-1-epsilon", "Time of escape against epsilon", key_of_medians(), smoothing));
+  write_figure(
+      images / "theorem_1_noise.svg",
+      figure("theorem-1-noise", "Time of escape against the noise", key_of_medians(), noise));
+  write_figure(
+      images / "theorem_1_epsilon.svg",
+      figure("theorem-1-epsilon", "Time of escape against epsilon", key_of_medians(), smoothing));
 }
 
 /// Shares escaped over time, measured and by the law.
 Panel distributions(const std::vector<Row>& rows, int start) {
   const bool midline = starts()[start].name == "midline-x";
-  Panel panel{starts()[start].set, range_axis("time", "s", 0, midline ? 300 : 200),
-              range_axis("share escaped", "", 0, 1), {}, {}};
+  Panel panel{starts()[start].set,
+              range_axis("time", "s", 0, midline ? 300 : 200),
+              range_axis("share escaped", "", 0, 1),
+              {},
+              {}};
   int color = 0;
   for (const double sigma : {1e-8, 1e-5, 1e-2, 1.0}) {
     for (const Row& row : rows) {
       const Point& p = row.point;
-      if (p.near || p.start != start || p.sigma != sigma || p.exponent != 1 || p.epsilon != kPaperEpsilon) continue;
+      if (p.near || p.start != start || p.sigma != sigma || p.exponent != 1 ||
+          p.epsilon != kPaperEpsilon)
+        continue;
       Curve measured{agent_color(color), {}, "none"}, law{"#333333", {}, "4 4"};
       const EscapeLaw predicted(row.spreads.counted, mission_of(p), far_m(p));
       for (int half = 0; half <= 2 * panel.x.high; ++half) {
@@ -106,8 +113,10 @@ Panel distributions(const std::vector<Row>& rows, int start) {
 }
 
 void draw_distributions(const std::vector<Row>& rows, const fs::path& images) {
-  const std::vector<KeyEntry> key = {{"σ = 1e-8 m/√s", agent_color(0)}, {"σ = 1e-5", agent_color(1)},
-                                     {"σ = 0.01", agent_color(2)},      {"σ = 1", agent_color(3)},
+  const std::vector<KeyEntry> key = {{"σ = 1e-8 m/√s", agent_color(0)},
+                                     {"σ = 1e-5", agent_color(1)},
+                                     {"σ = 0.01", agent_color(2)},
+                                     {"σ = 1", agent_color(3)},
                                      {"predicted", "#333333", "4 4"}};
   write_figure(images / "theorem_1_distribution.svg",
                figure("theorem-1-distribution", "Share of seeds escaped over time", key,
@@ -116,15 +125,21 @@ void draw_distributions(const std::vector<Row>& rows, const fs::path& images) {
 
 /// Left, how the spread grows; right, that the measured medians lie where it reaches the distance.
 void draw_growth(const std::vector<Row>& rows, const fs::path& images) {
-  Panel growth{"Spread of the linearised recursion for σ = 1 m/√s", range_axis("time", "s", 0, 300),
-               log_axis("standard deviation [m]", 0.1, 1e12), {}, {}};
+  Panel growth{"Spread of the linearised recursion for σ = 1 m/√s",
+               range_axis("time", "s", 0, 300),
+               log_axis("standard deviation [m]", 0.1, 1e12),
+               {},
+               {}};
   Panel collapse{"One dot for each set and σ: on the line if the law is exact",
                  log_axis("predicted spread at the measured median time, σ = 1 m/√s [m]", 1, 1e11),
-                 log_axis("spread that escape takes: 20 m / (0.674 σ)", 1, 1e11), {}, {}};
+                 log_axis("spread that escape takes: 20 m / (0.674 σ)", 1, 1e11),
+                 {},
+                 {}};
   collapse.curves.push_back({"#333333", {{1, 1}, {1e11, 1e11}}, "none"});
   for (const Row& row : rows) {
     const Point& p = row.point;
-    if (p.near || p.exponent != 1 || p.epsilon != kPaperEpsilon || !is_one_of_each(p.start)) continue;
+    if (p.near || p.exponent != 1 || p.epsilon != kPaperEpsilon || !is_one_of_each(p.start))
+      continue;
     const double dt_s = mission_of(p).timing.dt_s;
     if (p.sigma == kPaperSigma) {
       Curve counted{color_of(p.start), {}, "none"}, neglected{color_of(p.start), {}, "5 4"};
@@ -138,7 +153,8 @@ void draw_growth(const std::vector<Row>& rows, const fs::path& images) {
     }
     const double median_s = row.quantile_s(0.5);
     if (!std::isfinite(median_s) || starts()[p.start].name == "corner") continue;
-    const double reached = row.spreads.counted[static_cast<std::size_t>(std::lround(median_s / dt_s))];
+    const double reached =
+        row.spreads.counted[static_cast<std::size_t>(std::lround(median_s / dt_s))];
     const double needed = far_m(p) / (kMedianOfNormal * p.sigma);
     collapse.intervals.push_back({color_of(p.start), reached, needed, needed, needed});
   }

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "report/figures.h"
-#include "lab/studies/theorems/bounds.h"
 #include "lab/studies/panels.h"
 #include "lab/studies/table.h"
+#include "lab/studies/theorems/bounds.h"
 #include "lab/studies/theorems/theorems.h"
+#include "report/figures.h"
 
 namespace ergocast::studies {
 namespace {
@@ -43,13 +43,15 @@ Mission outward(double gain_per_s, double sigma, double dt_s, double duration_s)
 }
 
 std::vector<Case> cases() {
-  return {{"paper", "Fig. 2(a) as printed, edges reflect", paper_mission(), Edges::kReflect},
-          {"paper-free", "Fig. 2(a) as printed, no edges", paper_mission(), Edges::kNone},
-          {"loud", "paper's target, k = 0.05, σ = 200, edges reflect", strong(0.05, 200), Edges::kReflect},
-          {"loud-free", "paper's target, k = 0.05, σ = 200, no edges", strong(0.05, 200), Edges::kNone},
-          {"outward-loud", "u outward, k = 0.05, σ = 100", outward(0.05, 100, 0.1, 150), Edges::kNone},
-          {"outward-quiet", "u outward, k = 0.05, σ = 1", outward(0.05, 1, 0.1, 150), Edges::kNone},
-          {"outward-one", "u outward, k·dt = 1, σ = 3", outward(10, 3, 0.1, 15), Edges::kNone}};
+  return {
+      {"paper", "Fig. 2(a) as printed, edges reflect", paper_mission(), Edges::kReflect},
+      {"paper-free", "Fig. 2(a) as printed, no edges", paper_mission(), Edges::kNone},
+      {"loud", "paper's target, k = 0.05, σ = 200, edges reflect", strong(0.05, 200),
+       Edges::kReflect},
+      {"loud-free", "paper's target, k = 0.05, σ = 200, no edges", strong(0.05, 200), Edges::kNone},
+      {"outward-loud", "u outward, k = 0.05, σ = 100", outward(0.05, 100, 0.1, 150), Edges::kNone},
+      {"outward-quiet", "u outward, k = 0.05, σ = 1", outward(0.05, 1, 0.1, 150), Edges::kNone},
+      {"outward-one", "u outward, k·dt = 1, σ = 3", outward(10, 3, 0.1, 15), Edges::kNone}};
 }
 
 std::string name_of(const Case& c) { return "square-" + c.name; }
@@ -59,8 +61,8 @@ void write_case(const Case& c, int seeds, std::ostream& out) {
   const auto squares = mean_squares(c.mission, c.edges, kRunsPerSeed * seeds, kPoints);
   for (std::size_t i = 0; i < squares.size(); ++i) {
     for (const MeanSquare& at : squares[i]) {
-      out << kRunsPerSeed * seeds << ',' << i << ',' << at.t_s << ',' << at.mean_m2 << ',' << at.standard_error_m2 << ','
-          << mean_square_bound_m2(c.mission, i) << '\n';
+      out << kRunsPerSeed * seeds << ',' << i << ',' << at.t_s << ',' << at.mean_m2 << ','
+          << at.standard_error_m2 << ',' << mean_square_bound_m2(c.mission, i) << '\n';
     }
   }
 }
@@ -68,7 +70,9 @@ void write_case(const Case& c, int seeds, std::ostream& out) {
 /// The row where the measured mean is nearest to its bound.
 std::size_t nearest(const Table& table) {
   std::size_t best = 0;
-  const auto share = [&table](std::size_t i) { return table.at("mean_m2")[i] / table.at("bound_m2")[i]; };
+  const auto share = [&table](std::size_t i) {
+    return table.at("mean_m2")[i] / table.at("bound_m2")[i];
+  };
   for (std::size_t i = 1; i < table.at("mean_m2").size(); ++i) {
     if (share(i) > share(best)) best = i;
   }
@@ -86,9 +90,9 @@ std::size_t last(const Table& table) {
 void print(const Case& c, const Table& table) {
   const std::size_t near = nearest(table), end = last(table);
   const double bound_m2 = table.at("bound_m2")[end], mean_m2 = table.at("mean_m2")[end];
-  std::printf("| %s | %.0f | %.5g | %.4f | %.5g | %.4f ± %.4f |\n", c.text.c_str(), table.at("runs")[end],
-              bound_m2, table.at("mean_m2")[near] / bound_m2, mean_m2, mean_m2 / bound_m2,
-              1.96 * table.at("standard_error_m2")[end] / bound_m2);
+  std::printf("| %s | %.0f | %.5g | %.4f | %.5g | %.4f ± %.4f |\n", c.text.c_str(),
+              table.at("runs")[end], bound_m2, table.at("mean_m2")[near] / bound_m2, mean_m2,
+              mean_m2 / bound_m2, 1.96 * table.at("standard_error_m2")[end] / bound_m2);
 }
 
 Curve curve_of(const Table& table, const std::string& color, Edges edges) {
@@ -96,7 +100,8 @@ Curve curve_of(const Table& table, const std::string& color, Edges edges) {
   const double agent = table.at("agent")[nearest(table)], end_s = table.at("t_s").back();
   for (std::size_t i = 0; i < table.at("t_s").size(); ++i) {
     if (table.at("agent")[i] != agent) continue;
-    curve.points.push_back({table.at("t_s")[i] / end_s, table.at("mean_m2")[i] / table.at("bound_m2")[i]});
+    curve.points.push_back(
+        {table.at("t_s")[i] / end_s, table.at("mean_m2")[i] / table.at("bound_m2")[i]});
   }
   return curve;
 }
@@ -109,31 +114,39 @@ std::vector<Part> theorem2_parts(int seeds) {
     parts.push_back({name_of(c), [c, seeds](std::ostream& out) { write_case(c, seeds, out); }});
   }
   parts.push_back({"outside", [seeds](std::ostream& out) {
-    out << "agent,start_x_m,start_y_m,share\n";
-    const Mission mission = paper_mission();
-    const std::vector<double> shares = shares_outside(mission, seeds);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      out << i << ',' << mission.starts_m[i].x() << ',' << mission.starts_m[i].y() << ',' << shares[i] << '\n';
-    }
-  }});
+                     out << "agent,start_x_m,start_y_m,share\n";
+                     const Mission mission = paper_mission();
+                     const std::vector<double> shares = shares_outside(mission, seeds);
+                     for (std::size_t i = 0; i < shares.size(); ++i) {
+                       out << i << ',' << mission.starts_m[i].x() << ',' << mission.starts_m[i].y()
+                           << ',' << shares[i] << '\n';
+                     }
+                   }});
   return parts;
 }
 
 void report_theorem2(const fs::path& folder, const fs::path& images) {
-  std::printf("### Mean squares\n\n"
-              "| case | runs | bound [m²] | largest share of it | mean at the end [m²] | share of the bound (95 %%) |\n"
-              "|---|---|---|---|---|---|\n");
-  Panel panel{"Mean of ‖x − c‖² as a share of the bound", range_axis("time / duration of the case", "", 0, 1),
-              range_axis("measured / bound", "", 0, 1.1), {}, {}};
+  std::printf(
+      "### Mean squares\n\n"
+      "| case | runs | bound [m²] | largest share of it | mean at the end [m²] | share of the "
+      "bound (95 %%) |\n"
+      "|---|---|---|---|---|---|\n");
+  Panel panel{"Mean of ‖x − c‖² as a share of the bound",
+              range_axis("time / duration of the case", "", 0, 1),
+              range_axis("measured / bound", "", 0, 1.1),
+              {},
+              {}};
   panel.curves.push_back({"#333333", {{0, 1}, {1, 1}}, "2 3"});
   std::vector<KeyEntry> key = {{"bound", "#333333", "2 3"}};
   for (const Case& c : cases()) {
     const Table table = read_table(folder / (name_of(c) + ".csv"));
     print(c, table);
-    panel.curves.push_back(curve_of(table, agent_color(static_cast<AgentId>(key.size() - 1)), c.edges));
+    panel.curves.push_back(
+        curve_of(table, agent_color(static_cast<AgentId>(key.size() - 1)), c.edges));
     key.push_back({c.text, panel.curves.back().color, panel.curves.back().dashes});
   }
-  std::printf("\n### Fig. 2(a) without edges\n\n| start [m] | outside the domain at 150 s |\n|---|---|\n");
+  std::printf(
+      "\n### Fig. 2(a) without edges\n\n| start [m] | outside the domain at 150 s |\n|---|---|\n");
   const Table outside = read_table(folder / "outside.csv");
   for (std::size_t i = 0; i < outside.at("agent").size(); ++i) {
     std::printf("| (%g, %g) | %.1f %% |\n", outside.at("start_x_m")[i], outside.at("start_y_m")[i],

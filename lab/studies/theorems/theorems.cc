@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program of lab/studies/theorems/run: lists the parts, simulates one, reports on all.
+#include "lab/studies/theorems/theorems.h"
+
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -11,7 +13,6 @@
 
 #include "core/require.h"
 #include "scenario/scenario.h"
-#include "lab/studies/theorems/theorems.h"
 
 namespace ergocast::studies {
 
@@ -21,7 +22,8 @@ namespace {
 
 std::vector<Part> all_parts(int seeds) {
   std::vector<Part> all;
-  for (const auto& parts : {theorem1_parts, fig2a_parts, theorem2_parts, corollary1_parts, proposition1_parts}) {
+  for (const auto& parts :
+       {theorem1_parts, fig2a_parts, theorem2_parts, corollary1_parts, proposition1_parts}) {
     for (Part& part : parts(seeds)) all.push_back(std::move(part));
   }
   return all;
@@ -61,7 +63,9 @@ int run(int argc, char** argv) {
   } else if (what == "report" && argc == 4) {
     report(argv[2], argv[3]);
   } else {
-    std::fprintf(stderr, "usage: studies-theorems list | simulate PART FOLDER SEEDS | report FOLDER IMAGES\n");
+    std::fprintf(
+        stderr,
+        "usage: studies-theorems list | simulate PART FOLDER SEEDS | report FOLDER IMAGES\n");
     return 2;
   }
   return 0;

@@ -50,8 +50,8 @@ Outlook outlook_of(const Mission& mission, const PlanSetting& setting, Tick tick
   outlook.others_s.resize(modes * outlook.durations_s.size());
   for (std::size_t h = 0; h < outlook.durations_s.size(); ++h) {
     for (const double x_m : {400.0, 1100.0}) {
-      add_gain(mission, 1, {x_m, 700, 0}, {5.0 * static_cast<double>(h), 1, 0}, outlook.durations_s[h],
-               outlook.others_s.data() + h * modes);
+      add_gain(mission, 1, {x_m, 700, 0}, {5.0 * static_cast<double>(h), 1, 0},
+               outlook.durations_s[h], outlook.others_s.data() + h * modes);
     }
   }
   return outlook;

@@ -8,10 +8,10 @@
 #include <cstring>
 
 #include "core/ideal_team.h"
-#include "scenario/scenario.h"
 #include "lab/studies/study_run.h"
-#include "tests/support/drawn_scenario.h"
+#include "scenario/scenario.h"
 #include "team/plan.h"
+#include "tests/support/drawn_scenario.h"
 
 namespace ergocast::test {
 namespace {

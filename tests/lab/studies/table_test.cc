@@ -43,8 +43,9 @@ TEST_F(TableFile, NamesWhatIsWrong) {
 }
 
 TEST_F(TableFile, GivesAStudyPointByPoint) {
-  std::ofstream(file_) << "scenario,law.epsilon,seed,ergodic_metric,escape_time_0_s,escape_time_1_s\n"
-                          "corners,0.1,1,0.5,3,inf\ncorners,0.1,2,0.25,2,\nrandom,0.1,1,0.125,,\n";
+  std::ofstream(file_)
+      << "scenario,law.epsilon,seed,ergodic_metric,escape_time_0_s,escape_time_1_s\n"
+         "corners,0.1,1,0.5,3,inf\ncorners,0.1,2,0.25,2,\nrandom,0.1,1,0.125,,\n";
   const std::vector<StudyRuns> points = read_study(file_);
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].names, (std::vector<std::string>{"corners", "0.1"}));

@@ -67,7 +67,8 @@ TEST(BusListener, ATeamWithAKeyIsToldFromAStranger) {
   const MessageAuthenticator theirs(key);
   AgentStatus status;
   status.header = {0xabc, 3, 77, 1, 0};
-  const auto overheard = [&](const MessageAuthenticator& said_with, const MessageAuthenticator& heard_with) {
+  const auto overheard = [&](const MessageAuthenticator& said_with,
+                             const MessageAuthenticator& heard_with) {
     std::vector<std::byte> bytes;
     encode(status, bytes, said_with, "ERGOCAST_AGENT_STATUS_3");
     Overheard ear(heard_with);

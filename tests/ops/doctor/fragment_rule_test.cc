@@ -16,8 +16,7 @@ std::string ruleset(const std::string& hook, const std::string& ports, const std
   return R"({"nftables": [{"metainfo": {"version": "1.0.6"}},
     {"table": {"family": "inet", "name": "ergocast", "handle": 3}},
     {"chain": {"family": "inet", "table": "ergocast", "name": "in", "type": "filter", "hook": ")" +
-         hook + R"(", "prio": -10, "policy": "accept"}},)" +
-         before + R"(
+         hook + R"(", "prio": -10, "policy": "accept"}},)" + before + R"(
     {"rule": {"family": "inet", "table": "ergocast", "chain": "in", "handle": 3, "expr": [)" +
          more +
          R"({"match": {"op": "==", "left": {"payload": {"protocol": "udp", "field": "dport"}}, "right": )" +

@@ -10,8 +10,9 @@ namespace {
 
 /// A socket as /proc/net/udp has it.
 std::string socket_at(const std::string& hex_port, const std::string& inode) {
-  return " 1028: 00000000:" + hex_port + " 00000000:0000 07 00000000:00000000 00:00000000 00000000" +
-         "     0        0 " + inode + " 2 0000000000000000 0\n";
+  return " 1028: 00000000:" + hex_port +
+         " 00000000:0000 07 00000000:00000000 00:00000000 00000000" + "     0        0 " + inode +
+         " 2 0000000000000000 0\n";
 }
 
 /// Of the ports 24000, 24002 and 24003.

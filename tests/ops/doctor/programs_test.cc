@@ -17,7 +17,8 @@ TEST_F(Programs, WhatLcmSpyLacksIsNamedWithItsPackages) {
   EXPECT_EQ(jar.level, Level::kNote);
   EXPECT_EQ(jar.found, "missing: jchart2d.jar");
   EXPECT_EQ(jar.remedy, "apt-get install libjchart2d-java");
-  EXPECT_EQ(spy_finding(root_, "/bin", true).remedy, "apt-get install default-jre libjchart2d-java");
+  EXPECT_EQ(spy_finding(root_, "/bin", true).remedy,
+            "apt-get install default-jre libjchart2d-java");
   write("usr/share/java/jchart2d.jar", "");
   EXPECT_EQ(spy_finding(root_, "/bin:/opt/bin", true).level, Level::kOk);
 }
