@@ -152,7 +152,7 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
   InMission* const flight = in_mission();
   if (flight == nullptr) return;
   const RosterEntry* entry = me_.member(theirs.header);
-  if (entry == nullptr) return;  // nobody we know of yet
+  if (entry == nullptr) return;  // not a member as far as we know
   if (arrival.transmitter != theirs.header.sender) {
     flight->anti_entropy.on_relayed(theirs, flight->table);
   }
@@ -245,8 +245,8 @@ Instant Agent::next_wakeup() const {
       {next, flight->next_status.at, flight->next_digest.at, flight->anti_entropy.next_answer()});
 }
 
-/// Nobody can tell two joining processes apart by an id that neither has been given: only who was
-/// admitted has last words.
+/// An id that neither has been given does not tell two joining processes apart. So only an admitted
+/// agent sends last words.
 void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   if (finished()) return;
   Finished end{failed, std::move(reason), {}, {}};

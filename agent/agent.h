@@ -3,7 +3,7 @@
 //
 // Messages only update tables; the control step reads them. In lockstep a tick is answered once
 // every block due by it is held; in real time at once, with what is there. What teammates lack it
-// repeats to them (anti_entropy.h), and the mission itself to whoever asks for it
+// repeats to them (anti_entropy.h), and the mission itself on request
 // (mission_repeat.h). Its life until and after the mission is in agent.cc, the tick in flying.cc.
 #pragma once
 

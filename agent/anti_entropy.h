@@ -25,7 +25,7 @@ class AntiEntropy {
   AntiEntropy(const Author& self, std::uint64_t seed, double dt_s)
       : self_(self), seed_(seed), dt_s_(dt_s) {}
 
-  /// What `table` holds of everybody in `roster`, in as many messages as it takes, without headers.
+  /// What `table` holds of every entry of `roster`, in as many messages as needed, without headers.
   static std::vector<Digest> digests(const CoverageTable& table,
                                      const std::vector<RosterEntry>& roster);
 
@@ -35,7 +35,7 @@ class AntiEntropy {
   void on(const Digest& theirs, const CoverageTable& table, const std::vector<RosterEntry>& roster,
           Instant now, Tick tick);
 
-  /// Somebody else has repeated `theirs`: if it is as new as ours, we need not.
+  /// Another agent has repeated `theirs`: if it is as new as ours, we do not repeat it.
   void on_relayed(const Contribution& theirs, const CoverageTable& table);
 
   /// The blocks to be repeated now, as their authors said them.

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kDigestPeriod = 1s;
 constexpr double kDigestMissionPeriod_s = 1.0;
-/// Who is told no tick for so long says what it has, and again after as long.
+/// An agent without a new tick for so long broadcasts what it has, and again after as long.
 constexpr auto kStallPeriod = 1s;
 
 }  // namespace
@@ -33,8 +33,8 @@ void Agent::fly(InMission& flight, Instant now, Outbox& out) {
          "now: check this host's network");
 }
 
-/// Where the others are, as far as they are heard. Nobody drives a vehicle whose answers have
-/// stopped for as long as the world goes on with an old one; in lockstep the world waits for them.
+/// Where the others are, as far as they are in range. A vehicle stands still once its answers have
+/// stopped for as long as the world holds an old one; in lockstep the world waits for them.
 void Agent::note_places(InMission& flight, const WorldState& world) {
   const Timing& timing = mission().timing;
   const Tick tick = world.header.tick;
@@ -79,7 +79,7 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
 }
 
 /// Whether the ticks have stopped coming: then what we have is said now and then without waiting
-/// for more. In lockstep nobody may hear of a tick before the broadcast that was announced.
+/// for more. In lockstep no broadcast may come before the one that was announced.
 bool Agent::stalled(const InMission& flight, Instant now) const {
   return mission().timing.pace == Pace::kRealtime && flight.step.tick >= flight.active_from &&
          now - std::max(flight.step.begun, flight.stalled_said) >= kStallPeriod;
@@ -111,14 +111,14 @@ bool Agent::may_answer(InMission& flight) const {
   Step& step = flight.step;
   step.waiting_for = kUnassigned;
   if (mission().timing.pace == Pace::kRealtime) return true;
-  // What a command depends on is the same for whoever hears the world's state in another order.
+  // A command must not depend on the order in which the parts of the state arrive.
   const bool reckons =
       flight.forecast && mission().dead_reckoning && step.tick >= flight.active_from;
   if (reckons && !flight.state_parts.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;
   }
-  // Who takes part in a tick is what the world says, not who has heard of it first.
+  // The roster that the world names decides which agents take part in a tick.
   if (follower().revision() < step.roster_revision) return false;
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When an agent repeats the mission to whoever asks for it: after a random moment, unless a
-// teammate is faster, and not too often.
+// When an agent repeats the mission on request: after a random moment, unless a teammate is
+// faster, and not too often.
 #pragma once
 
 #include <chrono>
@@ -16,11 +16,11 @@ class MissionRepeat {
   /// @param incarnation  seeds the delays
   explicit MissionRepeat(Incarnation incarnation) : incarnation_(incarnation) {}
 
-  /// Somebody asks for the mission.
+  /// A process requests the mission.
   /// @param draw  other than at all other times
   void asked(Instant now, std::int64_t draw) { plan(now, kAnswerGap, draw); }
 
-  /// Somebody has said a part of `revision`, where we hold `ours`.
+  /// A process has sent a part of `revision`, where we hold `ours`.
   void overheard(std::int64_t revision, std::int64_t ours, Instant now, std::int64_t draw) {
     // A teammate was faster. That is believed twice only: it may be a recording of one part.
     if (revision >= ours && due_ && ++left_to_others_ <= 2) due_.reset();

@@ -161,7 +161,7 @@ void CoverageTable::forget(const Author& author) {
 }
 
 void CoverageTable::remember(const Author& author) {
-  // Who is unknown counts when it comes.
+  // An unknown author counts when its first block arrives.
   if (find(author) != nullptr) find_or_add(author)->counts = true;
 }
 

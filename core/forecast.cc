@@ -89,7 +89,7 @@ void average(const double* earlier, const double* later, const double* own, doub
   }
 }
 
-/// Whether `entry` is active at `tick` and nobody newer is under its number; the roster ascends by
+/// Whether `entry` is active at `tick` and no newer entry has its number; the roster ascends by
 /// number.
 bool is_newest(const std::vector<RosterEntry>& roster, std::size_t entry, Tick tick) {
   const RosterEntry& one = roster[entry];

@@ -56,7 +56,7 @@ void IdealTeam::step() {
   ++tick_;
 }
 
-/// Everybody's sums of this tick, and what they gained since the last.
+/// The sums of all agents at this tick, and what they gained since the last.
 void IdealTeam::sample() {
   for (Agent& agent : agents_) {
     agent.at.emplace(agent.x_m, mission_.domain, mission_.basis);

@@ -11,7 +11,7 @@
 namespace ergocast {
 namespace {
 
-/// So many announced periods a teammate may be silent before nobody counts on it any more.
+/// A teammate that is silent for so many announced periods has no forecast any more.
 constexpr Tick kPeriods = 8;
 
 /// Variance along one axis of length 1; `mu(m)` is the coefficient of cos(mπx).

@@ -25,7 +25,7 @@ constexpr std::chrono::nanoseconds kLongestRepeatPeriod = 100ms;
 constexpr auto kQuestionPeriod = 100ms;
 constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
-/// How long the end is repeated to whoever has not heard of it, after the record's last progress.
+/// How long the world repeats the end after the last progress of the record.
 constexpr auto kLinger = 2s;
 
 }  // namespace
@@ -87,12 +87,12 @@ void World::ask(Tick known, AgentId whom, Outbox& out) {
 }
 
 void World::ask_team(Instant now, Outbox& out) {
-  // With no answer at all nobody could answer a tick either, and we would begin at the wrong one.
+  // Without any answer no agent could answer a tick either, and we would begin at the wrong one.
   const bool heard = std::any_of(vehicles_.begin(), vehicles_.end(),
                                  [](const auto& one) { return one.second.command.has_value(); });
   if (!heard) question_.since = now;
-  // In lockstep a tick waits for everybody anyway. Whoever alone had heard our predecessor's last
-  // tick would never answer an earlier one.
+  // In lockstep a tick waits for all members anyway. A member that alone had received our
+  // predecessor's last tick would never answer an earlier one.
   const bool may_begin_without =
       mission().timing.pace == Pace::kRealtime && now - *question_.since >= kQuestionPatience;
   const AgentId unheard = first_unheard();
@@ -146,7 +146,7 @@ void World::take_roster() {
     const auto known = vehicles_.find(entry.author.agent);
     if (entry.active_until >= 0) {
       if (known != vehicles_.end() && known->second.author == entry.author) {
-        known->second.author.incarnation = 0;  // nobody drives it; its place is kept
+        known->second.author.incarnation = 0;  // no agent drives it; its place is kept
       }
     }
   }
@@ -170,7 +170,7 @@ void World::on(const Command& command, const Arrival&) {
   VehicleSlot& slot = at->second;
   const Mission& mission = me_.mission();
   const Eigen::Vector3d step_m = command.velocity_mps * mission.timing.dt_s;
-  // Numbers that only overflow here are no velocities; and nobody answers a tick that was not said.
+  // A step that overflows is no velocity. No agent answers a tick that was not sent.
   const Tick newest = question_.since ? mission.timing.tick_count : tick_;
   // A command of no tick yet is the answer of an agent that knows no position.
   const bool somewhere = question_.since && command.header.tick >= 0;
@@ -193,7 +193,7 @@ void World::on(const Command& command, const Arrival&) {
 }
 
 bool World::everyone_answered() const {
-  // With nobody left, the tick waits for a restarted agent or for the coordinator's patience.
+  // Without any agent, the tick waits for a restarted one or for the coordinator's time-out.
   bool driven = false;
   for (const auto& [id, slot] : vehicles_) {
     if (slot.author.incarnation == 0) continue;
@@ -273,7 +273,7 @@ void World::advance_realtime(Instant now, Outbox& out) {
   if (tick_ >= timing.tick_count) over_since_ = now;
 }
 
-/// One more tick, in which nobody moves.
+/// One more tick, in which no vehicle moves.
 void World::send_zero_velocity(Instant now, Outbox& out) {
   if (!schedule_.published) remember_and_publish(now, out);  // where the last step led
   for (auto& [id, slot] : vehicles_) slot.applied_mps.setZero();

@@ -30,8 +30,8 @@ class World {
   void advance(Instant now, Outbox& out);
   Instant next_wakeup() const;
 
-  /// Ends at once, as when its process is told to stop. A STOP at once it does not end by, but by
-  /// saying where everybody stands still, until that is recorded or a moment has passed.
+  /// Ends at once, as when its process is told to stop. A STOP with `now` does not end it at once:
+  /// it sends a state in which all vehicles stand still, until that is recorded or 2 s have passed.
   void stop(std::string reason) { finish(std::move(reason)); }
 
   bool finished() const { return finished_; }
@@ -117,7 +117,7 @@ class World {
   Question question_;
   std::optional<Tick> begun_at_;
   Schedule schedule_;
-  std::optional<Instant> over_since_;             // nobody moves any more
+  std::optional<Instant> over_since_;             // no vehicle moves any more
   std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
   RecordWindow record_;
   Counted counted_;

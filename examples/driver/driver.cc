@@ -72,7 +72,7 @@ void Driver::on(const Command& command, const Arrival&) {
 }
 
 void Driver::advance(Instant now, Outbox& out) {
-  if (emergency_stopped_) {  // the last state: nobody is driven any more
+  if (emergency_stopped_) {  // the last state: no robot is driven any more
     emergency_stopped_ = false;
     pass_tick();
     return say_where(out);

@@ -49,7 +49,7 @@ class Driver {
 
  private:
   struct VehicleSlot {
-    Author author;  ///< the agent that may command this robot; incarnation 0: nobody
+    Author author;  ///< the agent that may command this robot; incarnation 0: none
     Robot robot;
     Tick answered = -1;  ///< newest tick that a command was for
   };
