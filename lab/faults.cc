@@ -90,7 +90,7 @@ bool spares_the_record(const Faults& f) {
 }
 
 bool hinders(const Faults& f, double patience_s) {
-  // Whoever is waited for may lack four messages in a row, each said again once a second.
+  // The awaited process may lack four messages in a row, each repeated once a second.
   constexpr int kInARow = 4;
   constexpr double kNever = 1e-6;
   const double arrives = std::pow(std::max(0.0, 1 - f.loss - f.corruption), kInARow);

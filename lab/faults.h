@@ -22,7 +22,7 @@ struct Faults {
   double reordering_max_s = 0;  ///< for up to so long, uniform
   double clogging = 0;          ///< begins to hold its whole link back; then all arrive at once
   double clog_max_s = 0;        ///< for up to so long, uniform
-  double replay = 0;            ///< recorded by somebody who sends it once more
+  double replay = 0;            ///< recorded by an attacker and sent once more
   double replay_max_s = 0;      ///< up to so much later, uniform
   double partitions_per_s = 0;  ///< the processes fall into two parts that do not hear each other
   double partition_max_s = 0;   ///< for up to so long, uniform
@@ -34,7 +34,7 @@ struct Faults {
   double clock_rate_error = 0;    ///< a process's clock goes by 1 ± so much, uniform
   double clock_offset_max_s = 0;  ///< and began up to so long before, uniform
   double swarm_bus_only = 0;      ///< above 0: a vehicle and its agent share no radio, but a wire
-  /// Of the mission's time, until all is healed; 1: nothing is, and nobody has to recover.
+  /// Of the mission's time, until all is healed; 1: nothing is, and no process has to recover.
   double lasting_share = 0.6;
 };
 

@@ -165,10 +165,10 @@ class Invariants {
   /// the way has heard the next for long enough: then it holds what the other held that long ago. δ
   /// is what it lacks, and repeats may go on.
   void recovered(double t_s, const std::vector<TableView>& living);
-  /// To be called with it: what the coordinator thinks of everybody who lives.
+  /// To be called with it: what the coordinator thinks of every running process.
   void coordinated(double t_s, const Coordinator& coordinator, Instant now,
                    const std::vector<TableView>& living);
-  /// Everybody has ended, or the time is up.
+  /// All processes have ended, or the time is up.
   /// @param excused  ticks whose states may have been kept from the logger
   void ended(double t_s, const std::string& still_running, const std::string& failure,
              const RunFacts& facts, Tick excused);

@@ -83,7 +83,7 @@ void Invariants::check_forecast(double t_s, const TableView& holder) {
 // ---- liveness
 // ------------------------------------------------------------------------------------
 
-/// The newest of each author's blocks that anybody holds. Forgotten rows do not count any more.
+/// The newest of each author's blocks that any agent holds. Forgotten rows do not count any more.
 std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
     const std::vector<TableView>& living) const {
   std::map<Author, std::vector<Best>> best;
@@ -194,7 +194,7 @@ void Invariants::check_rows(double t_s, const TableView& holder,
           return a.steps < b.steps;
         })->steps;
     const RosterEntry* entry = entry_of(*holder.roster, author);
-    // Whoever a coordinator admitted that died before it told anybody else is nobody to the team.
+    // The coordinator died before it told any other process of this admission: no member.
     if (entry == nullptr) continue;
     const bool speaks = entry->active_until < 0;
     const Tick period = holder.table->announced_period(author);
@@ -251,7 +251,7 @@ void Invariants::check_learned(double t_s, const TableView& holder, const Author
   for (const auto& [author, then] : held_then) {
     const RosterEntry* entry = entry_of(*holder.roster, author);
     if (entry == nullptr || author == holder.self) continue;
-    // Nobody repeats what an author that speaks will soon say itself: a slack for each on the way.
+    // No agent repeats what a running author will soon send itself: a slack for each on the way.
     const Tick period = holder.table->announced_period(author);
     const std::int64_t tolerated = entry->active_until < 0 ? hops * (2 * period + 2) : 0;
     const std::int64_t held = steps_of(*holder.table, author);

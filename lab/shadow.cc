@@ -13,7 +13,7 @@
 namespace ergocast::lab {
 namespace {
 
-/// So many announced periods a teammate may be silent before nobody counts on it any more.
+/// A teammate that is silent for so many announced periods has no forecast any more.
 constexpr Tick kPeriodsUntilDead = 8;
 
 /// The second moment about the mean of  (1 + 2 Σ_m μ_m cos(mπx/L)) / L  over [0, L], which is the

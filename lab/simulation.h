@@ -179,7 +179,7 @@ class Simulation {
   int agent_count_;
   Network network_;
   std::vector<Node> nodes_;
-  NodeSet on_bus_[kBusCount];  // whoever listens to anything there
+  NodeSet on_bus_[kBusCount];  // the nodes that subscribe to any type there
   std::vector<NodeId> listeners_[kBusCount][kMessageTypeCount];
 
   Instant now_{};

@@ -119,7 +119,7 @@ void Simulation::end_events() {
   });
 }
 
-/// An evicted agent has ended, and tells nobody any more.
+/// An evicted agent has ended, and sends nothing any more.
 bool Simulation::anybody_else_knows_the_mission(NodeId but) const {
   for (NodeId node = 0; node < agent_count_; ++node) {
     if (node == but || !up(node) || finished(node)) continue;

@@ -32,7 +32,7 @@ inline std::int64_t steps_of(const CoverageTable& table, const Author& author) {
   return table.steps_held(author).value_or(0);
 }
 
-/// Null if it is nobody to this roster.
+/// Null if it is not in this roster.
 inline const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const Author& author) {
   const auto at = std::find_if(roster.begin(), roster.end(),
                                [&](const RosterEntry& entry) { return entry.author == author; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent has said of itself, continued to the present by whoever heard it.
+// What an agent has announced, continued to the present by the agents that received it.
 #pragma once
 
 #include <vector>

@@ -6,7 +6,7 @@
 //
 // τ_h is how long node h is flown, n the number of known agents, t_now the time that they have
 // covered together, t_h = t_now + n Σ_{g ≤ h} τ_g. So ‖W_h‖²_λ / t_h² is φ² at the end of node h if
-// everybody flies as announced, and H is the last node with τ > 0. The gain of a node is
+// all agents fly as announced, and H is the last node with τ > 0. The gain of a node is
 // τ / points · Σ f at places spread evenly over its way: one place is the middle. Paths run
 // straight on where they leave the domain: f is even about each edge, so their reflection covers
 // the same.
