@@ -119,7 +119,7 @@ std::pair<Paths, double> flight_of_the_law(const Mission& mission) {
   const auto record = [&] {
     Eigen::Matrix2Xd& v_mps = velocities.emplace_back(2, static_cast<Eigen::Index>(team.size()));
     for (std::size_t i = 0; i < team.size(); ++i)
-      v_mps.col(static_cast<Eigen::Index>(i)) = team.v_mps(i);
+      v_mps.col(static_cast<Eigen::Index>(i)) = team.v_mps(i).head<2>();
   };
   team.run_until(static_cast<double>(mission.timing.tick_count) * mission.timing.dt_s, record);
   return {velocities, team.metric()};
