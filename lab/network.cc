@@ -134,7 +134,12 @@ void Network::push(Instant at, Delivery delivery) {
   queue_.emplace_hint(queue_.end(), std::pair(at, pushed_++), std::move(delivery));
 }
 
-Delivery Network::pop() { return std::move(queue_.extract(queue_.begin()).mapped()); }
+Delivery Network::pop() {
+  const auto first = queue_.begin();
+  Delivery next = std::move(first->second);
+  queue_.erase(first);
+  return next;
+}
 
 void Network::heal(Instant now) {
   faults_ = {};

@@ -11,8 +11,8 @@ namespace ergocast::doctor {
 std::string output_of(const std::string& command) {
   const std::string line = "PATH=$PATH:/usr/sbin:/sbin; " + command;
   // The command needs a shell; it is constant, without any input.
-  const std::unique_ptr<FILE, int (*)(FILE*)> output(popen(line.c_str(), "r"),
-                                                     pclose);  // NOLINT(cert-env33-c)
+  // NOLINTNEXTLINE(cert-env33-c)
+  const std::unique_ptr<FILE, int (*)(FILE*)> output(popen(line.c_str(), "r"), pclose);
   std::string text;
   char piece[4096];
   while (output && std::fgets(piece, sizeof piece, output.get()) != nullptr) text += piece;

@@ -407,7 +407,7 @@ TEST(TakenOver, ACoordinatorYieldsThoughTheWorldIsTheFirstToNameTheNewersRevisio
   WorldState world = world_where(0, {0, 0});
   world.roster_revision = 1000;
   give(coordinator, world, at(1s));
-  for (auto now = 1100ms; now < 4s; now += 200ms) {
+  for (std::chrono::milliseconds now{1100}; now < 4s; now += 200ms) {
     const Outbox out = advance(coordinator, at(now));
     for (const auto& part : only<MissionPart>(out)) ASSERT_LT(part.revision, 1000);
     give(coordinator, alive(kSuccessorLife, now.count()), at(now));

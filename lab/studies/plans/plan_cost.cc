@@ -23,10 +23,11 @@ PlanCost::PlanCost(const Mission& mission, const PlanSetting& setting)
       modes_(mission.basis.mode_count()),
       run_weight_(setting.run_weight),
       weights_(sobolev_weights(mission.basis, mission.domain)),
-      residuals_(static_cast<std::size_t>(setting.nodes * modes_)),
+      residuals_(static_cast<std::size_t>(setting.nodes) * static_cast<std::size_t>(modes_)),
       factors_(static_cast<std::size_t>(setting.nodes)),
       adjoint_(static_cast<std::size_t>(modes_)) {
-  places_.reserve(static_cast<std::size_t>(setting.nodes * setting.points));
+  places_.reserve(static_cast<std::size_t>(setting.nodes) *
+                  static_cast<std::size_t>(setting.points));
 }
 
 double PlanCost::operator()(const Outlook& outlook, const Eigen::Vector3d& x_m, const Nodes& nodes,
@@ -110,7 +111,8 @@ void PlanCost::trace_back(const Outlook& outlook, int flown, Nodes& slope) {
     for (int k = 0; k < modes_; ++k) adjoint[k] += factor * (weight[k] * residual[k]);
     slope.col(node) = duration_s * later;
     for (int point = 0; point < points_; ++point) {
-      const BasisAt& place = places_[static_cast<std::size_t>(node * points_ + point)];
+      const auto at = std::ptrdiff_t{node} * points_ + point;
+      const BasisAt& place = places_[static_cast<std::size_t>(at)];
       const Eigen::Vector3d here =
           duration_s / points_ * weighted_gradient(place, mission_.basis, adjoint);
       slope.col(node) += share_at(point, points_) * duration_s * here;

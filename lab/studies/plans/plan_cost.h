@@ -47,7 +47,9 @@ class PlanCost {
   int fly(const Outlook& outlook, const Eigen::Vector3d& x_m, const Nodes& nodes);
   double weigh(const Outlook& outlook, int flown);
   void trace_back(const Outlook& outlook, int flown, Nodes& slope);
-  double* residual_of(int node) { return residuals_.data() + std::ptrdiff_t{node} * modes_; }
+  double* residual_of(int node) {
+    return &residuals_[static_cast<std::size_t>(node) * static_cast<std::size_t>(modes_)];
+  }
 
   Mission mission_;
   int points_, modes_;
