@@ -8,8 +8,11 @@
 #include <deque>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
+#include <map>
+#include <set>
 
 #include "ops/doctor/probe.h"
+#include "ops/doctor/socket_table.h"
 #include "runtime/key_file.h"
 #include "runtime/node.h"
 #include "runtime/socket.h"
@@ -138,8 +141,17 @@ class DoctorCanFail : public OnHosts {
     };
   }
 
-  void start(std::size_t i, const Plant& plant) {
-    const int host = static_cast<int>(i), port = plant.port > 0 ? plant.port : 24000 + 3 * host;
+  static int port_of(std::size_t i, const Plant& plant) {
+    return plant.port > 0 ? plant.port : 24000 + 3 * static_cast<int>(i);
+  }
+  static std::string url_of(std::size_t i, const Plant& plant) {
+    return "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port_of(i, plant)) + "?" +
+           plant.url_options;
+  }
+
+  /// Makes the host's fault.
+  void set_up(std::size_t i, const Plant& plant) {
+    const int host = static_cast<int>(i), port = port_of(i, plant);
     std::string set_up = plant.set_up;
     if (const auto at = set_up.find("$PORT"); at != set_up.npos)
       set_up.replace(at, 5, std::to_string(port));
@@ -148,25 +160,30 @@ class DoctorCanFail : public OnHosts {
       const auto elsewhere = lan_->visit(lan_->hosts() - 1);
       speakers_.push_back(plant.speaker(port));
     }
-    const std::string url =
-        "udpm://" + std::string(kTeamsGroup) + ":" + std::to_string(port) + "?" + plant.url_options;
     const auto there = lan_->visit(host);
     for (const int offset : plant.held_ports) hold(port + offset, !plant.alone);
-    for (int agent = 0; agent < plant.agents; ++agent) {
-      url_ = url;
-      hand("ergocast-agent");
-    }
-    const auto sockets = [] { return text_of("/proc/thread-self/net/udp"); };
-    EXPECT_TRUE(eventually([&] { return std::ranges::count(sockets(), '\n') > 2 * plant.agents; }));
+    url_ = url_of(i, plant);
+    for (int agent = 0; agent < plant.agents; ++agent) hand("ergocast-agent");
+    const auto open = [&] {
+      const auto sockets = doctor::parse_socket_table(text_of("/proc/thread-self/net/udp"));
+      return std::ranges::count_if(sockets, [&](const doctor::UdpSocket& socket) {
+        return socket.port >= port && socket.port < port + kBusCount;
+      });
+    };
+    EXPECT_TRUE(eventually([&] { return open() >= 2 * plant.agents; }));
+  }
+
+  void start_doctor(std::size_t i, const Plant& plant) {
+    const auto there = lan_->visit(static_cast<int>(i));
     const auto program = plant.as_nobody ? folder_ / "ergocast" : program_folder() / "ergocast";
     std::string command =
-        plant.wrapper + " " + program.string() + " doctor --lcm-url '" + url + "'";
+        plant.wrapper + " " + program.string() + " doctor --lcm-url '" + url_of(i, plant) + "'";
     for (const std::string& argument : plant.arguments) command += " " + argument;
     command =
         plant.on_a_terminal ? "script -qefc \"" + command + "\" /dev/null" : command + " --json";
-    logs_.push_back(folder_ / ("host-" + std::to_string(i)));
-    doctors_.push_back(std::get<Child>(
-        Child::start({{"/bin/sh", "-c", "exec " + command}, logs_.back(), SIGKILL})));
+    const auto log = folder_ / ("doctor-" + std::to_string(++started_doctors_));
+    const Child::Program examiner{{"/bin/sh", "-c", "exec " + command}, log, SIGKILL};
+    doctors_.insert_or_assign(i, Doctor{std::get<Child>(Child::start(examiner)), log});
   }
 
   void hold(int port, bool shared) {
@@ -177,22 +194,21 @@ class DoctorCanFail : public OnHosts {
     EXPECT_EQ(bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   }
 
-  /// Lets the senders send until every doctor has ended.
-  void wait_for_all() {
-    EXPECT_TRUE(eventually([this] {
+  /// Examines the hosts in `pending` at once. Meanwhile all senders send.
+  void examine(const std::vector<Plant>& plants, const std::set<std::size_t>& pending) {
+    for (const std::size_t i : pending) start_doctor(i, plants[i]);
+    EXPECT_TRUE(eventually([&] {
       for (const Speaker& speak : speakers_) speak();
-      return std::none_of(doctors_.begin(), doctors_.end(),
-                          [](Child& one) { return one.running(); });
+      return std::ranges::none_of(pending, [&](auto i) { return doctors_.at(i).child.running(); });
     }));
+    for (const std::size_t i : pending) said_.push_back(text_of(doctors_.at(i).log));
   }
 
-  void expect_finding(std::size_t i, const Plant& plant) {
-    const std::string told = text_of(logs_[i]);
-    EXPECT_EQ(doctors_[i].exit_code().value_or(-1), plant.exit_code)
-        << plant.check << ": " << plant.found;
-    said_.push_back(told);
-    const json report = json::parse(told, nullptr, false);
-    if (report.is_discarded()) return;  // for people
+  /// Whether the doctor found what `plant` has planted, and ended with its exit code.
+  bool has_found(std::size_t i, const Plant& plant) {
+    const json report = json::parse(text_of(doctors_.at(i).log), nullptr, false);
+    const bool as_expected = doctors_.at(i).child.exit_code().value_or(-1) == plant.exit_code;
+    if (report.is_discarded()) return as_expected;  // for people
     bool found = false;
     for (const json& one : report["findings"]) {
       const std::string check = one["check"], what = one["found"], why = one["why"],
@@ -201,14 +217,35 @@ class DoctorCanFail : public OnHosts {
       found = found || (check == plant.check && one["level"] == plant.level &&
                         what.find(plant.found) != what.npos);
     }
-    EXPECT_TRUE(found) << plant.level << " " << plant.check << ": " << plant.found << " is not in\n"
-                       << told;
+    return as_expected && found;
   }
 
+  /// The doctor listens for a stated time, and a busy machine may not let a sender speak within it.
+  /// Therefore a host is examined again if its fault was not found.
+  void expect_each_to_be_found(const std::vector<Plant>& plants) {
+    constexpr int kExaminations = 5;
+    std::set<std::size_t> pending;
+    for (std::size_t i = 0; i < plants.size(); ++i) pending.insert(i);
+    for (int n = 0; n < kExaminations && !pending.empty(); ++n) {
+      examine(plants, pending);
+      std::erase_if(pending, [&](std::size_t i) { return has_found(i, plants[i]); });
+    }
+    for (const std::size_t i : pending) {
+      ADD_FAILURE() << plants[i].level << " " << plants[i].check << ": " << plants[i].found
+                    << ", exit code " << plants[i].exit_code << ": not in\n"
+                    << text_of(doctors_.at(i).log) << "exit code "
+                    << doctors_.at(i).child.exit_code().value_or(-1);
+    }
+  }
+
+  struct Doctor {
+    Child child;
+    std::filesystem::path log;
+  };
   std::deque<Socket> held_;
   std::vector<Speaker> speakers_;
-  std::vector<Child> doctors_;
-  std::vector<std::filesystem::path> logs_;
+  std::map<std::size_t, Doctor> doctors_;  ///< the last one on each host
+  int started_doctors_ = 0;
   std::vector<std::string> said_;
 };
 
@@ -462,9 +499,8 @@ TEST_F(DoctorCanFail, InEachOfItsFindings) {
 
   const std::vector<Plant> all = plants();
   lan_.emplace(static_cast<int>(all.size()) + 1);
-  for (std::size_t i = 0; i < all.size(); ++i) start(i, all[i]);
-  wait_for_all();
-  for (std::size_t i = 0; i < all.size(); ++i) expect_finding(i, all[i]);
+  for (std::size_t i = 0; i < all.size(); ++i) set_up(i, all[i]);
+  expect_each_to_be_found(all);
   EXPECT_EQ(ergocast({"doctor", "--help"}), 0);
   said_.push_back(output());
 
