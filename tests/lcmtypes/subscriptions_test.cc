@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The subscriptions of team/subscriptions.h, on LCM's channels and in README.md.
+// The subscriptions of team/subscriptions.h, on LCM's channels and in ARCHITECTURE.md.
 #include "team/subscriptions.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ namespace {
 using namespace test;
 using Names = std::set<std::string>;
 
-/// The names of the roles in README.md; the logger receives everything, so no line of the table has
-/// it.
+/// The names of the roles in ARCHITECTURE.md; the logger receives everything, so no line of the
+/// table has it.
 constexpr const char* kNames[kRoleCount] = {"agents", "coordinator", "world", "driver",
                                             "",       "run",         "status"};
 
@@ -47,14 +47,14 @@ Names listeners(const std::string& cell) {
   return names;
 }
 
-/// The table under "## Channels": listeners by channel and bus.
-std::map<std::string, std::vector<Names>> readme() {
-  std::ifstream file(ERGOCAST_SOURCE_DIR "/README.md");
+/// The table under "### Channels": listeners by channel and bus.
+std::map<std::string, std::vector<Names>> documented() {
+  std::ifstream file(ERGOCAST_SOURCE_DIR "/ARCHITECTURE.md");
   std::map<std::string, std::vector<Names>> table;
   std::string line;
-  while (std::getline(file, line) && line != "## Channels") {
+  while (std::getline(file, line) && line != "### Channels") {
   }
-  while (std::getline(file, line) && !line.starts_with("## ")) {
+  while (std::getline(file, line) && !line.starts_with("##")) {
     if (!line.starts_with("| `ERGOCAST_")) continue;
     const auto cells = split(line, '|');
     if (cells.size() != 4 + kBusCount) {
@@ -67,8 +67,8 @@ std::map<std::string, std::vector<Names>> readme() {
   return table;
 }
 
-TEST(Subscriptions, AreThoseOfTheReadme) {
-  const auto said = readme();
+TEST(Subscriptions, AreThoseOfTheDocument) {
+  const auto said = documented();
   EXPECT_EQ(said.size(), kMessageTypeCount);
   for (std::size_t type = 0; type < kMessageTypeCount; ++type) {
     const ChannelName& name = channel_names()[type];
