@@ -8,6 +8,7 @@
 #include "logger/mission_text.h"
 #include "team/messages.h"
 #include "tests/scenario/scenarios.h"
+#include "tests/team/rich_mission.h"
 
 namespace ergocast {
 namespace {
@@ -60,8 +61,14 @@ TEST(MissionText, IsThatOfItsScenarioWithoutDescriptionAndTarget) {
   }
 }
 
-// The limits are in two places: a plan that the reader accepts can be written as a scenario, which
-// gives the same mission.
+TEST(MissionText, ReadsBackToEveryFieldOfAMission) {
+  const Mission mission = rich_mission();
+  const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
+  EXPECT_EQ(plan_of(good(text)), encode_plan(as_scenarios_know_it(mission))) << text;
+}
+
+// Rules between fields are in two places: a plan that the reader accepts can be written as a
+// scenario, which gives the same mission.
 TEST(HostilePlan, WithAnyBitFlippedIsRefusedOrOfAMissionThatAScenarioSays) {
   Bytes plan = plan_of(good(R"(
     name: "small"
