@@ -22,7 +22,8 @@ namespace ergocast {
 /// The words of an enumeration in scenario.proto, in the order of its values in core/mission.h.
 using Words = std::initializer_list<const char*>;
 
-/// The kinds of fields. A visitor derives from this, which ignores all, and hides what it uses.
+/// The kinds of fields: number in the plan, name, value. A visitor derives from this, which ignores
+/// all, and hides what it uses.
 struct FieldVisitor {
   /// Unless the last argument holds, the number is 0 and in no scenario.
   void number(int, const char*, auto&, const Limits&, bool = true) {}
@@ -39,10 +40,10 @@ struct FieldVisitor {
 };
 
 template <class T, class Part>
-concept Of = std::same_as<std::remove_const_t<T>, Part>;
+concept MaybeConst = std::same_as<std::remove_const_t<T>, Part>;
 
 /// A height is 0, and in no plan yet.
-void list_fields(auto& io, Of<Box> auto& domain) {
+void list_fields(auto& io, MaybeConst<Box> auto& domain) {
   io.number(1, "origin_x_m", domain.origin_m.x(), limits::kCoordinate_m);
   io.number(2, "origin_y_m", domain.origin_m.y(), limits::kCoordinate_m);
   io.number(3, "size_x_m", domain.size_m.x(), limits::kSize_m);
@@ -50,7 +51,7 @@ void list_fields(auto& io, Of<Box> auto& domain) {
 }
 
 /// modes_z is 1, and in no plan yet.
-void list_fields(auto& io, Of<Basis> auto& basis) {
+void list_fields(auto& io, MaybeConst<Basis> auto& basis) {
   io.number(1, "modes_x", basis.modes_x, limits::kModes);
   io.number(2, "modes_y", basis.modes_y, limits::kModes);
   io.flag(3, "normalized", basis.normalized);
@@ -58,7 +59,7 @@ void list_fields(auto& io, Of<Basis> auto& basis) {
   io.number(5, "sobolev_exponent", basis.sobolev_exponent, limits::above(0, 10));
 }
 
-void list_fields(auto& io, Of<ControlLaw> auto& law) {
+void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
   const bool adaptive = law.perturbation == Perturbation::kAdaptive;
   io.number(1, "u_max_mps", law.u_max_mps, limits::above(0, 1e6));
   io.choice(2, "regularization", law.regularization, {"ABSOLUTE", "RELATIVE"});
@@ -73,7 +74,7 @@ void list_fields(auto& io, Of<ControlLaw> auto& law) {
   io.flag(12, "paired_pushes", law.paired_pushes);
 }
 
-void list_fields(auto& io, Of<Timing> auto& timing) {
+void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
   io.number(1, "dt_s", timing.dt_s, limits::between(1e-6, 3600));
   io.duration(2, timing);
   io.number(3, "broadcast_period_ticks", timing.broadcast_period_ticks, limits::between(1, 1000));
@@ -87,7 +88,7 @@ void list_fields(auto& io, Of<Timing> auto& timing) {
 }
 
 /// Number 1 of the plan is the version of the program that wrote it.
-void list_fields(auto& io, Of<Mission> auto& m) {
+void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.name(2, "name", m.name);
   io.seed(3, "seed", m.seed);
   io.part(4, "domain", m.domain);
