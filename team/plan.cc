@@ -46,7 +46,8 @@ bool is_version(const std::string& text) {
 // plan has the fields in ascending order, and none that is 0.
 constexpr int kVersionField = 1;
 constexpr unsigned kVarint = 0, kFixed64 = 1, kBlock = 2;
-static_assert(std::endian::native == std::endian::little, "doubles are copied as they are");
+// Doubles are copied as they are.
+static_assert(std::endian::native == std::endian::little);
 
 template <class T>
 concept Whole = std::is_integral_v<T> || std::is_enum_v<T>;
