@@ -37,7 +37,7 @@ void note(std::set<std::string>& names, const std::string& name) {
   if (!name.empty() && names.size() < kMostNames) names.insert(printable(name));
 }
 
-std::string joined(const std::set<std::string>& names) {
+std::string listed(const std::set<std::string>& names) {
   return doctor::joined({names.begin(), names.end()});
 }
 
@@ -46,8 +46,8 @@ std::string described(RunId id, const HeardRun& run) {
   std::snprintf(text, sizeof text, "run %016" PRIx64, id);
   return text + (run.state.empty() ? "" : ", " + run.state) +
          (run.agents.empty() ? "" : ", " + counted(static_cast<long>(run.agents.size()), "agent")) +
-         (run.hosts.empty() ? "" : " on " + joined(run.hosts)) +
-         (run.versions.empty() ? "" : ", version " + joined(run.versions));
+         (run.hosts.empty() ? "" : " on " + listed(run.hosts)) +
+         (run.versions.empty() ? "" : ", version " + listed(run.versions));
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
   }
   if (const auto keys = key_finding()) return *keys;
   if (foreign_messages_ > 0) {
-    return {"swarm bus", Level::kWarning, "other LCM traffic: " + joined(foreign_channels_),
+    return {"swarm bus", Level::kWarning, "other LCM traffic: " + listed(foreign_channels_),
             "Every process of a team would parse all of it and refuse it.",
             "--lcm-url '" + other.base() + "'   # on every host"};
   }
