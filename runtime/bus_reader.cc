@@ -55,8 +55,8 @@ void BusReader::set_receive_buffer(const LcmUrl& url) {
 }
 
 std::size_t BusReader::receive() {
-  const int count = recvmmsg(fd(), messages_.data(), static_cast<unsigned>(batch_), MSG_DONTWAIT,
-                             nullptr);
+  const int count =
+      recvmmsg(fd(), messages_.data(), static_cast<unsigned>(batch_), MSG_DONTWAIT, nullptr);
   if (count <= 0) return 0;
   // A smaller batch has emptied the buffer, which therefore was not full.
   if (static_cast<std::size_t>(count) == batch_) look_at_drops();

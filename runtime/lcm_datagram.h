@@ -17,8 +17,7 @@ inline constexpr std::size_t kLcmHeaderBytes = 8;
 /// With the zero. LCM allows names of 63 characters.
 inline constexpr std::size_t kMaxChannelBytes = 64;
 /// No datagram of ours is longer.
-inline constexpr std::size_t kMaxLcmBytes =
-    kLcmHeaderBytes + kMaxChannelBytes + kMaxDatagramBytes;
+inline constexpr std::size_t kMaxLcmBytes = kLcmHeaderBytes + kMaxChannelBytes + kMaxDatagramBytes;
 
 /// The parts of a received datagram, which they point into.
 struct LcmDatagram {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opens a reader for each bus with subscriptions and one writer, decodes datagrams without throwing,
-// and waits with one poll.
+// Opens a reader for each bus with subscriptions and one writer, decodes datagrams without
+// throwing, and waits with one poll.
 #include "runtime/transport.h"
 
 #include <poll.h>

@@ -155,10 +155,14 @@ TEST_F(OneBus, ReadsAnyBytesWhereTheKernelHasNoFilter) {
   const auto ear = reader(here_);
   const int nothing = 0;
   ASSERT_EQ(setsockopt(ear->fd(), SOL_SOCKET, SO_DETACH_FILTER, &nothing, sizeof nothing), 0);
-  const std::vector<std::string> hostile = {
-      "", "L", "LC02", std::string("LC02\0\0\0\1", 8), std::string("LC02\0\0\0\1ERGOCAST_HELLO", 22),
-      std::string("LC03\0\0\0\1\xff\xff\xff\xff", 12), std::string(70, '\0'),
-      "LC02    " + std::string(65000, 'E')};
+  const std::vector<std::string> hostile = {"",
+                                            "L",
+                                            "LC02",
+                                            std::string("LC02\0\0\0\1", 8),
+                                            std::string("LC02\0\0\0\1ERGOCAST_HELLO", 22),
+                                            std::string("LC03\0\0\0\1\xff\xff\xff\xff", 12),
+                                            std::string(70, '\0'),
+                                            "LC02    " + std::string(65000, 'E')};
   for (const std::string& bytes : hostile) send_bytes(kGroup, bytes);
   send(*writer(here_), hello());
   ASSERT_TRUE(hears(*ear, hello()));

@@ -160,8 +160,8 @@ std::vector<Said> logged(const std::filesystem::path& file) {
 TEST_F(Conformance, LcmsLoggerRecordsUsAndItsPlayerReachesUs) {
   const auto log = folder_ / "log.lcm";
   setenv("LCM_DEFAULT_URL", url(Bus::kSwarm).c_str(), 1);
-  Child logger = std::get<Child>(
-      Child::start({{"/usr/bin/lcm-logger", "--flush-interval=10", log}, folder_ / "logger", SIGKILL}));
+  Child logger = std::get<Child>(Child::start(
+      {{"/usr/bin/lcm-logger", "--flush-interval=10", log}, folder_ / "logger", SIGKILL}));
   unsetenv("LCM_DEFAULT_URL");
   Heard expected;
   const auto has_all = [&expected](const Heard& heard) {
@@ -176,14 +176,17 @@ TEST_F(Conformance, LcmsLoggerRecordsUsAndItsPlayerReachesUs) {
     ASSERT_TRUE(eventually([&] {
       ours_->publish({Bus::kSwarm, message});
       return has_all(logged(log));
-    })) << expected.back().channel << text_of(folder_ / "logger");
+    })) << expected.back().channel
+        << text_of(folder_ / "logger");
   }
   logger.send(SIGTERM);
   wait_for(logger);
   EXPECT_TRUE(eventually([&] { return has_all(listen(Bus::kSwarm)); }));
   heard_.clear();
-  Child player = std::get<Child>(Child::start(
-      {{"/usr/bin/lcm-logplayer", "--lcm-url=" + url(Bus::kSwarm), log}, folder_ / "player", SIGKILL}));
+  Child player = std::get<Child>(
+      Child::start({{"/usr/bin/lcm-logplayer", "--lcm-url=" + url(Bus::kSwarm), log},
+                    folder_ / "player",
+                    SIGKILL}));
   EXPECT_TRUE(eventually([&] { return has_all(listen(Bus::kSwarm)); }))
       << text_of(folder_ / "player");
   EXPECT_EQ(wait_for(player), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The libraries of the programs: those of every robot contain no scenario, map or picture reader, and
-// only the logger LCM's, for its file format.
+// The libraries of the programs: those of every robot contain no scenario, map or picture reader,
+// and only the logger LCM's, for its file format.
 #include <array>
 #include <memory>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The jar for lcm-spy: types, the plan's reader, and pictures of given messages. LCM's Java reads what
-// we send, and the reverse.
+// The jar for lcm-spy: types, the plan's reader, and pictures of given messages. LCM's Java reads
+// what we send, and the reverse.
 #include <cmath>
 #include <map>
 
@@ -56,9 +56,10 @@ TEST_F(SpyJar, EveryMessageComesBackFromLcmsJavaAsItWasSent) {
   const auto ours = std::get<0>(Transport::open(
       url, 0, {}, {0, kEveryType, 0},
       {.on_message = [](const Message&, Bus, AgentId) {},
-       .on_accepted = [&heard](Bus, std::string_view channel, std::span<const std::byte> bytes) {
-         heard[std::string(channel)].assign(bytes.begin(), bytes.end());
-       }}));
+       .on_accepted =
+           [&heard](Bus, std::string_view channel, std::span<const std::byte> bytes) {
+             heard[std::string(channel)].assign(bytes.begin(), bytes.end());
+           }}));
   Child echo = begin(probe_command({"echo", url.of(Bus::kSwarm), url.of(Bus::kWorld)}));
   Outbox outbox;
   std::map<std::string, Bytes> expected;
