@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstring>
@@ -45,10 +46,13 @@ bool comes_back(const Socket& ear, const Probe& probe, Instant deadline) {
 
 }  // namespace
 
-bool hears_itself(const LcmUrl& url, Bus bus) {
+std::optional<std::string> why_deaf(const LcmUrl& url, Bus bus) {
   const int port = url.base_port + static_cast<int>(bus);
-  const Socket ear(AF_INET, SOCK_DGRAM), mouth(AF_INET, SOCK_DGRAM);
-  if (mouth.fd() < 0 || listen_to_group(ear, url.group, port)) return false;
+  const auto failed = [&](const std::string& why) { return url.of(bus) + ": " + why; };
+  const Socket ear(AF_INET, SOCK_DGRAM);
+  if (const auto problem = listen_to_group(ear, url.group, port)) return failed(*problem);
+  const Socket mouth(AF_INET, SOCK_DGRAM);
+  if (mouth.fd() < 0) return failed(no_socket(errno));
   const unsigned char ttl = 0;
   setsockopt(mouth.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   const sockaddr_in to = address_of(url.group, port);
@@ -57,9 +61,11 @@ bool hears_itself(const LcmUrl& url, Bus bus) {
   for (Instant at = now(); at < end; at = now()) {
     sendto(mouth.fd(), probe.data(), probe.size(), 0, reinterpret_cast<const sockaddr*>(&to),
            sizeof to);
-    if (comes_back(ear, probe, std::min(end, at + 100ms))) return true;
+    if (comes_back(ear, probe, std::min(end, at + 100ms))) return std::nullopt;
   }
-  return false;
+  return failed(
+      "LCM's self test failed\n"
+      "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset");
 }
 
 }  // namespace ergocast

@@ -25,8 +25,6 @@ namespace {
 
 constexpr std::size_t kMaxDatagramsPerTurn = 256;
 constexpr std::string_view kPrefix = "ERGOCAST_";
-constexpr const char* kFirewall =
-    "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
 
 class BusTransport final : public Transport {
  public:
@@ -95,9 +93,7 @@ std::optional<std::string> BusTransport::connect(const LcmUrl& url, const Subscr
     if (types == 0) continue;
     auto opened = BusReader::open(url, bus, types);
     if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
-    if (!hears_itself(url, bus)) {
-      return url.of(bus) + ": LCM's self test failed\n" + kFirewall;
-    }
+    if (auto problem = why_deaf(url, bus)) return problem;
     lines_.push_back({std::get<0>(std::move(opened)), types, RepeatGuard(bus)});
     sockets.push_back(lines_.back().reader->fd());
     ready_.push_back({sockets.back(), POLLIN, 0});
