@@ -17,9 +17,10 @@
 
 namespace ergocast {
 
-using namespace std::chrono_literals;
-
 namespace {
+
+constexpr auto kPatience = std::chrono::seconds(10);
+constexpr auto kRepeatPeriod = std::chrono::milliseconds(100);
 
 using Probe = std::array<std::byte, 16>;
 
@@ -57,11 +58,11 @@ std::optional<std::string> why_deaf(const LcmUrl& url, Bus bus) {
   setsockopt(mouth.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
   const sockaddr_in to = address_of(url.group, port);
   const Probe probe = make_probe();
-  const Instant end = now() + 10s;
+  const Instant end = now() + kPatience;
   for (Instant at = now(); at < end; at = now()) {
     sendto(mouth.fd(), probe.data(), probe.size(), 0, reinterpret_cast<const sockaddr*>(&to),
            sizeof to);
-    if (comes_back(ear, probe, std::min(end, at + 100ms))) return std::nullopt;
+    if (comes_back(ear, probe, std::min(end, at + kRepeatPeriod))) return std::nullopt;
   }
   return failed(
       "LCM's self test failed\n"
