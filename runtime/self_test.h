@@ -12,7 +12,8 @@ namespace ergocast {
 
 /// Sends a datagram to the bus, which does not leave this host and which LCM's programs discard by
 /// its first bytes.
-/// @return nothing as soon as it comes back; otherwise the cause with its remedy, after at most 10 s
+/// @return nothing as soon as it comes back; otherwise the cause with its remedy, after at most 10
+/// s
 std::optional<std::string> why_deaf(const LcmUrl& url, Bus bus);
 
 }  // namespace ergocast
