@@ -30,6 +30,9 @@ public final class SpyProbe {
       case "listen":
         listen(rest);
         return;
+      case "echo":
+        echo(rest[0], rest[1]);
+        return;
       case "plan":
         plan(rest[0]);
         return;
@@ -65,6 +68,22 @@ public final class SpyProbe {
         }
       });
     }
+    System.out.println("listening");
+    Thread.sleep(Long.MAX_VALUE);
+  }
+
+  /** Says again at another URL whatever is heard at one. */
+  private static void echo(String from, String to) throws Exception {
+    LCM there = new LCM(to);
+    new LCM(from).subscribe("ERGOCAST_.*", (lcm, channel, in) -> {
+      try {
+        byte[] bytes = new byte[in.available()];
+        in.readFully(bytes);
+        there.publish(channel, bytes, 0, bytes.length);
+      } catch (java.io.IOException wrong) {
+        throw new java.io.UncheckedIOException(wrong);
+      }
+    });
     System.out.println("listening");
     Thread.sleep(Long.MAX_VALUE);
   }
