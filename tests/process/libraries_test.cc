@@ -27,10 +27,9 @@ bool loads(const std::string& said, const std::string& library) {
 TEST(Libraries, ProgramsThatReadNoScenarioLoadNoParserAndNoPictures) {
   for (const char* program : {"ergocast-agent", "ergocast-sim", "ergocast-logger"}) {
     const std::string said = loaded_by(program);
-    EXPECT_EQ(loads(said, "liblcm"), std::string(program) == "ergocast-logger") << program
-                                                                                << ":
-                                                                                   "
-                                                                                << said;
+    EXPECT_EQ(loads(said, "liblcm"), std::string(program) == "ergocast-logger")
+        << program << " loads:\n"
+        << said;
     for (const char* library : {"libprotobuf", "libprotobuf-lite", "libpng16", "libz"}) {
       EXPECT_FALSE(loads(said, library)) << program << " loads " << library << ":\n" << said;
     }
