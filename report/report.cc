@@ -28,8 +28,9 @@ std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& r
   for (const Figure& figure : figures) {
     files.push_back({fs::path("figures") / (figure.name + ".svg"), figure.svg});
   }
-  files.push_back({kReportFile,
-                   report_page(data, mission, std::get<nlohmann::ordered_json>(summary), figures)});
+  files.push_back(
+      {kReportFile, report_page(data, mission, std::get<nlohmann::ordered_json>(summary),
+                                std::get<Field>(target))});
   return files;
 }
 
