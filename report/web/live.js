@@ -20,12 +20,12 @@ class Rate {
 
 const sum = (agents, key) => agents.reduce((total, agent) => total + (typeof agent[key] === 'number' ? agent[key] : 0), 0);
 
-function addLog(lines) {
+export function addLog(lines) {
   const log = $('log'), low = log.scrollHeight - log.scrollTop - log.clientHeight < 24;
   $('logBox').hidden = false;
   for (const line of lines) {
     const css = /\b(error|killed|failed)\b/.test(line) ? 'bad' : /\bwarn/.test(line) ? 'warn' : '';
-    log.append(element('li', css, line));
+    log.append(element('li', css, line.replace(/^\d{4}-\d\d-\d\dT/, '')));
   }
   while (log.childElementCount > MOST_LINES) log.firstChild.remove();
   if (low) log.scrollTop = log.scrollHeight;

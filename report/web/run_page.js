@@ -9,7 +9,7 @@ import { advance, buildStrip, faster, follow, jump, seek, setPlaying, showFollow
 import { buildTeam, colourTeam, hover, pin, showTeam } from './team.js';
 import { showDetails, showFacts } from './details.js';
 import { savePng, saveSvg, saveVideo, svgText } from './save.js';
-import { watchLive } from './live.js';
+import { addLog, watchLive } from './live.js';
 import { $, clamp, put, readable } from './text.js';
 
 const view = new View();
@@ -219,15 +219,15 @@ const livePage = {
     }
     if (performance.now() - (run.stripAt ?? 0) > 500) { run.stripAt = performance.now(); buildStrip(); showFacts(facts); }
     if (run.tracks.length > 12 && !run.tailChosen) { run.tailChosen = true; set('tail', startTail(run)); }
-    put($('seal'), facts.authenticated ? '' : 'not authenticated: anybody on the network may have sent it');
+    put($('seal'), facts.authenticated ? '' : 'not authenticated');
     $('seal').hidden = facts.authenticated;
     ask();
   },
   ended(run, text) {
     const at = S.following ? undefined : S.t;
     if (run) showRecord(run, at);
-    this.lost(text ?? '');
-    put($('spoken'), 'The mission has ended.');
+    this.lost('');
+    put($('spoken'), `The mission has ended: ${text}`);
   },
   lost(text) {
     put($('banner'), text);
@@ -381,7 +381,9 @@ connectMap();
 connectKeys();
 setTheme(wishes.get('theme') ?? (dark.matches ? 'dark' : 'light'));
 dark.addEventListener('change', e => setTheme(e.matches ? 'dark' : 'light'));
-new ResizeObserver(layout).observe(document.body);
+const sizes = new ResizeObserver(layout);
+for (const node of [document.body, $('stage'), $('chart')]) sizes.observe(node);
+if (data.log?.length) addLog(data.log);
 if (data.record) showRecord(recordedRun(data.record));
 if (data.live) {
   put($('name'), 'waiting for a team');
