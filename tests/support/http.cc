@@ -51,9 +51,9 @@ namespace {
 /// Whether `text` has all of an answer with a Content-Length.
 bool whole(const std::string& text) {
   const auto head = text.find("\r\n\r\n");
-  const auto at = text.find("Content-Length: ");
+  const auto at = text.find("Content-Length:");
   if (head == text.npos || at == text.npos || at > head) return false;
-  return text.size() >= head + 4 + std::strtoul(text.c_str() + at + 16, nullptr, 10);
+  return text.size() >= head + 4 + std::strtoul(text.c_str() + at + 15, nullptr, 10);
 }
 
 }  // namespace
