@@ -33,7 +33,7 @@ LiveTeam::LiveTeam(RunId run, Instant since, bool authenticated)
 
 void LiveTeam::begin(const Mission& mission, const Field& density) {
   if (grid_) return;
-  grid_.emplace(base_of(mission.domain), mission.timing.tick_count, mission.starts_m.size());
+  grid_.emplace(base_of(mission.domain), mission.starts_m.size());
   mission_ = page_mission(mission, density);
 }
 
@@ -169,8 +169,8 @@ Json LiveTeam::roster_json() const {
 std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
   more = false;
   std::string text;
-  if (grid_ && !cursor.mission) {
-    cursor.mission = true;
+  if (grid_ && cursor.stride != grid_->stride()) {
+    cursor = {.stride = grid_->stride(), .lines = cursor.lines};
     text += event("mission", {{"mission", mission_},
                               {"stride", grid_->stride()},
                               {"run_id", to_hex(run())},

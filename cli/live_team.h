@@ -47,7 +47,7 @@ class LiveTeam {
 
   /// What a browser has got.
   struct Cursor {
-    bool mission = false;
+    Tick stride = 0;  ///< of the rows; when it grows, the browser begins anew
     std::int64_t row = 0;
     std::uint64_t statuses = 0, incidents = 0, rosters = 0, lines = 0;
   };

@@ -156,7 +156,7 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
                  const Field& density) {
   Tick ticks = 0;
   for (const auto& [agent, track] : run.tracks) ticks = std::max(ticks, track.back().tick + 1);
-  TrackGrid grid(base_of(mission.domain), ticks, run.tracks.size());
+  TrackGrid grid(base_of(mission.domain), run.tracks.size());
   for (const auto& [agent, track] : run.tracks) {
     for (const TrackPoint& point : track) grid.put(agent, point.tick, point.x_m);
   }

@@ -20,22 +20,26 @@ void append_number(std::string& bytes, std::int64_t value) {
   bytes += static_cast<char>(zigzag);
 }
 
-Tick stride_for(Tick tick_count, std::size_t agents) {
-  const auto positions = static_cast<double>(tick_count) * static_cast<double>(agents);
-  return std::max<Tick>(
-      1, static_cast<Tick>(std::ceil(positions / static_cast<double>(TrackGrid::kMostPositions))));
-}
-
 }  // namespace
 
-TrackGrid::TrackGrid(const Rectangle& domain, Tick tick_count, std::size_t agents)
-    : domain_(domain),
-      stride_(stride_for(tick_count, std::max<std::size_t>(1, agents))),
-      tick_count_(tick_count),
-      bits_(agents > kSmallTeam ? 13 : 14) {}
+TrackGrid::TrackGrid(const Rectangle& domain, std::size_t agents)
+    : domain_(domain), bits_(agents > kSmallTeam ? 13 : 14) {}
+
+void TrackGrid::coarsen() {
+  stride_ *= 2;
+  rows_ = (rows_ + 1) / 2;
+  for (auto& [agent, track] : tracks_) {
+    for (std::size_t row = 0; 2 * row < track.size(); ++row) track[row] = track[2 * row];
+    track.resize((track.size() + 1) / 2);
+  }
+}
 
 void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
-  if (tick < 0 || tick > tick_count_ || tick % stride_ != 0) return;
+  if (tick < 0) return;
+  const auto agents = static_cast<std::int64_t>(tracks_.size() + (tracks_.contains(agent) ? 0 : 1));
+  // Before the tracks grow: a damaged record may name any tick.
+  while (tick / stride_ >= kMostPositions / agents) coarsen();
+  if (tick % stride_ != 0) return;
   const std::int64_t row = tick / stride_, full = (1 << bits_) - 1;
   std::vector<Cell>& track = tracks_[agent];
   if (std::ssize(track) <= row) track.resize(static_cast<std::size_t>(row) + 1, {kNothing, 0});

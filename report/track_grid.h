@@ -14,20 +14,19 @@
 
 namespace ergocast {
 
-/// Row r has the positions at tick r · stride.
+/// Row r has the positions at tick r · stride. The stride begins with 1 and doubles whenever there
+/// are too many positions.
 class TrackGrid {
  public:
-  /// So many positions at most, where the number of agents is as given.
   static constexpr std::int64_t kMostPositions = 400'000;
 
-  /// @param tick_count  of the whole mission
-  TrackGrid(const Rectangle& domain, Tick tick_count, std::size_t agents);
+  /// @param agents  as many as are planned; others may come
+  TrackGrid(const Rectangle& domain, std::size_t agents);
 
   Tick stride() const { return stride_; }
   /// One more than the last row with a position.
   std::int64_t rows() const { return rows_; }
-  /// Ticks between rows, and beyond the mission, are left out. The newest position of a tick
-  /// counts.
+  /// Ticks between rows are left out. The newest position of a tick counts.
   void put(AgentId agent, Tick tick, const Eigen::Vector2d& x_m);
 
   /// The rows [from, to) for the page, which reads them in web/tracks.js:
@@ -43,8 +42,10 @@ class TrackGrid {
   using Cell = std::array<std::int32_t, 2>;
   static constexpr std::int32_t kNothing = INT32_MIN;
 
+  void coarsen();
+
   Rectangle domain_;
-  Tick stride_, tick_count_;
+  Tick stride_ = 1;
   int bits_;
   std::int64_t rows_ = 0;
   std::map<AgentId, std::vector<Cell>> tracks_;

@@ -63,7 +63,9 @@ export function watchLive(page) {
   let run = null, facts = null, over = false;
   const on = (name, handle) => stream.addEventListener(name, event => handle(JSON.parse(event.data)));
   on('mission', message => {          // also after a new connection, which repeats everything
+    const before = run;
     run = new Run(message.mission, message.stride, Math.ceil(message.mission.tick_count / message.stride) + 1);
+    if (before && facts.run === message.run_id) { run.history = before.history; run.times = before.times; }
     facts = { run: message.run_id, rate: 0, lost: 0, missed: 0, authenticated: message.authenticated, state: null };
     page.began(run, facts);
   });
