@@ -99,6 +99,7 @@ function paintGuide(g, s, run, colours) {
   s.values.forEach((v, i) => { if (t[i] >= from && v * t[i] > level) level = v * t[i]; });
   if (!level || !(s.end > 4 * s.begin)) return;
   level *= 1.35 / from;
+  let pen = false;
   g.strokeStyle = g.fillStyle = colours.muted;
   g.globalAlpha = 0.7;
   g.lineWidth = 1;
@@ -106,7 +107,9 @@ function paintGuide(g, s, run, colours) {
   g.beginPath();
   for (let i = 0; i <= 40; i++) {
     const at = from * 5 ** (i / 40), y = s.y((level * from) / at);
-    if (i) g.lineTo(s.x(at), y); else g.moveTo(s.x(at), y);
+    if (y < ROOM.top) continue;
+    if (pen) g.lineTo(s.x(at), y); else g.moveTo(s.x(at), y);
+    pen = true;
   }
   g.stroke();
   g.setLineDash([]);
