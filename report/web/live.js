@@ -8,13 +8,18 @@ const MOST_LINES = 400, MOST_STATUSES = 20000;
 
 // Messages in the last two seconds of wall time, each second.
 class Rate {
-  constructor() { this.points = []; }
-  add(count) {
+  constructor() { this.points = []; this.counts = new Map(); this.total = 0; }
+  add(agents) {
+    for (const { incarnation, messages_sent: count } of agents) {   // a new incarnation counts from 0
+      if (typeof count !== 'number') continue;
+      this.total += Math.max(0, count - (this.counts.get(incarnation) ?? 0));
+      this.counts.set(incarnation, count);
+    }
     const now = performance.now();
-    this.points.push([now, count]);
+    this.points.push([now, this.total]);
     while (this.points.length > 2 && now - this.points[0][0] > 2000) this.points.shift();
     const [[t0, n0]] = this.points;
-    return now - t0 > 100 ? Math.max(0, (1000 * (count - n0)) / (now - t0)) : 0;
+    return now - t0 > 100 ? Math.max(0, (1000 * (this.total - n0)) / (now - t0)) : 0;
   }
 }
 
@@ -81,7 +86,7 @@ export function watchLive(page) {
       run.said = saidBy(team);
       if (run.times.length && run.times[run.times.length - 1] >= t) { run.times.pop(); run.history.pop(); }
       if (run.times.length < MOST_STATUSES) { run.times.push(t); run.history.push({ t, team }); }
-      Object.assign(facts, { rate: rate.add(sum(agents, 'messages_sent')), lost: sum(agents, 'contributions_lost'), missed: team.missed_deadlines, state: team });
+      Object.assign(facts, { rate: rate.add(agents), lost: sum(agents, 'contributions_lost'), missed: team.missed_deadlines, state: team });
     }
     addMetrics(run, frame.team);
     page.changed(facts);
