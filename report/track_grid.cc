@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kSmallTeam = 12;
 
 void append_number(std::string& bytes, std::int64_t value) {
-  auto zigzag = static_cast<std::uint64_t>(value) << 1 ^ static_cast<std::uint64_t>(value >> 63);
+  auto zigzag = static_cast<std::uint64_t>(value) << 1 ^ (value < 0 ? ~std::uint64_t{0} : 0);
   for (; zigzag > 127; zigzag >>= 7) bytes += static_cast<char>(zigzag | 128);
   bytes += static_cast<char>(zigzag);
 }

@@ -13,8 +13,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr RunId kRun = 7;
-constexpr Instant kBegin{100s};
+constexpr RunId kWatchedRun = 7;
+constexpr Instant kListening{100s};
 
 class LiveTeamFrames : public ::testing::Test {
  protected:
@@ -22,21 +22,24 @@ class LiveTeamFrames : public ::testing::Test {
 
   void move(Tick tick) {
     WorldState world;
-    world.header = {
-        .run = kRun, .sender = kWorld, .incarnation = 5, .sequence = ++sequence, .tick = tick};
+    world.header = {.run = kWatchedRun,
+                    .sender = kWorld,
+                    .incarnation = 5,
+                    .sequence = ++sequence,
+                    .tick = tick};
     world.vehicle_count = 2;
     for (const int i : {0, 1}) {
       world.vehicles[static_cast<std::size_t>(i)].id = i;
       world.vehicles[static_cast<std::size_t>(i)].position_m = {1.0 + i, 2, 0};
     }
-    team.receive(world, Bus::kWorld, kWorld, kBegin + 1ms * tick);
+    team.receive(world, Bus::kWorld, kWorld, kListening + 1ms * tick);
   }
   std::string frame(LiveTeam::Cursor& cursor) {
     bool more = false;
     return team.frame(cursor, more);
   }
 
-  LiveTeam team{kRun, kBegin, false};
+  LiveTeam team{kWatchedRun, kListening, false};
   std::int64_t sequence = 0;
 };
 
@@ -56,15 +59,15 @@ TEST_F(LiveTeamFrames, ComeOnceAndWithAllThatIsNew) {
 }
 
 TEST_F(LiveTeamFrames, OfOtherRunsShowNothing) {
-  LiveTeam other(kRun + 1, kBegin, false);
+  LiveTeam other(kWatchedRun + 1, kListening, false);
   other.begin(test::small_mission(2), {});
   LiveTeam::Cursor cursor;
   bool more = false;
   other.frame(cursor, more);
   WorldState world;
-  world.header = {.run = kRun, .sender = kWorld, .incarnation = 5, .sequence = 1, .tick = 1};
+  world.header = {.run = kWatchedRun, .sender = kWorld, .incarnation = 5, .sequence = 1, .tick = 1};
   world.vehicle_count = 1;
-  other.receive(world, Bus::kWorld, kWorld, kBegin);
+  other.receive(world, Bus::kWorld, kWorld, kListening);
   EXPECT_EQ(other.frame(cursor, more), "");
 }
 
