@@ -146,7 +146,7 @@ void Agent::answer(InMission& flight, Outbox& out) {
   } else {
     table.average(flight.foreseen);
   }
-  flight.controller.see(flight.foreseen);
+  flight.controller.set_coverage(flight.foreseen);
   flight.command_before = flight.last_command;
   flight.last_command.header.tick = step.tick;
   flight.last_command.position_m = step.x_m;

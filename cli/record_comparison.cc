@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::optional<std::string> text_of(const fs::path& file) {
+std::optional<std::string> file_content(const fs::path& file) {
   if (why_not_regular(file)) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
@@ -61,7 +61,7 @@ std::string text_difference(const fs::path& file, const std::string& recorded,
 
 FileComparison compare_text(const fs::path& run_dir, const std::string& name,
                             const std::string& expected, const char* compared) {
-  const auto recorded = text_of(run_dir / name);
+  const auto recorded = file_content(run_dir / name);
   if (!recorded) return {name, "", "is not there", ""};
   return {name, compared, "", text_difference(run_dir / name, *recorded, expected)};
 }
@@ -163,7 +163,7 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Missi
                         expected + "\" of " + (run_dir / kPlanFile).string() + '\n';
     }
   }
-  const auto text = text_of(run_dir / kScenarioFile);
+  const auto text = file_content(run_dir / kScenarioFile);
   if (!text) return {hash, {kScenarioFile, "", "is not there", ""}};
   if (*text == mission_text(mission))
     return {hash, {kScenarioFile, "all but the target, which it lacks", "", ""}};

@@ -20,7 +20,7 @@ inline constexpr std::size_t kMostResultBytes = 4000;
 struct Jobs {
   std::uint64_t count = 0;
   int processes = 1;
-  unsigned patience_s = 0;  ///< wall time after which a job counts as hung; 0: never
+  unsigned patience_s = 0;  ///< processor time after which a job counts as hung; 0: never
   std::size_t result_bytes = 0;
   /// Called in a worker; writes `result_bytes` bytes.
   std::function<void(std::uint64_t job, std::byte* result)> work;

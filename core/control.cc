@@ -37,7 +37,7 @@ Controller::Controller(const Mission& mission)
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
 }
 
-void Controller::see(const Coefficients& coverage) {
+void Controller::set_coverage(const Coefficients& coverage) {
   const double residual_gradient = set_residual(coverage);
   epsilon_ = law_.epsilon;
   if (law_.regularization == Regularization::kRelative) epsilon_ *= residual_gradient;

@@ -25,7 +25,7 @@ class Controller {
 
   /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
   /// it.
-  void see(const Coefficients& coverage);
+  void set_coverage(const Coefficients& coverage);
 
   /// The velocity command of (10) at position `x_m`:
   ///   v = u − k (x − centre) + perturbation,  a function of (seed, agent, tick) and the field.

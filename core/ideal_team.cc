@@ -41,7 +41,7 @@ void IdealTeam::step() {
     look_ahead();
   } else {
     table_.average(coverage_);
-    controller_.see(coverage_);
+    controller_.set_coverage(coverage_);
   }
   for (Agent& agent : agents_) {
     if (look_ahead_.any()) foresee(agent);
@@ -108,7 +108,7 @@ void IdealTeam::foresee(const Agent& agent) {
     foreseen[k] = (earlier[k] + (later[k] + own[k])) * per_second_;
     earlier[k] += own[k] + share_ * gain[k];
   }
-  controller_.see(coverage_);
+  controller_.set_coverage(coverage_);
 }
 
 Coefficients IdealTeam::coverage() const {

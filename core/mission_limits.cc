@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mission_fields.h"
+
 namespace ergocast {
 namespace {
 
@@ -19,14 +21,26 @@ bool is_place(const Eigen::Vector3d& x_m) {
          x_m.z() == 0;
 }
 
-/// Whether a limit that 0 takes away is none or a possible one.
-bool is_none_or(const Limits& limits, double value) { return value == 0 || limits.contain(value); }
+/// Holds each field by itself.
+class EachWithinLimits : public FieldVisitor {
+ public:
+  bool ok = true;
+
+  void number(int, const char*, double value, const Limits& limits, bool given = true) {
+    ok = ok && (given ? limits.contain(value) : value == 0);
+  }
+  void choice(int, const char*, auto value, Words words) {
+    ok = ok && static_cast<std::size_t>(value) < words.size();
+  }
+  void name(int, const char*, const std::string& name) { ok = ok && is_name(name); }
+  void part(int, const char*, const auto& part) { list_fields(*this, part); }
+  void contraction_center(int, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
+};
 
 /// No scenario and no plan can say a height yet.
 bool fits(const Box& domain) {
   if (!domain.planar() || domain.origin_m.z() != 0) return false;
   for (int axis = 0; axis < 2; ++axis) {
-    if (!limits::kSize_m.contain(domain.size_m[axis])) return false;
     if (!(std::abs(domain.origin_m[axis]) <= limits::kMaxOriginPerSize * domain.size_m[axis]))
       return false;
   }
@@ -34,11 +48,7 @@ bool fits(const Box& domain) {
 }
 
 /// A single mode tells no two places apart.
-bool fits(const Basis& basis) {
-  return limits::kModes.contain(basis.modes_x) && limits::kModes.contain(basis.modes_y) &&
-         basis.planar() && basis.mode_count() >= 2 &&
-         limits::kSobolevExponent.contain(basis.sobolev_exponent);
-}
+bool fits(const Basis& basis) { return basis.planar() && basis.mode_count() >= 2; }
 
 /// |∫ f ρ| ≤ 1, but for the rounding of the quadrature.
 bool is_coefficient(double value) { return std::abs(value) <= 1 + 1e-9; }
@@ -48,29 +58,17 @@ bool is_target(const Coefficients& target, const Basis& basis) {
   return target[0] == 1 && std::all_of(target.begin(), target.end(), is_coefficient);
 }
 
+/// Adaptive noise is between its floor and its ceiling.
 bool fits(const ControlLaw& law) {
-  const bool adaptive = law.perturbation == Perturbation::kAdaptive;
-  return limits::kSpeed_mps.contain(law.u_max_mps) && limits::kEpsilon.contain(law.epsilon) &&
-         limits::kIntensity.contain(law.noise_intensity) &&
-         limits::kIntensity.contain(law.noise_ceiling) &&
-         (adaptive ? law.noise_ceiling >= law.noise_intensity : law.noise_ceiling == 0) &&
-         limits::kContractionGain_per_s.contain(law.contraction_gain_per_s) &&
-         is_place(law.contraction_center_m) && limits::kAnticipation.contain(law.anticipation);
+  return law.perturbation == Perturbation::kConstant || law.noise_ceiling >= law.noise_intensity;
 }
 
 bool fits(const Timing& timing) {
   const auto ticks = static_cast<double>(timing.tick_count);
-  if (!limits::kStep_s.contain(timing.dt_s) || !(ticks >= 1 && ticks <= limits::kMaxTicks))
-    return false;
-  const bool lasts = std::round(duration_s(timing) / timing.dt_s) == ticks;
   const bool realtime = timing.pace == Pace::kRealtime;
-  return lasts && limits::kBroadcastPeriod_ticks.contain(timing.broadcast_period_ticks) &&
-         limits::kRealtimeFactor.contain(timing.realtime_factor) &&
-         (!realtime || timing.dt_s / timing.realtime_factor >= limits::kMinWallStep_s) &&
-         limits::kTimeout_s.contain(timing.lockstep_timeout_s) &&
-         limits::kTimeout_s.contain(timing.admission_timeout_s) &&
-         limits::kCommandHold_s.contain(timing.command_hold_s) &&
-         limits::kCatchUp_ticks.contain(timing.catch_up_limit_ticks);
+  return ticks >= 1 && ticks <= limits::kMaxTicks &&
+         std::round(duration_s(timing) / timing.dt_s) == ticks &&
+         (!realtime || timing.dt_s / timing.realtime_factor >= limits::kMinWallStep_s);
 }
 
 /// No step of input, noise or contraction is longer than the domain, and the input holds its own
@@ -93,8 +91,8 @@ bool is_team(const Mission& mission) {
   const auto inside = [&](const Eigen::Vector3d& x_m) {
     return x_m.z() == 0 && mission.domain.contains(x_m);
   };
-  return limits::kTeam.contain(size) && limits::kTeam.contain(mission.quorum) &&
-         mission.quorum <= size && std::all_of(starts_m.begin(), starts_m.end(), inside);
+  return limits::kTeam.contain(size) && mission.quorum <= size &&
+         std::all_of(starts_m.begin(), starts_m.end(), inside);
 }
 
 }  // namespace
@@ -109,15 +107,14 @@ double duration_s(const Timing& timing) {
 }
 
 bool within_limits(const Mission& mission) {
-  return is_name(mission.name) && fits(mission.domain) && fits(mission.basis) &&
+  EachWithinLimits each;
+  list_fields(each, mission);
+  return each.ok && fits(mission.domain) && fits(mission.basis) &&
          is_target(mission.target_coefficients, mission.basis) && fits(mission.law) &&
-         fits(mission.timing) && limits::kIntensity.contain(mission.disturbance_intensity) &&
+         fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
-         is_team(mission) && limits::kForgetting_s.contain(mission.forget_silent_after_s) &&
-         limits::kRadioRange_m.contain(mission.radio_range_m) &&
-         is_none_or(limits::kGoal, mission.goal_ergodic_metric) &&
-         is_none_or(limits::kSpeedLimit_mps, mission.speed_limit_mps);
+         is_team(mission);
 }
 
 }  // namespace ergocast

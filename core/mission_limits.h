@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mission may say: the limits that scenario.proto's comments state. scenario/ holds what
-// people write against them, and names what breaks them; team/plan.cc holds what comes off the
-// network.
+// What a mission may say: the limits that scenario.proto's comments state. core/mission_fields.h
+// gives each field its own. scenario/ holds what people write against them, and names what breaks
+// them; team/plan.cc holds what comes off the network.
 #pragma once
 
 #include <string_view>
@@ -32,30 +32,13 @@ inline constexpr Limits kSize_m = between(1e-3, 1e7);
 /// How far from 0 the domain may begin, as a multiple of its size.
 inline constexpr double kMaxOriginPerSize = 1e5;
 inline constexpr Limits kModes = between(1, kMaxModesPerAxis);
-inline constexpr Limits kSobolevExponent = above(0, 10);
-
-inline constexpr Limits kSpeed_mps = above(0, 1e6);
-inline constexpr Limits kEpsilon = between(0, 1e6);
 inline constexpr Limits kIntensity = between(0, 1e6);  ///< of any noise [m/√s]
-inline constexpr Limits kContractionGain_per_s = between(0, 1e6);
-inline constexpr Limits kAnticipation = between(0, 100);
-
-inline constexpr Limits kStep_s = between(1e-6, 3600);
+inline constexpr Limits kTimeout_s = above(0, 86400);
 inline constexpr Limits kDuration_s = above(0, 1e7);
 inline constexpr double kMaxTicks = 1e8;
-inline constexpr Limits kBroadcastPeriod_ticks = between(1, 1000);
-inline constexpr Limits kRealtimeFactor = between(0.01, 1000);
 /// In real time, the least wall time of a step.
 inline constexpr double kMinWallStep_s = 1e-4;
-inline constexpr Limits kTimeout_s = above(0, 86400);
-inline constexpr Limits kCommandHold_s = between(0, 1e6);
-inline constexpr Limits kCatchUp_ticks = between(0, 1000);
-
 inline constexpr Limits kTeam = between(1, kMaxAgents);
-inline constexpr Limits kForgetting_s = between(0, 1e6);
-inline constexpr Limits kRadioRange_m = between(0, 1e13);
-inline constexpr Limits kSpeedLimit_mps = above(0, 1e9);  ///< of one that there is
-inline constexpr Limits kGoal = above(0, 1e9);            ///< of one that there is
 
 }  // namespace limits
 

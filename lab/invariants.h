@@ -130,7 +130,7 @@ class Invariants {
 
   // ---- safety ----
 
-  /// Somebody speaks: positions in the domain; |u| ≤ u_max; |S| ≤ S_00 = steps · dt; a digest that
+  /// A process sends: positions in the domain; |u| ≤ u_max; |S| ≤ S_00 = steps · dt; a digest that
   /// says what its sender holds; at most one answer for each entry of a digest heard.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
@@ -140,7 +140,7 @@ class Invariants {
   void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
   /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for.
   void received(const TableView& listener, const Message& message);
-  /// An agent has answered a tick: what it holds never shrinks, nobody's steps exceed the ticks
+  /// An agent has answered a tick: what it holds never shrinks, no author's steps exceed the ticks
   /// there were, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1, and ĉ_k, where its law looks
   /// ahead, follows by the equation of core/forecast.h from what has reached it (lab/shadow.h).
   void answered(double t_s, const TableView& holder);
@@ -158,8 +158,8 @@ class Invariants {
 
   /// To be called from recovery_bound_s() after healing on. Every living agent holds the rows that
   /// any holds, of authors that have left the newest; |c − c_true|_∞ ≤ 2 δ / (T − δ), where δ sums
-  /// what the authors that still speak may not have said or delivered yet. Between two calls nobody
-  /// repeats anything.
+  /// what the authors that still speak may not have said or delivered yet. Between two calls no
+  /// agent repeats anything.
   ///
   /// With a radio range an agent learns what another has, through others too, only where each on
   /// the way has heard the next for long enough: then it holds what the other held that long ago. δ

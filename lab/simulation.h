@@ -79,8 +79,8 @@ class Simulation {
   Simulation(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics,
              SimulationObserver* observer = nullptr);
 
-  /// Passes on to the next event, at most to `until`. False, and nothing happens, once everybody
-  /// has finished, or waits for what never comes.
+  /// Passes on to the next event, at most to `until`. False, and nothing happens, once all
+  /// processes have finished, or wait for what never comes.
   bool step(Instant until = Instant::max());
   /// Until nothing happens any more, or `limit` of virtual time has passed.
   void run(PacingClock::duration limit = PacingClock::duration::max());
@@ -107,7 +107,7 @@ class Simulation {
 
   Instant now() const { return now_; }
   Instant local_time(NodeId node) const { return at(node).clock.local(now_); }
-  /// What the schedule of the faults goes by. A lockstep mission flies in no time where nobody is
+  /// What the schedule of the faults goes by. A lockstep mission takes no time where no message is
   /// late, so there it is mission time; but a mission that stands still is to be healed as well.
   double progress_s() const;
   /// Virtual time that the whole mission takes.
@@ -117,7 +117,7 @@ class Simulation {
   /// The last tick was published, or a coordinator has said the end.
   bool mission_over() const { return end_said_ || last_tick_ >= mission_.timing.tick_count; }
   /// The last moment at which a process was down or cut off, or messages were so late or so few
-  /// that nobody can tell.
+  /// that recovery cannot be judged.
   std::optional<Instant> hindered() const { return hindered_; }
   SimulationCounts counts() const;
 

@@ -244,8 +244,8 @@ std::string Trial::still_running() const {
   return names;
 }
 
-/// Whether what went wrong then may be due to what we have done: after each hindrance everybody has
-/// the time to recover.
+/// Whether what went wrong then may be due to what we have done: after each hindrance all
+/// processes have the time to recover.
 bool Trial::our_doing(Instant at) const {
   const auto hindered = simulation_.hindered();
   return hindered && at < *hindered + seconds(recovery_bound_s(mission_, faults_));

@@ -30,7 +30,7 @@ struct TrialFigures : SimulationCounts {
 struct TrialResult {
   TrialFigures figures;
   std::optional<Violation> violation;
-  /// Lockstep: the mission was ended by the coordinator because somebody was away for longer than
+  /// Lockstep: the mission was ended by the coordinator because a process was away for longer than
   /// lockstep_timeout_s. No violation: that is what a time-out is for.
   bool timed_out = false;
 };

@@ -74,14 +74,13 @@ std::span<const ChannelName> channel_names() {
   return names;
 }
 
-std::string channels_of(MessageTypes types) {
-  std::string names;
+bool is_channel_of(MessageTypes types, std::string_view channel) {
   for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
     if ((types >> kind & 1) == 0) continue;
     const ChannelName& name = channel_names()[kind];
-    names += (names.empty() ? "" : "|") + std::string(name.text) + (name.per_agent ? ".*" : "");
+    if (name.per_agent ? channel.starts_with(name.text) : channel == name.text) return true;
   }
-  return "(" + names + ")";
+  return false;
 }
 
 std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel) {

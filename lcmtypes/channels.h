@@ -25,8 +25,9 @@ struct ChannelName {
 /// One for each message type. Messages under other names are not ours.
 std::span<const ChannelName> channel_names();
 
-/// A regular expression that matches exactly the channel names of these messages.
-std::string channels_of(MessageTypes types);
+/// Whether `channel` may be one of these messages'. Cheap, and done before anything is decoded;
+/// transmitter_of() also checks the number.
+bool is_channel_of(MessageTypes types, std::string_view channel);
 
 /// The transmitter of a message on `channel`: its sender, or for contributions the agent of that
 /// channel. Nothing if `message` does not belong on `channel`.

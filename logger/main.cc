@@ -129,7 +129,7 @@ class RunLogger {
     events_.discard();
   }
 
-  void write_summary(const Transport& transport) {
+  void write_summary(Transport& transport) {
     RunContext context;
     context.run = recorder_.run();
     context.started = started_;

@@ -78,10 +78,10 @@ build_release() {
   local arguments stamp=$build/configured-with
   read -r -a arguments <<<"${ERGOCAST_CMAKE_ARGS:-}"
   local wanted
-  wanted="$root ${arguments[*]}; $(optional_packages)"
+  wanted="$root ${arguments[*]}; $(optional_packages); presets $(cksum <"$root/CMakePresets.json")"
 
-  # Other arguments, a moved checkout, or packages that came or went: start from an empty cache, so that
-  # no old option lingers, and nothing stays unseen.
+  # Other arguments or presets, a moved checkout, or packages that came or went: start from an empty
+  # cache, so that no old option lingers, and nothing stays unseen.
   if [ ! -f "$build/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
     say "Configuring $build"
     rm -f "$stamp"

@@ -40,8 +40,8 @@ void say(const char* text) {
 [[noreturn]] void become(char* const* arguments, const char* log, int signal_if_orphaned,
                          pid_t parent) {
   setpgid(0, 0);
-  // Otherwise the child inherits LCM's sockets, and their drops are counted as the child's. Closing
-  // also frees a descriptor for the log, even if the parent has none left.
+  // The child inherits nothing else. This also frees a descriptor for the log, even if the parent
+  // has none left.
   close_range(STDERR_FILENO + 1, ~0U, 0);
   prctl(PR_SET_PDEATHSIG, signal_if_orphaned);
   if (getppid() != parent) _exit(kCannotExecute);  // the parent ended before prctl()

@@ -12,36 +12,35 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
-#include "lcmtypes/message_authenticator.h"
+#include "runtime/lcm_datagram.h"
 
 namespace ergocast {
 namespace {
 
 // Offsets count from the UDP header.
-constexpr std::uint32_t kUdpHeaderBytes = 8, kLcmHeaderBytes = 8;
+constexpr std::uint32_t kUdpHeaderBytes = 8;
 constexpr std::uint32_t kMagicAt = kUdpHeaderBytes, kNameAt = kUdpHeaderBytes + kLcmHeaderBytes;
-constexpr std::uint32_t kUnfragmented = 0x4c433032;  // "LC02"
-constexpr std::uint32_t kKeepAll = 0xffff;
-constexpr std::uint32_t kKeepTooLittle = kUdpHeaderBytes + 4;
+constexpr std::uint32_t kKeepAll = 0xffff, kReject = 0;
 /// The shortest message; names and numbers lie within these bytes.
 constexpr std::uint32_t kShortest = kNameAt + 60;
+constexpr std::uint32_t kLongest = kUdpHeaderBytes + kMaxLcmBytes;
 /// Offsets within a message.
 constexpr std::uint32_t kLifeAt = 20, kSequenceAt = 28;
-/// LCM allows names of 63 characters. Longer datagrams than ours would only fill LCM's queue.
-constexpr std::uint32_t kLongest = kNameAt + 64 + static_cast<std::uint32_t>(kMaxDatagramBytes);
 
 /// A program for the kernel. Jumps only go forward, and conditional jumps only a short distance.
 class Filter {
  public:
-  explicit Filter(std::span<const Repeated> flooded) : to_repeats_(!flooded.empty()) {
+  Filter(MessageTypes types, std::span<const Repeated> flooded) : to_repeats_(!flooded.empty()) {
     load(BPF_LD | BPF_W | BPF_LEN, 0);
     pass_if(BPF_JGE, kShortest);
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kLongest, 0, 1));
-    end(kKeepTooLittle);
+    end(kReject);
     load(BPF_LD | BPF_W | BPF_ABS, kMagicAt);
-    pass_if(BPF_JEQ, kUnfragmented);
-    for (const ChannelName& name : channel_names()) accept(name);
-    end(kKeepTooLittle);
+    pass_if(BPF_JEQ, kLcmMagic);
+    for (std::size_t type = 0; type < kMessageTypeCount; ++type) {
+      if ((types >> type & 1) != 0) accept(channel_names()[type]);
+    }
+    end(kReject);
     if (to_repeats_) drop_repeats(flooded);
   }
 
@@ -62,10 +61,10 @@ class Filter {
     keeps_.push_back(code_.size());
     load(BPF_JMP | BPF_JA, 0);
   }
-  /// Continues if the loaded value compares so with `value`; otherwise ends with kKeepTooLittle.
+  /// Continues if the loaded value compares so with `value`; otherwise ends with kReject.
   void pass_if(int compare, std::uint32_t value) {
     code_.push_back(BPF_JUMP(static_cast<std::uint16_t>(BPF_JMP | compare | BPF_K), value, 1, 0));
-    end(kKeepTooLittle);
+    end(kReject);
   }
 
   /// Keeps a datagram of that name; for others the program continues after this code.
@@ -99,11 +98,11 @@ class Filter {
       load(BPF_LD | BPF_B | BPF_ABS, at + digit);
       pass_if(BPF_JGE, '0');
       code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, '9', 0, 1));
-      end(kKeepTooLittle);
+      end(kReject);
       load(BPF_LD | BPF_B | BPF_ABS, at + digit + 1);
       skip_unless(0, [&] { keep(at + digit + 2); });
     }
-    end(kKeepTooLittle);
+    end(kReject);
   }
   /// Runs `then` if the loaded value is `value`.
   template <class Then>
@@ -139,7 +138,7 @@ class Filter {
       code_[from].k = static_cast<std::uint32_t>(code_.size() - from - 1);
     load(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_RANDOM));
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, UINT32_MAX / kShareThatPasses, 0, 1));
-    end(0);
+    end(kReject);
     end(kKeepAll);
   }
   static std::uint32_t sequence_of(const Repeated& one) {
@@ -153,8 +152,8 @@ class Filter {
 
 }  // namespace
 
-bool admit_only_our_channels(int socket, std::span<const Repeated> flooded) {
-  return Filter(flooded).attach(socket);
+bool admit_only(int socket, MessageTypes types, std::span<const Repeated> flooded) {
+  return Filter(types, flooded).attach(socket);
 }
 
 }  // namespace ergocast

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A kernel filter that protects LCM. LCM stores every channel name it receives, and a crafted
-// header of a fragmented message ("LC03", which we never send) makes it write outside its memory.
+// A kernel filter that passes on only what a process listens to, so that other messages neither
+// wake the process nor take space in its receive buffer.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
 #include "core/ids.h"
+#include "team/subscriptions.h"
 
 namespace ergocast {
 
@@ -19,14 +20,12 @@ struct Repeated {
 /// Of the repeats, a random one in so many datagrams passes.
 inline constexpr std::uint32_t kShareThatPasses = 32;
 
-/// From now on the kernel passes on to this socket of LCM's only unfragmented LCM messages under
-/// our channels' names (with any number of up to three digits where there is one channel for each
-/// agent), and no longer than ours. Of any other datagram it keeps four bytes, which LCM discards
-/// at once; a dropped datagram would be counted as lost for want of buffer space. Needs no
-/// privileges. False if the kernel cannot do it: the old filter then stays.
+/// From now on the kernel passes on to this socket only unfragmented LCM messages on the channels
+/// of `types` (with any number of up to three digits where there is one channel for each agent),
+/// and no longer than ours. Needs no privileges. False if the kernel cannot do it: the old filter
+/// then stays. The kernel counts what it drops in the counter for want of buffer space, too.
 /// @param flooded  messages of these incarnations up to their newest sequences are dropped, except
-///                 for a share. The kernel counts them as lost for want of buffer space.
-///                 Incarnations are compared by 32 of their bits.
-bool admit_only_our_channels(int socket, std::span<const Repeated> flooded = {});
+///                 for a share. Incarnations are compared by 32 of their bits.
+bool admit_only(int socket, MessageTypes types, std::span<const Repeated> flooded = {});
 
 }  // namespace ergocast

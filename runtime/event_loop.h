@@ -27,7 +27,7 @@ void live(Core& core, Transport& transport, StopSignals& signals,
   Outbox out;
   const auto act = [&] {
     core.advance(now(), out);
-    for (const Outgoing& outgoing : out) transport.publish(outgoing);
+    transport.publish(out);
     out.clear();
     each_turn();
   };

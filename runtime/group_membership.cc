@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the routed interface with the joined one, and moves the membership of LCM's sockets if
-// they differ.
+// Compares the routed interface with the joined one, and moves the memberships if they differ.
 #include "runtime/group_membership.h"
 
-#include <arpa/inet.h>
+#include <utility>
 
 #include "runtime/multicast_route.h"
 #include "runtime/socket.h"
 
 namespace ergocast {
 
-GroupMembership::GroupMembership(const LcmUrl& url)
+GroupMembership::GroupMembership(const LcmUrl& url, std::vector<int> sockets)
     : group_(address_of(url.group, 0).sin_addr),
-      sockets_(sockets_at(url.base_port, kBusCount)),
+      sockets_(std::move(sockets)),
       interface_(interface_towards(group_)) {}
 
 bool GroupMembership::renew() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Renews the membership of LCM's sockets in the multicast group. A membership belongs to one
-// network interface and ends with it. After an adapter was replaced, or a container reconnected,
-// LCM would receive nothing, and LCM has no call to join again.
+// Renews the membership of sockets in the multicast group. A membership belongs to one network
+// interface and ends with it. After an adapter was replaced, or a container reconnected, a process
+// would receive nothing.
 #pragma once
 
 #include <netinet/in.h>
@@ -14,8 +14,8 @@ namespace ergocast {
 
 class GroupMembership {
  public:
-  /// Finds the sockets of this process that are bound to the buses of `url`.
-  explicit GroupMembership(const LcmUrl& url);
+  /// @param sockets  those that have joined the group of `url`
+  GroupMembership(const LcmUrl& url, std::vector<int> sockets);
 
   /// Joins the group on the interface of the current route, if it is not the one joined before.
   /// @return whether the interface changed

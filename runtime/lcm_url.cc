@@ -49,7 +49,7 @@ const sockaddr* as_sockaddr(const Address& address) {
 }
 
 bool port_is_free(int port) {
-  // Without SO_REUSEADDR this fails if any socket has the port, also one of LCM's shared sockets.
+  // Without SO_REUSEADDR this fails if any socket has the port, also a shared one.
   const Socket probe(AF_INET, SOCK_DGRAM);
   const sockaddr_in any = address_of("0.0.0.0", port);
   return probe.fd() >= 0 && bind(probe.fd(), as_sockaddr(any), sizeof any) == 0;

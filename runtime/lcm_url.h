@@ -16,17 +16,24 @@ namespace ergocast {
 inline constexpr int kFirstBasePort = 24000;
 inline constexpr int kLastBasePort = 26997;
 
+/// Asked for each receiving socket unless the URL says another size; the machine may allow less. It
+/// holds what arrives while a process waits for a processor, for example the beginning of a flood.
+inline constexpr int kReceiveBufferBytes = 4 << 20;
+
 /// `udpm://group:port[?ttl=N&recv_buf_size=N]`. Parsed and checked here, because LCM accepts
 /// invalid URLs silently (no port, unknown options).
 struct LcmUrl {
   std::string group = "239.255.76.67";
   int base_port = 7667;
   int ttl = 0;                   ///< 0 stays on this host, 1 reaches the local network
-  int receive_buffer_bytes = 0;  ///< 0: LCM's default
+  int receive_buffer_bytes = 0;  ///< 0: not given
 
   /// The URL, or what is wrong with it and how to write it.
   static std::variant<LcmUrl, std::string> parse(std::string_view text);
 
+  int receive_buffer() const {
+    return receive_buffer_bytes > 0 ? receive_buffer_bytes : kReceiveBufferBytes;
+  }
   std::string base() const { return of_port(base_port); }
   /// Swarm, world and command are ports +0, +1 and +2.
   std::string of(Bus bus) const { return of_port(base_port + static_cast<int>(bus)); }

@@ -17,8 +17,7 @@ constexpr double kMargin = 8;
 constexpr double kLockstepRepeatsPerSecond = 50, kRealtimeRepeatsPerSecond = 5;
 /// Statuses, digests and answers to a world, in addition to those of mission time.
 constexpr double kOthersPerSecond = 40;
-/// The messages that may wait for a delayed process: LCM's queues and the kernel's buffers hold
-/// fewer.
+/// The messages of one agent that may wait for a delayed process: the kernel's buffers hold fewer.
 constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
 double parts(std::size_t count, int of) {

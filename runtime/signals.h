@@ -5,7 +5,7 @@
 namespace ergocast {
 
 /// Makes SIGINT and SIGTERM of this process readable from a descriptor. To be created before any
-/// thread starts, LCM's included. SIGPIPE is ignored; SIGCHLD gets its default action.
+/// thread starts. SIGPIPE is ignored; SIGCHLD gets its default action.
 class StopSignals {
  public:
   StopSignals();

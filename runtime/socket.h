@@ -8,7 +8,6 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace ergocast {
 
@@ -32,8 +31,5 @@ std::string no_socket(int error);
 
 /// @pre `ip` is an IPv4 address, as LcmUrl has checked its group
 sockaddr_in address_of(const std::string& ip, int port);
-
-/// This process's IPv4 datagram sockets that are bound to one of `count` ports.
-std::vector<int> sockets_at(int first_port, int count);
 
 }  // namespace ergocast

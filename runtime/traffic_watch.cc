@@ -39,8 +39,8 @@ std::string key_advice(const RefusalCounts& refused, bool keyed) {
 TrafficWatch::TrafficWatch(Transport& transport) : transport_(transport) {
   if (!transport.filtered()) {
     spdlog::warn(
-        "the kernel does not keep foreign datagrams from LCM, which some can crash: "
-        "`ergocast doctor` names a firewall rule that does");
+        "this kernel has no socket filters: every datagram on our ports wakes this process, and a "
+        "flood of repeats is not dropped");
   }
 }
 
@@ -81,8 +81,8 @@ bool TrafficWatch::look(Instant now) {
   logged_repeats_ = repeated;
   if (kernel_drops_ != logged_drops_) {
     spdlog::warn(
-        "the kernel dropped {} datagrams since the start: raise net.core.rmem_max and "
-        "recv_buf_size in the URL",
+        "the kernel dropped {} datagrams since the start for want of buffer space: raise "
+        "net.core.rmem_max",
         kernel_drops_);
   }
   logged_ = refused;

@@ -1,101 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opens one LCM instance for each bus, installs filters, decodes datagrams without throwing, and
-// waits with one poll.
+// Opens a reader for each bus with subscriptions and one writer, decodes datagrams without
+// throwing, and waits with one poll.
 #include "runtime/transport.h"
 
-#include <linux/sock_diag.h>
 #include <poll.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
-#include <lcm/lcm-cpp.hpp>
+#include <utility>
+#include <vector>
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
+#include "runtime/bus_reader.h"
+#include "runtime/bus_writer.h"
 #include "runtime/clock.h"
-#include "runtime/datagram_filter.h"
 #include "runtime/group_membership.h"
 #include "runtime/repeat_guard.h"
-#include "runtime/socket.h"
+#include "runtime/self_test.h"
 
 namespace ergocast {
 namespace {
 
-constexpr int kMaxDatagramsPerTurn = 256;
-/// Messages that may wait on a bus, 5 MB of them: a flood costs messages, but no more memory.
-constexpr int kQueueCapacity = 4096;
-/// For each socket, unless the URL sets another size or the machine allows less. It holds what
-/// arrives while this process waits for a processor, for example the beginning of a flood.
-constexpr int kReceiveBufferBytes = 1 << 20;
+constexpr std::size_t kMaxDatagramsPerTurn = 256;
 constexpr std::string_view kPrefix = "ERGOCAST_";
-constexpr const char* kFirewall =
-    "A firewall drops UDP at this port, in or out. As root:\n  nft list ruleset";
-/// More descriptors than LCM opens for three buses and their self tests: pipes, timers, sockets.
-constexpr int kDescriptors = 32;
 
-/// The system's error if it cannot give so many descriptors; nothing if it can. LCM does not report
-/// such errors; only its self test fails.
-std::optional<std::string> why_no_descriptors() {
-  std::vector<Socket> probes;
-  for (int i = 0; i < kDescriptors; ++i) {
-    if (probes.emplace_back(AF_INET, SOCK_DGRAM).fd() < 0) return no_socket(errno);
-  }
-  return std::nullopt;
-}
-
-/// The kernel's drops at these sockets. /proc/net/udp has the same counts, but reading it takes
-/// longer the more sockets exist.
-std::int64_t drops_of(const std::vector<int>& sockets) {
-  std::int64_t drops = 0;
-  for (const int socket : sockets) {
-    std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
-    socklen_t bytes = sizeof memory;
-    if (getsockopt(socket, SOL_SOCKET, SO_MEMINFO, memory.data(), &bytes) == 0) {
-      drops += memory[SK_MEMINFO_DROPS];
-    }
-  }
-  return drops;
-}
-
-class LcmTransport final : public Transport {
+class BusTransport final : public Transport {
  public:
-  LcmTransport(RunId run, const MessageAuthenticator& seal, Handlers handlers)
+  BusTransport(RunId run, const MessageAuthenticator& seal, Handlers handlers)
       : run_(run), seal_(seal), handlers_(std::move(handlers)) {}
 
   std::optional<std::string> connect(const LcmUrl& url, const Subscriptions& hears);
 
   void set_run(RunId run) override { run_ = run; }
-  void publish(const Outgoing& outgoing) override;
+  void publish(std::span<const Outgoing> outgoing) override;
   void limit_agents(const RateBudget& allowance, Tick tick) override {
     rates_.allow(allowance, tick);
   }
   Instant deliver_until(Instant deadline, int wake_fd) override;
   bool keyed() const override { return seal_.keyed(); }
-  bool filtered() const override { return filtered_; }
-  std::int64_t kernel_drops() const override;
+  bool filtered() const override;
+  std::int64_t kernel_drops() override;
   bool renew_membership() override { return membership_->renew(); }
 
  private:
   /// A bus with subscriptions.
   struct Line {
-    LcmTransport* transport = nullptr;
-    Bus bus{};
-    std::vector<int> sockets;
-    RepeatGuard guard{Bus::kSwarm};
-    bool is_cut = false;             // the kernel drops repeats
-    std::int64_t drops_counted = 0;  // the kernel's drops at the last count
-    void on_datagram(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
-      transport->take(*this, buffer, channel);
-    }
+    std::unique_ptr<BusReader> reader;
+    MessageTypes hears = 0;
+    RepeatGuard guard;
+    bool is_cut = false;  // the kernel drops repeats
   };
 
   void refuse(Refusal refusal) noexcept {
     ++refused_[static_cast<std::size_t>(refusal)];
     if (handlers_.on_refused) handlers_.on_refused(refusal);
   }
-  void note_unknown_format(const std::string& channel) {
+  void note_unknown_format(std::string_view channel) {
     ++unknown_format_.count;
     // An unknown channel name must not enter our log with arbitrary bytes.
     const bool plain = std::all_of(channel.begin(), channel.end(), [](char c) {
@@ -103,7 +65,9 @@ class LcmTransport final : public Transport {
     });
     unknown_format_.channel = plain ? channel : std::string(kPrefix) + "…";
   }
-  void take(Line& line, const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
+  void read(Line& line);
+  void take(Line& line, std::span<const std::byte> bytes) noexcept;
+  void take(Line& line, const LcmDatagram& datagram);
   void cut_repeats(Line& line);
   void count_cut(Line& line) noexcept;
 
@@ -111,126 +75,115 @@ class LcmTransport final : public Transport {
   MessageAuthenticator seal_;
   Handlers handlers_;
   RateLimit rates_;
-  bool filtered_ = true;
-  std::int64_t cut_ = 0;  // repeats that the kernel has dropped
   KnownSignatures signatures_;
-  std::array<std::unique_ptr<lcm::LCM>, kBusCount> buses_;
-  std::array<Line, kBusCount> lines_{};
-  std::vector<pollfd> ready_;  // the listened buses, then the caller's descriptor
-  std::vector<lcm::LCM*> listened_;
+  std::unique_ptr<BusWriter> writer_;
+  std::vector<Line> lines_;
+  std::vector<pollfd> ready_;  // the lines, then the caller's descriptor
   std::optional<GroupMembership> membership_;
   std::vector<std::byte> bytes_;
 };
 
-std::optional<std::string> LcmTransport::connect(const LcmUrl& url, const Subscriptions& hears) {
-  const auto scarce = why_no_descriptors();
-  for (int b = 0; b < kBusCount; ++b) {
-    const auto at = static_cast<std::size_t>(b);
-    buses_[at] = std::make_unique<lcm::LCM>(url.of(static_cast<Bus>(b)));
-    if (buses_[at]->good()) continue;
-    return url.of(static_cast<Bus>(b)) + ": " + scarce.value_or("LCM cannot use it");
-  }
-  for (int b = 0; b < kBusCount; ++b) {
-    const auto at = static_cast<std::size_t>(b);
-    const Bus bus = static_cast<Bus>(b);
-    if (hears[at] == 0) continue;
-    // Runs LCM's self test: a subscription after a failed test would abort the process later.
-    const int fd = buses_[at]->getFileno();
-    if (fd < 0) {
-      return url.of(bus) + ": " +
-             scarce.value_or(std::string("LCM's self test failed\n") + kFirewall);
-    }
-    const auto sockets = sockets_at(url.base_port + b, 1);
-    for (const int socket : sockets) {
-      if (url.receive_buffer_bytes > 0) break;
-      setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
-    }
-    filtered_ = filtered_ && !sockets.empty() &&
-                std::all_of(sockets.begin(), sockets.end(),
-                            [](int socket) { return admit_only_our_channels(socket); });
-    lines_[at].transport = this;
-    lines_[at].bus = bus;
-    lines_[at].guard = RepeatGuard(bus);
-    lines_[at].sockets = sockets;
-    buses_[at]
-        ->subscribe(channels_of(hears[at]), &Line::on_datagram, &lines_[at])
-        ->setQueueCapacity(kQueueCapacity);
-    ready_.push_back({fd, POLLIN, 0});
-    listened_.push_back(buses_[at].get());
+std::optional<std::string> BusTransport::connect(const LcmUrl& url, const Subscriptions& hears) {
+  auto writer = BusWriter::open(url);
+  if (const auto* problem = std::get_if<std::string>(&writer)) return *problem;
+  writer_ = std::get<0>(std::move(writer));
+  std::vector<int> sockets;
+  for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
+    const MessageTypes types = hears[static_cast<std::size_t>(bus)];
+    if (types == 0) continue;
+    auto opened = BusReader::open(url, bus, types);
+    if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
+    if (auto problem = why_deaf(url, bus)) return problem;
+    lines_.push_back({std::get<0>(std::move(opened)), types, RepeatGuard(bus)});
+    sockets.push_back(lines_.back().reader->fd());
+    ready_.push_back({sockets.back(), POLLIN, 0});
   }
   ready_.push_back({-1, POLLIN, 0});
-  membership_.emplace(url);
+  membership_.emplace(url, std::move(sockets));
   return std::nullopt;
 }
 
-void LcmTransport::publish(const Outgoing& outgoing) {
-  const std::string& channel = channel_of(outgoing.message, outgoing.relayer);
-  encode(outgoing.message, bytes_, seal_, channel);
-  buses_[static_cast<std::size_t>(outgoing.bus)]->publish(channel, bytes_.data(),
-                                                          static_cast<unsigned>(bytes_.size()));
+void BusTransport::publish(std::span<const Outgoing> outgoing) {
+  for (const Outgoing& one : outgoing) {
+    const std::string& channel = channel_of(one.message, one.relayer);
+    encode(one.message, bytes_, seal_, channel);
+    writer_->add(one.bus, channel, bytes_);
+  }
+  writer_->flush();
 }
 
-/// Datagrams that the repeat filter dropped count as refused, and not as lost for want of buffer
-/// space.
-std::int64_t LcmTransport::kernel_drops() const {
-  std::int64_t drops = -cut_;
-  for (const Line& line : lines_) {
-    drops += line.is_cut ? line.drops_counted : drops_of(line.sockets);
-  }
+bool BusTransport::filtered() const {
+  return std::all_of(lines_.begin(), lines_.end(),
+                     [](const Line& line) { return line.reader->filtered(); });
+}
+
+std::int64_t BusTransport::kernel_drops() {
+  std::int64_t drops = 0;
+  for (Line& line : lines_) drops += line.reader->lost();
   return drops;
 }
 
-void LcmTransport::count_cut(Line& line) noexcept {
-  const std::int64_t drops = drops_of(line.sockets);
-  cut_ += drops - line.drops_counted;
-  for (; line.drops_counted < drops; ++line.drops_counted) refuse(Refusal::kRate);
+/// While repeats are dropped, all that the kernel drops counts as refused for that reason.
+void BusTransport::count_cut(Line& line) noexcept {
+  for (auto repeats = line.reader->take_rejected(); repeats > 0; --repeats) refuse(Refusal::kRate);
 }
 
-/// Gives the kernel the guard's list, or as much of it as there is room for.
-void LcmTransport::cut_repeats(Line& line) {
+/// Gives the kernel the guard's list.
+void BusTransport::cut_repeats(Line& line) {
   if (line.is_cut) {
     count_cut(line);
   } else {
-    line.drops_counted = drops_of(line.sockets);
+    line.reader->take_rejected();  // not yet for that reason
   }
-  for (const int socket : line.sockets) {
-    std::span<const Repeated> flooded = line.guard.flooded();
-    while (!admit_only_our_channels(socket, flooded) && !flooded.empty()) {
-      flooded = flooded.first(flooded.size() / 2);
-    }
-  }
+  line.reader->drop_repeats(line.guard.flooded());
   if (line.is_cut) count_cut(line);
   line.is_cut = !line.guard.flooded().empty();
 }
 
-void LcmTransport::take(Line& line, const lcm::ReceiveBuffer* buffer,
-                        const std::string& channel) noexcept {
-  const std::span<const std::byte> bytes(static_cast<const std::byte*>(buffer->data),
-                                         buffer->data_size);
+void BusTransport::take(Line& line, const LcmDatagram& datagram) {
+  const auto& [channel, bytes] = datagram;
+  const auto decoded = decode(bytes, run_, seal_, channel, &signatures_);
+  if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
+    if (*refusal == Refusal::kType) note_unknown_format(channel);
+    return refuse(*refusal);
+  }
+  const Message& message = std::get<Message>(decoded);
+  const auto transmitter = transmitter_of(message, channel);
+  if (!transmitter) return refuse(Refusal::kType);
+  const Instant heard = now();
+  const bool is_news = line.guard.is_news(header_of(message), heard);
+  if (line.guard.count(header_of(message), is_news, heard)) cut_repeats(line);
+  if (!rates_.admit(*transmitter, is_news, heard)) {
+    if (is_news) rate_offender_ = *transmitter, ++over_rate_;
+    return refuse(Refusal::kRate);
+  }
+  const Bus bus = line.reader->bus();
+  if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);
+  handlers_.on_message(message, bus, *transmitter);
+}
+
+/// Where the kernel has no filters, anything arrives: what is not LCM's or not listened to is
+/// nobody's mistake.
+void BusTransport::take(Line& line, std::span<const std::byte> bytes) noexcept {
   try {
-    const auto decoded = decode(bytes, run_, seal_, channel, &signatures_);
-    if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
-      if (*refusal == Refusal::kType) note_unknown_format(channel);
-      return refuse(*refusal);
-    }
-    const Message& message = std::get<Message>(decoded);
-    const auto transmitter = transmitter_of(message, channel);
-    if (!transmitter) return refuse(Refusal::kType);
-    const Instant heard = now();
-    const bool is_news = line.guard.is_news(header_of(message), heard);
-    if (line.guard.count(header_of(message), is_news, heard)) cut_repeats(line);
-    if (!rates_.admit(*transmitter, is_news, heard)) {
-      if (is_news) rate_offender_ = *transmitter, ++over_rate_;
-      return refuse(Refusal::kRate);
-    }
-    if (handlers_.on_accepted) handlers_.on_accepted(line.bus, channel, bytes);
-    handlers_.on_message(message, line.bus, *transmitter);
-  } catch (...) {  // an exception must not pass through LCM's C frames: the next call would abort
+    const auto datagram = parse_datagram(bytes);
+    if (datagram && is_channel_of(line.hears, datagram->channel)) take(line, *datagram);
+  } catch (...) {  // for want of memory
     refuse(Refusal::kLimit);
   }
 }
 
-Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
+void BusTransport::read(Line& line) {
+  BusReader& reader = *line.reader;
+  for (std::size_t taken = 0; taken < kMaxDatagramsPerTurn;) {
+    const std::size_t count = reader.receive();
+    for (std::size_t i = 0; i < count; ++i) take(line, reader.datagram(i));
+    if (count < reader.batch()) return;
+    taken += count;
+  }
+}
+
+Instant BusTransport::deliver_until(Instant deadline, int wake_fd) {
   using std::chrono::nanoseconds;
   const Instant start = now();
   const nanoseconds wait =
@@ -241,10 +194,8 @@ Instant LcmTransport::deliver_until(Instant deadline, int wake_fd) {
   const int ready = ppoll(ready_.data(), ready_.size(), &timeout, nullptr);
   const Instant woke = now();
   if (ready <= 0) return woke;
-  for (std::size_t i = 0; i < listened_.size(); ++i) {
-    if ((ready_[i].revents & POLLIN) == 0) continue;
-    for (int n = 0; n < kMaxDatagramsPerTurn && listened_[i]->handleTimeout(0) > 0; ++n) {
-    }
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (ready_[i].revents != 0) read(lines_[i]);
   }
   for (Line& line : lines_) {
     if (line.is_cut) count_cut(line);
@@ -258,7 +209,7 @@ std::variant<std::unique_ptr<Transport>, std::string> Transport::open(
     const LcmUrl& url, RunId run, const MessageAuthenticator& seal, const Subscriptions& hears,
     Handlers handlers) {
   if (const auto problem = why_unreachable(url)) return *problem;
-  auto transport = std::make_unique<LcmTransport>(run, seal, std::move(handlers));
+  auto transport = std::make_unique<BusTransport>(run, seal, std::move(handlers));
   if (const auto problem = transport->connect(url, hears)) return *problem;
   return std::unique_ptr<Transport>(std::move(transport));
 }

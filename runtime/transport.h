@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The three LCM buses as one process uses them: verified messages in, messages out.
+// The three buses as one process uses them: verified messages in, messages out.
 #pragma once
 
 #include <chrono>
@@ -44,7 +44,9 @@ class Transport {
   virtual ~Transport() = default;
 
   virtual void set_run(RunId run) = 0;
-  virtual void publish(const Outgoing& outgoing) = 0;
+  /// Sends the messages in their order.
+  virtual void publish(std::span<const Outgoing> outgoing) = 0;
+  void publish(const Outgoing& one) { publish(std::span(&one, 1)); }
   /// Sets the rate budget of agents and the world's tick; without a call nothing is limited.
   virtual void limit_agents(const RateBudget& allowance, Tick tick) = 0;
 
@@ -66,7 +68,7 @@ class Transport {
 
   /// Whether only messages with the team's key are accepted.
   virtual bool keyed() const = 0;
-  /// Whether the kernel discards foreign datagrams before LCM reads them.
+  /// Whether the kernel drops what this process does not listen to.
   virtual bool filtered() const = 0;
 
   /// The last agent that exceeded its rate budget, so that messages were refused; kUnassigned:
@@ -75,8 +77,9 @@ class Transport {
   /// Refused messages of agents that exceeded their budget themselves, without repeats by others.
   std::int64_t over_rate() const { return over_rate_; }
 
-  /// Datagrams that the kernel dropped at our sockets for want of buffer space.
-  virtual std::int64_t kernel_drops() const = 0;
+  /// Datagrams that the kernel dropped at our sockets for want of buffer space
+  /// (runtime/bus_reader.h).
+  virtual std::int64_t kernel_drops() = 0;
 
   /// Listens on the network interface of the current route to the group; true if it is a new one.
   virtual bool renew_membership() = 0;

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Copies each Protobuf block into the plain type of the same meaning.
+// Copies each Protobuf block into the plain type of the same meaning; those of a mission by the
+// list of its fields.
 #include "scenario/convert.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "core/mission_fields.h"
+#include "core/require.h"
+#include "scenario/fields.h"
 
 namespace ergocast {
 namespace {
+
+using google::protobuf::Message;
 
 Eigen::Matrix2d covariance_of(const proto::Gaussian& gaussian) {
   if (gaussian.has_sigma_m()) {
@@ -24,6 +32,51 @@ Ring ring_of(const Vertices& vertices) {
   return ring;
 }
 
+/// Fills a part of a mission from the fields of the same names in `block`.
+class BlockReader : public FieldVisitor {
+ public:
+  explicit BlockReader(const Message& block) : block_(block) {}
+
+  template <class Number>
+  void number(int, const char* name, Number& value, const Limits&, bool = true) {
+    const auto [block, field] = find_field(block_, name);
+    value = static_cast<Number>(number_in(block, field));
+  }
+  void flag(int, const char* name, bool& value) {
+    const auto [block, field] = find_field(block_, name);
+    value = block.GetReflection()->GetBool(block, &field);
+  }
+  template <class Enum>
+  void choice(int, const char* name, Enum& value, Words words) {
+    const auto [block, field] = find_field(block_, name);
+    const auto* word =
+        std::ranges::find(words, block.GetReflection()->GetEnum(block, &field)->name());
+    ERGOCAST_REQUIRE(word != words.end());
+    value = static_cast<Enum>(word - words.begin());
+  }
+  void part(int, const char* name, auto& part) {
+    const auto [block, field] = find_field(block_, name);
+    BlockReader inner(block.GetReflection()->GetMessage(block, &field));
+    list_fields(inner, part);
+  }
+
+ private:
+  const Message& block_;
+};
+
+template <class Part>
+Part part_of(const Message& block) {
+  Part part;
+  BlockReader reader(block);
+  list_fields(reader, part);
+  return part;
+}
+
+}  // namespace
+
+Box domain_of(const proto::Domain& domain) { return part_of<Box>(domain); }
+Basis basis_of(const proto::Basis& basis) { return part_of<Basis>(basis); }
+
 Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain) {
   switch (law.contraction_center()) {
     case proto::Law::COORDINATE_ORIGIN:
@@ -33,12 +86,6 @@ Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain) 
     default:
       return domain.center_m();
   }
-}
-
-}  // namespace
-
-Box domain_of(const proto::Domain& domain) {
-  return {{domain.origin_x_m(), domain.origin_y_m(), 0}, {domain.size_x_m(), domain.size_y_m(), 0}};
 }
 
 Polygon polygon_of(const proto::Polygon& polygon) {
@@ -67,64 +114,14 @@ TargetDensity target_of(const proto::Target& target) {
   return density;
 }
 
-Basis basis_of(const proto::Basis& basis) {
-  return {.modes_x = basis.modes_x(),
-          .modes_y = basis.modes_y(),
-          .sobolev_form = basis.sobolev_form() == proto::Basis::NORM ? SobolevForm::kNorm
-                                                                     : SobolevForm::kSquaredNorm,
-          .sobolev_exponent = basis.sobolev_exponent(),
-          .normalized = basis.normalized()};
-}
-
-ControlLaw law_of(const proto::Law& law, const Box& domain) {
-  return {.u_max_mps = law.u_max_mps(),
-          .regularization = law.regularization() == proto::Law::ABSOLUTE
-                                ? Regularization::kAbsolute
-                                : Regularization::kRelative,
-          .epsilon = law.epsilon(),
-          .perturbation = law.perturbation() == proto::Law::CONSTANT ? Perturbation::kConstant
-                                                                     : Perturbation::kAdaptive,
-          .noise_intensity = law.noise_intensity(),
-          .noise_ceiling = law.noise_ceiling(),
-          .contraction_gain_per_s = law.contraction_gain_per_s(),
-          .contraction_center_m = contraction_center_of(law, domain),
-          .anticipation = law.anticipation(),
-          .ends_with_plan = law.ends_with_plan(),
-          .paired_pushes = law.paired_pushes()};
-}
-
-Timing timing_of(const proto::Time& time) {
-  return {.dt_s = time.dt_s(),
-          .tick_count = std::llround(time.duration_s() / time.dt_s()),
-          .broadcast_period_ticks = time.broadcast_period_ticks(),
-          .pace = time.pace() == proto::Time::REALTIME ? Pace::kRealtime : Pace::kLockstep,
-          .realtime_factor = time.realtime_factor(),
-          .lockstep_timeout_s = time.lockstep_timeout_s(),
-          .command_hold_s = time.command_hold_s(),
-          .admission_timeout_s = time.admission_timeout_s(),
-          .catch_up_limit_ticks = time.catch_up_limit_ticks(),
-          .on_timeout =
-              time.on_timeout() == proto::Time::EVICT ? OnTimeout::kEvict : OnTimeout::kEndMission};
-}
-
 Mission mission_of(const proto::Scenario& scenario) {
-  Mission mission;
+  auto mission = part_of<Mission>(scenario);
   mission.name = scenario.name();
   mission.seed = scenario.seed();
-  mission.domain = domain_of(scenario.domain());
-  mission.basis = basis_of(scenario.basis());
-  mission.law = law_of(scenario.law(), mission.domain);
-  mission.timing = timing_of(scenario.time());
-  for (const proto::Start& start : scenario.agents().starts()) {
+  mission.law.contraction_center_m = contraction_center_of(scenario.law(), mission.domain);
+  mission.timing.tick_count = std::llround(scenario.time().duration_s() / mission.timing.dt_s);
+  for (const proto::Start& start : scenario.agents().starts())
     mission.starts_m.emplace_back(start.x_m(), start.y_m(), 0);
-  }
-  mission.quorum = scenario.agents().quorum();
-  mission.forget_silent_after_s = scenario.agents().forget_silent_after_s();
-  mission.dead_reckoning = scenario.agents().dead_reckoning();
-  mission.goal_ergodic_metric = scenario.goal_ergodic_metric();
-  mission.radio_range_m = scenario.world().radio_range_m();
-  mission.disturbance_intensity = scenario.world().disturbance_intensity();
-  mission.speed_limit_mps = scenario.world().speed_limit_mps();
   return mission;
 }
 

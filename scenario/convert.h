@@ -16,8 +16,8 @@ TargetDensity target_of(const proto::Target& target);
 /// The extent of the map that the scenario states.
 Rectangle extent_of(const proto::Map& map);
 Basis basis_of(const proto::Basis& basis);
-ControlLaw law_of(const proto::Law& law, const Box& domain);
-Timing timing_of(const proto::Time& time);
+/// What `law` says it pulls to.
+Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain);
 
 /// The whole mission, except μ.
 Mission mission_of(const proto::Scenario& scenario);

@@ -103,7 +103,7 @@ void fill_law(const Box& domain, proto::Law& law) {
     law.set_noise_ceiling(std::clamp(law.noise_intensity(), ceiling, kMostIntensity));
   }
   if (law.has_contraction_gain_per_s()) return;
-  const double reach_m = domain.farthest_distance_m(law_of(law, domain).contraction_center_m);
+  const double reach_m = domain.farthest_distance_m(contraction_center_of(law, domain));
   law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
 }
 

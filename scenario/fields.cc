@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table has one row for each number, found by the full name of the field.
+// The table has a row for each number that a mission does not have, or whose default is not that of
+// core/mission.h.
 #include "scenario/fields.h"
 
-#include <algorithm>
-#include <iterator>
+#include <map>
+#include <optional>
 
-#include "core/ids.h"
+#include "core/mission_fields.h"
+#include "core/require.h"
 #include "scenario/findings.h"
+#include "scenario/scenario.pb.h"
 
 namespace ergocast {
 namespace {
 
 using enum Absence;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
 
 using limits::above;
 using limits::between;
@@ -21,11 +26,18 @@ constexpr Range kCoordinate = {limits::kCoordinate_m, true};
 constexpr Limits kVariance = above(0, 1e22);
 constexpr Limits kWeight = above(0, 1e9);
 
-constexpr FieldRule kRules[] = {
-    {"Domain", "origin_x_m", kCoordinate, kDefaulted, 0},
-    {"Domain", "origin_y_m", kCoordinate, kDefaulted, 0},
-    {"Domain", "size_x_m", limits::kSize_m, kRefused},
-    {"Domain", "size_y_m", limits::kSize_m, kRefused},
+/// The range of a mission's field: core/mission_fields.h has it.
+constexpr std::optional<Range> kMissions;
+
+struct Row {
+  std::string_view message, field;
+  std::optional<Range> range;
+  Absence absence;
+  double default_value = 0;
+};
+constexpr Row kRows[] = {
+    {"Domain", "size_x_m", kMissions, kRefused},
+    {"Domain", "size_y_m", kMissions, kRefused},
 
     {"Target", "uniform_weight", between(0, 1e9), kDefaulted, 0},
     {"Gaussian", "weight", kWeight, kDefaulted, 1},
@@ -45,40 +57,64 @@ constexpr FieldRule kRules[] = {
     {"Vertex", "x_m", kCoordinate, kRefused},
     {"Vertex", "y_m", kCoordinate, kRefused},
 
-    {"Basis", "modes_x", limits::kModes, kDefaulted, 16},
-    {"Basis", "modes_y", limits::kModes, kDefaulted, 16},
-    {"Basis", "sobolev_exponent", limits::kSobolevExponent, kDefaulted, 1.5},
+    {"Basis", "modes_x", kMissions, kDefaulted, 16},
+    {"Basis", "modes_y", kMissions, kDefaulted, 16},
 
-    {"Law", "u_max_mps", limits::kSpeed_mps, kRefused},
-    {"Law", "epsilon", limits::kEpsilon, kLeft},
-    {"Law", "noise_intensity", limits::kIntensity, kLeft},
-    {"Law", "noise_ceiling", limits::kIntensity, kLeft},
-    {"Law", "contraction_gain_per_s", limits::kContractionGain_per_s, kLeft},
+    {"Law", "u_max_mps", kMissions, kRefused},
+    {"Law", "epsilon", kMissions, kLeft},
+    {"Law", "noise_intensity", kMissions, kLeft},
+    {"Law", "contraction_gain_per_s", kMissions, kLeft},
     {"Law", "contraction_x_m", kCoordinate, kLeft},
     {"Law", "contraction_y_m", kCoordinate, kLeft},
-    {"Law", "anticipation", limits::kAnticipation, kLeft},
+    {"Law", "anticipation", kMissions, kLeft},
 
-    {"Time", "dt_s", limits::kStep_s, kDefaulted, 0.1},
     {"Time", "duration_s", limits::kDuration_s, kRefused},
-    {"Time", "broadcast_period_ticks", limits::kBroadcastPeriod_ticks, kLeft},
-    {"Time", "realtime_factor", limits::kRealtimeFactor, kDefaulted, 1},
-    {"Time", "lockstep_timeout_s", limits::kTimeout_s, kDefaulted, 10},
-    {"Time", "command_hold_s", limits::kCommandHold_s, kDefaulted, 0.5},
-    {"Time", "admission_timeout_s", limits::kTimeout_s, kDefaulted, 30},
-    {"Time", "catch_up_limit_ticks", limits::kCatchUp_ticks, kDefaulted, 5},
+    {"Time", "broadcast_period_ticks", kMissions, kLeft},
 
     {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
-    {"Agents", "quorum", limits::kTeam, kLeft},
-    {"Agents", "forget_silent_after_s", limits::kForgetting_s, kDefaulted, 0},
+    {"Agents", "quorum", kMissions, kLeft},
     {"Start", "x_m", kCoordinate, kRefused},
     {"Start", "y_m", kCoordinate, kRefused},
-
-    {"World", "disturbance_intensity", limits::kIntensity, kDefaulted, 0},
-    {"World", "radio_range_m", limits::kRadioRange_m, kDefaulted, 0},
-    {"World", "speed_limit_mps", limits::kSpeedLimit_mps, kLeft},
-
-    {"Scenario", "goal_ergodic_metric", limits::kGoal, kLeft},
 };
+
+using Rules = std::map<const FieldDescriptor*, FieldRule>;
+
+/// Adds the rules of the mission's fields in a block.
+class RuleCollector : public FieldVisitor {
+ public:
+  RuleCollector(const Message& block, Rules& rules) : block_(block), rules_(rules) {}
+
+  void number(int, const char* name, double value, const Limits& limits, bool given = true) {
+    rules_.emplace(&find_field(block_, name).field,
+                   FieldRule{limits, given ? kDefaulted : kLeft, value});
+  }
+  void part(int, const char* name, const auto& part) {
+    const auto [block, field] = find_field(block_, name);
+    RuleCollector inner(block.GetReflection()->GetMessage(block, &field), rules_);
+    list_fields(inner, part);
+  }
+
+ private:
+  const Message& block_;
+  Rules& rules_;
+};
+
+Rules make_rules() {
+  Rules rules;
+  const proto::Scenario scenario;
+  const Mission mission;
+  RuleCollector collector(scenario, rules);
+  list_fields(collector, mission);
+  for (const auto& [message, name, range, absence, default_value] : kRows) {
+    const auto* field = scenario.GetDescriptor()
+                            ->file()
+                            ->FindMessageTypeByName(std::string(message))
+                            ->FindFieldByName(std::string(name));
+    rules.insert_or_assign(
+        field, FieldRule{range ? *range : rules.at(field).range, absence, default_value});
+  }
+  return rules;
+}
 
 }  // namespace
 
@@ -87,12 +123,24 @@ std::string Range::text() const {
   return shortest(low) + " to " + shortest(high);
 }
 
-const FieldRule* rule_of(const google::protobuf::FieldDescriptor& field) {
-  const auto* found =
-      std::find_if(std::begin(kRules), std::end(kRules), [&](const FieldRule& rule) {
-        return rule.field == field.name() && rule.message == field.containing_type()->name();
-      });
-  return found == std::end(kRules) ? nullptr : found;
+const FieldRule* rule_of(const FieldDescriptor& field) {
+  static const Rules rules = make_rules();
+  const auto found = rules.find(&field);
+  return found == rules.end() ? nullptr : &found->second;
+}
+
+double number_in(const Message& block, const FieldDescriptor& field) {
+  return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE
+             ? block.GetReflection()->GetDouble(block, &field)
+             : block.GetReflection()->GetInt32(block, &field);
+}
+
+FoundField find_field(const Message& block, std::string_view name) {
+  const std::size_t dot = name.find('.');
+  const auto* field = block.GetDescriptor()->FindFieldByName(std::string(name.substr(0, dot)));
+  ERGOCAST_REQUIRE(field != nullptr);
+  if (dot == std::string_view::npos) return {block, *field};
+  return find_field(block.GetReflection()->GetMessage(block, field), name.substr(dot + 1));
 }
 
 }  // namespace ergocast

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table of every number in a scenario: its default and its limits, as scenario.proto's comments
-// state them. core/mission_limits.h has the limits that a mission has, too. validate.cc has the
-// rules that depend on more than one field.
+// state them. A mission's numbers have the limits of core/mission_fields.h and, unless the table
+// says otherwise, the defaults of core/mission.h. validate.cc has the rules that depend on more
+// than one field.
 #pragma once
 
-#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
 
 #include <cstdint>
 #include <string>
@@ -32,7 +33,6 @@ enum class Absence {
 };
 
 struct FieldRule {
-  std::string_view message, field;
   Range range;
   Absence absence;
   double default_value = 0;
@@ -40,6 +40,18 @@ struct FieldRule {
 
 /// The rule of a numeric field, or null for the one without a rule: seed.
 const FieldRule* rule_of(const google::protobuf::FieldDescriptor& field);
+
+/// The value of a numeric field.
+double number_in(const google::protobuf::Message& block,
+                 const google::protobuf::FieldDescriptor& field);
+
+struct FoundField {
+  const google::protobuf::Message& block;
+  const google::protobuf::FieldDescriptor& field;
+};
+/// The field of a name such as "quorum", or "agents.quorum" in a block of `block`.
+/// @pre there is one
+FoundField find_field(const google::protobuf::Message& block, std::string_view name);
 
 inline constexpr std::uint64_t kDefaultSeed = 1;
 

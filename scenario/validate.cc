@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/mission_limits.h"
 #include "scenario/convert.h"
 #include "scenario/explain.h"
 #include "scenario/fields.h"
@@ -24,13 +23,6 @@ using limits::kMaxTicks;
 using limits::kMinWallStep_s;
 
 constexpr std::size_t kMaxDescriptionBytes = 2000;
-
-double number_in(const Message& message, const FieldDescriptor& field) {
-  const auto* reflection = message.GetReflection();
-  return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE
-             ? reflection->GetDouble(message, &field)
-             : reflection->GetInt32(message, &field);
-}
 
 class Validator {
  public:
@@ -97,7 +89,7 @@ class Validator {
   /// "in the domain, 0 to 2000", if the domain is known; empty for fields that are no place in it.
   std::string place_wanted(const FieldDescriptor& field, const FieldRule& rule) const {
     const proto::Domain& domain = scenario_.domain();
-    if (!rule.range.coordinate || rule.message == domain.GetDescriptor()->name()) return "";
+    if (!rule.range.coordinate) return "";
     const bool is_x = field.name().ends_with("x_m");
     const double low_m = is_x ? domain.origin_x_m() : domain.origin_y_m();
     const double size_m = is_x ? domain.size_x_m() : domain.size_y_m();
@@ -218,7 +210,7 @@ class Validator {
     }
     if (!sound("law.u_max_mps")) return;
     const Box domain = domain_of(scenario_.domain());
-    const Eigen::Vector3d center_m = law_of(law, domain).contraction_center_m;
+    const Eigen::Vector3d center_m = contraction_center_of(law, domain);
     const double needed_mps = gain_per_s * domain.farthest_distance_m(center_m);
     if (law.u_max_mps() >= needed_mps) return;
     problem("law.u_max_mps",

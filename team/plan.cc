@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Encodes a mission with Protobuf lite, and checks every field of a received plan.
+// Writes and reads the list of a mission's fields, and accepts only what it would have written.
 #include "team/plan.h"
 
 #include <xxhash.h>
 
 #include <algorithm>
+#include <bit>
+#include <map>
 #include <optional>
+#include <string_view>
 
-#include "core/mission_limits.h"
+#include "core/mission_fields.h"
 #include "core/require.h"
 #include "team/messages.h"
-#include "team/plan.pb.h"
 
 namespace ergocast {
 namespace {
@@ -40,167 +42,199 @@ bool is_version(const std::string& text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
 }
 
-// Conversion of each part of a mission in both directions.
+// Protobuf's wire format: each field is its number with the kind of its bytes, then the bytes. A
+// plan has the fields in ascending order, and none that is 0.
+constexpr int kVersionField = 1;
+constexpr unsigned kVarint = 0, kFixed64 = 1, kBlock = 2;
+// Doubles are copied as they are.
+static_assert(std::endian::native == std::endian::little);
 
-void write(const Box& domain, proto::Plan::Domain& out) {
-  out.set_origin_x_m(domain.origin_m.x());
-  out.set_origin_y_m(domain.origin_m.y());
-  out.set_size_x_m(domain.size_m.x());
-  out.set_size_y_m(domain.size_m.y());
-}
-Box read(const proto::Plan::Domain& in) {
-  return {{in.origin_x_m(), in.origin_y_m(), 0}, {in.size_x_m(), in.size_y_m(), 0}};
-}
+template <class T>
+concept Whole = std::is_integral_v<T> || std::is_enum_v<T>;
 
-void write(const Basis& basis, proto::Plan::Basis& out) {
-  out.set_modes_x(basis.modes_x);
-  out.set_modes_y(basis.modes_y);
-  out.set_normalized(basis.normalized);
-  out.set_norm_form(basis.sobolev_form == SobolevForm::kNorm);
-  out.set_sobolev_exponent(basis.sobolev_exponent);
-}
-Basis read(const proto::Plan::Basis& in) {
-  return {.modes_x = in.modes_x(),
-          .modes_y = in.modes_y(),
-          .sobolev_form = in.norm_form() ? SobolevForm::kNorm : SobolevForm::kSquaredNorm,
-          .sobolev_exponent = in.sobolev_exponent(),
-          .normalized = in.normalized()};
-}
+class PlanWriter {
+ public:
+  void value(int field, Whole auto value) {
+    if (const auto whole = static_cast<std::uint64_t>(value); whole != 0)
+      fields_[field] = tag(field, kVarint) + varint(whole);
+  }
+  /// −0 is not 0.
+  void value(int field, double value) {
+    if (std::bit_cast<std::uint64_t>(value) != 0)
+      fields_[field] = tag(field, kFixed64) + bytes_of(&value, 1);
+  }
+  void value(int field, const std::string& bytes) {
+    fields_[field] = tag(field, kBlock) + varint(bytes.size()) + bytes;
+  }
+  void value(int field, const Coefficients& numbers) {
+    value(field, bytes_of(numbers.data(), numbers.size()));
+  }
+  void value(int field, const std::vector<Eigen::Vector3d>& places_m) {
+    std::string bytes;
+    for (const Eigen::Vector3d& x_m : places_m) bytes += bytes_of(x_m.data(), 2);
+    value(field, bytes);
+  }
+  PlanWriter open(int) const { return {}; }
+  void close(int field, const PlanWriter& block) { value(field, block.bytes()); }
 
-void write(const ControlLaw& law, proto::Plan::Law& out) {
-  out.set_u_max_mps(law.u_max_mps);
-  out.set_relative_regularization(law.regularization == Regularization::kRelative);
-  out.set_epsilon(law.epsilon);
-  out.set_adaptive_perturbation(law.perturbation == Perturbation::kAdaptive);
-  out.set_noise_intensity(law.noise_intensity);
-  out.set_noise_ceiling(law.noise_ceiling);
-  out.set_contraction_gain_per_s(law.contraction_gain_per_s);
-  out.set_contraction_center_x_m(law.contraction_center_m.x());
-  out.set_contraction_center_y_m(law.contraction_center_m.y());
-  out.set_anticipation(law.anticipation);
-  out.set_ends_with_plan(law.ends_with_plan);
-  out.set_paired_pushes(law.paired_pushes);
-}
-ControlLaw read(const proto::Plan::Law& in) {
-  return {.u_max_mps = in.u_max_mps(),
-          .regularization =
-              in.relative_regularization() ? Regularization::kRelative : Regularization::kAbsolute,
-          .epsilon = in.epsilon(),
-          .perturbation =
-              in.adaptive_perturbation() ? Perturbation::kAdaptive : Perturbation::kConstant,
-          .noise_intensity = in.noise_intensity(),
-          .noise_ceiling = in.noise_ceiling(),
-          .contraction_gain_per_s = in.contraction_gain_per_s(),
-          .contraction_center_m = {in.contraction_center_x_m(), in.contraction_center_y_m(), 0},
-          .anticipation = in.anticipation(),
-          .ends_with_plan = in.ends_with_plan(),
-          .paired_pushes = in.paired_pushes()};
-}
+  std::string bytes() const {
+    std::string all;
+    for (const auto& [field, bytes] : fields_) all += bytes;
+    return all;
+  }
 
-void write(const Timing& timing, proto::Plan::Timing& out) {
-  out.set_dt_s(timing.dt_s);
-  out.set_tick_count(timing.tick_count);
-  out.set_broadcast_period_ticks(timing.broadcast_period_ticks);
-  out.set_realtime(timing.pace == Pace::kRealtime);
-  out.set_realtime_factor(timing.realtime_factor);
-  out.set_lockstep_timeout_s(timing.lockstep_timeout_s);
-  out.set_command_hold_s(timing.command_hold_s);
-  out.set_admission_timeout_s(timing.admission_timeout_s);
-  out.set_catch_up_limit_ticks(timing.catch_up_limit_ticks);
-  out.set_evict_on_timeout(timing.on_timeout == OnTimeout::kEvict);
-}
-Timing read(const proto::Plan::Timing& in) {
-  return {.dt_s = in.dt_s(),
-          .tick_count = in.tick_count(),
-          .broadcast_period_ticks = in.broadcast_period_ticks(),
-          .pace = in.realtime() ? Pace::kRealtime : Pace::kLockstep,
-          .realtime_factor = in.realtime_factor(),
-          .lockstep_timeout_s = in.lockstep_timeout_s(),
-          .command_hold_s = in.command_hold_s(),
-          .admission_timeout_s = in.admission_timeout_s(),
-          .catch_up_limit_ticks = in.catch_up_limit_ticks(),
-          .on_timeout = in.evict_on_timeout() ? OnTimeout::kEvict : OnTimeout::kEndMission};
-}
+ private:
+  static std::string varint(std::uint64_t value) {
+    std::string bytes;
+    for (; value >= 0x80; value >>= 7) bytes += static_cast<char>(value | 0x80);
+    return bytes + static_cast<char>(value);
+  }
+  static std::string tag(int field, unsigned kind) {
+    return varint(static_cast<unsigned>(field) << 3 | kind);
+  }
+  static std::string bytes_of(const double* numbers, Eigen::Index count) {
+    return {reinterpret_cast<const char*>(numbers),
+            sizeof(double) * static_cast<std::size_t>(count)};
+  }
 
-/// Nothing if the number of coefficients or starts does not fit.
-std::optional<Mission> read(const proto::Plan& in) {
-  Mission mission;
-  mission.name = in.name();
-  mission.seed = in.seed();
-  mission.domain = read(in.domain());
-  mission.basis = read(in.basis());
-  const auto is_mode_count = [](int modes) { return limits::kModes.contain(modes); };
-  if (!is_mode_count(mission.basis.modes_x) || !is_mode_count(mission.basis.modes_y) ||
-      in.target_coefficients_size() != mission.basis.mode_count() || in.starts_m_size() % 2 != 0) {
+  std::map<int, std::string> fields_;
+};
+
+/// Takes whatever the bytes say, 0 for what they do not: decode_plan() compares the encoding of
+/// what was read with them.
+class PlanReader {
+ public:
+  explicit PlanReader(std::string_view bytes) {
+    while (const auto key = varint(bytes)) {
+      const unsigned kind = *key & 7;
+      // The value, or how many bytes it has.
+      const std::optional<std::uint64_t> whole = kind == kFixed64 ? sizeof(double) : varint(bytes);
+      if (!whole || kind > kBlock) return;
+      const std::size_t size = kind == kVarint ? 0 : *whole;
+      if (size > bytes.size()) return;
+      fields_[*key >> 3] = {*whole, bytes.substr(0, size)};
+      bytes.remove_prefix(size);
+    }
+  }
+
+  template <Whole T>
+  void value(int field, T& value) const {
+    value = static_cast<T>(at(field).whole);
+  }
+  void value(int field, double& value) const {
+    const std::vector<double> numbers = numbers_at(field);
+    value = numbers.empty() ? 0 : numbers[0];
+  }
+  void value(int field, std::string& bytes) const { bytes = at(field).bytes; }
+  void value(int field, Coefficients& coefficients) const {
+    const std::vector<double> numbers = numbers_at(field);
+    coefficients = Eigen::Map<const Coefficients>(numbers.data(), std::ssize(numbers));
+  }
+  void value(int field, std::vector<Eigen::Vector3d>& places_m) const {
+    const std::vector<double> numbers = numbers_at(field);
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+      places_m.emplace_back(numbers[i], numbers[i + 1], 0);
+  }
+  PlanReader open(int field) const { return PlanReader(at(field).bytes); }
+  void close(int, const PlanReader&) const {}
+
+ private:
+  struct Value {
+    std::uint64_t whole = 0;
+    std::string_view bytes;
+  };
+
+  /// Takes a number off the beginning of `bytes`; nothing if there is none.
+  static std::optional<std::uint64_t> varint(std::string_view& bytes) {
+    std::uint64_t value = 0;
+    for (unsigned shift = 0; shift < 64 && !bytes.empty(); shift += 7) {
+      const auto byte = static_cast<unsigned char>(bytes.front());
+      bytes.remove_prefix(1);
+      value |= (byte & 0x7full) << shift;
+      if (byte < 0x80) return value;
+    }
     return std::nullopt;
   }
-  mission.target_coefficients =
-      Eigen::Map<const Coefficients>(in.target_coefficients().data(), mission.basis.mode_count());
-  mission.law = read(in.law());
-  mission.timing = read(in.timing());
-  for (int i = 0; i < in.starts_m_size(); i += 2) {
-    mission.starts_m.emplace_back(in.starts_m(i), in.starts_m(i + 1), 0);
+  Value at(int field) const {
+    const auto found = fields_.find(static_cast<std::uint64_t>(field));
+    return found == fields_.end() ? Value() : found->second;
   }
-  mission.quorum = in.quorum();
-  mission.forget_silent_after_s = in.forget_silent_after_s();
-  mission.goal_ergodic_metric = in.goal_ergodic_metric();
-  mission.disturbance_intensity = in.disturbance_intensity();
-  mission.radio_range_m = in.radio_range_m();
-  mission.speed_limit_mps = in.speed_limit_mps();
-  mission.dead_reckoning = in.dead_reckoning();
-  mission.wait_for_logger = in.wait_for_logger();
-  return mission;
-}
+  std::vector<double> numbers_at(int field) const {
+    const std::string_view bytes = at(field).bytes;
+    std::vector<double> numbers(bytes.size() / sizeof(double));
+    std::copy_n(bytes.data(), numbers.size() * sizeof(double),
+                reinterpret_cast<char*>(numbers.data()));
+    return numbers;
+  }
+
+  std::map<std::uint64_t, Value> fields_;
+};
+
+/// Passes each field on to `wire`, a PlanWriter or a PlanReader.
+template <class Wire>
+class PlanFields : public FieldVisitor {
+ public:
+  explicit PlanFields(Wire& wire) : wire_(wire) {}
+
+  void number(int field, const char*, auto& value, const Limits&, bool = true) {
+    wire_.value(field, value);
+  }
+  void flag(int field, const char*, auto& value) { wire_.value(field, value); }
+  void choice(int field, const char*, auto& value, Words) { wire_.value(field, value); }
+  void seed(int field, const char*, auto& value) { wire_.value(field, value); }
+  void name(int field, const char*, auto& value) { wire_.value(field, value); }
+  void part(int field, const char*, auto& part) {
+    Wire block = wire_.open(field);
+    PlanFields inner(block);
+    list_fields(inner, part);
+    wire_.close(field, block);
+  }
+  void contraction_center(int field, auto& x_m) {
+    wire_.value(field, x_m.x());
+    wire_.value(field + 1, x_m.y());
+  }
+  void duration(int field, auto& timing) { wire_.value(field, timing.tick_count); }
+  void target(int field, auto& target) { wire_.value(field, target); }
+  void starts(int field, auto& starts_m) { wire_.value(field, starts_m); }
+  void hidden_flag(int field, auto& value) { wire_.value(field, value); }
+
+ private:
+  Wire& wire_;
+};
 
 }  // namespace
 
 std::vector<std::byte> encode_plan(const Mission& mission) {
-  proto::Plan plan;
-  plan.set_version(ERGOCAST_VERSION);
-  plan.set_name(mission.name);
-  plan.set_seed(mission.seed);
-  write(mission.domain, *plan.mutable_domain());
-  write(mission.basis, *plan.mutable_basis());
-  const Coefficients& target = mission.target_coefficients;
-  plan.mutable_target_coefficients()->Add(target.data(), target.data() + target.size());
-  write(mission.law, *plan.mutable_law());
-  write(mission.timing, *plan.mutable_timing());
-  for (const Eigen::Vector3d& x_m : mission.starts_m) {
-    plan.add_starts_m(x_m.x());
-    plan.add_starts_m(x_m.y());
-  }
-  plan.set_quorum(mission.quorum);
-  plan.set_forget_silent_after_s(mission.forget_silent_after_s);
-  plan.set_goal_ergodic_metric(mission.goal_ergodic_metric);
-  plan.set_disturbance_intensity(mission.disturbance_intensity);
-  plan.set_radio_range_m(mission.radio_range_m);
-  plan.set_speed_limit_mps(mission.speed_limit_mps);
-  plan.set_dead_reckoning(mission.dead_reckoning);
-  plan.set_wait_for_logger(mission.wait_for_logger);
-
-  std::vector<std::byte> bytes(plan.ByteSizeLong());
+  PlanWriter plan;
+  plan.value(kVersionField, std::string(ERGOCAST_VERSION));
+  PlanFields fields(plan);
+  list_fields(fields, mission);
+  const std::string bytes = plan.bytes();
   // within_limits() keeps it below this size.
   ERGOCAST_REQUIRE(bytes.size() <= kMaxPlanBytes);
-  ERGOCAST_REQUIRE(plan.SerializeToArray(bytes.data(), static_cast<int>(bytes.size())));
-  return bytes;
+  const auto all = std::as_bytes(std::span(bytes));
+  return {all.begin(), all.end()};
 }
 
 std::variant<Mission, std::string> decode_plan(std::span<const std::byte> bytes) noexcept try {
   if (bytes.size() > kMaxPlanBytes) return unreadable_plan();
-  proto::Plan plan;
-  const bool whole = plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
-  // Only the version itself can read the fields after its number.
-  if (!is_version(plan.version())) return unreadable_plan();
-  if (plan.version() != ERGOCAST_VERSION) {
-    return "the mission's plan is of version " + plan.version() +
-           ", this program is " ERGOCAST_VERSION + kRemedy;
+  const PlanReader plan({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  // Only the version itself can read the other fields.
+  std::string version;
+  plan.value(kVersionField, version);
+  if (!is_version(version)) return unreadable_plan();
+  if (version != ERGOCAST_VERSION) {
+    return "the mission's plan is of version " + version + ", this program is " ERGOCAST_VERSION +
+           kRemedy;
   }
-  std::optional<Mission> mission = read(plan);
-  if (!whole || !mission || !within_limits(*mission)) return broken_plan();
+  Mission mission;
+  PlanFields fields(plan);
+  list_fields(fields, mission);
   // A mission has exactly one encoding: bytes that differ from it were not written by
   // encode_plan().
-  if (!std::ranges::equal(encode_plan(*mission), bytes)) return broken_plan();
-  return std::move(*mission);
+  if (!within_limits(mission) || !std::ranges::equal(encode_plan(mission), bytes))
+    return broken_plan();
+  return mission;
 } catch (...) {
   return "out of memory";
 }

@@ -13,31 +13,18 @@
 #include "lcmtypes/codec.h"
 #include "ops/doctor/group_listener.h"
 #include "runtime/clock.h"
+#include "runtime/lcm_datagram.h"
 
 namespace ergocast::doctor {
 namespace {
 
 constexpr std::size_t kMostRuns = 8, kMostNames = 8;
 
-/// The channel and payload of a short LCM datagram; an empty channel if it is no LCM datagram.
-std::pair<std::string, std::span<const std::byte>> opened(std::span<const std::byte> datagram) {
-  constexpr std::size_t kHeaderBytes = 8;  // "LC02" and a sequence number
-  constexpr std::size_t kMaxChannelBytes = 63;
-  constexpr char kMagic[] = {'L', 'C', '0', '2'};
-  const auto* text = reinterpret_cast<const char*>(datagram.data());
-  if (datagram.size() <= kHeaderBytes || !std::equal(kMagic, kMagic + 4, text)) return {};
-  const auto begin = datagram.begin() + kHeaderBytes;
-  const auto end = std::find(begin, datagram.end(), std::byte{0});
-  const auto length = static_cast<std::size_t>(end - begin);
-  if (end == datagram.end() || length > kMaxChannelBytes) return {};
-  return {std::string(text + kHeaderBytes, length), datagram.subspan(kHeaderBytes + length + 1)};
-}
-
 void note(std::set<std::string>& names, const std::string& name) {
   if (!name.empty() && names.size() < kMostNames) names.insert(printable(name));
 }
 
-std::string joined(const std::set<std::string>& names) {
+std::string listed(const std::set<std::string>& names) {
   return doctor::joined({names.begin(), names.end()});
 }
 
@@ -46,16 +33,16 @@ std::string described(RunId id, const HeardRun& run) {
   std::snprintf(text, sizeof text, "run %016" PRIx64, id);
   return text + (run.state.empty() ? "" : ", " + run.state) +
          (run.agents.empty() ? "" : ", " + counted(static_cast<long>(run.agents.size()), "agent")) +
-         (run.hosts.empty() ? "" : " on " + joined(run.hosts)) +
-         (run.versions.empty() ? "" : ", version " + joined(run.versions));
+         (run.hosts.empty() ? "" : " on " + listed(run.hosts)) +
+         (run.versions.empty() ? "" : ", version " + listed(run.versions));
 }
 
 }  // namespace
 
 void Overheard::take(std::span<const std::byte> datagram) {
-  const auto [channel, payload] = opened(datagram);
-  if (channel.empty()) return;
-  const auto decoded = decode(payload, 0, seal_, channel);
+  const auto lcm = parse_datagram(datagram);
+  if (!lcm || lcm->channel.empty()) return;
+  const auto decoded = decode(lcm->message, 0, seal_, lcm->channel);
   if (const auto* message = std::get_if<Message>(&decoded)) return take(*message);
   const Refusal refusal = std::get<Refusal>(decoded);
   if (refusal == Refusal::kUnkeyed) {
@@ -67,7 +54,7 @@ void Overheard::take(std::span<const std::byte> datagram) {
     return;
   }
   ++foreign_messages_;
-  note(foreign_channels_, channel);
+  note(foreign_channels_, std::string(lcm->channel));
 }
 
 void Overheard::take(const Message& message) {
@@ -126,7 +113,7 @@ Finding Overheard::finding(const LcmUrl& url, std::optional<int> free_port) cons
   }
   if (const auto keys = key_finding()) return *keys;
   if (foreign_messages_ > 0) {
-    return {"swarm bus", Level::kWarning, "other LCM traffic: " + joined(foreign_channels_),
+    return {"swarm bus", Level::kWarning, "other LCM traffic: " + listed(foreign_channels_),
             "Every process of a team would parse all of it and refuse it.",
             "--lcm-url '" + other.base() + "'   # on every host"};
   }

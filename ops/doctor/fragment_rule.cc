@@ -127,9 +127,8 @@ Finding fragment_rule_finding(const LcmUrl& url, const std::optional<std::string
                               const std::filesystem::path& rules) {
   const char* check = "LCM fragments";
   const std::string why =
-      "One crafted fragment crashes a program that uses LCM. Ours keep them out once their sockets "
-      "are open; the rule covers their first moment and other programs, too. As root, until the "
-      "next start:";
+      "One crafted fragment crashes a program that reads with LCM's library, such as lcm-spy and "
+      "lcm-logger. Ours do not. As root, until the next start:";
   const Finding missing{check, Level::kNote, "no rule drops them", why,
                         command_that_loads(url, rules)};
   if (!ruleset) {

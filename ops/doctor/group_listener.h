@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A socket that receives the datagrams of a multicast group, in addition to LCM's.
+// A socket that receives the datagrams of a multicast group, in addition to the team's.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace ergocast::doctor {
 
-/// Receives datagrams to this group and port only; shares the port as LCM does. Its fd() is valid
+/// Receives datagrams to this group and port only (runtime/group_socket.h). Its fd() is valid
 /// even if `error` tells why it receives nothing.
 Socket group_listener(const std::string& group, int port, std::string& error);
 

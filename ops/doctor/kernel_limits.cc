@@ -12,7 +12,8 @@
 namespace ergocast::doctor {
 namespace {
 
-constexpr int kRecommendedBytes = 4194304;
+/// For fragments of datagrams of other programs.
+constexpr int kFragmentBytes = 4194304;
 /// The space of one of our datagrams of 900 to 1250 bytes in a receive buffer: the default of
 /// 212992 bytes holds 92 (Linux 6, x86-64).
 constexpr int kBytesPerDatagram = 2304;
@@ -32,15 +33,13 @@ std::string sysctl_commands(const std::string& setting) {
 ReceiveBuffer measure_receive_buffer(const LcmUrl& url) {
   const auto with = [](int asked_bytes) {
     const Socket socket(AF_INET, SOCK_DGRAM);
-    if (asked_bytes > 0) {
-      setsockopt(socket.fd(), SOL_SOCKET, SO_RCVBUF, &asked_bytes, sizeof asked_bytes);
-    }
+    setsockopt(socket.fd(), SOL_SOCKET, SO_RCVBUF, &asked_bytes, sizeof asked_bytes);
     int bytes = 0;
     socklen_t length = sizeof bytes;
     getsockopt(socket.fd(), SOL_SOCKET, SO_RCVBUF, &bytes, &length);
     return bytes;
   };
-  return {with(url.receive_buffer_bytes), with(1 << 30)};
+  return {with(url.receive_buffer()), with(1 << 30)};
 }
 
 Finding receive_buffer_finding(const LcmUrl& url, const ReceiveBuffer& buffer) {
@@ -55,7 +54,7 @@ Finding receive_buffer_finding(const LcmUrl& url, const ReceiveBuffer& buffer) {
             "What arrives in a burst longer than that is lost in silence.",
             sysctl_commands("net.core.rmem_max=" + std::to_string(asked))};
   }
-  if (buffer.granted_bytes >= 2 * kRecommendedBytes) {
+  if (buffer.granted_bytes >= 2 * kReceiveBufferBytes) {
     return {"receive buffer", Level::kOk, holds, "", ""};
   }
   Finding finding{
@@ -63,13 +62,14 @@ Finding receive_buffer_finding(const LcmUrl& url, const ReceiveBuffer& buffer) {
       "Enough for small teams. What arrives in a longer burst is lost in silence: of 256 "
       "datagrams every 0.1 s, half.",
       ""};
-  LcmUrl larger = url;
-  larger.receive_buffer_bytes = kRecommendedBytes;
-  if (buffer.most_bytes < 2 * kRecommendedBytes) {
-    finding.remedy =
-        sysctl_commands("net.core.rmem_max=" + std::to_string(kRecommendedBytes)) + "\n";
+  if (buffer.most_bytes < 2 * kReceiveBufferBytes) {
+    finding.remedy = sysctl_commands("net.core.rmem_max=" + std::to_string(kReceiveBufferBytes));
   }
-  finding.remedy += "--lcm-url '" + larger.base() + "'";
+  if (asked > 0) {
+    LcmUrl without = url;
+    without.receive_buffer_bytes = 0;
+    finding.remedy += (finding.remedy.empty() ? "" : "\n") + ("--lcm-url '" + without.base() + "'");
+  }
   return finding;
 }
 
@@ -77,12 +77,12 @@ Finding fragments_finding(const std::filesystem::path& proc) {
   const auto bytes = number_in(proc / "sys/net/ipv4/ipfrag_high_thresh");
   if (!bytes) return {"fragments", Level::kOk, "the kernel does not tell its limit", "", ""};
   const std::string found = std::to_string(*bytes) + " bytes for fragments that wait";
-  if (*bytes >= kRecommendedBytes) return {"fragments", Level::kOk, found, "", ""};
+  if (*bytes >= kFragmentBytes) return {"fragments", Level::kOk, found, "", ""};
   return {
       "fragments", Level::kNote, found,
       "Messages of Ergocast are never fragmented. Other LCM programs' messages above the MTU are "
       "all lost while the fragments of broken ones fill this room.",
-      sysctl_commands("net.ipv4.ipfrag_high_thresh=" + std::to_string(kRecommendedBytes))};
+      sysctl_commands("net.ipv4.ipfrag_high_thresh=" + std::to_string(kFragmentBytes))};
 }
 
 Finding reverse_path_finding(const std::filesystem::path& proc, const std::string& interface) {

@@ -12,7 +12,7 @@ namespace ergocast::doctor {
 
 /// The size of a socket's receive buffer, as the kernel counts it.
 struct ReceiveBuffer {
-  int granted_bytes = 0;  ///< with the URL's recv_buf_size; without one, the default
+  int granted_bytes = 0;  ///< with the URL's recv_buf_size, or what our programs ask for
   int most_bytes = 0;     ///< with the largest recv_buf_size (net.core.rmem_max)
 };
 ReceiveBuffer measure_receive_buffer(const LcmUrl& url);

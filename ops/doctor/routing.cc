@@ -131,7 +131,8 @@ Finding self_test_finding(const LcmUrl& url, const std::optional<std::string>& f
   // The first line tells what happened. The other checks cover the rest better.
   std::string found = failure->substr(0, failure->find('\n'));
   if (found.starts_with(url.base() + ": ")) found.erase(0, url.base().size() + 2);
-  const std::string why = "LCM tests itself in the same way, and no program of Ergocast starts. ";
+  const std::string why =
+      "Every program of Ergocast tests itself in the same way, and none starts. ";
   if (!has_route) return {"self test", Level::kProblem, found, why + "It needs the route.", ""};
   return {"self test", Level::kProblem, found,
           why + "If route and interface are right, a firewall drops what comes in.",

@@ -7,7 +7,7 @@ import java.nio.charset.StandardCharsets;
 import java.util.HashMap;
 import java.util.Map;
 
-/** The fields of a compiled plan, message Plan of team/plan.proto, that the pictures need. */
+/** The fields of a compiled plan, listed in team/plan.proto, that the pictures need. */
 final class Plan {
   static final int MAX_MODES = 64;
   static final long MAX_TICKS = 100000000;
@@ -20,7 +20,7 @@ final class Plan {
   final double[] target; // mu, m * modesY + n
 
   /**
-   * Reads Protobuf's wire format, with the field numbers of team/plan.proto. A number that is not there
+   * Reads Protobuf's wire format, with the numbers of team/plan.proto. A number that is not there
    * is 0.
    *
    * @throws RuntimeException for bytes that are no plan

@@ -9,6 +9,7 @@ import java.lang.reflect.Proxy;
 import java.util.Arrays;
 import java.util.Map;
 import java.util.TreeMap;
+import java.util.function.LongSupplier;
 import lcm.lcm.LCMDataInputStream;
 
 /**
@@ -38,10 +39,20 @@ final class Team {
   long tick; // newest received
   String status = ""; // the coordinator's report
 
+  private final LongSupplier clock; // [ns]
   private long run;
   private long heardNs;
   private long revision = -1;
   private byte[][] parts = new byte[0][];
+
+  Team() {
+    this(System::nanoTime);
+  }
+
+  /** With a clock of its own, by which a run becomes silent. */
+  Team(LongSupplier clock) {
+    this.clock = clock;
+  }
 
   /** Takes in a message; invalid bytes and messages of another active run have no effect. */
   void receive(LCMDataInputStream bytes) {
@@ -146,7 +157,7 @@ final class Team {
 
   private boolean isOfThisRun(ergocast.header_t header) {
     if (run == 0 || header.run_id != run || isSilent()) return false;
-    heardNs = System.nanoTime();
+    heardNs = clock.getAsLong();
     return true;
   }
 
@@ -156,14 +167,14 @@ final class Team {
   }
 
   private boolean isSilent() {
-    return System.nanoTime() - heardNs > SILENCE_NS;
+    return clock.getAsLong() - heardNs > SILENCE_NS;
   }
 
   /** A new run, or a second replay, replaces a run that has become silent. */
   private boolean begins(ergocast.header_t header) {
     if (run != 0 && !isSilent()) return false;
     run = header.run_id;
-    heardNs = System.nanoTime();
+    heardNs = clock.getAsLong();
     agents.clear();
     metric = new History();
     plan = null;

@@ -47,7 +47,7 @@ TEST(AgentTick, CommandIsTheControllersForTheTeamsCoverage) {
   Coefficients team = Coefficients::Zero(20);
   table.average(team);
   Controller controller(mission);
-  controller.see(team);
+  controller.set_coverage(team);
   const Eigen::Vector3d expected = controller.command(0, 0, {100, 500, 0}, here);
   EXPECT_EQ(commands[0].velocity_mps, expected) << "bit for bit";
   EXPECT_EQ(commands[0].velocity_mps.z(), 0);

@@ -76,7 +76,7 @@ TEST(AgentForesees, ItsCommandAnswersToWhatItForeseesAndItsStatusTellsWhatItKnow
       table.average(known);
       ASSERT_EQ(agent.foreseen_coverage(), foreseen) << tick;
       ASSERT_EQ(agent.team_coverage(), known) << tick;
-      controller.see(foreseen);
+      controller.set_coverage(foreseen);
       ASSERT_EQ(commands.at(0).velocity_mps,
                 controller.command(0, tick, whereabouts(0, tick), here))
           << tick;
@@ -93,7 +93,7 @@ TEST(AgentForesees, NothingWithoutAnticipation) {
   hear(agent, words_of(mission, 1, 0));
   const auto commands = only<Command>(tell(agent, world_of(2, 1)));
   Controller controller(mission);
-  controller.see(agent.team_coverage());
+  controller.set_coverage(agent.team_coverage());
   const BasisAt here(whereabouts(0, 1), mission.domain, mission.basis);
   EXPECT_EQ(commands.at(0).velocity_mps, controller.command(0, 1, whereabouts(0, 1), here));
 }

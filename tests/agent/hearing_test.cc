@@ -70,6 +70,22 @@ TEST(AgentRefuses, CoverageFromTheFuture) {
   EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 601);
 }
 
+TEST(AgentRefuses, NothingForItsStepsBeforeItKnowsTheTick) {
+  // A late joiner hears of the others' steps before it hears of the world's tick.
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.tick_count = 1000;
+  const auto row_of_1 = block_of(mission, 1, std::vector<Eigen::Vector3d>(700, {200, 500, 0}), 700);
+  Agent agent = running_agent(mission);
+  tell(agent, row_of_1);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt)
+      << "it may be from the future";
+  EXPECT_EQ(agent.refused(), RefusalCounts{}) << "or not";
+  tell(agent, world_state(699, {{100, 500, 0}}));
+  tell(agent, row_of_1);
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), 700);
+}
+
 TEST(AgentRefuses, APlaceOutsideTheDomain) {
   Agent agent = running_agent(small_mission(1));
   const Outbox out = tell(agent, world_state(0, {{-1, 500, 0}}));

@@ -353,6 +353,20 @@ TEST_F(Repair, NoMoreRowsAreTakenUpInASecondThanItsLimitWhateverDigestsSay) {
   EXPECT_EQ(rows_answered(at(2s)), kMost);
 }
 
+TEST_F(Repair, NoMoreRowsWaitToBeRepeatedThanItsLimitHoweverManySecondsPass) {
+  constexpr auto kMost = static_cast<int>(AntiEntropy::kMaxAnswers);
+  std::vector<Author> gone;
+  for (int i = 0; i < kMost + 20; ++i)
+    gone.push_back({5 + i / 13, 5000 + static_cast<Incarnation>(i)});
+  for (const Author& author : gone) admit({author, 0, 4});
+  for (const Author& author : gone) hold(author, 9);
+  // Nothing is repeated in between, as in an agent whose process is paused.
+  for (const Instant now : {at(0s), at(1s), at(2s), at(3s)}) {
+    for (const Author& author : gone) complain(1, author, 0, now);
+  }
+  EXPECT_EQ(answered(at(3s)).size(), AntiEntropy::kMaxAnswers);
+}
+
 TEST_F(Repair, WhoHasComplainedAndGoneMakesRoomForOthers) {
   roster = roster_of(kMaxAgents);
   for (AgentId id = 1; id < kMaxAgents; ++id) hold(author_of(id), 20);

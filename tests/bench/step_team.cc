@@ -89,7 +89,7 @@ Eigen::Vector3d StepTeam::step() {
   } else {
     own_.average(coverage_);
   }
-  controller_.see(coverage_);
+  controller_.set_coverage(coverage_);
   return controller_.command(0, tick_, places_m_[0], at);
 }
 

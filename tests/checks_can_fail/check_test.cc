@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "scenario/defaults.h"
 #include "scenario/fields.h"
 #include "scenario/scenario.pb.h"
 #include "tests/checks_can_fail/expect_said.h"
@@ -295,7 +296,7 @@ class Scenarios : public OwnHost {
 // ---- fields by themselves
 // ------------------------------------------------------------------------
 
-/// A scenario with every block and every number.
+/// A scenario with every block, and every number that other fields determine or limit.
 constexpr const char* kRich = R"(
 name: "rich" description: "all fields" seed: 1 goal_ergodic_metric: 1
 domain { origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 }
@@ -306,18 +307,17 @@ target {
   maps { file: "even.csv" weight: 1 origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 first_row: NORTH }
   regions { weight: 1 polygon { vertices { x_m: 1 y_m: 1 } vertices { x_m: 9 y_m: 1 } vertices { x_m: 9 y_m: 9 } } }
 }
-basis { modes_x: 8 modes_y: 8 normalized: true sobolev_form: NORM sobolev_exponent: 1.5 }
+basis { modes_x: 8 modes_y: 8 }
 law {
   u_max_mps: 5 regularization: RELATIVE epsilon: 0.2 perturbation: ADAPTIVE noise_intensity: 0.1 noise_ceiling: 2
   contraction_gain_per_s: 0.001 contraction_center: POINT contraction_x_m: 50 contraction_y_m: 25
-  anticipation: 2 ends_with_plan: false paired_pushes: false
+  anticipation: 2
 }
 time {
-  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 pace: REALTIME realtime_factor: 1 lockstep_timeout_s: 10
-  on_timeout: EVICT command_hold_s: 0.5 admission_timeout_s: 30 catch_up_limit_ticks: 5
+  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 pace: REALTIME
 }
-agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 forget_silent_after_s: 5 dead_reckoning: true }
-world { disturbance_intensity: 0.1 radio_range_m: 30 speed_limit_mps: 100 }
+agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 }
+world { speed_limit_mps: 100 }
 )";
 
 /// Calls `visit` for each field that takes a number or a word, with its block.
@@ -343,11 +343,18 @@ void each_field(
 
 class CheckCanFail : public Scenarios {
  protected:
+  /// kRich with the defaults of what it leaves out.
+  proto::Scenario rich_scenario() const {
+    proto::Scenario scenario;
+    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &scenario));
+    fill_in(scenario, file_);
+    return scenario;
+  }
+
   /// Expects this problem of the field at `path` after `spoil` was applied.
   void expect_said(const std::string& path, const std::string& what,
                    const std::function<void(Block&, const FieldDescriptor&)>& spoil) {
-    proto::Scenario scenario;
-    ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &scenario));
+    proto::Scenario scenario = rich_scenario();
     each_field(scenario, "",
                [&](Block& block, const FieldDescriptor& field, const std::string& at) {
                  if (at == path) spoil(block, field);
@@ -399,8 +406,7 @@ class CheckCanFail : public Scenarios {
   void plant_in_fields() {
     write("s.textproto", kRich);
     EXPECT_EQ(ergocast({"check", file_}), 0) << output();
-    proto::Scenario rich;
-    ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &rich));
+    proto::Scenario rich = rich_scenario();
     std::set<std::string> covered;
     each_field(rich, "", [&](Block&, const FieldDescriptor& field, const std::string& path) {
       if (!covered.insert(field.full_name()).second) return;

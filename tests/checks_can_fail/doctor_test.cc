@@ -476,8 +476,6 @@ std::vector<Plant> DoctorCanFail::plants() {
 }
 
 const std::vector<Unsayable> kUnsayable = {
-    {"ops/doctor/group_listener.cc", "cannot listen to the group",
-     "the self test, which joins it first, fails then"},
     {"ops/doctor/ports.cc", "ss -ulpn", "a thousand ports would have to be taken"},
 };
 

@@ -100,6 +100,19 @@ TEST(CoordinatorAdmits, ARestartedAgentOnceItsFormerLifeIsSilent) {
   EXPECT_EQ(entry(99).active_until, -1);
 }
 
+TEST(CoordinatorAdmits, NoMoreLivesOfANumberThanItsLimit) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  Instant now = at(0s);
+  for (Incarnation life = 5000; life < 5000 + 2 * kMaxIncarnationsPerAgent; ++life) {
+    give(coordinator, status_of(1, static_cast<std::int64_t>(life)), now += 4s);
+    give(coordinator, hello_of(0, life), now);
+  }
+  const auto lives =
+      std::count_if(coordinator.roster().begin(), coordinator.roster().end(),
+                    [](const RosterEntry& entry) { return entry.author.agent == 0; });
+  EXPECT_EQ(lives, kMaxIncarnationsPerAgent);
+}
+
 TEST(CoordinatorAdmits, NobodyToATickThatTheTeamHasCovered) {
   // The coordinator did not receive the world's last state, and the world died.
   Coordinator coordinator = running_coordinator(small_mission(2));

@@ -139,7 +139,7 @@ TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
         }
       }
       own.average(coverage);
-      controller.see(coverage);
+      controller.set_coverage(coverage);
       ASSERT_TRUE(controller.command(0, tick, x_m, at).allFinite());
       ASSERT_GT(controller.metric(coverage), 0);
     };

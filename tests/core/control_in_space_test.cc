@@ -51,7 +51,7 @@ TEST(CommandInSpace, IsTheLawTermByTerm) {
   mission.law.noise_intensity = 0.5;
   Controller controller(mission);
   const Coefficients coverage = basis_values({10, 80, 30}, mission.domain, mission.basis);
-  controller.see(coverage);
+  controller.set_coverage(coverage);
   const Coefficients residual = sobolev_weights(mission.basis, mission.domain)
                                     .cwiseProduct(coverage - mission.target_coefficients);
   for (std::uint64_t i = 0; i < 50; ++i) {
@@ -73,7 +73,7 @@ TEST(CommandInSpace, RelativeEpsilonIsAShareOfTheResidualGradientsRms) {
   const Mission mission = space_mission();
   Controller controller(mission);
   const Coefficients coverage = basis_values({10, 80, 30}, mission.domain, mission.basis);
-  controller.see(coverage);
+  controller.set_coverage(coverage);
   double square = 0;
   constexpr int kPoints = 12;  // exact for products of two modes
   for (int i = 0; i < kPoints * kPoints * kPoints; ++i) {
@@ -139,7 +139,7 @@ TEST(TeamInAPlane, SendsNoNegativeZeroUpwards) {
       mission.law.contraction_gain_per_s = gain_per_s;
       mission.law.noise_intensity = intensity;
       Controller controller(mission);
-      controller.see(basis_values({10, 80, 0}, mission.domain, mission.basis));
+      controller.set_coverage(basis_values({10, 80, 0}, mission.domain, mission.basis));
       const Eigen::Vector3d x_m(40, 70, 0);
       const auto v_mps = controller.command(0, 1, x_m, BasisAt(x_m, mission.domain, mission.basis));
       EXPECT_EQ(v_mps.z(), 0);

@@ -56,7 +56,7 @@ Coefficients coverage_of(const Mission& mission, int steps) {
 Eigen::Vector3d command_at(Controller& controller, const Mission& mission,
                            const Eigen::Vector3d& x_m, const Coefficients& coverage,
                            AgentId agent = 0, Tick tick = 0) {
-  controller.see(coverage);
+  controller.set_coverage(coverage);
   return controller.command(agent, tick, x_m, BasisAt(x_m, mission.domain, mission.basis));
 }
 

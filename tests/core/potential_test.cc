@@ -77,7 +77,7 @@ class FreshTeam {
     Coefficients foreseen(mission_.basis.mode_count());
     forecast.look_ahead(*table_, roster_, last_tick_, foreseen);
     Controller controller(mission_);
-    controller.see(foreseen);
+    controller.set_coverage(foreseen);
     controller.command(0, last_tick_, x_m_[agent],
                        BasisAt(x_m_[agent], mission_.domain, mission_.basis));
     return controller.spectral_gradient();

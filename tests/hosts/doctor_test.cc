@@ -2,6 +2,7 @@
 // The findings of `ergocast doctor` on hosts of one network, and of faults there.
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 
 #include "tests/hosts/team_on_hosts.h"
@@ -57,12 +58,18 @@ class DoctorOnHosts : public OnHosts {
     Child child = start_on(host, url(ttl));
     return answer(host, child);
   }
-  /// --peer on hosts 0 and 1 at once, 100 probes from each.
+  /// --peer on hosts 0 and 1 at once, 100 probes from each. Once more if a busy machine started one
+  /// so much later that a host heard few of the other's.
   std::pair<Answer, Answer> both(int ttl_of_0 = 1) {
-    Child first = start_on(0, url(ttl_of_0), {"--peer", "5"});
-    Child second = start_on(1, url(1), {"--peer", "5"});
-    Answer one = answer(0, first);
-    return {one, answer(1, second)};
+    constexpr int kTries = 5;
+    for (int n = 1;; ++n) {
+      Child first = start_on(0, url(ttl_of_0), {"--peer", "5"});
+      Child second = start_on(1, url(1), {"--peer", "5"});
+      const Answer one = answer(0, first), two = answer(1, second);
+      const double heard = std::max(one.lost("from_it", "probes"), two.lost("from_it", "probes"));
+      const bool nothing_or_enough = heard < 0 || heard > 30;
+      if (nothing_or_enough || n == kTries) return {one, two};
+    }
   }
 
  private:

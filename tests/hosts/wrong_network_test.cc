@@ -62,5 +62,21 @@ TEST_F(WrongNetwork, AnAgentWithoutAMulticastRouteSaysWhatIsWrong) {
   EXPECT_TRUE(agent.says("ip route add 224.0.0.0/4")) << agent.said();
 }
 
+TEST_F(WrongNetwork, AnAgentWhoseFirewallDropsOneBusSaysWhich) {
+  const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(url_));
+  {
+    const auto there = lan_->visit(2);
+    const std::string drop =
+        "nft 'add table inet wall; add chain inet wall in { type filter hook input priority 0; }; "
+        "add rule inet wall in udp dport " +
+        std::to_string(url.base_port + 1) + " drop'";
+    ASSERT_EQ(std::system(drop.c_str()), 0);
+  }
+  Program& agent = agent_on(2, 0);
+  EXPECT_EQ(wait_for(agent.child), 3) << agent.said();
+  EXPECT_TRUE(agent.says(url.of(Bus::kWorld) + ": LCM's self test failed")) << agent.said();
+  EXPECT_TRUE(agent.says("nft list ruleset")) << agent.said();
+}
+
 }  // namespace
 }  // namespace ergocast::test

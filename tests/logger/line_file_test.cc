@@ -10,6 +10,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/temp_folder.h"
+
 namespace ergocast {
 namespace {
 
@@ -26,10 +28,7 @@ class LineFileTest : public ::testing::Test {
     std::signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &former_);
   }
-  ~LineFileTest() override {
-    room(former_.rlim_cur);
-    fs::remove(file_);
-  }
+  ~LineFileTest() override { room(former_.rlim_cur); }
   /// From now on no file may grow beyond that.
   void room(rlim_t bytes) {
     const rlimit limit{bytes, former_.rlim_max};
@@ -37,8 +36,8 @@ class LineFileTest : public ::testing::Test {
   }
 
   rlimit former_{};
-  const fs::path file_ =
-      fs::path(testing::TempDir()) / ("line_file_test-" + std::to_string(getpid()) + ".csv");
+  const test::TempFolder folder_;
+  const fs::path file_ = folder_.path() / "lines.csv";
 };
 
 TEST_F(LineFileTest, HalfALineIsTakenBackAndNothingIsLost) {

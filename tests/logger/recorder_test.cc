@@ -93,6 +93,18 @@ TEST(Trajectory, EndsWithTheLastTicksRow) {
   EXPECT_EQ(record.recorder.facts().gaps, 0);
 }
 
+TEST(Trajectory, MissesNoRowForStatesBeyondThePlan) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 3;
+  mission.timing.pace = Pace::kRealtime;
+  Record record(mission);
+  record.tell(state_of(0));
+  for (Tick tick = 4; tick < 100; ++tick) record.tell(state_of(tick));
+  for (Tick tick = 1; tick <= 3; ++tick) record.tell(state_of(tick));
+  EXPECT_EQ(record.trajectory_rows().size(), 3u);
+  EXPECT_EQ(record.recorder.facts().gaps, 0);
+}
+
 TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
   Record record(small_mission(1));
   record.tell(state_of(1025, {1, 1, 0}, {0, 0, 0}));

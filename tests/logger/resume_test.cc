@@ -10,6 +10,7 @@
 #include "core/noise.h"
 #include "logger/run_record.h"
 #include "tests/logger/record.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast {
 namespace {
@@ -56,14 +57,6 @@ std::vector<std::string> joined(std::vector<std::string> first,
 
 class Resume : public testing::Test {
  protected:
-  Resume() {
-    dir = fs::path(testing::TempDir()) /
-          (std::string("resume_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(dir);
-    fs::create_directories(dir);
-  }
-  ~Resume() override { fs::remove_all(dir); }
-
   void write(const std::string& file, const std::string& text) const {
     std::ofstream(dir / file, std::ios::binary) << text;
   }
@@ -84,7 +77,8 @@ class Resume : public testing::Test {
     return past(former.trajectory.str(), former.metrics.str());
   }
 
-  fs::path dir;
+  const test::TempFolder own;
+  const fs::path& dir = own.path();
 };
 
 // ---- the same record as without a kill

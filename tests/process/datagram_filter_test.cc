@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the kernel passes on to a socket of ours, with real sockets: our messages always, a share of
-// the repeats during a flood, nothing else.
+// What the kernel passes on to a socket of ours, with real sockets: what is subscribed to always, a
+// share of the repeats during a flood, nothing else.
 #include "runtime/datagram_filter.h"
 
 #include "lcmtypes/channels.h"
@@ -18,7 +18,7 @@ class DatagramFilter : public ::testing::Test {
     EXPECT_EQ(bind(ear_.fd(), reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
   }
 
-  /// Sends a message in LCM's format; whether more than its first bytes arrive.
+  /// Sends a message in LCM's format; whether it arrives.
   bool passes(const Message& message, const std::string& channel) {
     encode(message, bytes_);
     std::string datagram = std::string("LC02\0\0\0\1", 8) + channel + '\0';
@@ -44,7 +44,7 @@ class DatagramFilter : public ::testing::Test {
 };
 
 TEST_F(DatagramFilter, PassesOnOurMessagesUnderOurNamesOnly) {
-  ASSERT_TRUE(admit_only_our_channels(ear_.fd()));
+  ASSERT_TRUE(admit_only(ear_.fd(), kEveryType));
   for (const Message& message : every_message()) {
     EXPECT_TRUE(passes(message)) << channel_of(message);
     EXPECT_FALSE(passes(message, channel_of(message) + "X")) << channel_of(message);
@@ -57,9 +57,22 @@ TEST_F(DatagramFilter, PassesOnOurMessagesUnderOurNamesOnly) {
   }
 }
 
+TEST_F(DatagramFilter, PassesOnToEachRoleWhatItSubscribesTo) {
+  for (const Subscriptions& subscriptions : kSubscriptions) {
+    for (int bus = 0; bus < kBusCount; ++bus) {
+      const MessageTypes types = subscriptions[static_cast<std::size_t>(bus)];
+      ASSERT_TRUE(admit_only(ear_.fd(), types));
+      for (const Message& message : every_message()) {
+        EXPECT_EQ(passes(message), hears(subscriptions, static_cast<Bus>(bus), message))
+            << channel_of(message) << " on bus " << bus;
+      }
+    }
+  }
+}
+
 TEST_F(DatagramFilter, InAFloodPassesOnAllThatIsNew) {
   const std::vector<Repeated> flooded = {{0x700000001, 100}, {2, 0}, {3, 5000000000}};
-  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded));
+  ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, flooded));
   for (const Message& message : every_message()) {
     for (std::int64_t later = 1; later < 50; ++later) {
       EXPECT_TRUE(passes(said(message, 0x700000001, 100 + later))) << channel_of(message);
@@ -72,7 +85,7 @@ TEST_F(DatagramFilter, InAFloodPassesOnAllThatIsNew) {
 
 TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
   const std::vector<Repeated> flooded = {{0x700000001, 100}, {2, 100}};
-  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded));
+  ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, flooded));
   for (const Message& message : every_message()) {
     int passed = 0;
     constexpr int kSent = 3200;
@@ -89,15 +102,15 @@ TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
     }
     EXPECT_LT(passed, 160) << number;
   }
-  ASSERT_TRUE(admit_only_our_channels(ear_.fd()));
+  ASSERT_TRUE(admit_only(ear_.fd(), kEveryType));
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(passes(said(command(), 2, 100))) << "after the flood";
 }
 
 TEST_F(DatagramFilter, HasRoomForAsManyLivesAsATeamHas) {
   std::vector<Repeated> flooded;
   for (Incarnation life = 1; life <= 144; ++life) flooded.push_back({life, 100});
-  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded));
-  ASSERT_TRUE(admit_only_our_channels(ear_.fd(), flooded)) << "in place of another";
+  ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, flooded));
+  ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, flooded)) << "in place of another";
   int passed = 0;
   for (int i = 0; i < 1440; ++i) {
     const auto life = static_cast<Incarnation>(1 + i % 144);

@@ -22,6 +22,7 @@
 #include "runtime/child.h"
 #include "tests/process/logs.h"
 #include "tests/support/own_host.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast::test {
 
@@ -62,14 +63,6 @@ inline pid_t pid_of(const std::string& process) {
 /// A folder that is removed after the test, and the programs' network.
 class OwnHost : public ::testing::Test {
  protected:
-  OwnHost() {
-    std::string name = std::filesystem::temp_directory_path() / "ergocast-test-XXXXXX";
-    folder_ = mkdtemp(name.data());
-  }
-  ~OwnHost() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
   /// A failed test may leave its mission running. The output of its processes is the only
   /// information on them; they are ended here.
   void TearDown() override {
@@ -123,7 +116,9 @@ class OwnHost : public ::testing::Test {
     return eventually([&] { return recorded_bytes() >= bytes; });
   }
 
-  std::filesystem::path folder_, log_;
+  const TempFolder own_;
+  const std::filesystem::path& folder_ = own_.path();
+  std::filesystem::path log_;
 
  private:
   /// If a test repeats a question, only the last answer is kept.

@@ -177,10 +177,11 @@ TEST_F(Typing, AnEmptyKeyVariableIsRefused) {
 TEST_F(Typing, TooFewDescriptorsAreCalledByTheirName) {
   const std::string agent = program_folder() / "ergocast-agent";
   int refused = 0;
-  for (const int limit : {5, 6, 8, 10, 12, 14, 16, 18, 20}) {
+  for (const int limit : {4, 5, 6, 7, 8, 9, 10, 20}) {
     const auto log = folder_ / ("limit-" + std::to_string(limit));
-    const std::string command = "ulimit -n " + std::to_string(limit) + "; exec timeout -s INT 2 " +
-                                agent + " > " + log.string() + " 2>&1";
+    // The shell itself needs more of them to redirect.
+    const std::string command = "exec timeout -s INT 2 prlimit --nofile=" + std::to_string(limit) +
+                                " " + agent + " > " + log.string() + " 2>&1";
     std::system(("sh -c '" + command + "'").c_str());
     const std::string words = text_of(log);
     EXPECT_EQ(words.find("irewall"), std::string::npos) << limit << ": " << words;

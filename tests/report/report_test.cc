@@ -24,6 +24,7 @@
 #include "report/target_density.h"
 #include "report/track_grid.h"
 #include "target/target.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast {
 namespace {
@@ -81,10 +82,6 @@ testing::AssertionResult well_formed(const std::string& xml) {
 class Report : public testing::Test {
  protected:
   Report() {
-    dir = fs::path(testing::TempDir()) /
-          (std::string("report_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(dir);
-    fs::create_directories(dir);
     mission.name = "two circles";
     mission.seed = 18446744073709551615u;
     mission.domain.size_m = {2000, 1000, 0};
@@ -94,7 +91,6 @@ class Report : public testing::Test {
     mission.timing.tick_count = 1000;
     cover({{{1, {500, 500}, Eigen::Matrix2d::Identity() * 1e4}}, 0});
   }
-  ~Report() override { fs::remove_all(dir); }
 
   void cover(const TargetDensity& target) {
     mission.target_coefficients =
@@ -143,7 +139,8 @@ class Report : public testing::Test {
     EXPECT_TRUE(data()["record"]["mission"].is_object());
   }
 
-  fs::path dir;
+  const test::TempFolder own;
+  const fs::path& dir = own.path();
   Mission mission;
 };
 

@@ -12,6 +12,8 @@
 #include <set>
 #include <vector>
 
+#include "tests/support/temp_folder.h"
+
 namespace ergocast {
 namespace {
 
@@ -22,12 +24,6 @@ const std::vector<std::byte> kEvent(1000 - 28 - 4);
 
 class EventLogTest : public ::testing::Test {
  protected:
-  EventLogTest() {
-    std::string name = fs::temp_directory_path() / "ergocast-test-XXXXXX";
-    folder_ = mkdtemp(name.data());
-  }
-  ~EventLogTest() override { fs::remove_all(folder_); }
-
   std::set<std::string> files() const {
     std::set<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
@@ -47,7 +43,8 @@ class EventLogTest : public ::testing::Test {
     return count;
   }
 
-  fs::path folder_;
+  const test::TempFolder own_;
+  const fs::path& folder_ = own_.path();
 };
 
 TEST_F(EventLogTest, ANumberThatASegmentOfOursCannotHaveIsNoNumber) {

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/temp_folder.h"
+
 namespace ergocast {
 namespace {
 
@@ -16,12 +18,6 @@ namespace fs = std::filesystem;
 
 class KeyFile : public testing::Test {
  protected:
-  KeyFile() {
-    std::string pattern = (fs::temp_directory_path() / "ergocast-key-XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  ~KeyFile() override { fs::remove_all(folder_); }
-
   fs::path file(const std::string& text, mode_t mode = 0600) const {
     const fs::path path = folder_ / "a.key";
     std::ofstream(path) << text;
@@ -34,7 +30,8 @@ class KeyFile : public testing::Test {
     const auto* problem = std::get_if<std::string>(&read);
     return problem == nullptr ? "" : *problem;
   }
-  fs::path folder_;
+  const test::TempFolder own_;
+  const fs::path& folder_ = own_.path();
 };
 
 TEST_F(KeyFile, WhatIsWrittenIsReadAgain) {

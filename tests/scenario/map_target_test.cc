@@ -9,6 +9,7 @@
 #include "target/target.h"
 #include "tests/scenario/scenarios.h"
 #include "tests/support/grey_png.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast {
 namespace {
@@ -18,15 +19,6 @@ namespace fs = std::filesystem;
 
 class MapTarget : public ::testing::Test {
  protected:
-  MapTarget() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::absolute(fs::path(::testing::TempDir()) / (std::string("target_") + test->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~MapTarget() override { fs::remove_all(folder_); }
-
   void write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
@@ -45,7 +37,8 @@ class MapTarget : public ::testing::Test {
     return problems == nullptr ? "" : joined(*problems);
   }
 
-  fs::path folder_;
+  const TempFolder own_;
+  const fs::path& folder_ = own_.path();
 };
 
 constexpr const char* kWhole = "origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 ";

@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/mission_limits.h"
+#include <set>
+
+#include "core/mission_fields.h"
 #include "logger/mission_text.h"
+#include "scenario/scenario.pb.h"
 #include "team/messages.h"
 #include "tests/scenario/scenarios.h"
+#include "tests/team/rich_mission.h"
 
 namespace ergocast {
 namespace {
@@ -60,8 +64,58 @@ TEST(MissionText, IsThatOfItsScenarioWithoutDescriptionAndTarget) {
   }
 }
 
-// The limits are in two places: a plan that the reader accepts can be written as a scenario, which
-// gives the same mission.
+TEST(MissionText, ReadsBackToEveryFieldOfAMission) {
+  const Mission mission = rich_mission();
+  const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
+  EXPECT_EQ(plan_of(good(text)), encode_plan(as_scenarios_know_it(mission))) << text;
+}
+
+/// The names in the list of a mission's fields.
+class Names : public FieldVisitor {
+ public:
+  explicit Names(const Mission& mission) { list_fields(*this, mission); }
+
+  std::set<std::string> all;
+
+  void number(int, const char* name, auto&, const Limits&, bool = true) { add(name); }
+  void flag(int, const char* name, auto&) { add(name); }
+  void choice(int, const char* name, auto&, Words) { add(name); }
+  void part(int, const char* name, auto& part) {
+    part_ = std::string(name) + '.';
+    list_fields(*this, part);
+    part_.clear();
+  }
+
+ private:
+  void add(const char* name) { all.insert(part_ + name); }
+  std::string part_;
+};
+
+/// The numbers, switches, words and texts of a scenario, except for the target and the starts.
+std::set<std::string> names_in(const google::protobuf::Descriptor& block, const std::string& path) {
+  std::set<std::string> names;
+  for (int i = 0; i < block.field_count(); ++i) {
+    const auto& field = *block.field(i);
+    const std::string name = path + field.name();
+    if (field.message_type() == nullptr) {
+      names.insert(name);
+    } else if (name != "target" && !field.is_repeated()) {
+      names.merge(names_in(*field.message_type(), name + '.'));
+    }
+  }
+  return names;
+}
+
+TEST(Conversion, KnowsEveryFieldOfAScenario) {
+  const Mission mission;
+  std::set<std::string> known = Names(mission).all;
+  known.insert({"name", "description", "seed", "law.contraction_center", "law.contraction_x_m",
+                "law.contraction_y_m", "time.duration_s", "agents.random_count"});
+  EXPECT_EQ(names_in(*proto::Scenario::descriptor(), ""), known);
+}
+
+// Rules between fields are in two places: a plan that the reader accepts can be written as a
+// scenario, which gives the same mission.
 TEST(HostilePlan, WithAnyBitFlippedIsRefusedOrOfAMissionThatAScenarioSays) {
   Bytes plan = plan_of(good(R"(
     name: "small"

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/scenario/scenarios.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast {
 namespace {
@@ -319,22 +320,14 @@ TEST(Text, EveryBeginningOfAFileIsRefused) {
 
 class File : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(::testing::TempDir()) / (std::string("ergocast_") + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string said_of(const std::filesystem::path& file) {
     const Loaded loaded = Scenario::load(file);
     const auto* problems = std::get_if<std::vector<Problem>>(&loaded);
     return problems == nullptr ? "" : joined(*problems);
   }
 
-  std::filesystem::path folder_;
+  const TempFolder own_;
+  const std::filesystem::path& folder_ = own_.path();
 };
 
 TEST_F(File, ThatIsMissingOrAFolderIsNamed) {

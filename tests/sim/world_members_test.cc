@@ -54,6 +54,21 @@ TEST(WorldRefuses, TheCommandsOfAnEvictedAgentWhichStandsStill) {
   EXPECT_EQ(place(state, 1), mission.starts_m[1] + Eigen::Vector3d(1, 0, 0) * 0.1);
 }
 
+TEST(WorldRefuses, TheAnswerThatAnAgentGaveBeforeItWasEvicted) {
+  const Mission mission = small_mission(2);
+  World world = running_world(mission);
+  advance(world, at(0s));
+  give(world, command_of(1, 0, {5, 5, 0}), at(0s));
+  std::vector<RosterEntry> roster = roster_of(2);
+  roster[1].active_until = 0;
+  give(world, mission_part(1, MissionState::kRunning, roster), at(0s));
+  give(world, command_of(0, 0, {1, 0, 0}), at(0s));
+  const WorldState state = state_after(world, at(0s));
+  EXPECT_EQ(applied(state, 0), Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(applied(state, 1), Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(place(state, 1), mission.starts_m[1]);
+}
+
 TEST(WorldRefuses, TheFormerLifeOfARestartedAgentWhichGoesOnFromItsPlace) {
   const Mission mission = small_mission(1);
   World world = running_world(mission);

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The jar for lcm-spy: types, the plan's reader, and pictures of given messages.
+// The jar for lcm-spy: types, the plan's reader, and pictures of given messages. LCM's Java reads
+// what we send, and the reverse.
 #include <cmath>
+#include <map>
 
 #include "lcm_types.h"
+#include "lcmtypes/channels.h"
+#include "runtime/clock.h"
+#include "runtime/transport.h"
 #include "scenario/scenario.h"
 #include "target/target.h"
 #include "team/plan.h"
+#include "tests/lcmtypes/sample_messages.h"
 #include "tests/spy/spy_desk.h"
 
 namespace ergocast {
@@ -42,6 +48,32 @@ TEST_F(SpyJar, LcmSpyKnowsEveryTypeByTheFingerprintThatTravels) {
   ASSERT_GE(question.size(), 15U);
   EXPECT_NE(ask(question).find(expected), std::string::npos) << output() << "expected\n"
                                                              << expected;
+}
+
+TEST_F(SpyJar, EveryMessageComesBackFromLcmsJavaAsItWasSent) {
+  const LcmUrl url = std::get<LcmUrl>(LcmUrl::parse(kUrl));
+  std::map<std::string, Bytes> heard;
+  const auto ours = std::get<0>(Transport::open(
+      url, 0, {}, {0, kEveryType, 0},
+      {.on_message = [](const Message&, Bus, AgentId) {},
+       .on_accepted =
+           [&heard](Bus, std::string_view channel, std::span<const std::byte> bytes) {
+             heard[std::string(channel)].assign(bytes.begin(), bytes.end());
+           }}));
+  Child echo = begin(probe_command({"echo", url.of(Bus::kSwarm), url.of(Bus::kWorld)}));
+  Outbox outbox;
+  std::map<std::string, Bytes> expected;
+  for (const Message& message : every_message()) {
+    outbox.push_back({Bus::kSwarm, message});
+    expected[channel_of(message)] = encoded(message);
+  }
+  EXPECT_TRUE(eventually([&] {
+    ours->publish(outbox);
+    ours->deliver_until(now() + std::chrono::milliseconds(100), -1);
+    return heard == expected;
+  })) << output();
+  echo.send(SIGTERM);
+  wait_for(echo);
 }
 
 /// Reads as Java's Double.toHexString writes.

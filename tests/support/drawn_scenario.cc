@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lab/random_stream.h"
+#include "scenario/fields.h"
 #include "tests/support/grey_png.h"
 
 namespace ergocast::test {
@@ -102,6 +103,8 @@ const Draw kCoin = [](Block& block, const FieldDescriptor& field, RandomStream& 
 /// A place [m] inside every domain.
 const Draw kPlace = number(1, 99);
 
+/// The rules of blocks, texts and required fields, and of values that have to be small, likely or
+/// alike for missions that are valid, short and different. All others are drawn by usual_rule().
 const std::map<std::string, Rule>& rules() {
   static const std::map<std::string, Rule> rules = {
       {"Scenario.name", may(text({"drawn", "0", "a.b-c_d"}))},
@@ -140,7 +143,6 @@ const std::map<std::string, Rule>& rules() {
       {"Map.origin_y_m", may(number(-10, 10))},
       {"Map.size_x_m", may(number(20, 100))},
       {"Map.size_y_m", may(number(20, 100))},
-      {"Map.first_row", may(word(0))},
       {"Region.weight", may(spread(0.1, 10))},
       {"Region.polygon", must(draw_block)},
       {"Polygon.vertices", many(3, 6)},
@@ -151,23 +153,16 @@ const std::map<std::string, Rule>& rules() {
 
       {"Basis.modes_x", may(number(1, 24))},
       {"Basis.modes_y", may(number(2, 24))},
-      {"Basis.normalized", may(kCoin)},
-      {"Basis.sobolev_form", may(word(0))},
       {"Basis.sobolev_exponent", may(number(0.1, 3))},
 
       {"Law.u_max_mps", must(spread(1, 40))},
-      {"Law.regularization", may(word(0))},
       {"Law.epsilon", may(spread(1e-3, 1))},
-      {"Law.perturbation", may(word(0))},
       {"Law.noise_intensity", may(spread(0.01, 2))},
       {"Law.noise_ceiling", may(spread(2, 20))},
       {"Law.contraction_gain_per_s", may(spread(1e-5, 1e-2))},
-      {"Law.contraction_center", may(word(0))},
       {"Law.contraction_x_m", may(kPlace)},
       {"Law.contraction_y_m", may(kPlace)},
       {"Law.anticipation", may(either(0, spread(0.01, 10)))},
-      {"Law.ends_with_plan", may(kCoin)},
-      {"Law.paired_pushes", may(kCoin)},
 
       {"Time.dt_s", may(spread(0.02, 1))},
       {"Time.duration_s", must(number(0.5, 60))},  // in ticks: see agree()
@@ -175,7 +170,6 @@ const std::map<std::string, Rule>& rules() {
       {"Time.pace", may(word(0.8))},
       {"Time.realtime_factor", may(spread(0.1, 10))},
       {"Time.lockstep_timeout_s", may(spread(1e-3, 1e4))},
-      {"Time.on_timeout", may(word(0))},
       {"Time.command_hold_s", may(spread(1e-3, 10))},
       // An admission takes a question and its answer.
       {"Time.admission_timeout_s", may(spread(1, 1e4))},
@@ -185,7 +179,6 @@ const std::map<std::string, Rule>& rules() {
       {"Agents.random_count", may(spread(0.5, 20))},
       {"Agents.quorum", may(either(100, number(1, 24)))},  // of all at most: see agree()
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
-      {"Agents.dead_reckoning", may(kCoin)},
       {"Start.x_m", must(kPlace)},
       {"Start.y_m", must(kPlace)},
 
@@ -196,15 +189,24 @@ const std::map<std::string, Rule>& rules() {
   return rules;
 }
 
+/// A switch or an enumeration may have any value, a number one up to ten times its default, or 10.
+Rule usual_rule(const FieldDescriptor& field) {
+  if (field.enum_type() != nullptr) return may(word(0));
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) return may(kCoin);
+  const FieldRule* rule = rule_of(field);
+  if (rule == nullptr) {
+    throw std::logic_error("scenario.proto has " + name_of(field) +
+                           ", and tests/support/drawn_scenario.cc does not say how it is drawn");
+  }
+  const auto& [low, high, low_excluded] = static_cast<const Limits&>(rule->range);
+  return may(number(low, std::min(high, 10 * std::max(rule->default_value, 1.0))));
+}
+
 void draw_fields(Block& block, RandomStream& random) {
   for (int i = 0; i < block.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor& field = *block.GetDescriptor()->field(i);
     const auto rule = rules().find(name_of(field));
-    if (rule == rules().end()) {
-      throw std::logic_error("scenario.proto has " + name_of(field) +
-                             ", and tests/support/drawn_scenario.cc does not say how it is drawn");
-    }
-    const auto& [draw, least, most] = rule->second;
+    const auto& [draw, least, most] = rule == rules().end() ? usual_rule(field) : rule->second;
     const auto range = static_cast<std::uint64_t>(most - least + 1);
     const int count = least + static_cast<int>(random.word() % range);
     for (int n = 0; n < count; ++n) draw(block, field, random);

@@ -16,8 +16,8 @@ namespace ergocast::test {
 void write_maps(const std::filesystem::path& folder);
 
 /// A small mission: up to 24 agents, 24 × 24 modes and 60 ticks, with each optional field in every
-/// second scenario. Not all are valid. If scenario.proto has a field that drawn_scenario.cc does
-/// not know, throws std::logic_error with its name.
+/// second scenario. Not all are valid. If scenario.proto has a block or a text that
+/// drawn_scenario.cc does not know, throws std::logic_error with its name.
 proto::Scenario drawn_scenario(std::uint64_t seed);
 
 /// "Law.epsilon" of each field that is set in `message`, or in what it holds.

@@ -54,10 +54,13 @@ std::optional<std::int64_t> tick_of(const std::string& datagram) {
 
 }  // namespace
 
-extern "C" ssize_t sendmsg(int fd, const msghdr* message, int flags) {
-  if (!hold().channel.empty() && tick_of(bytes_of(*message)) >= hold().tick &&
-      unlink(hold().file.c_str()) == 0) {
-    raise(SIGSTOP);
+extern "C" int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) noexcept {
+  for (unsigned i = 0; i < count && !hold().channel.empty(); ++i) {
+    if (tick_of(bytes_of(messages[i].msg_hdr)) < hold().tick) continue;
+    // Those before it are sent; the caller comes back with the rest.
+    if (i > 0) return static_cast<int>(syscall(SYS_sendmmsg, fd, messages, i, flags));
+    if (unlink(hold().file.c_str()) == 0) raise(SIGSTOP);
+    break;
   }
-  return syscall(SYS_sendmsg, fd, message, flags);
+  return static_cast<int>(syscall(SYS_sendmmsg, fd, messages, count, flags));
 }

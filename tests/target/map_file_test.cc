@@ -9,6 +9,7 @@
 
 #include "target/csv_map.h"
 #include "tests/support/grey_png.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast {
 namespace {
@@ -19,14 +20,6 @@ using Rows = std::vector<std::vector<double>>;
 
 class Maps : public ::testing::Test {
  protected:
-  Maps() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / (std::string("maps_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Maps() override { fs::remove_all(folder_); }
-
   fs::path written(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
@@ -68,7 +61,8 @@ class Maps : public ::testing::Test {
     EXPECT_NE(said.find(part), std::string::npos) << "no \"" << part << "\" in: " << said;
   }
 
-  fs::path folder_;
+  const TempFolder own_;
+  const fs::path& folder_ = own_.path();
   std::optional<Rectangle> extent_;
 };
 

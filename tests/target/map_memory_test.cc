@@ -7,6 +7,7 @@
 #include "target/map_file.h"
 #include "target/raster_integral.h"
 #include "tests/support/grey_png.h"
+#include "tests/support/temp_folder.h"
 
 #ifdef __has_feature  // clang's way to say what GCC says with __SANITIZE_ADDRESS__
 #define ERGOCAST_CLANG_SANITIZES __has_feature(address_sanitizer)
@@ -32,7 +33,8 @@ TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
   GTEST_SKIP() << "a sanitizer needs more than the program";
 #endif
   constexpr int kSide = 4096;
-  const auto file = std::filesystem::path(::testing::TempDir()) / "map_memory.png";
+  const test::TempFolder folder;
+  const auto file = folder.path() / "map_memory.png";
   test::write_png(file, kSide, kSide, {.bits = 16},
                   [](int column, int row, int) { return (column ^ row) & 1023; });
   // Resets the peak.
@@ -52,7 +54,6 @@ TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
   EXPECT_NEAR(integral.shares().values(0, 0), 1, 1e-12);
   // As numbers the map has 128 MiB, as pixels 32; a row of numbers and the cosines have 0.6.
   EXPECT_LT(memory_mib("VmHWM") - before, 8);
-  std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -33,33 +33,24 @@ std::string problem_of(std::span<const std::byte> plan) {
 bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
 /// Every double of a mission but those of μ.
-std::vector<double*> numbers_of(Mission& m) {
-  std::vector<double*> all{&m.domain.origin_m.x(),
-                           &m.domain.origin_m.y(),
-                           &m.domain.size_m.x(),
-                           &m.domain.size_m.y(),
-                           &m.basis.sobolev_exponent,
-                           &m.law.u_max_mps,
-                           &m.law.epsilon,
-                           &m.law.noise_intensity,
-                           &m.law.noise_ceiling,
-                           &m.law.contraction_gain_per_s,
-                           &m.law.contraction_center_m.x(),
-                           &m.law.contraction_center_m.y(),
-                           &m.law.anticipation,
-                           &m.timing.dt_s,
-                           &m.timing.realtime_factor,
-                           &m.timing.lockstep_timeout_s,
-                           &m.timing.command_hold_s,
-                           &m.timing.admission_timeout_s,
-                           &m.forget_silent_after_s,
-                           &m.goal_ergodic_metric,
-                           &m.disturbance_intensity,
-                           &m.radio_range_m,
-                           &m.speed_limit_mps};
-  for (Eigen::Vector3d& x_m : m.starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y()});
-  return all;
-}
+class Numbers : public FieldVisitor {
+ public:
+  explicit Numbers(Mission& mission) { list_fields(*this, mission); }
+
+  std::vector<double*> all;
+
+  void number(int, const char*, int&, const Limits&) {}
+  void number(int, const char*, double& value, const Limits&, bool = true) {
+    all.push_back(&value);
+  }
+  void part(int, const char*, auto& part) { list_fields(*this, part); }
+  void contraction_center(int, Eigen::Vector3d& x_m) {
+    all.insert(all.end(), {&x_m.x(), &x_m.y()});
+  }
+  void starts(int, std::vector<Eigen::Vector3d>& starts_m) {
+    for (Eigen::Vector3d& x_m : starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y()});
+  }
+};
 
 TEST(HostilePlan, CutShortIsRefused) {
   const Bytes plan = encode_plan(rich_mission());
@@ -84,11 +75,12 @@ TEST(HostilePlan, OfRandomBytesIsRefusedOrWithinLimits) {
 
 TEST(HostilePlan, WithANumberThatIsNoneOrHugeIsRefused) {
   Mission mission = rich_mission();
-  const std::size_t count = numbers_of(mission).size();
+  const std::size_t count = Numbers(mission).all.size();
+  ASSERT_GT(count, 25u);
   for (std::size_t i = 0; i < count; ++i) {
     for (const double bad : {std::nan(""), double{INFINITY}, -double{INFINITY}, -1e300, 1e300}) {
       Mission broken = rich_mission();
-      *numbers_of(broken)[i] = bad;
+      *Numbers(broken).all[i] = bad;
       EXPECT_FALSE(is_taken(broken)) << i << ": " << bad;
     }
   }

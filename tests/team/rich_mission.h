@@ -2,44 +2,62 @@
 // A mission in which every field has an effect.
 #pragma once
 
-#include "core/mission.h"
+#include <algorithm>
+
+#include "core/mission_fields.h"
 
 namespace ergocast::test {
+
+/// Gives every field another value than the default, within its limits.
+class Enricher : public FieldVisitor {
+ public:
+  template <class Number>
+  void number(int, const char*, Number& value, const Limits& limits, bool = true) {
+    ++count_;
+    const double width = std::min(limits.high - limits.low, 10.0);
+    value = static_cast<Number>(limits.low + width * count_ / (count_ + 1));
+  }
+  void flag(int, const char*, bool& value) { value = !value; }
+  template <class Enum>
+  void choice(int, const char*, Enum& value, Words words) {
+    value = static_cast<Enum>((static_cast<std::size_t>(value) + 1) % words.size());
+  }
+  void part(int, const char*, auto& part) { list_fields(*this, part); }
+
+ private:
+  int count_ = 0;
+};
 
 /// No field at its default, no number twice.
 inline Mission rich_mission() {
   Mission mission;
+  Enricher enricher;
+  list_fields(enricher, mission);
   mission.name = "rich";
   mission.seed = ~std::uint64_t{0};
   mission.domain = {{-3, 4, 0}, {101, 52, 0}};
-  mission.basis = {.modes_x = 3,
-                   .modes_y = 2,
-                   .sobolev_form = SobolevForm::kNorm,
-                   .sobolev_exponent = 1.75,
-                   .normalized = true};
+  mission.basis.modes_x = 3;
+  mission.basis.modes_y = 2;
+  mission.basis.sobolev_exponent = 1.75;
   mission.target_coefficients = Coefficients(6);
   mission.target_coefficients << 1, 0.1, -0.2, 0.3, -0.4, 0.55;
-  mission.law = {.u_max_mps = 5.5,
-                 .regularization = Regularization::kRelative,
-                 .epsilon = 0.25,
-                 .perturbation = Perturbation::kAdaptive,
-                 .noise_intensity = 0.75,
-                 .noise_ceiling = 1.5,
-                 .contraction_gain_per_s = 0.0002,
-                 .contraction_center_m = {33, 34, 0},
-                 .anticipation = 3.5,
-                 .ends_with_plan = true,
-                 .paired_pushes = true};
-  mission.timing = {.dt_s = 0.125,
-                    .tick_count = 480,
-                    .broadcast_period_ticks = 7,
-                    .pace = Pace::kRealtime,
-                    .realtime_factor = 2.5,
-                    .lockstep_timeout_s = 11,
-                    .command_hold_s = 0.8,
-                    .admission_timeout_s = 31,
-                    .catch_up_limit_ticks = 6,
-                    .on_timeout = OnTimeout::kEvict};
+  ControlLaw& law = mission.law;
+  law.u_max_mps = 5.5;
+  law.epsilon = 0.25;
+  law.noise_intensity = 0.75;
+  law.noise_ceiling = 1.5;
+  law.contraction_gain_per_s = 0.0002;
+  law.contraction_center_m = {33, 34, 0};
+  law.anticipation = 3.5;
+  Timing& timing = mission.timing;
+  timing.dt_s = 0.125;
+  timing.tick_count = 480;
+  timing.broadcast_period_ticks = 7;
+  timing.realtime_factor = 2.5;
+  timing.lockstep_timeout_s = 11;
+  timing.command_hold_s = 0.8;
+  timing.admission_timeout_s = 31;
+  timing.catch_up_limit_ticks = 6;
   mission.starts_m = {{17, 20, 0}, {18, 21, 0}};
   mission.quorum = 2;
   mission.forget_silent_after_s = 12;
@@ -47,7 +65,6 @@ inline Mission rich_mission() {
   mission.disturbance_intensity = 0.6;
   mission.radio_range_m = 60;
   mission.speed_limit_mps = 8;
-  mission.dead_reckoning = true;
   mission.wait_for_logger = false;
   return mission;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables and figures of docs/law.md, from the studies that lab/studies/law/run has flown.
+// Tables and figures of docs/law.md and docs/results/law.md, from the studies that
+// lab/studies/law/run has flown.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -135,7 +135,7 @@ void PlanTeam::command(Agent& agent) {
     coverage_.data()[k] =
         agent.outlook.known_s[static_cast<std::size_t>(k)] / agent.outlook.covered_s;
   }
-  controller_.see(coverage_);
+  controller_.set_coverage(coverage_);
   const Eigen::Vector3d law_mps = controller_.command(agent.id, tick_, agent.x_m, agent.at);
   const Eigen::Vector3d u_mps =
       smooth_input(controller_.spectral_gradient(), controller_.epsilon(), mission_.law.u_max_mps);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tables of docs/announced_plans.md, from what lab/studies/plans/run has flown.
+// The tables of docs/results/announced_plans.md, from what lab/studies/plans/run has flown.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -51,7 +51,7 @@ std::vector<LinearStep> linearised(const Mission& mission, Tick steps) {
     const BasisAt at(x_m, mission.domain, mission.basis);
     accumulate_basis(at, mission.basis, 1, sums.data());
     const Coefficients coverage = sums / static_cast<double>(tick + 1);
-    controller.see(coverage);
+    controller.set_coverage(coverage);
     const Eigen::Vector3d v_mps = controller.command(0, tick, x_m, at);
     const double length = std::hypot(controller.spectral_gradient().norm(), controller.epsilon());
     const Coefficients residual = weights.cwiseProduct(coverage - mission.target_coefficients);

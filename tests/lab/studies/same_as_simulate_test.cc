@@ -12,6 +12,7 @@
 #include "scenario/scenario.h"
 #include "team/plan.h"
 #include "tests/support/drawn_scenario.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast::test {
 namespace {
@@ -22,11 +23,7 @@ constexpr int kMissions = 150;
 
 class Drawn {
  public:
-  Drawn() : folder_(std::filesystem::path(::testing::TempDir()) / "same_as_simulate") {
-    std::filesystem::create_directories(folder_);
-    write_maps(folder_);
-  }
-  ~Drawn() { std::filesystem::remove_all(folder_); }
+  Drawn() { write_maps(folder_.path()); }
 
   /// The text of the next one that is valid.
   std::string next() {
@@ -34,7 +31,7 @@ class Drawn {
       scenario = drawn_scenario(++seed_);
       std::string text;
       google::protobuf::TextFormat::PrintToString(scenario, &text);
-      auto parsed = Scenario::parse(text, (folder_ / "drawn.textproto").string());
+      auto parsed = Scenario::parse(text, (folder_.path() / "drawn.textproto").string());
       if (auto* valid = std::get_if<Scenario>(&parsed)) {
         compiled.emplace(std::move(*valid));
         return "drawn from seed " + std::to_string(seed_) + ":\n" + text;
@@ -48,7 +45,7 @@ class Drawn {
   int refused = 0;
 
  private:
-  std::filesystem::path folder_;
+  TempFolder folder_;
   std::uint64_t seed_ = 0;
 };
 

@@ -10,6 +10,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tests/support/temp_folder.h"
+
 namespace ergocast::studies {
 namespace {
 
@@ -24,9 +26,8 @@ class TableFile : public ::testing::Test {
     }
     return "";
   }
-  ~TableFile() override { std::filesystem::remove(file_); }
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() / ("table-" + std::to_string(::getpid()) + ".csv");
+  const test::TempFolder folder_;
+  const std::filesystem::path file_ = folder_.path() / "table.csv";
 };
 
 TEST_F(TableFile, GivesNumbersByColumn) {

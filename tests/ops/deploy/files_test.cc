@@ -10,6 +10,7 @@
 
 #include "ops/deploy/deploy.h"
 #include "ops/deploy/script.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast {
 namespace {
@@ -19,8 +20,6 @@ namespace fs = std::filesystem;
 class DeployFiles : public ::testing::Test {
  protected:
   DeployFiles() {
-    std::string name = fs::temp_directory_path() / "ergocast-test-XXXXXX";
-    folder_ = mkdtemp(name.data());
     mission_.name = "survey";
     mission_.folder = "/home/it's \"$HOME\"/`x`\ny";
     mission_.files = {"survey.textproto", "maps/lake.png"};
@@ -29,7 +28,6 @@ class DeployFiles : public ::testing::Test {
     hosts_ = std::get<0>(parse_hosts(
         "ground ops@10.0.0.1 coordinator logger sim\nrover pi@10.0.0.2 agent 0 3\n", "hosts"));
   }
-  ~DeployFiles() override { fs::remove_all(folder_); }
 
   /// Both files of a mission key, with a name that needs quoting; their content is their own name.
   void make_keys() {
@@ -48,7 +46,8 @@ class DeployFiles : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  fs::path folder_;
+  const test::TempFolder own_;
+  const fs::path& folder_ = own_.path();
   DeployMission mission_;
   std::vector<DeployHost> hosts_;
   int status_ = 0;

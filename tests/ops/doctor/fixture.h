@@ -11,24 +11,18 @@
 
 #include "ops/doctor/finding.h"
 #include "runtime/lcm_url.h"
+#include "tests/support/temp_folder.h"
 
 namespace ergocast::doctor {
 
 class Folder : public ::testing::Test {
  protected:
-  Folder() {
-    std::string name = std::filesystem::temp_directory_path() / "ergocast-test-XXXXXX";
-    root_ = mkdtemp(name.data());
-  }
-  ~Folder() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(root_, ignored);
-  }
   void write(const std::string& file, const std::string& text) {
     std::filesystem::create_directories((root_ / file).parent_path());
     std::ofstream(root_ / file, std::ios::binary) << text;
   }
-  std::filesystem::path root_;
+  const test::TempFolder own_;
+  const std::filesystem::path& root_ = own_.path();
 };
 
 inline bool contains(const std::string& text, const std::string& part) {

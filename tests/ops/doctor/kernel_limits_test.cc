@@ -11,20 +11,26 @@ class KernelLimits : public Folder {};
 
 constexpr int kDebians_bytes = 212992, kRecommended_bytes = 4194304;
 
-TEST(ReceiveBufferFinding, ADefaultBufferIsANoteWithBothCommands) {
+TEST(ReceiveBufferFinding, AKernelThatAllowsLittleIsANoteWithTheCommand) {
   const Finding finding =
       receive_buffer_finding(url_of("ttl=0"), {kDebians_bytes, 2 * kDebians_bytes});
   EXPECT_EQ(finding.level, Level::kNote);
   EXPECT_TRUE(contains(finding.found, "about 92 datagrams")) << finding.found;
   EXPECT_TRUE(contains(finding.remedy, "sysctl -w net.core.rmem_max=4194304")) << finding.remedy;
-  EXPECT_TRUE(contains(finding.remedy, "ttl=0&recv_buf_size=4194304'")) << finding.remedy;
+  EXPECT_FALSE(contains(finding.remedy, "--lcm-url")) << finding.remedy;
 }
 
-TEST(ReceiveBufferFinding, WhereTheKernelAllowsItOnlyTheUrlIsMissing) {
-  const Finding finding =
-      receive_buffer_finding(url_of("ttl=0"), {kDebians_bytes, 2 * kRecommended_bytes});
+TEST(ReceiveBufferFinding, AUrlThatAsksForLittleIsBetterWithoutIt) {
+  const Finding finding = receive_buffer_finding(url_of("ttl=0&recv_buf_size=100000"),
+                                                 {kDebians_bytes, 2 * kRecommended_bytes});
+  EXPECT_EQ(finding.level, Level::kNote);
   EXPECT_FALSE(contains(finding.remedy, "sysctl")) << finding.remedy;
-  EXPECT_TRUE(contains(finding.remedy, "recv_buf_size=4194304'")) << finding.remedy;
+  EXPECT_TRUE(contains(finding.remedy, "?ttl=0'")) << finding.remedy;
+}
+
+TEST(ReceiveBufferFinding, MeasuresWhatOurProgramsAskFor) {
+  const ReceiveBuffer asked = measure_receive_buffer(url_of("ttl=0"));
+  EXPECT_EQ(asked.granted_bytes, std::min(asked.most_bytes, 2 * kReceiveBufferBytes));
 }
 
 TEST(ReceiveBufferFinding, AUrlThatAsksForMoreThanItGetsIsWarned) {

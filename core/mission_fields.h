@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every field of a mission, once: its number in the plan, its name in scenario.proto, its limits.
+//
+// list_fields(io, mission) visits them in the order of scenario.proto. The visitors are the limits
+// (core/mission_limits.cc), the plan's writer and reader (team/plan.cc), the conversion of
+// scenarios and their rules (scenario/convert.cc, scenario/fields.cc) and the text
+// (logger/mission_text.cc).
+//
+// A number in the plan is that of team/plan.proto, unique within its part. A name with a dot is
+// that of a field in a block, such as agents.quorum.
+#pragma once
+
+#include <concepts>
+#include <initializer_list>
+#include <type_traits>
+
+#include "core/mission.h"
+#include "core/mission_limits.h"
+
+namespace ergocast {
+
+/// The words of an enumeration in scenario.proto, in the order of its values in core/mission.h.
+using Words = std::initializer_list<const char*>;
+
+/// The kinds of fields: number in the plan, name, value. A visitor derives from this, which ignores
+/// all, and hides what it uses.
+struct FieldVisitor {
+  /// Unless the last argument holds, the number is 0 and in no scenario.
+  void number(int, const char*, auto&, const Limits&, bool = true) {}
+  void flag(int, const char*, auto&) {}
+  void choice(int, const char*, auto&, Words) {}
+  void seed(int, const char*, auto&) {}
+  void name(int, const char*, auto&) {}
+  void part(int, const char*, auto&) {}
+  void contraction_center(int, auto&) {}  ///< x; y has the next number
+  void duration(int, auto&) {}            ///< Timing::tick_count, which follows from a duration
+  void target(int, auto&) {}  ///< μ: agents receive it, so only one processor rounds it
+  void starts(int, auto&) {}
+  void hidden_flag(int, auto&) {}  ///< in no scenario
+};
+
+template <class T, class Part>
+concept MaybeConst = std::same_as<std::remove_const_t<T>, Part>;
+
+/// A height is 0, and in no plan yet.
+void list_fields(auto& io, MaybeConst<Box> auto& domain) {
+  io.number(1, "origin_x_m", domain.origin_m.x(), limits::kCoordinate_m);
+  io.number(2, "origin_y_m", domain.origin_m.y(), limits::kCoordinate_m);
+  io.number(3, "size_x_m", domain.size_m.x(), limits::kSize_m);
+  io.number(4, "size_y_m", domain.size_m.y(), limits::kSize_m);
+}
+
+/// modes_z is 1, and in no plan yet.
+void list_fields(auto& io, MaybeConst<Basis> auto& basis) {
+  io.number(1, "modes_x", basis.modes_x, limits::kModes);
+  io.number(2, "modes_y", basis.modes_y, limits::kModes);
+  io.flag(3, "normalized", basis.normalized);
+  io.choice(4, "sobolev_form", basis.sobolev_form, {"SQUARED_NORM", "NORM"});
+  io.number(5, "sobolev_exponent", basis.sobolev_exponent, limits::above(0, 10));
+}
+
+void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
+  const bool adaptive = law.perturbation == Perturbation::kAdaptive;
+  io.number(1, "u_max_mps", law.u_max_mps, limits::above(0, 1e6));
+  io.choice(2, "regularization", law.regularization, {"ABSOLUTE", "RELATIVE"});
+  io.number(3, "epsilon", law.epsilon, limits::between(0, 1e6));
+  io.number(5, "noise_intensity", law.noise_intensity, limits::kIntensity);
+  io.number(7, "contraction_gain_per_s", law.contraction_gain_per_s, limits::between(0, 1e6));
+  io.contraction_center(8, law.contraction_center_m);
+  io.choice(4, "perturbation", law.perturbation, {"CONSTANT", "ADAPTIVE"});
+  io.number(6, "noise_ceiling", law.noise_ceiling, limits::kIntensity, adaptive);
+  io.number(10, "anticipation", law.anticipation, limits::between(0, 100));
+  io.flag(11, "ends_with_plan", law.ends_with_plan);
+  io.flag(12, "paired_pushes", law.paired_pushes);
+}
+
+void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
+  io.number(1, "dt_s", timing.dt_s, limits::between(1e-6, 3600));
+  io.duration(2, timing);
+  io.number(3, "broadcast_period_ticks", timing.broadcast_period_ticks, limits::between(1, 1000));
+  io.choice(4, "pace", timing.pace, {"LOCKSTEP", "REALTIME"});
+  io.number(5, "realtime_factor", timing.realtime_factor, limits::between(0.01, 1000));
+  io.number(6, "lockstep_timeout_s", timing.lockstep_timeout_s, limits::kTimeout_s);
+  io.choice(10, "on_timeout", timing.on_timeout, {"END_MISSION", "EVICT"});
+  io.number(7, "command_hold_s", timing.command_hold_s, limits::between(0, 1e6));
+  io.number(8, "admission_timeout_s", timing.admission_timeout_s, limits::kTimeout_s);
+  io.number(9, "catch_up_limit_ticks", timing.catch_up_limit_ticks, limits::between(0, 1000));
+}
+
+/// Number 1 of the plan is the version of the program that wrote it.
+void list_fields(auto& io, MaybeConst<Mission> auto& m) {
+  io.name(2, "name", m.name);
+  io.seed(3, "seed", m.seed);
+  io.part(4, "domain", m.domain);
+  io.target(6, m.target_coefficients);
+  io.part(5, "basis", m.basis);
+  io.part(7, "law", m.law);
+  io.part(8, "time", m.timing);
+  io.starts(9, m.starts_m);
+  // The greatest number, and never 0: a truncated plan lacks it.
+  io.number(100, "agents.quorum", m.quorum, limits::kTeam);
+  io.number(10, "agents.forget_silent_after_s", m.forget_silent_after_s, limits::between(0, 1e6));
+  io.flag(15, "agents.dead_reckoning", m.dead_reckoning);
+  io.number(12, "world.disturbance_intensity", m.disturbance_intensity, limits::kIntensity);
+  io.number(13, "world.radio_range_m", m.radio_range_m, limits::between(0, 1e13));
+  io.number(14, "world.speed_limit_mps", m.speed_limit_mps, limits::above(0, 1e9),
+            m.speed_limit_mps != 0);
+  io.number(11, "goal_ergodic_metric", m.goal_ergodic_metric, limits::above(0, 1e9),
+            m.goal_ergodic_metric != 0);
+  io.hidden_flag(16, m.wait_for_logger);
+}
+
+}  // namespace ergocast

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The list of a mission's fields lacks none.
+#include "core/mission_fields.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace ergocast {
+namespace {
+
+struct Anything {
+  template <class T>
+  operator T() const;
+};
+
+/// How many values an aggregate can be made of: its members.
+template <class T, std::size_t... I>
+constexpr std::size_t members(std::index_sequence<I...>) {
+  if constexpr (requires { T{(void(I), Anything())...}; }) {
+    return members<T>(std::make_index_sequence<sizeof...(I) + 1>());
+  } else {
+    return sizeof...(I) - 1;
+  }
+}
+template <class T>
+constexpr std::size_t members() {
+  return members<T>(std::index_sequence<>());
+}
+
+/// Counts the fields of one part.
+class Count : public FieldVisitor {
+ public:
+  std::size_t fields = 0;
+
+  void number(auto&&...) { ++fields; }
+  void flag(auto&&...) { ++fields; }
+  void choice(int, const char*, auto&, Words) { ++fields; }
+  void seed(auto&&...) { ++fields; }
+  void name(auto&&...) { ++fields; }
+  void part(auto&&...) { ++fields; }
+  void contraction_center(auto&&...) { ++fields; }
+  void duration(auto&&...) { ++fields; }
+  void target(auto&&...) { ++fields; }
+  void starts(auto&&...) { ++fields; }
+  void hidden_flag(auto&&...) { ++fields; }
+};
+
+template <class Part>
+std::size_t listed() {
+  Count count;
+  const Part part;
+  list_fields(count, part);
+  return count.fields;
+}
+
+TEST(MissionFields, AreAllMembers) {
+  EXPECT_EQ(listed<ControlLaw>(), members<ControlLaw>());
+  EXPECT_EQ(listed<Timing>(), members<Timing>());
+  EXPECT_EQ(listed<Mission>(), members<Mission>());
+  // Two for each corner; no z yet.
+  EXPECT_EQ(listed<Box>(), 2 * members<Box>());
+  EXPECT_EQ(listed<Basis>(), members<Basis>() - 1);
+}
+
+}  // namespace
+}  // namespace ergocast
