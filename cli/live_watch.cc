@@ -26,11 +26,11 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr auto kTurn = 50ms;
+constexpr auto kPollPeriod = 50ms;
 constexpr auto kLook = 250ms;
 constexpr int kFramesAtOnce = 8;
 /// Agents report the end before the coordinator tells its reason.
-constexpr auto kLastWord = 1s;
+constexpr auto kLastFrame = 1s;
 
 class Watch final : public LiveWatch {
  public:
@@ -100,7 +100,7 @@ class Watch final : public LiveWatch {
     Instant next_look = now();
     std::optional<Instant> over_since;
     while (!stopping_) {
-      transport_->deliver_until(now() + kTurn, -1);
+      transport_->deliver_until(now() + kPollPeriod, -1);
       if (now() < next_look) continue;
       next_look = now() + kLook;
       transport_->renew_membership();
@@ -111,7 +111,7 @@ class Watch final : public LiveWatch {
       for (const std::string& line : lines) team_->log(line);
       team_->look(now());
       if (team_->over() && !over_since) over_since = now();
-      over_ = over_since && now() - *over_since >= kLastWord;
+      over_ = over_since && now() - *over_since >= kLastFrame;
     }
   }
 
