@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/page_server.h"
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/event_log.h"
 #include "runtime/lcm_url.h"
+#include "runtime/signals.h"
 #include "scenario/scenario.h"
 
 namespace ergocast::cli {
@@ -31,6 +33,8 @@ struct MissionOptions {
   MessageAuthenticator seal;
   std::string key_file;                       ///< the file of the key in `seal`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
+  bool watch = false;                         ///< `run` only: serves a page
+  PageServer::Options page;
 };
 
 /// Runs the mission as processes over LCM on this host.
@@ -76,6 +80,13 @@ int study(const StudyOptions& options);
 
 /// `status`: shows the state of a running team, from any host on its buses.
 void add_status(CLI::App& app, Action& action);
+
+/// `watch`: a record, or a running team, in a browser.
+void add_watch(CLI::App& app, Action& action);
+/// --port and --listen.
+void add_page_options(CLI::App& app, PageServer::Options& options);
+/// Waits for Ctrl-C or SIGTERM, or until the time is over (−1: for ever). Whether it came.
+bool wait_for_stop(StopSignals& signals, int timeout_ms = -1);
 
 /// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);

@@ -151,6 +151,11 @@ int parse_and_do(int argc, char** argv) {
   add_url_option(*run_command, mission);
   add_key_option(*run_command, mission.seal, &mission.key_file);
   add_event_log_option(*run_command, mission.event_log_mib);
+  run_command->add_flag("--watch", mission.watch,
+                        "Show it in a browser, and the record afterwards, until Ctrl-C");
+  add_page_options(*run_command, mission.page);
+  for (const char* option : {"--port", "--listen"})
+    run_command->get_option(option)->needs("--watch");
   run_command->callback([&] { action = [&] { return run(mission); }; });
 
   auto* simulate_command =
@@ -195,6 +200,7 @@ int parse_and_do(int argc, char** argv) {
   add_keygen(app, action);
   add_deploy(app, action);
   add_status(app, action);
+  add_watch(app, action);
   add_stop(app, action);
   add_spy(app, action);
   add_doctor(app, action);

@@ -2,7 +2,9 @@
 // Displays the progress of a mission.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "cli/progress_line.h"
 #include "core/ids.h"
@@ -23,12 +25,18 @@ class ProgressDisplay {
  public:
   /// Shows it, if the last display was long enough ago.
   void show(const MissionProgress& progress);
-  void say(const std::string& line) { line_.say(line); }
+  void say(const std::string& line) {
+    line_.say(line);
+    if (also_) also_(line);
+  }
+  /// Who gets the lines besides.
+  void also_to(std::function<void(const std::string&)> listener) { also_ = std::move(listener); }
   void end() { line_.end(); }
 
  private:
   ProgressLine line_;
   Rate ticks_;
+  std::function<void(const std::string&)> also_;
 };
 
 }  // namespace ergocast::cli

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
+#include "cli/live_watch.h"
 #include "cli/mission_watch.h"
 #include "cli/progress.h"
 #include "cli/report_error.h"
@@ -110,9 +111,29 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
               (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
+/// The page of the mission, if it is wanted; an error if it cannot be served.
+std::variant<std::unique_ptr<LiveWatch>, std::string> begin_watch(const MissionOptions& options,
+                                                                  const Scenario& scenario,
+                                                                  const Launcher::Setup& setup,
+                                                                  ProgressDisplay& display) {
+  if (!options.watch) return std::unique_ptr<LiveWatch>();
+  BusOptions bus;
+  bus.url = setup.url;
+  bus.run = setup.run;
+  bus.seal = options.seal;
+  auto started = LiveWatch::start(
+      {bus, setup.run_dir, scenario.mission(), scenario.target_density()}, options.page);
+  if (auto* watch = std::get_if<0>(&started)) {
+    display.say("  page     " + (*watch)->url());
+    display.also_to([page = watch->get()](const std::string& line) { page->say(line); });
+  }
+  return started;
+}
+
 /// Runs the mission. LCM works and the run directory is ready.
-int fly(const Scenario& scenario, const Launcher::Setup& setup, const MessageAuthenticator& seal,
+int fly(const MissionOptions& options, const Scenario& scenario, const Launcher::Setup& setup,
         StopSignals& signals) {
+  const MessageAuthenticator& seal = options.seal;
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display);
   auto opened = Transport::open(
@@ -124,6 +145,10 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const MessageAut
     return report_error(kExitUnavailable, *problem);
   }
   announce(setup, scenario, display);
+  const auto watching = begin_watch(options, scenario, setup, display);
+  if (const auto* problem = std::get_if<std::string>(&watching)) {
+    return report_error(kExitUnavailable, *problem);
+  }
   Launcher launcher(setup, display);
   if (const auto problem = launcher.start()) {
     launcher.escalate(2);
@@ -135,6 +160,12 @@ int fly(const Scenario& scenario, const Launcher::Setup& setup, const MessageAut
   const auto summary = amended_summary(scenario, setup, launcher, mission);
   const auto unwritten = write_file(setup.run_dir / kSummaryFile, to_text(summary));
   conclude(setup.run_dir, summary, scenario);
+  if (const auto& page = std::get<0>(watching)) {
+    page->finish();
+    std::printf("  page      %s, until Ctrl-C\n", page->url().c_str());
+    std::fflush(stdout);
+    wait_for_stop(signals);
+  }
   if (unwritten) return report_error(kExitFailed, *unwritten);
   return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed
                                                                              : kExitDone;
@@ -167,7 +198,7 @@ int run(const MissionOptions& options) {
     return report_error(kExitBadInput, *problem);
   }
   setup.run_dir = std::get<fs::path>(prepared);
-  return fly(*scenario, setup, options.seal, signals);
+  return fly(options, *scenario, setup, signals);
 }
 
 }  // namespace ergocast::cli

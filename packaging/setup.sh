@@ -32,7 +32,7 @@ missing_packages() {
 
 missing_tools() {
   local tool
-  for tool in cmake ninja c++ protoc lcm-gen; do
+  for tool in cmake ninja c++ esbuild protoc lcm-gen; do
     command -v "$tool" >/dev/null || printf '%s\n' "$tool"
   done
 }

@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// report.html: one page without external resources.
+// What the page of a run shows, as JSON, and report.html with it inside.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
 
 #include "core/mission.h"
 #include "logger/run_data.h"
-#include "report/figures.h"
+#include "report/raster.h"
 
 namespace ergocast {
 
-/// A page in the report's style around `content`, which is HTML.
-/// @param title  plain text
-/// @param kind   the line above it, plain text
-std::string framed_page(const std::string& title, const std::string& kind,
-                        const std::string& header, const std::string& content);
+/// The mission: {"name", "seed", "origin_m", "size_m", "modes": [x, y], "target": μ_k, "weights":
+/// λ_k / h_k², "dt_s", "tick_count", "agents", "radio_range_m", "conventions": [[name, text], …],
+/// "density": null or {"width", "height", "full", "data"}}. Of a mission in space it has the modes
+/// without z. `density` has a byte a cell, the north-west first; 255 is `full` times the uniform
+/// density or more.
+/// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
+nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
 
-/// The figures, two side by side.
-std::string figures_section(const std::vector<Figure>& figures);
+/// {"mission", "summary", "metrics", "tracks", "stride", "rows"}: what the page needs of a record.
+nlohmann::ordered_json page_record(const RunData& run, const Mission& mission,
+                                   const nlohmann::ordered_json& summary, const Field& density);
 
-/// The page, well-formed also as XML. Keys that are missing in `summary`, or have another type, are
-/// left out; all its text is escaped.
+/// report.html. Keys that are missing in `summary`, or have another type, are left out.
 std::string report_page(const RunData& run, const Mission& mission,
-                        const nlohmann::ordered_json& summary, const std::vector<Figure>& figures);
+                        const nlohmann::ordered_json& summary, const Field& density);
+
+/// "quadrimodal_corners", or "unnamed mission".
+std::string title_of(const Mission& mission);
 
 }  // namespace ergocast

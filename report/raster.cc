@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "report/base64.h"
+
 namespace ergocast {
 namespace {
 
@@ -71,22 +73,6 @@ void append_chunk(std::string& png, const std::string& type, const std::string& 
   append_big_endian(png, static_cast<std::uint32_t>(content.size()));
   png += type + content;
   append_big_endian(png, crc32(type + content));
-}
-
-std::string base64(std::string_view bytes) {
-  static constexpr const char* kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = i; k < i + 3; ++k) {
-      three = three << 8 | (k < bytes.size() ? static_cast<std::uint8_t>(bytes[k]) : 0);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      out += i + k <= bytes.size() ? kDigits[three >> (18 - 6 * k) & 63] : '=';
-    }
-  }
-  return out;
 }
 
 /// One byte a pixel, lines from the top, each after a 0: "no filter".

@@ -11,26 +11,48 @@
 
 namespace ergocast {
 namespace {
+
 namespace fs = std::filesystem;
-}
-std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& run_dir,
-                                                               const Mission& mission) {
+
+struct Record {
+  RunData run;
+  nlohmann::ordered_json summary;
+  Field target;
+};
+
+std::variant<Record, std::string> read_record(const fs::path& run_dir) {
   auto run = read_run(run_dir);
   if (auto* problem = std::get_if<std::string>(&run)) return std::move(*problem);
   auto summary = read_summary(run_dir);
   if (auto* problem = std::get_if<std::string>(&summary)) return std::move(*problem);
   auto target = read_target_density(run_dir / kTargetDensityFile);
   if (auto* problem = std::get_if<std::string>(&target)) return std::move(*problem);
+  return Record{std::get<RunData>(std::move(run)),
+                std::get<nlohmann::ordered_json>(std::move(summary)),
+                std::get<Field>(std::move(target))};
+}
 
-  const auto& data = std::get<RunData>(run);
-  const std::vector<Figure> figures = draw_figures(data, mission, std::get<Field>(target));
+}  // namespace
+
+std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& run_dir,
+                                                               const Mission& mission) {
+  auto read = read_record(run_dir);
+  if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
+  const auto& [run, summary, target] = std::get<Record>(read);
   std::vector<ReportFile> files;
-  for (const Figure& figure : figures) {
+  for (const Figure& figure : draw_figures(run, mission, target)) {
     files.push_back({fs::path("figures") / (figure.name + ".svg"), figure.svg});
   }
-  files.push_back({kReportFile,
-                   report_page(data, mission, std::get<nlohmann::ordered_json>(summary), figures)});
+  files.push_back({kReportFile, report_page(run, mission, summary, target)});
   return files;
+}
+
+std::variant<nlohmann::ordered_json, std::string> read_page_record(const fs::path& run_dir,
+                                                                   const Mission& mission) {
+  auto read = read_record(run_dir);
+  if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
+  const auto& [run, summary, target] = std::get<Record>(read);
+  return page_record(run, mission, summary, target);
 }
 
 std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission) {

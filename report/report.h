@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <variant>
@@ -26,6 +27,10 @@ struct ReportFile {
 /// @pre `mission` is that of the run's plan.
 std::variant<std::vector<ReportFile>, std::string> draw_report(const std::filesystem::path& run_dir,
                                                                const Mission& mission);
+
+/// What the page shows of a record, or the error; see page.h.
+std::variant<nlohmann::ordered_json, std::string> read_page_record(
+    const std::filesystem::path& run_dir, const Mission& mission);
 
 /// Writes them into `run_dir` and replaces existing files, each as a whole or not at all. Nothing
 /// on success, otherwise the error.

@@ -28,6 +28,7 @@ enum class Outside {
   kCrypto,       // libsodium
   kGenerator,    // Random123
   kPng,          // libpng
+  kHttp,         // cpp-httplib
   kFiles,        // files and standard streams
   kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
 };
@@ -70,6 +71,7 @@ const std::vector<Rule> kRules = {
      {"text", "core", "team", "lcmtypes", "runtime", "ops/doctor"},
      {kJson, kFiles, kSystem}},
     {"ops/deploy", {"text", "core", "scenario", "runtime", "ops/deploy"}, {kFiles}},
+    {"cli/page_server.cc", {"cli"}, {kHttp, kSystem}},
     {"cli",
      {"text", "core", "target", "team", "lcmtypes", "scenario", "runtime", "logger", "report",
       "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
@@ -98,6 +100,7 @@ const std::vector<Kind> kKinds = {
     {kCrypto, {"sodium.h"}},
     {kGenerator, {"Random123/*"}},
     {kPng, {"png.h"}},
+    {kHttp, {"httplib.h"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},
     {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
                "future",     "semaphore", "latch",        "barrier",

@@ -10,10 +10,10 @@
 #include <set>
 #include <span>
 
+#include "lab/studies/html.h"
 #include "lab/studies/study_figures.h"
-#include "report/html.h"
+#include "lab/studies/study_style.h"
 #include "report/markup.h"
-#include "report/page.h"
 
 namespace ergocast::studies {
 namespace {
@@ -178,6 +178,27 @@ std::vector<std::string> terminal_cells(const PointSummary& s) {
   return {std::to_string(s.runs), plain(s.metric), s.ratio ? plain(*s.ratio) : "-",
           s.slope ? short_number(*s.slope) : "-",
           held ? short_number(100 * s.escaped_share(60)) + " %" : "-"};
+}
+
+/// The figures, two side by side.
+std::string figures_section(const std::vector<Figure>& figures) {
+  std::string html = "<section class=\"figures\">\n";
+  for (const Figure& figure : figures) {
+    html += std::string("<figure") + (figure.wide ? " class=\"wide\"" : "") + "><h2>" +
+            escape(figure.title) + "</h2>\n<div class=\"scroll\">" + figure.svg +
+            "</div><figcaption>" + escape(figure.caption) + "</figcaption></figure>\n";
+  }
+  return html + "</section>\n";
+}
+
+std::string framed_page(const std::string& title, const std::string& kind,
+                        const std::string& header, const std::string& content) {
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n";
+  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
+  html += element("title", escape(title) + " – Ergocast") + element("style", kPageStyle);
+  html += "</head><body><main>\n<header><p>" + escape(kind) + "</p>\n" +
+          element("h1", escape(title)) + header + "</header>\n";
+  return html + content + "</main></body></html>\n";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Builds elements and tables from strings, and leaves out empty columns.
-#include "report/html.h"
+#include "lab/studies/html.h"
 
 #include <algorithm>
 

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A flying team as frames for the page: messages and log lines in, JSON out. No clock, no I/O.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/team_view.h"
+#include "core/mission.h"
+#include "report/raster.h"
+#include "report/track_grid.h"
+#include "team/participant.h"
+
+namespace ergocast {
+
+/// Everything is kept once, up to limits, and each browser has a cursor into it: a slow one gets
+/// later what it missed, and costs no memory. Not thread-safe.
+class LiveTeam {
+ public:
+  static constexpr Role kRole = Role::kMonitor;
+  /// Longer histories lose their oldest lines and incidents.
+  static constexpr std::size_t kMostLines = 400, kMostIncidents = 500;
+
+  /// @param since  when the listening began
+  /// @param authenticated  whether what it receives was checked with the team's key
+  LiveTeam(RunId run, Instant since, bool authenticated);
+
+  /// The mission and its target density, where they are known before a message comes.
+  void begin(const Mission& mission, const Field& density);
+
+  /// @pre the message is of this view's run
+  void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
+  void log(std::string line);
+  /// Looks for incidents; to be called a few times a second.
+  void look(Instant now);
+
+  RunId run() const { return me_.run(); }
+  /// Whether the mission's end was reported.
+  bool over() const { return view_.over(); }
+  const std::string& end_text() const { return end_text_; }
+
+  /// What a browser has got.
+  struct Cursor {
+    Tick stride = 0;  ///< of the rows; when it grows, the browser begins anew
+    std::int64_t row = 0;
+    std::uint64_t statuses = 0, incidents = 0, rosters = 0, lines = 0;
+  };
+  /// The next server-sent events for it; empty if there is nothing new. One call gives a bounded
+  /// number of rows; `more` tells whether others wait.
+  std::string frame(Cursor& cursor, bool& more) const;
+
+ private:
+  struct Incident {
+    double t_s = 0;
+    const char* kind;  ///< "silent", "gone", "late" or "ok"
+    const char* sign;
+    std::string text;
+    std::optional<AgentId> agent;
+    std::optional<double> until_s;
+  };
+  struct LastLook {
+    Condition condition = Condition::kUnheard;
+    Incarnation incarnation = 0;
+    double heard_s = 0;  ///< mission time of its last status
+  };
+
+  template <class M>
+  void on(const M&) {}  // the other types need no more action
+  void on(const WorldState& world);
+  bool joined_late(const Author& author) const;
+  void compare(const AgentRow& row, double t_s, double dt_s);
+  void compare(const ProcessRow& row, double t_s);
+  void add_incident(Incident incident);
+  void close_outage(const std::string& of, double t_s);
+  nlohmann::ordered_json incidents_json() const;
+  nlohmann::ordered_json roster_json() const;
+
+  Participant me_;
+  TeamView view_;
+  bool authenticated_;
+  std::optional<TrackGrid> grid_;
+  nlohmann::ordered_json mission_, status_;  // as the page gets them
+  std::map<AgentId, LastLook> last_looks_;
+  std::map<std::string, bool> trouble_;  // of the processes, by name
+  std::deque<Incident> incidents_;
+  std::map<std::string, double> outages_;  // that go on: since when
+  std::deque<std::string> lines_;
+  std::uint64_t statuses_ = 0, incident_changes_ = 0, rosters_ = 0, line_count_ = 0;
+  std::int64_t roster_revision_ = -1;
+  std::string end_text_;
+};
+
+}  // namespace ergocast

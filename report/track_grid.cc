@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Quantises positions as they come, and codes the runs between gaps as second differences.
+#include "report/track_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "report/base64.h"
+
+namespace ergocast {
+namespace {
+
+constexpr std::size_t kSmallTeam = 12;
+
+void append_number(std::string& bytes, std::int64_t value) {
+  auto zigzag = static_cast<std::uint64_t>(value) << 1 ^ (value < 0 ? ~std::uint64_t{0} : 0);
+  for (; zigzag > 127; zigzag >>= 7) bytes += static_cast<char>(zigzag | 128);
+  bytes += static_cast<char>(zigzag);
+}
+
+}  // namespace
+
+TrackGrid::TrackGrid(const Rectangle& domain, std::size_t agents)
+    : domain_(domain), bits_(agents > kSmallTeam ? 13 : 14) {}
+
+void TrackGrid::coarsen() {
+  stride_ *= 2;
+  rows_ = (rows_ + 1) / 2;
+  for (auto& [agent, track] : tracks_) {
+    for (std::size_t row = 0; 2 * row < track.size(); ++row) track[row] = track[2 * row];
+    track.resize((track.size() + 1) / 2);
+  }
+}
+
+void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
+  if (tick < 0) return;
+  const auto agents = static_cast<std::int64_t>(tracks_.size() + (tracks_.contains(agent) ? 0 : 1));
+  // Before the tracks grow: a damaged record may name any tick.
+  while (tick / stride_ >= kMostPositions / agents) coarsen();
+  if (tick % stride_ != 0) return;
+  const std::int64_t row = tick / stride_, full = (1 << bits_) - 1;
+  std::vector<Cell>& track = tracks_[agent];
+  if (std::ssize(track) <= row) track.resize(static_cast<std::size_t>(row) + 1, {kNothing, 0});
+  Cell& cell = track[static_cast<std::size_t>(row)];
+  for (const int axis : {0, 1}) {
+    // A record may say anything; what is far outside is drawn at the edge of twice the domain.
+    const double share = (x_m[axis] - domain_.origin_m[axis]) / domain_.size_m[axis];
+    cell[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(
+        std::lround(std::clamp(share, -1.0, 2.0) * static_cast<double>(full)));
+  }
+  rows_ = std::max(rows_, row + 1);
+}
+
+nlohmann::ordered_json TrackGrid::encode(std::int64_t from, std::int64_t to) const {
+  auto agents = nlohmann::ordered_json::array();
+  std::string bytes;
+  for (const auto& [agent, track] : tracks_) {
+    auto runs = nlohmann::ordered_json::array();
+    const std::int64_t end = std::min<std::int64_t>(to, std::ssize(track));
+    const auto at = [&track = track](std::int64_t row) {
+      return track[static_cast<std::size_t>(row)];
+    };
+    for (std::int64_t row = from; row < end; ++row) {
+      if (at(row)[0] == kNothing) continue;
+      const std::int64_t first = row;
+      while (row < end && at(row)[0] != kNothing) ++row;
+      runs.push_back(first);
+      runs.push_back(row - first);
+      for (const std::size_t axis : {0U, 1U}) {
+        std::int64_t before = 0, before_that = 0;
+        for (std::int64_t k = first; k < row; ++k) {
+          const std::int64_t value = at(k)[axis];
+          append_number(bytes, value - 2 * before + before_that);
+          before_that = before;
+          before = value;
+        }
+      }
+    }
+    if (!runs.empty()) agents.push_back({{"id", agent}, {"runs", std::move(runs)}});
+  }
+  return {{"bits", bits_}, {"agents", std::move(agents)}, {"data", base64(bytes)}};
+}
+
+}  // namespace ergocast

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A mission as the page shows it: from a record, or as it grows. No drawing.
+import { Coverage } from './coverage.js';
+import { Track, addTracks, bytesOf } from './tracks.js';
+
+const TOLERANCE_S = 1e-6;
+
+// The last index with list[i] ≤ t; −1: none.
+export function indexAt(list, t) {
+  let low = 0, high = list.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (list[middle] <= t + TOLERANCE_S) low = middle + 1; else high = middle;
+  }
+  return low - 1;
+}
+
+export class Run {
+  constructor(mission, stride, capacity) {
+    this.mission = mission;
+    this.size = mission.size_m;
+    this.stride = stride;
+    this.step = mission.dt_s * stride;      // mission time between rows
+    this.capacity = capacity;
+    this.rows = 0;
+    this.tracks = [];                       // ascending by id
+    this.byId = new Map();
+    this.metrics = { t: [], phi: [], spread: [], age: [], received: [], lost: [] };
+    this.incidents = [];                    // {t, kind, sign, text, agent, until}, ascending
+    this.history = [];                      // {t, team} as live statuses came
+    this.times = [];                        // their t
+    this.summary = null;
+    this.coverage = new Coverage(this);
+    this.density = decodeDensity(mission.density) ?? this.targetOfModes();
+  }
+  get end() { return Math.max(0, this.rows - 1) * this.step; }
+  rowAt(t) { return Math.max(0, Math.min(this.rows - 1, Math.round(t / this.step))); }
+  track(id) {
+    let track = this.byId.get(id);
+    if (!track) {
+      track = new Track(id);
+      this.byId.set(id, track);
+      this.tracks.push(track);
+      this.tracks.sort((a, b) => a.id - b.id);
+    }
+    return track;
+  }
+  add(block) {
+    const first = addTracks(this, block);
+    if (first < this.coverage.upto || first < (this.coverage.sums.length - 1) * 128) this.coverage.reset(first);
+  }
+  // Without a recorded density the picture is what the modes say of the target.
+  targetOfModes() {
+    const [lx, ly] = this.size, most = 160, scale = most / Math.max(lx, ly);
+    const width = Math.max(16, Math.round(lx * scale)), height = Math.max(16, Math.round(ly * scale));
+    const values = this.coverage.picture(this.mission.target, width, height);
+    const sorted = Float32Array.from(values).sort(), full = Math.max(2, sorted[Math.floor(0.998 * (sorted.length - 1))]);
+    return { width, height, full, cells: Uint8Array.from(values, v => Math.max(1, Math.min(255, 255 * v / full))) };
+  }
+  metricAt(t) {
+    const i = indexAt(this.metrics.t, t);
+    return i < 0 ? NaN : this.metrics.phi[i];
+  }
+  // What the agents' statuses said last before `t`; null: nothing is known of them.
+  teamAt(t) {
+    const i = indexAt(this.times, t);
+    return i < 0 ? null : this.history[i].team;
+  }
+  // Metres per second over the last second: of one tick, noise is twice the speed.
+  speedAt(track, row) {
+    const n = Math.min(row - track.first, Math.max(1, Math.round(1 / this.step)));
+    if (n < 1 || !track.has(row) || !track.has(row - n)) return null;
+    const { p } = track;
+    return Math.hypot(p[2 * row] - p[2 * (row - n)], p[2 * row + 1] - p[2 * (row - n) + 1]) / (n * this.step);
+  }
+  // Agents are members in these ticks: [{id, active_from, active_until, …}], all their incarnations.
+  setRoster(entries) {
+    const intervals = new Map(), row = tick => Math.ceil(tick / this.stride);
+    for (const { id, active_from: from, active_until: until } of entries) {
+      if (typeof id !== 'number' || typeof from !== 'number') continue;
+      if (!intervals.has(id)) intervals.set(id, []);
+      intervals.get(id).push([row(from), typeof until === 'number' ? row(until) : Infinity]);
+    }
+    let changed = Infinity;
+    for (const [id, list] of intervals) {
+      list.sort((a, b) => a[0] - b[0]);
+      const track = this.byId.get(id);
+      if (!track || String(track.member) === String(list)) continue;
+      const parts = [...track.member, ...list].flat().filter(isFinite);
+      // The rows before the first boundary that differs stay as they are.
+      changed = Math.min(changed, ...parts.filter(r => track.isMember(r) !== list.some(([a, b]) => r >= a && r < b)), this.rows);
+      track.member = list;
+    }
+    if (changed < this.rows) this.coverage.reset(changed);
+  }
+}
+
+function decodeDensity(coded) {
+  return coded && { width: coded.width, height: coded.height, full: coded.full, cells: bytesOf(coded.data) };
+}
+
+// A record as report/page.h writes it.
+export function recordedRun(record) {
+  const run = new Run(record.mission, record.stride, record.rows);
+  run.add(record.tracks);
+  run.metrics = record.metrics;
+  run.summary = record.summary && typeof record.summary === 'object' && !Array.isArray(record.summary) ? record.summary : null;
+  run.slope = record.slope;
+  run.ticks = record.ticks;
+  const agents = Array.isArray(run.summary?.agents) ? run.summary.agents.filter(a => a && typeof a === 'object') : [];
+  run.setRoster(agents);
+  run.incidents = rosterIncidents(agents, run.mission.dt_s, run.end);
+  return run;
+}
+
+// What the roster tells of departures and returns.
+export function rosterIncidents(entries, dt, end) {
+  const incidents = [], byId = new Map();
+  for (const entry of entries) {
+    if (typeof entry.id !== 'number' || typeof entry.active_from !== 'number') continue;
+    if (!byId.has(entry.id)) byId.set(entry.id, []);
+    byId.get(entry.id).push(entry);
+  }
+  for (const [id, list] of byId) {
+    list.sort((a, b) => a.active_from - b.active_from);
+    list.forEach((entry, i) => {
+      const from = entry.active_from * dt, left = list[i - 1]?.active_until;
+      if (i > 0 && typeof left === 'number' && entry.active_from - left <= 1) {
+        incidents.push({ t: from, kind: 'ok', sign: '↻', text: `${id} restarted`, agent: id });
+      } else if (entry.active_from > 0) {
+        incidents.push({ t: from, kind: 'ok', sign: '+', text: `${id} ${i > 0 ? 'back' : 'joined'}`, agent: id });
+      }
+      const until = entry.active_until, next = list[i + 1]?.active_from;
+      if (typeof until === 'number' && !(next - until <= 1)) {
+        incidents.push({ t: until * dt, kind: 'gone', sign: '–', text: `${id} left`, agent: id, until: Math.min(end, (next ?? Infinity) * dt) });
+      }
+    });
+  }
+  return incidents.sort((a, b) => a.t - b.t);
+}
+
+// The state of an agent at a time, for marker and table. Rank: 0 worst.
+export function stateOf(run, track, t) {
+  const row = run.rowAt(t), team = run.teamAt(t), said = team?.byId.get(track.id);
+  if (row < track.first) return { kind: 'gone', text: 'not there yet', rank: 5, said };
+  if (!track.isMember(row)) return { kind: 'gone', text: 'left', rank: 4, said };
+  if (!said) return { kind: 'ok', text: 'ok', rank: 6 };
+  const kinds = { silent: 'silent', waiting: 'late', late: 'late', 'not heard': 'gone', gone: 'gone' };
+  const kind = kinds[said.state] ?? 'ok';
+  const text = said.state === 'silent' ? `silent ${said.silent_s.toFixed(0)} s`
+    : said.state === 'waiting' && said.waiting_for ? `waits for ${said.waiting_for}` : said.state;
+  return { kind, text, rank: { silent: 0, waiting: 1, late: 2, 'not heard': 3, gone: 4 }[said.state] ?? 6, said };
+}

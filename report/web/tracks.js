@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tracks on a grid of ticks, as report/track_grid.h codes them.
+
+export function bytesOf(base64) {
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+  return bytes;
+}
+
+// One agent: p[2r], p[2r + 1] is its place at row r in metres from the domain's corner; NaN where
+// nothing is known.
+export class Track {
+  constructor(id) {
+    this.id = id;
+    this.p = new Float32Array(0);
+    this.first = Infinity;
+    this.last = -1;
+    this.member = [[0, Infinity]];  // rows in which its coverage counts, ascending
+    this.way = new Float64Array(0); // metres gone up to a row, filled on demand
+    this.known = 0;
+  }
+  reserve(rows) {
+    if (this.p.length >= 2 * rows) return;
+    const p = new Float32Array(2 * Math.max(rows, this.p.length, 64)).fill(NaN);
+    p.set(this.p);
+    this.p = p;
+  }
+  has(row) { return row >= 0 && 2 * row < this.p.length && this.p[2 * row] === this.p[2 * row]; }
+  // The newest row up to `row` that is known; −1: none.
+  rowAt(row) {
+    if (row > this.last) row = this.last;
+    while (row >= this.first && !this.has(row)) row--;
+    return row >= this.first ? row : -1;
+  }
+  isMember(row) { return this.member.some(([from, until]) => row >= from && row < until); }
+  // The way up to each row, in metres.
+  distance(row) {
+    if (this.way.length < this.p.length / 2) {
+      const way = new Float64Array(this.p.length / 2);
+      way.set(this.way);
+      this.way = way;
+    }
+    for (; this.known <= row; this.known++) {
+      const k = this.known, d = k > 0 ? Math.hypot(this.p[2 * k] - this.p[2 * k - 2], this.p[2 * k + 1] - this.p[2 * k - 1]) : 0;
+      this.way[k] = (k > 0 ? this.way[k - 1] : 0) + (d === d ? d : 0);
+    }
+    return this.way[row];
+  }
+}
+
+// Adds a block of rows to the run's tracks. Returns the first row that it changed.
+export function addTracks(run, block) {
+  const bytes = bytesOf(block.data), full = 2 ** block.bits - 1;
+  let at = 0, first = Infinity;
+  for (const { id, runs } of block.agents) {
+    const track = run.track(id);
+    for (let i = 0; i < runs.length; i += 2) {
+      const from = runs[i], count = runs[i + 1];
+      track.reserve(from + count > run.capacity ? from + count : Math.min(run.capacity, 2 * (from + count)));
+      for (let axis = 0; axis < 2; axis++) {
+        const scale = run.size[axis] / full;
+        for (let k = from, before = 0, beforeThat = 0; k < from + count; k++) {
+          let z = 0, unit = 1, byte;
+          do { byte = bytes[at++]; z += (byte & 127) * unit; unit *= 128; } while (byte > 127);
+          const v = (z % 2 ? -(z + 1) / 2 : z / 2) + 2 * before - beforeThat;
+          beforeThat = before;
+          before = v;
+          track.p[2 * k + axis] = v * scale;
+        }
+      }
+      track.first = Math.min(track.first, from);
+      track.last = Math.max(track.last, from + count - 1);
+      track.known = Math.min(track.known, from);
+      run.rows = Math.max(run.rows, from + count);
+      first = Math.min(first, from);
+    }
+  }
+  return first;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One HTML file from a page of report/web/ and its data; it loads nothing from anywhere.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace ergocast {
+
+/// A page as the build has bundled it. The hashes are SHA-256 in hexadecimal digits.
+struct WebPage {
+  std::string_view body;
+  std::string_view style, style_sha256;
+  std::string_view script, script_sha256;
+};
+
+/// The page of a run.
+const WebPage& run_web_page();
+
+/// What the page may do, for the header Content-Security-Policy and for the file: run this one
+/// script and style, show pictures that it has made, and ask its own origin.
+std::string content_security_policy(const WebPage& page);
+
+/// The file. `data` is in an element that is not executed; no text in it can end this element.
+/// Bytes that are not UTF-8 are replaced.
+/// @param title  plain text
+std::string html_file(const WebPage& page, const std::string& title,
+                      const nlohmann::ordered_json& data);
+
+}  // namespace ergocast

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A team's frames: what a browser gets, once, however late it asks.
+#include "cli/live_team.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "tests/support/team.h"
+
+namespace ergocast {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr RunId kWatchedRun = 7;
+constexpr Instant kListening{100s};
+
+class LiveTeamFrames : public ::testing::Test {
+ protected:
+  LiveTeamFrames() { team.begin(test::small_mission(2), {}); }
+
+  void move(Tick tick) {
+    WorldState world;
+    world.header = {.run = kWatchedRun,
+                    .sender = kWorld,
+                    .incarnation = 5,
+                    .sequence = ++sequence,
+                    .tick = tick};
+    world.vehicle_count = 2;
+    for (const int i : {0, 1}) {
+      world.vehicles[static_cast<std::size_t>(i)].id = i;
+      world.vehicles[static_cast<std::size_t>(i)].position_m = {1.0 + i, 2, 0};
+    }
+    team.receive(world, Bus::kWorld, kWorld, kListening + 1ms * tick);
+  }
+  std::string frame(LiveTeam::Cursor& cursor) {
+    bool more = false;
+    return team.frame(cursor, more);
+  }
+
+  LiveTeam team{kWatchedRun, kListening, false};
+  std::int64_t sequence = 0;
+};
+
+TEST_F(LiveTeamFrames, ComeOnceAndWithAllThatIsNew) {
+  LiveTeam::Cursor quick, slow;
+  EXPECT_NE(frame(quick).find("event: mission"), std::string::npos);
+  EXPECT_EQ(frame(quick), "");
+  for (Tick tick = 0; tick < 3; ++tick) move(tick);
+  const std::string rows = frame(quick);
+  EXPECT_NE(rows.find(R"("runs":[0,2])"), std::string::npos) << rows;  // the newest may grow
+  EXPECT_EQ(frame(quick), "");
+  for (Tick tick = 3; tick < 5; ++tick) move(tick);
+  EXPECT_NE(frame(quick).find(R"("runs":[2,2])"), std::string::npos);
+  const std::string all = frame(slow);
+  EXPECT_NE(all.find("event: mission"), std::string::npos);
+  EXPECT_NE(all.find(R"("runs":[0,4])"), std::string::npos);
+}
+
+TEST_F(LiveTeamFrames, OfOtherRunsShowNothing) {
+  LiveTeam other(kWatchedRun + 1, kListening, false);
+  other.begin(test::small_mission(2), {});
+  LiveTeam::Cursor cursor;
+  bool more = false;
+  other.frame(cursor, more);
+  WorldState world;
+  world.header = {.run = kWatchedRun, .sender = kWorld, .incarnation = 5, .sequence = 1, .tick = 1};
+  world.vehicle_count = 1;
+  other.receive(world, Bus::kWorld, kWorld, kListening);
+  EXPECT_EQ(other.frame(cursor, more), "");
+}
+
+TEST_F(LiveTeamFrames, KeepTheNewestLinesAndEscapeThem) {
+  for (int i = 0; i < 1000; ++i) team.log("line " + std::to_string(i));
+  team.log("</script>\xff\n\nevent: end\ndata: {}");
+  LiveTeam::Cursor cursor;
+  const std::string text = frame(cursor);
+  EXPECT_EQ(text.find("\"line 600\""), std::string::npos);
+  EXPECT_NE(text.find("\"line 999\""), std::string::npos);
+  EXPECT_EQ(text.find("\nevent: end"), std::string::npos);  // a line break would begin an event
+}
+
+}  // namespace
+}  // namespace ergocast

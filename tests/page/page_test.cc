@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page in a real browser: a report from disk, a served record, and a team that flies.
+//
+// With ERGOCAST_SCREENSHOTS=FOLDER the tests save what they show there.
+#include <cstdlib>
+#include <optional>
+
+#include "tests/process/mission.h"
+#include "tests/support/browser.h"
+#include "tests/support/http.h"
+
+namespace ergocast::test {
+namespace {
+
+constexpr const char* kRight = "\uE014";
+constexpr const char* kHome = "\uE011";
+constexpr const char* kEscape = "\uE00C";
+
+class PageInABrowser : public FlyingMission {
+ protected:
+  /// A finished mission, its report open in the browser.
+  void open_report(std::vector<std::string> mission = {"--duration", "60"},
+                   const std::string& fragment = "", const char* name = "quadrimodal_corners") {
+    mission.insert(mission.begin(), {"simulate", scenario_file(name), "--out", out()});
+    ASSERT_EQ(ergocast(mission), 0) << output();
+    show_report(fragment);
+  }
+  void show_report(const std::string& fragment = "") {
+    browser_->open("file://" + (out() / "report.html").string() + fragment);
+    ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast && ergocast.S.run.ready)"));
+  }
+  void screenshot(const std::string& name) {
+    // The frame after next shows what was asked for.
+    browser_->run(
+        "return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+    const char* folder = std::getenv("ERGOCAST_SCREENSHOTS");
+    if (folder != nullptr)
+      browser_->save_screenshot(std::filesystem::path(folder) / (name + ".png"));
+  }
+  void expect_no_errors() { EXPECT_EQ(browser_->errors(), std::vector<std::string>()); }
+  nlohmann::json js(const std::string& script) { return browser_->run(script); }
+  std::string text(const std::string& id) {
+    return js("return document.getElementById('" + id + "').textContent");
+  }
+  void TearDown() override {
+    if (HasFailure()) screenshot("failed");
+    browser_.reset();  // its processes are on this host, too
+    FlyingMission::TearDown();
+  }
+
+  std::optional<Browser> browser_{folder_};
+};
+
+TEST_F(PageInABrowser, AReportFromDiskShowsAnyTick) {
+  open_report();
+  EXPECT_EQ(js("return document.title"), "quadrimodal_corners – Ergocast");
+  // The sums of the browser are those of the record, up to the rounding of positions to 14 bits.
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
+  EXPECT_EQ(text("state"), "done");
+  EXPECT_EQ(text("nowTime"), "59.9");
+
+  js("ergocast.draw(30)");
+  EXPECT_EQ(text("nowTime"), "30.0");
+  EXPECT_EQ(text("state"), "running");
+  const auto rows =
+      js("const t = ergocast.S.run.track(2), r = ergocast.S.run.rowAt(30);"
+         "return [t.p[2 * r], t.p[2 * r + 1]]");
+  std::ifstream file(out() / "trajectory.csv");
+  std::string line;
+  while (std::getline(file, line) && !line.starts_with("300,30,2,")) continue;
+  double x = 0, y = 0;
+  ASSERT_EQ(std::sscanf(line.c_str(), "300,30,2,%lf,%lf", &x, &y), 2) << line;
+  EXPECT_NEAR(rows[0].get<double>(), x, 0.1);  // 2000 m in 14 bits
+  EXPECT_NEAR(rows[1].get<double>(), y, 0.1);
+
+  // The agent is drawn where it is.
+  const auto drawn =
+      js("const v = ergocast.view, t = ergocast.S.run.track(2), r = ergocast.S.run.rowAt(30), s = "
+         "devicePixelRatio;"
+         "const g = document.getElementById('markers').getContext('2d');"
+         "return [...g.getImageData(Math.round((v.px(t.p[2 * r]) - 7) * s), Math.round(v.py(t.p[2 "
+         "* r + 1]) * s), 1, 1).data]");
+  EXPECT_EQ(drawn, nlohmann::json::parse("[0, 112, 90, 255]"));  // its colour on a light page
+  screenshot("report");
+  expect_no_errors();
+}
+
+TEST_F(PageInABrowser, KeysAndButtonsMoveThroughTheMission) {
+  open_report();
+  browser_->press(kHome);
+  EXPECT_EQ(js("return ergocast.S.t"), 0);
+  browser_->press(kRight);
+  EXPECT_NEAR(js("return ergocast.S.t").get<double>(), 0.1, 1e-9);
+  browser_->click("#on");
+  EXPECT_NEAR(js("return ergocast.S.t").get<double>(), 0.2, 1e-9);
+  browser_->click("#play");
+  EXPECT_TRUE(
+      browser_->becomes("return !ergocast.S.playing && ergocast.S.t >= ergocast.S.run.end"));
+  browser_->press("c");
+  EXPECT_EQ(js("return ergocast.S.layer"), "achieved");
+  browser_->press("d");
+  EXPECT_EQ(js("return document.documentElement.dataset.theme"), "dark");
+  browser_->press("+");
+  EXPECT_EQ(js("return document.getElementById('fit').hidden"), false);
+  browser_->press("0");
+  EXPECT_EQ(js("return document.getElementById('fit').hidden"), true);
+  browser_->click("#rows tr");
+  EXPECT_EQ(js("return [...ergocast.S.pins]"), nlohmann::json::array({0}));
+  browser_->press(kEscape);
+  EXPECT_EQ(js("return ergocast.S.pins.size"), 0);
+  browser_->press("?");
+  EXPECT_EQ(js("return document.getElementById('keys').open"), true);
+  expect_no_errors();
+}
+
+TEST_F(PageInABrowser, IsATableForScreenReadersAndFitsANarrowScreen) {
+  open_report({"--duration", "60"}, "#theme=dark");
+  EXPECT_EQ(js("return document.documentElement.dataset.theme"), "dark");
+  EXPECT_EQ(js("return document.querySelectorAll('#rows tr').length"), 4);
+  EXPECT_EQ(js("return document.querySelectorAll('#heads th[scope=col]').length >= 5"), true);
+  EXPECT_EQ(js("return document.querySelectorAll('#rows th[scope=row]').length"), 4);
+  EXPECT_NE(js("return document.getElementById('markers').getAttribute('aria-label')")
+                .get<std::string>()
+                .find("4 of 4 agents"),
+            std::string::npos);
+  EXPECT_EQ(
+      js("return [...document.querySelectorAll('button, input, select, canvas[role]')].filter("
+         "e => !(e.textContent.trim() || e.getAttribute('aria-label') || e.labels?.length)).map(e "
+         "=> e.id)"),
+      nlohmann::json::array());
+  screenshot("report_dark");
+  browser_->resize(400, 800);
+  ASSERT_TRUE(browser_->becomes("return innerWidth === 400"));
+  screenshot("report_narrow");
+  EXPECT_EQ(js("return document.documentElement.scrollWidth <= innerWidth"), true);
+}
+
+TEST_F(PageInABrowser, SavesAPictureAsLinesAndText) {
+  open_report();
+  const std::string svg = js("return ergocast.svgText()");
+  EXPECT_TRUE(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""));
+  EXPECT_EQ(js("const d = new DOMParser().parseFromString(ergocast.svgText(), 'image/svg+xml');"
+               "return d.querySelectorAll('parsererror').length"),
+            0);
+  EXPECT_EQ(svg.find("NaN"), std::string::npos);
+  EXPECT_NE(svg.find("quadrimodal_corners, 4 agents"), std::string::npos);
+  js("window.saved = []; HTMLAnchorElement.prototype.click = function () { "
+     "saved.push(this.download); };"
+     "document.getElementById('savePng').click(); document.getElementById('saveSvg').click();");
+  EXPECT_TRUE(browser_->becomes("return saved.length === 2"));
+  js("ergocast.S.speed = 100; document.getElementById('saveVideo').click();");
+  EXPECT_TRUE(browser_->becomes("return saved.length === 3"));
+  EXPECT_EQ(js("return saved.sort()"),
+            nlohmann::json::parse(R"(["quadrimodal_corners-60s.png", "quadrimodal_corners-60s.svg",
+                                      "quadrimodal_corners-60s.webm"])"));
+  expect_no_errors();
+}
+
+TEST_F(PageInABrowser, TextOfARecordIsTextOnly) {
+  ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
+                      out()}),
+            0);
+  auto changed = summary();
+  const std::string attack =
+      "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 2'>";
+  for (const char* key : {"reason", "result", "version", "build", "mode"}) changed[key] = attack;
+  changed["agents"][0]["host"] = attack;
+  std::ofstream(out() / "summary.json") << changed.dump();
+  ASSERT_EQ(ergocast({"report", out()}), 0);
+  show_report();
+  browser_->press("i");
+  EXPECT_NE(text("detailsText").find("onerror='window.broken = 2'"), std::string::npos);
+  EXPECT_EQ(js("return window.broken === undefined && document.images.length === 0"), true);
+  // The policy stops what a mistake would let through.
+  js("document.body.insertAdjacentHTML('beforeend', '<img src=x onerror=\"window.broken = 3\">');"
+     "const s = document.createElement('script'); s.textContent = 'window.broken = 4'; "
+     "document.body.append(s);");
+  EXPECT_EQ(js("return window.broken === undefined"), true);
+}
+
+TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
+  Child mission =
+      launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--watch", "--port", "8810"});
+  browser_->open("http://127.0.0.1:8810/");
+  EXPECT_TRUE(
+      browser_->becomes("return Boolean(window.ergocast?.S.run) && ergocast.S.run.rows > 50"));
+  EXPECT_EQ(js("return [ergocast.S.live, ergocast.S.following]"),
+            nlohmann::json::array({true, true}));
+  EXPECT_TRUE(browser_->becomes("return document.querySelectorAll('#rows tr').length === 4"));
+  EXPECT_TRUE(browser_->becomes("return document.getElementById('log').childElementCount > 0"));
+
+  kill_next(agent(2));
+  EXPECT_TRUE(browser_->becomes(
+      "return ergocast.S.run.incidents.some(i => i.agent === 2 && /restarted|back/.test(i.text))"));
+  EXPECT_TRUE(browser_->becomes(
+      "return /killed by SIGKILL/.test(document.getElementById('log').textContent)"));
+  // Back in time while the team flies, and to it again.
+  browser_->press(kHome);
+  EXPECT_EQ(js("return [ergocast.S.t, ergocast.S.following]"), nlohmann::json::array({0, false}));
+  const double end = js("return ergocast.S.run.end");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.end > " + std::to_string(end)));
+  EXPECT_EQ(js("return ergocast.S.t"), 0);
+  browser_->press("l");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.t > " + std::to_string(end)));
+  screenshot("live");
+
+  mission.send(SIGINT);
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  EXPECT_EQ(text("state"), "stopped");
+  EXPECT_EQ(js("return ergocast.S.run.incidents.some(i => i.agent === 2)"), true);
+  js("ergocast.draw(ergocast.S.run.end / 2)");
+  EXPECT_EQ(text("state"), "running");
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);
+  screenshot("live_recorded");
+  expect_no_errors();
+  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
+TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {
+  ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
+                      out()}),
+            0);
+  Child server = start("ergocast", {"watch", out(), "--port", "8811"});
+  ASSERT_TRUE(eventually([] { return get(8811, "/").status == 200; }));
+  browser_->open("http://127.0.0.1:8811/");
+  EXPECT_TRUE(browser_->becomes("return Boolean(window.ergocast?.S.run)"));
+  browser_->open("data:text/html,<title>evil</title>");
+  EXPECT_EQ(js("return fetch('http://127.0.0.1:8811/').then(r => 'read', () => 'refused')"),
+            "refused");
+  EXPECT_EQ(js("return fetch('http://127.0.0.1:8811/', { method: 'POST', mode: 'no-cors' })"
+               ".then(r => r.type, () => 'refused')"),
+            "refused");
+  EXPECT_EQ(js("return new Promise(done => { const f = document.createElement('iframe');"
+               "f.onload = () => { try { done(f.contentDocument ? 'read' : 'closed'); } catch { "
+               "done('closed'); } };"
+               "f.src = 'http://127.0.0.1:8811/'; document.body.append(f); })"),
+            "closed");
+  server.send(SIGINT);
+  EXPECT_EQ(wait_for(server), 0);
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The WebDriver protocol: a JSON object in, one out.
+#include "tests/support/browser.h"
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/support/http.h"
+
+namespace ergocast::test {
+namespace {
+
+using nlohmann::json;
+using namespace std::chrono_literals;
+
+constexpr int kPort = 9515;
+constexpr auto kPatience = 300s;
+
+bool waits_for(const auto& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(20ms);
+  }
+  return true;
+}
+
+std::string bytes_of(const std::string& base64) {
+  std::string bytes;
+  unsigned bits = 0;
+  int count = 0;
+  for (const char c : base64) {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const auto value = digits.find(c);
+    if (value == digits.npos) break;
+    bits = bits << 6 | static_cast<unsigned>(value);
+    if ((count += 6) < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> count & 255);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Browser::Browser(const std::filesystem::path& folder) {
+  const std::vector<std::string> command{"/usr/bin/chromedriver",
+                                         "--port=" + std::to_string(kPort)};
+  driver_ = std::get<Child>(Child::start({command, folder / "chromedriver.log", SIGKILL}));
+  if (!waits_for([] { return get(kPort, "/status").status == 200; })) {
+    throw std::runtime_error("chromedriver does not answer");
+  }
+  json options;
+  options["args"] = {"--headless=new",    "--no-sandbox",
+                     "--disable-gpu",     "--disable-dev-shm-usage",
+                     "--hide-scrollbars", "--user-data-dir=" + (folder / "profile").string()};
+  const json capabilities = {{"browserName", "chrome"},
+                             {"goog:chromeOptions", options},
+                             {"goog:loggingPrefs", {{"browser", "ALL"}}},
+                             {"timeouts", {{"script", 300000}, {"pageLoad", 300000}}}};
+  session_ =
+      "/session/" + ask("POST", "/session", {{"capabilities", {{"alwaysMatch", capabilities}}}})
+                        .at("sessionId")
+                        .get<std::string>();
+  resize(1300, 900);
+}
+
+Browser::~Browser() {
+  try {
+    ask("DELETE", "");
+  } catch (const std::exception&) {  // it ends all the same
+  }
+  driver_->send(SIGTERM);
+  waits_for([this] { return !driver_->running(); });
+}
+
+json Browser::ask(const std::string& method, const std::string& path, const json& body) {
+  const HttpAnswer answer =
+      http(kPort, method, session_ + path,
+           {"Host: 127.0.0.1:" + std::to_string(kPort), "Content-Type: application/json"},
+           method == "POST" ? body.dump() : "");
+  if (answer.status != 200) {
+    throw std::runtime_error(path + ": " + std::to_string(answer.status) + ' ' +
+                             answer.body.substr(0, 600));
+  }
+  return json::parse(answer.body).at("value");
+}
+
+void Browser::open(const std::string& url) { ask("POST", "/url", {{"url", url}}); }
+
+void Browser::resize(int width, int height) {
+  ask("POST", "/goog/cdp/execute",
+      {{"cmd", "Emulation.setDeviceMetricsOverride"},
+       {"params",
+        {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}}}});
+}
+
+json Browser::run(const std::string& script) {
+  return ask("POST", "/execute/sync", {{"script", script}, {"args", json::array()}});
+}
+
+bool Browser::becomes(const std::string& script) {
+  return waits_for([&] { return run(script) == true; });
+}
+
+void Browser::press(const std::string& key) {
+  json actions = json::array();
+  for (const char* type : {"keyDown", "keyUp"}) actions.push_back({{"type", type}, {"value", key}});
+  json keyboard = {{"type", "key"}, {"id", "keyboard"}, {"actions", actions}};
+  ask("POST", "/actions", {{"actions", json::array({keyboard})}});
+}
+
+void Browser::click(const std::string& selector) {
+  const json found = ask("POST", "/element", {{"using", "css selector"}, {"value", selector}});
+  ask("POST", "/element/" + found.begin()->get<std::string>() + "/click");
+}
+
+std::vector<std::string> Browser::errors() {
+  std::vector<std::string> messages;
+  for (const json& entry : ask("POST", "/se/log", {{"type", "browser"}})) {
+    if (entry.at("level") == "SEVERE") messages.push_back(entry.at("message"));
+  }
+  return messages;
+}
+
+void Browser::save_screenshot(const std::filesystem::path& png) {
+  std::ofstream(png, std::ios::binary) << bytes_of(ask("GET", "/screenshot"));
+}
+
+}  // namespace ergocast::test

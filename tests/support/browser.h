@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chromium without a screen, through its driver.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "runtime/child.h"
+
+namespace ergocast::test {
+
+/// One browser with one window. Each call waits for its answer; a failure throws with the driver's
+/// words.
+class Browser {
+ public:
+  /// @param folder  for its profile and its driver's log
+  explicit Browser(const std::filesystem::path& folder);
+  ~Browser();
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  void open(const std::string& url);
+  void resize(int width, int height);
+  /// What a script returns: "return document.title".
+  nlohmann::json run(const std::string& script);
+  /// Waits until a script returns true.
+  bool becomes(const std::string& script);
+  /// A key as WebDriver names it, on the element that has the focus: "d", "\uE014" (right).
+  void press(const std::string& key);
+  void click(const std::string& selector);
+  /// Errors in its console since the last call, also of the page's policy.
+  std::vector<std::string> errors();
+  void save_screenshot(const std::filesystem::path& png);
+
+ private:
+  nlohmann::json ask(const std::string& method, const std::string& path,
+                     const nlohmann::json& body = nlohmann::json::object());
+
+  std::optional<Child> driver_;
+  std::string session_;
+};
+
+}  // namespace ergocast::test
