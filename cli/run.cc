@@ -25,14 +25,15 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr auto kAttendPeriod = 50ms;
+constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
 
 /// Returns when all processes have ended.
 void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
                StopSignals& signals, ProgressDisplay& display) {
   int asked = 0;
   while (!launcher.all_ended()) {
-    transport.deliver_until(now() + kAttendPeriod, signals.fd());
+    const bool over = mission.stage() == Stage::kOver;
+    transport.deliver_until(now() + (over ? kAttendPeriodAtEnd : kAttendPeriod), signals.fd());
     if (const int count = signals.take(); count > 0) {
       asked += count;
       if (asked == 1) display.say("ending the mission in order; once more to end it now");

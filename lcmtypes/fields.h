@@ -143,6 +143,7 @@ struct Fields<WorldState> {
     io.within(m.part, 0, kMaxAgents - 1);
     io.within(m.parts, 1, kMaxAgents);
     io.holds(m.part < m.parts);
+    io.flag(m.last);
     for (auto& vehicle : io.length(m.vehicles, m.vehicle_count)) {
       io.within(vehicle.id, 0, kMaxAgents - 1);
       io.count_or_none(vehicle.answered_tick);
@@ -166,7 +167,7 @@ struct Fields<Command> {
 template <>
 struct Fields<RecordAck> {
   using Generated = record_ack_t;
-  static void list(auto&, auto&) {}
+  static void list(auto& io, auto& m) { io.flag(m.last); }
 };
 
 template <>

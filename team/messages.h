@@ -144,6 +144,7 @@ struct WorldState {
   std::int64_t skipped_ticks = 0;     ///< real time: ticks that a delayed world skipped
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
   std::int32_t part = 0, parts = 1;
+  bool last = false;  ///< the mission is over, and the world leaves: this is its last message
   std::int32_t vehicle_count = 0;
   std::array<Vehicle, kMaxVehiclesPerState> vehicles;
 };
@@ -159,6 +160,7 @@ struct Command {
 /// The logger has recorded all ticks up to and including header.tick (−1: it is ready).
 struct RecordAck {
   Header header;
+  bool last = false;  ///< the mission is over, and the logger leaves: this is its last message
 };
 /// Lockstep: how many ticks the world may be ahead of the logger's acknowledgement, unless it has
 /// given that logger up.
