@@ -68,6 +68,7 @@ struct Variation {
 /// The options of `study`.
 struct StudyOptions {
   std::vector<std::filesystem::path> scenarios;
+  std::vector<FieldValue> settings;  ///< of every mission
   std::vector<Variation> variations;
   std::optional<double> duration_s;
   Seeds seeds;
@@ -92,7 +93,7 @@ bool wait_for_stop(StopSignals& signals, int timeout_ms = -1);
 void add_stop(CLI::App& app, Action& action);
 
 /// Reports every problem of a scenario. With `print`, prints the scenario with all defaults.
-int check(const std::filesystem::path& scenario, bool print);
+int check(const std::filesystem::path& scenario, const Overrides& overrides, bool print);
 
 /// Makes the report of a run directory, again if it exists.
 int report(const std::filesystem::path& run_dir);

@@ -91,12 +91,11 @@ Variation parse_variation(const std::string& text) {
   const auto refuse = [&text](const std::string& why) {
     throw CLI::ValidationError("--vary", "\"" + text + "\" " + why);
   };
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) refuse("is not FIELD=VALUE,VALUE…");
-  Variation variation{text.substr(0, equals), {}};
-  for (std::size_t begin = equals + 1; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string value = text.substr(begin, end - begin);
+  const auto [path, list] = split_field(text, "--vary", "FIELD=VALUE,VALUE…");
+  Variation variation{path, {}};
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string value = list.substr(begin, end - begin);
     if (value.find_first_not_of(" \t") == std::string::npos) refuse("has an empty value");
     const auto& values = variation.values;
     if (std::find(values.begin(), values.end(), value) != values.end())
@@ -122,6 +121,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
           "A field and its values, such as law.noise_intensity=0,0.1,1; again for another field")
       ->allow_extra_args(false)
       ->type_name("FIELD=VALUE,…");
+  add_set_option(command, options.settings);
   command
       .add_option_function<std::string>(
           "--seeds", [&options](const std::string& text) { options.seeds = parse_seeds(text); },
@@ -186,7 +186,8 @@ int parse_and_do(int argc, char** argv) {
       ->transform(shipped_scenario())
       ->type_name("FILE");
   check_command->add_flag("--print", print, "Show the scenario with all defaults filled in");
-  check_command->callback([&] { action = [&] { return check(path, print); }; });
+  add_override_options(*check_command, mission.overrides);
+  check_command->callback([&] { action = [&] { return check(path, mission.overrides, print); }; });
 
   auto* report_command = app.add_subcommand("report", "Make a run's report again");
   report_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "cli/command_text.h"
 #include "cli/commands.h"
 #include "cli/progress_line.h"
 #include "cli/report_error.h"
@@ -16,8 +17,10 @@
 #include "lab/studies/study_page.h"
 #include "lab/studies/study_run.h"
 #include "logger/run_record.h"
+#include "ops/deploy/script.h"
 #include "runtime/node.h"
 #include "team/plan.h"
+#include "text/printable.h"
 
 namespace ergocast::cli {
 namespace {
@@ -116,24 +119,29 @@ class StudyRunner {
 /// The command that makes this study.
 std::string command_of(const StudyOptions& options) {
   std::string command = "ergocast study";
-  for (const auto& file : options.scenarios) command += ' ' + file.string();
+  for (const auto& file : options.scenarios) command += ' ' + shell_word(file.string());
   for (const Variation& variation : options.variations) {
-    command += " \\\n  --vary " + variation.path + '=';
+    command += " \\\n  --vary " + shell_word(variation.path) + '=';
     for (const std::string& value : variation.values) {
-      command += (&value == &variation.values.front() ? "" : ",") + value;
+      command += (&value == &variation.values.front() ? "" : ",") + shell_word(value);
     }
   }
-  if (options.duration_s) command += " --duration " + text_of("%.17g", *options.duration_s);
+  command += options_of({.duration_s = options.duration_s, .fields = options.settings});
   return command + " \\\n  --seeds " + std::to_string(options.seeds.first) + ':' +
-         std::to_string(options.seeds.last) + " --out " + options.out.string();
+         std::to_string(options.seeds.last) + " --out " + shell_word(options.out.string());
 }
 
-/// Prints the table on the terminal and writes the page.
-std::optional<std::string> show_results(const StudyIdentity& identity,
-                                        const StudyDirectory& directory,
+/// Prints the table and the commands of its rows on the terminal, and writes the page.
+std::optional<std::string> show_results(const StudyPoints& points, const StudyDirectory& directory,
                                         const StudyOptions& options) {
+  const StudyIdentity& identity = points.identity;
   const auto summaries = studies::summarize(identity.study, directory.rows());
   std::printf("%s", studies::study_text(identity.study, summaries).c_str());
+  std::printf("\none mission of each row, here with the first seed:\n");
+  for (const std::string& command : points.commands) {
+    std::printf("  %s --seed %llu\n", printable(command).c_str(),
+                static_cast<unsigned long long>(options.seeds.first));
+  }
   return write_file(
       options.out / "report.html",
       studies::study_page({identity.study, version(), command_of(options)}, summaries));
@@ -176,7 +184,7 @@ int study(const StudyOptions& options) {
   runner.fly(options.jobs);
   std::optional<std::string> problem = runner.problem();
   if (!problem) problem = directory.sort();
-  if (!problem) problem = show_results(points.identity, directory, options);
+  if (!problem) problem = show_results(points, directory, options);
   if (problem) {
     tell(*problem + "; the same command goes on");
     return kExitFailed;

@@ -47,18 +47,22 @@ Json to_json(const StudyIdentity& identity) {
                       {"duration_s", point.duration_s},
                       {"plan_hash", identity.plan_hashes[i]}});
   }
-  return {{"version", identity.version}, {"fields", identity.study.fields}, {"points", points}};
+  return {{"version", identity.version},
+          {"set", identity.settings},
+          {"fields", identity.study.fields},
+          {"points", points}};
 }
 
 /// Why the study `ours` cannot continue in the folder of `theirs`.
 std::string difference(const Json& ours, const Json& theirs) {
   const std::string fresh = "; give a new folder";
-  for (const char* key : {"version", "fields", "points"}) {
+  for (const char* key : {"version", "set", "fields", "points"}) {
     if (!theirs.is_object() || !theirs.contains(key)) return "its study.json is damaged" + fresh;
   }
   if (ours["version"] != theirs["version"]) {
     return "its study was begun by ergocast " + theirs["version"].dump() + fresh;
   }
+  if (ours["set"] != theirs["set"]) return "its study sets " + theirs["set"].dump() + fresh;
   if (ours["fields"] != theirs["fields"]) {
     return "its study varies " + theirs["fields"].dump() + fresh;
   }

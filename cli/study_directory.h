@@ -20,6 +20,7 @@ namespace ergocast::cli {
 struct StudyIdentity {
   studies::Study study;
   std::vector<std::string> plan_hashes;  ///< one for each point
+  std::vector<std::string> settings;     ///< of all points, as --set takes them
   std::string version;
 };
 

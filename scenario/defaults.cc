@@ -126,7 +126,10 @@ void resize_team(int size, proto::Agents& agents) {
 }
 
 void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
-  if (overrides.seed) scenario.set_seed(*overrides.seed);
+  if (overrides.seed) {
+    scenario.set_seed(*overrides.seed);
+    findings.blame("seed", "--seed");
+  }
   if (overrides.duration_s) {
     scenario.mutable_time()->set_duration_s(*overrides.duration_s);
     findings.blame("time.duration_s", "--duration");
@@ -134,12 +137,14 @@ void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findi
   if (overrides.pace) {
     scenario.mutable_time()->set_pace(*overrides.pace == Pace::kLockstep ? proto::Time::LOCKSTEP
                                                                          : proto::Time::REALTIME);
+    findings.blame("time.pace", *overrides.pace == Pace::kLockstep ? "--lockstep" : "--realtime");
   }
   if (overrides.realtime_factor) {
     scenario.mutable_time()->set_realtime_factor(*overrides.realtime_factor);
     findings.blame("time.realtime_factor", "--realtime");
   }
   if (!overrides.agents) return;
+  findings.blame("agents.random_count", "--agents");
   const std::string limits = "1 to " + std::to_string(kMaxAgents);
   if (*overrides.agents >= 1 && *overrides.agents <= kMaxAgents) {
     resize_team(*overrides.agents, *scenario.mutable_agents());

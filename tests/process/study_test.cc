@@ -109,6 +109,31 @@ TEST_F(Study, ARunIsTheMissionThatSimulateFlies) {
   EXPECT_NEAR(std::stod(rows[0][5]) / metric, 1, 1e-9);
 }
 
+TEST_F(Study, SetsFieldsOfEveryPointAndNamesTheCommandOfEachRow) {
+  auto words = arguments("7:8", out());
+  words.insert(words.end(), {"--set", "agents.starts[0].x_m=40", "--set", "law.epsilon=0.2"});
+  ASSERT_EQ(ergocast(words), 0) << output();
+  const std::string mission = folder_ / "mission.textproto";
+  EXPECT_TRUE(said("\n  ergocast run " + mission +
+                   " --set 'agents.starts[0].x_m'=40 --set law.epsilon=0.2"
+                   " --set law.noise_intensity=1 --seed 7\n"))
+      << output();
+  const auto study = nlohmann::json::parse(text_of(out() / "study.json"));
+  EXPECT_EQ(study["set"],
+            nlohmann::json::parse(R"(["agents.starts[0].x_m=40", "law.epsilon=0.2"])"));
+
+  const auto simulated = folder_ / "simulated";
+  ASSERT_EQ(
+      ergocast({"simulate", mission, "--set", "agents.starts[0].x_m=40", "--set", "law.epsilon=0.2",
+                "--set", "law.noise_intensity=1", "--seed", "7", "--out", simulated}),
+      0);
+  const auto summary = nlohmann::json::parse(text_of(simulated / "summary.json"));
+  const double metric = summary["ergodic_metric"]["last"];
+  const auto rows = rows_of(table());
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_NEAR(std::stod(rows[2][5]) / metric, 1, 1e-9);
+}
+
 TEST_F(Study, GoesOnAfterCtrlCAndLosesNothing) {
   Child child = start("ergocast", arguments("1:500000", out()));
   ASSERT_TRUE(eventually([this] { return lines(table()) > 20; }));
@@ -180,6 +205,7 @@ TEST_F(Study, RefusesAnotherStudysFolder) {
   refused({"--vary", "law.noise_intensity=0.1"}, "its study has 2 points, this one 1");
   refused({"--vary", "law.noise_intensity=0.1,2"}, "differs at point 2");
   refused({"--vary", "law.noise_intensity=0.1,1", "--duration", "31"}, "differs at point 1");
+  refused({"--vary", "law.noise_intensity=0.1,1", "--set", "law.epsilon=1"}, "its study sets []");
   EXPECT_EQ(table(), before);
 }
 
@@ -225,6 +251,13 @@ TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
           "is varied twice");
   refused({"--seeds", "1", "--vary", "time.duration_s=1,2", "--duration", "3"},
           "--duration says it too");
+  refused({"--seeds", "1", "--set", "seed=3"}, "--set seed=3: every point gets the same seeds");
+  refused({"--seeds", "1", "--set", "law.epsilom=3"}, "did you mean law.epsilon?");
+  refused({"--seeds", "1", "--set", "law.epsilon"}, "is not FIELD=VALUE");
+  refused({"--seeds", "1", "--set", "law.epsilon=1", "--set", "law.epsilon=2"},
+          "--set law.epsilon=2: --set law.epsilon=1 says it too");
+  refused({"--seeds", "1", "--set", "law.epsilon=1", "--vary", "law.epsilon=2,3"},
+          "--vary law.epsilon: --set says it too");
   refused({"--seeds", "1:2000000"}, "are above the limit, 1000000 runs");
   refused({"--seeds", "1", "--jobs", "0"}, "--jobs");
   std::string many = "law.epsilon=0";
