@@ -16,6 +16,7 @@
 #include "lab/studies/study_page.h"
 #include "lab/studies/study_run.h"
 #include "logger/run_record.h"
+#include "ops/deploy/script.h"
 #include "runtime/node.h"
 #include "team/plan.h"
 
@@ -128,15 +129,32 @@ std::string command_of(const StudyOptions& options) {
          std::to_string(options.seeds.last) + " --out " + options.out.string();
 }
 
+/// The commands that fly each point once.
+std::vector<std::string> point_commands(const StudyPoints& points, const StudyOptions& options) {
+  std::vector<std::string> commands;
+  const studies::Study& study = points.identity.study;
+  for (std::size_t i = 0; i < study.points.size(); ++i) {
+    std::string command = "ergocast study " + shell_word(points.files[i].string());
+    for (std::size_t j = 0; j < study.fields.size(); ++j) {
+      command += " --vary " + study.fields[j] + '=' + shell_word(study.points[i].values[j]);
+    }
+    if (options.duration_s) command += " --duration " + text_of("%.17g", *options.duration_s);
+    commands.push_back(command + " --seeds " + std::to_string(options.seeds.first) +
+                       " --out runs/point");
+  }
+  return commands;
+}
+
 /// Prints the table on the terminal and writes the page.
-std::optional<std::string> show_results(const StudyIdentity& identity,
-                                        const StudyDirectory& directory,
+std::optional<std::string> show_results(const StudyPoints& points, const StudyDirectory& directory,
                                         const StudyOptions& options) {
-  const auto summaries = studies::summarize(identity.study, directory.rows());
-  std::printf("%s", studies::study_text(identity.study, summaries).c_str());
+  const studies::Study& study = points.identity.study;
+  const auto summaries = studies::summarize(study, directory.rows());
+  std::printf("%s", studies::study_text(study, summaries).c_str());
   return write_file(
       options.out / "report.html",
-      studies::study_page({identity.study, version(), command_of(options)}, summaries));
+      studies::study_page({study, version(), command_of(options), point_commands(points, options)},
+                          summaries));
 }
 
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
@@ -176,7 +194,7 @@ int study(const StudyOptions& options) {
   runner.fly(options.jobs);
   std::optional<std::string> problem = runner.problem();
   if (!problem) problem = directory.sort();
-  if (!problem) problem = show_results(points.identity, directory, options);
+  if (!problem) problem = show_results(points, directory, options);
   if (problem) {
     tell(*problem + "; the same command goes on");
     return kExitFailed;

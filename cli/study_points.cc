@@ -145,6 +145,7 @@ class Compiler {
     points_.identity.study.points.push_back(std::move(point));
     points_.identity.plan_hashes.push_back(hash);
     points_.scenarios.push_back(scenario);
+    points_.files.push_back(file);
   }
 
   const StudyOptions& options_;
