@@ -131,20 +131,28 @@ std::string command_of(const StudyOptions& options) {
          std::to_string(options.seeds.last) + " --out " + shell_word(options.out.string());
 }
 
+/// The commands that fly one mission of each point, here with the first seed.
+std::vector<std::string> point_commands(const StudyPoints& points, const StudyOptions& options) {
+  std::vector<std::string> commands = points.commands;
+  for (std::string& command : commands) {
+    command += " --seed " + std::to_string(options.seeds.first);
+  }
+  return commands;
+}
+
 /// Prints the table and the commands of its rows on the terminal, and writes the page.
 std::optional<std::string> show_results(const StudyPoints& points, const StudyDirectory& directory,
                                         const StudyOptions& options) {
-  const StudyIdentity& identity = points.identity;
-  const auto summaries = studies::summarize(identity.study, directory.rows());
-  std::printf("%s", studies::study_text(identity.study, summaries).c_str());
+  const studies::Study& study = points.identity.study;
+  const auto summaries = studies::summarize(study, directory.rows());
+  const std::vector<std::string> commands = point_commands(points, options);
+  std::printf("%s", studies::study_text(study, summaries).c_str());
   std::printf("\none mission of each row, here with the first seed:\n");
-  for (const std::string& command : points.commands) {
-    std::printf("  %s --seed %llu\n", printable(command).c_str(),
-                static_cast<unsigned long long>(options.seeds.first));
-  }
+  for (const std::string& command : commands) std::printf("  %s\n", printable(command).c_str());
   return write_file(
       options.out / "report.html",
-      studies::study_page({identity.study, version(), command_of(options)}, summaries));
+      studies::study_page({study, version(), command_of(options), commands},
+                          summaries));
 }
 
 /// Prints the paths of the results, and the command that completes the study if runs are missing.

@@ -66,7 +66,7 @@ const std::vector<Rule> kRules = {
     {"lab", {"core", "team", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab"}, {}},
     {"lab/studies",
      {"text", "core", "target", "team", "scenario", "logger", "report", "lab", "lab/studies"},
-     {kFiles}},
+     {kJson, kFiles}},
     {"ops/doctor",
      {"text", "core", "team", "lcmtypes", "runtime", "ops/doctor"},
      {kJson, kFiles, kSystem}},

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A team that flies: frames from the server become rows, statuses, incidents and log lines.
 import { Run, recordedRun } from './run.js';
-import { S } from './state.js';
 import { $, element } from './text.js';
 
 const MOST_LINES = 400, MOST_STATUSES = 20000;
