@@ -468,6 +468,9 @@ class CheckCanFail : public Scenarios {
       expect_refused({"study", file_, "--vary", flag, "--seeds", "1", "--out", out()}, what);
       said_of_flags_.push_back(output());
     }
+    expect_refused({"check", file_, "--set", "law.epsilon=1", "--set", "law.epsilon=2"},
+                   "--set law.epsilon=1 says it too");
+    said_of_flags_.push_back(output());
   }
 
   void expect_warning(const std::string& law, const std::string& limit, const std::string& what) {
