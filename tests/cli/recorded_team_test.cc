@@ -42,6 +42,10 @@ class RecordedTeam : public ::testing::Test {
     for (const auto end = now_ + duration; now_ < end; now_ += 500ms) {
       tick_ += 5;
       log(test::mission_part(1, MissionState::kRunning, test::roster_of(2)));
+      TeamStatus team;
+      team.header = {test::kRun, kCoordinator, test::kCoordinatorLife, test::next_sequence(), tick_};
+      team.state = MissionState::kRunning;
+      log(team);
       log(test::world_state(tick_, {{100, 500, 0}, {200, 500, 0}}));
       for (const AgentId id : ids) {
         AgentStatus status = test::status_of(id, test::next_sequence(), tick_);
@@ -111,7 +115,7 @@ TEST_F(RecordedTeam, EndsWhereItsLogIsDamaged) {
   fly(3s, {0, 1});
   const double whole = read()["t"].back();
   const std::string events = events_;
-  events_ = events.substr(0, events.size() / 2);
+  events_ = events.substr(0, events.size() / 2 + 10);
   const double half = read()["t"].back();
   EXPECT_LT(half, whole);
   events_ += events;  // out of step from there on
