@@ -59,14 +59,18 @@ void LiveTeam::log(std::string line) {
   if (lines_.size() > kMostLines) lines_.pop_front();
 }
 
+TeamPicture LiveTeam::notice(Instant now) {
+  TeamPicture picture = view_.picture(now);
+  if (!grid_ || picture.over) return picture;
+  const double t_s = static_cast<double>(picture.tick) * picture.dt_s;
+  for (const AgentRow& row : picture.agents) compare(row, t_s, picture.dt_s);
+  for (const ProcessRow& row : picture.processes) compare(row, t_s);
+  return picture;
+}
+
 void LiveTeam::look(Instant now) {
   if (!grid_) return;
-  const TeamPicture picture = view_.picture(now);
-  const double t_s = static_cast<double>(picture.tick) * picture.dt_s;
-  if (!picture.over) {
-    for (const AgentRow& row : picture.agents) compare(row, t_s, picture.dt_s);
-    for (const ProcessRow& row : picture.processes) compare(row, t_s);
-  }
+  const TeamPicture picture = notice(now);
   end_text_ = picture.reason;
   status_ = Json::parse(team_json(picture));
   ++statuses_;

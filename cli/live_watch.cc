@@ -13,6 +13,7 @@
 
 #include "cli/live_team.h"
 #include "cli/log_lines.h"
+#include "cli/recorded_team.h"
 #include "cli/team_monitor.h"
 #include "report/page.h"
 #include "report/report.h"
@@ -171,7 +172,7 @@ std::variant<std::unique_ptr<LiveWatch>, std::string> LiveWatch::start(
 
 std::variant<Json, std::string> recorded_page_data(const std::filesystem::path& run_dir,
                                                    const Mission& mission) {
-  auto record = read_page_record(run_dir, mission);
+  auto record = read_page_record(run_dir, mission, recorded_team(run_dir, mission));
   if (auto* problem = std::get_if<std::string>(&record)) return std::move(*problem);
   std::vector<std::string> lines = LogLines(run_dir / "log").take();
   if (lines.size() > LiveTeam::kMostLines) {

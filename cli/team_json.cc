@@ -13,11 +13,9 @@ nlohmann::ordered_json or_null(bool known, const T& value) {
 }
 
 nlohmann::ordered_json json_of(const AgentRow& row) {
-  constexpr const char* kWords[] = {"silent", "waiting",  "late", "not heard",
-                                    "ok",     "finished", "gone"};
   nlohmann::ordered_json json = {{"id", row.author.agent},
                                  {"incarnation", to_hex(row.author.incarnation)},
-                                 {"state", kWords[static_cast<int>(row.condition)]},
+                                 {"state", to_string(row.condition)},
                                  {"silent_s", row.silent_s},
                                  {"restarts", row.restarts}};
   if (!row.status) return json;

@@ -37,6 +37,12 @@ std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
 
 }  // namespace
 
+const char* to_string(Condition condition) {
+  constexpr const char* kWords[] = {"silent", "waiting",  "late", "not heard",
+                                    "ok",     "finished", "gone"};
+  return kWords[static_cast<int>(condition)];
+}
+
 TeamView::TeamView(RunId run, Instant since, bool authenticated)
     : me_(kRole, {run, kUnassigned, 0}), authenticated_(authenticated), since_(since) {}
 

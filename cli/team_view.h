@@ -24,6 +24,9 @@ enum class Condition {
   kGone,      ///< no longer a member, and without a successor
 };
 
+/// "silent", "waiting", "late", "not heard", "ok", "finished" or "gone".
+const char* to_string(Condition condition);
+
 /// The newest member under one number.
 struct AgentRow {
   Author author;

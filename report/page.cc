@@ -144,7 +144,7 @@ Json page_mission(const Mission& mission, const Field& density) {
 }
 
 Json page_record(const RunData& run, const Mission& mission, const Json& summary,
-                 const Field& density) {
+                 const Field& density, const Json& team) {
   Tick ticks = 0;
   for (const auto& [agent, track] : run.tracks) ticks = std::max(ticks, track.back().tick + 1);
   TrackGrid grid(base_of(mission.domain), run.tracks.size());
@@ -159,13 +159,14 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
           {"ticks", ticks},
           {"stride", grid.stride()},
           {"rows", grid.rows()},
-          {"tracks", grid.encode(0, grid.rows())}};
+          {"tracks", grid.encode(0, grid.rows())},
+          {"team", team}};
 }
 
 std::string report_page(const RunData& run, const Mission& mission, const Json& summary,
-                        const Field& density) {
+                        const Field& density, const Json& team) {
   return html_file(run_web_page(), title_of(mission),
-                   {{"record", page_record(run, mission, summary, density)}});
+                   {{"record", page_record(run, mission, summary, density, team)}});
 }
 
 }  // namespace ergocast

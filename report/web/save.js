@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures and films of what the page shows.
 import { S, mapState } from './state.js';
-import { paintMarkers, paintShading, paintTracks, trailOf, TAILS } from './map.js';
+import { paintShading } from './ground.js';
+import { paintMarkers, paintTracks, trailOf, TAILS } from './map.js';
 import { paintChart } from './chart.js';
 import { download } from './download.js';
 import { SvgContext } from './svg.js';

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The canvases of a run's page: each is drawn only when what it shows has changed.
 import { S, ask, mapState } from './state.js';
-import { TAILS, View, paintMarkers, paintShading, paintTracks, rowsPerPiece, trailOf } from './map.js';
+import { View } from './view.js';
+import { TAILS, paintMarkers, paintTracks, rowsPerPiece, trailOf } from './map.js';
+import { paintShading } from './ground.js';
 import { paintChart, readingAt } from './chart.js';
 import { buildStrip } from './timeline.js';
 import { $, clamp, put } from './text.js';
