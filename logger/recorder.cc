@@ -190,8 +190,7 @@ void Recorder::advance(Instant now, Outbox& out) {
       ending_.reason = "mission complete";
     }
   }
-  const bool patience_ends =
-      ending_.since && now - std::max(*ending_.since, progress_) >= kLinger;
+  const bool patience_ends = ending_.since && now - std::max(*ending_.since, progress_) >= kLinger;
   if (patience_ends || everybody_left(now)) close();
   if (abandoned(now)) {
     stop("neither the world nor the coordinator can be heard, and the mission must be over by now");

@@ -92,9 +92,9 @@ class Recorder {
 
   /// The messages received of the world.
   struct Heard {
-    Incarnation world = 0;  // the last one received
-    Tick newest = 0;        // of the states received
-    Tick lost_before = 0;   // states of earlier ticks may be gone for good
+    Incarnation world = 0;    // the last one received
+    Tick newest = 0;          // of the states received
+    Tick lost_before = 0;     // states of earlier ticks may be gone for good
     bool world_left = false;  // it has said its last message
   };
   struct Acknowledged {
