@@ -2,15 +2,12 @@
 // What an agent says about its coverage: the only message that the method needs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
+#include "core/block_sums.h"
 #include "core/ids.h"
 
 namespace ergocast {
-
-/// Doubles in one block of a contribution; the last block of a mission is padded with zeros.
-inline constexpr int kBlockSize = 128;
 
 /// One block of an agent's running sums: the numerator of (4), cumulative since its start.
 struct Contribution {
@@ -20,7 +17,7 @@ struct Contribution {
   double elapsed_s = 0;          ///< time the sums cover, steps · dt
   std::int32_t block = 0;
   std::int32_t mode_count = 0;
-  alignas(16) std::array<double, kBlockSize> sums{};  ///< Σ f_k(x) dt, not divided by h_k [s]
+  BlockSums sums;  ///< Σ f_k(x) dt, not divided by h_k [s]
 
   Author author() const { return {header.sender, header.incarnation}; }
 };

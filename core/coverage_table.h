@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/block_sums.h"
 #include "core/contribution.h"
 #include "core/ids.h"
 
@@ -79,22 +80,28 @@ class CoverageTable {
   /// The row of `author`; all 0 if it is unknown.
   RowSummary holding(const Author& author) const;
 
-  /// One block of a row, and what it has gained.
+  /// One block of a row.
   struct BlockView {
-    const double* sums;   ///< kBlockSize of them [s]
-    const double* gains;  ///< sums less those of the block held before [s]
+    const double* sums;  ///< kBlockSize of them [s]
     std::int64_t steps;
-    std::int64_t gained_steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their
-                                ///< time, or not noted
-    Tick tick;                  ///< when it was said
-    Tick period;                ///< until its author speaks again, as announced
+    Tick tick;    ///< when it was said
+    Tick period;  ///< until its author speaks again, as announced
   };
   BlockView view(std::size_t row, int block) const;
-  /// Whether the views of all blocks of a row differ only in their pointers, which then are
-  /// consecutive.
+  /// What a block has gained on the one held before.
+  struct Gains {
+    const double* before;  ///< kBlockSize sums of the one held before [s]
+    std::int64_t steps;    ///< less its steps; 0 if the gains are impossible, |gain| > their time,
+                           ///< or not noted
+  };
+  Gains gains(std::size_t row, int block) const;
+  /// Whether the views of all blocks of a row differ only in their sums.
   bool blocks_alike(std::size_t row) const;
+  /// Whether all blocks have gained in as many steps.
+  bool gains_alike(std::size_t row) const;
 
-  /// The sums of a row [s], mode_count() of them and then zeros; null if it is unknown.
+  /// The sums of a row that only add_sample() fills [s]: mode_count() of them and then zeros.
+  /// @pre `author` has samples
   const double* sums_of(const Author& author) const;
 
   /// Time covered by all rows that count, by their first block: the denominator of c_k [s].
@@ -106,20 +113,23 @@ class CoverageTable {
   std::size_t row_count() const { return rows_.size(); }
 
  private:
+  static constexpr std::int64_t kNotCompared = -1;
   struct Block {
     std::int64_t steps = 0;
     Tick next_broadcast_tick = 0;
     std::int64_t sequence = 0;  // of the message that brought it, for a relay
     Tick tick = 0;
-    std::int64_t gained_steps = 0;
+    std::int64_t steps_before = 0;  // of the block that it is compared with
+    BlockSums sums, sums_before;
+    mutable std::int64_t gained_steps = kNotCompared;
     bool looks_like(const Block& other) const;
   };
   struct Row {
     Author author;
     bool counts = true;
     std::vector<Block> blocks;
-    std::vector<double> sums;   // block_count · kBlockSize, zero beyond the last mode
-    std::vector<double> gains;  // likewise
+    std::vector<double> samples;  // instead of the blocks' sums, once there are samples
+    const double* sums(std::size_t block) const;
     std::int64_t min_steps() const;
     std::int64_t max_steps() const;
     std::uint64_t state_hash() const;
@@ -130,14 +140,15 @@ class CoverageTable {
   const Row* find(const Author& author) const;
   Row* find_or_add(const Author& author);
 
-  std::int64_t take_gains(const Contribution& theirs, const Block& before, Row& row) const;
+  std::int64_t gained_steps(const Block& block) const;
 
   Basis basis_;
   double dt_s_;
   Tick joined_;
   int block_count_;
   bool notes_gains_ = true;
-  std::vector<Row> rows_;  // ascending by author
+  std::vector<Row> rows_;                       // ascending by author
+  mutable std::vector<const double*> counted_;  // of each row that counts, the sums of a block
 };
 
 }  // namespace ergocast

@@ -73,7 +73,7 @@ class Forecast {
   };
   /// One row's part in one block.
   struct Term {
-    const double *sums, *gains;        // from the first mode on
+    const double *sums, *sums_before;  // where the first mode would be; the latter only to gain
     Track* track;                      // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
@@ -88,9 +88,10 @@ class Forecast {
   bool blocks_alike(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
+  void point_terms(const CoverageTable& table, int block);
   void add_up(Modes modes, double per_second, double* coverage);
   void add(const Term& term, Modes modes, const double* before, double* sum) const;
-  Modes modes_of(int block, int count) const;
+  Modes modes_of(int block) const;
 
   Author self_;
   Box domain_;

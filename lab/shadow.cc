@@ -88,6 +88,12 @@ std::array<double, kBlockSize> block_of(const Coefficients& all, int block) {
   return sums;
 }
 
+std::array<double, kBlockSize> array_of(const BlockSums& sums) {
+  std::array<double, kBlockSize> values;
+  std::copy(sums.begin(), sums.end(), values.begin());
+  return values;
+}
+
 /// Whether it takes part in the tick and is the newest life of its number.
 bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, Tick tick) {
   return one.active_at(tick) &&
@@ -196,8 +202,8 @@ Shadow::Part Shadow::said(const Block& block) const {
   const Said& held = block.held;
   // What was said before an agent's own time may be this or that, whichever way it came to know it.
   const Said before = block.before.tick >= active_from_.value_or(0) ? block.before : Said{};
-  Part part{
-      held.sums, {}, held.steps, held.steps - before.steps, held.tick, held.next_tick - held.tick};
+  Part part{array_of(held.sums),       {},        held.steps,
+            held.steps - before.steps, held.tick, held.next_tick - held.tick};
   for (std::size_t k = 0; k < kBlockSize; ++k) part.gains[k] = held.sums[k] - before.sums[k];
   return part;
 }
@@ -234,7 +240,7 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
   std::vector<std::vector<Part>> team(1);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const Contribution own = agent.table->block(agent.self, b);
-    team[0].push_back({own.sums, {}, own.steps});
+    team[0].push_back({array_of(own.sums), {}, own.steps});
   }
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);

@@ -40,7 +40,7 @@ class Shadow {
   struct Said {
     std::int64_t steps = 0;
     Tick tick = 0, next_tick = 0;
-    std::array<double, kBlockSize> sums{};
+    BlockSums sums;
   };
   struct Block {
     Said held, before;                ///< the latter by steps, whenever older ones came

@@ -74,7 +74,7 @@ struct Fields<Contribution> {
     io.finite(m.elapsed_s);
     io.number(m.block);
     io.number(m.mode_count);
-    io.numbers(m.sums);
+    io.sums(m.sums);
   }
 };
 

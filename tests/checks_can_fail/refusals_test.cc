@@ -91,7 +91,7 @@ class RefusalsCanBeSeen : public FlyingMission {
       block.header = from(kMany, run());
       block.header.incarnation = static_cast<Incarnation>(1000 + i);
       block.steps = block.next_broadcast_tick = 1;
-      block.elapsed_s = block.sums[0] = follower_.mission()->timing.dt_s;
+      block.elapsed_s = block.sums.edit()[0] = follower_.mission()->timing.dt_s;
       block.mode_count = follower_.mission()->basis.mode_count();
       usurper.say(Bus::kSwarm, block);
     }

@@ -231,7 +231,7 @@ Coefficients by_the_formula(const Known& known, const Mission& mission) {
 /// Changes one sum of a broadcast block to another value that its range still allows.
 void forge(Contribution& block, Dice& dice) {
   const double elapsed_s = static_cast<double>(block.steps) * kDt;
-  block.sums[1 + dice.below(10)] = dice.one_in(2) ? elapsed_s : -elapsed_s;
+  block.sums.edit()[1 + dice.below(10)] = dice.one_in(2) ? elapsed_s : -elapsed_s;
 }
 
 RosterEntry entry_of(const Author& author, Tick from, Tick until = -1) {
@@ -461,7 +461,7 @@ TEST(ForecastCounts, NobodyWhoseGainsAreImpossible) {
   const Mission mission = mission_of(false);
   Known known = team_of(3, mission);
   const std::vector<Contribution*> last = last_words_of_1(known);
-  last[0]->sums[3] = -last[0]->sums[3];
+  last[0]->sums.edit()[3] = -last[0]->sums[3];
   ASSERT_GT(std::abs(2 * last[0]->sums[3]), 2 * kDt) << "more than two ticks give";
   const Coefficients refused = foreseen(known, mission),
                      rest = foreseen(without_hope_for_1(known), mission);
@@ -479,11 +479,11 @@ TEST(ForecastCounts, AGainThatIsJustPossible) {
   Life before({1, 1}, mission);
   for (Tick tick = 0; tick < kEnd - 1; ++tick) before.cover(tick);
   const std::vector<Contribution> said_before = before.speak(kEnd - 2);
-  last.sums[3] = said_before[0].sums[3] + kDt;
+  last.sums.edit()[3] = said_before[0].sums[3] + kDt;
   EXPECT_LT((foreseen(known, mission) - by_the_formula(known, mission)).cwiseAbs().maxCoeff(),
             1e-12);
   EXPECT_NE(foreseen(known, mission), foreseen(without_hope_for_1(known), mission));
-  last.sums[3] = said_before[0].sums[3] + 1.001 * kDt;
+  last.sums.edit()[3] = said_before[0].sums[3] + 1.001 * kDt;
   EXPECT_EQ(foreseen(known, mission)[3], foreseen(without_hope_for_1(known), mission)[3]);
 }
 

@@ -61,9 +61,10 @@ inline Contribution contribution() {
   m.elapsed_s = 100;
   m.block = 1;
   m.mode_count = 225;
-  for (int k = 0; k < kBlockSize; ++k) m.sums[static_cast<std::size_t>(k)] = 99.5 * std::sin(k) / 3;
-  m.sums[5] = -0.0;
-  m.sums[6] = 5e-324;
+  for (int k = 0; k < kBlockSize; ++k)
+    m.sums.edit()[static_cast<std::size_t>(k)] = 99.5 * std::sin(k) / 3;
+  m.sums.edit()[5] = -0.0;
+  m.sums.edit()[6] = 5e-324;
   return m;
 }
 
