@@ -79,6 +79,9 @@ struct StudyOptions {
 /// Simulates each combination of scenario, variation and seed once.
 int study(const StudyOptions& options);
 
+/// `list`: the live runs of this user on this host.
+void add_list(CLI::App& app, Action& action);
+
 /// `status`: shows the state of a running team, from any host on its buses.
 void add_status(CLI::App& app, Action& action);
 

@@ -200,6 +200,7 @@ int parse_and_do(int argc, char** argv) {
 
   add_keygen(app, action);
   add_deploy(app, action);
+  add_list(app, action);
   add_status(app, action);
   add_watch(app, action);
   add_stop(app, action);

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/diagnose_silence.h"
+#include "cli/find_run.h"
 #include "cli/report_error.h"
 #include "cli/team_monitor.h"
 #include "cli/team_screen.h"
@@ -174,7 +175,12 @@ void add_status(CLI::App& app, Action& action) {
   command->footer(
       "Exit codes: 0 all is well; 1 something is in trouble; 2 several runs are heard;\n"
       "3 LCM cannot be used; 4 nobody is heard, or the mission watched has failed.");
-  command->callback([&action, options] { action = [options] { return status(*options); }; });
+  command->callback([&action, options, command] {
+    action = [options, command] {
+      if (const auto code = find_run(*command, *options)) return *code;
+      return status(*options);
+    };
+  });
 }
 
 }  // namespace ergocast::cli

@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/diagnose_silence.h"
+#include "cli/find_run.h"
 #include "cli/report_error.h"
 #include "cli/stop_request.h"
 #include "cli/team_monitor.h"
@@ -236,7 +237,12 @@ void add_stop(CLI::App& app, Action& action) {
       "stop; with --run-id besides, it listens for nobody first.\n"
       "Exit codes: 0 the team was seen to end; 2 several runs are heard; 3 LCM cannot be used;\n"
       "4 nobody is heard, somebody goes on, or what the vehicles do is not known.");
-  command->callback([&action, options] { action = [options] { return stop(*options); }; });
+  command->callback([&action, options, command] {
+    action = [options, command] {
+      if (const auto code = find_run(*command, *options)) return *code;
+      return stop(*options);
+    };
+  });
 }
 
 }  // namespace ergocast::cli

@@ -122,13 +122,16 @@ std::string cannot_sign(const std::string& key_file) {
          "`ergocast keygen` wrote together with it";
 }
 
+void add_run_id_option(CLI::App& app, RunId& run) {
+  app.add_option_function<std::string>(
+         "--run-id", [&run](const std::string& text) { read_run_id(text, run); }, "This run only")
+      ->type_name("HEX");
+}
+
 void add_bus_options(CLI::App& app, BusOptions& options) {
   add_url_option(app, options.url);
   add_key_option(app, options.seal, &options.key_file);
-  app.add_option_function<std::string>(
-         "--run-id", [&options](const std::string& text) { read_run_id(text, options.run); },
-         "This run only")
-      ->type_name("HEX");
+  add_run_id_option(app, options.run);
 }
 
 void add_node_options(CLI::App& app, NodeOptions& options) {
