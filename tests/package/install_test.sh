@@ -4,14 +4,6 @@
 # shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
-expect_file() { [ -s "$root/$1" ] || fail "$1 is not installed"; }
-
-# All files of the system, without temporary files and those of the package manager.
-files_of_system() {
-  (cd "$root" && find . -xdev \( -path ./tmp -o -path ./proc -o -path ./var/cache -o -path ./var/log \
-    -o -path ./var/lib/apt -o -path ./var/lib/dpkg \) -prune -o -print | sort)
-}
-
 check_contents() {
   local strange
   strange=$(dpkg-deb --fsys-tarfile "$deb" | tar -t | grep -vE '^\./((usr|etc/ergocast)(/.*)?|etc/)?$' || true)
@@ -51,11 +43,6 @@ check_files() {
     expect_file "usr/lib/systemd/system/ergocast-$name.service"
   done
 }
-
-# On a network of its own.
-offline=(unshare --net sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec "$@"' _
-  chroot "$root" env LC_ALL=C.UTF-8)
-offline() { "${offline[@]}" "$@"; }
 
 check_missions() {
   offline ergocast simulate quadrimodal_corners --duration 20 --out /tmp/test/simulated ||
