@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast simulate`: steps the simulated team until the mission ends; its recorder writes the
 // tables, this file the summary.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "lab/simulation.h"
+#include "lcmtypes/channels.h"
+#include "lcmtypes/codec.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "runtime/event_log.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
 #include "team/plan.h"
@@ -29,7 +34,8 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
 }
 
 nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scenario,
-                                  const std::string& started, double wall_time_s) {
+                                  const std::string& started, double wall_time_s,
+                                  int events_removed) {
   RunContext context;
   context.started = started;
   context.run = recorder.run();
@@ -37,9 +43,46 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
   context.build = build_text();
   context.scenario_hash = plan_hash(encode_plan(scenario.mission()));
   context.simulated = true;
+  context.events_removed = events_removed;
   context.wall_time_s = wall_time_s;
   context.cpu_has_fma = cpu_has_fma();
   return summarize(recorder, context);
+}
+
+/// Writes the messages as the logger of a run would, at mission time.
+class EventLogWriter : public lab::SimulationObserver {
+ public:
+  EventLogWriter(const std::filesystem::path& folder, const Mission& mission, std::int64_t start_us)
+      : log_(folder), dt_s_(mission.timing.dt_s), start_us_(start_us) {}
+
+  void says(lab::NodeId, const Outbox& outbox) override {
+    for (const Outgoing& said : outbox) {
+      if (const auto* world = std::get_if<WorldState>(&said.message))
+        tick_ = std::max(tick_, world->header.tick);
+      // Those on the command bus only repeat another bus.
+      const bool repeats = std::holds_alternative<MissionPart>(said.message) ||
+                           std::holds_alternative<Stop>(said.message);
+      if (said.bus == Bus::kCommand && repeats) continue;
+      encode(said.message, bytes_);
+      const double t_us = 1e6 * static_cast<double>(tick_) * dt_s_;
+      log_.write(channel_of(said.message, said.relayer), bytes_,
+                 start_us_ + static_cast<std::int64_t>(t_us));
+    }
+  }
+  std::optional<std::string> flush() { return log_.flush(); }
+  int removed() const { return log_.removed(); }
+
+ private:
+  EventLog log_;
+  double dt_s_;
+  std::int64_t start_us_;
+  Tick tick_ = 0;
+  std::vector<std::byte> bytes_;
+};
+
+std::int64_t wall_clock_us() {
+  using namespace std::chrono;
+  return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
 /// Runs until the mission is over, a signal arrives, or the disk is full. Returns the wall time.
@@ -72,14 +115,18 @@ int simulate(const MissionOptions& options) {
     return report_error(kExitBadInput, *problem);
   }
   RunRecord& record = *std::get<0>(created);
+  std::optional<EventLogWriter> events;
+  if (options.event_log) events.emplace(folder, scenario->mission(), wall_clock_us());
   lab::Simulation simulation(
       {.plan = encode_plan(scenario->mission()), .version = version(), .host = host_name()},
-      record.trajectory(), record.metrics());
+      record.trajectory(), record.metrics(), events ? &*events : nullptr);
 
   const std::string started = wall_clock_text();
   const double wall_time_s = run(simulation, scenario->mission(), record);
-  const auto summary = summary_of(simulation.recorder(), *scenario, started, wall_time_s);
+  const auto summary = summary_of(simulation.recorder(), *scenario, started, wall_time_s,
+                                  events ? events->removed() : 0);
   auto error = record.flush();
+  if (!error && events) error = events->flush();
   if (!error) error = write_file(folder / kSummaryFile, to_text(summary));
   if (error) return report_error(kExitFailed, *error + "; the record is incomplete");
   conclude(folder, summary, *scenario);

@@ -65,6 +65,9 @@ const std::vector<Rule> kRules = {
     {"sim/main.cc", {"sim", "runtime"}, {kLog}},
     {"logger/main.cc", {"team", "logger", "runtime", "lcmtypes"}, {kLog, kFiles, kSystem}},
     {"report", {"text", "core", "target", "team", "logger", "report"}, {kFiles, kJson}},
+    {"export",
+     {"text", "core", "target", "team", "logger", "report", "geo", "export"},
+     {kFiles, kJson}},
     // The same participants in one process: no network, no clock, no threads.
     {"lab", {"core", "team", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab"}, {}},
     {"lab/studies",
@@ -77,7 +80,7 @@ const std::vector<Rule> kRules = {
     {"cli/page_server.cc", {"cli"}, {kHttp, kSystem}},
     {"cli",
      {"text", "core", "target", "team", "lcmtypes", "scenario", "runtime", "logger", "report",
-      "geo", "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
+      "geo", "export", "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     // The example to copy: a participant with its main.
     {"examples/driver", {"core", "team", "examples/driver"}, {}},

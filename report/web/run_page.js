@@ -12,6 +12,8 @@ import { savePng, saveSvg, saveVideo, svgText } from './save.js';
 import { addLog, watchLive } from './live.js';
 import { $, clamp, put, readable } from './text.js';
 
+const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
+
 const view = new View();
 let scale = 1, live = null, shadingKey = '', trail = { key: '', row: -1, upto: 0 }, textAt = 0, frames = [];
 
@@ -219,8 +221,9 @@ const livePage = {
     }
     if (performance.now() - (run.stripAt ?? 0) > 500) { run.stripAt = performance.now(); buildStrip(); showFacts(facts); }
     if (run.tracks.length > 12 && !run.tailChosen) { run.tailChosen = true; set('tail', startTail(run)); }
-    put($('seal'), facts.authenticated ? '' : 'not authenticated');
-    $('seal').hidden = facts.authenticated;
+    put($('seal'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
+    $('seal').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
+    $('seal').hidden = facts.authenticated && !facts.replay;
     ask();
   },
   ended(run, text) {
