@@ -33,6 +33,7 @@ struct MissionOptions {
   MessageAuthenticator seal;
   std::string key_file;                       ///< the file of the key in `seal`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
+  bool event_log = false;                     ///< `simulate` only; `run` always writes one
   bool watch = false;                         ///< `run` only: serves a page
   PageServer::Options page;
 };
@@ -91,6 +92,12 @@ void add_watch(CLI::App& app, Action& action);
 void add_page_options(CLI::App& app, PageServer::Options& options);
 /// Waits for Ctrl-C or SIGTERM, or until the time is over (−1: for ever). Whether it came.
 bool wait_for_stop(StopSignals& signals, int timeout_ms = -1);
+
+/// `export`: writes a record in the formats of other tools.
+void add_export(CLI::App& app, Action& action);
+
+/// `replay`: sends a recorded run again, for displays.
+void add_replay(CLI::App& app, Action& action);
 
 /// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);

@@ -26,10 +26,11 @@ std::string event(const char* name, const Json& data) {
 
 }  // namespace
 
-LiveTeam::LiveTeam(RunId run, Instant since, bool authenticated)
+LiveTeam::LiveTeam(RunId run, Instant since, bool authenticated, bool replay)
     : me_(kRole, {run, kUnassigned, 0}),
-      view_(run, since, authenticated),
-      authenticated_(authenticated) {}
+      view_(run, since, authenticated, replay),
+      authenticated_(authenticated),
+      replay_(replay) {}
 
 void LiveTeam::begin(const Mission& mission, const Field& density) {
   if (grid_) return;
@@ -178,7 +179,8 @@ std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
     text += event("mission", {{"mission", mission_},
                               {"stride", grid_->stride()},
                               {"run_id", to_hex(run())},
-                              {"authenticated", authenticated_}});
+                              {"authenticated", authenticated_},
+                              {"replay", replay_}});
   }
   Json frame = Json::object();
   if (cursor.rosters != rosters_) frame["roster"] = roster_json();

@@ -29,7 +29,8 @@ class LiveTeam {
 
   /// @param since  when the listening began
   /// @param authenticated  whether what it receives was checked with the team's key
-  LiveTeam(RunId run, Instant since, bool authenticated);
+  /// @param replay  whether `ergocast replay` sends it
+  LiveTeam(RunId run, Instant since, bool authenticated, bool replay = false);
 
   /// The mission and its target density, where they are known before a message comes.
   void begin(const Mission& mission, const Field& density);
@@ -87,7 +88,7 @@ class LiveTeam {
 
   Participant me_;
   TeamView view_;
-  bool authenticated_;
+  bool authenticated_, replay_;
   std::optional<TrackGrid> grid_;
   nlohmann::ordered_json mission_, status_;  // as the page gets them
   std::map<AgentId, LastLook> last_looks_;

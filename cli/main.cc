@@ -165,6 +165,10 @@ int parse_and_do(int argc, char** argv) {
   TrialsOptions trial_options;
   trial_options.jobs = processors;
   add_trial_options(*simulate_command, trial_options);
+  simulate_command
+      ->add_flag("--event-log", mission.event_log,
+                 "Write every message, as run does: events-000.lcm …")
+      ->excludes("--seeds");
   simulate_command->callback([&] {
     action = [&] {
       if (simulate_command->count("--seeds") == 0) return simulate(mission);
@@ -203,6 +207,8 @@ int parse_and_do(int argc, char** argv) {
   add_list(app, action);
   add_status(app, action);
   add_watch(app, action);
+  add_export(app, action);
+  add_replay(app, action);
   add_stop(app, action);
   add_spy(app, action);
   add_doctor(app, action);

@@ -4,6 +4,7 @@
 #include "cli/progress.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
+#include "cli/simulated_events.h"
 #include "cli/simulated_record.h"
 #include "runtime/signals.h"
 
@@ -19,13 +20,17 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
 
 /// With the progress on the terminal, until a signal arrives.
 std::variant<SimulatedRecord, std::string> simulate_and_show(RunRecord& record,
-                                                             const Scenario& scenario) {
+                                                             const Scenario& scenario,
+                                                             bool event_log) {
   StopSignals signals;
   ProgressDisplay display;
-  return simulate_into(record, scenario, [&](lab::Simulation& simulation) {
+  std::optional<SimulatedEvents> events;
+  if (event_log) events.emplace(record.folder(), scenario.mission());
+  const auto look = [&](lab::Simulation& simulation) {
     show(simulation, scenario.mission(), display);
     if (signals.take() > 0) simulation.end("Ctrl-C or SIGTERM");
-  });
+  };
+  return simulate_into(record, scenario, look, events ? &*events : nullptr);
 }
 
 }  // namespace
@@ -42,7 +47,7 @@ int simulate(const MissionOptions& options) {
   if (const auto* problem = std::get_if<std::string>(&created)) {
     return report_error(kExitBadInput, *problem);
   }
-  const auto simulated = simulate_and_show(*std::get<0>(created), *scenario);
+  const auto simulated = simulate_and_show(*std::get<0>(created), *scenario, options.event_log);
   if (const auto* error = std::get_if<std::string>(&simulated)) {
     return report_error(kExitFailed, *error);
   }

@@ -16,7 +16,8 @@ namespace {
 constexpr int kTurnsBetweenLooks = 256;
 
 nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scenario,
-                                  const std::string& started, double wall_time_s) {
+                                  const std::string& started, double wall_time_s,
+                                  int events_removed) {
   RunContext context;
   context.started = started;
   context.run = recorder.run();
@@ -24,6 +25,7 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
   context.build = build_text();
   context.scenario_hash = plan_hash(encode_plan(scenario.mission()));
   context.simulated = true;
+  context.events_removed = events_removed;
   context.wall_time_s = wall_time_s;
   context.cpu_has_fma = cpu_has_fma();
   return summarize(recorder, context);
@@ -32,11 +34,11 @@ nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scen
 }  // namespace
 
 std::variant<SimulatedRecord, std::string> simulate_into(
-    RunRecord& record, const Scenario& scenario,
-    const std::function<void(lab::Simulation&)>& look) {
+    RunRecord& record, const Scenario& scenario, const std::function<void(lab::Simulation&)>& look,
+    SimulatedEvents* events) {
   lab::Simulation simulation(
       {.plan = encode_plan(scenario.mission()), .version = version(), .host = host_name()},
-      record.trajectory(), record.metrics());
+      record.trajectory(), record.metrics(), events);
   const std::string started = wall_clock_text();
   const auto start = std::chrono::steady_clock::now();
   for (int turns = 1; simulation.step() && record.good(); ++turns) {
@@ -44,9 +46,11 @@ std::variant<SimulatedRecord, std::string> simulate_into(
   }
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - start;
 
-  SimulatedRecord result{summary_of(simulation.recorder(), scenario, started, wall_time.count()),
+  SimulatedRecord result{summary_of(simulation.recorder(), scenario, started, wall_time.count(),
+                                    events ? events->removed() : 0),
                          simulation.coordinator().state() == MissionState::kFailed};
   auto error = record.flush();
+  if (!error && events) error = events->flush();
   if (!error) error = write_file(record.folder() / kSummaryFile, to_text(result.summary));
   if (error) return *error + "; the record is incomplete";
   return result;

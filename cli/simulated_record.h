@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "cli/simulated_events.h"
 #include "lab/simulation.h"
 #include "logger/run_record.h"
 #include "scenario/scenario.h"
@@ -23,8 +24,10 @@ struct SimulatedRecord {
 /// summary.json.
 /// @param record  empty; in a folder of prepare_run_directory()
 /// @param look    called every few hundred events; it may end the simulation
+/// @param events  writes the event log, too; may be null
 /// @return        the error if the record is incomplete
 std::variant<SimulatedRecord, std::string> simulate_into(
-    RunRecord& record, const Scenario& scenario, const std::function<void(lab::Simulation&)>& look);
+    RunRecord& record, const Scenario& scenario, const std::function<void(lab::Simulation&)>& look,
+    SimulatedEvents* events = nullptr);
 
 }  // namespace ergocast::cli

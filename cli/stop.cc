@@ -50,10 +50,12 @@ class Stopping {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened =
-        listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+    auto opened = listen_to_teams(
+        options_,
+        [this](const Message& message, Bus bus, AgentId transmitter) {
           hear(message, bus, transmitter);
-        });
+        },
+        [this](const Message& message, Bus, AgentId) { replay_ = header_of(message).run; });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -195,7 +197,16 @@ class Stopping {
     return kExitDone;
   }
 
-  int nobody() const { return report_error(kExitFailed, why_nobody(options_, *transport_)); }
+  int nobody() const {
+    if (replay_ != 0) {
+      return report_error(kExitFailed,
+                          "what is heard on " + options_.url.base() + " is a replay of run " +
+                              to_hex(replay_) +
+                              ": no team flies, and there is nothing to stop. Ctrl-C ends "
+                              "`ergocast replay` where it runs");
+    }
+    return report_error(kExitFailed, why_nobody(options_, *transport_));
+  }
 
   int choose() const {
     std::string text = "several runs are heard on this URL; choose one with --run-id:";
@@ -213,6 +224,7 @@ class Stopping {
   std::set<RunId> crowd_;  // beyond kMostRuns, received since the last turn
   bool crowded_ = false;
   Instant since_{};
+  RunId replay_ = 0;  // of the newest message that `ergocast replay` sent; 0: none
 };
 
 int stop(const StopOptions& options) {

@@ -43,6 +43,7 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
 std::string team_json(const TeamPicture& at) {
   nlohmann::ordered_json json = {
       {"run_id", to_hex(at.run)},
+      {"replay", at.replay},
       {"authenticated", at.authenticated},
       {"scenario", or_null(!at.scenario.empty(), at.scenario)},
       {"state", at.state ? nlohmann::ordered_json(to_string(*at.state)) : nlohmann::ordered_json()},

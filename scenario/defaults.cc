@@ -51,9 +51,10 @@ void fill_constants(Message& message) {
       for (int j = 0; j < reflection->FieldSize(message, &field); ++j) {
         fill_constants(*reflection->MutableRepeatedMessage(&message, &field, j));
       }
-    } else if (field.message_type() != proto::Covariance::descriptor() ||
+    } else if ((field.message_type() != proto::Covariance::descriptor() &&
+                field.message_type() != proto::Origin::descriptor()) ||
                reflection->HasField(message, &field)) {
-      // An absent covariance has a meaning: the Gaussian is round.
+      // An absent covariance has a meaning, the Gaussian is round; and so has an absent origin.
       fill_constants(*reflection->MutableMessage(&message, &field));
     }
   }
@@ -107,13 +108,23 @@ void fill_law(const Box& domain, proto::Law& law) {
   law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
 }
 
-/// A map's name is relative to the scenario's folder, not to the working directory.
+/// The name of a map or GeoJSON file is relative to the scenario's folder, not to the working
+/// directory.
 void make_absolute(const std::filesystem::path& scenario, proto::Target& target) {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::absolute(scenario, error).parent_path();
+  const auto whole = [&folder](const std::string& name) {
+    return name.empty() ? name : (folder / name).lexically_normal().string();
+  };
   for (proto::Map& map : *target.mutable_maps()) {
-    if (map.file().empty()) continue;
-    map.set_file((folder / map.file()).lexically_normal().string());
+    if (map.has_file()) map.set_file(whole(map.file()));
+  }
+  for (proto::Region& region : *target.mutable_regions()) {
+    if (region.polygon().has_file())
+      region.mutable_polygon()->set_file(whole(region.polygon().file()));
+  }
+  for (proto::Polygon& keep_out : *target.mutable_keep_outs()) {
+    if (keep_out.has_file()) keep_out.set_file(whole(keep_out.file()));
   }
 }
 

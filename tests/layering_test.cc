@@ -31,6 +31,7 @@ enum class Outside {
   kPng,          // libpng
   kHttp,         // cpp-httplib
   kPython,       // pybind11
+  kEarth,        // PROJ
   kFiles,        // files and standard streams
   kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
 };
@@ -50,7 +51,9 @@ const std::vector<Rule> kRules = {
     {"team", {"core", "team"}, {}},
     {"team/plan.cc", {"core", "team"}, {kHash}},
     {"lcmtypes", {"text", "core", "team", "lcmtypes"}, {kLcmTypes, kHash, kCrypto}},
-    {"scenario", {"text", "core", "target", "scenario"}, {kProtobuf, kCommandLine, kFiles}},
+    // Longitude and latitude: for scenarios and exports, not for those who fly.
+    {"geo", {"text", "core", "geo"}, {kEarth, kFiles, kJson}},
+    {"scenario", {"text", "core", "target", "geo", "scenario"}, {kProtobuf, kCommandLine, kFiles}},
     {"runtime",
      {"text", "core", "team", "lcmtypes", "runtime"},
      {kLcm, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
@@ -62,8 +65,11 @@ const std::vector<Rule> kRules = {
     {"agent/main.cc", {"agent", "runtime"}, {kLog}},
     {"coordinator/main.cc", {"team", "coordinator", "scenario", "runtime"}, {kLog}},
     {"sim/main.cc", {"sim", "runtime"}, {kLog}},
-    {"logger/main.cc", {"team", "logger", "runtime", "lcmtypes"}, {kLcm, kLog, kFiles, kSystem}},
+    {"logger/main.cc", {"team", "logger", "runtime", "lcmtypes"}, {kLog, kFiles, kSystem}},
     {"report", {"text", "core", "target", "team", "logger", "report"}, {kFiles, kJson}},
+    {"export",
+     {"text", "core", "target", "team", "logger", "report", "geo", "export"},
+     {kFiles, kJson}},
     // The same participants in one process: no network, no clock, no threads.
     {"lab", {"core", "team", "lcmtypes", "agent", "coordinator", "sim", "logger", "lab"}, {}},
     {"lab/studies",
@@ -76,7 +82,7 @@ const std::vector<Rule> kRules = {
     {"cli/page_server.cc", {"cli"}, {kHttp, kSystem}},
     {"cli",
      {"text", "core", "target", "team", "lcmtypes", "scenario", "runtime", "logger", "report",
-      "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
+      "geo", "export", "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     // What is Python's: of the command, only how it writes a run directory.
     {"python",
@@ -113,6 +119,7 @@ const std::vector<Kind> kKinds = {
     {kPng, {"png.h"}},
     {kHttp, {"httplib.h"}},
     {kPython, {"pybind11/*"}},
+    {kEarth, {"proj.h"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},
     {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
                "future",     "semaphore", "latch",        "barrier",
@@ -293,6 +300,12 @@ TEST(LayeringChecker, NamesFileAndLineOfEveryPlantedViolation) {
       {"lab/simulation_faults.cc", "#include \"lab/studies/study_run.h\""},
       {"logger/recorder.cc", "#include \"report/report.h\""},
       {"scenario/scenario.cc", "#include <png.h>"},
+      {"scenario/geojson_target.cc", "#include <proj.h>"},
+      {"agent/agent.cc", "#include <proj.h>"},
+      {"agent/agent.cc", "#include \"geo/local_plane.h\""},
+      {"sim/main.cc", "#include \"geo/local_plane.h\""},
+      {"core/basis.h", "#include \"geo/local_plane.h\""},
+      {"report/report.cc", "#include \"geo/geojson.h\""},
       {"agent/agent.cc", "#include \"target/map_file.h\""},
       {"team/plan.cc", "#include <google/protobuf/message.h>"},
       {"scenario/scenario.cc", "#include \"team/plan.h\""},

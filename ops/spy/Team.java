@@ -38,6 +38,7 @@ final class Team {
   Coverage coverage;
   long tick; // newest received
   String status = ""; // the coordinator's report
+  boolean replay; // sent by `ergocast replay`: nobody flies
 
   private final LongSupplier clock; // [ns]
   private long run;

@@ -70,7 +70,7 @@ export function watchLive(page) {
     const before = run;
     run = new Run(message.mission, message.stride, Math.ceil(message.mission.tick_count / message.stride) + 1);
     if (before && facts.run === message.run_id) { run.history = before.history; run.times = before.times; }
-    facts = { run: message.run_id, rate: 0, lost: 0, missed: 0, authenticated: message.authenticated, state: null };
+    facts = { run: message.run_id, rate: 0, lost: 0, missed: 0, authenticated: message.authenticated, replay: message.replay, state: null };
     page.began(run, facts);
   });
   on('frame', frame => {

@@ -8,6 +8,8 @@ import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
 import { $, put } from './text.js';
 
+const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
+
 let runs = 0;
 
 function show(run) {
@@ -60,8 +62,9 @@ export const livePage = {
     }
     if (performance.now() - (run.stripAt ?? 0) > 500) { run.stripAt = performance.now(); buildStrip(); showFacts(facts); }
     if (run.tracks.length > 12 && !run.tailChosen) { run.tailChosen = true; set('tail', startTail(run)); }
-    put($('seal'), facts.authenticated ? '' : 'not authenticated');
-    $('seal').hidden = facts.authenticated;
+    put($('seal'), facts.replay ? 'replay' : facts.authenticated ? '' : 'not authenticated');
+    $('seal').title = facts.replay ? 'ergocast replay sends a record: nobody flies' : NO_KEY;
+    $('seal').hidden = facts.authenticated && !facts.replay;
     ask();
   },
   ended(run, text) {

@@ -150,6 +150,12 @@ std::vector<Mistake> mistakes_of_targets() {
       {kUniform, repeated(65, "keep_outs { } "), "target: 65 keep-outs are above the limit"},
       {kUniform, big, "target: 4207 vertices are above the limit"},
 
+      {kUniform, "regions { polygon { file: \"pier.geojson\" } }",
+       "target.regions[0].polygon.file: needs to know where on the earth"},
+      {kUniform,
+       "regions { polygon { file: \"line.geojson\" } } } "
+       "origin { latitude_deg: 47.5 longitude_deg: 9.2",
+       "target.regions[0].polygon.file: "},
       {kUniform, "regions { polygon { " + repeated(2, "vertices { x_m: 1 y_m: 1 } ") + "} }",
        "target.regions[0].polygon: 2 vertices enclose nothing"},
       {kUniform, "uniform_weight: 1 keep_outs { vertices { x_m: 1 y_m: 1 } }",
@@ -220,6 +226,9 @@ class Scenarios : public OwnHost {
     const std::string header = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n";
     write("good.asc", header + "1 2\n");
     write("even.csv", "1,2\n3,4\n");
+    write("pier.geojson", R"({"type":"Polygon","coordinates":[[[9.2005,47.5001],[9.2006,47.5001],)"
+                          R"([9.2006,47.5002],[9.2005,47.5001]]]})");
+    write("line.geojson", R"({"type":"LineString","coordinates":[]})");
     fs::create_directory(folder_ / "folder.csv");
     fs::create_symlink(unreadable_file(), folder_ / "locked.csv");
     write("empty.csv", "");
@@ -299,6 +308,7 @@ class Scenarios : public OwnHost {
 /// A scenario with every block, and every number that other fields determine or limit.
 constexpr const char* kRich = R"(
 name: "rich" description: "all fields" seed: 1 goal_ergodic_metric: 1
+origin { latitude_deg: 47.5 longitude_deg: 9.2 }
 domain { origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 }
 target {
   gaussians { weight: 1 mean_x_m: 30 mean_y_m: 20 sigma_m: 5 }
@@ -306,6 +316,7 @@ target {
   uniform_weight: 1
   maps { file: "even.csv" weight: 1 origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 first_row: NORTH }
   regions { weight: 1 polygon { vertices { x_m: 1 y_m: 1 } vertices { x_m: 9 y_m: 1 } vertices { x_m: 9 y_m: 9 } } }
+  keep_outs { file: "pier.geojson" }
 }
 basis { modes_x: 8 modes_y: 8 }
 law {

@@ -110,7 +110,8 @@ TEST(Conversion, KnowsEveryFieldOfAScenario) {
   const Mission mission;
   std::set<std::string> known = Names(mission).all;
   known.insert({"name", "description", "seed", "law.contraction_center", "law.contraction_x_m",
-                "law.contraction_y_m", "time.duration_s", "agents.random_count"});
+                "law.contraction_y_m", "time.duration_s", "agents.random_count",
+                "origin.latitude_deg", "origin.longitude_deg"});
   EXPECT_EQ(names_in(*proto::Scenario::descriptor(), ""), known);
 }
 

@@ -118,6 +118,9 @@ const std::map<std::string, Rule>& rules() {
       {"Scenario.agents", must(draw_block)},
       {"Scenario.world", may(draw_block)},
       {"Scenario.goal_ergodic_metric", may(spread(1e-9, 1))},
+      {"Scenario.origin", may(draw_block)},
+      {"Origin.latitude_deg", must(number(-90, 90))},
+      {"Origin.longitude_deg", must(number(-180, 180))},
 
       {"Domain.origin_x_m", may(number(-20, 0))},
       {"Domain.origin_y_m", may(number(-20, 0))},
@@ -147,6 +150,7 @@ const std::map<std::string, Rule>& rules() {
       {"Region.polygon", must(draw_block)},
       {"Polygon.vertices", many(3, 6)},
       {"Polygon.holes", many(0, 1)},
+      {"Polygon.file", {text({""}), 0, 0}},  // in place of the vertices
       {"Ring.vertices", many(3, 6)},
       {"Vertex.x_m", must(kPlace)},
       {"Vertex.y_m", must(kPlace)},
