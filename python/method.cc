@@ -107,7 +107,7 @@ Row m, column n of every array of coefficients belongs to f_mn. The weights are
 λ = (1 + |k|²)^−s ("squared_norm") or (1 + |k|)^−s ("norm"), divided by h_k² if
 the basis is normalised. ValueError for modes outside 1 … 64.)")
       .def(py::init(&make_basis), "modes_x"_a, "modes_y"_a, "sobolev_form"_a = "squared_norm",
-           "sobolev_exponent"_a = 1.5, "normalized"_a = false)
+           "sobolev_exponent"_a = 1.5, "normalized"_a = py::bool_(false))
       .def_readonly("modes_x", &Basis::modes_x, "Modes along x.")
       .def_readonly("modes_y", &Basis::modes_y, "Modes along y.")
       .def_readonly("sobolev_exponent", &Basis::sobolev_exponent, "s of λ.")

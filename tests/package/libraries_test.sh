@@ -59,8 +59,10 @@ END
 
 make_bare_system
 pack
-cp "$deb" "$work"/libergocast-dev_*.deb "$work"/python3-ergocast_*.deb "$root/tmp/"
-apt_install g++ cmake make $(cd "$root/tmp" && printf '/tmp/%s ' *.deb)
+for name in ergocast libergocast-dev python3-ergocast; do
+  cp "$work"/${name}_*.deb "$root/tmp/$name.deb"
+done
+apt_install g++ cmake make /tmp/ergocast.deb /tmp/libergocast-dev.deb /tmp/python3-ergocast.deb
 check_headers
 check_versions
 check_example
