@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr auto kLook = 250ms;          // between two looks for incidents
 constexpr auto kShortest = 50ms;       // between two of the looks that are kept
-constexpr auto kPause = 2s;            // the statuses of a team come twice a second
+constexpr auto kPause = 1s;            // the statuses of a team come twice a second
 constexpr std::size_t kMost = 20'000;  // rows of agents that are kept
 constexpr int kConditions = static_cast<int>(Condition::kGone) + 1;
 

@@ -128,7 +128,8 @@ std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted
 }
 
 void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scenario) {
-  const auto problem = write_report(run_dir, scenario.mission(), recorded_team(run_dir, scenario.mission()));
+  const auto problem =
+      write_report(run_dir, scenario.mission(), recorded_team(run_dir, scenario.mission()));
   print_summary(summary);
   std::printf("  record    %s\n", run_dir.c_str());
   if (!problem) std::printf("  report    %s\n", (fs::absolute(run_dir) / "report.html").c_str());

@@ -48,9 +48,8 @@ std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& r
   return files;
 }
 
-std::variant<nlohmann::ordered_json, std::string> read_page_record(const fs::path& run_dir,
-                                                                   const Mission& mission,
-                                                               const nlohmann::ordered_json& team) {
+std::variant<nlohmann::ordered_json, std::string> read_page_record(
+    const fs::path& run_dir, const Mission& mission, const nlohmann::ordered_json& team) {
   auto read = read_record(run_dir);
   if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
   const auto& [run, summary, target] = std::get<Record>(read);

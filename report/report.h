@@ -38,7 +38,6 @@ std::variant<nlohmann::ordered_json, std::string> read_page_record(
 /// Writes them into `run_dir` and replaces existing files, each as a whole or not at all. Nothing
 /// on success, otherwise the error.
 std::optional<std::string> write_report(const std::filesystem::path& run_dir,
-                                        const Mission& mission,
-                                        const nlohmann::ordered_json& team);
+                                        const Mission& mission, const nlohmann::ordered_json& team);
 
 }  // namespace ergocast

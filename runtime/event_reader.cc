@@ -43,8 +43,10 @@ void read_segment(const std::filesystem::path& file, const auto& wanted, const a
   std::string channel;
   std::vector<char> bytes;
   for (char header[kHeaderBytes]; in.read(header, kHeaderBytes);) {
-    const std::uint64_t channel_size = big_endian(header + 20, 4), size = big_endian(header + 24, 4);
-    if (big_endian(header, 4) != kSync || channel_size > kLongestChannel || size > kMostBytes) return;
+    const std::uint64_t channel_size = big_endian(header + 20, 4),
+                        size = big_endian(header + 24, 4);
+    if (big_endian(header, 4) != kSync || channel_size > kLongestChannel || size > kMostBytes)
+      return;
     const auto time_us = static_cast<std::int64_t>(big_endian(header + 12, 8));
     channel.resize(channel_size);
     if (!in.read(channel.data(), static_cast<std::streamsize>(channel_size))) return;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures the page in Chromium: how soon any tick of a long record is on the screen, and how long
-// a frame of a live team keeps the browser's main thread. `cpu_ms` is processor time of that thread,
-// from reading a message to drawing, a seek or a frame; it depends less on what else the machine does.
+// a frame of a live team keeps the browser's main thread. `cpu_ms` is processor time of that
+// thread, from reading a message to drawing, a seek or a frame; it depends less on what else the
+// machine does.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 
@@ -64,9 +65,9 @@ void Seek(benchmark::State& state) {
   const char* layer = state.range(1) == 0 ? "target" : "achieved";
   const char* tail = state.range(2) == 0 ? "3" : "7";  // 60 s, all
   Folder folder;
-  Child mission = start(folder.path / "log", {"simulate", kScenario, "--agents",
-                                              std::to_string(state.range(0)), "--out",
-                                              folder.path / "run"});
+  Child mission =
+      start(folder.path / "log", {"simulate", kScenario, "--agents", std::to_string(state.range(0)),
+                                  "--out", folder.path / "run"});
   wait_for(mission);
   Browser browser(folder.path);
   browser.open("file://" + (folder.path / "run" / "report.html").string() + "#layer=" + layer +
@@ -100,10 +101,10 @@ BENCHMARK(Seek)
 /// A team that flies ten ticks a second, for 20 s.
 void LiveFrame(benchmark::State& state) {
   Folder folder;
-  Child mission = start(folder.path / "log",
-                        {"run", kScenario, "--agents", std::to_string(state.range(0)),
-                         "--realtime=1", "--duration", "100000", "--out", folder.path / "run",
-                         "--watch", "--port", std::to_string(kPort)});
+  Child mission =
+      start(folder.path / "log", {"run", kScenario, "--agents", std::to_string(state.range(0)),
+                                  "--realtime=1", "--duration", "100000", "--out",
+                                  folder.path / "run", "--watch", "--port", std::to_string(kPort)});
   {
     Browser browser(folder.path);
     const std::string page = "http://127.0.0.1:" + std::to_string(kPort) + '/';
@@ -142,13 +143,8 @@ void LiveFrame(benchmark::State& state) {
     std::this_thread::sleep_for(1s);
   }
 }
-BENCHMARK(LiveFrame)
-    ->ArgName("agents")
-    ->Arg(4)
-    ->Arg(64)
-    ->Iterations(1)
-    ->UseManualTime()
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(LiveFrame)->ArgName("agents")->Arg(4)->Arg(64)->Iterations(1)->UseManualTime()->Unit(
+    benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace ergocast::bench

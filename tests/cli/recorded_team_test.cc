@@ -43,7 +43,8 @@ class RecordedTeam : public ::testing::Test {
       tick_ += 5;
       log(test::mission_part(1, MissionState::kRunning, test::roster_of(2)));
       TeamStatus team;
-      team.header = {test::kRun, kCoordinator, test::kCoordinatorLife, test::next_sequence(), tick_};
+      team.header = {test::kRun, kCoordinator, test::kCoordinatorLife, test::next_sequence(),
+                     tick_};
       team.state = MissionState::kRunning;
       log(team);
       log(test::world_state(tick_, {{100, 500, 0}, {200, 500, 0}}));

@@ -32,10 +32,12 @@ class PageInABrowser : public FlyingMission {
     browser_->open("file://" + (out() / "report.html").string() + fragment);
     ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast && ergocast.S.run.ready)"));
   }
+  /// The frame after next shows what was asked for.
+  void wait_for_frame() {
+    js("return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+  }
   void screenshot(const std::string& name) {
-    // The frame after next shows what was asked for.
-    browser_->run(
-        "return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+    wait_for_frame();
     const char* folder = std::getenv("ERGOCAST_SCREENSHOTS");
     if (folder != nullptr)
       browser_->save_screenshot(std::filesystem::path(folder) / (name + ".png"));
@@ -170,6 +172,11 @@ TEST_F(PageInABrowser, TextOfARecordIsTextOnly) {
   changed["agents"][0]["host"] = attack;
   std::ofstream(out() / "summary.json") << changed.dump();
   ASSERT_EQ(ergocast({"report", out()}), 0);
+  // Two scripts, the data and the program: no text ends one of them.
+  const std::string html = text_of(out() / "report.html"), end = "</script";
+  std::size_t ends = 0;
+  for (auto at = html.find(end); at != html.npos; at = html.find(end, at + 1)) ++ends;
+  ASSERT_EQ(ends, 2U);
   show_report();
   browser_->press("i");
   EXPECT_NE(text("detailsText").find("onerror='window.broken = 2'"), std::string::npos);
@@ -189,7 +196,7 @@ TEST_F(PageInABrowser, KeepOutsAreOutlined) {
       "const [a, b, c, d] = pieces[0], x = view.px((a + c) / 2) * s, y = view.py((b + d) / 2) * s;"
       "return [pieces.length, ...document.getElementById('shading').getContext('2d')"
       ".getImageData(Math.round(x), Math.round(y), 1, 1).data]");
-  EXPECT_GT(drawn[0].get<int>(), 100);  // pieces as long as a cell
+  EXPECT_GT(drawn[0].get<int>(), 100);                       // pieces as long as a cell
   EXPECT_GT(drawn[1].get<int>(), drawn[2].get<int>() + 40);  // red
   EXPECT_GT(drawn[1].get<int>(), drawn[3].get<int>() + 40);
   screenshot("keep_outs");
@@ -271,12 +278,14 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 1 })";
             "descending");
 
   js("ergocast.filter(ergocast.S.across.number, '3')");
-  EXPECT_TRUE(browser_->becomes("return document.querySelectorAll('#rows > tr').length === 2"));
+  wait_for_frame();
+  EXPECT_EQ(js("return document.querySelectorAll('#rows > tr').length"), 2);
   EXPECT_TRUE(text("best").starts_with("Best of what is shown: law.u_max_mps = 3"));
   js("ergocast.filter(ergocast.S.across.number, '')");
   browser_->click("#words");
   for (const char* key : {"m", "p", "s", "=", "1", "0"}) browser_->press(key);
-  EXPECT_TRUE(browser_->becomes("return document.querySelectorAll('#rows > tr').length === 2"));
+  wait_for_frame();
+  EXPECT_EQ(js("return document.querySelectorAll('#rows > tr').length"), 2);
   EXPECT_EQ(rows()[0].get<std::string>().substr(0, 3), "10,");
 
   // The bands have their points from the table's columns.
@@ -361,8 +370,7 @@ TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {
   EXPECT_TRUE(browser_->becomes("return Boolean(window.ergocast?.S.run)"));
   // A site whose name has come to mean this host.
   browser_->open("http://evil.example:8811/");
-  EXPECT_EQ(js("return document.body.textContent.trim()"),
-            "this server does not have that name");
+  EXPECT_EQ(js("return document.body.textContent.trim()"), "this server does not have that name");
   // A page from elsewhere, here from a file: browsers keep those of the network from this host
   // before our server can. It may neither read an answer, nor use one unread, nor show it.
   std::ofstream(folder_ / "evil.html") << "<!DOCTYPE html><title>evil</title>";
@@ -379,8 +387,7 @@ TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {
             "loaded");
   const auto errors = browser_->errors();
   EXPECT_TRUE(std::any_of(errors.begin(), errors.end(), [](const std::string& line) {
-    return line.find("frame-ancestors") != line.npos ||
-           line.find("X-Frame-Options") != line.npos;
+    return line.find("frame-ancestors") != line.npos || line.find("X-Frame-Options") != line.npos;
   })) << nlohmann::json(errors);
   server.send(SIGINT);
   EXPECT_EQ(wait_for(server), 0);

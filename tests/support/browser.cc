@@ -54,9 +54,12 @@ Browser::Browser(const std::filesystem::path& folder) {
     throw std::runtime_error("chromedriver does not answer");
   }
   json options;
-  options["args"] = {"--headless=new",    "--no-sandbox",
-                     "--disable-gpu",     "--disable-dev-shm-usage",
-                     "--hide-scrollbars", "--host-resolver-rules=MAP evil.example 127.0.0.1",
+  options["args"] = {"--headless=new",
+                     "--no-sandbox",
+                     "--disable-gpu",
+                     "--disable-dev-shm-usage",
+                     "--hide-scrollbars",
+                     "--host-resolver-rules=MAP evil.example 127.0.0.1",
                      "--user-data-dir=" + (folder / "profile").string()};
   const json capabilities = {{"browserName", "chrome"},
                              {"goog:chromeOptions", options},

@@ -11,8 +11,8 @@
 
 namespace ergocast::test {
 
-/// One browser with one window, which takes evil.example for a name of this host. Each call waits for its answer; a failure throws with the driver's
-/// words.
+/// One browser with one window, which takes evil.example for a name of this host. Each call waits
+/// for its answer; a failure throws with the driver's words.
 class Browser {
  public:
   /// @param folder  for its profile and its driver's log
