@@ -17,7 +17,7 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/codec.h"
 #include "report/web_page.h"
-#include "runtime/event_reader.h"
+#include "runtime/event_log_reader.h"
 
 namespace ergocast::cli {
 namespace {
@@ -165,13 +165,13 @@ Json Listener::json() const {
 }  // namespace
 
 Json recorded_team(const std::filesystem::path& run_dir, const Mission& mission) {
+  auto opened = EventLogReader::open(run_dir);
+  auto* log = std::get_if<EventLogReader>(&opened);
+  if (!log) return nullptr;
   Listener listener(mission);
-  read_events(
-      run_dir,
-      [&](std::string_view channel, std::int64_t time_us) {
-        return listener.wants(channel, time_us);
-      },
-      [&](const LoggedEvent& event) { listener.hear(event); });
+  while (const LoggedEvent* event = log->next()) {
+    if (listener.wants(event->channel, event->time_us)) listener.hear(*event);
+  }
   return listener.json();
 }
 

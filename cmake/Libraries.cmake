@@ -13,8 +13,9 @@ target_link_libraries(ergocast_agent_and_codec INTERFACE ergocast_agent ergocast
 set(INSTALLED ergocast_text ergocast_core ergocast_target ergocast_team ergocast_codec ergocast_agent)
 
 # They may become part of a shared library, as of a robot's plug-in or of a Python module.
-set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_lab ergocast_logger ergocast_report
-  ergocast_run_directory ergocast_runtime ergocast_scenario ergocast_scenario_messages ergocast_sim ergocast_web_page)
+set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_event_log ergocast_geo ergocast_lab ergocast_logger
+  ergocast_report ergocast_run_directory ergocast_runtime ergocast_scenario ergocast_scenario_messages ergocast_sim
+  ergocast_status ergocast_watch ergocast_web_page)
 foreach(library ${SHAREABLE})
   set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${library} PRIVATE -fno-semantic-interposition)

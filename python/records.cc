@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "cli/recorded_team.h"
 #include "cli/run_directory.h"
 #include "cli/simulated_record.h"
 #include "logger/observer.h"
@@ -186,7 +187,9 @@ void simulate(const Scenario& scenario, const fs::path& out, bool report) {
       simulation.end("interrupted from Python");
     }));
     if (report && !interrupted) {
-      if (const auto problem = write_report(folder, scenario.mission())) throw Refused(*problem);
+      const Mission& mission = scenario.mission();
+      const auto problem = write_report(folder, mission, cli::recorded_team(folder, mission));
+      if (problem) throw Refused(*problem);
     }
   }
   if (interrupted) throw *interrupted;
