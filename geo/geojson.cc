@@ -138,7 +138,7 @@ class Walk {
 
 }  // namespace
 
-std::variant<std::vector<GeoPolygon>, GeoJsonProblem> parse_geojson(const std::string& text) {
+std::variant<std::vector<GeoPolygon>, GeoJsonProblem> parse_geojson(std::string_view text) {
   try {
     Walk walk;
     walk.file(Json::parse(text));

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -29,6 +30,6 @@ struct GeoJsonProblem {
 /// rings that are not closed or have fewer than four positions, places that do not exist.
 std::variant<std::vector<GeoPolygon>, GeoJsonProblem> read_geojson(
     const std::filesystem::path& file);
-std::variant<std::vector<GeoPolygon>, GeoJsonProblem> parse_geojson(const std::string& text);
+std::variant<std::vector<GeoPolygon>, GeoJsonProblem> parse_geojson(std::string_view text);
 
 }  // namespace ergocast

@@ -152,6 +152,12 @@ std::vector<Mistake> mistakes_of_targets() {
 
       {kUniform, "regions { polygon { file: \"pier.geojson\" } }",
        "target.regions[0].polygon.file: needs to know where on the earth"},
+      {kUniform, "regions { polygon { file: \"pier.geojson\" vertices { x_m: 1 y_m: 1 } } }",
+       "target.regions[0].polygon.file: stands beside vertices"},
+      {kUniform,
+       "regions { polygon { file: \"many.geojson\" } } } "
+       "origin { latitude_deg: 47.5 longitude_deg: 9.2",
+       "target.regions[0].polygon.file: "},
       {kUniform,
        "regions { polygon { file: \"line.geojson\" } } } "
        "origin { latitude_deg: 47.5 longitude_deg: 9.2",
@@ -228,6 +234,8 @@ class Scenarios : public OwnHost {
     write("even.csv", "1,2\n3,4\n");
     write("pier.geojson", R"({"type":"Polygon","coordinates":[[[9.2005,47.5001],[9.2006,47.5001],)"
                           R"([9.2006,47.5002],[9.2005,47.5001]]]})");
+    write("many.geojson", R"({"type":"Polygon","coordinates":[[)" + repeated(4100, "[9.2,47.5],") +
+                              "[9.2,47.5]]]}");
     write("line.geojson", R"({"type":"LineString","coordinates":[]})");
     fs::create_directory(folder_ / "folder.csv");
     fs::create_symlink(unreadable_file(), folder_ / "locked.csv");
