@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/page_server.h"
+#include "cli/study_directory.h"
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/event_log.h"
 #include "runtime/lcm_url.h"
@@ -73,12 +74,22 @@ struct StudyOptions {
   std::vector<Variation> variations;
   std::optional<double> duration_s;
   Seeds seeds;
+  std::optional<StudyShard> shard;  ///< index and number only
   int jobs = 1;
   std::filesystem::path out;
 };
 
 /// Simulates each combination of scenario, variation and seed once.
 int study(const StudyOptions& options);
+
+/// The options of `study merge`.
+struct MergeOptions {
+  std::vector<std::filesystem::path> shards;  ///< their folders
+  std::filesystem::path out;
+};
+
+/// Makes the folder of the whole study of its shards.
+int merge_studies(const MergeOptions& options);
 
 /// `list`: the live runs of this user on this host.
 void add_list(CLI::App& app, Action& action);

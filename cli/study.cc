@@ -13,32 +13,31 @@
 #include "cli/report_error.h"
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
+#include "cli/study_results.h"
 #include "cli/workers.h"
-#include "lab/studies/study_page.h"
 #include "lab/studies/study_run.h"
-#include "logger/run_record.h"
 #include "ops/deploy/script.h"
 #include "runtime/node.h"
 #include "team/plan.h"
-#include "text/printable.h"
 
 namespace ergocast::cli {
 namespace {
 
-constexpr std::uint64_t kMostStudyRuns = 1000000;
 constexpr std::size_t kMostFailuresNamed = 20;
 
 /// One run: a point and a seed.
 using Run = std::pair<std::size_t, std::uint64_t>;
 
 /// The runs that are not done, seed by seed, so that an incomplete table is comparable, too.
-std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds,
+std::vector<Run> missing_runs(std::size_t points, const StudyOptions& options,
                               const std::vector<Run>& done) {
+  const StudyShard shard = options.shard.value_or(StudyShard());
   std::vector<Run> missing;
-  for (std::uint64_t i = 0; i < seeds.count(); ++i) {
+  for (std::uint64_t i = 0; i < options.seeds.count(); ++i) {
     for (std::size_t point = 0; point < points; ++point) {
-      const Run run{point, seeds.first + i};
-      if (!std::binary_search(done.begin(), done.end(), run)) missing.push_back(run);
+      const Run run{point, options.seeds.first + i};
+      if (shard.has(i * points + point) && !std::binary_search(done.begin(), done.end(), run))
+        missing.push_back(run);
     }
   }
   return missing;
@@ -116,7 +115,7 @@ class StudyRunner {
   std::optional<std::string> problem_;
 };
 
-/// The command that makes this study.
+/// The command that makes this study, but for --out.
 std::string command_of(const StudyOptions& options) {
   std::string command = "ergocast study";
   for (const auto& file : options.scenarios) command += ' ' + shell_word(file.string());
@@ -128,31 +127,7 @@ std::string command_of(const StudyOptions& options) {
   }
   command += options_of({.duration_s = options.duration_s, .fields = options.settings});
   return command + " \\\n  --seeds " + std::to_string(options.seeds.first) + ':' +
-         std::to_string(options.seeds.last) + " --out " + shell_word(options.out.string());
-}
-
-/// The commands that fly one mission of each point, here with the first seed.
-std::vector<std::string> point_commands(const StudyPoints& points, const StudyOptions& options) {
-  std::vector<std::string> commands = points.commands;
-  for (std::string& command : commands) {
-    command += " --seed " + std::to_string(options.seeds.first);
-  }
-  return commands;
-}
-
-/// Prints the table and the commands of its rows on the terminal, and writes the page.
-std::optional<std::string> show_results(const StudyPoints& points, const StudyDirectory& directory,
-                                        const StudyOptions& options) {
-  const studies::Study& study = points.identity.study;
-  const auto summaries = studies::summarize(study, directory.rows());
-  const std::vector<std::string> commands = point_commands(points, options);
-  std::printf("%s", studies::study_text(study, summaries).c_str());
-  std::printf("\none mission of each row, here with the first seed:\n");
-  for (const std::string& command : commands) std::printf("  %s\n", printable(command).c_str());
-  return write_file(
-      options.out / "report.html",
-      studies::study_page({study, version(), command_of(options), commands},
-                          summaries));
+         std::to_string(options.seeds.last);
 }
 
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
@@ -161,6 +136,9 @@ void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
   std::printf("\n%zu runs flown now, %zu in %s\n", runner.flown(), directory.rows().size(),
               (options.out / "study.csv").c_str());
   std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
+  if (runner.missing() == 0 && options.shard) {
+    std::printf("when all shards are flown: ergocast study merge FOLDER… --out DIR\n");
+  }
   if (runner.missing() == 0) return;
   std::printf("%zu runs are missing%s: the same command flies them\n", runner.missing(),
               runner.failed() > 0
@@ -171,11 +149,11 @@ void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
 }  // namespace
 
 int study(const StudyOptions& options) {
-  const auto compiled = study_points(options);
+  auto compiled = study_points(options);
   if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) {
     return report_error(kExitBadInput, *problems);
   }
-  const auto& points = std::get<StudyPoints>(compiled);
+  auto& points = std::get<StudyPoints>(compiled);
   const std::size_t count = points.scenarios.size();
   if (options.seeds.count() > kMostStudyRuns / count) {
     return report_error(kExitBadInput, "--seeds: " + std::to_string(count) + " points with " +
@@ -183,16 +161,23 @@ int study(const StudyOptions& options) {
                                            " seeds each are above the limit, " +
                                            std::to_string(kMostStudyRuns) + " runs (give fewer)");
   }
+  const std::string command = command_of(options);
+  if (options.shard) {
+    points.identity.shard = {options.shard->index, options.shard->of, options.seeds.first,
+                             options.seeds.last,   command,           points.missions};
+  }
   auto opened = StudyDirectory::open(options.out, points.identity);
   if (const auto* problem = std::get_if<std::string>(&opened))
     return report_error(kExitBadInput, *problem);
   StudyDirectory& directory = *std::get<0>(opened);
 
-  StudyRunner runner(points, missing_runs(count, options.seeds, directory.done()), directory);
+  StudyRunner runner(points, missing_runs(count, options, directory.done()), directory);
   runner.fly(options.jobs);
   std::optional<std::string> problem = runner.problem();
-  if (!problem) problem = directory.sort();
-  if (!problem) problem = show_results(points, directory, options);
+  if (!problem) {
+    problem = conclude(directory, {points.identity.study, command, points.missions,
+                                   options.seeds.first, options.out});
+  }
   if (problem) {
     tell(*problem + "; the same command goes on");
     return kExitFailed;

@@ -126,7 +126,7 @@ class Compiler {
       const auto loaded = Scenario::load(file, overrides);
       if (const auto* scenario = std::get_if<Scenario>(&loaded)) {
         add(*scenario, varied, file);
-        points_.commands.push_back("ergocast run " + shell_word(file.string()) +
+        points_.missions.push_back("ergocast run " + shell_word(file.string()) +
                                    options_of(overrides));
       } else {
         complaints.add(std::get<std::vector<Problem>>(loaded), words_of(varied));

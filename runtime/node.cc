@@ -74,6 +74,7 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
     if (commands.empty() || word.starts_with('-')) continue;
     for (const CLI::App* one : commands) names.push_back(one->get_name());
     const auto known = std::find(names.begin(), names.end(), word);
+    if (known == names.end() && command->get_require_subcommand_min() == 0) continue;
     if (known == names.end()) {
       return command->get_name() + ": there is no command " + word + "; " + remedy_for(word, names);
     }

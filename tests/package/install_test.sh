@@ -36,6 +36,8 @@ check_files() {
     gzip -dc "$root/usr/share/man/man1/ergocast.1.gz" | grep -q "^.SS $name$" ||
       fail "ergocast(1) does not speak of $name"
   done
+  expect_file usr/share/bash-completion/completions/ergocast
+  expect_file usr/share/doc/ergocast/examples/slurm/study.sbatch
   expect_file usr/share/doc/ergocast/README.md
   expect_file usr/share/doc/ergocast/copyright
   expect_file etc/ergocast/ergocast.env
