@@ -4,6 +4,7 @@
 types_test.py FOLDER: mypy's memory lies in FOLDER.
 """
 
+import re
 import subprocess
 import sys
 import unittest
@@ -36,12 +37,13 @@ mu, error = ergocast.Target([ergocast.Gaussian((0, 0), sigma_m=1)]).coefficients
 command: npt.NDArray[np.float64] = ergocast.Controller(run.mission).command(0, 0, (1.0, 2.0))
 """
 
-BAD = (
-    'import ergocast\nergocast.simulate("x", seed="one")\n',
-    'import ergocast\nergocast.load("x").coverage("end")\n',
-    'import ergocast\nx: int = ergocast.load("x").mission.dt_s\n',
-    "import ergocast\nergocast.Basis(1)\n",
-)
+# From the second line on each is wrong.
+BAD = """import ergocast
+ergocast.simulate("x", seed="one")
+ergocast.load("x").coverage("end")
+x: int = ergocast.load("x").mission.dt_s
+ergocast.Basis(1)
+"""
 
 
 def mypy(*arguments):
@@ -64,8 +66,8 @@ class Types(unittest.TestCase):
 
     def test_callers_are_checked(self):
         self.assertEqual(mypy("-c", GOOD).stdout.splitlines()[-1], "Success: no issues found in 1 source file")
-        for text in BAD:
-            self.assertEqual(mypy("-c", text).returncode, 1, text)
+        errors = re.findall(r"^<string>:(\d+): error", mypy("-c", BAD).stdout, re.MULTILINE)
+        self.assertEqual(sorted(set(errors)), ["2", "3", "4", "5"])
 
     def test_the_stub_is_true(self):
         (FOLDER / "allowed").write_text(ALLOWED)
