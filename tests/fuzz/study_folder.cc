@@ -11,7 +11,6 @@ FUZZ_TARGET(study_folder) {
   static const cli::StudyIdentity identity{
       {{"law.epsilon"}, {{"mission", {"0.1"}, 2, 15}, {"mission", {"1"}, 3, 20}}},
       {"00", "11"},
-      {},
       "1"};
   constexpr std::string_view kSeparator = "--\n";
   const std::string_view text = text_of(input);
