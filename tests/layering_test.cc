@@ -125,9 +125,9 @@ const std::vector<Kind> kKinds = {
                "future",     "semaphore", "latch",        "barrier",
                "stop_token", "random",    "ctime",        "csignal",
                "sys/*",      "netinet/*", "arpa/*",       "net/*",
-               "linux/*",    "fcntl.h",   "ifaddrs.h",    "poll.h",
-               "pthread.h",  "signal.h",  "spawn.h",      "time.h",
-               "unistd.h"}},
+               "linux/*",    "dirent.h",  "fcntl.h",      "ifaddrs.h",
+               "poll.h",     "pthread.h", "signal.h",     "spawn.h",
+               "time.h",     "unistd.h"}},
 };
 
 // The time or a random device needs no special #include: <chrono> is allowed everywhere.
