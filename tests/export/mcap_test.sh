@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$reader"
 node "$here/fetch_reader.mjs" "$reader"
 { echo 'origin { latitude_deg: 47.5 longitude_deg: 9.2 }'
-  cat "$here/../../scenarios/quadrimodal_corners.textproto"; } >"$work/there.textproto"
+  cat "$here/../../scenarios/harbour_patrol.textproto"; } >"$work/there.textproto"
 "$ergocast" simulate "$work/there.textproto" --duration 60 --out "$work/run" >/dev/null
 # Lines as a run's processes write them.
 printf '%s\n' '2026-04-12T10:15:00.123 info agent-3: agent 3 of run 1: running' 'and a second line' \
