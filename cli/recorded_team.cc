@@ -61,7 +61,7 @@ class Listener {
     return true;
   }
 
-  void hear(const LoggedEvent& event) {
+  void hear(const EventView& event) {
     const auto message = accepted(event.bytes, copy_);
     const auto transmitter = message ? transmitter_of(*message, event.channel) : std::nullopt;
     if (!transmitter) return;
@@ -171,7 +171,7 @@ Json recorded_team(const std::filesystem::path& run_dir, const Mission& mission)
       [&](std::string_view channel, std::int64_t time_us) {
         return listener.wants(channel, time_us);
       },
-      [&](const LoggedEvent& event) { listener.hear(event); });
+      [&](const EventView& event) { listener.hear(event); });
   return listener.json();
 }
 

@@ -56,7 +56,7 @@ void read_segment(const std::filesystem::path& file, const auto& wanted, const a
     }
     bytes.resize(size);
     if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) return;
-    visit(LoggedEvent{time_us, channel, std::as_bytes(std::span(bytes))});
+    visit(EventView{time_us, channel, std::as_bytes(std::span(bytes))});
   }
 }
 
@@ -64,7 +64,7 @@ void read_segment(const std::filesystem::path& file, const auto& wanted, const a
 
 void read_events(const std::filesystem::path& folder,
                  const std::function<bool(std::string_view channel, std::int64_t time_us)>& wanted,
-                 const std::function<void(const LoggedEvent&)>& visit) {
+                 const std::function<void(const EventView&)>& visit) {
   for (const auto& file : segments_in(folder)) read_segment(file, wanted, visit);
 }
 

@@ -11,7 +11,7 @@
 
 namespace ergocast {
 
-struct LoggedEvent {
+struct EventView {
   std::int64_t time_us = 0;  ///< wall time of the logger
   std::string_view channel;
   std::span<const std::byte> bytes;  ///< valid during the call
@@ -22,6 +22,6 @@ struct LoggedEvent {
 /// incomplete event.
 void read_events(const std::filesystem::path& folder,
                  const std::function<bool(std::string_view channel, std::int64_t time_us)>& wanted,
-                 const std::function<void(const LoggedEvent&)>& visit);
+                 const std::function<void(const EventView&)>& visit);
 
 }  // namespace ergocast
