@@ -8,7 +8,6 @@
 #pragma once
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -21,6 +20,7 @@
 #include "core/coverage_table.h"
 #include "core/forecast.h"
 #include "core/ids.h"
+#include "team/author_map.h"
 #include "team/deadline.h"
 #include "team/messages.h"
 #include "team/participant.h"
@@ -126,7 +126,7 @@ class Agent {
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
     Tick next_broadcast_tick = 0;
-    std::map<Author, Tick> news;  // when a member's coverage last grew for us
+    AuthorMap<Tick> news;  // when a member's coverage last grew for us
     std::optional<Instant> running_since;
     Instant stalled_said{};
     std::optional<WorldView> pending;

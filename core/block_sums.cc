@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts who holds a block's sums.
+// Counts who holds a block's sums, and keeps the memory of released ones for the next.
 #include "core/block_sums.h"
 
 #include <algorithm>
@@ -7,59 +7,89 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "core/vectorized.h"
 
 namespace ergocast {
 
-alignas(32) const double BlockSums::kZeros[kBlockSize] = {};
+const double BlockSums::kZeros[kMostBlockSize] = {};
 
-BlockSums::Held* BlockSums::make() {
-  Held* const held = new Held;
+namespace {
+
+/// Released memory of blocks of one size, for the next ones: malloc takes long for a kilobyte, and
+/// a step that takes in messages allocates nothing. It stays with its thread to the end.
+struct Spares {
+  std::size_t count;
+  void* pieces[64];
+};
+constinit thread_local Spares spares_of_doubles{}, spares_of_averages{};
+
+Spares* spares_of(std::size_t size) {
+  if (size == kBlockSize) return &spares_of_doubles;
+  return size == kMostBlockSize ? &spares_of_averages : nullptr;
+}
+
+}  // namespace
+
+BlockSums::Held* BlockSums::make(std::size_t size) {
+  Spares* const spares = spares_of(size);
+  void* const room = spares != nullptr && spares->count > 0
+                         ? spares->pieces[--spares->count]
+                         : ::operator new(sizeof(Held) + size * sizeof(double));
+  Held* const held = ::new (room) Held;
   held->holders = 1;
+  held->size = static_cast<std::uint32_t>(size);
   return held;
 }
 
-void BlockSums::release(Held* held) { delete held; }
+void BlockSums::release(Held* held) {
+  Spares* const spares = spares_of(held->size);
+  if (spares != nullptr && spares->count < std::size(spares->pieces)) {
+    spares->pieces[spares->count++] = held;
+  } else {
+    ::operator delete(held);
+  }
+}
 
 bool BlockSums::operator==(const BlockSums& other) const {
-  return held_ == other.held_ || std::equal(begin(), end(), other.begin());
+  return held_ == other.held_ || std::equal(begin(), end(), other.begin(), other.end());
 }
 
 ERGOCAST_VECTORIZED
-double BlockSums::largest_of(const double* values) {
+double BlockSums::largest_of(std::span<const double> values) {
   // Lanes, because the order of comparisons does not matter; not a number is never the greater one.
   double lanes[kModesPerStride] = {};
-  std::int64_t numbers = 0;
-  for (std::size_t k = 0; k < kBlockSize; k += kModesPerStride) {
+  std::size_t numbers = 0;
+  for (std::size_t k = 0; k < values.size(); k += kModesPerStride) {
     for (std::size_t lane = 0; lane < kModesPerStride; ++lane) {
       const double value = std::abs(values[k + lane]);
       lanes[lane] = value > lanes[lane] ? value : lanes[lane];
       numbers += value == value;
     }
   }
-  if (numbers != kBlockSize) return std::numeric_limits<double>::infinity();
+  if (numbers != values.size()) return std::numeric_limits<double>::infinity();
   return *std::max_element(std::begin(lanes), std::end(lanes));
 }
 
-std::span<double, kBlockSize> BlockSums::edit() {
+std::span<double> BlockSums::edit() {
   if (held_ == nullptr || held_->holders > 1) {
     BlockSums own;
-    std::copy(begin(), end(), own.set_all().begin());
+    std::copy(begin(), end(), own.set_all(size()).begin());
     *this = std::move(own);
   }
   held_->largest = -1;
-  return std::span<double, kBlockSize>(held_->values);
+  return {held_->values(), held_->size};
 }
 
-std::span<double, kBlockSize> BlockSums::set_all() {
-  if (held_ == nullptr || held_->holders > 1) {
-    if (held_ != nullptr) --held_->holders;
-    held_ = make();
+std::span<double> BlockSums::set_all(std::size_t size) {
+  if (held_ == nullptr || held_->holders > 1 || held_->size != size) {
+    *this = BlockSums();
+    held_ = make(size);
   }
   held_->largest = -1;
-  return std::span<double, kBlockSize>(held_->values);
+  return {held_->values(), held_->size};
 }
 
 }  // namespace ergocast

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -19,7 +20,8 @@ namespace {
 /// cosines by recurrence, which exceed 1 by about 3e-15.
 double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(steps) * 0x1p-53; }
 
-static_assert(kBlockSize % kModesPerStride == 0, "reading so many never leaves a row");
+static_assert(kBlockSize % kModesPerStride == 0 && kMostBlockSize % kModesPerStride == 0,
+              "reading so many never leaves a row");
 
 /// Whether no sum of a block has changed by more than `limit`.
 ERGOCAST_VECTORIZED
@@ -44,6 +46,13 @@ void average_rows(std::span<const double* const> rows, int modes, double per_sec
   }
 }
 
+/// What has travelled in 16 bits may have been rounded up, but not beyond 1.
+bool gains_in_range(const Contribution& c, double dt_s) {
+  const double gained_s = static_cast<double>(c.gained_steps) * dt_s;
+  return c.gained_steps >= 0 && c.gained_steps <= c.steps &&
+         c.gains.largest() <= gained_s * (1 + rounding_margin(c.steps));
+}
+
 bool in_range(const Contribution& c, double dt_s) {
   const double expected_s = static_cast<double>(c.steps) * dt_s;
   const double margin_s = expected_s * rounding_margin(c.steps);
@@ -59,7 +68,18 @@ CoverageTable::CoverageTable(const Basis& basis, double dt_s, Tick joined)
     : basis_(basis),
       dt_s_(dt_s),
       joined_(joined),
-      block_count_((basis.mode_count() + kBlockSize - 1) / kBlockSize) {}
+      block_count_(block_count_of(basis.mode_count(), encoding_)) {}
+
+void CoverageTable::set_encoding(ContributionEncoding encoding) {
+  ERGOCAST_REQUIRE(rows_.empty());
+  encoding_ = encoding;
+  block_size_ = block_size_of(encoding);
+  block_count_ = block_count_of(basis_.mode_count(), encoding);
+}
+
+CoverageTable::Row* CoverageTable::find(const Author& author) {
+  return const_cast<Row*>(static_cast<const CoverageTable&>(*this).find(author));
+}
 
 const CoverageTable::Row* CoverageTable::find(const Author& author) const {
   const auto at = std::lower_bound(rows_.begin(), rows_.end(), author,
@@ -77,7 +97,7 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
   if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
   const auto blocks = static_cast<std::size_t>(block_count_);
   counted_.resize(rows_.size() + 1);
-  return &*rows_.insert(at, Row{author, true, std::vector<Block>(blocks), {}});
+  return &*rows_.insert(at, Row{author, true, 0, kNeverSaid, std::vector<Block>(blocks), {}});
 }
 
 void CoverageTable::add_row(const Author& author) {
@@ -88,20 +108,24 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at) {
   Row* row = find_or_add(author);
   ERGOCAST_REQUIRE(row != nullptr);
   if (row->samples.empty()) {
-    row->samples.resize(row->blocks.size() * kBlockSize);
+    const auto size = static_cast<std::size_t>(block_size_);
+    row->samples.resize(row->blocks.size() * size);
     for (std::size_t b = 0; b < row->blocks.size(); ++b) {
-      std::copy_n(row->blocks[b].sums.data(), kBlockSize, row->samples.data() + b * kBlockSize);
+      std::copy_n(row->blocks[b].sums.data(), size, row->samples.data() + b * size);
       row->blocks[b].gained_steps = 0;
     }
   }
   accumulate_basis(at, basis_, dt_s_, row->samples.data());
   for (Block& block : row->blocks) ++block.steps;
+  row->sum_up();
 }
 
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
+  if (theirs.encoding != encoding_) return Merge::kRefusedEncoding;
   if (theirs.mode_count != basis_.mode_count() || theirs.block < 0 ||
       theirs.block >= block_count_ || theirs.steps < 1 || theirs.steps > max_steps ||
-      theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_)) {
+      theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_) ||
+      !gains_in_range(theirs, dt_s_)) {
     return Merge::kRefusedRange;
   }
   Row* row = find_or_add(theirs.author());
@@ -110,8 +134,12 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   Block& block = row->blocks[number];
   if (theirs.steps <= block.steps) return Merge::kStale;
   if (!row->samples.empty()) {
-    std::copy_n(theirs.sums.data(), kBlockSize, row->samples.data() + number * kBlockSize);
+    const auto size = static_cast<std::size_t>(block_size_);
+    std::copy_n(theirs.sums.data(), size, row->samples.data() + number * size);
     block.gained_steps = 0;
+  } else if (encoding_ == ContributionEncoding::kFixed16) {
+    block.sums_before = theirs.gains;
+    block.gained_steps = theirs.gained_steps;
   } else if (notes_gains_) {
     // Who joined later than the block was said compares with nothing.
     const bool comparable = block.tick >= joined_;
@@ -126,18 +154,21 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   block.sequence = theirs.header.sequence;
   block.tick = theirs.header.tick;
   block.sums = theirs.sums;
+  row->sum_up();
   return Merge::kNewer;
 }
 
-const double* CoverageTable::Row::sums(std::size_t block) const {
-  return samples.empty() ? blocks[block].sums.data() : samples.data() + block * kBlockSize;
+const double* CoverageTable::Row::sums(std::size_t block, int block_size) const {
+  if (samples.empty()) return blocks[block].sums.data();
+  return samples.data() + block * static_cast<std::size_t>(block_size);
 }
 
 CoverageTable::BlockView CoverageTable::view(std::size_t row, int block) const {
   const Row& one = rows_[row];
   const auto number = static_cast<std::size_t>(block);
   const Block& held = one.blocks[number];
-  return {one.sums(number), held.steps, held.tick, held.next_broadcast_tick - held.tick};
+  return {one.sums(number, block_size_), held.steps, held.tick,
+          held.next_broadcast_tick - held.tick};
 }
 
 /// Over how many steps a block has gained; 0 if no agent can have gained that in them.
@@ -152,7 +183,9 @@ std::int64_t CoverageTable::gained_steps(const Block& block) const {
 
 CoverageTable::Gains CoverageTable::gains(std::size_t row, int block) const {
   const Block& held = rows_[row].blocks[static_cast<std::size_t>(block)];
-  return {held.sums_before.data(), gained_steps(held)};
+  const std::int64_t steps = notes_gains_ ? gained_steps(held) : 0;
+  if (encoding_ == ContributionEncoding::kFixed16) return {nullptr, held.sums_before.data(), steps};
+  return {held.sums_before.data(), nullptr, steps};
 }
 
 bool CoverageTable::Block::looks_like(const Block& other) const {
@@ -179,6 +212,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   out.header.incarnation = author.incarnation;
   out.block = block;
   out.mode_count = basis_.mode_count();
+  out.encoding = encoding_;
   if (const Row* row = find(author)) {
     const Block& held = row->blocks[static_cast<std::size_t>(block)];
     out.header.sequence = held.sequence;
@@ -189,8 +223,13 @@ Contribution CoverageTable::block(const Author& author, int block) const {
     if (row->samples.empty()) {
       out.sums = held.sums;
     } else {
-      std::copy_n(row->sums(static_cast<std::size_t>(block)), kBlockSize,
-                  out.sums.set_all().begin());
+      const auto size = static_cast<std::size_t>(block_size_);
+      std::copy_n(row->sums(static_cast<std::size_t>(block), block_size_), size,
+                  out.sums.set_all(size).begin());
+    }
+    if (encoding_ == ContributionEncoding::kFixed16 && row->samples.empty()) {
+      out.gains = held.sums_before;
+      out.gained_steps = held.gained_steps;
     }
   }
   return out;
@@ -202,7 +241,7 @@ void CoverageTable::forget(const Author& author) {
 
 void CoverageTable::remember(const Author& author) {
   // An unknown author counts when its first block arrives.
-  if (find(author) != nullptr) find_or_add(author)->counts = true;
+  if (Row* row = find(author)) row->counts = true;
 }
 
 void CoverageTable::average(Coefficients& coverage) const {
@@ -213,19 +252,22 @@ void CoverageTable::average(Coefficients& coverage) const {
     for (const Row& row : rows_) {
       if (!row.counts) continue;
       steps += row.blocks[number].steps;
-      counted_[count++] = row.sums(number);
+      counted_[count++] = row.sums(number, block_size_);
     }
     const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
-    const int first = b * kBlockSize;
-    average_rows({counted_.data(), count}, std::min(kBlockSize, basis_.mode_count() - first),
+    const int first = b * block_size_;
+    average_rows({counted_.data(), count}, std::min(block_size_, basis_.mode_count() - first),
                  per_second, coverage.data() + first);
   }
 }
 
-std::int64_t CoverageTable::Row::min_steps() const {
-  std::int64_t fewest = blocks.front().steps;
-  for (const Block& block : blocks) fewest = std::min(fewest, block.steps);
-  return fewest;
+void CoverageTable::Row::sum_up() {
+  fewest_steps = blocks.front().steps;
+  due_tick = std::numeric_limits<Tick>::max();
+  for (const Block& block : blocks) {
+    fewest_steps = std::min(fewest_steps, block.steps);
+    due_tick = std::min(due_tick, block.steps > 0 ? block.next_broadcast_tick : kNeverSaid);
+  }
 }
 
 Tick CoverageTable::Row::announced_period() const {
@@ -243,7 +285,7 @@ Tick CoverageTable::announced_period(const Author& author) const {
 
 std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) const {
   const Row* row = find(author);
-  return row == nullptr ? std::nullopt : std::optional(row->min_steps());
+  return row == nullptr ? std::nullopt : std::optional(row->fewest_steps);
 }
 
 std::int64_t CoverageTable::Row::max_steps() const {
@@ -262,7 +304,7 @@ std::uint64_t CoverageTable::Row::state_hash() const {
 }
 
 CoverageTable::RowSummary CoverageTable::Row::holding() const {
-  return {author, min_steps(), max_steps(), announced_period(), state_hash()};
+  return {author, fewest_steps, max_steps(), announced_period(), state_hash()};
 }
 
 CoverageTable::RowSummary CoverageTable::holding(std::size_t i) const { return rows_[i].holding(); }
@@ -288,9 +330,7 @@ double CoverageTable::covered_s() const {
 
 bool CoverageTable::holds_due(const Author& author, Tick tick) const {
   const Row* row = find(author);
-  return row != nullptr && std::all_of(row->blocks.begin(), row->blocks.end(), [&](const Block& b) {
-           return b.steps > 0 && b.next_broadcast_tick > tick;
-         });
+  return row != nullptr && row->due_tick > tick;
 }
 
 }  // namespace ergocast

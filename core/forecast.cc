@@ -61,6 +61,16 @@ void add_gaining(const double* sums, const double* sums_before, double share, Mo
   }
 }
 
+/// sum = before + S + share · gains.
+ERGOCAST_VECTORIZED
+void add_told(const double* sums, const double* gains, double share, Modes modes,
+              const double* before, double* sum) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    sum[k] = before[k] + (sums[k] + share * gains[k]);
+  }
+}
+
 /// sum = before + S + share · f dt.
 ERGOCAST_VECTORIZED
 void add_staying(const CosinesAt& at, const Basis& basis, double dt_s, const double* sums,
@@ -114,6 +124,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       domain_(mission.domain),
       basis_(mission.basis),
       dt_s_(mission.timing.dt_s),
+      block_size_(block_size_of(mission.timing.contribution_encoding)),
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
@@ -149,7 +160,7 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);
     track.due.assign(blocks, 0);
-    track.sums.assign(blocks * kBlockSize, 0);
+    track.sums.assign(blocks * static_cast<std::size_t>(block_size_), 0);
     track.newest.reset();
     track.newest_tick = -1;
   }
@@ -184,8 +195,8 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
   for (std::size_t b = 0; b < track.until.size(); ++b) {
     if (track.said_steps[b] == 0 || place.tick <= track.until[b]) continue;
     if (track.steps[b] == track.said_steps[b]) {
-      std::copy_n(table.view(row, static_cast<int>(b)).sums, kBlockSize,
-                  track.sums.data() + b * kBlockSize);
+      std::copy_n(table.view(row, static_cast<int>(b)).sums, block_size_,
+                  track.sums.data() + b * static_cast<std::size_t>(block_size_));
     }
     track.due[b] = 1;
     track.until[b] = place.tick;
@@ -236,7 +247,7 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
-  Term term{nullptr, nullptr, nullptr, said.steps, 0, said.tick, said.period, 0};
+  Term term{nullptr, nullptr, nullptr, nullptr, said.steps, 0, said.tick, said.period, 0};
   if (!flies_[row] || said.steps == 0) return term;
   Track* track = reckoned_[row];
   if (track == nullptr || track->newest_tick < said.tick) {
@@ -265,8 +276,11 @@ void Forecast::point_terms(const CoverageTable& table, int block) {
     const bool further =
         term->track != nullptr && term->track->steps[static_cast<std::size_t>(block)] > said.steps;
     term->sums = further ? term->track->sums.data() : said.sums - first;
-    const bool gains = term->track == nullptr && term->gained_steps > 0;
-    term->sums_before = gains ? table.gains(row, block).before - first : nullptr;
+    if (term->track == nullptr && term->gained_steps > 0) {
+      const CoverageTable::Gains gains = table.gains(row, block);
+      term->sums_before = gains.told == nullptr ? gains.before - first : nullptr;
+      term->told_gains = gains.told != nullptr ? gains.told - first : nullptr;
+    }
     ++term;
   }
 }
@@ -301,7 +315,7 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
 /// Adds what a row will have covered to `before`.
 void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) const {
   Track* track = term.track;
-  const auto block = modes.first / kBlockSize;
+  const auto block = modes.first / block_size_;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
     add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before, sum);
     track->due[static_cast<std::size_t>(block)] = 0;
@@ -309,6 +323,8 @@ void Forecast::add(const Term& term, Modes modes, const double* before, double* 
     add_sums(term.sums, modes, before, sum);
   } else if (track != nullptr) {
     add_staying(*track->newest, basis_, dt_s_, term.sums, term.share, modes, before, sum);
+  } else if (term.told_gains != nullptr) {
+    add_told(term.sums, term.told_gains, term.share, modes, before, sum);
   } else {
     add_gaining(term.sums, term.sums_before, term.share, modes, before, sum);
   }
@@ -343,8 +359,8 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
 }
 
 Forecast::Modes Forecast::modes_of(int block) const {
-  const int first = block * kBlockSize;
-  return {first, std::min(kBlockSize, basis_.mode_count() - first)};
+  const int first = block * block_size_;
+  return {first, std::min(block_size_, basis_.mode_count() - first)};
 }
 
 }  // namespace ergocast

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <ergocast/agent_status_t.hpp>
+#include <ergocast/averages_t.hpp>
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
@@ -75,6 +76,26 @@ struct Fields<Contribution> {
     io.number(m.block);
     io.number(m.mode_count);
     io.sums(m.sums);
+  }
+};
+
+/// A contribution whose numbers travel in 16 bits.
+struct Averages;
+
+template <>
+struct Fields<Averages> {
+  using Generated = averages_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= 0);
+    io.count(m.steps);
+    io.count(m.next_broadcast_tick);
+    io.finite(m.elapsed_s);
+    io.count(m.gained_steps);
+    io.number(m.block);
+    io.number(m.mode_count);
+    io.averages(m.sums, m.elapsed_s);
+    const double step_s = m.steps > 0 ? m.elapsed_s / static_cast<double>(m.steps) : 0;
+    io.averages(m.gains, static_cast<double>(m.gained_steps) * step_s);
   }
 };
 

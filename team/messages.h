@@ -36,9 +36,10 @@ enum class Refusal {
   kRun,       ///< of another run
   kRange,     ///< an impossible number: NaN, |S| > elapsed, a coverage from the future
   kLimit,     ///< a table is full
+  kEncoding,  ///< a contribution in another encoding than the plan says
   kRate,      ///< its sender exceeds its rate budget
 };
-inline constexpr int kRefusalKinds = 9;
+inline constexpr int kRefusalKinds = 10;
 const char* to_string(Refusal refusal);
 using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
 

@@ -192,5 +192,15 @@ TEST(AgentStatusReport, SequencesGrowByOneOnEachBus) {
   EXPECT_GE(last[static_cast<std::size_t>(Bus::kCommand)], 20);
 }
 
+TEST(AgentRefuses, CoverageInAnotherEncodingThanThePlan) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  Contribution theirs = block_of(mission, 1, {{700, 900, 0}}, 1);
+  theirs.encoding = ContributionEncoding::kFixed16;
+  give(agent, theirs, at(0s));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt);
+  EXPECT_EQ(agent.refused()[static_cast<std::size_t>(Refusal::kEncoding)], 1);
+}
+
 }  // namespace
 }  // namespace ergocast

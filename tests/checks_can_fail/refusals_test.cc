@@ -131,6 +131,13 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
       {Refusal::kRun, [this] { say(seal(team_), hello(run() + 1)); }},
       // An agent that sends the places of all vehicles.
       {Refusal::kRange, [this] { say(seal(team_), world_of(3), Bus::kWorld); }},
+      {Refusal::kEncoding,
+       [this] {
+         Contribution block;
+         block.header = from(0, run());
+         block.encoding = ContributionEncoding::kFixed16;
+         say(seal(team_), block);
+       }},
       {Refusal::kRate, [this] { exceed_rate(); }},
       {Refusal::kLimit, [this] { crowd(); }},
   };
