@@ -69,8 +69,4 @@ std::optional<std::string> write_report(const fs::path& run_dir, const Mission& 
   return {};
 }
 
-std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission) {
-  return write_report(run_dir, mission, nullptr);
-}
-
 }  // namespace ergocast

@@ -39,8 +39,5 @@ std::variant<nlohmann::ordered_json, std::string> read_page_record(
 /// on success, otherwise the error.
 std::optional<std::string> write_report(const std::filesystem::path& run_dir,
                                         const Mission& mission, const nlohmann::ordered_json& team);
-/// The same of a record without an event log, as a simulation writes it.
-std::optional<std::string> write_report(const std::filesystem::path& run_dir,
-                                        const Mission& mission);
 
 }  // namespace ergocast

@@ -228,7 +228,7 @@ class Scenarios : public OwnHost {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
 
-  void write_maps() {
+  void write_files() {
     const std::string header = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n";
     write("good.asc", header + "1 2\n");
     write("even.csv", "1,2\n3,4\n");
@@ -524,7 +524,7 @@ const std::vector<Unsayable> kUnsayable = {
 };
 
 TEST_F(CheckCanFail, InEachOfItsFindings) {
-  write_maps();
+  write_files();
   plant_in_fields();
   plant_in_the_text();
   plant_outside_the_text();
