@@ -19,12 +19,16 @@ const double BlockSums::kZeros[kMostBlockSize] = {};
 namespace {
 
 /// Released memory of blocks of one size, for the next ones: malloc takes long for a kilobyte, and
-/// a step that takes in messages allocates nothing. It stays with its thread to the end.
+/// a step that takes in messages allocates nothing. It ends with its thread.
 struct Spares {
-  std::size_t count;
-  void* pieces[64];
+  ~Spares() {
+    while (count > 0) ::operator delete(pieces[--count]);
+    room = 0;
+  }
+  std::size_t count = 0, room = 64;
+  void* pieces[64] = {};
 };
-constinit thread_local Spares spares_of_doubles{}, spares_of_averages{};
+constinit thread_local Spares spares_of_doubles, spares_of_averages;
 
 Spares* spares_of(std::size_t size) {
   if (size == kBlockSize) return &spares_of_doubles;
@@ -46,7 +50,7 @@ BlockSums::Held* BlockSums::make(std::size_t size) {
 
 void BlockSums::release(Held* held) {
   Spares* const spares = spares_of(held->size);
-  if (spares != nullptr && spares->count < std::size(spares->pieces)) {
+  if (spares != nullptr && spares->count < spares->room) {
     spares->pieces[spares->count++] = held;
   } else {
     ::operator delete(held);

@@ -307,10 +307,10 @@ void write_files(const std::filesystem::path& folder) {
   const auto triangle = [](const char* ring) {
     return std::string(R"({"type": "Polygon", "coordinates": [[)") + ring + "]]}\n";
   };
-  std::ofstream(folder / "a.geojson") << triangle(
-      "[10.0002, 54.0002], [10.0006, 54.0002], [10.0002, 54.0005], [10.0002, 54.0002]");
-  std::ofstream(folder / "b.geojson") << triangle(
-      "[10.0012, 54.0006], [10.0014, 54.0006], [10.0012, 54.0008], [10.0012, 54.0006]");
+  std::ofstream(folder / "a.geojson")
+      << triangle("[10.0002, 54.0002], [10.0006, 54.0002], [10.0002, 54.0005], [10.0002, 54.0002]");
+  std::ofstream(folder / "b.geojson")
+      << triangle("[10.0012, 54.0006], [10.0014, 54.0006], [10.0012, 54.0008], [10.0012, 54.0006]");
   write_png(folder / "a.png", 4, 2, {.bits = 16},
             [](int column, int row, int) { return 1000 * (1 + column + 4 * row); });
 }
