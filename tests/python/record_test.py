@@ -9,6 +9,7 @@ import tempfile
 import threading
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -64,10 +65,9 @@ class SameAsTheCommand(WithRecord):
         self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
 
     def test_without_a_folder_it_leaves_nothing_and_is_the_same_run(self):
-        before = set(os.listdir(tempfile.gettempdir()))
-        run = ergocast.simulate(SCENARIO, seed=7, set=SHORT)
-        left = set(os.listdir(tempfile.gettempdir())) - before
-        self.assertFalse([name for name in left if name.startswith("ergocast-")])
+        with tempfile.TemporaryDirectory() as own, mock.patch("tempfile.tempdir", own):
+            run = ergocast.simulate(SCENARIO, seed=7, set=SHORT)
+            self.assertEqual(os.listdir(own), [])
         self.assertTrue(run.trajectory.equals(self.run_.trajectory))
         self.assertTrue(run.metrics.equals(self.run_.metrics))
 
