@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/segment_compressor.h"
+
 namespace lcm {
 class LogFile;
 }
@@ -22,6 +24,7 @@ inline constexpr std::int64_t kEventLogMib = 4096;
 struct EventLogLimits {
   std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment ends and the next begins
   std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest are removed first
+  bool compressed = false;  ///< whether finished segments become events-….lcm.zst
 };
 
 /// Writes events-000.lcm, events-001.lcm, … in one folder, after the highest existing number: the
@@ -34,8 +37,9 @@ class EventLog {
   /// Appends a message; discards it while the log cannot be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
 
-  /// Passes all data to the operating system. Returns the write error since the last call, if any:
-  /// the segment then ends with its last whole event, and the next call begins a new segment.
+  /// Passes all data to the operating system, and compresses a part of what is to be. Returns the
+  /// write error since the last call, if any: the segment then ends with its last whole event, and
+  /// the next call begins a new segment.
   std::optional<std::string> flush();
 
   /// Segments removed because of the limit.
@@ -56,6 +60,7 @@ class EventLog {
   std::deque<std::int64_t> ends_;  // of its last events
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::unique_ptr<lcm::LogFile> log_;
+  std::optional<SegmentCompressor> compressor_;  // if they are to be compressed
   std::optional<std::string> error_;
   bool told_ = false;  // the caller has received the error
 };

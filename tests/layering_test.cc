@@ -21,6 +21,7 @@ enum class Outside {
   kProtobuf,     // the scenario's messages
   kLcm,          // the network
   kLcmTypes,     // lcm-gen's structs
+  kZstd,         // libzstd
   kLog,          // spdlog
   kCommandLine,  // CLI11
   kJson,         // nlohmann
@@ -51,7 +52,7 @@ const std::vector<Rule> kRules = {
     {"scenario", {"text", "core", "target", "scenario"}, {kProtobuf, kCommandLine, kFiles}},
     {"runtime",
      {"text", "core", "team", "lcmtypes", "runtime"},
-     {kLcm, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
+     {kLcm, kZstd, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
     // The participants: they know the shared parts, but not each other.
     {"agent", {"core", "team", "agent"}, {}},
     {"coordinator", {"core", "team", "coordinator"}, {}},
@@ -93,6 +94,7 @@ const std::vector<Kind> kKinds = {
     {kProtobuf, {"google/protobuf/*", "*.pb.h"}},
     {kLcm, {"lcm/*"}},
     {kLcmTypes, {"ergocast/*"}},
+    {kZstd, {"zstd.h"}},
     {kLog, {"spdlog/*"}},
     {kCommandLine, {"CLI/*"}},
     {kJson, {"nlohmann/*"}},
