@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <numeric>
 
 #include "core/noise.h"
 
@@ -15,8 +17,6 @@ using namespace std::chrono_literals;
 
 /// An answer waits a random share of this, so that one of many answers first.
 constexpr double kLongestDelay_s = 0.25;
-/// Two complaints further apart are not in a row: a teammate that was cut off starts anew.
-constexpr auto kComplaintLife = 5s;
 constexpr std::size_t kMaxComplaints = 8192;
 constexpr int kToleratedPeriods = 2;
 
@@ -30,29 +30,73 @@ bool lacks_something(const CoverageTable& table, std::size_t row, bool will_spea
   return ours.steps > steps || (state_hash != ours.state_hash && ours.newest_steps > steps);
 }
 
+/// The sum over all former members of a hash of what is held of each.
+std::uint64_t hash_of_settled(const CoverageTable& table, const std::vector<RosterEntry>& roster) {
+  std::uint64_t sum = 0;
+  for (const RosterEntry& entry : roster) {
+    if (entry.active_until < 0) continue;
+    const std::uint64_t mark = table.holding(entry.author).state_hash ^ entry.author.incarnation;
+    sum += (mark ^ mark >> 32) * 0x9e3779b97f4a7c15;
+  }
+  return sum;
+}
+
+/// Calls `take` with `most` of `count` numbers, from the one on whose turn it is.
+template <class Take>
+void take_turns(std::size_t count, std::size_t most, std::size_t& turn, const Take& take) {
+  for (std::size_t i = 0; i < std::min(count, most); ++i) take(turn++ % count);
+}
+
 }  // namespace
 
-std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
-                                         const std::vector<RosterEntry>& roster) {
-  std::vector<Digest> digests;
-  for (const RosterEntry& entry : roster) {
-    if (digests.empty() || digests.back().entry_count == kMaxDigestEntriesPerMessage) {
-      digests.emplace_back();
-    }
-    Digest& digest = digests.back();
-    const CoverageTable::RowSummary held = table.holding(entry.author);
-    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {entry.author, held.steps,
+bool AntiEntropy::seems_lacking(const CoverageTable& table, const RosterEntry& entry,
+                                Tick tick) const {
+  if (entry.author == self_) return false;
+  if (entry.active_until >= 0) return settled_differs_;
+  const Tick patience = kToleratedPeriods * table.announced_period(entry.author);
+  return entry.active_from < tick && !table.holds_due(entry.author, tick - patience);
+}
+
+Digest AntiEntropy::digest(const CoverageTable& table, const std::vector<RosterEntry>& roster,
+                           Tick tick) {
+  constexpr std::size_t kMost = kMaxDigestEntriesPerMessage;
+  std::vector<std::size_t> chosen(roster.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  if (roster.size() > kMost) {
+    std::vector<std::size_t> lacking;
+    std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(lacking),
+                 [&](std::size_t i) { return seems_lacking(table, roster[i], tick); });
+    chosen.clear();
+    take_turns(lacking.size(), kMost - kInTurn, lacking_turn_,
+               [&](std::size_t i) { chosen.push_back(lacking[i]); });
+    take_turns(roster.size(), kMost - chosen.size(), turn_,
+               [&](std::size_t i) { chosen.push_back(i); });
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  }
+  Digest digest;
+  for (const std::size_t i : chosen) {
+    const CoverageTable::RowSummary held = table.holding(roster[i].author);
+    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {roster[i].author, held.steps,
                                                                       held.state_hash};
   }
-  return digests;
+  digest.settled_hash = settled_hash_ = hash_of_settled(table, roster);
+  settled_differs_ = false;
+  round_s_ = round_s(roster.size());
+  return digest;
 }
+
+/// Two complaints further apart are not in a row: a teammate that was cut off starts anew. A lost
+/// digest in between is no such break.
+PacingClock::duration AntiEntropy::complaint_life() const { return seconds(3 + 2 * round_s_); }
 
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
                      const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
+  settled_differs_ = settled_differs_ || theirs.settled_hash != settled_hash_;
   const Author requester{theirs.header.sender, theirs.header.incarnation};
   if (complaints_.size() >= kMaxComplaints) {
-    std::erase_if(complaints_, [now](const auto& complaint) {
-      return now - complaint.second.at > kComplaintLife;
+    std::erase_if(complaints_, [&](const auto& complaint) {
+      return now - complaint.second.at > complaint_life();
     });
   }
   // Digest, roster and table all ascend by author: one walk along all three.
@@ -85,7 +129,7 @@ void AntiEntropy::consider(const Author& requester, const Author& author, bool l
     return;
   }
   if (sequence <= former->second.sequence) return;
-  const bool in_a_row = now - former->second.at <= kComplaintLife;
+  const bool in_a_row = now - former->second.at <= complaint_life();
   former->second = {sequence, now};
   if (!in_a_row || answers_.count(author) != 0 || !may_answer(now, tick)) return;
   const double delay_s =

@@ -21,6 +21,9 @@ namespace {
 constexpr int kFirstForeignNumber = 1'000'000'000;
 /// More bytes than the C library buffers before it writes.
 constexpr std::int64_t kUnwrittenBytes = 1 << 17;
+/// Compressed by each flush(): more than a second of the fastest missions writes.
+constexpr std::size_t kCompressedAtOnce = std::size_t{32} << 20;
+constexpr std::string_view kCompressed = ".zst";
 
 std::int64_t wall_clock_us() {
   using namespace std::chrono;
@@ -47,7 +50,7 @@ bool put(std::FILE* file, std::span<const std::byte> bytes) {
   return std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
 }
 
-/// Sizes of the segments in a folder, by number.
+/// Sizes of the segments in a folder, by number; compressed ones are segments, too.
 std::map<int, std::int64_t> segments_in(const std::filesystem::path& folder) {
   std::map<int, std::int64_t> segments;
   std::error_code error;
@@ -55,15 +58,22 @@ std::map<int, std::int64_t> segments_in(const std::filesystem::path& folder) {
     const std::optional<int> number = segment_number(entry.path().filename().string());
     if (!number) continue;
     const auto bytes = entry.file_size(error);
-    segments[*number] = error ? 0 : static_cast<std::int64_t>(bytes);
+    segments[*number] += error ? 0 : static_cast<std::int64_t>(bytes);
   }
   return segments;
+}
+
+bool remove_segment(const std::filesystem::path& file) {
+  std::error_code error;
+  const bool whole = std::filesystem::remove(file, error);
+  return std::filesystem::remove(file.string() + std::string(kCompressed), error) || whole;
 }
 
 }  // namespace
 
 std::optional<int> segment_number(std::string_view file) {
   constexpr std::string_view kBefore = "events-", kAfter = ".lcm";
+  if (file.ends_with(kCompressed)) file.remove_suffix(kCompressed.size());
   if (!file.starts_with(kBefore) || !file.ends_with(kAfter)) return std::nullopt;
   file.remove_prefix(kBefore.size());
   file.remove_suffix(kAfter.size());
@@ -73,6 +83,7 @@ std::optional<int> segment_number(std::string_view file) {
 
 EventLog::EventLog(std::filesystem::path folder, EventLogLimits limits)
     : folder_(std::move(folder)), limits_(limits) {
+  if (limits_.compressed) compressor_.emplace();
   const auto there = segments_in(folder_);
   if (!there.empty()) first_segment_ = there.rbegin()->first + 1;
   std::error_code ignored;
@@ -120,8 +131,7 @@ void EventLog::make_room() {
   std::int64_t total = 0;
   for (const auto& [number, bytes] : there) total += bytes;
   while (!there.empty() && total + limits_.segment_bytes > limits_.total_bytes) {
-    std::error_code error;
-    if (!std::filesystem::remove(segment_file(there.begin()->first), error)) return;
+    if (!remove_segment(segment_file(there.begin()->first))) return;
     total -= there.begin()->second;
     there.erase(there.begin());
     ++removed_;
@@ -137,6 +147,8 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes,
   if (error_) return;
   if (written_ >= limits_.segment_bytes) {
     if (std::fflush(log_.get()) != 0) return fail();
+    log_.reset();
+    if (compressor_) compressor_->add(file_);
     open_next();
     if (error_) return;
   }
@@ -157,15 +169,15 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes,
 
 std::optional<std::string> EventLog::flush() {
   if (error_ && told_) open_next();
+  if (compressor_) compressor_->work(kCompressedAtOnce);
   if (!error_ && std::fflush(log_.get()) != 0) fail();
   told_ = error_.has_value();
   return error_;
 }
 
 void EventLog::discard() {
-  std::error_code ignored;
   for (int segment = first_segment_; segment < segment_; ++segment) {
-    std::filesystem::remove(segment_file(segment), ignored);
+    remove_segment(segment_file(segment));
   }
 }
 

@@ -12,6 +12,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/segment_compressor.h"
+
 namespace ergocast {
 
 /// What an event of LCM's log format begins with: this word, its number and time stamp [µs] in 64
@@ -24,6 +26,7 @@ inline constexpr std::int64_t kEventLogMib = 4096;
 struct EventLogLimits {
   std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment ends and the next begins
   std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest are removed first
+  bool compressed = false;  ///< whether finished segments become events-….lcm.zst
 };
 
 /// Writes events-000.lcm, events-001.lcm, … in one folder, after the highest existing number: the
@@ -37,8 +40,9 @@ class EventLog {
   /// The same at a time of the caller's [µs since 1970].
   void write(std::string_view channel, std::span<const std::byte> bytes, std::int64_t time_us);
 
-  /// Passes all data to the operating system. Returns the write error since the last call, if any:
-  /// the segment then ends with its last whole event, and the next call begins a new segment.
+  /// Passes all data to the operating system, and compresses a part of what is to be. Returns the
+  /// write error since the last call, if any: the segment then ends with its last whole event, and
+  /// the next call begins a new segment.
   std::optional<std::string> flush();
 
   /// Segments removed because of the limit.
@@ -60,6 +64,7 @@ class EventLog {
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::int64_t number_ = 0;  // of the next event of the segment
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_{nullptr, &std::fclose};
+  std::optional<SegmentCompressor> compressor_;  // if they are to be compressed
   std::optional<std::string> error_;
   bool told_ = false;  // the caller has received the error
 };

@@ -84,6 +84,41 @@ TEST_F(EventLogTest, HoldsNoMoreThanItsLimitAndLosesItsOldestSegmentsFirst) {
   }
 }
 
+TEST_F(EventLogTest, CompressesFinishedSegmentsIntoWhatZstdTurnsBackIntoTheSameBytes) {
+  EventLog plain(folder_, {.segment_bytes = 10000});
+  for (int i = 0; i < 25; ++i) plain.write("NAME", kEvent);
+  plain.flush();
+  {
+    EventLog log(folder_, {.segment_bytes = 10000, .compressed = true});
+    for (int i = 0; i < 25; ++i) log.write("NAME", kEvent);
+    log.flush();
+    EXPECT_EQ(files(), (std::set<std::string>{"events-000.lcm", "events-001.lcm", "events-002.lcm",
+                                              "events-003.lcm.zst", "events-004.lcm.zst",
+                                              "events-005.lcm"}));
+  }
+  for (const char* name : {"events-003.lcm", "events-004.lcm"}) {
+    const fs::path file = folder_ / name;
+    EXPECT_LT(fs::file_size(file.string() + ".zst"), 1000U) << "zeros";
+    ASSERT_EQ(std::system(("zstd -q -d " + file.string() + ".zst").c_str()), 0);
+    EXPECT_EQ(events(name), 10) << name;
+  }
+}
+
+TEST_F(EventLogTest, CompressedSegmentsAreNumberedAndLimitedLikeOthers) {
+  {
+    EventLog log(folder_, {.segment_bytes = 10000, .compressed = true});
+    for (int i = 0; i < 15; ++i) log.write("NAME", kEvent);
+    log.flush();
+    std::ofstream(folder_ / "events-000.lcm.zst") << std::string(26000, 'x');
+  }
+  EventLog log(folder_, {.segment_bytes = 10000, .total_bytes = 40000, .compressed = true});
+  log.write("NAME", kEvent);
+  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm", "events-002.lcm"}));
+  EXPECT_EQ(log.removed(), 1);
+  log.discard();
+  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm"}));
+}
+
 TEST_F(EventLogTest, GoesOnAfterTheHighestNumberAndCountsWhatOthersLeft) {
   for (int i = 0; i < 3; ++i) {
     EventLog log(folder_, {.segment_bytes = 10000, .total_bytes = 20000});
