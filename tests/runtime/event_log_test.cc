@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runtime/event_log_reader.h"
+#include "runtime/segment_compressor.h"
 #include "tests/support/temp_folder.h"
 
 namespace ergocast {
@@ -193,6 +194,22 @@ TEST_F(EventLogReaderTest, GivesBackEachEventOfAllSegmentsInOrder) {
   write({"A", "B", "C", "D", "E", "F"});
   EXPECT_TRUE(fs::exists(segment(1)));
   EXPECT_EQ(read_back(folder_), "A B C D E F ");
+}
+
+TEST_F(EventLogReaderTest, ReadsCompressedSegmentsAsTheyAre) {
+  write({"A", "B", "C", "D", "E", "F"});
+  SegmentCompressor compressor;
+  compressor.add(segment(0));
+  while (!compressor.idle()) compressor.work(1 << 20);
+  ASSERT_FALSE(fs::exists(segment(0)));
+  EXPECT_EQ(read_back(folder_), "A B C D E F ");
+  // Of both, the one that is not compressed.
+  const fs::path packed = segment(0).string() + ".zst";
+  fs::copy_file(segment(1), segment(0));
+  EXPECT_EQ(read_back(folder_), "E F E F ");
+  fs::remove(segment(0));
+  fs::resize_file(packed, fs::file_size(packed) / 2);
+  EXPECT_EQ(read_back(folder_), "E F ");
 }
 
 TEST_F(EventLogReaderTest, LeavesOutWhatAKilledLoggerBegan) {
