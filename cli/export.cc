@@ -112,7 +112,7 @@ void add_export(CLI::App& app, Action& action) {
   command
       ->add_option_function<std::string>(
           "--origin", [options](const std::string& text) { options->origin = parse_origin(text); },
-          "GeoPlace of (0, 0) in degrees of WGS 84 (default: the scenario's origin)")
+          "Place of (0, 0) in degrees of WGS 84 (default: the scenario's origin)")
       ->type_name("LATITUDE,LONGITUDE");
   command->footer("Exit codes: 0 done; 2 no record, or it is damaged; 4 it cannot be written.");
   command->callback([&action, options] { action = [options] { return export_run(*options); }; });

@@ -42,10 +42,7 @@ BlockSums::Held* BlockSums::make(std::size_t size) {
   void* const room = spares != nullptr && spares->count > 0
                          ? spares->pieces[--spares->count]
                          : ::operator new(sizeof(Held) + size * sizeof(double));
-  Held* const held = ::new (room) Held;
-  held->holders = 1;
-  held->size = static_cast<std::uint32_t>(size);
-  return held;
+  return ::new (room) Held{.largest = -1, .holders = 1, .size = static_cast<std::uint32_t>(size)};
 }
 
 void BlockSums::release(Held* held) {

@@ -79,14 +79,15 @@ class McapExport {
     const std::uint64_t begin_ns = record_.time_ns(0);
     waiting_.push_back({begin_ns, target, foxglove::grid(begin_ns, record_.target, mission_)});
     const auto coverage = channel("/coverage", foxglove::grid_schema());
-    const auto [columns, rows] = coverage_cells(mission_);
+    const auto cells_along = coverage_cells(mission_);
     Coefficients sums = Coefficients::Zero(mission_.basis.mode_count());
     double samples = 0;
     int shown = 0;
     const double end_s = record_.run.end_s();
     const auto show = [&](double t_s) {
       const std::uint64_t time_ns = record_.time_ns(t_s);
-      const DensityCells cells = density_of(sums / samples, mission_, columns, rows);
+      const DensityCells cells =
+          density_of(sums / samples, mission_, cells_along.first, cells_along.second);
       waiting_.push_back({time_ns, coverage, foxglove::grid(time_ns, cells, mission_)});
     };
     double last_s = 0;

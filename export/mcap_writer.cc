@@ -91,11 +91,11 @@ std::uint32_t crc32(std::string_view bytes, std::uint32_t before) {
 
 McapWriter::McapWriter(const std::filesystem::path& file)
     : path_(file), file_(std::fopen(file.c_str(), "wb"), &std::fclose) {
-  write(kMagic);
+  write(std::string(kMagic));
   write(record(Op::kHeader, Fields().text("").text("ergocast")));
 }
 
-void McapWriter::write(std::string_view bytes) {
+void McapWriter::write(const std::string& bytes) {
   at_ += bytes.size();
   failed_ =
       failed_ || !file_ || std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size();
@@ -227,7 +227,7 @@ std::optional<std::string> McapWriter::finish() {
   end_chunk();
   write(record(Op::kDataEnd, Fields().number(std::uint32_t{0})));
   write(summary(at_));
-  write(kMagic);
+  write(std::string(kMagic));
   failed_ = failed_ || std::fflush(file_.get()) != 0;
   if (failed_) return path_.string() + ": " + std::strerror(errno);
   return std::nullopt;

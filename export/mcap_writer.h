@@ -45,7 +45,7 @@ class McapWriter {
     std::string name;
   };
 
-  void write(std::string_view bytes);
+  void write(const std::string& bytes);
   void end_chunk();
   std::string summary(std::uint64_t at) const;
   std::string statistics() const;

@@ -168,8 +168,11 @@ class GeoJsonReader {
                "write longitude before latitude; or move the origin");
         return std::nullopt;
       }
-      if (i == 0) local.polygon.outline = std::move(ring);
-      if (i > 0) local.polygon.holes.push_back(std::move(ring));
+      if (i == 0) {
+        local.polygon.outline = std::move(ring);
+      } else {
+        local.polygon.holes.push_back(std::move(ring));
+      }
     }
     if (const auto flaw = flaw_of(local.polygon, least_area_m2(longer_side_m))) {
       const std::string ring = "ring " + std::to_string(flaw->hole + 1) + ": ";
