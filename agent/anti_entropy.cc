@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iterator>
-#include <numeric>
 
 #include "core/noise.h"
 
@@ -41,10 +39,18 @@ std::uint64_t hash_of_settled(const CoverageTable& table, const std::vector<Rost
   return sum;
 }
 
-/// Calls `take` with `most` of `count` numbers, from the one on whose turn it is.
-template <class Take>
-void take_turns(std::size_t count, std::size_t most, std::size_t& turn, const Take& take) {
-  for (std::size_t i = 0; i < std::min(count, most); ++i) take(turn++ % count);
+/// Up to `most` of `authors`, which ascend: those after `last`, then from the first one on. Whoever
+/// comes or goes in between delays no other's turn.
+std::vector<Author> next_in_turn(const std::vector<Author>& authors, std::size_t most,
+                                 Author& last) {
+  std::vector<Author> next;
+  auto at = std::upper_bound(authors.begin(), authors.end(), last);
+  while (next.size() < std::min(authors.size(), most)) {
+    if (at == authors.end()) at = authors.begin();
+    next.push_back(*at++);
+  }
+  if (!next.empty()) last = next.back();
+  return next;
 }
 
 }  // namespace
@@ -57,27 +63,29 @@ bool AntiEntropy::seems_lacking(const CoverageTable& table, const RosterEntry& e
   return entry.active_from < tick && !table.holds_due(entry.author, tick - patience);
 }
 
+std::vector<Author> AntiEntropy::to_be_named(const CoverageTable& table,
+                                             const std::vector<RosterEntry>& roster, Tick tick) {
+  constexpr std::size_t kMost = kMaxDigestEntriesPerMessage;
+  std::vector<Author> all, lacking;
+  for (const RosterEntry& entry : roster) {
+    all.push_back(entry.author);
+    if (seems_lacking(table, entry, tick)) lacking.push_back(entry.author);
+  }
+  if (all.size() <= kMost) return all;
+  std::vector<Author> named = next_in_turn(lacking, kMost - kInTurn, last_lacking_);
+  const std::vector<Author> others = next_in_turn(all, kMost - named.size(), last_);
+  named.insert(named.end(), others.begin(), others.end());
+  std::sort(named.begin(), named.end());
+  named.erase(std::unique(named.begin(), named.end()), named.end());
+  return named;
+}
+
 Digest AntiEntropy::digest(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                            Tick tick) {
-  constexpr std::size_t kMost = kMaxDigestEntriesPerMessage;
-  std::vector<std::size_t> chosen(roster.size());
-  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  if (roster.size() > kMost) {
-    std::vector<std::size_t> lacking;
-    std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(lacking),
-                 [&](std::size_t i) { return seems_lacking(table, roster[i], tick); });
-    chosen.clear();
-    take_turns(lacking.size(), kMost - kInTurn, lacking_turn_,
-               [&](std::size_t i) { chosen.push_back(lacking[i]); });
-    take_turns(roster.size(), kMost - chosen.size(), turn_,
-               [&](std::size_t i) { chosen.push_back(i); });
-    std::sort(chosen.begin(), chosen.end());
-    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-  }
   Digest digest;
-  for (const std::size_t i : chosen) {
-    const CoverageTable::RowSummary held = table.holding(roster[i].author);
-    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {roster[i].author, held.steps,
+  for (const Author& author : to_be_named(table, roster, tick)) {
+    const CoverageTable::RowSummary held = table.holding(author);
+    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {author, held.steps,
                                                                       held.state_hash};
   }
   digest.settled_hash = settled_hash_ = hash_of_settled(table, roster);

@@ -67,6 +67,8 @@ class AntiEntropy {
   };
 
   bool seems_lacking(const CoverageTable& table, const RosterEntry& entry, Tick tick) const;
+  std::vector<Author> to_be_named(const CoverageTable& table,
+                                  const std::vector<RosterEntry>& roster, Tick tick);
   void consider(const Author& requester, const Author& author, bool lacks, std::int64_t sequence,
                 Instant now, Tick tick);
   PacingClock::duration complaint_life() const;
@@ -77,10 +79,10 @@ class AntiEntropy {
   double dt_s_;
   std::map<std::pair<Author, Author>, RowRequest> complaints_;  // (who lacks, whose coverage)
   std::map<Author, Deadline> answers_;
-  std::size_t turn_ = 0, lacking_turn_ = 0;  // of the entries that a digest names
-  std::uint64_t settled_hash_ = 0;           // as our last digest said
-  bool settled_differs_ = false;             // from a teammate's, since then
-  double round_s_ = 1;                       // of the roster as we last heard of it
+  Author last_, last_lacking_;      // the last that were named in turn
+  std::uint64_t settled_hash_ = 0;  // as our last digest said
+  bool settled_differs_ = false;    // from a teammate's, since then
+  double round_s_ = 1;              // of the roster as we last heard of it
   Deadline next_window_;
   std::size_t window_answers_ = 0;
   std::uint64_t draws_ = 0;

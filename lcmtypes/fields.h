@@ -61,7 +61,7 @@ struct Fields<MissionPart> {
       io.count(entry.since_revision);
     }
     io.bytes(m.plan);
-    io.text(m.reason, kMaxReasonLength - 8);  // a full part has no more room
+    io.text(m.reason, kMaxReasonLength);
   }
 };
 

@@ -21,8 +21,8 @@ namespace {
 constexpr int kFirstForeignNumber = 1'000'000'000;
 /// More bytes than the C library buffers before it writes.
 constexpr std::int64_t kUnwrittenBytes = 1 << 17;
-/// Compressed by each flush(): more than a second of the fastest missions writes.
-constexpr std::size_t kCompressedAtOnce = std::size_t{32} << 20;
+/// A finished segment is compressed while half of the next is written, or so many bytes a flush().
+constexpr std::int64_t kCompressedPerByte = 2, kCompressedPerFlush = 1 << 20;
 constexpr std::string_view kCompressed = ".zst";
 
 std::int64_t wall_clock_us() {
@@ -83,13 +83,20 @@ std::optional<int> segment_number(std::string_view file) {
 
 EventLog::EventLog(std::filesystem::path folder, EventLogLimits limits)
     : folder_(std::move(folder)), limits_(limits) {
-  if (limits_.compressed) compressor_.emplace();
   const auto there = segments_in(folder_);
+  if (limits_.compressed) {
+    compressor_.emplace();
+    for (const auto& [number, bytes] : there) compressor_->add(segment_file(number));
+  }
   if (!there.empty()) first_segment_ = there.rbegin()->first + 1;
   std::error_code ignored;
   while (std::filesystem::exists(segment_file(first_segment_), ignored)) ++first_segment_;
   segment_ = first_segment_;
   open_next();
+}
+
+EventLog::~EventLog() {
+  while (compressor_ && !compressor_->idle()) compressor_->work(kCompressedPerFlush);
 }
 
 void EventLog::fail() {
@@ -162,20 +169,23 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes,
   if (!put(log_.get(), header.bytes()) || !put(log_.get(), name) || !put(log_.get(), bytes)) {
     return fail();
   }
-  written_ += static_cast<std::int64_t>(kEventHeaderBytes + channel.size() + bytes.size());
+  const auto size = static_cast<std::int64_t>(kEventHeaderBytes + channel.size() + bytes.size());
+  written_ += size;
+  if (compressor_) compressor_->work(kCompressedPerByte * size);
   ends_.push_back(written_);
   while (ends_.front() < written_ - kUnwrittenBytes) ends_.pop_front();
 }
 
 std::optional<std::string> EventLog::flush() {
   if (error_ && told_) open_next();
-  if (compressor_) compressor_->work(kCompressedAtOnce);
+  if (compressor_) compressor_->work(kCompressedPerFlush);
   if (!error_ && std::fflush(log_.get()) != 0) fail();
   told_ = error_.has_value();
   return error_;
 }
 
 void EventLog::discard() {
+  compressor_.reset();
   for (int segment = first_segment_; segment < segment_; ++segment) {
     remove_segment(segment_file(segment));
   }

@@ -26,7 +26,7 @@ inline constexpr std::int64_t kEventLogMib = 4096;
 struct EventLogLimits {
   std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment ends and the next begins
   std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest are removed first
-  bool compressed = false;  ///< whether finished segments become events-….lcm.zst
+  bool compressed = false;  ///< finished segments become events-….lcm.zst, also those of before
 };
 
 /// Writes events-000.lcm, events-001.lcm, … in one folder, after the highest existing number: the
@@ -34,15 +34,18 @@ struct EventLogLimits {
 class EventLog {
  public:
   explicit EventLog(std::filesystem::path folder, EventLogLimits limits = {});
+  EventLog(const EventLog&) = delete;
+  EventLog& operator=(const EventLog&) = delete;
+  /// Compresses what is to be and is not yet.
+  ~EventLog();
 
   /// Appends a message, at the wall clock's time; discards it while the log cannot be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
   /// The same at a time of the caller's [µs since 1970].
   void write(std::string_view channel, std::span<const std::byte> bytes, std::int64_t time_us);
 
-  /// Passes all data to the operating system, and compresses a part of what is to be. Returns the
-  /// write error since the last call, if any: the segment then ends with its last whole event, and
-  /// the next call begins a new segment.
+  /// Passes all data to the operating system. Returns the write error since the last call, if any:
+  /// the segment then ends with its last whole event, and the next call begins a new segment.
   std::optional<std::string> flush();
 
   /// Segments removed because of the limit.

@@ -72,11 +72,21 @@ std::string EventLogReader::place() const {
          std::to_string(begin_);
 }
 
+/// On to the next one, unless compressed bytes are damaged.
+const LoggedEvent* EventLogReader::end_segment() {
+  if (file_->damaged()) return refuse("damaged");
+  file_.reset();
+  return next();
+}
+
 const LoggedEvent* EventLogReader::refuse(const std::string& what) {
-  const bool packed = compressed(segments_[next_segment_ - 1]);
-  problem_ = place() + ": " + what +
-             "; what stands before is sound: " + (packed ? "`zstd -d`, then " : "") +
-             "`truncate -s " + std::to_string(begin_) + "` on a copy keeps it";
+  const std::string bytes = std::to_string(begin_);
+  const std::filesystem::path& segment = segments_[next_segment_ - 1];
+  const std::string remedy = compressed(segment) ? "`zstd -dc " + segment.filename().string() +
+                                                       " | head -c " + bytes + " > " +
+                                                       segment.stem().string() + "` keeps it"
+                                                 : "`truncate -s " + bytes + "` on a copy keeps it";
+  problem_ = place() + ": " + what + "; what stands before is sound: " + remedy;
   return nullptr;
 }
 
@@ -84,10 +94,7 @@ const LoggedEvent* EventLogReader::next() {
   if (problem_ || (!file_ && !open_next())) return nullptr;
   std::array<std::byte, kEventHeaderBytes> header{};
   begin_ = file_->position();
-  if (!file_->read(header.data(), header.size())) {
-    file_.reset();  // an incomplete event, or none: on to the next segment
-    return next();
-  }
+  if (!file_->read(header.data(), header.size())) return end_segment();
   const std::span<const std::byte> bytes(header);
   if (big_endian<std::uint32_t>(bytes) != kEventSync) return refuse("no event of LCM's log format");
   event_.time_us = big_endian<std::int64_t>(bytes.subspan(12));
@@ -100,8 +107,7 @@ const LoggedEvent* EventLogReader::next() {
   event_.bytes.resize(size);
   if (file_->read(event_.channel.data(), name) && file_->read(event_.bytes.data(), size))
     return &event_;
-  file_.reset();
-  return next();
+  return end_segment();
 }
 
 }  // namespace ergocast

@@ -39,6 +39,7 @@ class EventLogReader {
   explicit EventLogReader(std::vector<std::filesystem::path> segments)
       : segments_(std::move(segments)) {}
   bool open_next();
+  const LoggedEvent* end_segment();
   const LoggedEvent* refuse(const std::string& what);
 
   std::vector<std::filesystem::path> segments_;

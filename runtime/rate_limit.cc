@@ -20,12 +20,6 @@ constexpr double kOthersPerSecond = 40;
 /// The messages of one agent that may wait for a delayed process: the kernel's buffers hold fewer.
 constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
-double parts(std::size_t count, int of) {
-  const std::size_t whole =
-      (count + static_cast<std::size_t>(of) - 1) / static_cast<std::size_t>(of);
-  return static_cast<double>(whole);
-}
-
 }  // namespace
 
 RateBudget allowance_of(const Mission& mission, std::size_t members) {

@@ -4,7 +4,6 @@
 
 #include <zstd.h>
 
-#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -32,8 +31,9 @@ SegmentCompressor::~SegmentCompressor() {
   if (from_) end(false);
 }
 
-void SegmentCompressor::work(std::size_t bytes) {
-  while (!waiting_.empty() && bytes > 0) {
+void SegmentCompressor::work(std::int64_t bytes) {
+  constexpr auto kBlock = static_cast<std::int64_t>(kBlockBytes);
+  for (allowed_ += bytes; allowed_ >= kBlock && !waiting_.empty(); allowed_ -= kBlock) {
     if (!from_ && !begin()) {
       end(false);
       continue;
@@ -42,14 +42,14 @@ void SegmentCompressor::work(std::size_t bytes) {
     const bool last = read < in_.size();
     const bool sound = std::ferror(from_.get()) == 0 && pass_on(read, last);
     if (last || !sound) end(sound);
-    bytes -= std::min(bytes, in_.size());
   }
+  allowed_ %= kBlock;
 }
 
 bool SegmentCompressor::begin() {
   ZSTD_CCtx_reset(context_.get(), ZSTD_reset_session_only);
   from_.reset(std::fopen(waiting_.front().c_str(), "rb"));
-  to_.reset(std::fopen(part().c_str(), "wb"));
+  if (from_) to_.reset(std::fopen(part().c_str(), "wb"));
   return from_ && to_;
 }
 

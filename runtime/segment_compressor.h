@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <deque>
 #include <filesystem>
@@ -23,9 +24,9 @@ class SegmentCompressor {
   /// Will compress `file`, to which nothing more is written.
   void add(std::filesystem::path file) { waiting_.push_back(std::move(file)); }
 
-  /// Compresses up to so many bytes. A file that cannot be read, or whose copy cannot be written,
-  /// is left as it is.
-  void work(std::size_t bytes);
+  /// Compresses so many bytes more, to the last whole block. A file that cannot be read, or whose
+  /// copy cannot be written, is left as it is.
+  void work(std::int64_t bytes);
 
   bool idle() const { return waiting_.empty(); }
 
@@ -41,6 +42,7 @@ class SegmentCompressor {
   File from_, to_;
   std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> context_;
   std::vector<char> in_, out_;
+  std::int64_t allowed_ = 0;  // bytes, less than a block
 };
 
 }  // namespace ergocast

@@ -21,17 +21,19 @@ bool SegmentFile::read(void* to, std::size_t bytes) {
 
 std::size_t SegmentFile::decompress(void* to, std::size_t bytes) {
   ZSTD_outBuffer out{to, bytes, 0};
-  while (out.pos < out.size) {
+  while (out.pos < out.size && !damaged_) {
     if (in_used_ == in_size_) {
       in_size_ = std::fread(in_.data(), 1, in_.size(), file_.get());
       in_used_ = 0;
     }
-    const bool ended = in_size_ == 0;
+    const bool at_end = in_size_ == 0;
+    if (at_end && frame_ended_) break;
     const std::size_t before = out.pos;
     ZSTD_inBuffer in{in_.data(), in_size_, in_used_};
     const std::size_t result = ZSTD_decompressStream(context_.get(), &out, &in);
     in_used_ = in.pos;
-    if (ZSTD_isError(result) != 0 || (ended && out.pos == before)) break;
+    frame_ended_ = result == 0;
+    damaged_ = ZSTD_isError(result) != 0 || (at_end && !frame_ended_ && out.pos == before);
   }
   return out.pos;
 }

@@ -20,8 +20,10 @@ class SegmentFile {
   explicit SegmentFile(const std::filesystem::path& file);
 
   bool good() const { return file_ != nullptr; }
-  /// False if the segment ends, or what follows is damaged, before so many bytes.
+  /// False if the segment ends before so many bytes.
   bool read(void* to, std::size_t bytes);
+  /// Whether it ended because what follows is no whole compressed segment.
+  bool damaged() const { return damaged_; }
   /// How many bytes were read, of the segment before its compression.
   std::uint64_t position() const { return position_; }
 
@@ -32,6 +34,7 @@ class SegmentFile {
   std::unique_ptr<ZSTD_DCtx_s, void (*)(ZSTD_DCtx_s*)> context_;  // null: not compressed
   std::vector<char> in_;
   std::size_t in_size_ = 0, in_used_ = 0;
+  bool frame_ended_ = false, damaged_ = false;
   std::uint64_t position_ = 0;
 };
 

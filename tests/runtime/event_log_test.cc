@@ -86,23 +86,33 @@ TEST_F(EventLogTest, HoldsNoMoreThanItsLimitAndLosesItsOldestSegmentsFirst) {
 }
 
 TEST_F(EventLogTest, CompressesFinishedSegmentsIntoWhatZstdTurnsBackIntoTheSameBytes) {
-  EventLog plain(folder_, {.segment_bytes = 10000});
-  for (int i = 0; i < 25; ++i) plain.write("NAME", kEvent);
-  plain.flush();
-  {
-    EventLog log(folder_, {.segment_bytes = 10000, .compressed = true});
+  const auto log_25_events = [this](bool compressed) {
+    EventLog log(folder_, {.segment_bytes = 10000, .compressed = compressed});
     for (int i = 0; i < 25; ++i) log.write("NAME", kEvent);
-    log.flush();
-    EXPECT_EQ(files(), (std::set<std::string>{"events-000.lcm", "events-001.lcm", "events-002.lcm",
-                                              "events-003.lcm.zst", "events-004.lcm.zst",
-                                              "events-005.lcm"}));
-  }
-  for (const char* name : {"events-003.lcm", "events-004.lcm"}) {
+    EXPECT_EQ(log.flush(), std::nullopt);
+  };
+  log_25_events(false);
+  std::ofstream(folder_ / "events-001.lcm.zst.part") << "what a killed process left";
+  log_25_events(true);
+  EXPECT_EQ(files(), (std::set<std::string>{"events-000.lcm.zst", "events-001.lcm.zst",
+                                            "events-002.lcm.zst", "events-003.lcm.zst",
+                                            "events-004.lcm.zst", "events-005.lcm"}));
+  for (const auto& [name, held] : {std::pair{"events-001.lcm", 10}, std::pair{"events-002.lcm", 5},
+                                   std::pair{"events-004.lcm", 10}}) {
     const fs::path file = folder_ / name;
     EXPECT_LT(fs::file_size(file.string() + ".zst"), 1000U) << "zeros";
     ASSERT_EQ(std::system(("zstd -q -d " + file.string() + ".zst").c_str()), 0);
-    EXPECT_EQ(events(name), 10) << name;
+    EXPECT_EQ(events(name), held) << name;
   }
+}
+
+TEST_F(EventLogTest, CompressesAFinishedSegmentWhileHalfOfTheNextIsWritten) {
+  constexpr int kEvents = 2048;
+  EventLog log(folder_, {.segment_bytes = kEvents * 1000, .compressed = true});
+  for (int i = 0; i < kEvents + 100; ++i) log.write("NAME", kEvent);
+  EXPECT_TRUE(files().contains("events-000.lcm")) << "not at once: nothing waits for it";
+  for (int i = 100; i < kEvents * 3 / 4; ++i) log.write("NAME", kEvent);
+  EXPECT_EQ(files(), (std::set<std::string>{"events-000.lcm.zst", "events-001.lcm"}));
 }
 
 TEST_F(EventLogTest, CompressedSegmentsAreNumberedAndLimitedLikeOthers) {
@@ -208,8 +218,17 @@ TEST_F(EventLogReaderTest, ReadsCompressedSegmentsAsTheyAre) {
   fs::copy_file(segment(1), segment(0));
   EXPECT_EQ(read_back(folder_), "E F E F ");
   fs::remove(segment(0));
-  fs::resize_file(packed, fs::file_size(packed) / 2);
-  EXPECT_EQ(read_back(folder_), "E F ");
+  // No killed logger leaves an incomplete one.
+  for (const std::uintmax_t size : {fs::file_size(packed) - 1, std::uintmax_t{0}}) {
+    fs::resize_file(packed, size);
+    const std::string read = read_back(folder_);
+    EXPECT_NE(read.find(packed.string() + ", byte "), std::string::npos) << read;
+    EXPECT_NE(read.find(": damaged; what stands before is sound: `zstd -dc events-000.lcm.zst | "
+                        "head -c "),
+              std::string::npos)
+        << read;
+    EXPECT_EQ(read.find("E F"), std::string::npos) << read;
+  }
 }
 
 TEST_F(EventLogReaderTest, LeavesOutWhatAKilledLoggerBegan) {
