@@ -78,6 +78,23 @@ TEST(DigestOfATeam, OfMoreNamesAllWithinARoundWhateverItLacks) {
   EXPECT_EQ(AntiEntropy::round_s(kMaxRosterEntries), 205);
 }
 
+TEST(DigestOfATeam, NamesAllWithinARoundAlsoWhileOthersComeAndGo) {
+  Speaker speaker(101);
+  // The first twenty are overdue and take their half of each digest.
+  for (std::size_t i = 20; i < speaker.roster.size(); ++i) {
+    speaker.hold(speaker.roster[i].author, 40);
+  }
+  for (int turn = 0; turn < 51; ++turn) speaker.named(39);
+  const RosterEntry one = speaker.roster.back();
+  std::set<Author> named;
+  for (int turn = 0; turn < AntiEntropy::round_s(101); ++turn) {
+    turn % 2 == 0 ? speaker.roster.pop_back() : speaker.roster.push_back(one);
+    const auto now = speaker.named(39);
+    named.insert(now.begin(), now.end());
+  }
+  EXPECT_GE(named.size(), 100u);
+}
+
 TEST(DigestOfATeam, NamesEachTimeWhatIsOverdueOrWasNeverReceived) {
   Speaker speaker(1000);
   const Author newcomer{700, 4711};
@@ -111,6 +128,19 @@ TEST(DigestOfATeam, NamesFormerMembersFirstWhileATeammateHoldsSomethingElseOfThe
   }
   for (AgentId id = 500; id < 510; ++id) speaker.hold({id, 77}, 4);
   EXPECT_EQ(speaker.settled(), teammate.settled()) << "however far the living are";
+}
+
+TEST(DigestOfATeam, HasAnotherHashForEachFormerMemberThatMoreIsHeldOf) {
+  Speaker speaker(3);
+  const Author first{0, 1}, middle{1, 77}, last{2, ~Incarnation{0}};
+  for (const Author& former : {first, middle, last}) speaker.admit_former(former);
+  ASSERT_EQ(speaker.roster.front().author, first);
+  ASSERT_EQ(speaker.roster.back().author, last);
+  std::set<std::uint64_t> hashes{speaker.settled()};
+  for (const Author& former : {first, middle, last}) {
+    speaker.hold(former, 4);
+    EXPECT_TRUE(hashes.insert(speaker.settled()).second) << former.agent;
+  }
 }
 
 }  // namespace
