@@ -154,8 +154,11 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
   if (found == tracks_.end()) return nullptr;
   Track& track = found->second;
   const auto blocks = static_cast<std::size_t>(table.block_count());
-  if (track.author != entry.author || track.said_steps.size() != blocks) {
+  // A successor of the coordinator may have admitted the author anew: earlier places are not its.
+  const bool same_life = track.author == entry.author && track.active_from == entry.active_from;
+  if (!same_life || track.said_steps.size() != blocks) {
     track.author = entry.author;
+    track.active_from = entry.active_from;
     track.said_steps.assign(blocks, -1);
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);

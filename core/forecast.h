@@ -63,6 +63,7 @@ class Forecast {
   struct Track {
     std::vector<Place> places;             // ascending by tick; the last most_places_ count
     Author author;                         // of the row that is extended
+    Tick active_from = 0;                  // of that author, as the roster said
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
