@@ -152,12 +152,13 @@ bool Agent::may_answer(InMission& flight) const {
 void Agent::answer(InMission& flight, Outbox& out) {
   Step& step = flight.step;
   CoverageTable& table = flight.table;
-  // By the roster that the tick may have waited for.
+  // By the roster that the tick may have waited for, and by nothing older: the admission of a
+  // forgotten agent may have died with its coordinator.
+  table.remember_all();
   for (const RosterEntry& entry : follower().roster()) {
     // What we cover ourselves counts: we live, whatever the coordinator has heard.
-    const bool forgotten =
-        entry.author != me_.author() && entry.forgotten_at(step.tick, step.roster_revision);
-    forgotten ? table.forget(entry.author) : table.remember(entry.author);
+    if (entry.author == me_.author()) continue;
+    if (entry.forgotten_at(step.tick, step.roster_revision)) table.forget(entry.author);
   }
   if (flight.forecast) {
     flight.forecast->look_ahead(table, follower().roster(), step.tick, flight.foreseen);

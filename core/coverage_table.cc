@@ -239,9 +239,8 @@ void CoverageTable::forget(const Author& author) {
   if (Row* row = find_or_add(author)) row->counts = false;
 }
 
-void CoverageTable::remember(const Author& author) {
-  // An unknown author counts when its first block arrives.
-  if (Row* row = find(author)) row->counts = true;
+void CoverageTable::remember_all() {
+  for (Row& row : rows_) row.counts = true;
 }
 
 void CoverageTable::average(Coefficients& coverage) const {

@@ -57,8 +57,8 @@ class CoverageTable {
   /// From now on the row of `author` does not count, even if it arrives later. It is kept and
   /// relayed.
   void forget(const Author& author);
-  /// From now on the row counts again, with all blocks that arrived meanwhile.
-  void remember(const Author& author);
+  /// From now on every row counts, with all blocks that arrived meanwhile.
+  void remember_all();
 
   /// c_k = Σ_j S_j / Σ_j elapsed_j per block, (4) weighted by the time each row covers.
   /// Entries of blocks without any samples are 0. Does not allocate.

@@ -154,8 +154,14 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
   if (found == tracks_.end()) return nullptr;
   Track& track = found->second;
   const auto blocks = static_cast<std::size_t>(table.block_count());
-  if (track.author != entry.author || track.said_steps.size() != blocks) {
+  // What was added before a pause, or before a successor of the coordinator admitted the author
+  // anew, would make the forecast depend on when it was looked at.
+  const bool goes_on = track.author == entry.author && track.active_from == entry.active_from &&
+                       track.look + 1 == looks_ && track.said_steps.size() == blocks;
+  track.look = looks_;
+  if (!goes_on) {
     track.author = entry.author;
+    track.active_from = entry.active_from;
     track.said_steps.assign(blocks, -1);
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);
@@ -348,6 +354,7 @@ void Forecast::add_up(Modes modes, double per_second, double* coverage) {
 
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                           Tick tick, Coefficients& coverage) {
+  ++looks_;
   gather(table, roster, tick);
   const bool alike = blocks_alike(table);
   double per_second = 0;

@@ -17,6 +17,7 @@
 // of their arrival: in lockstep all agents that hear the same compute the same forecast.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
@@ -63,6 +64,8 @@ class Forecast {
   struct Track {
     std::vector<Place> places;             // ascending by tick; the last most_places_ count
     Author author;                         // of the row that is extended
+    Tick active_from = 0;                  // of that author, as the roster said
+    std::uint64_t look = 0;                // of looks_, when it was last extended
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
@@ -103,6 +106,7 @@ class Forecast {
   bool reckons_;
   std::size_t most_places_;
   std::map<AgentId, Track> tracks_;
+  std::uint64_t looks_ = 0;        // calls of look_ahead()
   std::vector<Track*> reckoned_;   // per row of the table; null: by its blocks
   std::vector<char> flies_;        // per row: whether it has a forecast
   std::vector<Term> terms_;        // of the other rows that count, ascending by author

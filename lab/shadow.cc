@@ -174,7 +174,16 @@ void Shadow::answer(const Mission& mission, const TableView& agent) {
   if (!mission.dead_reckoning) return;
   for (auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
-    if (entry != nullptr && flies(agent, *entry)) reckon(*entry, row);
+    const bool reckoned = entry != nullptr && flies(agent, *entry);
+    // Of the roster as it is now: an admission may be lost with its coordinator, and come anew.
+    if (!reckoned || row.active_from != entry->active_from) {
+      for (Block& block : row.blocks) block.since.clear();
+      row.newest.reset();
+      row.active_from.reset();
+    }
+    if (!reckoned) continue;
+    row.active_from = entry->active_from;
+    reckon(*entry, row);
   }
 }
 

@@ -50,7 +50,8 @@ class Shadow {
   };
   struct Row {
     std::vector<Block> blocks;
-    std::optional<Place> newest;  ///< where its author was last
+    std::optional<Tick> active_from;  ///< of the admission that `since` and `newest` are of
+    std::optional<Place> newest;      ///< where its author was last
   };
   /// What one row adds to one block of ĉ.
   struct Part {

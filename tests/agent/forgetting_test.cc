@@ -96,6 +96,19 @@ TEST(AgentForgets, UntilTheNamedTickAtWhichItCountsAgain) {
   }
 }
 
+TEST(AgentForgets, NobodyWhoseAdmissionDiedWithTheCoordinator) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
+  give(agent, forgetting_from(0), at(0s));
+  tell(agent, world_at(0));
+  EXPECT_TRUE(steered_alone(agent, mission, 1));
+  // The successor's roster, 1000 revisions on, has never heard of agent 1.
+  give(agent, mission_part(1001, MissionState::kRunning, {{author_of(0), 0, -1}}), at(0s));
+  EXPECT_EQ(only<Command>(tell(agent, world_at(1, 1001))).size(), 1u);
+  EXPECT_FALSE(steered_alone(agent, mission, 2)) << "as for who was admitted since";
+}
+
 TEST(AgentForgets, NeverItself) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);

@@ -5,8 +5,8 @@
 //
 // The real programs are started as a user starts them; the record has their speed.
 #include <benchmark/benchmark.h>
-#include <stdlib.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -21,6 +21,7 @@
 #include "runtime/child.h"
 #include "scenario/scenario.h"
 #include "tests/bench/ping_pong.h"
+#include "tests/bench/temporary_folder.h"
 #include "tests/support/own_host.h"
 
 namespace ergocast::bench {
@@ -28,37 +29,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDuration_s = 1000;
+/// About as many datagrams whatever the team.
+double duration_s(int agents) { return std::max(20.0, 16000.0 / (agents * agents)); }
 const fs::path kScenario = fs::path(ERGOCAST_SCENARIO_DIR) / "paper_fig1a.textproto";
 
-/// A folder that is removed with this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = fs::temp_directory_path() / "ergocast-bench-XXXXXX";
-    path_ = mkdtemp(name.data()) != nullptr ? name : std::string();
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 /// Ticks per second of a mission by the real programs, or why there is no figure.
-std::variant<double, std::string> run_mission() {
+std::variant<double, std::string> run_mission(int agents) {
   const TemporaryFolder folder;
   const fs::path record = folder.path() / "run", log = folder.path() / "log";
-  auto started =
-      Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", kScenario, "--duration",
-                                std::to_string(kDuration_s), "--out", record},
-                    .log = log,
-                    .signal_if_orphaned = SIGTERM});
+  auto started = Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", kScenario,
+                                           "--agents", std::to_string(agents), "--duration",
+                                           std::to_string(duration_s(agents)), "--out", record},
+                               .log = log,
+                               .signal_if_orphaned = SIGTERM});
   if (const auto* problem = std::get_if<std::string>(&started)) return *problem;
   Child& launcher = std::get<Child>(started);
   while (launcher.running()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -71,7 +54,9 @@ std::variant<double, std::string> run_mission() {
 
 void Lockstep(benchmark::State& state) {
   Overrides overrides;
-  overrides.duration_s = kDuration_s;
+  const auto agents = static_cast<int>(state.range(0));
+  overrides.agents = agents;
+  overrides.duration_s = duration_s(agents);
   const auto loaded = Scenario::load(kScenario, overrides);
   const auto* scenario = std::get_if<Scenario>(&loaded);
   if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
@@ -80,7 +65,7 @@ void Lockstep(benchmark::State& state) {
   const Tick ticks = scenario->mission().timing.tick_count;
   double ticks_per_s = 0, floor_ticks_per_s = 0, lcm_ticks_per_s = 0;
   for (auto _ : state) {
-    const auto mission = run_mission();
+    const auto mission = run_mission(agents);
     if (const auto* why = std::get_if<std::string>(&mission)) {
       return state.SkipWithError(why->c_str());
     }
@@ -100,7 +85,14 @@ void Lockstep(benchmark::State& state) {
 }
 
 // Each mission shows its figures; the time is that of one tick.
-BENCHMARK(Lockstep)->UseManualTime()->Iterations(1)->Repetitions(3)->Unit(benchmark::kMicrosecond);
+BENCHMARK(Lockstep)
+    ->ArgName("agents")
+    ->Arg(4)
+    ->Arg(16)
+    ->Arg(64)
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace ergocast::bench

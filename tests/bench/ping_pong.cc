@@ -56,8 +56,8 @@ class RawAgent {
       held = std::max(held, stamp.tick);
       return;
     }
+    if (stamp.block != id_ / traffic_.agents_in_a_state || stamp.tick < tick_) return;
     const bool repeated = stamp.tick == tick_;
-    if (stamp.tick < tick_) return;
     tick_ = stamp.tick;
     for (int block = 0; block < traffic_.blocks; ++block) {
       buses_->publish(Bus::kSwarm, contribution_, {tick_, id_, block}, traffic_.block_bytes);
@@ -110,7 +110,9 @@ class RawWorld {
       buses_->wait(kRepeat_ms);
     }
     do {
-      buses_->publish(Bus::kWorld, "WORLD_STATE", {tick, kWorld, 0}, traffic_.state_bytes);
+      for (int part = 0; part * traffic_.agents_in_a_state < traffic_.agents; ++part) {
+        buses_->publish(Bus::kWorld, "WORLD_STATE", {tick, kWorld, part}, traffic_.state_bytes);
+      }
       while (!everyone_answered(tick) && buses_->wait(kRepeat_ms)) {
       }
     } while (!everyone_answered(tick));
@@ -136,9 +138,11 @@ class RawWorld {
 
 Traffic traffic_of(const Mission& mission) {
   WorldState state;
-  state.vehicle_count = static_cast<std::int32_t>(mission.starts_m.size());
-  return {.agents = state.vehicle_count,
+  const auto agents = static_cast<int>(mission.starts_m.size());
+  state.vehicle_count = std::min(agents, kMaxVehiclesPerState);
+  return {.agents = agents,
           .blocks = CoverageTable(mission.basis, mission.timing.dt_s).block_count(),
+          .agents_in_a_state = kMaxVehiclesPerState,
           .state_bytes = size_of(state),
           .block_bytes = size_of(Contribution{}),
           .command_bytes = size_of(Command{}),

@@ -16,7 +16,8 @@ namespace ergocast::bench {
 /// its state, every agent all its blocks and a command; the logger acknowledges at intervals.
 struct Traffic {
   int agents;
-  int blocks;  ///< per agent and tick
+  int blocks;             ///< per agent and tick
+  int agents_in_a_state;  ///< at most, in each part of the world's state
   std::size_t state_bytes, block_bytes, command_bytes, ack_bytes;
 };
 Traffic traffic_of(const Mission& mission);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ideal_team.h"
 #include "lab/studies/study_run.h"
 #include "scenario/scenario.h"
 #include "tests/bench/step_floor.h"
@@ -43,6 +44,20 @@ void StudyRun(benchmark::State& state) {
   report(mission, state);
 }
 
+/// One tick of a team that shares all coverage.
+void TeamStep(benchmark::State& state) {
+  Mission mission = mission_of(static_cast<int>(state.range(0)), false);
+  mission.law.anticipation = static_cast<double>(state.range(1));
+  mission.basis.modes_x = mission.basis.modes_y = 20;
+  mission.target_coefficients = Coefficients::Zero(mission.basis.mode_count());
+  mission.target_coefficients[0] = 1;
+  lab::IdealTeam team(std::move(mission));
+  for (auto _ : state) team.step();
+  state.counters["step_us"] =
+      benchmark::Counter(1e-6 * static_cast<double>(state.iterations()),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 void StudyFloor(benchmark::State& state) {
   const Mission mission = mission_of(4, false);
   for (auto _ : state) {
@@ -68,6 +83,10 @@ BENCHMARK(StudyRun)
     ->Threads(2)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(TeamStep)
+    ->ArgNames({"agents", "anticipation"})
+    ->ArgsProduct({{64}, {0, 2}})
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK(StudyFloor)->Unit(benchmark::kMillisecond);
 BENCHMARK(StudyFloor)->Threads(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 

@@ -193,6 +193,44 @@ TEST(DeadReckoning, UsesNoPlaceOfAFormerAuthorsTime) {
   EXPECT_LT((see_from(0) - by_the_formula(told, mission)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(DeadReckoning, UsesNoPlaceOfAnAdmissionThatIsNoMore) {
+  // A coordinator died, and its successor admitted agent 1 anew, from tick 26 on.
+  const Mission mission = mission_of(true);
+  const Known told = told_until(20, mission);
+  Known anew = told;
+  anew.roster[1].active_from = 26;
+  const auto after = [&](const std::vector<RosterEntry>& before) {
+    return with_a_place(mission, anew, [&](Forecast& forecast) {
+      Coefficients looked(144);
+      for (Tick tick = 0; tick < 24; ++tick) forecast.see(1, tick, place(1, tick, mission));
+      forecast.look_ahead(table_of(told, mission), before, 24, looked);
+      forecast.see(1, 27, place(1, 27, mission));
+    });
+  };
+  EXPECT_EQ(after(told.roster), after(anew.roster));
+  EXPECT_NE(after(told.roster), foreseen(told, mission));
+}
+
+TEST(DeadReckoning, BeginsAnewAfterAPause) {
+  // Agent 1 was forgotten for longer than its places are kept.
+  const Mission mission = mission_of(true);
+  const Known told = told_until(20, mission);
+  CoverageTable without = table_of(told, mission);
+  without.forget({1, 1});
+  const auto after = [&](bool looked_before) {
+    return with_a_place(mission, told, [&](Forecast& forecast) {
+      Coefficients looked(144);
+      for (Tick tick = 0; tick < 24; ++tick) forecast.see(1, tick, place(1, tick, mission));
+      if (looked_before) {
+        forecast.look_ahead(table_of(told, mission), told.roster, 24, looked);
+        forecast.look_ahead(without, told.roster, 25, looked);
+      }
+      for (Tick tick = 25; tick < 200; ++tick) forecast.see(1, tick, place(1, tick, mission));
+    });
+  };
+  EXPECT_EQ(after(true), after(false));
+}
+
 TEST(DeadReckoning, LeavesWhatIsKnownAndPassedOnAsItWas) {
   const Mission mission = mission_of(true);
   const Known told = told_until(20, mission);

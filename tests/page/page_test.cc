@@ -218,6 +218,7 @@ agents { starts { x_m: 50 y_m: 20 } random_count: 1 })";
   browser_->open("file://" + (out() / "report.html").string());
   ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast)"));
   const auto rows = [this] {
+    wait_for_frame();  // the page draws what was asked in its next frame
     return js(
         "return [...document.querySelectorAll('#rows > tr')].map(r => "
         "[r.children[0].textContent, r.children[1].textContent].join())");

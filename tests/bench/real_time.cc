@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Times teams of real processes on one host in real time, 10 ticks a second: the processor time of
+// a message that is received, late commands, and losses.
+//
+// A delivery is a message that an agent has received. Its cost is the processor time of all
+// processes of the team, their start and mathematics included, by the number of deliveries.
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include "runtime/child.h"
+#include "tests/bench/temporary_folder.h"
+#include "tests/support/own_host.h"
+
+namespace ergocast::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int kDuration_s = 20;
+
+std::string scenario_text(int agents, int period_ticks) {
+  return "domain { size_x_m: 2000 size_y_m: 2000 }\ntarget { uniform_weight: 1 }\n"
+         "basis { modes_x: 10 modes_y: 10 }\nlaw { u_max_mps: 10 }\n"
+         "time { dt_s: 0.1 duration_s: " +
+         std::to_string(kDuration_s) +
+         " pace: REALTIME broadcast_period_ticks: " + std::to_string(period_ticks) +
+         " }\nagents { random_count: " + std::to_string(agents) + " }\n";
+}
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// Processor time of all children that have ended [s].
+double processor_s() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+}
+
+void RealTime(benchmark::State& state) {
+  const auto agents = static_cast<int>(state.range(0));
+  for (auto _ : state) {
+    const TemporaryFolder folder;
+    const fs::path scenario = folder.path() / "team.textproto", log = folder.path() / "log";
+    std::ofstream(scenario) << scenario_text(agents, static_cast<int>(state.range(1)));
+    const double before_s = processor_s();
+    auto started = Child::start({.command = {ERGOCAST_PROGRAM_DIR "/ergocast", "run", scenario,
+                                             "--out", folder.path() / "run"},
+                                 .log = log,
+                                 .signal_if_orphaned = SIGTERM});
+    if (const auto* problem = std::get_if<std::string>(&started)) {
+      return state.SkipWithError(problem->c_str());
+    }
+    Child& launcher = std::get<Child>(started);
+    while (launcher.running()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (launcher.exit_code() != 0) {
+      return state.SkipWithError((launcher.fate() + "\n" + last_lines(log, 10)).c_str());
+    }
+    const double used_s = processor_s() - before_s;
+    std::ifstream file(folder.path() / "run" / "summary.json");
+    const Json summary = Json::parse(file);
+    double deliveries = 0, lost = 0;
+    for (const Json& agent : summary.at("agents")) {
+      deliveries += agent.value("messages_received", 0.0);
+      lost += agent.value("contributions_lost", 0.0);
+    }
+    const double commands = agents * summary.at("ticks").get<double>();
+    state.SetIterationTime(used_s);
+    state.counters["us_per_delivery"] = 1e6 * used_s / deliveries;
+    state.counters["deliveries_per_s"] = deliveries / kDuration_s;
+    state.counters["cores"] = used_s / kDuration_s;
+    state.counters["late_percent"] = 100 * summary.at("missed_deadlines").get<double>() / commands;
+    state.counters["lost"] = lost;
+    state.counters["drops"] = summary.at("messages").value("kernel_drops", 0.0);
+  }
+}
+
+BENCHMARK(RealTime)
+    ->ArgNames({"agents", "period"})
+    ->ArgsProduct({{32, 64, 128}, {1, 10}})
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
+
+}  // namespace
+}  // namespace ergocast::bench
+
+int main(int argc, char** argv) {
+  try {
+    ergocast::test::enter_own_host();
+  } catch (const std::exception& why) {
+    std::fprintf(stderr, "%s: using the network of this machine\n", why.what());
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}
