@@ -80,13 +80,14 @@ const LoggedEvent* EventLogReader::end_segment() {
 }
 
 const LoggedEvent* EventLogReader::refuse(const std::string& what) {
-  const std::string bytes = std::to_string(begin_);
   const std::filesystem::path& segment = segments_[next_segment_ - 1];
-  const std::string remedy = compressed(segment) ? "`zstd -dc " + segment.filename().string() +
-                                                       " | head -c " + bytes + " > " +
-                                                       segment.stem().string() + "` keeps it"
-                                                 : "`truncate -s " + bytes + "` on a copy keeps it";
-  problem_ = place() + ": " + what + "; what stands before is sound: " + remedy;
+  const std::string bytes = std::to_string(begin_);
+  std::string remedy = "`truncate -s " + bytes + "` on a copy";
+  if (compressed(segment)) {
+    remedy = "`zstd -dc " + segment.filename().string() + " | head -c " + bytes + " > " +
+             segment.stem().string() + '`';
+  }
+  problem_ = place() + ": " + what + "; what stands before is sound: " + remedy + " keeps it";
   return nullptr;
 }
 

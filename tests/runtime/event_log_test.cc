@@ -94,9 +94,9 @@ TEST_F(EventLogTest, CompressesFinishedSegmentsIntoWhatZstdTurnsBackIntoTheSameB
   log_25_events(false);
   std::ofstream(folder_ / "events-001.lcm.zst.part") << "what a killed process left";
   log_25_events(true);
-  EXPECT_EQ(files(), (std::set<std::string>{"events-000.lcm.zst", "events-001.lcm.zst",
-                                            "events-002.lcm.zst", "events-003.lcm.zst",
-                                            "events-004.lcm.zst", "events-005.lcm"}));
+  EXPECT_EQ(files(),
+            (std::set<std::string>{"events-000.lcm.zst", "events-001.lcm.zst", "events-002.lcm.zst",
+                                   "events-003.lcm.zst", "events-004.lcm.zst", "events-005.lcm"}));
   for (const auto& [name, held] : {std::pair{"events-001.lcm", 10}, std::pair{"events-002.lcm", 5},
                                    std::pair{"events-004.lcm", 10}}) {
     const fs::path file = folder_ / name;
@@ -218,6 +218,12 @@ TEST_F(EventLogReaderTest, ReadsCompressedSegmentsAsTheyAre) {
   fs::copy_file(segment(1), segment(0));
   EXPECT_EQ(read_back(folder_), "E F E F ");
   fs::remove(segment(0));
+  // Several frames, as zstd may write them.
+  const fs::path frame = folder_ / "frame";
+  fs::copy_file(packed, frame);
+  std::ofstream(packed, std::ios::app | std::ios::binary) << std::ifstream(frame).rdbuf();
+  EXPECT_EQ(read_back(folder_), "A B C D A B C D E F ");
+  fs::rename(frame, packed);
   // No killed logger leaves an incomplete one.
   for (const std::uintmax_t size : {fs::file_size(packed) - 1, std::uintmax_t{0}}) {
     fs::resize_file(packed, size);
