@@ -185,6 +185,11 @@ TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
   }
 }
 
+// In this run the coordinator was to be killed while no agent knew the mission.
+TEST(Eviction, LeavesTheCoordinatorAloneWhileNobodyElseKnowsTheMission) {
+  EXPECT_EQ(problem(fly(evicting(), 558, lab::drawn(558))), "");
+}
+
 TEST(Eviction, OfWhoWasThereIs) {
   const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
   EXPECT_EQ(broken(fly(evicting(), 1, {}, without(states))), Invariant::kNoEarlyEnd);
