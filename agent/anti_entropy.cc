@@ -15,8 +15,6 @@ using namespace std::chrono_literals;
 
 /// An answer waits a random share of this, so that one of many answers first.
 constexpr double kLongestDelay_s = 0.25;
-/// Two complaints further apart are not in a row: a teammate that was cut off starts anew.
-constexpr auto kComplaintLife = 5s;
 constexpr std::size_t kMaxComplaints = 8192;
 constexpr int kToleratedPeriods = 2;
 
@@ -30,29 +28,83 @@ bool lacks_something(const CoverageTable& table, std::size_t row, bool will_spea
   return ours.steps > steps || (state_hash != ours.state_hash && ours.newest_steps > steps);
 }
 
+/// The sum over all former members of a hash of what is held of each.
+std::uint64_t hash_of_settled(const CoverageTable& table, const std::vector<RosterEntry>& roster) {
+  std::uint64_t sum = 0;
+  for (const RosterEntry& entry : roster) {
+    if (entry.active_until < 0) continue;
+    const std::uint64_t mark = table.holding(entry.author).state_hash ^ entry.author.incarnation;
+    sum += (mark ^ mark >> 32) * 0x9e3779b97f4a7c15;
+  }
+  return sum;
+}
+
+/// Up to `most` of `authors`, which ascend: those after `last`, then from the first one on. Whoever
+/// comes or goes in between delays no other's turn.
+std::vector<Author> next_in_turn(const std::vector<Author>& authors, std::size_t most,
+                                 Author& last) {
+  std::vector<Author> next;
+  auto at = std::upper_bound(authors.begin(), authors.end(), last);
+  while (next.size() < std::min(authors.size(), most)) {
+    if (at == authors.end()) at = authors.begin();
+    next.push_back(*at++);
+  }
+  if (!next.empty()) last = next.back();
+  return next;
+}
+
 }  // namespace
 
-std::vector<Digest> AntiEntropy::digests(const CoverageTable& table,
-                                         const std::vector<RosterEntry>& roster) {
-  std::vector<Digest> digests;
+bool AntiEntropy::seems_lacking(const CoverageTable& table, const RosterEntry& entry,
+                                Tick tick) const {
+  if (entry.author == self_) return false;
+  if (entry.active_until >= 0) return settled_differs_;
+  const Tick patience = kToleratedPeriods * table.announced_period(entry.author);
+  return entry.active_from < tick && !table.holds_due(entry.author, tick - patience);
+}
+
+std::vector<Author> AntiEntropy::to_be_named(const CoverageTable& table,
+                                             const std::vector<RosterEntry>& roster, Tick tick) {
+  constexpr std::size_t kMost = kMaxDigestEntriesPerMessage;
+  std::vector<Author> all, lacking;
   for (const RosterEntry& entry : roster) {
-    if (digests.empty() || digests.back().entry_count == kMaxDigestEntriesPerMessage) {
-      digests.emplace_back();
-    }
-    Digest& digest = digests.back();
-    const CoverageTable::RowSummary held = table.holding(entry.author);
-    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {entry.author, held.steps,
+    all.push_back(entry.author);
+    if (seems_lacking(table, entry, tick)) lacking.push_back(entry.author);
+  }
+  if (all.size() <= kMost) return all;
+  std::vector<Author> named = next_in_turn(lacking, kMost - kInTurn, last_lacking_);
+  const std::vector<Author> others = next_in_turn(all, kMost - named.size(), last_);
+  named.insert(named.end(), others.begin(), others.end());
+  std::sort(named.begin(), named.end());
+  named.erase(std::unique(named.begin(), named.end()), named.end());
+  return named;
+}
+
+Digest AntiEntropy::digest(const CoverageTable& table, const std::vector<RosterEntry>& roster,
+                           Tick tick) {
+  Digest digest;
+  for (const Author& author : to_be_named(table, roster, tick)) {
+    const CoverageTable::RowSummary held = table.holding(author);
+    digest.entries[static_cast<std::size_t>(digest.entry_count++)] = {author, held.steps,
                                                                       held.state_hash};
   }
-  return digests;
+  digest.settled_hash = settled_hash_ = hash_of_settled(table, roster);
+  settled_differs_ = false;
+  round_s_ = round_s(roster.size());
+  return digest;
 }
+
+/// Two complaints further apart are not in a row: a teammate that was cut off starts anew. A lost
+/// digest in between is no such break.
+PacingClock::duration AntiEntropy::complaint_life() const { return seconds(3 + 2 * round_s_); }
 
 void AntiEntropy::on(const Digest& theirs, const CoverageTable& table,
                      const std::vector<RosterEntry>& roster, Instant now, Tick tick) {
+  settled_differs_ = settled_differs_ || theirs.settled_hash != settled_hash_;
   const Author requester{theirs.header.sender, theirs.header.incarnation};
   if (complaints_.size() >= kMaxComplaints) {
-    std::erase_if(complaints_, [now](const auto& complaint) {
-      return now - complaint.second.at > kComplaintLife;
+    std::erase_if(complaints_, [&](const auto& complaint) {
+      return now - complaint.second.at > complaint_life();
     });
   }
   // Digest, roster and table all ascend by author: one walk along all three.
@@ -85,7 +137,7 @@ void AntiEntropy::consider(const Author& requester, const Author& author, bool l
     return;
   }
   if (sequence <= former->second.sequence) return;
-  const bool in_a_row = now - former->second.at <= kComplaintLife;
+  const bool in_a_row = now - former->second.at <= complaint_life();
   former->second = {sequence, now};
   if (!in_a_row || answers_.count(author) != 0 || !may_answer(now, tick)) return;
   const double delay_s =

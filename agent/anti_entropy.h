@@ -4,6 +4,8 @@
 // nothing else.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
@@ -25,13 +27,25 @@ class AntiEntropy {
   AntiEntropy(const Author& self, std::uint64_t seed, double dt_s)
       : self_(self), seed_(seed), dt_s_(dt_s) {}
 
-  /// What `table` holds of every entry of `roster`, in as many messages as needed, without headers.
-  static std::vector<Digest> digests(const CoverageTable& table,
-                                     const std::vector<RosterEntry>& roster);
+  /// The entries of a larger roster that a digest names whatever they are. The others are those
+  /// that we seem to lack.
+  static constexpr std::size_t kInTurn = kMaxDigestEntriesPerMessage / 2;
+
+  /// How long it takes at most until digests, one a second, have named every entry of a roster.
+  static constexpr double round_s(std::size_t entries) {
+    if (entries <= kMaxDigestEntriesPerMessage) return 1;
+    return static_cast<double>((entries + kInTurn - 1) / kInTurn);
+  }
+
+  /// What `table` holds of the entries of `roster`, without header: of all, or of a roster that is
+  /// larger than a message, of entries in turn. Half of these are such as we seem to lack: coverage
+  /// that is overdue at `tick`, and that of former members if a teammate's settled_hash differs
+  /// from ours.
+  Digest digest(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
 
   /// A teammate says what it holds, in ascending order of authors. An author is worth an answer if
-  /// in two digests in a row its coverage there was behind ours: by more than two of the author's
-  /// broadcast periods, or by any block if the author has left the roster and will not speak again.
+  /// twice in a row its coverage there was behind ours: by more than two of the author's broadcast
+  /// periods, or by any block if the author has left the roster and will not speak again.
   void on(const Digest& theirs, const CoverageTable& table, const std::vector<RosterEntry>& roster,
           Instant now, Tick tick);
 
@@ -52,9 +66,12 @@ class AntiEntropy {
     Instant at;
   };
 
+  bool seems_lacking(const CoverageTable& table, const RosterEntry& entry, Tick tick) const;
+  std::vector<Author> to_be_named(const CoverageTable& table,
+                                  const std::vector<RosterEntry>& roster, Tick tick);
   void consider(const Author& requester, const Author& author, bool lacks, std::int64_t sequence,
                 Instant now, Tick tick);
-
+  PacingClock::duration complaint_life() const;
   bool may_answer(Instant now, Tick tick);
 
   Author self_;
@@ -62,6 +79,10 @@ class AntiEntropy {
   double dt_s_;
   std::map<std::pair<Author, Author>, RowRequest> complaints_;  // (who lacks, whose coverage)
   std::map<Author, Deadline> answers_;
+  Author last_, last_lacking_;      // the last that were named in turn
+  std::uint64_t settled_hash_ = 0;  // as our last digest said
+  bool settled_differs_ = false;    // from a teammate's, since then
+  double round_s_ = 1;              // of the roster as we last heard of it
   Deadline next_window_;
   std::size_t window_answers_ = 0;
   std::uint64_t draws_ = 0;

@@ -184,9 +184,8 @@ void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {
   if (!flight.next_digest.due(now, tick)) return;
   flight.next_digest =
       Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, mission().timing.dt_s, tick);
-  for (const Digest& digest : AntiEntropy::digests(flight.table, follower().roster())) {
-    me_.publish(Bus::kSwarm, digest, std::max<Tick>(tick, 0), out);
-  }
+  const Digest digest = flight.anti_entropy.digest(flight.table, follower().roster(), tick);
+  me_.publish(Bus::kSwarm, digest, std::max<Tick>(tick, 0), out);
 }
 
 void Agent::report_position(InMission& flight, Outbox& out) {

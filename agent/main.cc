@@ -108,7 +108,9 @@ int main(int argc, char** argv) {
   NodeOptions node;
   std::string id = "auto";
   add_node_options(app, node);
-  app.add_option("--id", id, "Be this agent, 0 to 127; auto: whichever is free")
+  app.add_option(
+         "--id", id,
+         "Be this agent, 0 to " + std::to_string(kMaxAgents - 1) + "; auto: whichever is free")
       ->capture_default_str()
       ->check((CLI::Range(0, kMaxAgents - 1) | CLI::IsMember({"auto"})).description(""))
       ->type_name("N");

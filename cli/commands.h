@@ -35,6 +35,7 @@ struct MissionOptions {
   std::string key_file;                       ///< the file of the key in `seal`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
   bool event_log = false;                     ///< `simulate` only; `run` always writes one
+  bool event_log_zstd = false;                ///< `run` only
   bool watch = false;                         ///< `run` only: serves a page
   PageServer::Options page;
 };

@@ -56,6 +56,7 @@ std::optional<std::string> Launcher::start() {
   plan(Role::kLogger, "logger", "ergocast-logger",
        {"--out", setup_.run_dir.string(), "--event-log-limit",
         std::to_string(setup_.event_log_mib)});
+  if (setup_.event_log_zstd) processes_.back().program.command.push_back("--event-log-zstd");
   plan(Role::kWorld, "sim", "ergocast-sim", {});
   plan(Role::kCoordinator, "coordinator", "ergocast-coordinator",
        {(setup_.run_dir / "scenario.textproto").string()});

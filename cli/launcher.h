@@ -34,6 +34,7 @@ class Launcher {
     std::filesystem::path key_file;  ///< the key file that can sign; empty: no key
     int agents = 0;
     std::int64_t event_log_mib = kEventLogMib;
+    bool event_log_zstd = false;
   };
 
   Launcher(Setup setup, ProgressDisplay& display) : setup_(std::move(setup)), display_(display) {}

@@ -188,7 +188,7 @@ int parse_and_do(int argc, char** argv) {
   add_mission_options(*run_command, mission);
   add_url_option(*run_command, mission);
   add_key_option(*run_command, mission.seal, &mission.key_file);
-  add_event_log_option(*run_command, mission.event_log_mib);
+  add_event_log_options(*run_command, mission.event_log_mib, mission.event_log_zstd);
   run_command->add_flag("--watch", mission.watch,
                         "Show it in a browser, and the record afterwards, until Ctrl-C");
   add_page_options(*run_command, mission.page);

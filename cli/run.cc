@@ -205,6 +205,7 @@ int run(const MissionOptions& options) {
   setup.run = random_identity();
   if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
   setup.event_log_mib = options.event_log_mib;
+  setup.event_log_zstd = options.event_log_zstd;
   setup.url = options.url.value_or(LcmUrl{});
   if (const auto problem = why_unreachable(setup.url))
     return report_error(kExitUnavailable, *problem);

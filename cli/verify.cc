@@ -155,7 +155,7 @@ void list(const fs::path& run_dir, const std::vector<FileComparison>& files) {
   }
   for (const auto& entry : fs::directory_iterator(run_dir)) {
     const std::string name = entry.path().filename().string();
-    if (!name.ends_with(".lcm") && name != "log") continue;
+    if (!name.ends_with(".lcm") && !name.ends_with(".lcm.zst") && name != "log") continue;
     std::printf("  %-28s what was said, and when\n", name.c_str());
   }
 }

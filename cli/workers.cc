@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <climits>
 #include <cstdio>
 #include <deque>
 #include <system_error>
@@ -28,7 +27,6 @@ constexpr int kIdlePeriod_ms = 100;
 
 /// What a worker writes: the job's number, then its result.
 using Parcel = std::array<std::byte, sizeof(std::uint64_t) + kMostResultBytes>;
-static_assert(sizeof(Parcel) <= PIPE_BUF);
 
 /// Jobs first … last.
 struct JobRange {
@@ -78,6 +76,18 @@ std::string how_it_died(int status, unsigned patience_s) {
   return std::string("its process died of SIG") + signal_name(WTERMSIG(status));
 }
 
+/// Whether `size` bytes came before the end of the pipe.
+bool read_whole(int pipe, std::byte* to, std::size_t size) {
+  while (size > 0) {
+    const ssize_t got = read(pipe, to, size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    to += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
 class Pool {
  public:
   explicit Pool(const Jobs& jobs)
@@ -124,7 +134,7 @@ class Pool {
   bool listen(Worker& worker) {
     Parcel parcel;
     const std::size_t size = sizeof(std::uint64_t) + jobs_.result_bytes;
-    if (read(worker.pipe, parcel.data(), size) == static_cast<ssize_t>(size)) {
+    if (read_whole(worker.pipe, parcel.data(), size)) {
       std::uint64_t job = 0;
       std::memcpy(&job, parcel.data(), sizeof job);
       worker.jobs.first = job + 1;

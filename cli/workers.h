@@ -13,8 +13,9 @@
 
 namespace ergocast::cli {
 
-/// The maximum size of a result: a pipe transfers it as a whole or not at all.
-inline constexpr std::size_t kMostResultBytes = 4000;
+/// The maximum size of a result. Each worker has a pipe of its own, so a long one is read in
+/// pieces.
+inline constexpr std::size_t kMostResultBytes = 16000;
 
 /// What to do with each of the jobs 0 … count − 1.
 struct Jobs {

@@ -105,6 +105,7 @@ void Coordinator::admit(const Author& author, Instant now) {
   std::sort(roster_.begin(), roster_.end(),
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   members_[author];
+  admissions_.emplace(author, admissions_.size());
   me_.presume_alive(author, now);
   newcomers_.asked.erase(author.incarnation);
   newcomers_.heard.erase(author.incarnation);

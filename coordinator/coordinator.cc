@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -294,7 +296,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
   if (now >= said_.next_mission) {
     publish_mission(out);
     said_.last_mission = now;
-    said_.next_mission = now + (ending_.since ? kMissionGap : kMissionPeriod);
+    said_.next_mission = now + (ending_.since || pages_.behind() ? kMissionGap : kMissionPeriod);
   }
   if (!ending_.since) return;
   const bool all_left = everybody_left(now);
@@ -326,29 +328,41 @@ void Coordinator::repeat_mission_soon() {
   said_.next_mission = std::min(said_.next_mission, said_.last_mission + kMissionGap);
 }
 
-void Coordinator::publish_mission(Outbox& out) {
-  revisions_.admits_from = revisions_.who_may_join;
+std::vector<MissionPart> Coordinator::mission_parts() const {
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
   const std::size_t parts =
       std::max({std::size_t{1}, ceil_div(flown_.plan.size(), kMaxPlanBytesPerMessage),
                 ceil_div(roster_.size(), kMaxRosterEntriesPerMessage)});
+  std::vector<MissionPart> whole(parts);
   for (std::size_t p = 0; p < parts; ++p) {
-    MissionPart part;
+    MissionPart& part = whole[p];
     part.revision = revisions_.current;
     part.state = state_;
     part.part = static_cast<std::int32_t>(p);
     part.parts = static_cast<std::int32_t>(parts);
     part.reason = ending_.reason;
-    const auto slice = [p](const auto& all, std::size_t size, auto& into) {
-      const std::size_t first = std::min(p * size, all.size());
-      const std::size_t last = std::min(first + size, all.size());
-      into.assign(all.begin() + static_cast<std::ptrdiff_t>(first),
-                  all.begin() + static_cast<std::ptrdiff_t>(last));
-    };
-    slice(roster_, kMaxRosterEntriesPerMessage, part.roster);
-    slice(flown_.plan, kMaxPlanBytesPerMessage, part.plan);
+    const std::size_t first = std::min(p * kMaxPlanBytesPerMessage, flown_.plan.size());
+    const std::size_t last = std::min(first + kMaxPlanBytesPerMessage, flown_.plan.size());
+    part.plan.assign(flown_.plan.begin() + static_cast<std::ptrdiff_t>(first),
+                     flown_.plan.begin() + static_cast<std::ptrdiff_t>(last));
+  }
+  // By admission: a newcomer changes one part alone.
+  for (const RosterEntry& entry : roster_) {
+    whole[admissions_.at(entry.author) / kMaxRosterEntriesPerMessage].roster.push_back(entry);
+  }
+  return whole;
+}
+
+void Coordinator::publish_mission(Outbox& out) {
+  revisions_.admits_from = revisions_.who_may_join;
+  std::vector<MissionPart> parts = mission_parts();
+  std::vector<std::uint64_t> hashes;
+  std::transform(parts.begin(), parts.end(), std::back_inserter(hashes), hash_of);
+  const std::uint64_t sum = std::accumulate(hashes.begin(), hashes.end(), std::uint64_t{0});
+  for (const std::size_t p : pages_.next(hashes)) {
+    parts[p].content_hash = sum;
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
-      me_.publish(bus, part, world_.tick, out);
+      me_.publish(bus, parts[p], world_.tick, out);
     }
   }
 }

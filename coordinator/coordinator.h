@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Admits agents, distributes the mission, starts, monitors and ends it. It never steers.
 //
-// It repeats its whole state once a second, so that none of its messages needs an acknowledgement.
+// It repeats its whole state once a second, that of a large team in turn, so that none of its
+// messages needs an acknowledgement.
 // A restarted coordinator takes the mission over from the agents, which repeat it on request
 // (takeover.cc). Who may join is in admission.cc.
 #pragma once
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/mission_pages.h"
 #include "core/ids.h"
 #include "core/mission.h"
 #include "team/messages.h"
@@ -177,6 +179,7 @@ class Coordinator {
   /// admitted.
   void change() { announce(), revisions_.admits_from = revisions_.current; }
   void repeat_mission_soon();
+  std::vector<MissionPart> mission_parts() const;
   void publish_mission(Outbox& out);
   void publish_team_status(Instant now, Outbox& out);
 
@@ -187,6 +190,8 @@ class Coordinator {
   std::optional<TeamStatus> rival_;  // another coordinator's
   MissionState state_ = MissionState::kWaiting;
   std::vector<RosterEntry> roster_;
+  std::map<Author, std::size_t> admissions_;  // the place of each entry in MISSION
+  MissionPages pages_;
   Revisions revisions_;
   std::map<Author, Member> members_;
   Newcomers newcomers_;

@@ -149,6 +149,7 @@ void Coordinator::take_over(Instant now) {
   world_.tick_since = now;
   for (const RosterEntry& entry : roster_) {
     members_[entry.author];
+    admissions_.emplace(entry.author, admissions_.size());
     me_.presume_alive(entry.author, now);
   }
 }

@@ -22,7 +22,7 @@ using RunId = std::uint64_t;
 /// Number of a control step. Tick n happens at mission time n·dt.
 using Tick = std::int64_t;
 
-inline constexpr int kMaxAgents = 128;
+inline constexpr int kMaxAgents = 1024;
 inline constexpr int kMaxIncarnationsPerAgent = 16;
 /// Incarnations of all agents together.
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;

@@ -31,7 +31,8 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
   const double notices_s = mission.forget_silent_after_s > 0 ? 4 : 0;
   const Timing& timing = mission.timing;
   const double period_s = timing.broadcast_period_ticks * timing.dt_s / timing.realtime_factor;
-  return (kTakeover_s + kAdmission_s + kHop_s + notices_s + 2 * period_s) /
+  const std::size_t entries = 2 * mission.starts_m.size();  // every agent was restarted once
+  return (kTakeover_s + kAdmission_s + hop_s(entries) + notices_s + 2 * period_s) /
          (1 - faults.clock_rate_error);
 }
 

@@ -17,6 +17,7 @@
 #include <variant>
 #include <vector>
 
+#include "agent/anti_entropy.h"
 #include "coordinator/coordinator.h"
 #include "core/mission.h"
 #include "lab/faults.h"
@@ -112,10 +113,13 @@ struct Violation {
 /// "<invariant>: <who> at t = <t_s> s: <numbers>".
 std::string to_string(const Violation& violation);
 
-/// Until a row is known a hop further: two digests, 1 s apart, the first up to 1 s after an
-/// admission; the answer waits up to 0.25 s. Whoever learns a row late passes it on late: one more
-/// round.
-inline constexpr double kHop_s = 2 * 2.25;
+/// Until a row is known a hop further: two digests that name it, a round of digests apart, the
+/// first up to a round after an admission; the answer waits up to 0.25 s. Whoever learns a row late
+/// passes it on late: as long again.
+/// @param entries  of the roster
+constexpr double hop_s(std::size_t entries) {
+  return 2 * (2 * AntiEntropy::round_s(entries) + 0.25);
+}
 
 /// Virtual time after healing by which every living agent is back in the mission and knows what
 /// the others know.

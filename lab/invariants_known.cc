@@ -219,8 +219,10 @@ void Invariants::check_neighbours(double t_s, const std::vector<TableView>& livi
     for (const Author& author : authors_)
       present.held[holder.self][author] = steps_of(*holder.table, author);
   }
+  std::size_t entries = 0;
+  for (const TableView& holder : living) entries = std::max(entries, holder.roster->size());
   for (int hops = 1; hops < static_cast<int>(living.size()); ++hops) {
-    const double takes_s = hops * kHop_s;
+    const double takes_s = hops * hop_s(entries);
     const auto past = std::find_if(memories_.rbegin(), memories_.rend(), [&](const Memory& memory) {
       return memory.t_s <= t_s - takes_s;
     });

@@ -16,6 +16,12 @@ namespace {
 constexpr std::uint32_t kWhether = 1U << 20, kHowLong = 2U << 20, kDamage = 3U << 20,
                         kReplay = 4U << 20;
 
+/// A link's draws of one kind.
+std::uint32_t stream(std::uint32_t kind, std::uint32_t link) {
+  constexpr std::uint32_t kLow = (1U << 20) - 1;
+  return kind | (link & kLow) | (link & ~kLow) << 4;
+}
+
 double unit(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
 
 bool quiet(const Faults& f) {
@@ -75,13 +81,14 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
   if (quiet_ || wired) return {now + latency_, {}, {}, false};
   const auto index = static_cast<std::uint32_t>(pair) * kBusCount + static_cast<std::uint32_t>(bus);
   Link& link = links_[index];
-  const RandomBits random = random_words(seed_, Purpose::kFault, kWhether | index, ++link.sent);
+  const RandomBits random =
+      random_words(seed_, Purpose::kFault, stream(kWhether, index), ++link.sent);
   const auto upper = [](std::uint64_t word) {
     return unit(static_cast<std::uint32_t>(word >> 32));
   };
   const auto lower = [](std::uint64_t word) { return unit(static_cast<std::uint32_t>(word)); };
   Fate fate;
-  const auto replay = uniform_pair(seed_, Purpose::kFault, kReplay | index, link.sent);
+  const auto replay = uniform_pair(seed_, Purpose::kFault, stream(kReplay, index), link.sent);
   if (replay.x() < faults_.replay) {
     ++counted_.replayed;
     fate.is_replayed = now + latency_ + seconds(faults_.replay_max_s * replay.y());
@@ -108,7 +115,8 @@ Network::Fate Network::fate_of(Instant now, std::size_t pair, Bus bus) {
 Instant Network::arrival(Instant now, Link& link, std::uint32_t link_index, double reorders,
                          double clogs) {
   Instant at = now + latency_;
-  const auto how_long = uniform_pair(seed_, Purpose::kFault, kHowLong | link_index, link.sent);
+  const auto how_long =
+      uniform_pair(seed_, Purpose::kFault, stream(kHowLong, link_index), link.sent);
   if (faults_.delay_mean_s > 0) {
     const double delay_s = -faults_.delay_mean_s * std::log(how_long.x());
     at += seconds(std::min(delay_s, faults_.delay_max_s));

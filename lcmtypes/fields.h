@@ -48,6 +48,7 @@ struct Fields<MissionPart> {
     io.within(m.part, 0, kMaxPlanParts - 1);
     io.within(m.parts, 1, kMaxPlanParts);
     io.holds(m.part < m.parts);
+    io.number(m.content_hash);
     io.length(m.roster, kMaxRosterEntriesPerMessage);
     io.length(m.plan, kMaxPlanBytesPerMessage);
     for (auto& entry : m.roster) {
@@ -196,6 +197,7 @@ struct Fields<Digest> {
   using Generated = digest_t;
   static void list(auto& io, auto& m) {
     io.holds(m.header.sender >= 0);
+    io.number(m.settled_hash);
     for (auto& entry : io.length(m.entries, m.entry_count)) {
       io.within(entry.author.agent, 0, kMaxAgents - 1);
       io.number(entry.author.incarnation);

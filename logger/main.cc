@@ -278,11 +278,11 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingDirectory);
   app.add_flag("--resume", resume,
                "Go on with the record of this mission in the folder, if there is one");
+  EventLogLimits limits;
   std::int64_t event_log_mib = kEventLogMib;
-  add_event_log_option(app, event_log_mib);
+  add_event_log_options(app, event_log_mib, limits.compressed);
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("logger", node.log_level);
-  EventLogLimits limits;
   limits.total_bytes = event_log_mib << 20;
   return run(node, folder, resume, limits);
 }

@@ -94,11 +94,11 @@ class Filter {
     }
   }
 
-  /// Accepts "NEW" or one to three digits, then the end of the name.
+  /// Accepts "NEW" or one to four digits, then the end of the name.
   void accept_number(std::uint32_t at) {
     load(BPF_LD | BPF_W | BPF_ABS, at);
     skip_unless(0x4e455700, [&] { keep(at + 4); });
-    for (std::uint32_t digit = 0; digit < 3; ++digit) {
+    for (std::uint32_t digit = 0; digit < 4; ++digit) {
       load(BPF_LD | BPF_B | BPF_ABS, at + digit);
       pass_if(BPF_JGE, '0');
       code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, '9', 0, 1));

@@ -21,6 +21,9 @@ namespace {
 constexpr int kFirstForeignNumber = 1'000'000'000;
 /// More bytes than the C library buffers before it writes.
 constexpr std::int64_t kUnwrittenBytes = 1 << 17;
+/// A finished segment is compressed while half of the next is written, or so many bytes a flush().
+constexpr std::int64_t kCompressedPerByte = 2, kCompressedPerFlush = 1 << 20;
+constexpr std::string_view kCompressed = ".zst";
 
 std::int64_t wall_clock_us() {
   using namespace std::chrono;
@@ -47,7 +50,7 @@ bool put(std::FILE* file, std::span<const std::byte> bytes) {
   return std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
 }
 
-/// Sizes of the segments in a folder, by number.
+/// Sizes of the segments in a folder, by number; compressed ones are segments, too.
 std::map<int, std::int64_t> segments_in(const std::filesystem::path& folder) {
   std::map<int, std::int64_t> segments;
   std::error_code error;
@@ -55,15 +58,22 @@ std::map<int, std::int64_t> segments_in(const std::filesystem::path& folder) {
     const std::optional<int> number = segment_number(entry.path().filename().string());
     if (!number) continue;
     const auto bytes = entry.file_size(error);
-    segments[*number] = error ? 0 : static_cast<std::int64_t>(bytes);
+    segments[*number] += error ? 0 : static_cast<std::int64_t>(bytes);
   }
   return segments;
+}
+
+bool remove_segment(const std::filesystem::path& file) {
+  std::error_code error;
+  const bool whole = std::filesystem::remove(file, error);
+  return std::filesystem::remove(file.string() + std::string(kCompressed), error) || whole;
 }
 
 }  // namespace
 
 std::optional<int> segment_number(std::string_view file) {
   constexpr std::string_view kBefore = "events-", kAfter = ".lcm";
+  if (file.ends_with(kCompressed)) file.remove_suffix(kCompressed.size());
   if (!file.starts_with(kBefore) || !file.ends_with(kAfter)) return std::nullopt;
   file.remove_prefix(kBefore.size());
   file.remove_suffix(kAfter.size());
@@ -74,11 +84,19 @@ std::optional<int> segment_number(std::string_view file) {
 EventLog::EventLog(std::filesystem::path folder, EventLogLimits limits)
     : folder_(std::move(folder)), limits_(limits) {
   const auto there = segments_in(folder_);
+  if (limits_.compressed) {
+    compressor_.emplace();
+    for (const auto& [number, bytes] : there) compressor_->add(segment_file(number));
+  }
   if (!there.empty()) first_segment_ = there.rbegin()->first + 1;
   std::error_code ignored;
   while (std::filesystem::exists(segment_file(first_segment_), ignored)) ++first_segment_;
   segment_ = first_segment_;
   open_next();
+}
+
+EventLog::~EventLog() {
+  while (compressor_ && !compressor_->idle()) compressor_->work(kCompressedPerFlush);
 }
 
 void EventLog::fail() {
@@ -120,8 +138,7 @@ void EventLog::make_room() {
   std::int64_t total = 0;
   for (const auto& [number, bytes] : there) total += bytes;
   while (!there.empty() && total + limits_.segment_bytes > limits_.total_bytes) {
-    std::error_code error;
-    if (!std::filesystem::remove(segment_file(there.begin()->first), error)) return;
+    if (!remove_segment(segment_file(there.begin()->first))) return;
     total -= there.begin()->second;
     there.erase(there.begin());
     ++removed_;
@@ -137,6 +154,8 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes,
   if (error_) return;
   if (written_ >= limits_.segment_bytes) {
     if (std::fflush(log_.get()) != 0) return fail();
+    log_.reset();
+    if (compressor_) compressor_->add(file_);
     open_next();
     if (error_) return;
   }
@@ -150,22 +169,25 @@ void EventLog::write(std::string_view channel, std::span<const std::byte> bytes,
   if (!put(log_.get(), header.bytes()) || !put(log_.get(), name) || !put(log_.get(), bytes)) {
     return fail();
   }
-  written_ += static_cast<std::int64_t>(kEventHeaderBytes + channel.size() + bytes.size());
+  const auto size = static_cast<std::int64_t>(kEventHeaderBytes + channel.size() + bytes.size());
+  written_ += size;
+  if (compressor_) compressor_->work(kCompressedPerByte * size);
   ends_.push_back(written_);
   while (ends_.front() < written_ - kUnwrittenBytes) ends_.pop_front();
 }
 
 std::optional<std::string> EventLog::flush() {
   if (error_ && told_) open_next();
+  if (compressor_) compressor_->work(kCompressedPerFlush);
   if (!error_ && std::fflush(log_.get()) != 0) fail();
   told_ = error_.has_value();
   return error_;
 }
 
 void EventLog::discard() {
-  std::error_code ignored;
+  compressor_.reset();
   for (int segment = first_segment_; segment < segment_; ++segment) {
-    std::filesystem::remove(segment_file(segment), ignored);
+    remove_segment(segment_file(segment));
   }
 }
 

@@ -12,6 +12,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/segment_compressor.h"
+
 namespace ergocast {
 
 /// What an event of LCM's log format begins with: this word, its number and time stamp [µs] in 64
@@ -24,6 +26,7 @@ inline constexpr std::int64_t kEventLogMib = 4096;
 struct EventLogLimits {
   std::int64_t segment_bytes = 64 << 20;  ///< at this size a segment ends and the next begins
   std::int64_t total_bytes = kEventLogMib << 20;  ///< of all segments; the oldest are removed first
+  bool compressed = false;  ///< finished segments become events-….lcm.zst, also those of before
 };
 
 /// Writes events-000.lcm, events-001.lcm, … in one folder, after the highest existing number: the
@@ -31,6 +34,10 @@ struct EventLogLimits {
 class EventLog {
  public:
   explicit EventLog(std::filesystem::path folder, EventLogLimits limits = {});
+  EventLog(const EventLog&) = delete;
+  EventLog& operator=(const EventLog&) = delete;
+  /// Compresses what is to be and is not yet.
+  ~EventLog();
 
   /// Appends a message, at the wall clock's time; discards it while the log cannot be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
@@ -60,6 +67,7 @@ class EventLog {
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
   std::int64_t number_ = 0;  // of the next event of the segment
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_{nullptr, &std::fclose};
+  std::optional<SegmentCompressor> compressor_;  // if they are to be compressed
   std::optional<std::string> error_;
   bool told_ = false;  // the caller has received the error
 };

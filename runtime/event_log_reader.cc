@@ -25,6 +25,8 @@ Number big_endian(std::span<const std::byte> bytes) {
   return static_cast<Number>(number);
 }
 
+bool compressed(const std::filesystem::path& file) { return file.extension() == ".zst"; }
+
 }  // namespace
 
 std::variant<EventLogReader, std::string> EventLogReader::open(
@@ -32,8 +34,10 @@ std::variant<EventLogReader, std::string> EventLogReader::open(
   std::map<int, std::filesystem::path> found;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (const auto number = segment_number(entry.path().filename().string()))
-      found.emplace(*number, entry.path());
+    const auto number = segment_number(entry.path().filename().string());
+    if (!number) continue;
+    const auto [at, is_new] = found.emplace(*number, entry.path());
+    if (!is_new && !compressed(entry.path())) at->second = entry.path();  // both are there
   }
   if (error) return folder.string() + ": " + error.message() + "; name a run directory";
   if (found.empty()) {
@@ -56,10 +60,11 @@ std::variant<EventLogReader, std::string> EventLogReader::open(
 bool EventLogReader::open_next() {
   if (next_segment_ == segments_.size()) return false;
   const auto& path = segments_[next_segment_++];
-  file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) problem_ = path.string() + ": " + std::strerror(errno);
-  at_ = 0;
-  return file_ != nullptr;
+  file_.emplace(path);
+  if (file_->good()) return true;
+  problem_ = path.string() + ": " + std::strerror(errno);
+  file_.reset();
+  return false;
 }
 
 std::string EventLogReader::place() const {
@@ -67,25 +72,29 @@ std::string EventLogReader::place() const {
          std::to_string(begin_);
 }
 
+/// On to the next one, unless compressed bytes are damaged.
+const LoggedEvent* EventLogReader::end_segment() {
+  if (file_->damaged()) return refuse("damaged");
+  file_.reset();
+  return next();
+}
+
 const LoggedEvent* EventLogReader::refuse(const std::string& what) {
-  problem_ = place() + ": " + what + "; what stands before is sound: `truncate -s " +
-             std::to_string(begin_) + "` on a copy keeps it";
+  const std::string bytes = std::to_string(begin_);
+  const std::filesystem::path& segment = segments_[next_segment_ - 1];
+  const std::string remedy = compressed(segment) ? "`zstd -dc " + segment.filename().string() +
+                                                       " | head -c " + bytes + " > " +
+                                                       segment.stem().string() + "` keeps it"
+                                                 : "`truncate -s " + bytes + "` on a copy keeps it";
+  problem_ = place() + ": " + what + "; what stands before is sound: " + remedy;
   return nullptr;
 }
 
 const LoggedEvent* EventLogReader::next() {
   if (problem_ || (!file_ && !open_next())) return nullptr;
   std::array<std::byte, kEventHeaderBytes> header{};
-  const auto read = [this](void* to, std::size_t bytes) {
-    const std::size_t got = std::fread(to, 1, bytes, file_.get());
-    at_ += got;
-    return got == bytes;
-  };
-  begin_ = at_;
-  if (!read(header.data(), header.size())) {
-    file_.reset();  // an incomplete event, or none: on to the next segment
-    return next();
-  }
+  begin_ = file_->position();
+  if (!file_->read(header.data(), header.size())) return end_segment();
   const std::span<const std::byte> bytes(header);
   if (big_endian<std::uint32_t>(bytes) != kEventSync) return refuse("no event of LCM's log format");
   event_.time_us = big_endian<std::int64_t>(bytes.subspan(12));
@@ -96,9 +105,9 @@ const LoggedEvent* EventLogReader::next() {
   }
   event_.channel.resize(name);
   event_.bytes.resize(size);
-  if (read(event_.channel.data(), name) && read(event_.bytes.data(), size)) return &event_;
-  file_.reset();
-  return next();
+  if (file_->read(event_.channel.data(), name) && file_->read(event_.bytes.data(), size))
+    return &event_;
+  return end_segment();
 }
 
 }  // namespace ergocast

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "runtime/segment_file.h"
 
 namespace ergocast {
 
@@ -22,7 +22,8 @@ struct LoggedEvent {
 
 class EventLogReader {
  public:
-  /// Finds the segments. An error if there is none, or a removed one is missing in between.
+  /// Finds the segments, compressed ones, too. An error if there is none, or a removed one is
+  /// missing in between.
   static std::variant<EventLogReader, std::string> open(const std::filesystem::path& folder);
 
   /// The next event, valid until the next call; null at the end and after a problem. An incomplete
@@ -38,12 +39,13 @@ class EventLogReader {
   explicit EventLogReader(std::vector<std::filesystem::path> segments)
       : segments_(std::move(segments)) {}
   bool open_next();
+  const LoggedEvent* end_segment();
   const LoggedEvent* refuse(const std::string& what);
 
   std::vector<std::filesystem::path> segments_;
   std::size_t next_segment_ = 0;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_{nullptr, &std::fclose};
-  std::uint64_t at_ = 0, begin_ = 0;
+  std::optional<SegmentFile> file_;
+  std::uint64_t begin_ = 0;
   LoggedEvent event_;
   std::optional<std::string> problem_;
 };

@@ -145,11 +145,13 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
   app.set_version_flag("--version", version_text());
 }
 
-void add_event_log_option(CLI::App& app, std::int64_t& mib) {
+void add_event_log_options(CLI::App& app, std::int64_t& mib, bool& compressed) {
   app.add_option("--event-log-limit", mib, "Most that events-*.lcm may hold; the oldest go first")
       ->capture_default_str()
       ->check(CLI::Range(128, 1 << 30))  // at least two segments
       ->type_name("MIB");
+  app.add_flag("--event-log-zstd", compressed,
+               "Compress each finished segment of the event log; zstd -d makes it readable again");
 }
 
 int parse_command_line(CLI::App& app, int argc, char** argv) {

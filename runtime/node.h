@@ -53,7 +53,7 @@ struct NodeOptions : BusOptions {
 void add_node_options(CLI::App& app, NodeOptions& options);
 
 /// --event-log-limit, for programs that write an event log. @param mib  its default
-void add_event_log_option(CLI::App& app, std::int64_t& mib);
+void add_event_log_options(CLI::App& app, std::int64_t& mib, bool& compressed);
 
 /// Parses the command line and suggests names for unknown words. Returns the exit code if the
 /// program must end here (0 after --help), −1 if it continues.

@@ -20,25 +20,18 @@ constexpr double kOthersPerSecond = 40;
 /// The messages of one agent that may wait for a delayed process: the kernel's buffers hold fewer.
 constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
-double parts(std::size_t count, int of) {
-  const std::size_t whole =
-      (count + static_cast<std::size_t>(of) - 1) / static_cast<std::size_t>(of);
-  return static_cast<double>(whole);
-}
-
 }  // namespace
 
 RateBudget allowance_of(const Mission& mission, std::size_t members) {
   const Timing& timing = mission.timing;
   const double blocks = block_count_of(mission.basis.mode_count(), timing.contribution_encoding);
-  const double digests = parts(members, kMaxDigestEntriesPerMessage);
   const double repeats =
       timing.pace == Pace::kLockstep ? kLockstepRepeatsPerSecond : kRealtimeRepeatsPerSecond;
   const double relayed = static_cast<double>(members) * blocks;
   RateBudget allowance;
   allowance.per_tick = kMargin * (blocks / timing.broadcast_period_ticks + 1 +
-                                  (1 + digests + relayed) * std::min(1.0, timing.dt_s));
-  allowance.per_second = kMargin * (repeats * (blocks + 1) + relayed + digests + kOthersPerSecond);
+                                  (2 + relayed) * std::min(1.0, timing.dt_s));
+  allowance.per_second = kMargin * (repeats * (blocks + 1) + relayed + kOthersPerSecond);
   allowance.most =
       kBacklog_s * allowance.per_second + kBacklogTicks * allowance.per_tick + kBacklogMessages;
   return allowance;

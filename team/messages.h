@@ -21,8 +21,8 @@ inline constexpr int kMaxVehiclesPerState = 16;
 inline constexpr int kMaxRosterEntriesPerMessage = 8;
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
-inline constexpr int kMaxPlanParts = 128;
-inline constexpr int kMaxReasonLength = 191;
+inline constexpr int kMaxPlanParts = 512;
+inline constexpr int kMaxReasonLength = 183;
 /// The period of an agent's status in wall time.
 inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
 
@@ -62,13 +62,15 @@ struct Hello {
 enum class MissionState { kWaiting, kRunning, kEnded, kFailed };
 const char* to_string(MissionState state);
 
-/// One numbered part of the mission; all parts of one revision together are the whole.
+/// One numbered part of the mission. All parts of one revision together are the whole. Parts of
+/// older revisions can take the place of those that are missing, if content_hash says so.
 struct MissionPart {
   Header header;
   std::int64_t revision = 0;  ///< of roster and state together
   MissionState state = MissionState::kWaiting;
   std::int32_t part = 0, parts = 1;
-  std::vector<RosterEntry> roster;  ///< this part's share
+  std::uint64_t content_hash = 0;   ///< the sum of hash_of() over all parts of the revision
+  std::vector<RosterEntry> roster;  ///< this part's share, in the order of admission
   std::vector<std::byte> plan;      ///< this part's share of the compiled plan
   std::string reason;               ///< why it ended or failed
   Signature signature{};            ///< the coordinator's, which teammates repeat
@@ -80,10 +82,12 @@ struct DigestEntry {
   std::uint64_t state_hash = 0;  ///< a hash of the steps of all blocks held
 };
 
-/// The coverage that an agent holds: one entry for each (agent, incarnation) of the roster, in as
-/// many messages as needed. An agent that holds more answers with contributions.
+/// The coverage that an agent holds: one entry for each (agent, incarnation) of the roster, or of a
+/// larger roster those that its sender lacks and the next in turn. An agent that holds more answers
+/// with contributions.
 struct Digest {
   Header header;
+  std::uint64_t settled_hash = 0;  ///< of what is held of all former members
   std::int32_t entry_count = 0;
   std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Collects the parts of a few revisions side by side, and commits a revision once all its parts
-// agree.
+// Collects the parts of a few revisions side by side, and commits a revision once it has all its
+// parts, or knows those that have not changed.
 #include "team/mission_follower.h"
 
 #include <algorithm>
@@ -15,52 +15,124 @@ namespace {
 /// The maximum number of incomplete revisions.
 constexpr std::size_t kMostRevisions = 4;
 
+/// Mixes `value` into `hash`: a multiplication spreads each bit upwards, a shift downwards.
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
+  hash = (hash ^ value) * 0x9e3779b97f4a7c15;
+  return hash ^ hash >> 29;
+}
+
 }  // namespace
+
+std::uint64_t hash_of(const MissionPart& part) {
+  std::uint64_t hash = mixed(1, static_cast<std::uint64_t>(part.part));
+  const auto add = [&hash](auto value) { hash = mixed(hash, static_cast<std::uint64_t>(value)); };
+  add(part.roster.size());
+  for (const RosterEntry& entry : part.roster) {
+    add(entry.author.agent), add(entry.author.incarnation);
+    add(entry.active_from), add(entry.active_until);
+    add(entry.forgotten), add(entry.since_tick), add(entry.since_revision);
+  }
+  for (const std::byte byte : part.plan) add(byte);
+  return hash;
+}
 
 bool MissionFollower::receive(const MissionPart& part) {
   if (part.header.sender != kCoordinator || part.revision <= revision_ || part.parts < 1 ||
       part.parts > kMaxPlanParts || part.part < 0 || part.part >= part.parts) {
     return false;
   }
-  Parts& parts = collected_[part.revision];
-  if (parts.size() != static_cast<std::size_t>(part.parts)) {
-    parts.assign(static_cast<std::size_t>(part.parts), std::nullopt);
+  Pages& pages = collected_[part.revision];
+  if (pages.size() != static_cast<std::size_t>(part.parts)) {
+    pages.assign(static_cast<std::size_t>(part.parts), std::nullopt);
   }
-  parts[static_cast<std::size_t>(part.part)] = part;
-  if (std::all_of(parts.begin(), parts.end(), [](const auto& p) { return p.has_value(); })) {
-    const bool committed = commit(part.revision, parts);
-    collected_.erase(part.revision);
-    collected_.erase(collected_.begin(), collected_.upper_bound(revision_));
+  pages[static_cast<std::size_t>(part.part)] = Page{part, hash_of(part)};
+  // It may be what a newer revision lacks.
+  for (auto at = collected_.rbegin(); at != collected_.rend() && at->first >= part.revision; ++at) {
+    const auto any = std::find_if(at->second.begin(), at->second.end(),
+                                  [](const auto& page) { return page.has_value(); });
+    const MissionPart newest = (*any)->part;
+    auto parts = completed(newest);
+    if (!parts) continue;
+    const bool committed = commit(newest, std::move(*parts));
+    collected_.erase(newest.revision);
+    while (!collected_.empty() && collected_.begin()->first <= revision_) forget_oldest();
     return committed;
   }
   // The rest of the newest revision may be lost with its coordinator, so several are kept.
-  if (collected_.size() > kMostRevisions) collected_.erase(collected_.begin());
+  if (collected_.size() > kMostRevisions) forget_oldest();
   return false;
 }
 
-bool MissionFollower::commit(std::int64_t revision, Parts& parts) {
+/// The newest that was received of a part up to a revision; null: none.
+const MissionFollower::Page* MissionFollower::newest_of(std::size_t part,
+                                                        std::int64_t revision) const {
+  for (auto at = collected_.upper_bound(revision); at != collected_.begin();) {
+    const Pages& pages = (--at)->second;
+    if (part < pages.size() && pages[part]) return &*pages[part];
+  }
+  return part < known_.size() && known_[part] ? &*known_[part] : nullptr;
+}
+
+/// The parts of the revision of `newest`, with older ones in place of those that are missing.
+std::optional<std::vector<MissionPart>> MissionFollower::completed(
+    const MissionPart& newest) const {
+  const auto count = static_cast<std::size_t>(newest.parts);
+  std::vector<const Page*> pages;
+  std::uint64_t sum = 0;
+  bool all_received = true;
+  for (std::size_t p = 0; p < count; ++p) {
+    const Page* const page = newest_of(p, newest.revision);
+    if (page == nullptr) return std::nullopt;
+    pages.push_back(page);
+    all_received = all_received && page->part.revision == newest.revision;
+    sum += page->hash;
+  }
+  if (!all_received && sum != newest.content_hash) return std::nullopt;
+  std::vector<MissionPart> parts;
+  for (const Page* page : pages) parts.push_back(page->part);
+  return parts;
+}
+
+/// Its parts may be those that a later revision lacks.
+void MissionFollower::forget_oldest() {
+  const auto oldest = collected_.begin();
+  if (known_.size() < oldest->second.size()) known_.resize(oldest->second.size());
+  for (std::size_t p = 0; p < oldest->second.size(); ++p) {
+    std::optional<Page>& page = oldest->second[p];
+    const bool newer = page && (!known_[p] || known_[p]->part.revision < page->part.revision);
+    if (newer) known_[p] = std::move(page);
+  }
+  collected_.erase(oldest);
+}
+
+bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart> parts) {
   std::vector<std::byte> plan;
-  for (const auto& part : parts) plan.insert(plan.end(), part->plan.begin(), part->plan.end());
+  for (const MissionPart& part : parts) plan.insert(plan.end(), part.plan.begin(), part.plan.end());
   const bool first = !mission_ && !plan_problem_;
   if (!first && plan != plan_) {
     ++foreign_plans_;
     return false;
   }
   plan_ = std::move(plan);
-  revision_ = revision;
-  state_ = parts.front()->state;
-  reason_ = parts.front()->reason;
+  revision_ = newest.revision;
+  state_ = newest.state;
+  reason_ = newest.reason;
   roster_.clear();
-  parts_.clear();
-  for (auto& part : parts) {
-    roster_.insert(roster_.end(), part->roster.begin(), part->roster.end());
-    parts_.push_back(std::move(*part));
+  known_.resize(parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    roster_.insert(roster_.end(), parts[p].roster.begin(), parts[p].roster.end());
+    if (!known_[p] || known_[p]->part.revision < parts[p].revision) {
+      known_[p] = Page{parts[p], hash_of(parts[p])};
+    }
   }
+  std::sort(roster_.begin(), roster_.end(),
+            [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   by_incarnation_.clear();
   for (std::size_t i = 0; i < roster_.size(); ++i) {
     by_incarnation_.emplace_back(roster_[i].author.incarnation, i);
   }
   std::sort(by_incarnation_.begin(), by_incarnation_.end());
+  parts_ = std::move(parts);
   if (!first) return true;
   if (!expected_plan_.empty() && plan_ != expected_plan_) {
     plan_problem_ = "another mission";

@@ -16,14 +16,18 @@
 
 namespace ergocast {
 
+/// A hash of a part's content: its number and its shares of roster and plan.
+std::uint64_t hash_of(const MissionPart& part);
+
 class MissionFollower {
  public:
   /// From now on accepts only this plan: a foreign plan is a plan_problem().
   /// @pre no part has been received
   void expect_plan(std::vector<std::byte> plan) { expected_plan_ = std::move(plan); }
 
-  /// Takes in one part, in any order. True if it completed a newer revision. A run has one plan: a
-  /// revision with another plan only counts in foreign_plans().
+  /// Takes in one part, in any order. True if it completed a newer revision: all its parts have
+  /// been received, or the newest received of those that are missing have its content_hash. A run
+  /// has one plan: a revision with another plan only counts in foreign_plans().
   bool receive(const MissionPart& part);
 
   /// The mission, once a whole plan has arrived and decoded.
@@ -42,9 +46,11 @@ class MissionFollower {
   MissionState state() const { return state_; }
   bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
   const std::string& reason() const { return reason_; }
+  /// In ascending order of authors.
   const std::vector<RosterEntry>& roster() const { return roster_; }
   const std::vector<std::byte>& plan() const { return plan_; }
-  /// The newest complete revision as its coordinator sent it, for answers to mission requests.
+  /// The newest complete revision as its coordinator sent it, for answers to mission requests. Its
+  /// parts may be of several revisions.
   const std::vector<MissionPart>& parts() const { return parts_; }
 
   /// The entry of an incarnation, or null.
@@ -63,10 +69,19 @@ class MissionFollower {
   std::vector<std::byte> plan_;
   std::vector<MissionPart> parts_;
 
-  using Parts = std::vector<std::optional<MissionPart>>;
-  bool commit(std::int64_t revision, Parts& parts);
+  struct Page {
+    MissionPart part;
+    std::uint64_t hash;
+  };
+  using Pages = std::vector<std::optional<Page>>;
 
-  std::map<std::int64_t, Parts> collected_;  // by revision, none of them complete
+  const Page* newest_of(std::size_t part, std::int64_t revision) const;
+  std::optional<std::vector<MissionPart>> completed(const MissionPart& newest) const;
+  void forget_oldest();
+  bool commit(const MissionPart& newest, std::vector<MissionPart> parts);
+
+  std::map<std::int64_t, Pages> collected_;  // by revision, none of them complete
+  Pages known_;                              // the newest of each that is no longer collected
 };
 
 /// Sequence numbers of one sender, counted per bus, so that a gap on a bus is a loss on that bus.

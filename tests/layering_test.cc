@@ -22,6 +22,7 @@ enum class Outside {
   kLcm,          // the network
   kLcmTypes,     // lcm-gen's structs
   kInstalled,    // our own headers, as libergocast-dev installs them
+  kZstd,         // libzstd
   kLog,          // spdlog
   kCommandLine,  // CLI11
   kJson,         // nlohmann
@@ -56,7 +57,7 @@ const std::vector<Rule> kRules = {
     {"scenario", {"text", "core", "target", "geo", "scenario"}, {kProtobuf, kCommandLine, kFiles}},
     {"runtime",
      {"text", "core", "team", "lcmtypes", "runtime"},
-     {kLcm, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
+     {kLcm, kZstd, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
     // The participants: they know the shared parts, but not each other.
     {"agent", {"core", "team", "agent"}, {}},
     {"coordinator", {"core", "team", "coordinator"}, {}},
@@ -110,6 +111,7 @@ const std::vector<Kind> kKinds = {
     {kInstalled,
      {"ergocast/core/*", "ergocast/target/*", "ergocast/team/*", "ergocast/agent/*",
       "ergocast/lcmtypes/*"}},
+    {kZstd, {"zstd.h"}},
     {kLog, {"spdlog/*"}},
     {kCommandLine, {"CLI/*"}},
     {kJson, {"nlohmann/*"}},

@@ -17,8 +17,8 @@ import lcm.lcm.LCMDataInputStream;
  * The hash of the messages is not checked here, because only a picture depends on it.
  */
 final class Team {
-  private static final int MAX_AGENTS = 128;
-  private static final int MAX_PARTS = 128;
+  private static final int MAX_AGENTS = 1024;
+  private static final int MAX_PARTS = 512;
   private static final int MAX_COUNT = 100000;
   private static final int MAX_PART_BYTES = 1024;
   private static final long SILENCE_NS = 3_000_000_000L;
@@ -43,7 +43,6 @@ final class Team {
   private final LongSupplier clock; // [ns]
   private long run;
   private long heardNs;
-  private long revision = -1;
   private byte[][] parts = new byte[0][];
 
   Team() {
@@ -98,10 +97,8 @@ final class Team {
         || message.plan.length > MAX_PART_BYTES) {
       return;
     }
-    if (message.revision != revision || parts.length != count) {
-      revision = message.revision;
-      parts = new byte[count][];
-    }
+    // All revisions of a run have one plan; a large one does not come as a whole.
+    if (parts.length != count) parts = Arrays.copyOf(parts, count);
     parts[message.part] = message.plan;
     if (Arrays.asList(parts).contains(null)) return;
     ByteArrayOutputStream whole = new ByteArrayOutputStream();

@@ -80,7 +80,7 @@ function commands(mode) {
   lines.push('# the same mission as a new run', 'ergocast simulate scenario.textproto --out ../again',
     '# make this page again', 'ergocast report .', '# this page from a server', 'ergocast watch .');
   if (mode !== undefined && mode !== 'simulate') {
-    lines.push('# send its messages again, as for lcm-spy, on a port of their own', 'lcm-logplayer --lcm-url="udpm://239.255.76.67:7777?ttl=0" -s 0.1 events-000.lcm');
+    lines.push('# send its messages again, for ergocast status and lcm-spy', 'ergocast replay .');
   }
   return lines.join('\n');
 }

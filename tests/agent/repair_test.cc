@@ -75,11 +75,10 @@ TEST_F(Repair, ADigestNamesEverybodyInTheRosterWithNothingForWhatIsNotHeld) {
   admit({former, 0, 4});
   hold(author_of(2), 9);
   hold(former, 4);
-  const auto digests = AntiEntropy::digests(table, roster);
-  ASSERT_EQ(digests.size(), 1u);
-  ASSERT_EQ(digests[0].entry_count, 6);
+  const Digest digest = repair.digest(table, roster, 0);
+  ASSERT_EQ(digest.entry_count, 6);
   for (std::size_t i = 0; i < roster.size(); ++i) {
-    const DigestEntry& entry = digests[0].entries[i];
+    const DigestEntry& entry = digest.entries[i];
     EXPECT_EQ(entry.author, roster[i].author);
     EXPECT_EQ(entry.steps, entry.author == author_of(2) ? 9 : entry.author == former ? 4 : 0);
   }
@@ -89,29 +88,10 @@ TEST_F(Repair, ADigestNamesTheOldestBlockOfARow) {
   const Mission two_blocks = two_block_mission(2);
   CoverageTable large(two_blocks.basis, two_blocks.timing.dt_s);
   large.merge(blocks_of(two_blocks, author_of(1), path_of(8), 8)[0], 8);
-  const auto steps_of_1 = [&] {
-    return AntiEntropy::digests(large, roster_of(2)).at(0).entries[1].steps;
-  };
+  const auto steps_of_1 = [&] { return repair.digest(large, roster_of(2), 0).entries[1].steps; };
   EXPECT_EQ(steps_of_1(), 0) << "the second block has never come";
   large.merge(blocks_of(two_blocks, author_of(1), path_of(5), 5)[1], 8);
   EXPECT_EQ(steps_of_1(), 5);
-}
-
-TEST_F(Repair, ALargeTeamTakesSeveralDigests) {
-  for (const int members : {1, 56, 57, 112, 113, 128}) {
-    std::set<Author> named;
-    for (const Digest& digest : AntiEntropy::digests(table, roster_of(members))) {
-      EXPECT_GE(digest.entry_count, 1);
-      EXPECT_LE(digest.entry_count, kMaxDigestEntriesPerMessage);
-      for (int i = 0; i < digest.entry_count; ++i) {
-        EXPECT_TRUE(named.insert(digest.entries[static_cast<std::size_t>(i)].author).second);
-      }
-    }
-    EXPECT_EQ(named.size(), static_cast<std::size_t>(members));
-    EXPECT_EQ(AntiEntropy::digests(table, roster_of(members)).size(),
-              static_cast<std::size_t>((members + kMaxDigestEntriesPerMessage - 1) /
-                                       kMaxDigestEntriesPerMessage));
-  }
 }
 
 TEST(AgentDigests, OnceASecond) {
@@ -368,10 +348,11 @@ TEST_F(Repair, NoMoreRowsWaitToBeRepeatedThanItsLimitHoweverManySecondsPass) {
 }
 
 TEST_F(Repair, WhoHasComplainedAndGoneMakesRoomForOthers) {
-  roster = roster_of(kMaxAgents);
-  for (AgentId id = 1; id < kMaxAgents; ++id) hold(author_of(id), 20);
-  for (AgentId from = 3; from < kMaxAgents; ++from) {
-    for (AgentId id = 1; id < kMaxAgents; ++id) complain(from, author_of(id), 0, at(0s));
+  constexpr AgentId kMany = 128;
+  roster = roster_of(kMany);
+  for (AgentId id = 1; id < kMany; ++id) hold(author_of(id), 20);
+  for (AgentId from = 3; from < kMany; ++from) {
+    for (AgentId id = 1; id < kMany; ++id) complain(from, author_of(id), 0, at(0s));
   }
   complain_twice(1, author_of(2), 0, at(6s));
   EXPECT_EQ(answered(at(7s)), two);

@@ -113,7 +113,7 @@ std::vector<Mistake> mistakes_between_fields() {
       {kTime, "duration_s: 60 dt_s: 0.001 pace: REALTIME realtime_factor: 20",
        "time.realtime_factor: 20 makes a step last"},
       {"starts { x_m: 10 y_m: 20 }", "", "agents: the team is empty"},
-      {"agents {", "agents { random_count: 128", "agents: a team of 129"},
+      {"agents {", "agents { random_count: 1024", "agents: a team of 1025"},
       {"agents {", "agents { quorum: 2", "agents.quorum: 2 is above"},
       {"{ x_m: 10", "{ x_m: 101", "agents.starts[0].x_m: 101 is outside"},
       {"y_m: 20", "y_m: -1", "agents.starts[0].y_m: -1 is outside"},
@@ -468,8 +468,8 @@ class CheckCanFail : public Scenarios {
     expect_refused({"check", folder_}, ": is a folder, not a file");
     expect_refused({"check", "/dev/zero"}, "/dev/zero: is not a regular file");
     expect_refused({"check", "/proc/self/mem"}, "/proc/self/mem: cannot be read");
-    expect_refused({"simulate", file_, "--agents", "129", "--out", out()},
-                   "--agents: 129 is outside");
+    expect_refused({"simulate", file_, "--agents", "1025", "--out", out()},
+                   "--agents: 1025 is outside");
     const std::pair<const char*, const char*> flags[] = {
         {"name=a,b", "is a text"},
         {"law.epsilom=1", "did you mean law.epsilon?"},

@@ -37,7 +37,7 @@ TEST(CoordinatorAdmits, WhoeverDoesNotCareUnderTheLowestFreeNumber) {
 TEST(CoordinatorAdmits, BeyondThePlanUnderTheNextNumberUpToTheLimit) {
   Coordinator coordinator = coordinator_of(small_mission(2));
   give(coordinator, hello_of(5), at(0s));
-  for (Incarnation life = 1; life <= 200; ++life) {
+  for (Incarnation life = 1; life <= kMaxAgents + 72; ++life) {
     give(coordinator, hello_of(kUnassigned, life), at(0s));
   }
   ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A segment of an event log: events within the limits of any message, and then an end or a problem.
+// A segment of an event log, as it is and as a compressed one: events within the limits of any
+// message, and then an end or a problem.
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/event_log_reader.h"
 #include "runtime/lcm_datagram.h"
@@ -9,16 +10,19 @@
 namespace ergocast::fuzz {
 
 FUZZ_TARGET(event_log) {
-  static const Folder folder;
-  folder.write("events-000.lcm", text_of(input));
-  auto opened = EventLogReader::open(folder.path());
-  auto& reader = std::get<EventLogReader>(opened);
-  while (const LoggedEvent* event = reader.next()) {
-    ERGOCAST_REQUIRE(event->channel.size() < kMaxChannelBytes);
-    ERGOCAST_REQUIRE(event->bytes.size() <= kMaxDatagramBytes);
-    ERGOCAST_REQUIRE(!reader.problem());
+  static const Folder plain, compressed;
+  plain.write("events-000.lcm", text_of(input));
+  compressed.write("events-000.lcm.zst", text_of(input));
+  for (const Folder* folder : {&plain, &compressed}) {
+    auto opened = EventLogReader::open(folder->path());
+    auto& reader = std::get<EventLogReader>(opened);
+    while (const LoggedEvent* event = reader.next()) {
+      ERGOCAST_REQUIRE(event->channel.size() < kMaxChannelBytes);
+      ERGOCAST_REQUIRE(event->bytes.size() <= kMaxDatagramBytes);
+      ERGOCAST_REQUIRE(!reader.problem());
+    }
+    if (reader.problem()) ERGOCAST_REQUIRE(reader.problem()->find(", byte ") != std::string::npos);
   }
-  if (reader.problem()) ERGOCAST_REQUIRE(reader.problem()->find(", byte ") != std::string::npos);
 }
 
 }  // namespace ergocast::fuzz

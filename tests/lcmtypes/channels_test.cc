@@ -44,7 +44,7 @@ TEST(Channels, NameTheSenderButForContributionsWhichOthersMayRelay) {
   EXPECT_FALSE(transmitter_of(digest(), "ERGOCAST_DIGEST_30"));
   EXPECT_EQ(transmitter_of(contribution(), "ERGOCAST_CONTRIBUTION_3"), 3);
   EXPECT_EQ(transmitter_of(contribution(), "ERGOCAST_CONTRIBUTION_9"), 9);
-  for (const char* nobody : {"", "x", "-1", "128", "9 ", "99999999999"}) {
+  for (const char* nobody : {"", "x", "-1", "1024", "9 ", "99999999999"}) {
     EXPECT_FALSE(transmitter_of(contribution(), std::string("ERGOCAST_CONTRIBUTION_") + nobody))
         << nobody;
   }

@@ -87,18 +87,18 @@ constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
 constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
 
 TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
-  constexpr std::size_t kRosterCount = kSignatureEnd + 17, kPlanSize = kSignatureEnd + 21,
-                        kVehicleCount = kHeaderBytes + 41;
+  constexpr std::size_t kRosterCount = kSignatureEnd + 25, kPlanSize = kSignatureEnd + 29,
+                        kVehicleCount = kHeaderBytes + 41, kDigestCount = kHeaderBytes + 8;
   // The offsets are right: writing the true counts there changes nothing.
   ASSERT_EQ(with_count(mission_part(), kRosterCount, 2), encoded(mission_part()));
   ASSERT_EQ(with_count(mission_part(), kPlanSize, 300), encoded(mission_part()));
   ASSERT_EQ(with_count(world_state(), kVehicleCount, 2), encoded(world_state()));
-  ASSERT_EQ(with_count(digest(), kHeaderBytes, 2), encoded(digest()));
+  ASSERT_EQ(with_count(digest(), kDigestCount, 2), encoded(digest()));
   for (const std::int32_t count :
        {-1, 0, 1, 3, 12, 13, 100, 0x01000000, 0x7fffff00, kMost, kLeast}) {
     EXPECT_EQ(verdict(with_count(mission_part(), kRosterCount, count)), "size") << count;
     EXPECT_EQ(verdict(with_count(world_state(), kVehicleCount, count)), "size") << count;
-    EXPECT_EQ(verdict(with_count(digest(), kHeaderBytes, count)), "size") << count;
+    EXPECT_EQ(verdict(with_count(digest(), kDigestCount, count)), "size") << count;
   }
   for (const std::int32_t count : {-1, 0, 299, 301, 512, 513, kMost, kLeast}) {
     EXPECT_EQ(verdict(with_count(mission_part(), kPlanSize, count)), "size") << count;
@@ -108,14 +108,14 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
 TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
   // 45 bytes less of roster and 45 more of plan: the total size is right, only the meaning changes.
   Bytes shifted = encoded(mission_part());
-  put32(shifted, kSignatureEnd + 17, 1);
-  put32(shifted, kSignatureEnd + 21, 345);
+  put32(shifted, kSignatureEnd + 25, 1);
+  put32(shifted, kSignatureEnd + 29, 345);
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
   EXPECT_EQ(part.plan.size(), 345u);
   // Beyond a limit a right total does not help.
-  put32(shifted, kSignatureEnd + 17, 9);
-  put32(shifted, kSignatureEnd + 21, 300 - 7 * 45);
+  put32(shifted, kSignatureEnd + 25, 9);
+  put32(shifted, kSignatureEnd + 29, 300 - 7 * 45);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
 }
 

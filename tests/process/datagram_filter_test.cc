@@ -49,10 +49,10 @@ TEST_F(DatagramFilter, PassesOnOurMessagesUnderOurNamesOnly) {
     EXPECT_TRUE(passes(message)) << channel_of(message);
     EXPECT_FALSE(passes(message, channel_of(message) + "X")) << channel_of(message);
   }
-  for (const char* number : {"0", "17", "127", "999", "NEW"}) {
+  for (const char* number : {"0", "17", "127", "999", "1023", "NEW"}) {
     EXPECT_TRUE(passes(command(), std::string("ERGOCAST_COMMAND_") + number));
   }
-  for (const char* number : {"", "X", "1000", "1X", "NE", "NEWS"}) {
+  for (const char* number : {"", "X", "10000", "1X", "NE", "NEWS"}) {
     EXPECT_FALSE(passes(command(), std::string("ERGOCAST_COMMAND_") + number)) << number;
   }
 }
@@ -105,8 +105,8 @@ TEST_F(DatagramFilter, InAFloodPassesOnOnlyAShareOfWhatWasSaidBefore) {
     EXPECT_GT(passed, 40) << channel_of(message);
     EXPECT_LT(passed, 160) << channel_of(message);
   }
-  // And for numbers of one, two and three digits.
-  for (const char* number : {"7", "42", "127", "NEW"}) {
+  // And for numbers of one to four digits.
+  for (const char* number : {"7", "42", "127", "1023", "NEW"}) {
     int passed = 0;
     for (int i = 0; i < 3200; ++i) {
       passed += passes(said(command(), 2, 100), std::string("ERGOCAST_COMMAND_") + number) ? 1 : 0;

@@ -90,14 +90,16 @@ INSTANTIATE_TEST_SUITE_P(Paces, LateAgentInEitherPace,
                            return pace.index == 0 ? "Lockstep" : "Realtime";
                          });
 
-TEST_P(LateAgentInEitherPace, IsWelcomeBeyondThePlan) {
+TEST_P(LateAgentInEitherPace, IsWelcomeBeyondThePlanAlsoUnderTheLastNumber) {
   Child mission = launch_endless(scenario(), {"--agents", "2", GetParam(), "--lcm-url", kUrl});
   hand("ergocast-agent");
+  hand("ergocast-agent", {"--id", std::to_string(kMaxAgents - 1)});
   BusObserver observer(kUrl);
   expect_to_take_part(observer, 2, 1);
+  expect_to_take_part(observer, kMaxAgents - 1, 1);
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << said();
-  EXPECT_EQ(summary()["agents"].size(), 3U);
+  EXPECT_EQ(summary()["agents"].size(), 4U);
 }
 
 }  // namespace

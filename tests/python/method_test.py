@@ -109,12 +109,12 @@ class OfTheTable(unittest.TestCase):
 
     def test_full(self):
         table = CoverageTable(BASIS, DOMAIN, 0.1)
-        for life in range(512):
-            table.add_sample(life % 128, (0, 3), incarnation=life + 1)
+        for life in range(4096):
+            table.add_sample(life % 1024, (0, 3), incarnation=life + 1)
         with self.assertRaisesRegex(ValueError, "full"):
             table.add_sample(0, (0, 3), incarnation=1000)
         with self.assertRaisesRegex(ValueError, "agent"):
-            table.add_sample(128, (0, 3))
+            table.add_sample(1024, (0, 3))
 
 
 class OfTheController(unittest.TestCase):

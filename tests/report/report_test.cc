@@ -262,7 +262,7 @@ TEST_F(Report, SegmentsReadAsOneTable) {
 TEST_F(Report, MalformedLineIsNamedAndNothingIsWritten) {
   const std::vector<std::string> lines = {
       "2,0.2,0,1,1,1",     "2,0.2,0,1,1,1,1,1", "2,0.2,0,nan,1,1,1", "2,0.2,0,1e300,1,1,1",
-      "2,0.2,x,1,1,1,1",   "2,0.2,999,1,1,1,1", "2,0.2,0,1,1,1,1\r", "0,0.2,0,1,1,1,1",
+      "2,0.2,x,1,1,1,1",   "2,0.2,1024,1,1,1,1", "2,0.2,0,1,1,1,1\r", "0,0.2,0,1,1,1,1",
       "2.5,0.2,0,1,1,1,1", "2,-1,1,1,1,1,1",    "-2,0.2,1,1,1,1,1",  ""};
   for (const std::string& line : lines) {
     record(1, 2);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runtime/event_log_reader.h"
+#include "runtime/segment_compressor.h"
 #include "tests/support/temp_folder.h"
 
 namespace ergocast {
@@ -82,6 +83,51 @@ TEST_F(EventLogTest, HoldsNoMoreThanItsLimitAndLosesItsOldestSegmentsFirst) {
     log.write("NAME", kEvent);
     ASSERT_LE(bytes(), 40000U) << i;
   }
+}
+
+TEST_F(EventLogTest, CompressesFinishedSegmentsIntoWhatZstdTurnsBackIntoTheSameBytes) {
+  const auto log_25_events = [this](bool compressed) {
+    EventLog log(folder_, {.segment_bytes = 10000, .compressed = compressed});
+    for (int i = 0; i < 25; ++i) log.write("NAME", kEvent);
+    EXPECT_EQ(log.flush(), std::nullopt);
+  };
+  log_25_events(false);
+  std::ofstream(folder_ / "events-001.lcm.zst.part") << "what a killed process left";
+  log_25_events(true);
+  EXPECT_EQ(files(), (std::set<std::string>{"events-000.lcm.zst", "events-001.lcm.zst",
+                                            "events-002.lcm.zst", "events-003.lcm.zst",
+                                            "events-004.lcm.zst", "events-005.lcm"}));
+  for (const auto& [name, held] : {std::pair{"events-001.lcm", 10}, std::pair{"events-002.lcm", 5},
+                                   std::pair{"events-004.lcm", 10}}) {
+    const fs::path file = folder_ / name;
+    EXPECT_LT(fs::file_size(file.string() + ".zst"), 1000U) << "zeros";
+    ASSERT_EQ(std::system(("zstd -q -d " + file.string() + ".zst").c_str()), 0);
+    EXPECT_EQ(events(name), held) << name;
+  }
+}
+
+TEST_F(EventLogTest, CompressesAFinishedSegmentWhileHalfOfTheNextIsWritten) {
+  constexpr int kEvents = 2048;
+  EventLog log(folder_, {.segment_bytes = kEvents * 1000, .compressed = true});
+  for (int i = 0; i < kEvents + 100; ++i) log.write("NAME", kEvent);
+  EXPECT_TRUE(files().contains("events-000.lcm")) << "not at once: nothing waits for it";
+  for (int i = 100; i < kEvents * 3 / 4; ++i) log.write("NAME", kEvent);
+  EXPECT_EQ(files(), (std::set<std::string>{"events-000.lcm.zst", "events-001.lcm"}));
+}
+
+TEST_F(EventLogTest, CompressedSegmentsAreNumberedAndLimitedLikeOthers) {
+  {
+    EventLog log(folder_, {.segment_bytes = 10000, .compressed = true});
+    for (int i = 0; i < 15; ++i) log.write("NAME", kEvent);
+    log.flush();
+    std::ofstream(folder_ / "events-000.lcm.zst") << std::string(26000, 'x');
+  }
+  EventLog log(folder_, {.segment_bytes = 10000, .total_bytes = 40000, .compressed = true});
+  log.write("NAME", kEvent);
+  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm", "events-002.lcm"}));
+  EXPECT_EQ(log.removed(), 1);
+  log.discard();
+  EXPECT_EQ(files(), (std::set<std::string>{"events-001.lcm"}));
 }
 
 TEST_F(EventLogTest, GoesOnAfterTheHighestNumberAndCountsWhatOthersLeft) {
@@ -158,6 +204,31 @@ TEST_F(EventLogReaderTest, GivesBackEachEventOfAllSegmentsInOrder) {
   write({"A", "B", "C", "D", "E", "F"});
   EXPECT_TRUE(fs::exists(segment(1)));
   EXPECT_EQ(read_back(folder_), "A B C D E F ");
+}
+
+TEST_F(EventLogReaderTest, ReadsCompressedSegmentsAsTheyAre) {
+  write({"A", "B", "C", "D", "E", "F"});
+  SegmentCompressor compressor;
+  compressor.add(segment(0));
+  while (!compressor.idle()) compressor.work(1 << 20);
+  ASSERT_FALSE(fs::exists(segment(0)));
+  EXPECT_EQ(read_back(folder_), "A B C D E F ");
+  // Of both, the one that is not compressed.
+  const fs::path packed = segment(0).string() + ".zst";
+  fs::copy_file(segment(1), segment(0));
+  EXPECT_EQ(read_back(folder_), "E F E F ");
+  fs::remove(segment(0));
+  // No killed logger leaves an incomplete one.
+  for (const std::uintmax_t size : {fs::file_size(packed) - 1, std::uintmax_t{0}}) {
+    fs::resize_file(packed, size);
+    const std::string read = read_back(folder_);
+    EXPECT_NE(read.find(packed.string() + ", byte "), std::string::npos) << read;
+    EXPECT_NE(read.find(": damaged; what stands before is sound: `zstd -dc events-000.lcm.zst | "
+                        "head -c "),
+              std::string::npos)
+        << read;
+    EXPECT_EQ(read.find("E F"), std::string::npos) << read;
+  }
 }
 
 TEST_F(EventLogReaderTest, LeavesOutWhatAKilledLoggerBegan) {

@@ -151,8 +151,8 @@ constexpr Mistake kFields[] = {
      "86401 is above the limit 86400"},
     {"duration_s: 60", "duration_s: 60 catch_up_limit_ticks: -1", "-1 is below the limit 0"},
     {"agents {", "agents { random_count: -1", "agents.random_count: -1 is below the limit 0"},
-    {"agents {", "agents { random_count: 128", "agents: a team of 129 is above the limit 128"},
-    {"agents {", "agents { random_count: 2147483647", "2147483647 is above the limit 128"},
+    {"agents {", "agents { random_count: 1024", "agents: a team of 1025 is above the limit 1024"},
+    {"agents {", "agents { random_count: 2147483647", "2147483647 is above the limit 1024"},
     {"agents {", "agents { quorum: 0", "agents.quorum: 0 is below the limit 1"},
     {"agents {", "agents { quorum: 2", "agents.quorum: 2 is above the limit, the team's size 1"},
     {"agents {", "world { disturbance_intensity: -1 } agents {", "-1 is below the limit 0"},
@@ -227,7 +227,7 @@ TEST(Limits, ThemselvesAreAllowed) {
            {"u_max_mps: 5", "u_max_mps: 5.591 contraction_gain_per_s: 0.1"},
            {"law {", "basis { modes_x: 64 modes_y: 64 } law {"},
            {"law {", "basis { modes_x: 1 modes_y: 2 } law {"},
-           {"agents {", "agents { random_count: 127"},
+           {"agents {", "agents { random_count: 1023"},
            {"duration_s: 60", "duration_s: 1000 dt_s: 1e-5"},
            {"law {", "name: \"_a-B.9\" law {"}}) {
     EXPECT_EQ(joined(problems_of(small_with(from, to))), "") << to;

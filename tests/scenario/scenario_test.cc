@@ -179,9 +179,9 @@ TEST(Reading, ByteOrderMarkAndWindowsLineEndsDoNoHarm) {
 }
 
 TEST(RandomStarts, AreInsideRepeatAndBelongToTheAgentsNumber) {
-  const std::string text = small_with("agents {", "seed: 9 agents { random_count: 127");
+  const std::string text = small_with("agents {", "seed: 9 agents { random_count: 1023");
   const std::vector<Eigen::Vector3d> starts = good(text).mission().starts_m;
-  ASSERT_EQ(starts.size(), 128u);
+  ASSERT_EQ(starts.size(), 1024u);
   EXPECT_EQ(starts[0], Eigen::Vector3d(10, 20, 0));
   const Box domain = good(text).mission().domain;
   for (const Eigen::Vector3d& x_m : starts) EXPECT_TRUE(domain.contains(x_m));
@@ -232,12 +232,12 @@ TEST(Overrides, AgentsCutTheTeamAndItsQuorum) {
 
 TEST(Overrides, TakeTheBlameForWhatTheyBreak) {
   const std::vector<Problem> problems =
-      problems_of(kSmall, {.duration_s = -1, .realtime_factor = std::nan(""), .agents = 129});
+      problems_of(kSmall, {.duration_s = -1, .realtime_factor = std::nan(""), .agents = 1025});
   const std::string text = joined(problems);
   EXPECT_EQ(problems.size(), 3u) << text;
   EXPECT_TRUE(has(text, "--duration: -1 is not above 0"));
   EXPECT_TRUE(has(text, "--realtime: nan is not a number"));
-  EXPECT_TRUE(has(text, "--agents: 129 is outside the limits 1 to 128"));
+  EXPECT_TRUE(has(text, "--agents: 1025 is outside the limits 1 to 1024"));
   EXPECT_TRUE(has(joined(problems_of(kSmall, {.duration_s = 0.01})), "--duration: 0.01 is less"));
   EXPECT_TRUE(has(joined(problems_of(kSmall, {.agents = 0})), "--agents: 0 is"));
 }

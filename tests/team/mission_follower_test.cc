@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "tests/support/team.h"
 
@@ -94,12 +95,12 @@ TEST(MissionFollower, APartOfARevisionThatNeverCompletesBlocksNoOlderOne) {
   EXPECT_TRUE(follower.receive(part_of(98, kParts - 1)));
 }
 
-TEST(MissionFollower, KeepsTheNewestFourUnfinishedRevisionsAndNoMore) {
+TEST(MissionFollower, KeepsTheNewestFourUnfinishedRevisionsAndOfOlderOnesTheNewestParts) {
   MissionFollower follower;
-  for (int revision = 1; revision <= 5; ++revision) follower.receive(part_of(revision, 0));
+  for (int revision = 1; revision <= 6; ++revision) follower.receive(part_of(revision, 0));
   for (int p = 1; p < kParts; ++p) EXPECT_FALSE(follower.receive(part_of(1, p))) << "forgotten";
-  for (int p = 1; p < kParts - 1; ++p) EXPECT_FALSE(follower.receive(part_of(2, p)));
-  EXPECT_TRUE(follower.receive(part_of(2, kParts - 1)));
+  for (int p = 1; p < kParts - 1; ++p) EXPECT_FALSE(follower.receive(part_of(3, p)));
+  EXPECT_TRUE(follower.receive(part_of(3, kParts - 1)));
 }
 
 TEST(MissionFollower, KeepsWhatItHasUntilANewerRevisionIsComplete) {
@@ -208,6 +209,61 @@ TEST(MissionFollower, ARevisionWithAnotherPlanChangesNothing) {
   for (int p = 0; p < kParts; ++p) follower.receive(part_of(2, p));
   EXPECT_EQ(follower.revision(), 2) << "the same number with our plan is heard";
   EXPECT_EQ(follower.foreign_plans(), 1);
+}
+
+/// Revision 1 complete, of which revision `revision` changes `changed`: the parts of both.
+struct Change {
+  explicit Change(std::set<int> changed, std::int64_t revision = 2) {
+    for (int p = 0; p < kParts; ++p) {
+      before.push_back(part_of(1, p));
+      after.push_back(part_of(revision, p));
+      if (!changed.contains(p)) after.back().roster = before.back().roster;
+    }
+    for (auto* parts : {&before, &after}) {
+      std::uint64_t sum = 0;
+      for (const MissionPart& part : *parts) sum += hash_of(part);
+      for (MissionPart& part : *parts) part.content_hash = sum;
+    }
+  }
+  std::vector<MissionPart> before, after;
+};
+
+TEST(MissionFollower, PartsThatHaveNotChangedNeedNotComeAgain) {
+  const Change change({1, 3});
+  MissionFollower follower;
+  for (const MissionPart& part : change.before) follower.receive(part);
+  EXPECT_FALSE(follower.receive(change.after[1]));
+  EXPECT_FALSE(follower.receive(change.after[2])) << "one that has changed is missing";
+  EXPECT_EQ(follower.revision(), 1);
+  EXPECT_TRUE(follower.receive(change.after[3]));
+  EXPECT_EQ(follower.revision(), 2);
+  EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 12, 21, 23}));
+}
+
+TEST(MissionFollower, WhatItRepeatsOfSeveralRevisionsMakesTheMissionWholeForOthers) {
+  const Change change({1, 3});
+  MissionFollower follower, other;
+  for (const MissionPart& part : change.before) follower.receive(part);
+  for (const int p : {1, 3}) follower.receive(change.after[static_cast<std::size_t>(p)]);
+  ASSERT_EQ(follower.parts().size(), static_cast<std::size_t>(kParts));
+  std::vector<MissionPart> parts = follower.parts();
+  std::reverse(parts.begin(), parts.end());  // the last is of the older revision
+  for (const MissionPart& part : parts) other.receive(part);
+  EXPECT_EQ(other.revision(), 2);
+  EXPECT_EQ(agents_of(other), agents_of(follower));
+}
+
+TEST(MissionFollower, APartOfARevisionInBetweenIsNoPartOfOneThatChangedItAgain) {
+  const Change first({1}, 2), second({1}, 3);
+  MissionFollower follower;
+  for (const MissionPart& part : first.before) follower.receive(part);
+  MissionPart unchanged = second.after[0];
+  EXPECT_FALSE(follower.receive(unchanged));
+  EXPECT_TRUE(follower.receive(first.after[1])) << "revision 2 is complete";
+  EXPECT_FALSE(follower.receive(unchanged)) << "revision 3 changed it again";
+  EXPECT_EQ(follower.revision(), 2);
+  EXPECT_TRUE(follower.receive(second.after[1]));
+  EXPECT_EQ(agents_of(follower), (std::vector<AgentId>{10, 12, 13, 31}));
 }
 
 TEST(MissionFollower, FindsAnEntryByItsIncarnation) {

@@ -50,7 +50,7 @@ TEST(Participant, EveryRoleHearsTheMissionAndOnlyItsOwnTypes) {
     EXPECT_TRUE(accept(one, mission_part(0, MissionState::kWaiting, {}))) << role;
     EXPECT_TRUE(one.knows_mission()) << role;
     const bool all = one.role() == Role::kLogger;
-    EXPECT_EQ(accept(one, Digest{{kRun, 1, 1, 1, 0}, 0, {}}).has_value(),
+    EXPECT_EQ(accept(one, Digest{{kRun, 1, 1, 1, 0}, 0, 0, {}}).has_value(),
               all || one.role() == Role::kAgent)
         << role;
   }

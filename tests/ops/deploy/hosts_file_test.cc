@@ -68,7 +68,7 @@ TEST(HostsFile, AllItsProblemsAreNamedAtOnceWithLineColumnAndRemedy) {
       "ground coordinator pilot\n"
       "ground sim\n"
       "-oProxyCommand=x agent 0\n"
-      "rover pi@host;reboot agent 128\n"
+      "rover pi@host;reboot agent 1024\n"
       "other agent\n"
       "third agent 0 0 agents=0 agents=x\n"
       "fourth\n"
@@ -78,7 +78,7 @@ TEST(HostsFile, AllItsProblemsAreNamedAtOnceWithLineColumnAndRemedy) {
         "hosts:2:1: \"ground\" is already in line 1",
         "hosts:3:1: \"-oProxyCommand=x\" is no host name",
         "hosts:4:7: \"pi@host;reboot\" is no address",
-        "hosts:4:28: agent 128 cannot be (number agents from 0 to 127)",
+        "hosts:4:28: agent 1024 cannot be (number agents from 0 to 1023)",
         "hosts:5:7: \"agent\" without a number", "hosts:6:15: agent 0 is named twice",
         "hosts:6:17: \"agents=0\" has no count", "hosts:6:26: \"agents=x\" has no count",
         "hosts:7:1: \"fourth\" has no role", "hosts:8:7: \"pi\" is no role",
@@ -98,7 +98,7 @@ TEST(HostsFile, NothingThatAShellOrSshWouldReadIsAnAddress) {
 
 TEST(HostsFile, IsNotEmptyAndNotEndless) {
   EXPECT_TRUE(has(problems_in("# nobody\n"), "hosts: names no host (write one host a line"));
-  EXPECT_TRUE(has(problems_in("a agents=100\nb agents=29"), "more agents than 128"));
+  EXPECT_TRUE(has(problems_in("a agents=1000\nb agents=25"), "more agents than 1024"));
   EXPECT_EQ(problems_in("a agents=100\nb agents=28"), "");
 }
 

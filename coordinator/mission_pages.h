@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which parts of MISSION are to be sent. A small mission is sent as a whole each time. Of a large
+// one the parts that have changed are sent a few times, and all parts in turn.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ergocast {
+
+class MissionPages {
+ public:
+  /// The most parts that are sent at once. A process that misses any part of P receives it within
+  /// ceil(P / kMostAtOnce) repetitions.
+  static constexpr std::size_t kMostAtOnce = 32;
+  /// How often a changed part is sent before the others.
+  static constexpr int kTimesSaid = 3;
+
+  /// The numbers of the parts to send now, ascending.
+  /// @param hashes  of all parts as they are now
+  std::vector<std::size_t> next(const std::vector<std::uint64_t>& hashes);
+
+  /// Whether a changed part has not been sent yet.
+  bool behind() const;
+
+ private:
+  struct Page {
+    std::uint64_t hash = 0;
+    int owed = 0;  // how often it is still to be sent before others
+  };
+  std::vector<Page> pages_;
+  std::size_t turn_ = 0;
+};
+
+}  // namespace ergocast

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bytes of a segment of the event log, whether zstd has compressed it or not.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+struct ZSTD_DCtx_s;
+
+namespace ergocast {
+
+class SegmentFile {
+ public:
+  /// A name that ends with .zst is that of a compressed segment.
+  /// @throws nothing; good() tells whether it is open, errno why not
+  explicit SegmentFile(const std::filesystem::path& file);
+
+  bool good() const { return file_ != nullptr; }
+  /// False if the segment ends before so many bytes.
+  bool read(void* to, std::size_t bytes);
+  /// Whether it ended because what follows is no whole compressed segment.
+  bool damaged() const { return damaged_; }
+  /// How many bytes were read, of the segment before its compression.
+  std::uint64_t position() const { return position_; }
+
+ private:
+  std::size_t decompress(void* to, std::size_t bytes);
+
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::unique_ptr<ZSTD_DCtx_s, void (*)(ZSTD_DCtx_s*)> context_;  // null: not compressed
+  std::vector<char> in_;
+  std::size_t in_size_ = 0, in_used_ = 0;
+  bool frame_ended_ = false, damaged_ = false;
+  std::uint64_t position_ = 0;
+};
+
+}  // namespace ergocast

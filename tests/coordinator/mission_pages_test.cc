@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// MISSION of large teams: what has changed is sent first, and all parts in turn.
+#include "coordinator/mission_pages.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+#include "tests/coordinator/driven_coordinator.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+std::vector<std::uint64_t> hashes_of(std::size_t parts) {
+  std::vector<std::uint64_t> hashes(parts);
+  std::iota(hashes.begin(), hashes.end(), std::uint64_t{1});
+  return hashes;
+}
+
+TEST(MissionPages, ASmallMissionIsSentAsAWhole) {
+  for (const std::size_t parts : {std::size_t{1}, MissionPages::kMostAtOnce}) {
+    MissionPages pages;
+    for (int turn = 0; turn < 5; ++turn) EXPECT_EQ(pages.next(hashes_of(parts)).size(), parts);
+  }
+}
+
+TEST(MissionPages, AllPartsOfALargeOneComeInTurn) {
+  constexpr std::size_t kParts = 512, kTurns = kParts / MissionPages::kMostAtOnce;
+  MissionPages pages;
+  std::set<std::size_t> said;
+  for (std::size_t turn = 0; turn < kTurns; ++turn) {
+    const auto now = pages.next(hashes_of(kParts));
+    EXPECT_LE(now.size(), MissionPages::kMostAtOnce);
+    said.insert(now.begin(), now.end());
+    EXPECT_EQ(pages.behind(), turn + 1 < kTurns);
+  }
+  EXPECT_EQ(said.size(), kParts);
+}
+
+TEST(MissionPages, WhatHasChangedIsSentThreeTimesAndTheOthersMeanwhile) {
+  auto hashes = hashes_of(200);
+  MissionPages pages;
+  for (int turn = 0; turn < 50; ++turn) pages.next(hashes);
+  hashes[150] = 4711;
+  std::set<std::size_t> others;
+  for (int turn = 0; turn < 7; ++turn) {
+    const auto now = pages.next(hashes);
+    const bool said = std::find(now.begin(), now.end(), 150U) != now.end();
+    EXPECT_TRUE(said || turn >= MissionPages::kTimesSaid) << turn;
+    EXPECT_FALSE(pages.behind());
+    others.insert(now.begin(), now.end());
+  }
+  EXPECT_EQ(others.size(), 200u);
+}
+
+/// A mission for the largest team.
+Mission large_mission() {
+  Mission mission = small_mission(1);
+  mission.starts_m.assign(kMaxAgents, {100, 500, 0});
+  return mission;
+}
+
+TEST(LargeTeam, IsAdmittedAndFollowedFromWhatChanges) {
+  Coordinator coordinator = coordinator_of(large_mission());
+  MissionFollower follower;
+  const auto follow = [&](Instant now) {
+    std::set<std::int32_t> parts;
+    for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) {
+      follower.receive(part);
+      parts.insert(part.part);
+    }
+    EXPECT_LE(parts.size(), MissionPages::kMostAtOnce);
+    return parts.size();
+  };
+  admit_all(coordinator, kMaxAgents, at(0s));
+  ASSERT_EQ(coordinator.roster().size(), static_cast<std::size_t>(kMaxAgents));
+  for (int i = 0; i < 5; ++i) follow(at(i * 100ms));
+  EXPECT_EQ(follower.roster().size(), static_cast<std::size_t>(kMaxAgents));
+  ASSERT_TRUE(follower.mission());
+  EXPECT_EQ(follower.mission()->starts_m.size(), static_cast<std::size_t>(kMaxAgents));
+
+  AgentStatus farewell = status_of(700, next_sequence());
+  farewell.phase = AgentPhase::kFinished;
+  give(coordinator, farewell, at(900ms));
+  follow(at(900ms));
+  EXPECT_GE(follower.entry_of(life_of(700))->active_until, 0) << "one part has changed";
+}
+
+TEST(LargeTeam, OfAllItsLivesIsFollowedAlsoByALatecomerUnderLoss) {
+  Mission mission = large_mission();
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.admission_timeout_s = 3600;
+  Coordinator coordinator = coordinator_of(mission);
+  Instant now = at(0s);
+  for (Incarnation life = 0; life < 4; ++life) {
+    for (AgentId id = 0; id < kMaxAgents; ++id) {
+      const Incarnation nonce = 10000 * (life + 1) + static_cast<Incarnation>(id);
+      give(coordinator, hello_of(id, nonce), now);
+    }
+    now += 10s;
+    advance(coordinator, now);
+    now += 1s;
+  }
+  ASSERT_EQ(coordinator.roster().size(), kMaxRosterEntries);
+  MissionFollower follower;
+  int said = 0, repetitions = 0;
+  // Every fifth datagram is lost: after r rounds of 16 repetitions a part is missing with 0.2^r.
+  for (; repetitions < 8 * 16 && follower.roster().size() < kMaxRosterEntries; ++repetitions) {
+    for (const MissionPart& part : only<MissionPart>(advance(coordinator, now))) {
+      if (++said % 5 != 0) follower.receive(part);
+    }
+    now += 1s;
+  }
+  EXPECT_EQ(follower.roster().size(), kMaxRosterEntries) << repetitions;
+  EXPECT_GE(repetitions, 16);
+}
+
+}  // namespace
+}  // namespace ergocast
