@@ -82,10 +82,10 @@ const LoggedEvent* EventLogReader::end_segment() {
 const LoggedEvent* EventLogReader::refuse(const std::string& what) {
   const std::string bytes = std::to_string(begin_);
   const std::filesystem::path& segment = segments_[next_segment_ - 1];
-  const std::string remedy = compressed(segment) ? "`zstd -dc " + segment.filename().string() +
-                                                       " | head -c " + bytes + " > " +
-                                                       segment.stem().string() + "` keeps it"
-                                                 : "`truncate -s " + bytes + "` on a copy keeps it";
+  const std::string remedy = compressed(segment)
+                                 ? "`zstd -dc " + segment.filename().string() + " | head -c " +
+                                       bytes + " > " + segment.stem().string() + "` keeps it"
+                                 : "`truncate -s " + bytes + "` on a copy keeps it";
   problem_ = place() + ": " + what + "; what stands before is sound: " + remedy;
   return nullptr;
 }
