@@ -74,8 +74,9 @@ int run(const NodeOptions& node, AgentId requested_id) {
         transport.set_run(agent.run());
         agent.note_loop_lag(lag.take_s());
         if (const auto& mission = agent.follower().mission()) {
-          transport.limit_agents(allowance_of(*mission, agent.follower().roster().size()),
-                                 agent.tick());
+          const std::size_t members = agent.follower().roster().size();
+          transport.limit_agents(allowance_of(*mission, members), agent.tick());
+          transport.let_gather(gathering_of(*mission, members));
         }
         if (watch.look(now())) {
           agent.set_kernel_drops(watch.kernel_drops());

@@ -64,6 +64,10 @@ std::size_t BusReader::receive() {
   return static_cast<std::size_t>(count);
 }
 
+bool BusReader::has_room_for(std::size_t datagrams) const {
+  return datagrams <= buffer_bytes_ / kMostBufferBytes;
+}
+
 void BusReader::drop_repeats(std::span<const Repeated> flooded) {
   while (!admit_only(fd(), hears_, flooded, replays_) && !flooded.empty()) {
     flooded = flooded.first(flooded.size() / 2);

@@ -32,6 +32,8 @@ class BusReader {
 
   int fd() const { return socket_.fd(); }
   Bus bus() const { return bus_; }
+  /// Whether the buffer holds so many of our datagrams, so that none is lost before it is read.
+  bool has_room_for(std::size_t datagrams) const;
   /// False if the kernel has no socket filters: then everything that is sent to the port arrives.
   bool filtered() const { return filtered_; }
 

@@ -24,6 +24,10 @@ namespace ergocast {
 namespace {
 
 constexpr std::size_t kMaxDatagramsPerTurn = 256;
+/// So many times the expected datagrams are no statuses and digests of the team: somebody floods a
+/// bus, and for so long nothing gathers.
+constexpr std::size_t kCrowd = 4;
+constexpr auto kCrowded = std::chrono::seconds(10);
 constexpr std::string_view kPrefix = "ERGOCAST_";
 
 class BusTransport final : public Transport {
@@ -38,6 +42,7 @@ class BusTransport final : public Transport {
   void limit_agents(const RateBudget& allowance, Tick tick) override {
     rates_.allow(allowance, tick);
   }
+  void let_gather(const Gathering& gathering) override { gathering_ = gathering; }
   Instant deliver_until(Instant deadline, int wake_fd) override;
   bool keyed() const override { return seal_.keyed(); }
   bool filtered() const override;
@@ -65,7 +70,9 @@ class BusTransport final : public Transport {
     });
     unknown_format_.channel = plain ? channel : std::string(kPrefix) + "…";
   }
-  void read(Line& line);
+  bool wait(Instant until);
+  std::size_t read(Line& line);
+  bool may_gather(const Line& line) const;
   void take(Line& line, std::span<const std::byte> bytes) noexcept;
   void take(Line& line, const LcmDatagram& datagram, bool is_replay);
   void cut_repeats(Line& line);
@@ -75,6 +82,9 @@ class BusTransport final : public Transport {
   MessageAuthenticator seal_;
   Handlers handlers_;
   RateLimit rates_;
+  Gathering gathering_;
+  Instant gather_until_{};   // on all buses but the world's
+  Instant crowded_until_{};  // nothing gathers
   KnownSignatures signatures_;
   std::unique_ptr<BusWriter> writer_;
   std::vector<Line> lines_;
@@ -178,33 +188,52 @@ void BusTransport::take(Line& line, std::span<const std::byte> bytes) noexcept {
   }
 }
 
-void BusTransport::read(Line& line) {
+/// Returns how many datagrams there were.
+std::size_t BusTransport::read(Line& line) {
   BusReader& reader = *line.reader;
-  for (std::size_t taken = 0; taken < kMaxDatagramsPerTurn;) {
+  std::size_t taken = 0;
+  while (taken < kMaxDatagramsPerTurn) {
     const std::size_t count = reader.receive();
     for (std::size_t i = 0; i < count; ++i) take(line, reader.datagram(i));
-    if (count < reader.batch()) return;
     taken += count;
+    if (count < reader.batch()) break;
   }
+  return taken;
+}
+
+bool BusTransport::may_gather(const Line& line) const {
+  return line.reader->bus() != Bus::kWorld && line.reader->has_room_for(gathering_.datagrams);
+}
+
+/// Returns whether there may be something to read.
+bool BusTransport::wait(Instant until) {
+  const Instant start = now();
+  const bool gathers = gather_until_ > start && crowded_until_ <= start;
+  if (gathers) until = std::min(until, gather_until_);
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    ready_[i].events = gathers && may_gather(lines_[i]) ? 0 : POLLIN;
+  }
+  const auto wait = std::clamp<std::chrono::nanoseconds>(until - start, {}, kLongestWait);
+  const timespec timeout{static_cast<time_t>(wait.count() / 1000000000),
+                         static_cast<long>(wait.count() % 1000000000)};
+  return ppoll(ready_.data(), ready_.size(), &timeout, nullptr) > 0 || gathers;
 }
 
 Instant BusTransport::deliver_until(Instant deadline, int wake_fd) {
-  using std::chrono::nanoseconds;
-  const Instant start = now();
-  const nanoseconds wait =
-      deadline <= start ? nanoseconds(0) : std::min<nanoseconds>(deadline - start, kLongestWait);
   ready_.back().fd = wake_fd;
-  const timespec timeout{static_cast<time_t>(wait.count() / 1000000000),
-                         static_cast<long>(wait.count() % 1000000000)};
-  const int ready = ppoll(ready_.data(), ready_.size(), &timeout, nullptr);
+  const bool something = wait(deadline);
   const Instant woke = now();
-  if (ready <= 0) return woke;
+  if (!something) return woke;
+  std::size_t most = 0;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
-    if (ready_[i].revents != 0) read(lines_[i]);
+    if (ready_[i].revents != 0 || ready_[i].events == 0) most = std::max(most, read(lines_[i]));
   }
   for (Line& line : lines_) {
     if (line.is_cut) count_cut(line);
   }
+  if (most == 0 || gathering_.at_most.count() == 0) return woke;
+  gather_until_ = woke + gathering_.at_most;
+  if (most > kCrowd * gathering_.datagrams) crowded_until_ = woke + kCrowded;
   return woke;
 }
 

@@ -14,6 +14,7 @@
 
 #include "core/ids.h"
 #include "lcmtypes/message_authenticator.h"
+#include "runtime/gathering.h"
 #include "runtime/lcm_url.h"
 #include "runtime/rate_limit.h"
 #include "team/messages.h"
@@ -51,6 +52,11 @@ class Transport {
   void publish(const Outgoing& one) { publish(std::span(&one, 1)); }
   /// Sets the rate budget of agents and the world's tick; without a call nothing is limited.
   virtual void limit_agents(const RateBudget& allowance, Tick tick) = 0;
+
+  /// From now on, for so long after a message, only the world's bus wakes the caller; whatever
+  /// wakes it, all buses are read. Without effect on a bus whose receive buffer is too small for so
+  /// many datagrams, and for 10 s after a bus has brought four times as many.
+  virtual void let_gather(const Gathering& gathering) = 0;
 
   /// Waits until a message arrives, `deadline` has come or `wake_fd` (−1: none) is readable, at
   /// most kLongestWait, and passes on what has arrived. The number of datagrams is limited, so that

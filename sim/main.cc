@@ -32,8 +32,9 @@ int run(const NodeOptions& node) {
   live(world, transport, signals, stop, [&] {
     transport.set_run(world.run());
     if (const auto& mission = world.follower().mission()) {
-      transport.limit_agents(allowance_of(*mission, world.follower().roster().size()),
-                             world.tick());
+      const std::size_t members = world.follower().roster().size();
+      transport.limit_agents(allowance_of(*mission, members), world.tick());
+      transport.let_gather(gathering_of(*mission, members));
     }
     watch.look(now());
     if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());
