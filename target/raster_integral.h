@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/basis.h"
-#include "target/target.h"
+#include "target/plane_integrals.h"
 #include "target/trapezoids.h"
 
 namespace ergocast {
@@ -38,7 +38,7 @@ class RasterIntegral {
 
   /// The integrals divided by the integral over the whole extent: entry (0,0) is the free share.
   /// @pre has_mass()
-  TargetCoefficients shares() const;
+  PlaneIntegrals shares() const;
 
  private:
   void add_piece(const Trapezoid& piece, std::span<const double> values);

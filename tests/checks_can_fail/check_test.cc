@@ -69,7 +69,7 @@ std::vector<Mistake> mistakes_of_the_text() {
       {"size_x_m: 100", "size_x_m: ten", "domain.size_x_m: ten is not a number"},
       {"size_x_m: 100", "size_x_m 100", "domain.size_x_m: Expected \":\""},
       {"size_x_m: 100", "size_x_m: 100 size_x_m: 1", "domain.size_x_m: is written more than once"},
-      {"size_x_m: 100", "size_x_m: 100 size_z_m: 1", "unknown field \"size_z_m\" in Domain"},
+      {"size_x_m: 100", "size_x_m: 100 size_q_m: 1", "unknown field \"size_q_m\" in Domain"},
       {kLaw, "law { modes_x: 5", "unknown field \"modes_x\" in Law"},
       {kLaw, "law { nonsense: 5", "unknown field \"nonsense\" in Law"},
       {kLaw, "[other.field]: 5 law {", "unknown extension"},

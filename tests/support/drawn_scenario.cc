@@ -126,6 +126,8 @@ const std::map<std::string, Rule>& rules() {
       {"Domain.origin_y_m", may(number(-20, 0))},
       {"Domain.size_x_m", must(number(120, 200))},
       {"Domain.size_y_m", must(number(120, 200))},
+      {"Domain.origin_z_m", may(number(-20, 0))},
+      {"Domain.size_z_m", may(number(120, 200))},
 
       {"Target.gaussians", many(0, 3)},
       {"Target.uniform_weight", may(number(0.1, 2))},
@@ -135,21 +137,32 @@ const std::map<std::string, Rule>& rules() {
       {"Gaussian.weight", may(spread(0.1, 10))},
       {"Gaussian.mean_x_m", must(kPlace)},
       {"Gaussian.mean_y_m", must(kPlace)},
+      {"Gaussian.mean_z_m", must(kPlace)},
       {"Gaussian.sigma_m", may(spread(3, 50))},
+      {"Gaussian.sigma_z_m", may(spread(3, 50))},
       {"Gaussian.covariance", may(draw_block)},
       {"Covariance.xx_m2", must(spread(10, 1000))},
       {"Covariance.yy_m2", must(spread(10, 1000))},
+      {"Covariance.zz_m2", must(spread(10, 1000))},
       {"Covariance.xy_m2", may(number(-9, 9))},
+      {"Covariance.xz_m2", may(number(-1, 1))},
+      {"Covariance.yz_m2", may(number(-1, 1))},
       {"Map.file", must(text({"a.png", "a.csv", "a.asc"}))},
       {"Map.weight", may(spread(0.1, 10))},
       {"Map.origin_x_m", may(number(-10, 10))},
       {"Map.origin_y_m", may(number(-10, 10))},
       {"Map.size_x_m", may(number(20, 100))},
       {"Map.size_y_m", may(number(20, 100))},
+      {"Map.layers", many(0, 2)},
+      {"Layer.low_z_m", must(number(0, 30))},
+      {"Layer.high_z_m", must(number(40, 50))},  // the second lies above: see agree()
+      {"Layer.value", may(spread(0.1, 10))},
       {"Region.weight", may(spread(0.1, 10))},
       {"Region.polygon", must(draw_block)},
       {"Polygon.vertices", many(3, 6)},
       {"Polygon.holes", many(0, 1)},
+      {"Polygon.low_z_m", may(number(-30, 40))},
+      {"Polygon.high_z_m", may(number(50, 220))},
       {"Polygon.file", may(text({"a.geojson", "b.geojson"}))},
       {"Ring.vertices", many(3, 6)},
       {"Vertex.x_m", must(kPlace)},
@@ -157,6 +170,7 @@ const std::map<std::string, Rule>& rules() {
 
       {"Basis.modes_x", may(number(1, 24))},
       {"Basis.modes_y", may(number(2, 24))},
+      {"Basis.modes_z", may(number(1, 6))},
       {"Basis.sobolev_exponent", may(number(0.1, 3))},
 
       {"Law.u_max_mps", must(spread(1, 40))},
@@ -166,6 +180,7 @@ const std::map<std::string, Rule>& rules() {
       {"Law.contraction_gain_per_s", may(spread(1e-5, 1e-2))},
       {"Law.contraction_x_m", may(kPlace)},
       {"Law.contraction_y_m", may(kPlace)},
+      {"Law.contraction_z_m", may(kPlace)},
       {"Law.anticipation", may(either(0, spread(0.01, 10)))},
 
       {"Time.dt_s", may(spread(0.02, 1))},
@@ -186,6 +201,7 @@ const std::map<std::string, Rule>& rules() {
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
       {"Start.x_m", must(kPlace)},
       {"Start.y_m", must(kPlace)},
+      {"Start.z_m", must(kPlace)},
 
       {"World.disturbance_intensity", may(spread(0.01, 5))},
       {"World.radio_range_m", may(either(0, spread(5, 500)))},
@@ -243,12 +259,34 @@ void make_round(proto::Polygon& polygon, double radius_m) {
   }
 }
 
+/// A plane has no heights.
+void clear_heights(Block& block) {
+  const auto& fields = *block.GetReflection();
+  for (int i = 0; i < block.GetDescriptor()->field_count(); ++i) {
+    const FieldDescriptor& field = *block.GetDescriptor()->field(i);
+    if (is_along_z(field) || name_of(field) == "Map.layers") {
+      fields.ClearField(&block, &field);
+    } else if (field.message_type() != nullptr && field.is_repeated()) {
+      for (int j = 0; j < fields.FieldSize(block, &field); ++j)
+        clear_heights(*fields.MutableRepeatedMessage(&block, &field, j));
+    } else if (field.message_type() != nullptr && fields.HasField(block, &field)) {
+      clear_heights(*fields.MutableMessage(&block, &field));
+    }
+  }
+}
+
 void agree(proto::Target& target) {
   for (auto& gaussian : *target.mutable_gaussians()) {
     if (gaussian.has_sigma_m()) gaussian.clear_covariance();
     if (!gaussian.has_covariance() && !gaussian.has_sigma_m()) gaussian.set_sigma_m(20);
+    if (!gaussian.has_sigma_m()) gaussian.clear_sigma_z_m();
   }
   for (auto& map : *target.mutable_maps()) {
+    for (int i = 0; i < map.layers_size(); ++i) {
+      auto& layer = *map.mutable_layers(i);
+      layer.set_low_z_m(layer.low_z_m() + 50 * i);
+      layer.set_high_z_m(layer.high_z_m() + 50 * i);
+    }
     const bool says_where = map.file().ends_with(".asc");
     if (says_where || !map.has_origin_x_m()) map.clear_origin_x_m();
     if (says_where) {
@@ -269,6 +307,8 @@ void agree(proto::Target& target) {
 
 void agree(proto::Scenario& scenario) {
   agree(*scenario.mutable_target());
+  const bool planar = !scenario.domain().has_size_z_m();
+  if (planar) clear_heights(scenario);
   if (fields_of(scenario).contains("Polygon.file") && !scenario.has_origin()) {
     scenario.mutable_origin()->set_latitude_deg(54);
     scenario.mutable_origin()->set_longitude_deg(10);
@@ -277,9 +317,16 @@ void agree(proto::Scenario& scenario) {
   if (law.contraction_center() == proto::Law::POINT) {
     if (!law.has_contraction_x_m()) law.set_contraction_x_m(50);
     if (!law.has_contraction_y_m()) law.set_contraction_y_m(50);
+    if (!planar && !law.has_contraction_z_m()) law.set_contraction_z_m(50);
   } else {
     law.clear_contraction_x_m();
     law.clear_contraction_y_m();
+    law.clear_contraction_z_m();
+  }
+  if (auto& basis = *scenario.mutable_basis(); !planar) {  // as fast as a plane
+    basis.set_modes_x(std::min(basis.has_modes_x() ? basis.modes_x() : 8, 8));
+    basis.set_modes_y(std::min(basis.has_modes_y() ? basis.modes_y() : 8, 8));
+    if (!basis.has_modes_z()) basis.set_modes_z(4);
   }
   proto::Time& time = *scenario.mutable_time();
   time.set_duration_s(time.duration_s() * (time.has_dt_s() ? time.dt_s() : 0.1));
