@@ -56,10 +56,10 @@ void list_fields(auto& io, MaybeConst<Box> auto& domain) {
 void list_fields(auto& io, MaybeConst<Basis> auto& basis) {
   io.number(1, "modes_x", basis.modes_x, limits::kModes);
   io.number(2, "modes_y", basis.modes_y, limits::kModes);
-  io.height(6, "modes_z", basis.modes_z, limits::kModes, 1);
   io.flag(3, "normalized", basis.normalized);
   io.choice(4, "sobolev_form", basis.sobolev_form, {"SQUARED_NORM", "NORM"});
   io.number(5, "sobolev_exponent", basis.sobolev_exponent, limits::above(0, 10));
+  io.height(6, "modes_z", basis.modes_z, limits::kModes, 1);
 }
 
 void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {

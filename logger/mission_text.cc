@@ -36,6 +36,8 @@ class TextWriter : public FieldVisitor {
   void part(int, const char* name, const auto& part) {
     part_ = std::string(name) + '.';
     list_fields(*this, part);
+    if (!last_.empty()) put("contraction_z_m", last_);
+    last_.clear();
     part_.clear();
   }
   void contraction_center(int, int, const Eigen::Vector3d& center_m) {
@@ -44,7 +46,7 @@ class TextWriter : public FieldVisitor {
     put("contraction_center", "POINT");
     put("contraction_x_m", shortest(center_m.x()));
     put("contraction_y_m", shortest(center_m.y()));
-    height(0, "contraction_z_m", center_m.z(), {}, 0);
+    if (!mission_.domain.planar()) last_ = shortest(center_m.z());
   }
   void duration(int, const Timing& timing) { put("duration_s", shortest(duration_s(timing))); }
   void starts(int, int, const std::vector<Eigen::Vector3d>& starts_m) {
@@ -74,6 +76,7 @@ class TextWriter : public FieldVisitor {
 
   const Mission& mission_;
   std::string text_, part_, block_;
+  std::string last_;  // the last field of a part, if not empty
 };
 
 }  // namespace
