@@ -10,6 +10,7 @@
 
 #include "scenario/convert.h"
 #include "target/map_file.h"
+#include "target/netcdf_grid.h"
 #include "target/raster_integral.h"
 
 namespace ergocast {
@@ -56,6 +57,9 @@ class TargetCompiler {
     for (int i = 0; i < written_.maps_size(); ++i) {
       map(written_.maps(i), indexed("target.maps", i));
     }
+    for (int i = 0; i < written_.voxels_size(); ++i) {
+      voxels(written_.voxels(i), indexed("target.voxels", i));
+    }
     if (checks_.sound("target")) mass();
     if (!checks_.nothing_found()) return {};
     const DensityGrid picture = density_picture(target_, maps_, domain_);
@@ -95,8 +99,7 @@ class TargetCompiler {
       picture.add_row(from_south, row);
     }
     if (!integrals[0].has_mass()) {
-      return checks_.problem(field, map.file() + " has no number above 0",
-                             "write numbers above 0 where something is wanted");
+      return nothing_in(map.file(), field);
     }
     double left = 0;
     for (std::size_t i = 0; i < storeys_.size(); ++i) {
@@ -108,6 +111,67 @@ class TargetCompiler {
     }
     if (!(left > 0)) return nothing_left(path, grid.extent);
     weight_of_maps_ += map.weight();
+  }
+
+  void voxels(const proto::Voxels& written, const std::string& path) {
+    auto opened = NetcdfGrid::open(
+        written.file(), written.variable(),
+        written.has_time_index() ? std::optional<int>(written.time_index()) : std::nullopt);
+    if (const auto* problem = std::get_if<MapProblem>(&opened))
+      return checks_.problem(path, problem->what, problem->remedy);
+    NetcdfGrid& grid = *std::get<0>(opened);
+    TargetCoefficients sum{Coefficients::Zero(basis_.mode_count()), 0};
+    std::vector<DensityGrid> pictures(storeys_.size(), 0 * maps_[0]);
+    double whole = 0;
+    for (int layer = 0; layer < static_cast<int>(grid.layers().size()); ++layer) {
+      if (const auto problem = add_layer(grid, layer, sum, pictures, whole))
+        return checks_.problem(path, problem->what, problem->remedy);
+    }
+    if (!(whole > 0)) {
+      return nothing_in(written.file(), path);
+    }
+    if (!(sum.values[0] > 0)) {
+      return checks_.problem(path, "nothing of it is left" + cut_off() + extents_of(grid),
+                             "move the domain there");
+    }
+    const double scale = written.weight() / whole;
+    sum_.values += scale * sum.values;
+    sum_.error_bound += scale * sum.error_bound;
+    for (std::size_t i = 0; i < storeys_.size(); ++i) maps_[i] += scale * pictures[i];
+    weight_of_maps_ += written.weight();
+  }
+
+  /// Adds the integrals of one layer, and its mass to `whole`.
+  std::optional<MapProblem> add_layer(NetcdfGrid& grid, int layer, TargetCoefficients& sum,
+                                      std::vector<DensityGrid>& pictures, double& whole) const {
+    const Heights& heights = grid.layers()[static_cast<std::size_t>(layer)];
+    std::vector<RasterIntegral> integrals;
+    for (const Storey& storey : storeys_)
+      integrals.emplace_back(grid.raster(), base_, basis_, storey.free(base_));
+    RasterPicture picture(grid.raster(), base_, static_cast<int>(maps_[0].rows()),
+                          static_cast<int>(maps_[0].cols()));
+    std::vector<double> values(static_cast<std::size_t>(grid.raster().columns));
+    for (int row = 0; row < grid.raster().rows; ++row) {
+      if (auto problem = grid.row(layer, row, values)) return problem;
+      for (RasterIntegral& integral : integrals) integral.add_row(row, values);
+      picture.add_row(row, values);
+    }
+    if (!integrals[0].has_mass()) return std::nullopt;
+    const double mass = integrals[0].whole() * heights.length_m();
+    for (std::size_t i = 0; i < storeys_.size(); ++i) {
+      const Eigen::VectorXd along_z = along_z_.uniform(heights, storeys_[i].heights);
+      add_product(mass, integrals[i].shares(), along_z, sum);
+      pictures[i] += mass * along_z[0] * picture.density();
+    }
+    whole += mass;
+    return std::nullopt;
+  }
+
+  std::string extents_of(const NetcdfGrid& grid) const {
+    const Heights low = grid.layers().front(), high = grid.layers().back();
+    return ": its extent is " + text_of(grid.raster().extent) + ", z " +
+           span_text(low.low_m, high.high_m - low.low_m) + ", the domain " + text_of(base_) +
+           ", z " + span_text(domain_.origin_m.z(), domain_.size_m.z());
   }
 
   void nothing_left(const std::string& path, const Rectangle& extent) {
@@ -128,6 +192,11 @@ class TargetCompiler {
       sum += layer.value() * heights.length_m() * along_z_.uniform(heights, within);
     }
     return sum / mass;
+  }
+
+  void nothing_in(const std::string& file, const std::string& path) {
+    checks_.problem(path, file + " has no number above 0",
+                    "write numbers above 0 where something is wanted");
   }
 
   std::string cut_off() const {

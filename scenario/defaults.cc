@@ -153,6 +153,9 @@ void make_absolute(const std::filesystem::path& scenario, proto::Target& target)
   for (proto::Map& map : *target.mutable_maps()) {
     if (map.has_file()) map.set_file(whole(map.file()));
   }
+  for (proto::Voxels& voxels : *target.mutable_voxels()) {
+    if (voxels.has_file()) voxels.set_file(whole(voxels.file()));
+  }
   for (proto::Region& region : *target.mutable_regions()) {
     if (region.polygon().has_file())
       region.mutable_polygon()->set_file(whole(region.polygon().file()));

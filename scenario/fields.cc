@@ -61,6 +61,8 @@ constexpr Row kRows[] = {
     {"Map", "origin_y_m", kCoordinate, kLeft},
     {"Map", "size_x_m", between(1e-3, 1e9), kLeft},
     {"Map", "size_y_m", between(1e-3, 1e9), kLeft},
+    {"Voxels", "weight", kWeight, kDefaulted, 1},
+    {"Voxels", "time_index", between(0, 1000000), kLeft},
     {"Layer", "low_z_m", kCoordinate, kRefused},
     {"Layer", "high_z_m", kCoordinate, kRefused},
     {"Layer", "value", between(0, 1e9), kDefaulted, 1},

@@ -84,9 +84,7 @@ class Validator {
       return missing(path, "is missing",
                      "add " + field.name() + ", " + (place.empty() ? rule->range.text() : place));
     }
-    if (of_a_box_alone && sound("domain.size_z_m")) {
-      return problem(path, "the domain is a plane", "remove it, or add size_z_m to the domain");
-    }
+    if (of_a_box_alone && sound("domain.size_z_m")) return checks_.of_a_box_alone(path);
     in_range(path, number_in(message, field), rule->range, place_wanted(field, *rule));
   }
 
@@ -280,7 +278,9 @@ class Validator {
     if (!sound("agents.random_count") || !sound("agents.quorum")) return;
     const int size = agents.starts_size() + agents.random_count();
     if (size == 0) {
-      missing("agents", "the team is empty", "add starts { x_m: … y_m: … } or random_count");
+      missing("agents", "the team is empty",
+              is_box() ? "add starts { x_m: … y_m: … z_m: … } or random_count"
+                       : "add starts { x_m: … y_m: … } or random_count");
     } else if (size > kMaxAgents) {
       problem(
           "agents",

@@ -42,10 +42,13 @@ class TargetValidator {
     for (int i = 0; i < target_.gaussians_size(); ++i) {
       width(target_.gaussians(i), indexed("target.gaussians", i));
     }
+    at_most("grids", target_.voxels_size(), kMaxMaps);
     for (int i = 0; i < target_.maps_size(); ++i) map(target_.maps(i), indexed("target.maps", i));
+    for (int i = 0; i < target_.voxels_size(); ++i)
+      voxels(target_.voxels(i), indexed("target.voxels", i));
     polygons();
     if (target_.gaussians_size() == 0 && target_.uniform_weight() == 0 &&
-        target_.maps_size() == 0 && target_.regions_size() == 0) {
+        target_.maps_size() == 0 && target_.regions_size() == 0 && target_.voxels_size() == 0) {
       checks_.missing("target", "there is nothing to cover",
                       "add gaussians { }, maps { }, regions { } or a uniform_weight above 0");
     }
@@ -93,11 +96,13 @@ class TargetValidator {
   }
 
   void covariance(const proto::Covariance& c, const std::string& path) {
-    const bool apart =
-        covary(c.xy_m2(), c.xx_m2(), c.yy_m2(), path, "xx_m2 yy_m2") &&
-        (!c.has_zz_m2() || (covary(c.xz_m2(), c.xx_m2(), c.zz_m2(), path, "xx_m2 zz_m2") &&
-                            covary(c.yz_m2(), c.yy_m2(), c.zz_m2(), path, "yy_m2 zz_m2")));
-    if (!apart || (c.has_zz_m2() && !definite(c, path)) || longer_side_m_ == 0) return;
+    if (!covary(c.xy_m2(), c.xx_m2(), c.yy_m2(), path, "xx_m2 yy_m2")) return;
+    if (c.has_zz_m2()) {
+      if (!covary(c.xz_m2(), c.xx_m2(), c.zz_m2(), path, "xx_m2 zz_m2")) return;
+      if (!covary(c.yz_m2(), c.yy_m2(), c.zz_m2(), path, "yy_m2 zz_m2")) return;
+      if (!definite(c, path)) return;
+    }
+    if (longer_side_m_ == 0) return;
     variance(path + ".xx_m2", c.xx_m2());
     variance(path + ".yy_m2", c.yy_m2());
     if (c.has_zz_m2()) variance(path + ".zz_m2", c.zz_m2());
@@ -170,12 +175,22 @@ class TargetValidator {
     }
   }
 
+  void voxels(const proto::Voxels& grid, const std::string& path) {
+    if (domain_.planar() && longer_side_m_ > 0) return checks_.of_a_box_alone(path);
+    if (!grid.has_file() || grid.file().empty()) {
+      checks_.missing(path + ".file", "is missing", "add the name of a .nc");
+    } else if (!grid.file().ends_with(".nc")) {
+      checks_.problem(path + ".file", grid.file() + " does not end in .nc",
+                      "write the grid as NetCDF");
+    }
+    if (!grid.has_variable() || grid.variable().empty())
+      checks_.missing(path + ".variable", "is missing", "add the name of a variable of the file");
+  }
+
   /// @pre the defaults are filled in: in a box with limits there is one
   void layers(const proto::Map& map, const std::string& path) {
-    if (map.layers_size() > 0 && domain_.planar() && longer_side_m_ > 0) {
-      return checks_.problem(indexed(path + ".layers", 0), "the domain is a plane",
-                             "remove it, or add size_z_m to the domain");
-    }
+    if (map.layers_size() > 0 && domain_.planar() && longer_side_m_ > 0)
+      return checks_.of_a_box_alone(indexed(path + ".layers", 0));
     if (map.layers_size() > kMaxLayers) {
       return checks_.problem(path,
                              std::to_string(map.layers_size()) + " layers are above the limit " +

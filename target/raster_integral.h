@@ -33,6 +33,8 @@ class RasterIntegral {
   /// @param values  `columns` densities, at least 0, up to one common factor
   void add_row(int row, std::span<const double> values);
 
+  /// The integral over the whole extent.
+  double whole() const { return whole_; }
   /// Whether any value was above 0.
   bool has_mass() const { return whole_ > 0; }
 

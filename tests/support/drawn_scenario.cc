@@ -15,6 +15,7 @@
 #include "lab/random_stream.h"
 #include "scenario/fields.h"
 #include "tests/support/grey_png.h"
+#include "tests/support/netcdf_writer.h"
 
 namespace ergocast::test {
 namespace {
@@ -134,6 +135,11 @@ const std::map<std::string, Rule>& rules() {
       {"Target.maps", many(0, 2)},
       {"Target.regions", many(0, 2)},
       {"Target.keep_outs", many(0, 2)},
+      {"Target.voxels", many(0, 1)},
+      {"Voxels.file", must(text({"a.nc"}))},
+      {"Voxels.variable", must(text({"v"}))},
+      {"Voxels.weight", may(spread(0.1, 10))},
+      {"Voxels.time_index", must(number(0, 1))},
       {"Gaussian.weight", may(spread(0.1, 10))},
       {"Gaussian.mean_x_m", must(kPlace)},
       {"Gaussian.mean_y_m", must(kPlace)},
@@ -264,7 +270,7 @@ void clear_heights(Block& block) {
   const auto& fields = *block.GetReflection();
   for (int i = 0; i < block.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor& field = *block.GetDescriptor()->field(i);
-    if (is_along_z(field) || name_of(field) == "Map.layers") {
+    if (is_along_z(field) || name_of(field) == "Map.layers" || name_of(field) == "Target.voxels") {
       fields.ClearField(&block, &field);
     } else if (field.message_type() != nullptr && field.is_repeated()) {
       for (int j = 0; j < fields.FieldSize(block, &field); ++j)
@@ -344,6 +350,23 @@ void add_fields(const Descriptor& type, std::set<std::string>& names) {
   }
 }
 
+/// Cells of 20 m from (0, 0, 0) on, at two times.
+void write_grid(const std::filesystem::path& file) {
+  std::vector<NetcdfVariable> variables;
+  const auto axis = [&](const std::string& name, int count) {
+    NetcdfVariable one{name, {name}, {}, {{"units", "m"}}};
+    for (int i = 0; i < count; ++i) one.values.push_back(10 + 20 * i);
+    variables.push_back(one);
+  };
+  axis("x", 4);
+  axis("y", 2);
+  axis("z", 3);
+  NetcdfVariable values{"v", {"time", "z", "y", "x"}, {}, {}};
+  for (int i = 0; i < 48; ++i) values.values.push_back(1 + i % 7);
+  variables.push_back(values);
+  NetcdfWriter(file, {{"time", 2}, {"z", 3}, {"y", 2}, {"x", 4}}, variables);
+}
+
 }  // namespace
 
 void write_files(const std::filesystem::path& folder) {
@@ -358,6 +381,7 @@ void write_files(const std::filesystem::path& folder) {
       << triangle("[10.0002, 54.0002], [10.0006, 54.0002], [10.0002, 54.0005], [10.0002, 54.0002]");
   std::ofstream(folder / "b.geojson")
       << triangle("[10.0012, 54.0006], [10.0014, 54.0006], [10.0012, 54.0008], [10.0012, 54.0006]");
+  write_grid(folder / "a.nc");
   write_png(folder / "a.png", 4, 2, {.bits = 16},
             [](int column, int row, int) { return 1000 * (1 + column + 4 * row); });
 }
