@@ -58,8 +58,9 @@ TargetDensity random_target(Draw& draw, const Box& domain) {
 double mean_square_bound_m2(const Mission& mission, std::size_t agent) {
   const ControlLaw& law = mission.law;
   return std::max(std::pow(start_distance_m(mission, agent), 2),
-                  std::pow(reach_m(law), 2) +
-                      2 * law.noise_intensity * law.noise_intensity / law.contraction_gain_per_s);
+                  std::pow(reach_m(law), 2) + (mission.domain.planar() ? 2 : 3) *
+                                                  law.noise_intensity * law.noise_intensity /
+                                                  law.contraction_gain_per_s);
 }
 
 std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds,
