@@ -23,9 +23,11 @@ int check(const std::filesystem::path& file, const Overrides& overrides, bool pr
   }
   const Mission& mission = scenario->mission();
   const std::vector<std::byte> plan = encode_plan(mission);
+  const Basis& basis = mission.basis;
+  const std::string along_z = mission.domain.planar() ? "" : " x " + std::to_string(basis.modes_z);
   std::printf(
-      "%s: no problems. %zu agents, %d x %d modes, %lld ticks of %g s, plan %s (%zu bytes)\n",
-      file.c_str(), mission.starts_m.size(), mission.basis.modes_x, mission.basis.modes_y,
+      "%s: no problems. %zu agents, %d x %d%s modes, %lld ticks of %g s, plan %s (%zu bytes)\n",
+      file.c_str(), mission.starts_m.size(), basis.modes_x, basis.modes_y, along_z.c_str(),
       static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
       plan_hash(plan).c_str(), plan.size());
   return kExitDone;

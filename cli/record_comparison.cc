@@ -193,7 +193,7 @@ FileComparison compare_metrics(const fs::path& run_dir, const Expectation& expec
     return expectation.whole ? row : row.substr(0, end);
   };
   FileComparison metrics{kMetricsFile, "", "", ""};
-  TableLines lines(run_dir, kMetricsFile, kMetricsHeader);
+  TableLines lines(run_dir, kMetricsFile, {kMetricsHeader});
   std::istringstream expected_lines(expectation.metrics);
   std::string recorded, expected;
   std::getline(expected_lines, expected);  // the header

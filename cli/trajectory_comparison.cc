@@ -57,13 +57,13 @@ std::string first_difference(std::string place, const std::string& header,
 }
 
 TrajectoryComparison::TrajectoryComparison(const std::filesystem::path& run_dir)
-    : lines_(run_dir, kTrajectoryFile, kTrajectoryHeader) {
+    : lines_(run_dir, kTrajectoryFile, trajectory_headers()) {
   read_next();
 }
 
 bool TrajectoryComparison::compare(std::istream& simulated) {
   for (std::string line; same_ && !recorded_over_ && std::getline(simulated, line);) {
-    if (line != kTrajectoryHeader) compare_row(line);
+    if (key_of(line)) compare_row(line);  // the header has none
   }
   return same_ && !recorded_over_;
 }
@@ -96,7 +96,7 @@ void TrajectoryComparison::compare_row(const std::string& simulated) {
   }
   if (key_of(*recorded_) > key) return miss(simulated);
   same_ = false;
-  difference_ = first_difference(recorded_place_, kTrajectoryHeader, *recorded_, simulated);
+  difference_ = first_difference(recorded_place_, lines_.header(), *recorded_, simulated);
   first_ = simulated;
 }
 
@@ -110,8 +110,12 @@ void TrajectoryComparison::miss(const std::string& simulated) {
 
 /// Whether the recorded row is the simulated one, except for a velocity of zero.
 bool TrajectoryComparison::stands_where(const std::string& simulated) const {
-  const auto vx = simulated.rfind(',', simulated.rfind(',') - 1);
-  return *recorded_ == simulated.substr(0, vx) + ",0,0";
+  const auto velocity = lines_.header().find(",vx_mps");
+  const auto axes = std::ranges::count(lines_.header().substr(velocity), ',');
+  std::size_t end = simulated.size();
+  std::string none;
+  for (auto axis = axes; axis > 0; --axis, none += ",0") end = simulated.rfind(',', end - 1);
+  return *recorded_ == simulated.substr(0, end) + none;
 }
 
 }  // namespace ergocast::cli

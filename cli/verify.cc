@@ -208,7 +208,7 @@ int verify(const fs::path& run_dir) {
   const auto mission = recorded_mission_or_complain(run_dir);
   if (!mission) return kExitBadInput;
   TrajectoryComparison comparison(run_dir);
-  const TableLines metrics(run_dir, kMetricsFile, kMetricsHeader);
+  const TableLines metrics(run_dir, kMetricsFile, {kMetricsHeader});
   for (const auto& problem : {comparison.problem(), metrics.problem()}) {
     if (problem) return report_error(kExitBadInput, *problem);
   }

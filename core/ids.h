@@ -27,6 +27,7 @@ inline constexpr int kMaxIncarnationsPerAgent = 16;
 /// Incarnations of all agents together.
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 inline constexpr int kMaxModesPerAxis = 64;
+inline constexpr int kMaxModes = 4096;  ///< of all axes together
 inline constexpr int kMaxHostLength = 63;
 inline constexpr int kMaxVersionLength = 31;
 

@@ -27,36 +27,39 @@ using Words = std::initializer_list<const char*>;
 struct FieldVisitor {
   /// Unless the last argument holds, the number is 0 and in no scenario.
   void number(int, const char*, auto&, const Limits&, bool = true) {}
+  /// A number along z; in a plane it is the last argument and in no scenario.
+  void height(int, const char*, auto&, const Limits&, double) {}
   void flag(int, const char*, auto&) {}
   void choice(int, const char*, auto&, Words) {}
   void seed(int, const char*, auto&) {}
   void name(int, const char*, auto&) {}
   void part(int, const char*, auto&) {}
-  void contraction_center(int, auto&) {}  ///< x; y has the next number
-  void duration(int, auto&) {}            ///< Timing::tick_count, which follows from a duration
-  void target(int, auto&) {}  ///< μ: agents receive it, so only one processor rounds it
-  void starts(int, auto&) {}
+  void contraction_center(int, int, auto&) {}  ///< x, and y has the next number; z
+  void duration(int, auto&) {}     ///< Timing::tick_count, which follows from a duration
+  void target(int, auto&) {}       ///< μ: agents receive it, so only one processor rounds it
+  void starts(int, int, auto&) {}  ///< x and y of each; z
   void hidden_flag(int, auto&) {}  ///< in no scenario
 };
 
 template <class T, class Part>
 concept MaybeConst = std::same_as<std::remove_const_t<T>, Part>;
 
-/// A height is 0, and in no plan yet.
 void list_fields(auto& io, MaybeConst<Box> auto& domain) {
   io.number(1, "origin_x_m", domain.origin_m.x(), limits::kCoordinate_m);
   io.number(2, "origin_y_m", domain.origin_m.y(), limits::kCoordinate_m);
   io.number(3, "size_x_m", domain.size_m.x(), limits::kSize_m);
   io.number(4, "size_y_m", domain.size_m.y(), limits::kSize_m);
+  io.height(5, "origin_z_m", domain.origin_m.z(), limits::kCoordinate_m, 0);
+  io.height(6, "size_z_m", domain.size_m.z(), limits::kSize_m, 0);
 }
 
-/// modes_z is 1, and in no plan yet.
 void list_fields(auto& io, MaybeConst<Basis> auto& basis) {
   io.number(1, "modes_x", basis.modes_x, limits::kModes);
   io.number(2, "modes_y", basis.modes_y, limits::kModes);
   io.flag(3, "normalized", basis.normalized);
   io.choice(4, "sobolev_form", basis.sobolev_form, {"SQUARED_NORM", "NORM"});
   io.number(5, "sobolev_exponent", basis.sobolev_exponent, limits::above(0, 10));
+  io.height(6, "modes_z", basis.modes_z, limits::kModes, 1);
 }
 
 void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
@@ -66,7 +69,7 @@ void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
   io.number(3, "epsilon", law.epsilon, limits::between(0, 1e6));
   io.number(5, "noise_intensity", law.noise_intensity, limits::kIntensity);
   io.number(7, "contraction_gain_per_s", law.contraction_gain_per_s, limits::between(0, 1e6));
-  io.contraction_center(8, law.contraction_center_m);
+  io.contraction_center(8, 13, law.contraction_center_m);
   io.choice(4, "perturbation", law.perturbation, {"CONSTANT", "ADAPTIVE"});
   io.number(6, "noise_ceiling", law.noise_ceiling, limits::kIntensity, adaptive);
   io.number(10, "anticipation", law.anticipation, limits::between(0, 100));
@@ -97,7 +100,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.part(5, "basis", m.basis);
   io.part(7, "law", m.law);
   io.part(8, "time", m.timing);
-  io.starts(9, m.starts_m);
+  io.starts(9, 17, m.starts_m);
   // The greatest number, and never 0: a truncated plan lacks it.
   io.number(100, "agents.quorum", m.quorum, limits::kTeam);
   io.number(10, "agents.forget_silent_after_s", m.forget_silent_after_s, limits::between(0, 1e6));

@@ -18,7 +18,7 @@ bool may_follow(char c) { return may_lead(c) || c == '-' || c == '.'; }
 
 bool is_place(const Eigen::Vector3d& x_m) {
   return limits::kCoordinate_m.contain(x_m.x()) && limits::kCoordinate_m.contain(x_m.y()) &&
-         x_m.z() == 0;
+         limits::kCoordinate_m.contain(x_m.z());
 }
 
 /// Holds each field by itself.
@@ -29,26 +29,35 @@ class EachWithinLimits : public FieldVisitor {
   void number(int, const char*, double value, const Limits& limits, bool given = true) {
     ok = ok && (given ? limits.contain(value) : value == 0);
   }
+  void height(int, const char*, double value, const Limits& limits, double in_plane) {
+    ok = ok && (value == in_plane || limits.contain(value));
+  }
   void choice(int, const char*, auto value, Words words) {
     ok = ok && static_cast<std::size_t>(value) < words.size();
   }
   void name(int, const char*, const std::string& name) { ok = ok && is_name(name); }
   void part(int, const char*, const auto& part) { list_fields(*this, part); }
-  void contraction_center(int, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
+  void contraction_center(int, int, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
 };
 
-/// No scenario and no plan can say a height yet.
+/// Of a plane the height is 0.
 bool fits(const Box& domain) {
-  if (!domain.planar() || domain.origin_m.z() != 0) return false;
-  for (int axis = 0; axis < 2; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
     if (!(std::abs(domain.origin_m[axis]) <= limits::kMaxOriginPerSize * domain.size_m[axis]))
       return false;
   }
   return true;
 }
 
-/// A single mode tells no two places apart.
-bool fits(const Basis& basis) { return basis.planar() && basis.mode_count() >= 2; }
+/// A single mode tells no two places apart, and in a plane there is one along z.
+bool fit_together(const Basis& basis, const Box& domain) {
+  return basis.mode_count() >= 2 && basis.mode_count() <= kMaxModes &&
+         (basis.planar() || !domain.planar());
+}
+
+bool in_domain(const Box& domain, const Eigen::Vector3d& x_m) {
+  return domain.contains(x_m) && (x_m.z() == 0 || !domain.planar());
+}
 
 /// |∫ f ρ| ≤ 1, but for the rounding of the quadrature.
 bool is_coefficient(double value) { return std::abs(value) <= 1 + 1e-9; }
@@ -76,6 +85,7 @@ bool fits(const Timing& timing) {
 /// @pre each of them is within its own limits
 bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box& domain,
                   double dt_s) {
+  if (domain.planar() && law.contraction_center_m.z() != 0) return false;
   const double side_m = domain.shortest_side_m();
   const double reach_m = domain.farthest_distance_m(law.contraction_center_m);
   const auto noise_fits = [&](double intensity) { return intensity * std::sqrt(dt_s) <= side_m; };
@@ -88,9 +98,7 @@ bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
-  const auto inside = [&](const Eigen::Vector3d& x_m) {
-    return x_m.z() == 0 && mission.domain.contains(x_m);
-  };
+  const auto inside = [&](const Eigen::Vector3d& x_m) { return in_domain(mission.domain, x_m); };
   return limits::kTeam.contain(size) && mission.quorum <= size &&
          std::all_of(starts_m.begin(), starts_m.end(), inside);
 }
@@ -109,7 +117,7 @@ double duration_s(const Timing& timing) {
 bool within_limits(const Mission& mission) {
   EachWithinLimits each;
   list_fields(each, mission);
-  return each.ok && fits(mission.domain) && fits(mission.basis) &&
+  return each.ok && fits(mission.domain) && fit_together(mission.basis, mission.domain) &&
          is_target(mission.target_coefficients, mission.basis) && fits(mission.law) &&
          fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,

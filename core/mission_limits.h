@@ -52,7 +52,7 @@ bool is_name(std::string_view name);
 double duration_s(const Timing& timing);
 
 /// Whether `mission` is one that a scenario can say: each number within its limits, and those
-/// beside each other fit together, in a plane. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
+/// beside each other fit together. μ is finite, |μ| ≤ 1 but for rounding, and μ_00 = 1.
 bool within_limits(const Mission& mission);
 
 }  // namespace ergocast

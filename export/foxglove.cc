@@ -22,10 +22,8 @@ Json time_of(std::uint64_t time_ns) {
   return {{"sec", time_ns / kSecond_ns}, {"nsec", time_ns % kSecond_ns}};
 }
 
-Json vector(double x, double y) { return {{"x", x}, {"y", y}, {"z", 0.0}}; }
-
-Json pose_at(const Eigen::Vector2d& x_m, double heading_rad) {
-  return {{"position", vector(x_m.x(), x_m.y())},
+Json pose_at(const Eigen::Vector3d& x_m, double heading_rad) {
+  return {{"position", {{"x", x_m.x()}, {"y", x_m.y()}, {"z", x_m.z()}}},
           {"orientation",
            {{"x", 0.0},
             {"y", 0.0},
@@ -132,24 +130,23 @@ std::string pose(std::uint64_t time_ns, const TrackPoint& point) {
                   {"pose", pose_at(point.x_m, std::atan2(point.v_mps.y(), point.v_mps.x()))}});
 }
 
-std::string location(std::uint64_t time_ns, const GeoPlace& place) {
+std::string location(std::uint64_t time_ns, const GeoPlace& place, double height_m) {
   return text_of({{"timestamp", time_of(time_ns)},
                   {"frame_id", kFrame},
                   {"latitude", place.latitude_deg},
                   {"longitude", place.longitude_deg},
-                  {"altitude", 0.0},
+                  {"altitude", height_m},
                   {"position_covariance", std::vector<double>(9, 0.0)},
                   {"position_covariance_type", 0}});
 }
 
 std::string grid(std::uint64_t time_ns, const DensityCells& cells, const Mission& mission) {
-  const Eigen::Vector2d origin_m = mission.domain.origin_m.head<2>();
   const Eigen::Vector2d size_m = mission.domain.size_m.head<2>();
   constexpr int kBytes = 4;
   return text_of(
       {{"timestamp", time_of(time_ns)},
        {"frame_id", kFrame},
-       {"pose", pose_at(origin_m, 0)},
+       {"pose", pose_at(mission.domain.origin_m, 0)},
        {"column_count", cells.rows()},
        {"cell_size",
         {{"x", size_m.x() / static_cast<double>(cells.rows())},

@@ -22,7 +22,7 @@ const Schema& metrics_schema();
 
 /// x is east, y north; the heading is that of the velocity.
 std::string pose(std::uint64_t time_ns, const TrackPoint& point);
-std::string location(std::uint64_t time_ns, const GeoPlace& place);
+std::string location(std::uint64_t time_ns, const GeoPlace& place, double height_m);
 std::string grid(std::uint64_t time_ns, const DensityCells& cells, const Mission& mission);
 std::string log(const ExportedLine& line);
 std::string metrics(std::uint64_t time_ns, const MetricsRow& row);

@@ -97,9 +97,8 @@ class McapExport {
         shown = 1 + static_cast<int>(std::floor(last_s / end_s * kCoveragePictures));
       }
       last_s = point.t_s;
-      const Eigen::Vector3d x_m = on_ground(point.x_m);
-      if (!mission_.domain.contains(x_m)) return;
-      accumulate_basis(BasisAt(x_m, mission_.domain, mission_.basis), mission_.basis, 1,
+      if (!mission_.domain.contains(point.x_m)) return;
+      accumulate_basis(BasisAt(point.x_m, mission_.domain, mission_.basis), mission_.basis, 1,
                        sums.data());
       ++samples;
     });
@@ -118,8 +117,9 @@ class McapExport {
       send_until(time_ns);
       writer_.add_message(poses.at(agent), time_ns, foxglove::pose(time_ns, point));
       if (!plane_) return;
-      writer_.add_message(places.at(agent), time_ns,
-                          foxglove::location(time_ns, plane_->to_place(point.x_m)));
+      writer_.add_message(
+          places.at(agent), time_ns,
+          foxglove::location(time_ns, plane_->to_place(point.x_m.head<2>()), point.x_m.z()));
     });
   }
 

@@ -132,15 +132,18 @@ Eigen::Vector2d center_of(Eigen::Index column, Eigen::Index row, const DensityCe
 
 DensityCells density_of(const Coefficients& coefficients, const Mission& mission,
                         Eigen::Index columns, Eigen::Index rows) {
-  Coefficients scaled = coefficients;
-  auto weights = in_plane(scaled, mission.basis);
+  // Along z the density is averaged: that leaves the modes l = 0.
+  Basis seen = mission.basis;
+  seen.modes_z = 1;
+  Coefficients scaled = coefficients.head(seen.mode_count());
+  auto weights = in_plane(scaled, seen);
   weights.bottomRows(weights.rows() - 1) *= 2;  // mean(cos²) = ½ along each axis that varies
   weights.rightCols(weights.cols() - 1) *= 2;
   DensityCells cells(columns, rows);
   for (Eigen::Index i = 0; i < columns; ++i) {
     for (Eigen::Index j = 0; j < rows; ++j) {
       const Eigen::Vector3d x_m = on_ground(center_of(i, j, cells, mission));
-      cells(i, j) = basis_values(x_m, mission.domain, mission.basis).cwiseProduct(scaled).sum();
+      cells(i, j) = basis_values(x_m, mission.domain, seen).cwiseProduct(scaled).sum();
     }
   }
   return cells;

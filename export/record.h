@@ -46,7 +46,7 @@ std::variant<ExportRecord, std::string> read_export_record(const std::filesystem
                                                            const Mission& mission,
                                                            const std::optional<GeoPlace>& origin);
 
-/// Σ a_k f_k / mean(f_k²), at the centres of the cells.
+/// Σ a_k f_k / mean(f_k²), at the centres of the cells; of a box its average along z.
 DensityCells density_of(const Coefficients& coefficients, const Mission& mission,
                         Eigen::Index columns, Eigen::Index rows);
 

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "export/exports.h"
+#include "logger/recorder.h"
 #include "text/shortest.h"
 
 namespace ergocast {
@@ -46,16 +47,17 @@ class Tables {
   }
 
   void trajectory() {
-    table("trajectory.csv", "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps" + place_header(),
-          [&](std::ostream& file) {
-            for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
-              file << point.tick << ',' << shortest(point.t_s) << ',' << agent;
-              for (const double value :
-                   {point.x_m.x(), point.x_m.y(), point.v_mps.x(), point.v_mps.y()})
-                file << ',' << shortest(value);
-              file << place_at(point.x_m) << '\n';
-            });
-          });
+    const bool planar = record_.mission.domain.planar();
+    const std::string header = planar ? kTrajectoryHeader : kTrajectoryHeaderInSpace;
+    table("trajectory.csv", header + place_header(), [&](std::ostream& file) {
+      for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
+        file << point.tick << ',' << shortest(point.t_s) << ',' << agent;
+        for (const Eigen::Vector3d& vector : {point.x_m, point.v_mps}) {
+          for (int axis = 0; axis < (planar ? 2 : 3); ++axis) file << ',' << shortest(vector[axis]);
+        }
+        file << place_at(point.x_m.head<2>()) << '\n';
+      });
+    });
   }
 
   void metrics() {

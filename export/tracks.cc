@@ -39,9 +39,13 @@ Json domain_feature(const LocalPlane& plane, const ExportRecord& record) {
   return feature({{"type", "Polygon"}, {"coordinates", Json::array({ring})}}, properties);
 }
 
-Json track_feature(const LocalPlane& plane, AgentId agent, const Track& track) {
+Json track_feature(const LocalPlane& plane, const ExportRecord& record, AgentId agent,
+                   const Track& track) {
   Json line = Json::array();
-  for (const TrackPoint& point : track) line.push_back(position_of(plane, point.x_m));
+  for (const TrackPoint& point : track) {
+    line.push_back(position_of(plane, point.x_m.head<2>()));
+    if (!record.mission.domain.planar()) line.back().push_back(point.x_m.z());
+  }
   const Json properties = {{"kind", "track"},
                            {"agent", agent},
                            {"from_s", track.front().t_s},
@@ -58,7 +62,7 @@ std::optional<std::string> write_geojson(const ExportRecord& record,
   const LocalPlane plane(record.origin.value());
   Json features = Json::array({domain_feature(plane, record)});
   for (const auto& [agent, track] : record.run.tracks)
-    features.push_back(track_feature(plane, agent, track));
+    features.push_back(track_feature(plane, record, agent, track));
   std::ofstream out(file, std::ios::binary);
   out << Json{{"type", "FeatureCollection"}, {"features", std::move(features)}}.dump(
              -1, ' ', false, Json::error_handler_t::replace)

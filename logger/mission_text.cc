@@ -21,6 +21,9 @@ class TextWriter : public FieldVisitor {
   void number(int, const char* name, double value, const Limits&, bool given = true) {
     if (given) put(name, shortest(value));
   }
+  void height(int, const char* name, double value, const Limits&, double) {
+    if (!mission_.domain.planar()) put(name, shortest(value));
+  }
   void flag(int, const char* name, bool value) { put(name, value ? "true" : "false"); }
   void choice(int, const char* name, auto value, Words words) {
     put(name, std::data(words)[static_cast<std::size_t>(value)]);
@@ -33,20 +36,26 @@ class TextWriter : public FieldVisitor {
   void part(int, const char* name, const auto& part) {
     part_ = std::string(name) + '.';
     list_fields(*this, part);
+    if (!last_.empty()) put("contraction_z_m", last_);
+    last_.clear();
     part_.clear();
   }
-  void contraction_center(int, const Eigen::Vector3d& center_m) {
+  void contraction_center(int, int, const Eigen::Vector3d& center_m) {
     if (center_m == mission_.domain.center_m()) return put("contraction_center", "DOMAIN_CENTER");
     if (center_m.isZero(0)) return put("contraction_center", "COORDINATE_ORIGIN");
     put("contraction_center", "POINT");
     put("contraction_x_m", shortest(center_m.x()));
     put("contraction_y_m", shortest(center_m.y()));
+    if (!mission_.domain.planar()) last_ = shortest(center_m.z());
   }
   void duration(int, const Timing& timing) { put("duration_s", shortest(duration_s(timing))); }
-  void starts(int, const std::vector<Eigen::Vector3d>& starts_m) {
+  void starts(int, int, const std::vector<Eigen::Vector3d>& starts_m) {
     enter("agents");
-    for (const Eigen::Vector3d& x_m : starts_m)
-      text_ += "  starts { x_m: " + shortest(x_m.x()) + " y_m: " + shortest(x_m.y()) + " }\n";
+    for (const Eigen::Vector3d& x_m : starts_m) {
+      text_ += "  starts { x_m: " + shortest(x_m.x()) + " y_m: " + shortest(x_m.y());
+      if (!mission_.domain.planar()) text_ += " z_m: " + shortest(x_m.z());
+      text_ += " }\n";
+    }
     put("agents.random_count", "0");
   }
 
@@ -67,6 +76,7 @@ class TextWriter : public FieldVisitor {
 
   const Mission& mission_;
   std::string text_, part_, block_;
+  std::string last_;  // the last field of a part, if not empty
 };
 
 }  // namespace

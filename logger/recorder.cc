@@ -50,7 +50,6 @@ Recorder::Recorder(RunId run, Incarnation incarnation, std::ostream& trajectory,
                    std::ostream& metrics)
     : me_(kRole, {run, kLogger, incarnation}), trajectory_(trajectory), metrics_(metrics) {
   ERGOCAST_REQUIRE(writing());
-  trajectory_ << kTrajectoryHeader << '\n';
   metrics_ << kMetricsHeader << '\n';
 }
 
@@ -103,6 +102,7 @@ void Recorder::on(const Stop& stop, const Arrival& arrival) {
 
 void Recorder::begin() {
   observer_.begin(mission());
+  trajectory_ << (mission().domain.planar() ? kTrajectoryHeader : kTrajectoryHeaderInSpace) << '\n';
   if (former_.rows) replay(*former_.rows);
   former_.rows.reset();
   states_.erase(states_.begin(), states_.lower_bound(next_row_));
@@ -127,7 +127,7 @@ void Recorder::replay(const RunData& past) {
       vehicles = 0;
       ++facts_.ticks;
     }
-    observe(id, on_ground(row.x_m));
+    observe(id, row.x_m);
     ++vehicles;
     former_.end = {row.tick, id};
   });
@@ -259,6 +259,7 @@ void Recorder::fail(std::string reason) {
 void Recorder::close() {
   if (ending_.finished) return;
   ending_.finished = true;
+  if (!observer_.begun()) trajectory_ << kTrajectoryHeader << '\n';
   // The last chance to write the rows after a gap.
   heard_.lost_before = std::max(heard_.lost_before, heard_.newest);
   while (writing() && gap_ahead() && next_pair() != states_.end()) {
@@ -329,6 +330,7 @@ void Recorder::skip_gap() {
 
 void Recorder::write_trajectory(const State& now, const State& next) {
   const double t_s = static_cast<double>(next_row_) * mission().timing.dt_s;
+  const int axes = mission().domain.planar() ? 2 : 3;
   std::string line;
   for (const auto& [id, vehicle] : now.vehicles) {
     const auto after = next.vehicles.find(id);
@@ -337,10 +339,11 @@ void Recorder::write_trajectory(const State& now, const State& next) {
     line += std::to_string(next_row_) + ',';
     append_number(line, t_s);
     line += ',' + std::to_string(id);
-    for (const double value : {vehicle.position_m.x(), vehicle.position_m.y(),
-                               after->second.velocity_mps.x(), after->second.velocity_mps.y()}) {
-      line += ',';
-      append_number(line, value);
+    for (const Eigen::Vector3d& vector : {vehicle.position_m, after->second.velocity_mps}) {
+      for (int axis = 0; axis < axes; ++axis) {
+        line += ',';
+        append_number(line, vector[axis]);
+      }
     }
     line += '\n';
   }

@@ -163,6 +163,8 @@ class Recorder {
 
 /// The header lines of the two files.
 inline constexpr const char* kTrajectoryHeader = "tick,t_s,agent,x_m,y_m,vx_mps,vy_mps";
+inline constexpr const char* kTrajectoryHeaderInSpace =
+    "tick,t_s,agent,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps";
 inline constexpr const char* kMetricsHeader =
     "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
     "contributions_lost";

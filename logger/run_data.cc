@@ -24,25 +24,31 @@
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kColumns = 7;  // of either table
-using Fields = std::array<double, kColumns>;
+constexpr std::size_t kMostColumns = 9;
+/// The numbers of a row, as many as its header has names.
+struct Fields {
+  std::array<double, kMostColumns> at;
+  std::size_t count;
+
+  double operator[](std::size_t column) const { return at[column]; }
+};
 
 /// Larger than any mission; squares and sums of such numbers are still finite.
 constexpr double kLargest = 1e100;
 
-/// Reads seven numbers separated by commas, and nothing else. Returns the first column that is not
-/// one, kColumns if more follows, or nothing.
+/// Reads fields.count numbers separated by commas, and nothing else. Returns the first column that
+/// is not one, fields.count if more follows, or nothing.
 std::optional<std::size_t> first_bad_column(std::string_view line, Fields& fields) {
   const char* at = line.data();
   const char* const end = at + line.size();
-  for (std::size_t i = 0; i < kColumns; ++i) {
+  for (std::size_t i = 0; i < fields.count; ++i) {
     if (i > 0 && at == end) return i;
     if (i > 0 && *at++ != ',') return i - 1;
-    const auto [next, error] = std::from_chars(at, end, fields[i]);
-    if (error != std::errc() || !(std::abs(fields[i]) <= kLargest)) return i;
+    const auto [next, error] = std::from_chars(at, end, fields.at[i]);
+    if (error != std::errc() || !(std::abs(fields.at[i]) <= kLargest)) return i;
     at = next;
   }
-  if (at != end) return kColumns;
+  if (at != end) return fields.count;
   return {};
 }
 
@@ -52,25 +58,31 @@ std::string_view name_of(std::size_t column, std::string_view header) {
   return header.substr(0, header.find(','));
 }
 
+std::size_t columns_of(std::string_view header) {
+  return 1 + static_cast<std::size_t>(std::ranges::count(header, ','));
+}
+
 std::string not_numbers(const std::string& line, std::size_t column, std::string_view header) {
-  return "expected 7 numbers separated by commas, found " + in_quotes(line) +
-         (column == kColumns ? ", which goes on"
-                             : ", whose " + std::string(name_of(column, header)) + " is no number");
+  const std::size_t columns = columns_of(header);
+  return "expected " + std::to_string(columns) + " numbers separated by commas, found " +
+         in_quotes(line) +
+         (column == columns ? ", which goes on"
+                            : ", whose " + std::string(name_of(column, header)) + " is no number");
 }
 
 /// Passes each row to `accept`, which returns the error of the row or nothing. After a bad row the
 /// rest of its segment is skipped.
 std::optional<std::string> read_table(
-    const std::filesystem::path& run_dir, const char* table, const char* header,
+    const std::filesystem::path& run_dir, const char* table, std::vector<std::string> headers,
     const std::function<std::optional<std::string>(const Fields&)>& accept) {
-  TableLines lines(run_dir, table, header);
+  TableLines lines(run_dir, table, std::move(headers));
   std::optional<std::string> damage;
   do {
     std::optional<std::string> wrong;
     for (std::string line; !wrong && lines.next(line);) {
-      Fields fields;
+      Fields fields{{}, columns_of(lines.header())};
       const std::optional<std::size_t> bad = first_bad_column(line, fields);
-      wrong = bad ? not_numbers(line, *bad, header) : accept(fields);
+      wrong = bad ? not_numbers(line, *bad, lines.header()) : accept(fields);
     }
     if (damage) continue;
     damage = wrong ? lines.place() + *wrong +
@@ -94,7 +106,12 @@ std::optional<std::string> add_point(RunData& run, const Fields& f) {
     return "the agent is not a whole number below " + std::to_string(kMaxAgents);
   }
   const auto agent = static_cast<AgentId>(f[2]);
-  const TrackPoint point{static_cast<Tick>(f[0]), f[1], {f[3], f[4]}, {f[5], f[6]}};
+  TrackPoint point{static_cast<Tick>(f[0]), f[1]};
+  const std::size_t axes = (f.count - 3) / 2;  // position and velocity come last
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    point.x_m[static_cast<Eigen::Index>(axis)] = f[3 + axis];
+    point.v_mps[static_cast<Eigen::Index>(axis)] = f[3 + axes + axis];
+  }
   const auto track = run.tracks.find(agent);
   if (track != run.tracks.end() &&
       (point.tick <= track->second.back().tick || point.t_s <= track->second.back().t_s)) {
@@ -140,7 +157,7 @@ std::variant<Mission, std::string> read_mission(const std::filesystem::path& run
 
 std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir) {
   RunData run;
-  auto problem = read_table(run_dir, kTrajectoryFile, kTrajectoryHeader,
+  auto problem = read_table(run_dir, kTrajectoryFile, trajectory_headers(),
                             [&run](const Fields& fields) { return add_point(run, fields); });
   if (problem) return *problem;
   return run;
@@ -148,10 +165,10 @@ std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_
 
 std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run) {
   const auto trajectory =
-      read_table(run_dir, kTrajectoryFile, kTrajectoryHeader,
+      read_table(run_dir, kTrajectoryFile, trajectory_headers(),
                  [&run](const Fields& fields) { return add_point(run, fields); });
   const auto metrics =
-      read_table(run_dir, kMetricsFile, kMetricsHeader,
+      read_table(run_dir, kMetricsFile, {kMetricsHeader},
                  [&run](const Fields& fields) { return add_metrics(run, fields); });
   return trajectory ? trajectory : metrics;
 }
@@ -191,9 +208,9 @@ Coefficients coverage_of(const RunData& run, const Mission& mission) {
   double samples = 0;
   for (const auto& [agent, track] : run.tracks) {
     for (const TrackPoint& point : track) {
-      const Eigen::Vector3d x_m = on_ground(point.x_m);
-      if (!mission.domain.contains(x_m)) continue;
-      accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis, 1, sums.data());
+      if (!mission.domain.contains(point.x_m)) continue;
+      accumulate_basis(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
+                       sums.data());
       ++samples;
     }
   }

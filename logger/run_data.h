@@ -22,8 +22,8 @@ namespace ergocast {
 struct TrackPoint {
   Tick tick = 0;
   double t_s = 0;
-  Eigen::Vector2d x_m{0, 0};
-  Eigen::Vector2d v_mps{0, 0};  ///< the command computed at x_m
+  Eigen::Vector3d x_m{0, 0, 0};
+  Eigen::Vector3d v_mps{0, 0, 0};  ///< the command computed at x_m
 };
 using Track = std::vector<TrackPoint>;  ///< ascending by tick
 

@@ -4,15 +4,18 @@
 
 #include <algorithm>
 
+#include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "text/regular_file.h"
 
 namespace ergocast {
 
-TableLines::TableLines(std::filesystem::path run_dir, std::string table, std::string header)
+TableLines::TableLines(std::filesystem::path run_dir, std::string table,
+                       std::vector<std::string> headers)
     : run_dir_(std::move(run_dir)),
       table_(std::move(table)),
-      header_(std::move(header)),
+      headers_(std::move(headers)),
+      header_(headers_.front()),
       segments_(std::max(1, segment_count(run_dir_))) {
   open_next();
 }
@@ -39,8 +42,11 @@ bool TableLines::next(std::string& line) {
     const bool some = static_cast<bool>(std::getline(in_, line));
     if (some && !in_.eof()) {
       if (++line_ > 1) return true;
-      if (line == header_) continue;
-      problem_ = place() + "the header is " + in_quotes(line) + ", not \"" + header_ +
+      if (std::ranges::find(headers_, line) != headers_.end()) {
+        header_ = line;
+        continue;
+      }
+      problem_ = place() + "the header is " + in_quotes(line) + ", not \"" + headers_.front() +
                  "\": use the version of ergocast that recorded the run";
     } else {
       if (some) torn_ = true;
@@ -59,6 +65,10 @@ bool TableLines::skip_segment() {
 
 std::string TableLines::place() const {
   return file_.string() + ':' + std::to_string(line_) + ": ";
+}
+
+std::vector<std::string> trajectory_headers() {
+  return {kTrajectoryHeader, kTrajectoryHeaderInSpace};
 }
 
 std::string in_quotes(const std::string& line) {

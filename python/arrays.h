@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numpy arrays in and out: coefficients as modes_x × modes_y, places as rows (x, y).
+// Numpy arrays in and out: coefficients as modes_x × modes_y, places as rows (x, y); in a box as
+// modes_z × modes_x × modes_y, and (x, y, z).
 //
 // Each function checks the numbers that it is given: a wrong shape or a number that is not finite
 // is Python's ValueError, so that no precondition of the cores breaks.
@@ -9,6 +10,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -44,22 +46,56 @@ inline std::string shape_text(const Numbers& numbers) {
   return py::cast<std::string>(py::str(numbers.attr("shape")));
 }
 
+inline std::vector<py::ssize_t> shape_of(const Basis& basis) {
+  if (basis.planar()) return {basis.modes_x, basis.modes_y};
+  return {basis.modes_z, basis.modes_x, basis.modes_y};
+}
+
+/// How many coordinates a place has.
+inline py::ssize_t axes_of(const Box& domain) { return domain.planar() ? 2 : 3; }
+
 inline Numbers array_of(const Coefficients& coefficients, const Basis& basis) {
-  return Numbers({basis.modes_x, basis.modes_y}, coefficients.data());
+  return Numbers(shape_of(basis), coefficients.data());
 }
 
 /// @param name  of the argument, for errors
 inline Coefficients coefficients_in(const Numbers& numbers, const Basis& basis,
                                     const std::string& name) {
-  check(
-      numbers.ndim() == 2 && numbers.shape(0) == basis.modes_x && numbers.shape(1) == basis.modes_y,
-      name + ": the shape must be (" + std::to_string(basis.modes_x) + ", " +
-          std::to_string(basis.modes_y) + "), not " + shape_text(numbers));
+  const std::vector<py::ssize_t> shape = shape_of(basis);
+  std::string wanted;
+  for (const py::ssize_t length : shape) wanted += ", " + std::to_string(length);
+  check(std::equal(shape.begin(), shape.end(), numbers.shape(), numbers.shape() + numbers.ndim()),
+        name + ": the shape must be (" + wanted.substr(2) + "), not " + shape_text(numbers));
   check_finite(numbers, name);
   return Eigen::Map<const Coefficients>(numbers.data(), numbers.size());
 }
 
-inline Numbers array_of(const Eigen::Vector3d& in_plane) { return Numbers(2, in_plane.data()); }
+inline Numbers array_of(const Eigen::Vector3d& vector, const Box& domain) {
+  return Numbers(axes_of(domain), vector.data());
+}
+
+/// One place in `domain`.
+inline Eigen::Vector3d position_in(const Numbers& numbers, const Box& domain,
+                                   const std::string& name) {
+  check(numbers.ndim() == 1 && numbers.shape(0) == axes_of(domain),
+        name + ": the shape must be (" + std::to_string(axes_of(domain)) + ",), not " +
+            shape_text(numbers));
+  check_finite(numbers, name);
+  return {numbers.at(0), numbers.at(1), domain.planar() ? 0 : numbers.at(2)};
+}
+
+/// Places in rows.
+inline std::vector<Eigen::Vector3d> positions_in(const Numbers& numbers, const Box& domain,
+                                                 const std::string& name) {
+  check(numbers.ndim() == 2 && numbers.shape(1) == axes_of(domain),
+        name + ": the shape must be (n, " + std::to_string(axes_of(domain)) + "), not " +
+            shape_text(numbers));
+  check_finite(numbers, name);
+  std::vector<Eigen::Vector3d> places;
+  for (py::ssize_t i = 0; i < numbers.shape(0); ++i)
+    places.emplace_back(numbers.at(i, 0), numbers.at(i, 1), domain.planar() ? 0 : numbers.at(i, 2));
+  return places;
+}
 
 /// One place, (x, y).
 inline Eigen::Vector2d place_in(const Numbers& numbers, const std::string& name) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binds the basis and the mission. Everything is in the plane: coefficients have two indices.
+// Binds the basis and the mission. In a plane coefficients have two indices, in a box three.
 #include "core/mission.h"
 #include "core/mission_limits.h"
 #include "python/arrays.h"
@@ -11,9 +11,9 @@ namespace {
 using namespace pybind11::literals;
 
 Box make_domain(const Numbers& origin_m, const Numbers& size_m) {
-  const Box domain{on_ground(place_in(origin_m, "origin_m")),
-                   on_ground(place_in(size_m, "size_m"))};
-  for (int axis = 0; axis < 2; ++axis) {
+  const Box any{{0, 0, 0}, {1, 1, size_m.size() == 3 ? 1.0 : 0.0}};
+  const Box domain{position_in(origin_m, any, "origin_m"), position_in(size_m, any, "size_m")};
+  for (int axis = 0; axis < axes_of(any); ++axis) {
     check(limits::kSize_m.contain(domain.size_m[axis]),
           "size_m: each side must be from 1e-3 to 1e7 m");
     check(limits::kCoordinate_m.contain(domain.origin_m[axis]),
@@ -23,27 +23,36 @@ Box make_domain(const Numbers& origin_m, const Numbers& size_m) {
 }
 
 Basis make_basis(int modes_x, int modes_y, const std::string& form, double exponent,
-                 bool normalized) {
-  check(limits::kModes.contain(modes_x) && limits::kModes.contain(modes_y),
-        "modes_x, modes_y: must be from 1 to " + std::to_string(kMaxModesPerAxis));
+                 bool normalized, int modes_z) {
+  check(limits::kModes.contain(modes_x) && limits::kModes.contain(modes_y) &&
+            limits::kModes.contain(modes_z),
+        "modes_x, modes_y, modes_z: must be from 1 to " + std::to_string(kMaxModesPerAxis));
   check(form == "squared_norm" || form == "norm",
         "sobolev_form: must be \"squared_norm\" or \"norm\", not \"" + form + "\"");
   Basis basis;
   basis.modes_x = modes_x;
   basis.modes_y = modes_y;
+  basis.modes_z = modes_z;
   basis.sobolev_form = form == "norm" ? SobolevForm::kNorm : SobolevForm::kSquaredNorm;
   basis.sobolev_exponent = finite(exponent, "sobolev_exponent");
   basis.normalized = normalized;
   return basis;
 }
 
+/// A plane has one mode along z.
+void check_fit(const Basis& basis, const Box& domain) {
+  check(basis.planar() || !domain.planar(), "modes_z: the domain is a plane");
+}
+
 Numbers values(const Basis& basis, const Numbers& x_m, const Box& domain) {
-  const auto places = places_in(x_m, "x_m");
-  Numbers result({static_cast<py::ssize_t>(places.size()), py::ssize_t{basis.modes_x},
-                  py::ssize_t{basis.modes_y}});
+  check_fit(basis, domain);
+  const auto places = positions_in(x_m, domain, "x_m");
+  std::vector<py::ssize_t> shape = shape_of(basis);
+  shape.insert(shape.begin(), static_cast<py::ssize_t>(places.size()));
+  Numbers result(shape);
   double* out = result.mutable_data();
-  for (const Eigen::Vector2d& place : places) {
-    set_basis(CosinesAt(on_ground(place), domain, basis), basis, 1, out);
+  for (const Eigen::Vector3d& place : places) {
+    set_basis(CosinesAt(place, domain, basis), basis, 1, out);
     out += basis.mode_count();
   }
   return result;
@@ -52,14 +61,14 @@ Numbers values(const Basis& basis, const Numbers& x_m, const Box& domain) {
 Numbers gradient(const Basis& basis, const Numbers& weights, const Numbers& x_m,
                  const Box& domain) {
   const Coefficients factors = coefficients_in(weights, basis, "weights");
-  const auto places = places_in(x_m, "x_m");
-  Numbers result({static_cast<py::ssize_t>(places.size()), py::ssize_t{2}});
+  check_fit(basis, domain);
+  const auto places = positions_in(x_m, domain, "x_m");
+  Numbers result({static_cast<py::ssize_t>(places.size()), axes_of(domain)});
   double* out = result.mutable_data();
-  for (const Eigen::Vector2d& place : places) {
-    const BasisAt at(on_ground(place), domain, basis);
+  for (const Eigen::Vector3d& place : places) {
+    const BasisAt at(place, domain, basis);
     const Eigen::Vector3d sum = weighted_gradient(at, basis, factors.data());
-    *out++ = sum.x();
-    *out++ = sum.y();
+    out = std::copy_n(sum.data(), axes_of(domain), out);
   }
   return result;
 }
@@ -71,31 +80,32 @@ double metric(const Numbers& coverage, const Numbers& target, const Basis& basis
 }
 
 Numbers starts(const Mission& mission) {
-  Numbers result({static_cast<py::ssize_t>(mission.starts_m.size()), py::ssize_t{2}});
+  const py::ssize_t axes = axes_of(mission.domain);
+  Numbers result({static_cast<py::ssize_t>(mission.starts_m.size()), axes});
   double* out = result.mutable_data();
-  for (const Eigen::Vector3d& start : mission.starts_m) {
-    *out++ = start.x();
-    *out++ = start.y();
-  }
+  for (const Eigen::Vector3d& start : mission.starts_m) out = std::copy_n(start.data(), axes, out);
   return result;
 }
 
+py::tuple tuple_of(const Eigen::Vector3d& vector, const Box& domain) {
+  return py::tuple(array_of(vector, domain).attr("tolist")());
+}
+
 void add_domain(py::module_& module) {
-  py::class_<Box>(module, "Domain", R"(A rectangle [origin, origin + size] in metres.
+  py::class_<Box>(module, "Domain", R"(A rectangle or box [origin, origin + size] in metres.
 
 Its sides reflect. ValueError for sides outside 1e-3 … 1e7 m.)")
       .def(py::init(&make_domain), "origin_m"_a = py::make_tuple(0.0, 0.0),
            "size_m"_a = py::make_tuple(1.0, 1.0))
       .def_property_readonly(
-          "origin_m", [](const Box& d) { return array_of(d.origin_m); },
-          "Lower left corner, shape (2,) [m].")
+          "origin_m", [](const Box& d) { return array_of(d.origin_m, d); },
+          "Lower left corner, shape (2,), of a box (3,) [m].")
       .def_property_readonly(
-          "size_m", [](const Box& d) { return array_of(d.size_m); },
-          "Width and height, shape (2,) [m].")
+          "size_m", [](const Box& d) { return array_of(d.size_m, d); },
+          "Its sides, shape (2,), of a box (3,) [m].")
       .def("__repr__", [](const Box& d) {
         return py::str("Domain(origin_m={}, size_m={})")
-            .format(py::make_tuple(d.origin_m.x(), d.origin_m.y()),
-                    py::make_tuple(d.size_m.x(), d.size_m.y()));
+            .format(tuple_of(d.origin_m, d), tuple_of(d.size_m, d));
       });
 }
 
@@ -103,13 +113,15 @@ void add_basis(py::module_& module) {
   py::class_<Basis>(module, "Basis",
                     R"(The cosine basis (2), f_mn(x) = cos(mπx/Lx) cos(nπy/Ly), not divided by h_k.
 
-Row m, column n of every array of coefficients belongs to f_mn. The weights are
+Row m, column n of every array of coefficients belongs to f_mn. In a box with modes_z above 1
+there is a factor cos(lπz/Lz), and l is the first of three indices. The weights are
 λ = (1 + |k|²)^−s ("squared_norm") or (1 + |k|)^−s ("norm"), divided by h_k² if
 the basis is normalised. ValueError for modes outside 1 … 64.)")
       .def(py::init(&make_basis), "modes_x"_a, "modes_y"_a, "sobolev_form"_a = "squared_norm",
-           "sobolev_exponent"_a = 1.5, "normalized"_a = py::bool_(false))
+           "sobolev_exponent"_a = 1.5, "normalized"_a = py::bool_(false), "modes_z"_a = 1)
       .def_readonly("modes_x", &Basis::modes_x, "Modes along x.")
       .def_readonly("modes_y", &Basis::modes_y, "Modes along y.")
+      .def_readonly("modes_z", &Basis::modes_z, "Modes along z; in a plane 1.")
       .def_readonly("sobolev_exponent", &Basis::sobolev_exponent, "s of λ.")
       .def_readonly("normalized", &Basis::normalized, "Whether f is divided by h_k.")
       .def_property_readonly(

@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 
 #include "cli/recorded_team.h"
@@ -67,19 +68,24 @@ py::array_t<Number> column(const std::vector<Number>& values) {
 py::dict trajectory(const Record& record) {
   std::vector<Tick> tick;
   std::vector<AgentId> agent;
-  std::vector<double> t_s, x_m, y_m, vx_mps, vy_mps;
+  std::vector<double> t_s;
+  std::array<std::vector<double>, 3> x_m, v_mps;
   for_each_row(record.rows, [&](AgentId id, const TrackPoint& point) {
     tick.push_back(point.tick);
     agent.push_back(id);
     t_s.push_back(point.t_s);
-    x_m.push_back(point.x_m.x());
-    y_m.push_back(point.x_m.y());
-    vx_mps.push_back(point.v_mps.x());
-    vy_mps.push_back(point.v_mps.y());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      x_m[axis].push_back(point.x_m[static_cast<Eigen::Index>(axis)]);
+      v_mps[axis].push_back(point.v_mps[static_cast<Eigen::Index>(axis)]);
+    }
   });
-  return py::dict("tick"_a = column(tick), "t_s"_a = column(t_s), "agent"_a = column(agent),
-                  "x_m"_a = column(x_m), "y_m"_a = column(y_m), "vx_mps"_a = column(vx_mps),
-                  "vy_mps"_a = column(vy_mps));
+  const std::string names = record.mission.domain.planar() ? "xy" : "xyz";
+  py::dict table("tick"_a = column(tick), "t_s"_a = column(t_s), "agent"_a = column(agent));
+  for (std::size_t axis = 0; axis < names.size(); ++axis)
+    table[py::str(names[axis] + std::string("_m"))] = column(x_m[axis]);
+  for (std::size_t axis = 0; axis < names.size(); ++axis)
+    table[py::str(std::string("v") + names[axis] + "_mps")] = column(v_mps[axis]);
+  return table;
 }
 
 py::dict metrics(const Record& record) {
@@ -110,8 +116,9 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
   check(std::is_sorted(ticks.begin(), ticks.end()), "ticks: must ascend");
   const Mission& mission = record.mission;
   const int modes = mission.basis.mode_count();
-  Numbers result({static_cast<py::ssize_t>(ticks.size()), py::ssize_t{mission.basis.modes_x},
-                  py::ssize_t{mission.basis.modes_y}});
+  std::vector<py::ssize_t> shape = shape_of(mission.basis);
+  shape.insert(shape.begin(), static_cast<py::ssize_t>(ticks.size()));
+  Numbers result(shape);
   double* out = result.mutable_data();
   std::fill(out, out + result.size(), 0.0);
   Observer observer;
@@ -133,7 +140,7 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
   for_each_row(record.rows, [&](AgentId agent, const TrackPoint& point) {
     if (next == ticks.end()) return;
     write_before(point.tick);
-    if (is_member(agent, point.tick)) observer.see(mission, on_ground(point.x_m));
+    if (is_member(agent, point.tick)) observer.see(mission, point.x_m);
   });
   write_before(std::numeric_limits<Tick>::max());
   return result;

@@ -38,14 +38,11 @@ Gaussian make_gaussian(const Numbers& mean_m, std::optional<double> sigma_m,
                        const std::optional<Numbers>& covariance_m2, double weight) {
   check(sigma_m.has_value() != covariance_m2.has_value(),
         "give sigma_m or covariance_m2, and not both");
-  Gaussian gaussian{weight_in(weight, "weight"), place_in(mean_m, "mean_m"), {}};
-  if (covariance_m2) {
-    gaussian.covariance_m2 = covariance_in(*covariance_m2);
-  } else {
-    check(std::isfinite(*sigma_m) && *sigma_m > 0, "sigma_m: must be finite and above 0");
-    gaussian.covariance_m2 = *sigma_m * *sigma_m * Eigen::Matrix2d::Identity();
-  }
-  return gaussian;
+  const double checked_weight = weight_in(weight, "weight");
+  const Eigen::Vector2d place_m = place_in(mean_m, "mean_m");
+  if (covariance_m2) return plane_gaussian(checked_weight, place_m, covariance_in(*covariance_m2));
+  check(std::isfinite(*sigma_m) && *sigma_m > 0, "sigma_m: must be finite and above 0");
+  return plane_gaussian(checked_weight, place_m, *sigma_m * *sigma_m * Eigen::Matrix2d::Identity());
 }
 
 Polygon make_polygon(const Numbers& outline_m, const std::vector<Numbers>& holes_m) {
@@ -73,12 +70,13 @@ TargetDensity make_target(std::vector<Gaussian> gaussians, double uniform_weight
                           std::vector<Region> regions, const std::vector<Region>& keep_outs) {
   TargetDensity target{
       std::move(gaussians), weight_in(uniform_weight, "uniform_weight"), std::move(regions), {}};
-  for (const Region& region : keep_outs) target.keep_outs.push_back(region.polygon);
+  for (const Region& region : keep_outs) target.keep_outs.push_back({region.polygon});
   return target;
 }
 
 double mass_in(const TargetDensity& target, const Box& domain) {
-  const double mass = mass_inside(target, base_of(domain));
+  check(domain.planar(), "domain: targets made here are those of a plane");
+  const double mass = mass_inside(target, domain);
   check(mass > 0, "the target has no mass inside the domain and outside its keep-outs");
   return mass;
 }
@@ -88,9 +86,9 @@ py::tuple coefficients(const TargetDensity& target, const Box& domain, const Bas
   {
     const py::gil_scoped_release others_may_run;
     mass_in(target, domain);
-    result = target_coefficients(target, base_of(domain), basis);
+    result = target_coefficients(target, domain, basis);
   }
-  return py::make_tuple(array_of(in_wire_order(result.values), basis), result.error_bound);
+  return py::make_tuple(array_of(result.values, basis), result.error_bound);
 }
 
 Numbers density(const TargetDensity& target, const Numbers& x_m, const Box& domain) {
@@ -99,9 +97,8 @@ Numbers density(const TargetDensity& target, const Numbers& x_m, const Box& doma
   Numbers result(static_cast<py::ssize_t>(places.size()));
   double* out = result.mutable_data();
   for (const Eigen::Vector2d& place : places) {
-    *out++ = domain.contains(on_ground(place))
-                 ? density_unscaled(target, base_of(domain), place) / mass
-                 : 0;
+    const Eigen::Vector3d x = on_ground(place);
+    *out++ = domain.contains(x) ? density_unscaled(target, domain, x) / mass : 0;
   }
   return result;
 }

@@ -18,8 +18,6 @@ AgentId agent_in(int agent) {
   return agent;
 }
 
-Eigen::Vector3d position_in(const Numbers& x_m) { return on_ground(place_in(x_m, "x_m")); }
-
 /// A controller, with the basis that its arrays have the shape of.
 struct Steering {
   explicit Steering(const Mission& plan)
@@ -42,9 +40,10 @@ struct Coverage {
 Numbers command(Steering& steering, int agent, Tick tick, const Numbers& x_m) {
   check(tick >= 0, "tick: must not be negative");
   const AgentId id = agent_in(agent);
-  const Eigen::Vector3d place = position_in(x_m);
-  return array_of(steering.controller.command(id, tick, place,
-                                              BasisAt(place, steering.domain, steering.basis)));
+  const Eigen::Vector3d place = position_in(x_m, steering.domain, "x_m");
+  return array_of(
+      steering.controller.command(id, tick, place, BasisAt(place, steering.domain, steering.basis)),
+      steering.domain);
 }
 
 void add_controller(py::module_& module) {
@@ -64,7 +63,7 @@ Before the first set_coverage() B is 0.)")
 A function of (seed, agent, tick), the place and the coverage.)")
       .def_property_readonly(
           "spectral_gradient",
-          [](const Steering& s) { return array_of(s.controller.spectral_gradient()); },
+          [](const Steering& s) { return array_of(s.controller.spectral_gradient(), s.domain); },
           "B of (6) at the last command, shape (2,) [1/m].")
       .def_property_readonly(
           "epsilon", [](const Steering& s) { return s.controller.epsilon(); },
@@ -79,6 +78,7 @@ A function of (seed, agent, tick), the place and the coverage.)")
 
 Coverage make_coverage(const Basis& basis, const Box& domain, double dt_s) {
   check(std::isfinite(dt_s) && dt_s > 0, "dt_s: must be finite and above 0");
+  check(basis.planar() || !domain.planar(), "modes_z: the domain is a plane");
   return {basis, domain, dt_s};
 }
 
@@ -87,13 +87,13 @@ void add_sample(Coverage& coverage, int agent, const Numbers& x_m, Incarnation i
   const bool known = coverage.table.steps_held(author).has_value();
   check(known || coverage.table.row_count() < kMaxRosterEntries,
         "the table is full: " + std::to_string(kMaxRosterEntries) + " rows");
-  coverage.table.add_sample(author, BasisAt(position_in(x_m), coverage.domain, coverage.basis));
+  const Eigen::Vector3d place = position_in(x_m, coverage.domain, "x_m");
+  coverage.table.add_sample(author, BasisAt(place, coverage.domain, coverage.basis));
 }
 
 /// How many blocks were news.
 int merge(Coverage& mine, const Coverage& theirs) {
-  check(mine.basis.modes_x == theirs.basis.modes_x && mine.basis.modes_y == theirs.basis.modes_y &&
-            mine.dt_s == theirs.dt_s,
+  check(shape_of(mine.basis) == shape_of(theirs.basis) && mine.dt_s == theirs.dt_s,
         "theirs: has other modes or another dt_s");
   constexpr std::int64_t kAnySteps = std::int64_t{1} << 48;
   int newer = 0;
@@ -148,13 +148,11 @@ using Of = const Eigen::Vector3d& (lab::IdealTeam::*)(std::size_t) const;
 /// One row for each agent.
 template <Of kOf>
 Numbers rows(const lab::IdealTeam& team) {
-  Numbers result({static_cast<py::ssize_t>(team.size()), py::ssize_t{2}});
+  const py::ssize_t axes = axes_of(team.mission().domain);
+  Numbers result({static_cast<py::ssize_t>(team.size()), axes});
   double* out = result.mutable_data();
-  for (std::size_t agent = 0; agent < team.size(); ++agent) {
-    const Eigen::Vector3d& value = (team.*kOf)(agent);
-    *out++ = value.x();
-    *out++ = value.y();
-  }
+  for (std::size_t agent = 0; agent < team.size(); ++agent)
+    out = std::copy_n((team.*kOf)(agent).data(), axes, out);
   return result;
 }
 

@@ -10,12 +10,26 @@ namespace ergocast {
 
 std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target) {
   const Coefficients coverage = coverage_of(run, mission);
-  return {trajectories_figure(run, mission, target),
-          metric_figure(run, mission),
-          coverage_figure(coverage, mission),
-          coefficients_figure(coverage, mission),
-          speeds_figure(run, mission),
-          communication_figure(run, mission)};
+  std::vector<Figure> tracks, fields, modes;
+  for (const View& view : views_of(mission.domain)) {
+    const Mission seen = projected(mission, view);
+    const Coefficients seen_coverage = projected(coverage, mission.basis, view);
+    // The target that was recorded is the one from above.
+    const bool from_above = view.ending().empty();
+    tracks.push_back(from_above ? trajectories_figure(run, seen, target, view)
+                                : trajectories_figure(projected(run, view), seen, {}, view));
+    fields.push_back(coverage_figure(seen_coverage, seen, view));
+    modes.push_back(coefficients_figure(seen_coverage, seen, view));
+  }
+  std::vector<Figure> all = std::move(tracks);
+  const auto add = [&all](const std::vector<Figure>& figures) {
+    all.insert(all.end(), figures.begin(), figures.end());
+  };
+  add({metric_figure(run, mission)});
+  add(fields);
+  add(modes);
+  add({speeds_figure(run, mission), communication_figure(run, mission)});
+  return all;
 }
 
 std::string conventions_line(const Basis& basis) {
@@ -23,7 +37,7 @@ std::string conventions_line(const Basis& basis) {
   return std::string("λ = (1 + |k|") + (squared ? "²" : "") + ")^−" +
          readable(basis.sobolev_exponent) + ", f " + (basis.normalized ? "" : "not ") +
          "divided by hₖ, " + std::to_string(basis.modes_x) + " × " + std::to_string(basis.modes_y) +
-         " modes";
+         (basis.planar() ? "" : " × " + std::to_string(basis.modes_z)) + " modes";
 }
 
 std::string agent_color(AgentId agent) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The six figures of a report. Each is a complete SVG document; an empty run gives empty plots.
+// The figures of a report. Each is a complete SVG document; an empty run gives empty plots. A map
+// is one of a mission in a plane; report/projection.h gives one for each view of a box.
 #pragma once
 
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "core/mission.h"
 #include "logger/run_data.h"
+#include "report/projection.h"
 #include "report/raster.h"
 #include "report/svg.h"
 
@@ -19,16 +21,18 @@ struct Figure {
 
 /// The agents' tracks over the target density: crosses are starts, circles are ends.
 /// @param target  in multiples of the uniform density; if empty, the sum of the μ_k is drawn
-Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target);
+Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target,
+                           const View& view = {});
 
 /// φ² against t, log–log, with the power of t that fits the last decade.
 Figure metric_figure(const RunData& run, const Mission& mission);
 
 /// Σ c_k f_k beside Σ μ_k f_k, f normalised, in the same colours. `coverage` is c_k, or all zero.
-Figure coverage_figure(const Coefficients& coverage, const Mission& mission);
+Figure coverage_figure(const Coefficients& coverage, const Mission& mission, const View& view = {});
 
 /// |c_k − μ_k| of every mode, logarithmic. `coverage` is c_k, or all zero.
-Figure coefficients_figure(const Coefficients& coverage, const Mission& mission);
+Figure coefficients_figure(const Coefficients& coverage, const Mission& mission,
+                           const View& view = {});
 
 /// Each agent's commanded speed over time.
 Figure speeds_figure(const RunData& run, const Mission& mission);
@@ -36,7 +40,7 @@ Figure speeds_figure(const RunData& run, const Mission& mission);
 /// Contributions received and lost, staleness, and how much the agents' own φ² differ.
 Figure communication_figure(const RunData& run, const Mission& mission);
 
-/// All figures, in the order of the report.
+/// All figures, in the order of the report: six, in a box a map of each kind for each view.
 std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target);
 
 /// "λ = (1 + |k|²)^−1.5, f not divided by hₖ, 15 × 15 modes": the conventions that a φ² depends on.

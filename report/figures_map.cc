@@ -34,12 +34,14 @@ Area map_area(double top, const Rectangle& domain) {
   return fitted(top, long_domain(domain) ? kWholeRow : kSide, domain.size_m);
 }
 
-Axis x_axis(const Rectangle& domain) {
-  return range_axis("x", "m", domain.origin_m.x(), domain.origin_m.x() + domain.size_m.x());
+Axis across_axis(const Rectangle& domain, const View& view) {
+  return range_axis(view.across_name(), "m", domain.origin_m.x(),
+                    domain.origin_m.x() + domain.size_m.x());
 }
 
-Axis y_axis(const Rectangle& domain) {
-  return range_axis("y", "m", domain.origin_m.y(), domain.origin_m.y() + domain.size_m.y());
+Axis up_axis(const Rectangle& domain, const View& view) {
+  return range_axis(view.up_name(), "m", domain.origin_m.y(),
+                    domain.origin_m.y() + domain.size_m.y());
 }
 
 /// `value(x)` at the centres of a grid of nearly square cells over the domain.
@@ -89,7 +91,7 @@ DrawnTracks draw_tracks(const RunData& run, const Plot& plot, double from_s) {
   for (const auto& [agent, track] : run.tracks) {
     Polyline line;
     for (const TrackPoint& point : track) {
-      if (point.t_s >= from_s) line.push_back(plot.at(point.x_m));
+      if (point.t_s >= from_s) line.push_back(plot.at(point.x_m.head<2>()));
     }
     line = simplify(line, kUnseen);
     for (std::size_t i = 1; i < line.size(); ++i) drawn.length += (line[i] - line[i - 1]).norm();
@@ -129,13 +131,13 @@ void draw_ends(Svg& svg, const RunData& run, const Plot& plot) {
   constexpr double kArm = 5, kRadius = 5;
   const Eigen::Vector2d falling(kArm, kArm), rising(kArm, -kArm);
   for (const auto& [agent, track] : run.tracks) {
-    const Eigen::Vector2d end = plot.at(track.back().x_m);
+    const Eigen::Vector2d end = plot.at(track.back().x_m.head<2>());
     svg.circle(end, kRadius + 2, "fill=\"#fff\"");
     svg.circle(end, kRadius,
                "fill=\"none\" stroke-width=\"2.6\" stroke=\"" + agent_color(agent) + '"');
   }
   for (const auto& [agent, track] : run.tracks) {
-    const Eigen::Vector2d start = plot.at(track.front().x_m);
+    const Eigen::Vector2d start = plot.at(track.front().x_m.head<2>());
     const std::string cross =
         path_data({start - falling, start + falling}) + path_data({start - rising, start + rising});
     svg.path(cross, "fill=\"none\" stroke=\"#fff\" stroke-width=\"4.6\" stroke-linecap=\"round\"");
@@ -149,7 +151,7 @@ void draw_numbers(Svg& svg, const RunData& run, const Plot& plot) {
   constexpr std::size_t kMostNumbers = 24;
   if (run.tracks.size() <= kAgentColors || run.tracks.size() > kMostNumbers) return;
   for (const auto& [agent, track] : run.tracks) {
-    const Eigen::Vector2d end = plot.at(track.back().x_m);
+    const Eigen::Vector2d end = plot.at(track.back().x_m.head<2>());
     const bool at_edge = end.x() > plot.area().right() - 24;
     svg.text(end + Eigen::Vector2d(at_edge ? -8 : 8, 4),
              at_edge ? "class=\"onmap halo end\"" : "class=\"onmap halo\"", std::to_string(agent));
@@ -168,8 +170,8 @@ void draw_signs(Svg& svg, double right, double y) {
 // --- coverage and coefficients ---
 
 void draw_field(Svg& svg, const Area& area, const Field& field, double brightest,
-                const Rectangle& domain, std::string_view title) {
-  Plot plot(svg, area, x_axis(domain), y_axis(domain));
+                const Rectangle& domain, const View& view, std::string_view title) {
+  Plot plot(svg, area, across_axis(domain, view), up_axis(domain, view));
   plot.image(field / brightest, viridis(), true);
   plot.frame();
   svg.text({area.left, area.top - 9}, "class=\"head\"", title);
@@ -193,11 +195,12 @@ Axis difference_axis(const PlaneCoefficients& difference) {
 
 }  // namespace
 
-Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target) {
+Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target,
+                           const View& view) {
   const Rectangle domain = base_of(mission.domain);
   const Area area = map_area(kLegend, domain);
   Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "trajectories", "Trajectories");
-  Plot plot(svg, area, x_axis(domain), y_axis(domain));
+  Plot plot(svg, area, across_axis(domain, view), up_axis(domain, view));
 
   const Field ground =
       target.size() > 0 ? target : reconstruction(mission.target_coefficients, mission);
@@ -213,10 +216,10 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
   agent_legend(svg, run, kRoomLeft, 4, area.width);
   if (!run.empty()) draw_signs(svg, area.right() + kBar - 8, 4);
   color_bar(svg, area, pencil(), range_axis("density, × uniform", "", 0, densest));
-  return {"trajectories", svg.str()};
+  return {"trajectories" + view.ending(), svg.str()};
 }
 
-Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
+Figure coverage_figure(const Coefficients& coverage, const Mission& mission, const View& view) {
   constexpr double kGap = 84;
   const Rectangle domain = base_of(mission.domain);
   const Field target = reconstruction(mission.target_coefficients, mission);
@@ -231,21 +234,22 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
                           : Area{first.right() + kGap, first.top, first.width, first.height};
   Svg svg(second.right() + kBar, second.bottom() + kRoomBelow, "coverage",
           "Coverage beside the target");
-  draw_field(svg, first, achieved, brightest, domain, "achieved: Σ cₖ fₖ");
-  draw_field(svg, second, target, brightest, domain, "target: Σ μₖ fₖ");
+  draw_field(svg, first, achieved, brightest, domain, view, "achieved: Σ cₖ fₖ");
+  draw_field(svg, second, target, brightest, domain, view, "target: Σ μₖ fₖ");
   color_bar(svg, second, viridis(), range_axis("time spent, × uniform", "", 0, brightest));
-  return {"coverage", svg.str()};
+  return {"coverage" + view.ending(), svg.str()};
 }
 
-Figure coefficients_figure(const Coefficients& coverage, const Mission& mission) {
+Figure coefficients_figure(const Coefficients& coverage, const Mission& mission, const View& view) {
   const Coefficients all = (coverage - mission.target_coefficients).cwiseAbs();
   const PlaneCoefficients difference = in_plane(all, mission.basis);
   const Axis colors = difference_axis(difference);
   const Eigen::Vector2d modes(mission.basis.modes_x, mission.basis.modes_y);
   const Area area = fitted(kTitled, kSide, modes);
   Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "coefficients", "Differences by mode");
-  Plot plot(svg, area, mode_axis("m (half waves along x)", mission.basis.modes_x),
-            mode_axis("n (half waves along y)", mission.basis.modes_y));
+  Plot plot(svg, area,
+            mode_axis("m (half waves along " + view.across_name() + ')', mission.basis.modes_x),
+            mode_axis("n (half waves along " + view.up_name() + ')', mission.basis.modes_y));
   if (coverage[0] == 0) {
     plot.say("no position was recorded");
   } else {
@@ -253,7 +257,7 @@ Figure coefficients_figure(const Coefficients& coverage, const Mission& mission)
   }
   plot.frame();
   color_bar(svg, area, viridis(), colors);
-  return {"coefficients", svg.str()};
+  return {"coefficients" + view.ending(), svg.str()};
 }
 
 }  // namespace ergocast

@@ -50,7 +50,7 @@ std::string law_text(const ControlLaw& law) {
 std::string weights_text(const Basis& basis) {
   const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
   return std::string("λₖ = (1 + |k|") + (squared ? "²" : "") + ")^−" +
-         readable(basis.sobolev_exponent) + ", |k|² = m² + n²";
+         readable(basis.sobolev_exponent) + ", |k|² = m² + n²" + (basis.planar() ? "" : " + l²");
 }
 
 /// What a φ² depends on, and what the page draws.
@@ -60,11 +60,18 @@ Json conventions(const Mission& mission) {
   const auto add = [&list](const char* name, const std::string& text) {
     list.push_back(Json::array({name, text}));
   };
+  if (!mission.domain.planar()) {
+    add("view",
+        "from above: the maps are averages along z, and the modes those without waves "
+        "along z; figures/ has the other two views");
+  }
   add("metric", std::string("φ² = Σ λₖ (cₖ − μₖ)²") + (basis.normalized ? " / hₖ²" : ""));
   add("weights", weights_text(basis));
-  add("basis", "f = cos(mπx/Lx) cos(nπy/Ly) from the domain’s lower left corner, m = 0 … " +
-                   std::to_string(basis.modes_x - 1) + ", n = 0 … " +
-                   std::to_string(basis.modes_y - 1));
+  add("basis",
+      "f = cos(mπx/Lx) cos(nπy/Ly) from the domain’s lower left corner, m = 0 … " +
+          std::to_string(basis.modes_x - 1) + ", n = 0 … " + std::to_string(basis.modes_y - 1) +
+          (basis.planar() ? ""
+                          : "; times cos(lπz/Lz), l = 0 … " + std::to_string(basis.modes_z - 1)));
   add("hₖ", basis.normalized ? "√(Π Lᵢ · (½)^[kᵢ > 0])" : "not used: f is not normalised");
   add("control", law_text(mission.law));
   if (mission.speed_limit_mps > 0) {
@@ -149,7 +156,7 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
   for (const auto& [agent, track] : run.tracks) ticks = std::max(ticks, track.back().tick + 1);
   TrackGrid grid(base_of(mission.domain), run.tracks.size());
   for (const auto& [agent, track] : run.tracks) {
-    for (const TrackPoint& point : track) grid.put(agent, point.tick, point.x_m);
+    for (const TrackPoint& point : track) grid.put(agent, point.tick, point.x_m.head<2>());
   }
   const auto law = fit_last_decade(run);
   return {{"mission", page_mission(mission, density)},

@@ -28,6 +28,10 @@ void Checks::problem(const std::string& path, const std::string& what, std::stri
   findings_.add(path, what, std::move(remedy));
 }
 
+void Checks::of_a_box_alone(const std::string& path) {
+  problem(path, "the domain is a plane", "remove it, or add size_z_m to the domain");
+}
+
 bool Checks::sound(const std::string& path) const {
   const auto next = unsound_.lower_bound(path);
   return next == unsound_.end() || !next->starts_with(path);

@@ -24,6 +24,9 @@ class Checks {
 
   void problem(const std::string& path, const std::string& what, std::string remedy);
 
+  /// A field or block of boxes in a plane.
+  void of_a_box_alone(const std::string& path);
+
   /// Whether no problem is known yet at `path` or below it. Rules between fields apply only to
   /// fields that are valid by themselves: one mistake is one problem.
   bool sound(const std::string& path) const;

@@ -10,6 +10,7 @@
 
 #include "scenario/convert.h"
 #include "target/map_file.h"
+#include "target/netcdf_grid.h"
 #include "target/raster_integral.h"
 
 namespace ergocast {
@@ -38,34 +39,38 @@ class TargetCompiler {
   TargetCompiler(const proto::Scenario& scenario, Checks& checks)
       : written_(scenario.target()),
         checks_(checks),
-        domain_(base_of(domain_of(scenario.domain()))),
+        domain_(domain_of(scenario.domain())),
+        base_(base_of(domain_)),
         basis_(basis_of(scenario.basis())),
-        target_(target_of(written_)) {
+        target_(target_of(written_)),
+        along_z_(domain_, basis_),
+        storeys_(storeys_of(domain_, target_.keep_outs)) {
     const Eigen::Vector2d cells =
-        (domain_.size_m / domain_.size_m.maxCoeff() * kMostCells).cwiseMax(kFewestCells);
-    maps_ = DensityGrid::Zero(std::lround(cells.x()), std::lround(cells.y()));
+        (base_.size_m / base_.size_m.maxCoeff() * kMostCells).cwiseMax(kFewestCells);
+    maps_.resize(storeys_.size(),
+                 DensityGrid::Zero(std::lround(cells.x()), std::lround(cells.y())));
   }
 
   std::optional<CompiledTarget> run() {
-    if (!target_.keep_outs.empty() || written_.maps_size() > 0) {
-      free_ = free_area(domain_, target_.keep_outs);
-    }
     sum_ = target_integrals(target_, domain_, basis_);
     for (int i = 0; i < written_.regions_size(); ++i) region(i);
     for (int i = 0; i < written_.maps_size(); ++i) {
       map(written_.maps(i), indexed("target.maps", i));
     }
+    for (int i = 0; i < written_.voxels_size(); ++i) {
+      voxels(written_.voxels(i), indexed("target.voxels", i));
+    }
     if (checks_.sound("target")) mass();
     if (!checks_.nothing_found()) return {};
     const DensityGrid picture = density_picture(target_, maps_, domain_);
-    const double scale = domain_.size_m.prod() / sum_.values(0, 0);
-    return CompiledTarget{in_wire_order(normalized(sum_).values), scale * picture};
+    const double scale = base_.size_m.prod() / sum_.values[0];
+    return CompiledTarget{normalized(sum_).values, scale * picture};
   }
 
  private:
   void region(int index) {
     const Region& region = target_.regions[static_cast<std::size_t>(index)];
-    if (region_integrals(region, target_, domain_, Basis{}).values(0, 0) > 0) return;
+    if (free_share(region, target_, domain_) > 0) return;
     checks_.problem(indexed("target.regions", index), "nothing of it is left" + cut_off(),
                     "move it, or remove it");
   }
@@ -79,35 +84,119 @@ class TargetCompiler {
     MapFile& file = *std::get<0>(opened);
     const RasterGrid grid{file.extent() ? *file.extent() : extent_of(map), file.columns(),
                           file.rows()};
-    RasterIntegral integral(grid, domain_, basis_, free_);
-    RasterPicture picture(grid, domain_, static_cast<int>(maps_.rows()),
-                          static_cast<int>(maps_.cols()));
+    std::vector<RasterIntegral> integrals;
+    for (const Storey& storey : storeys_)
+      integrals.emplace_back(grid, base_, basis_, storey.free(base_));
+    RasterPicture picture(grid, base_, static_cast<int>(maps_[0].rows()),
+                          static_cast<int>(maps_[0].cols()));
     std::vector<double> row(static_cast<std::size_t>(grid.columns));
     for (int i = 0; i < grid.rows; ++i) {
       if (const auto problem = file.next_row(row)) {
         return checks_.problem(field, problem->what, problem->remedy);
       }
       const int from_south = map.first_row() == proto::Map::SOUTH ? i : grid.rows - 1 - i;
-      integral.add_row(from_south, row);
+      for (RasterIntegral& integral : integrals) integral.add_row(from_south, row);
       picture.add_row(from_south, row);
     }
-    if (!integral.has_mass()) {
-      return checks_.problem(field, map.file() + " has no number above 0",
-                             "write numbers above 0 where something is wanted");
+    if (!integrals[0].has_mass()) {
+      return nothing_in(map.file(), field);
     }
-    const TargetCoefficients shares = integral.shares();
-    if (!(shares.values(0, 0) > 0)) return nothing_left(path, grid.extent);
-    sum_.values += map.weight() * shares.values;
-    sum_.error_bound += map.weight() * shares.error_bound;
-    maps_ += map.weight() * picture.density();
+    double left = 0;
+    for (std::size_t i = 0; i < storeys_.size(); ++i) {
+      const Eigen::VectorXd along_z = profile(map, storeys_[i].heights);
+      const PlaneIntegrals shares = integrals[i].shares();
+      left += shares.values(0, 0) * along_z[0];
+      add_product(map.weight(), shares, along_z, sum_);
+      maps_[i] += map.weight() * along_z[0] * picture.density();
+    }
+    if (!(left > 0)) return nothing_left(path, grid.extent);
     weight_of_maps_ += map.weight();
+  }
+
+  void voxels(const proto::Voxels& written, const std::string& path) {
+    auto opened = NetcdfGrid::open(
+        written.file(), written.variable(),
+        written.has_time_index() ? std::optional<int>(written.time_index()) : std::nullopt);
+    if (const auto* problem = std::get_if<MapProblem>(&opened))
+      return checks_.problem(path, problem->what, problem->remedy);
+    NetcdfGrid& grid = *std::get<0>(opened);
+    TargetCoefficients sum{Coefficients::Zero(basis_.mode_count()), 0};
+    std::vector<DensityGrid> pictures(storeys_.size(), 0 * maps_[0]);
+    double whole = 0;
+    for (int layer = 0; layer < static_cast<int>(grid.layers().size()); ++layer) {
+      if (const auto problem = add_layer(grid, layer, sum, pictures, whole))
+        return checks_.problem(path, problem->what, problem->remedy);
+    }
+    if (!(whole > 0)) {
+      return nothing_in(written.file(), path);
+    }
+    if (!(sum.values[0] > 0)) {
+      return checks_.problem(path, "nothing of it is left" + cut_off() + extents_of(grid),
+                             "move the domain there");
+    }
+    const double scale = written.weight() / whole;
+    sum_.values += scale * sum.values;
+    sum_.error_bound += scale * sum.error_bound;
+    for (std::size_t i = 0; i < storeys_.size(); ++i) maps_[i] += scale * pictures[i];
+    weight_of_maps_ += written.weight();
+  }
+
+  /// Adds the integrals of one layer, and its mass to `whole`.
+  std::optional<MapProblem> add_layer(NetcdfGrid& grid, int layer, TargetCoefficients& sum,
+                                      std::vector<DensityGrid>& pictures, double& whole) const {
+    const Heights& heights = grid.layers()[static_cast<std::size_t>(layer)];
+    std::vector<RasterIntegral> integrals;
+    for (const Storey& storey : storeys_)
+      integrals.emplace_back(grid.raster(), base_, basis_, storey.free(base_));
+    RasterPicture picture(grid.raster(), base_, static_cast<int>(maps_[0].rows()),
+                          static_cast<int>(maps_[0].cols()));
+    std::vector<double> values(static_cast<std::size_t>(grid.raster().columns));
+    for (int row = 0; row < grid.raster().rows; ++row) {
+      if (auto problem = grid.row(layer, row, values)) return problem;
+      for (RasterIntegral& integral : integrals) integral.add_row(row, values);
+      picture.add_row(row, values);
+    }
+    if (!integrals[0].has_mass()) return std::nullopt;
+    const double mass = integrals[0].whole() * heights.length_m();
+    for (std::size_t i = 0; i < storeys_.size(); ++i) {
+      const Eigen::VectorXd along_z = along_z_.uniform(heights, storeys_[i].heights);
+      add_product(mass, integrals[i].shares(), along_z, sum);
+      pictures[i] += mass * along_z[0] * picture.density();
+    }
+    whole += mass;
+    return std::nullopt;
+  }
+
+  std::string extents_of(const NetcdfGrid& grid) const {
+    const Heights low = grid.layers().front(), high = grid.layers().back();
+    return ": its extent is " + text_of(grid.raster().extent) + ", z " +
+           span_text(low.low_m, high.high_m - low.low_m) + ", the domain " + text_of(base_) +
+           ", z " + span_text(domain_.origin_m.z(), domain_.size_m.z());
   }
 
   void nothing_left(const std::string& path, const Rectangle& extent) {
     checks_.problem(path,
                     "nothing of it is left" + cut_off() + ": its extent is " + text_of(extent) +
-                        ", the domain " + text_of(domain_),
+                        ", the domain " + text_of(base_),
                     "move its extent over the domain");
+  }
+
+  /// The layers of a map along z, with the mass 1 in all.
+  Eigen::VectorXd profile(const proto::Map& map, const Heights& within) const {
+    if (domain_.planar()) return Eigen::VectorXd::Ones(1);
+    double mass = 0;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(basis_.modes_z);
+    for (const proto::Layer& layer : map.layers()) {
+      const Heights heights{layer.low_z_m(), layer.high_z_m()};
+      mass += layer.value() * heights.length_m();
+      sum += layer.value() * heights.length_m() * along_z_.uniform(heights, within);
+    }
+    return sum / mass;
+  }
+
+  void nothing_in(const std::string& file, const std::string& path) {
+    checks_.problem(path, file + " has no number above 0",
+                    "write numbers above 0 where something is wanted");
   }
 
   std::string cut_off() const {
@@ -119,7 +208,7 @@ class TargetCompiler {
     double all = target_.uniform_weight + weight_of_maps_;
     for (const Gaussian& gaussian : target_.gaussians) all += gaussian.weight;
     for (const Region& region : target_.regions) all += region.weight;
-    const double left = sum_.values(0, 0) / all;
+    const double left = sum_.values[0] / all;
     if (!(left >= kMinMassInside)) {
       return checks_.problem("target",
                              "only " + shortest(left) + " of its weight is" + cut_off() +
@@ -136,12 +225,14 @@ class TargetCompiler {
 
   const proto::Target& written_;
   Checks& checks_;
-  const Rectangle domain_;
+  const Box domain_;
+  const Rectangle base_;
   const Basis basis_;
   const TargetDensity target_;
-  std::vector<Trapezoid> free_;
+  const AlongZ along_z_;
+  const std::vector<Storey> storeys_;
   TargetCoefficients sum_;
-  DensityGrid maps_;
+  std::vector<DensityGrid> maps_;  // in each storey
   double weight_of_maps_ = 0;
 };
 

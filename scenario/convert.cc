@@ -15,14 +15,23 @@ namespace {
 
 using google::protobuf::Message;
 
-Eigen::Matrix2d covariance_of(const proto::Gaussian& gaussian) {
+/// In a plane nothing reads its part along z.
+Eigen::Matrix3d covariance_of(const proto::Gaussian& gaussian) {
   if (gaussian.has_sigma_m()) {
-    return gaussian.sigma_m() * gaussian.sigma_m() * Eigen::Matrix2d::Identity();
+    const double sigma_z_m = gaussian.has_sigma_z_m() ? gaussian.sigma_z_m() : 1;
+    const Eigen::Vector3d sigma_m(gaussian.sigma_m(), gaussian.sigma_m(), sigma_z_m);
+    return sigma_m.cwiseProduct(sigma_m).asDiagonal();
   }
   const proto::Covariance& c = gaussian.covariance();
-  Eigen::Matrix2d matrix;
-  matrix << c.xx_m2(), c.xy_m2(), c.xy_m2(), c.yy_m2();
+  const double zz_m2 = c.has_zz_m2() ? c.zz_m2() : 1;
+  Eigen::Matrix3d matrix;
+  matrix << c.xx_m2(), c.xy_m2(), c.xz_m2(), c.xy_m2(), c.yy_m2(), c.yz_m2(), c.xz_m2(), c.yz_m2(),
+      zz_m2;
   return matrix;
+}
+
+Heights heights_of(const proto::Polygon& polygon) {
+  return {polygon.low_z_m(), polygon.high_z_m()};
 }
 
 template <class Vertices>
@@ -41,6 +50,12 @@ class BlockReader : public FieldVisitor {
   void number(int, const char* name, Number& value, const Limits&, bool = true) {
     const auto [block, field] = find_field(block_, name);
     value = static_cast<Number>(number_in(block, field));
+  }
+  template <class Number>
+  void height(int, const char* name, Number& value, const Limits&, double in_plane) {
+    const auto [block, field] = find_field(block_, name);
+    const bool said = block.GetReflection()->HasField(block, &field);
+    value = static_cast<Number>(said ? number_in(block, field) : in_plane);
   }
   void flag(int, const char* name, bool& value) {
     const auto [block, field] = find_field(block_, name);
@@ -82,7 +97,7 @@ Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain) 
     case proto::Law::COORDINATE_ORIGIN:
       return {0, 0, 0};
     case proto::Law::POINT:
-      return {law.contraction_x_m(), law.contraction_y_m(), 0};
+      return {law.contraction_x_m(), law.contraction_y_m(), law.contraction_z_m()};
     default:
       return domain.center_m();
   }
@@ -102,14 +117,16 @@ TargetDensity target_of(const proto::Target& target) {
   TargetDensity density;
   density.uniform_weight = target.uniform_weight();
   for (const proto::Gaussian& gaussian : target.gaussians()) {
-    density.gaussians.push_back(
-        {gaussian.weight(), {gaussian.mean_x_m(), gaussian.mean_y_m()}, covariance_of(gaussian)});
+    density.gaussians.push_back({gaussian.weight(),
+                                 {gaussian.mean_x_m(), gaussian.mean_y_m(), gaussian.mean_z_m()},
+                                 covariance_of(gaussian)});
   }
   for (const proto::Region& region : target.regions()) {
-    density.regions.push_back({region.weight(), polygon_of(region.polygon())});
+    density.regions.push_back(
+        {region.weight(), polygon_of(region.polygon()), heights_of(region.polygon())});
   }
   for (const proto::Polygon& keep_out : target.keep_outs()) {
-    density.keep_outs.push_back(polygon_of(keep_out));
+    density.keep_outs.push_back({polygon_of(keep_out), heights_of(keep_out)});
   }
   return density;
 }
@@ -121,7 +138,7 @@ Mission mission_of(const proto::Scenario& scenario) {
   mission.law.contraction_center_m = contraction_center_of(scenario.law(), mission.domain);
   mission.timing.tick_count = std::llround(scenario.time().duration_s() / mission.timing.dt_s);
   for (const proto::Start& start : scenario.agents().starts())
-    mission.starts_m.emplace_back(start.x_m(), start.y_m(), 0);
+    mission.starts_m.emplace_back(start.x_m(), start.y_m(), start.z_m());
   return mission;
 }
 

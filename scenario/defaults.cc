@@ -40,23 +40,57 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
   }
 }
 
-/// Constant defaults of `message` and of every block below it.
-void fill_constants(Message& message) {
+/// Constant defaults of `message` and of every block below it; in a plane none along z.
+void fill_constants(Message& message, bool planar) {
   const auto* reflection = message.GetReflection();
   for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor& field = *message.GetDescriptor()->field(i);
     if (field.message_type() == nullptr) {
-      fill_scalar(message, field);
+      if (!planar || !is_along_z(field)) fill_scalar(message, field);
     } else if (field.is_repeated()) {
       for (int j = 0; j < reflection->FieldSize(message, &field); ++j) {
-        fill_constants(*reflection->MutableRepeatedMessage(&message, &field, j));
+        fill_constants(*reflection->MutableRepeatedMessage(&message, &field, j), planar);
       }
     } else if ((field.message_type() != proto::Covariance::descriptor() &&
                 field.message_type() != proto::Origin::descriptor()) ||
                reflection->HasField(message, &field)) {
       // An absent covariance has a meaning, the Gaussian is round; and so has an absent origin.
-      fill_constants(*reflection->MutableMessage(&message, &field));
+      fill_constants(*reflection->MutableMessage(&message, &field), planar);
     }
+  }
+}
+
+constexpr int kModesInPlane = 16, kModesInBox = 10;
+
+/// The Sobolev weight in as many dimensions as the domain has.
+void fill_basis(bool planar, proto::Basis& basis) {
+  const int modes = planar ? kModesInPlane : kModesInBox;
+  if (!basis.has_modes_x()) basis.set_modes_x(modes);
+  if (!basis.has_modes_y()) basis.set_modes_y(modes);
+  if (!basis.has_modes_z() && !planar) basis.set_modes_z(modes);
+  if (!basis.has_sobolev_exponent()) basis.set_sobolev_exponent(planar ? 1.5 : 2);
+}
+
+void fill_heights(const Box& domain, proto::Polygon& polygon) {
+  const Heights all = heights_of(domain);
+  if (!polygon.has_low_z_m()) polygon.set_low_z_m(all.low_m);
+  if (!polygon.has_high_z_m()) polygon.set_high_z_m(all.high_m);
+}
+
+/// What of a target in a box is as high as the domain, or as wide along z as along x and y.
+void fill_heights(const Box& domain, proto::Target& target) {
+  for (proto::Gaussian& gaussian : *target.mutable_gaussians()) {
+    if (gaussian.has_sigma_m() && !gaussian.has_sigma_z_m())
+      gaussian.set_sigma_z_m(gaussian.sigma_m());
+  }
+  for (proto::Region& region : *target.mutable_regions())
+    fill_heights(domain, *region.mutable_polygon());
+  for (proto::Polygon& keep_out : *target.mutable_keep_outs()) fill_heights(domain, keep_out);
+  for (proto::Map& map : *target.mutable_maps()) {
+    if (map.layers_size() > 0) continue;
+    proto::Layer& layer = *map.add_layers();
+    layer.set_low_z_m(heights_of(domain).low_m);
+    layer.set_high_z_m(heights_of(domain).high_m);
   }
 }
 
@@ -119,6 +153,9 @@ void make_absolute(const std::filesystem::path& scenario, proto::Target& target)
   for (proto::Map& map : *target.mutable_maps()) {
     if (map.has_file()) map.set_file(whole(map.file()));
   }
+  for (proto::Voxels& voxels : *target.mutable_voxels()) {
+    if (voxels.has_file()) voxels.set_file(whole(voxels.file()));
+  }
   for (proto::Region& region : *target.mutable_regions()) {
     if (region.polygon().has_file())
       region.mutable_polygon()->set_file(whole(region.polygon().file()));
@@ -180,9 +217,17 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   if (!scenario.has_description()) scenario.set_description("");
   if (!scenario.has_seed()) scenario.set_seed(kDefaultSeed);
   fill_foresight(scenario);
-  fill_constants(scenario);
+  const bool planar = !scenario.domain().has_size_z_m();
+  fill_basis(planar, *scenario.mutable_basis());
+  const Box domain = domain_of(scenario.domain());
+  // A domain outside its limits gives no default: validate() names it.
+  if (limits::kSize_m.contain(domain.size_m.z()) &&
+      limits::kCoordinate_m.contain(domain.origin_m.z()))
+    fill_heights(domain, *scenario.mutable_target());
+  if (!planar && !scenario.domain().has_origin_z_m()) scenario.mutable_domain()->set_origin_z_m(0);
+  fill_constants(scenario, planar);
   make_absolute(file, *scenario.mutable_target());
-  fill_law(domain_of(scenario.domain()), *scenario.mutable_law());
+  fill_law(domain, *scenario.mutable_law());
   proto::Agents& agents = *scenario.mutable_agents();
   if (!agents.has_quorum()) {
     const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
@@ -199,6 +244,7 @@ void draw_starts(proto::Scenario& scenario) {
     proto::Start& start = *agents.add_starts();
     start.set_x_m(x_m.x());
     start.set_y_m(x_m.y());
+    if (!domain.planar()) start.set_z_m(x_m.z());
   }
 }
 

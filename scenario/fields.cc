@@ -46,22 +46,35 @@ constexpr Row kRows[] = {
     {"Gaussian", "weight", kWeight, kDefaulted, 1},
     {"Gaussian", "mean_x_m", kCoordinate, kRefused},
     {"Gaussian", "mean_y_m", kCoordinate, kRefused},
+    {"Gaussian", "mean_z_m", kCoordinate, kRefused},
     {"Gaussian", "sigma_m", above(0, 1e11), kLeft},
+    {"Gaussian", "sigma_z_m", above(0, 1e11), kLeft},
     {"Covariance", "xx_m2", kVariance, kRefused},
     {"Covariance", "yy_m2", kVariance, kRefused},
     {"Covariance", "xy_m2", between(-1e22, 1e22), kDefaulted, 0},
+    {"Covariance", "zz_m2", kVariance, kRefused},
+    {"Covariance", "xz_m2", between(-1e22, 1e22), kDefaulted, 0},
+    {"Covariance", "yz_m2", between(-1e22, 1e22), kDefaulted, 0},
 
     {"Map", "weight", kWeight, kDefaulted, 1},
     {"Map", "origin_x_m", kCoordinate, kLeft},
     {"Map", "origin_y_m", kCoordinate, kLeft},
     {"Map", "size_x_m", between(1e-3, 1e9), kLeft},
     {"Map", "size_y_m", between(1e-3, 1e9), kLeft},
+    {"Voxels", "weight", kWeight, kDefaulted, 1},
+    {"Voxels", "time_index", between(0, 1000000), kLeft},
+    {"Layer", "low_z_m", kCoordinate, kRefused},
+    {"Layer", "high_z_m", kCoordinate, kRefused},
+    {"Layer", "value", between(0, 1e9), kDefaulted, 1},
     {"Region", "weight", kWeight, kDefaulted, 1},
+    {"Polygon", "low_z_m", kCoordinate, kLeft},
+    {"Polygon", "high_z_m", kCoordinate, kLeft},
     {"Vertex", "x_m", kCoordinate, kRefused},
     {"Vertex", "y_m", kCoordinate, kRefused},
 
-    {"Basis", "modes_x", kMissions, kDefaulted, 16},
-    {"Basis", "modes_y", kMissions, kDefaulted, 16},
+    {"Basis", "modes_x", kMissions, kLeft},
+    {"Basis", "modes_y", kMissions, kLeft},
+    {"Basis", "sobolev_exponent", kMissions, kLeft},
 
     {"Law", "u_max_mps", kMissions, kRefused},
     {"Law", "epsilon", kMissions, kLeft},
@@ -69,6 +82,7 @@ constexpr Row kRows[] = {
     {"Law", "contraction_gain_per_s", kMissions, kLeft},
     {"Law", "contraction_x_m", kCoordinate, kLeft},
     {"Law", "contraction_y_m", kCoordinate, kLeft},
+    {"Law", "contraction_z_m", kCoordinate, kLeft},
     {"Law", "anticipation", kMissions, kLeft},
 
     {"Time", "duration_s", limits::kDuration_s, kRefused},
@@ -78,6 +92,7 @@ constexpr Row kRows[] = {
     {"Agents", "quorum", kMissions, kLeft},
     {"Start", "x_m", kCoordinate, kRefused},
     {"Start", "y_m", kCoordinate, kRefused},
+    {"Start", "z_m", kCoordinate, kRefused},
 };
 
 using Rules = std::map<const FieldDescriptor*, FieldRule>;
@@ -90,6 +105,9 @@ class RuleCollector : public FieldVisitor {
   void number(int, const char* name, double value, const Limits& limits, bool given = true) {
     rules_.emplace(&find_field(block_, name).field,
                    FieldRule{limits, given ? kDefaulted : kLeft, value});
+  }
+  void height(int, const char* name, double, const Limits& limits, double) {
+    rules_.emplace(&find_field(block_, name).field, FieldRule{limits, kLeft});
   }
   void part(int, const char* name, const auto& part) {
     const auto [block, field] = find_field(block_, name);
@@ -130,6 +148,10 @@ const FieldRule* rule_of(const FieldDescriptor& field) {
   static const Rules rules = make_rules();
   const auto found = rules.find(&field);
   return found == rules.end() ? nullptr : &found->second;
+}
+
+bool is_along_z(const FieldDescriptor& field) {
+  return field.name().find("z_m") != std::string::npos || field.name().ends_with("_z");
 }
 
 double number_in(const Message& block, const FieldDescriptor& field) {

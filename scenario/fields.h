@@ -27,7 +27,7 @@ struct Range : Limits {
 };
 
 enum class Absence {
-  kRefused,    ///< the field is required
+  kRefused,    ///< the field is required; one along z only in a box
   kDefaulted,  ///< it becomes FieldRule::default_value
   kLeft,       ///< other fields determine its value
 };
@@ -40,6 +40,9 @@ struct FieldRule {
 
 /// The rule of a numeric field, or null for the one without a rule: seed.
 const FieldRule* rule_of(const google::protobuf::FieldDescriptor& field);
+
+/// Whether the field is one of boxes alone: it names z.
+bool is_along_z(const google::protobuf::FieldDescriptor& field);
 
 /// The value of a numeric field.
 double number_in(const google::protobuf::Message& block,

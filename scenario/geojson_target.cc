@@ -39,8 +39,11 @@ void write_ring(const Ring& ring, Vertices& vertices) {
   }
 }
 
+/// In place of the file that `written` names, between the same heights.
 void write_polygon(const Polygon& polygon, proto::Polygon& written) {
-  written.Clear();
+  written.clear_file();
+  written.clear_vertices();
+  written.clear_holes();
   write_ring(polygon.outline, *written.mutable_vertices());
   for (const Ring& hole : polygon.holes) write_ring(hole, *written.add_holes()->mutable_vertices());
 }
@@ -74,6 +77,7 @@ class GeoJsonReader {
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (i > 0) name(found[i], "target.regions", target_.regions_size());
       proto::Region& one = i == 0 ? *target_.mutable_regions(index) : *target_.add_regions();
+      if (i > 0) one = target_.regions(index);
       one.set_weight(weight * area_m2(found[i].polygon) / area);
       write_polygon(found[i].polygon, *one.mutable_polygon());
     }
@@ -84,8 +88,9 @@ class GeoJsonReader {
     const auto found = read(target_.keep_outs(index), indexed("target.keep_outs", index), area);
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (i > 0) name(found[i], "target.keep_outs", target_.keep_outs_size());
-      write_polygon(found[i].polygon,
-                    i == 0 ? *target_.mutable_keep_outs(index) : *target_.add_keep_outs());
+      proto::Polygon& one = i == 0 ? *target_.mutable_keep_outs(index) : *target_.add_keep_outs();
+      if (i > 0) one = target_.keep_outs(index);
+      write_polygon(found[i].polygon, one);
     }
   }
 

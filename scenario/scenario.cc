@@ -142,6 +142,8 @@ const std::string& Scenario::description() const { return state_->text.descripti
 std::vector<std::filesystem::path> Scenario::map_files() const {
   std::vector<std::filesystem::path> files;
   for (const proto::Map& map : state_->text.target().maps()) files.emplace_back(map.file());
+  for (const proto::Voxels& voxels : state_->text.target().voxels())
+    files.emplace_back(voxels.file());
   files.insert(files.end(), state_->polygon_files.begin(), state_->polygon_files.end());
   return files;
 }

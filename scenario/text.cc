@@ -155,6 +155,9 @@ class OneLine : public TextFormat::FastFieldValuePrinter {
                            TextFormat::BaseTextGenerator* out) const override {
     const auto& point = static_cast<const Point&>(message);
     out->PrintString("x_m: " + shortest(point.x_m()) + " y_m: " + shortest(point.y_m()));
+    if constexpr (requires { point.has_z_m(); }) {
+      if (point.has_z_m()) out->PrintString(" z_m: " + shortest(point.z_m()));
+    }
     return true;
   }
   void PrintMessageEnd(const Message&, int, int, bool,

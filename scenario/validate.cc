@@ -77,22 +77,27 @@ class Validator {
     if (field.enum_type() != nullptr) return enumeration(message, field, path);
     const FieldRule* rule = rule_of(field);
     if (rule == nullptr) return;
+    const bool of_a_box_alone = is_along_z(field) && !is_box();
     if (!message.GetReflection()->HasField(message, &field)) {
-      if (rule->absence != Absence::kRefused) return;
+      if (rule->absence != Absence::kRefused || of_a_box_alone) return;
       const std::string place = place_wanted(field, *rule);
       return missing(path, "is missing",
                      "add " + field.name() + ", " + (place.empty() ? rule->range.text() : place));
     }
+    if (of_a_box_alone && sound("domain.size_z_m")) return checks_.of_a_box_alone(path);
     in_range(path, number_in(message, field), rule->range, place_wanted(field, *rule));
   }
+
+  bool is_box() const { return scenario_.domain().has_size_z_m(); }
 
   /// "in the domain, 0 to 2000", if the domain is known; empty for fields that are no place in it.
   std::string place_wanted(const FieldDescriptor& field, const FieldRule& rule) const {
     const proto::Domain& domain = scenario_.domain();
     if (!rule.range.coordinate) return "";
-    const bool is_x = field.name().ends_with("x_m");
-    const double low_m = is_x ? domain.origin_x_m() : domain.origin_y_m();
-    const double size_m = is_x ? domain.size_x_m() : domain.size_y_m();
+    const auto [low_m, size_m] =
+        field.name().ends_with("x_m")   ? std::pair(domain.origin_x_m(), domain.size_x_m())
+        : field.name().ends_with("y_m") ? std::pair(domain.origin_y_m(), domain.size_y_m())
+                                        : std::pair(domain.origin_z_m(), domain.size_z_m());
     if (!rule.range.contains(low_m) || !(size_m > 0) || !rule.range.contains(size_m))
       return "in the domain";
     return "in the domain, " + shortest(low_m) + " to " + shortest(low_m + size_m);
@@ -129,8 +134,11 @@ class Validator {
     const proto::Domain& domain = scenario_.domain();
     origin("domain.origin_x_m", domain.origin_x_m(), "domain.size_x_m", domain.size_x_m());
     origin("domain.origin_y_m", domain.origin_y_m(), "domain.size_y_m", domain.size_y_m());
+    if (is_box()) {
+      origin("domain.origin_z_m", domain.origin_z_m(), "domain.size_z_m", domain.size_z_m());
+    }
     if (!sound("domain")) return;
-    shorter_side_m_ = std::min(domain.size_x_m(), domain.size_y_m());
+    shorter_side_m_ = domain_of(domain).shortest_side_m();
   }
 
   void origin(const std::string& path, double origin_m, const std::string& size_path,
@@ -142,14 +150,22 @@ class Validator {
 
   void basis() {
     const proto::Basis& basis = scenario_.basis();
-    if (!sound("basis") || basis.modes_x() * basis.modes_y() >= 2) return;
-    problem("basis", "a single mode tells no two places apart", "write modes_x: 2 or more");
+    if (!sound("basis")) return;
+    const int modes = basis_of(basis).mode_count();
+    if (modes < 2) {
+      problem("basis", "a single mode tells no two places apart", "write modes_x: 2 or more");
+    } else if (modes > kMaxModes) {
+      problem("basis",
+              std::to_string(modes) + " modes are above the limit " + std::to_string(kMaxModes),
+              "write fewer, such as 16 along each axis");
+    }
   }
 
   void law() {
     const proto::Law& law = scenario_.law();
     contraction_point("law.contraction_x_m", law.has_contraction_x_m());
     contraction_point("law.contraction_y_m", law.has_contraction_y_m());
+    if (is_box()) contraction_point("law.contraction_z_m", law.has_contraction_z_m());
     step("law.u_max_mps", law.u_max_mps(), scenario_.time().dt_s(), "u_max_mps · dt_s");
     step("law.noise_intensity", law.noise_intensity(), std::sqrt(scenario_.time().dt_s()),
          "noise_intensity · sqrt(dt_s)");
@@ -262,7 +278,9 @@ class Validator {
     if (!sound("agents.random_count") || !sound("agents.quorum")) return;
     const int size = agents.starts_size() + agents.random_count();
     if (size == 0) {
-      missing("agents", "the team is empty", "add starts { x_m: … y_m: … } or random_count");
+      missing("agents", "the team is empty",
+              is_box() ? "add starts { x_m: … y_m: … z_m: … } or random_count"
+                       : "add starts { x_m: … y_m: … } or random_count");
     } else if (size > kMaxAgents) {
       problem(
           "agents",
@@ -283,12 +301,14 @@ class Validator {
         domain.has_size_x_m() && sound("domain.origin_x_m") && sound("domain.size_x_m");
     const bool y_known =
         domain.has_size_y_m() && sound("domain.origin_y_m") && sound("domain.size_y_m");
+    const bool z_known = is_box() && sound("domain.origin_z_m") && sound("domain.size_z_m");
     for (int i = 0; i < scenario_.agents().starts_size(); ++i) {
       const proto::Start& start = scenario_.agents().starts(i);
       const std::string path = indexed("agents.starts", i);
       if (!sound(path)) continue;
       if (x_known) inside(path + ".x_m", start.x_m(), domain.origin_x_m(), domain.size_x_m());
       if (y_known) inside(path + ".y_m", start.y_m(), domain.origin_y_m(), domain.size_y_m());
+      if (z_known) inside(path + ".z_m", start.z_m(), domain.origin_z_m(), domain.size_z_m());
     }
   }
 

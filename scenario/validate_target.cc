@@ -2,6 +2,7 @@
 // Checks Gaussians, regions, keep-outs and maps one by one, each under its own path.
 #include "scenario/validate_target.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -19,13 +20,18 @@ constexpr int kMaxRegions = 64;
 constexpr int kMaxKeepOuts = 64;
 /// Above this the ridge is too narrow for the quadrature of μ.
 constexpr double kMaxCorrelation = 0.99;
+/// Of a Gaussian in a box with deviations of 1, for the same reason.
+constexpr double kLeastEigenvalue = 1 - kMaxCorrelation;
+constexpr int kMaxLayers = 256;
+constexpr double kLeastHeightPerDomain = 1e-8;
 
 class TargetValidator {
  public:
   TargetValidator(const proto::Scenario& scenario, Checks& checks)
       : target_(scenario.target()), checks_(checks) {
     if (!checks.sound("domain")) return;
-    longer_side_m_ = domain_of(scenario.domain()).size_m.maxCoeff();
+    domain_ = domain_of(scenario.domain());
+    longer_side_m_ = domain_.size_m.maxCoeff();
   }
 
   void run() {
@@ -36,10 +42,13 @@ class TargetValidator {
     for (int i = 0; i < target_.gaussians_size(); ++i) {
       width(target_.gaussians(i), indexed("target.gaussians", i));
     }
+    at_most("grids", target_.voxels_size(), kMaxMaps);
     for (int i = 0; i < target_.maps_size(); ++i) map(target_.maps(i), indexed("target.maps", i));
+    for (int i = 0; i < target_.voxels_size(); ++i)
+      voxels(target_.voxels(i), indexed("target.voxels", i));
     polygons();
     if (target_.gaussians_size() == 0 && target_.uniform_weight() == 0 &&
-        target_.maps_size() == 0 && target_.regions_size() == 0) {
+        target_.maps_size() == 0 && target_.regions_size() == 0 && target_.voxels_size() == 0) {
       checks_.missing("target", "there is nothing to cover",
                       "add gaussians { }, maps { }, regions { } or a uniform_weight above 0");
     }
@@ -64,7 +73,16 @@ class TargetValidator {
       if (!checks_.sound(path + ".sigma_m") || !checks_.sound(path + ".covariance")) return;
       return checks_.problem(path, "has no width", "add sigma_m or covariance { }");
     }
-    if (gaussian.has_sigma_m()) return deviation(path + ".sigma_m", gaussian.sigma_m());
+    if (gaussian.has_sigma_m()) {
+      deviation(path + ".sigma_m", gaussian.sigma_m());
+      if (gaussian.has_sigma_z_m() && gaussian.sigma_z_m() != gaussian.sigma_m())
+        deviation(path + ".sigma_z_m", gaussian.sigma_z_m());
+      return;
+    }
+    if (gaussian.has_sigma_z_m() && checks_.sound(path + ".sigma_z_m")) {
+      return checks_.problem(path + ".sigma_z_m", "has no effect with covariance",
+                             "remove it, and write zz_m2 in the covariance");
+    }
     if (checks_.sound(path + ".covariance")) {
       covariance(gaussian.covariance(), path + ".covariance");
     }
@@ -78,17 +96,54 @@ class TargetValidator {
   }
 
   void covariance(const proto::Covariance& c, const std::string& path) {
-    const double limit_m2 = kMaxCorrelation * std::sqrt(c.xx_m2()) * std::sqrt(c.yy_m2());
-    if (!(std::abs(c.xy_m2()) <= limit_m2)) {
-      return checks_.problem(
-          path + ".xy_m2",
-          shortest(c.xy_m2()) + " leaves too little for the covariance to be positive " +
-              "definite: the limit is " + shortest(kMaxCorrelation) + " sqrt(xx_m2 yy_m2)",
-          "write " + shortest(-rounded_down(limit_m2)) + " to " + shortest(rounded_down(limit_m2)));
+    if (!covary(c.xy_m2(), c.xx_m2(), c.yy_m2(), path, "xx_m2 yy_m2")) return;
+    if (c.has_zz_m2()) {
+      if (!covary(c.xz_m2(), c.xx_m2(), c.zz_m2(), path, "xx_m2 zz_m2")) return;
+      if (!covary(c.yz_m2(), c.yy_m2(), c.zz_m2(), path, "yy_m2 zz_m2")) return;
+      if (!definite(c, path)) return;
     }
     if (longer_side_m_ == 0) return;
     variance(path + ".xx_m2", c.xx_m2());
     variance(path + ".yy_m2", c.yy_m2());
+    if (c.has_zz_m2()) variance(path + ".zz_m2", c.zz_m2());
+  }
+
+  /// Whether two coordinates with these variances may covary so much.
+  bool covary(double covariance_m2, double one_m2, double other_m2, const std::string& path,
+              const std::string& variances) {
+    const double limit_m2 = kMaxCorrelation * std::sqrt(one_m2) * std::sqrt(other_m2);
+    if (std::abs(covariance_m2) <= limit_m2) return true;
+    checks_.problem(
+        path + '.' + variances.substr(0, 1) + variances.substr(6, 1) + "_m2",
+        shortest(covariance_m2) + " leaves too little for the covariance to be positive " +
+            "definite: the limit is " + shortest(kMaxCorrelation) + " sqrt(" + variances + ")",
+        "write " + shortest(-rounded_down(limit_m2)) + " to " + shortest(rounded_down(limit_m2)));
+    return false;
+  }
+
+  /// Three pairs that may each covary need not fit together.
+  bool definite(const proto::Covariance& c, const std::string& path) {
+    const Eigen::Vector3d deviation_m =
+        Eigen::Vector3d(c.xx_m2(), c.yy_m2(), c.zz_m2()).cwiseSqrt();
+    Eigen::Matrix3d correlation = Eigen::Matrix3d::Identity();
+    const auto set = [&](int i, int j, double covariance_m2) {
+      correlation(i, j) = correlation(j, i) = covariance_m2 / (deviation_m[i] * deviation_m[j]);
+    };
+    set(0, 1, c.xy_m2());
+    set(0, 2, c.xz_m2());
+    set(1, 2, c.yz_m2());
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(correlation, Eigen::EigenvaluesOnly)
+            .eigenvalues()[0];
+    // The eigenvalue of one pair at its limit, but for rounding.
+    if (least >= kLeastEigenvalue - 1e-12) return true;
+    checks_.problem(
+        path,
+        "is not positive definite enough: with deviations of 1 its least eigenvalue is " +
+            shortest(rounded_down(least)) + ", below the limit " +
+            shortest(rounded_down(kLeastEigenvalue)),
+        "write smaller xy_m2, xz_m2 or yz_m2");
+    return false;
   }
 
   void variance(const std::string& path, double variance_m2) {
@@ -103,6 +158,7 @@ class TargetValidator {
     if (!map.has_file() || map.file().empty()) {
       return checks_.missing(path + ".file", "is missing", "add the name of a .png, .csv or .asc");
     }
+    layers(map, path);
     const std::optional<MapKind> kind = map_kind(map.file());
     if (!kind) {
       return checks_.problem(path + ".file", map.file() + " does not end in .png, .csv or .asc",
@@ -117,6 +173,64 @@ class TargetValidator {
       checks_.problem(path + ".first_row", "an ESRI ASCII grid always begins in the north",
                       "remove it");
     }
+  }
+
+  void voxels(const proto::Voxels& grid, const std::string& path) {
+    if (domain_.planar() && longer_side_m_ > 0) return checks_.of_a_box_alone(path);
+    if (!grid.has_file() || grid.file().empty()) {
+      checks_.missing(path + ".file", "is missing", "add the name of a .nc");
+    } else if (!grid.file().ends_with(".nc")) {
+      checks_.problem(path + ".file", grid.file() + " does not end in .nc",
+                      "write the grid as NetCDF");
+    }
+    if (!grid.has_variable() || grid.variable().empty())
+      checks_.missing(path + ".variable", "is missing", "add the name of a variable of the file");
+  }
+
+  /// @pre the defaults are filled in: in a box with limits there is one
+  void layers(const proto::Map& map, const std::string& path) {
+    if (map.layers_size() > 0 && domain_.planar() && longer_side_m_ > 0)
+      return checks_.of_a_box_alone(indexed(path + ".layers", 0));
+    if (map.layers_size() > kMaxLayers) {
+      return checks_.problem(path,
+                             std::to_string(map.layers_size()) + " layers are above the limit " +
+                                 std::to_string(kMaxLayers),
+                             "join the thinnest");
+    }
+    bool some = map.layers_size() == 0;
+    for (int i = 0; i < map.layers_size(); ++i) {
+      const proto::Layer& layer = map.layers(i);
+      const std::string here = indexed(path + ".layers", i);
+      some = some || layer.value() > 0;
+      if (!heights(layer, here)) return;
+      for (int j = 0; j < i; ++j) {
+        if (layer.low_z_m() >= map.layers(j).high_z_m() ||
+            layer.high_z_m() <= map.layers(j).low_z_m())
+          continue;
+        return checks_.problem(here, "overlaps " + indexed("layers", j), "let one begin above it");
+      }
+    }
+    if (!some)
+      checks_.problem(path, "no layer has a value above 0", "write one where something is wanted");
+  }
+
+  /// Whether a prism or layer has an extent along z, some of it in the domain.
+  bool heights(const auto& part, const std::string& path) {
+    if (domain_.planar() || !checks_.sound(path)) return false;
+    const Heights all = heights_of(domain_);
+    if (!(part.high_z_m() - part.low_z_m() >= kLeastHeightPerDomain * all.length_m())) {
+      checks_.problem(path,
+                      "its heights " + shortest(part.low_z_m()) + " to " +
+                          shortest(part.high_z_m()) + " m enclose nothing",
+                      "write a greater high_z_m");
+      return false;
+    }
+    if (part.low_z_m() < all.high_m && part.high_z_m() > all.low_m) return true;
+    checks_.problem(path,
+                    "its heights " + shortest(part.low_z_m()) + " to " + shortest(part.high_z_m()) +
+                        " m are outside the domain",
+                    "write some of " + shortest(all.low_m) + " to " + shortest(all.high_m));
+    return false;
   }
 
   void extent(const std::string& path, bool present, bool stated_by_file) {
@@ -156,13 +270,17 @@ class TargetValidator {
     if (written.has_file()) return;  // it could not be read, which is said already
     if (!checks_.sound(path) || longer_side_m_ == 0) return;
     const auto flaw = flaw_of(polygon_of(written), least_area_m2(longer_side_m_));
-    if (!flaw) return;
+    if (!flaw) {
+      heights(written, path);
+      return;
+    }
     const std::string place = flaw->hole < 0 ? path : indexed(path + ".holes", flaw->hole);
     checks_.problem(place, flaw->what, flaw->remedy);
   }
 
   const proto::Target& target_;
   Checks& checks_;
+  Box domain_;                // a plane while it is invalid
   double longer_side_m_ = 0;  // 0 while the domain is invalid
 };
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "target/gaussian_integrals.h"
+#include "target/leaning_gaussian.h"
 #include "target/trapezoids.h"
 
 namespace ergocast {
@@ -61,27 +61,74 @@ Eigen::VectorXd averages_along(double mean, double deviation, double size, Eigen
   return averages;
 }
 
-void add_separable(const Gaussian& gaussian, const Rectangle& domain, DensityGrid& sum) {
+void add_separable(double weight, const PlaneGaussian& gaussian, const Rectangle& domain,
+                   DensityGrid& sum) {
   const Eigen::Vector2d mean_m = gaussian.mean_m - domain.origin_m;
   const Eigen::Vector2d deviation_m = gaussian.covariance_m2.diagonal().cwiseSqrt();
-  sum += gaussian.weight *
-         averages_along(mean_m.x(), deviation_m.x(), domain.size_m.x(), sum.rows()) *
+  sum += weight * averages_along(mean_m.x(), deviation_m.x(), domain.size_m.x(), sum.rows()) *
          averages_along(mean_m.y(), deviation_m.y(), domain.size_m.y(), sum.cols()).transpose();
 }
 
 /// A Gaussian with correlation, averaged over 4 × 4 points of each cell.
-void add_correlated(const Gaussian& gaussian, const Rectangle& domain, DensityGrid& sum) {
+void add_correlated(double weight, const PlaneGaussian& gaussian, const Rectangle& domain,
+                    DensityGrid& sum) {
   constexpr int kPoints = 4;
   const Eigen::Vector2d step(domain.size_m.x() / static_cast<double>(kPoints * sum.rows()),
                              domain.size_m.y() / static_cast<double>(kPoints * sum.cols()));
   const GaussianDensity density(gaussian);
-  const double share = gaussian.weight / (kPoints * kPoints);
+  const double share = weight / (kPoints * kPoints);
   for (Eigen::Index j = 0; j < kPoints * sum.cols(); ++j) {
     for (Eigen::Index i = 0; i < kPoints * sum.rows(); ++i) {
       const Eigen::Vector2d point(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
       sum(i / kPoints, j / kPoints) += share * density(domain.origin_m + step.cwiseProduct(point));
     }
   }
+}
+
+void add_plane(double weight, const PlaneGaussian& gaussian, const Rectangle& domain,
+               DensityGrid& sum) {
+  if (gaussian.covariance_m2(0, 1) == 0) {
+    add_separable(weight, gaussian, domain, sum);
+  } else {
+    add_correlated(weight, gaussian, domain, sum);
+  }
+}
+
+/// What of a Gaussian is between two heights.
+void add_gaussian(const Gaussian& gaussian, const Heights& between, const Box& domain,
+                  DensityGrid& sum) {
+  constexpr int kHeights = 32;
+  const GaussianAtHeight g(gaussian);
+  const AlongZ along_z(domain, Basis{});
+  const bool leans = !domain.planar() && g.leans();
+  const int slices = leans ? kHeights : 1;
+  const double slice_m = between.length_m() / slices;
+  for (int i = 0; i < slices; ++i) {
+    const double low_m = between.low_m + i * slice_m;
+    const double share =
+        along_z.gaussian(g.mean_z_m(), g.deviation_z_m(), {low_m, low_m + slice_m})[0];
+    const double seen_at_m = leans ? low_m + 0.5 * slice_m : g.mean_z_m();
+    add_plane(gaussian.weight * share, g.at(seen_at_m), base_of(domain), sum);
+  }
+}
+
+/// All parts between the heights of a storey, added to its maps.
+DensityGrid picture_of(const TargetDensity& target, const Storey& storey, DensityGrid sum,
+                       const Box& domain) {
+  const Rectangle base = base_of(domain);
+  const AlongZ along_z(domain, Basis{});
+  sum.array() += along_z.uniform(heights_of(domain), storey.heights)[0] * target.uniform_weight /
+                 base.size_m.prod();
+  for (const Gaussian& gaussian : target.gaussians)
+    add_gaussian(gaussian, storey.heights, domain, sum);
+  if (!storey.keep_outs.empty())
+    sum = sum.cwiseProduct(shares_of(storey.free(base), base, sum)).eval();
+  for (const Region& region : target.regions) {
+    const double share = along_z.uniform(region.heights, storey.heights)[0];
+    sum += share * region.weight / area_m2(region.polygon) *
+           shares_of(free_area_within(region.polygon, base, storey.keep_outs), base, sum);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -113,24 +160,12 @@ DensityGrid RasterPicture::density() const {
   return mass_ * (cells / (domain_.size_m.x() * domain_.size_m.y() * whole_));
 }
 
-DensityGrid density_picture(const TargetDensity& target, const DensityGrid& maps,
-                            const Rectangle& domain) {
-  DensityGrid sum = maps;
-  sum.array() += target.uniform_weight / (domain.size_m.x() * domain.size_m.y());
-  for (const Gaussian& gaussian : target.gaussians) {
-    if (gaussian.covariance_m2(0, 1) == 0) {
-      add_separable(gaussian, domain, sum);
-    } else {
-      add_correlated(gaussian, domain, sum);
-    }
-  }
-  if (!target.keep_outs.empty()) {
-    sum = sum.cwiseProduct(shares_of(free_area(domain, target.keep_outs), domain, sum)).eval();
-  }
-  for (const Region& region : target.regions) {
-    sum += region.weight / area_m2(region.polygon) *
-           shares_of(free_area_within(region.polygon, domain, target.keep_outs), domain, sum);
-  }
+DensityGrid density_picture(const TargetDensity& target, std::span<const DensityGrid> maps,
+                            const Box& domain) {
+  DensityGrid sum = DensityGrid::Zero(maps[0].rows(), maps[0].cols());
+  const std::vector<Storey> storeys = storeys_of(domain, target.keep_outs);
+  for (std::size_t i = 0; i < storeys.size(); ++i)
+    sum += picture_of(target, storeys[i], maps[i], domain);
   return sum;
 }
 

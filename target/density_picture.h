@@ -31,11 +31,12 @@ class RasterPicture {
   double whole_ = 0;
 };
 
-/// Σ of the target's parts [1/m²], before the division by its mass. `maps` holds the weighted
-/// densities of the maps. The edges of regions and keep-outs are exact along x and sampled eight
-/// times a cell along y. Gaussians without correlation are exact; those with correlation are
-/// averages of 4 × 4 points.
-DensityGrid density_picture(const TargetDensity& target, const DensityGrid& maps,
-                            const Rectangle& domain);
+/// Σ of the target's parts seen from above, along z added up [1/m²], before the division by its
+/// mass. `maps` holds the weighted densities of the maps in each storey. The edges of regions and
+/// keep-outs are exact along x and sampled eight times a cell along y. Gaussians without
+/// correlation are exact; those with correlation are averages of 4 × 4 points, and of 32 heights a
+/// storey if it is one with z.
+DensityGrid density_picture(const TargetDensity& target, std::span<const DensityGrid> maps,
+                            const Box& domain);
 
 }  // namespace ergocast

@@ -11,12 +11,9 @@
 #include "text/regular_file.h"
 
 namespace ergocast {
-namespace {
-
 namespace fs = std::filesystem;
 
-/// Why `file` cannot be opened; nothing if it can.
-std::optional<MapProblem> check_file(const fs::path& file) {
+std::optional<MapProblem> why_unreadable(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) {
@@ -35,8 +32,6 @@ std::optional<MapProblem> check_file(const fs::path& file) {
   return {};
 }
 
-}  // namespace
-
 std::optional<MapKind> map_kind(const fs::path& file) {
   std::string end = file.extension().string();
   std::transform(end.begin(), end.end(), end.begin(),
@@ -48,7 +43,7 @@ std::optional<MapKind> map_kind(const fs::path& file) {
 }
 
 OpenedMap open_map(const fs::path& file) {
-  if (auto problem = check_file(file)) return std::move(*problem);
+  if (auto problem = why_unreadable(file)) return std::move(*problem);
   switch (map_kind(file).value()) {
     case MapKind::kPng:
       return open_png_map(file);

@@ -50,6 +50,9 @@ using OpenedMap = std::variant<std::unique_ptr<MapFile>, MapProblem>;
 
 enum class MapKind { kPng, kCsv, kAsciiGrid };
 
+/// Why `file` cannot be opened; nothing if it can.
+std::optional<MapProblem> why_unreadable(const std::filesystem::path& file);
+
 /// The kind by the extension .png, .csv or .asc, in either case; nothing for any other.
 std::optional<MapKind> map_kind(const std::filesystem::path& file);
 

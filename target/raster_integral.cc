@@ -122,7 +122,7 @@ void RasterIntegral::add_cut_cell(std::size_t column, const Trapezoid& piece, do
   if (inside.count >= 3) rounding_ += add_polygon(inside.all(), value, size_m_, sums_);
 }
 
-TargetCoefficients RasterIntegral::shares() const {
+PlaneIntegrals RasterIntegral::shares() const {
   ERGOCAST_REQUIRE(has_mass());
   // One rounding for each addition of terms of similar size: at most rows + columns of them, and a
   // few.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/basis.h"
-#include "target/target.h"
+#include "target/plane_integrals.h"
 #include "target/trapezoids.h"
 
 namespace ergocast {
@@ -33,12 +33,14 @@ class RasterIntegral {
   /// @param values  `columns` densities, at least 0, up to one common factor
   void add_row(int row, std::span<const double> values);
 
+  /// The integral over the whole extent.
+  double whole() const { return whole_; }
   /// Whether any value was above 0.
   bool has_mass() const { return whole_ > 0; }
 
   /// The integrals divided by the integral over the whole extent: entry (0,0) is the free share.
   /// @pre has_mass()
-  TargetCoefficients shares() const;
+  PlaneIntegrals shares() const;
 
  private:
   void add_piece(const Trapezoid& piece, std::span<const double> values);

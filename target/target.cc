@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Adds the integrals of all parts, and divides by their mass.
+// Adds the integrals of all parts, storey by storey, and divides by their mass.
 #include "target/target.h"
 
 #include <vector>
@@ -7,89 +7,166 @@
 #include "core/require.h"
 #include "target/cosine_integrals.h"
 #include "target/gaussian_integrals.h"
+#include "target/leaning_gaussian.h"
 #include "target/trapezoids.h"
 
 namespace ergocast {
 namespace {
 
-double area_of(const Rectangle& domain) { return domain.size_m.x() * domain.size_m.y(); }
-
-void add_pieces(const std::vector<Trapezoid>& pieces, double density_per_m2,
-                const Rectangle& domain, TargetCoefficients& sum) {
-  for (const Trapezoid& piece : pieces) {
-    sum.error_bound += add_polygon(piece.corners(), density_per_m2, domain.size_m, sum.values);
-  }
+PlaneIntegrals zero(const Basis& basis) {
+  return {PlaneCoefficients::Zero(basis.modes_x, basis.modes_y), 0};
 }
 
-void add(double weight, const TargetCoefficients& part, TargetCoefficients& sum) {
-  sum.values += weight * part.values;
-  sum.error_bound += weight * part.error_bound;
-}
-
-/// The uniform part and the Gaussians.
-TargetCoefficients smooth_parts(const TargetDensity& target, const Rectangle& domain,
-                                const Basis& basis) {
-  TargetCoefficients sum{PlaneCoefficients::Zero(basis.modes_x, basis.modes_y), 0};
-  if (target.keep_outs.empty()) {
-    sum.values(0, 0) = target.uniform_weight;
-    for (const Gaussian& g : target.gaussians) {
-      add(g.weight, integrals_over_domain(g, domain, basis), sum);
-    }
-    return sum;
-  }
-  const std::vector<Trapezoid> free = free_area(domain, target.keep_outs);
-  add_pieces(free, target.uniform_weight / area_of(domain), domain, sum);
-  for (const Gaussian& g : target.gaussians) {
-    add(g.weight, integrals_over(g, free, domain, basis), sum);
-  }
+PlaneIntegrals over_pieces(const std::vector<Trapezoid>& pieces, double density_per_m2,
+                           const Rectangle& base, const Basis& basis) {
+  PlaneIntegrals sum = zero(basis);
+  for (const Trapezoid& piece : pieces)
+    sum.error_bound += add_polygon(piece.corners(), density_per_m2, base.size_m, sum.values);
   return sum;
+}
+
+/// What all parts have in common.
+class TargetIntegrals {
+ public:
+  TargetIntegrals(const TargetDensity& target, const Box& domain, const Basis& basis)
+      : target_(target),
+        domain_(domain),
+        base_(base_of(domain)),
+        basis_(basis),
+        along_z_(domain, basis),
+        storeys_(storeys_of(domain, target.keep_outs)),
+        sum_{Coefficients::Zero(basis.mode_count()), 0} {}
+
+  void add_smooth_parts() {
+    for (const Storey& storey : storeys_) {
+      const std::vector<Trapezoid> free = storey.free(base_);
+      add_uniform(storey, free);
+      for (const Gaussian& gaussian : target_.gaussians) add_gaussian(gaussian, storey, free);
+    }
+  }
+
+  void add_region(const Region& region) {
+    for (const Storey& storey : storeys_) {
+      const auto inside = free_area_within(region.polygon, base_, storey.keep_outs);
+      const Eigen::VectorXd along_z = along_z_.uniform(region.heights, storey.heights);
+      add_product(region.weight, over_pieces(inside, 1 / area_m2(region.polygon), base_, basis_),
+                  along_z, sum_);
+    }
+  }
+
+  TargetCoefficients take() { return std::move(sum_); }
+
+ private:
+  void add_uniform(const Storey& storey, const std::vector<Trapezoid>& free) {
+    const Eigen::VectorXd along_z = along_z_.uniform(heights_of(domain_), storey.heights);
+    PlaneIntegrals plane = zero(basis_);
+    if (storey.keep_outs.empty()) {
+      plane.values(0, 0) = target_.uniform_weight;
+    } else {
+      plane = over_pieces(free, target_.uniform_weight / base_.size_m.prod(), base_, basis_);
+    }
+    add_product(1, plane, along_z, sum_);
+  }
+
+  void add_gaussian(const Gaussian& gaussian, const Storey& storey,
+                    const std::vector<Trapezoid>& free) {
+    const GaussianAtHeight g(gaussian);
+    if (!domain_.planar() && g.leans())
+      return add_leaning(gaussian, free, storey.heights, domain_, basis_, sum_);
+    const PlaneGaussian above{gaussian.mean_m.head<2>(),
+                              gaussian.covariance_m2.topLeftCorner<2, 2>()};
+    const PlaneIntegrals plane = storey.keep_outs.empty()
+                                     ? integrals_over_domain(above, base_, basis_)
+                                     : integrals_over(above, free, base_, basis_);
+    add_product(gaussian.weight, plane,
+                along_z_.gaussian(g.mean_z_m(), g.deviation_z_m(), storey.heights), sum_);
+  }
+
+  const TargetDensity& target_;
+  const Box& domain_;
+  Rectangle base_;
+  const Basis& basis_;
+  AlongZ along_z_;
+  std::vector<Storey> storeys_;
+  TargetCoefficients sum_;
+};
+
+/// N(x) of one Gaussian, without its weight.
+double density_of(const Gaussian& gaussian, const Box& domain, const Eigen::Vector3d& x_m) {
+  if (domain.planar()) {
+    return GaussianDensity(
+        {gaussian.mean_m.head<2>(), gaussian.covariance_m2.topLeftCorner<2, 2>()})(x_m.head<2>());
+  }
+  const GaussianAtHeight g(gaussian);
+  return g.density_z(x_m.z()) * GaussianDensity(g.at(x_m.z()))(x_m.head<2>());
 }
 
 }  // namespace
 
-TargetCoefficients region_integrals(const Region& region, const TargetDensity& target,
-                                    const Rectangle& domain, const Basis& basis) {
-  TargetCoefficients sum{PlaneCoefficients::Zero(basis.modes_x, basis.modes_y), 0};
-  add_pieces(free_area_within(region.polygon, domain, target.keep_outs),
-             1 / area_m2(region.polygon), domain, sum);
-  return sum;
+Gaussian plane_gaussian(double weight, const Eigen::Vector2d& mean_m,
+                        const Eigen::Matrix2d& covariance_m2) {
+  Gaussian gaussian{weight, on_ground(mean_m)};
+  gaussian.covariance_m2.topLeftCorner<2, 2>() = covariance_m2;
+  return gaussian;
 }
 
-TargetCoefficients target_integrals(const TargetDensity& target, const Rectangle& domain,
+void add_product(double weight, const PlaneIntegrals& plane, const Eigen::VectorXd& along_z,
+                 TargetCoefficients& sum) {
+  const Eigen::Index modes = plane.values.size();
+  const auto values = plane.values.reshaped<Eigen::RowMajor>();
+  for (Eigen::Index l = 0; l < along_z.size(); ++l)
+    sum.values.segment(l * modes, modes) += weight * along_z[l] * values;
+  // An entry of along_z is at most its mass; a few roundings of it do not count.
+  sum.error_bound += weight * along_z[0] * plane.error_bound;
+}
+
+TargetCoefficients target_integrals(const TargetDensity& target, const Box& domain,
                                     const Basis& basis) {
-  TargetCoefficients sum = smooth_parts(target, domain, basis);
-  for (const Region& region : target.regions) {
-    add(region.weight, region_integrals(region, target, domain, basis), sum);
-  }
-  return sum;
+  TargetIntegrals integrals(target, domain, basis);
+  integrals.add_smooth_parts();
+  for (const Region& region : target.regions) integrals.add_region(region);
+  return integrals.take();
+}
+
+double free_share(const Region& region, const TargetDensity& target, const Box& domain) {
+  const Basis one;
+  TargetIntegrals integrals(target, domain, one);
+  integrals.add_region({1, region.polygon, region.heights});
+  return integrals.take().values[0];
 }
 
 TargetCoefficients normalized(TargetCoefficients integrals) {
-  const double mass = integrals.values(0, 0);
+  const double mass = integrals.values[0];
   ERGOCAST_REQUIRE(mass > 0);
   integrals.values /= mass;
   integrals.error_bound *= 2 / mass;
   return integrals;
 }
 
-TargetCoefficients target_coefficients(const TargetDensity& target, const Rectangle& domain,
+TargetCoefficients target_coefficients(const TargetDensity& target, const Box& domain,
                                        const Basis& basis) {
   return normalized(target_integrals(target, domain, basis));
 }
 
-double mass_inside(const TargetDensity& target, const Rectangle& domain) {
-  return target_integrals(target, domain, Basis{}).values(0, 0);
+double mass_inside(const TargetDensity& target, const Box& domain) {
+  return target_integrals(target, domain, Basis{}).values[0];
 }
 
-double density_unscaled(const TargetDensity& target, const Rectangle& domain,
-                        const Eigen::Vector2d& x_m) {
-  for (const Polygon& keep_out : target.keep_outs) {
-    if (contains(keep_out, x_m)) return 0;
+double density_unscaled(const TargetDensity& target, const Box& domain,
+                        const Eigen::Vector3d& x_m) {
+  const Eigen::Vector2d above_m = x_m.head<2>();
+  const auto stands = [&](const Heights& heights) {
+    return domain.planar() || heights.contain(x_m.z());
+  };
+  for (const KeepOut& keep_out : target.keep_outs) {
+    if (stands(keep_out.heights) && contains(keep_out.polygon, above_m)) return 0;
   }
-  double density = target.uniform_weight / area_of(domain);
-  for (const Gaussian& g : target.gaussians) density += g.weight * GaussianDensity(g)(x_m);
+  double density = target.uniform_weight / domain.content();
+  for (const Gaussian& g : target.gaussians) density += g.weight * density_of(g, domain, x_m);
   for (const Region& region : target.regions) {
-    if (contains(region.polygon, x_m)) density += region.weight / area_m2(region.polygon);
+    if (!stands(region.heights) || !contains(region.polygon, above_m)) continue;
+    const double height = domain.planar() ? 1 : region.heights.length_m();
+    density += region.weight / (area_m2(region.polygon) * height);
   }
   return density;
 }

@@ -69,10 +69,18 @@ class PlanWriter {
   void value(int field, const Coefficients& numbers) {
     value(field, bytes_of(numbers.data(), numbers.size()));
   }
-  void value(int field, const std::vector<Eigen::Vector3d>& places_m) {
-    std::string bytes;
-    for (const Eigen::Vector3d& x_m : places_m) bytes += bytes_of(x_m.data(), 2);
-    value(field, bytes);
+  /// Heights are in no plan if all are 0.
+  void places(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
+    std::string bytes, heights;
+    for (const Eigen::Vector3d& x_m : places_m) {
+      bytes += bytes_of(x_m.data(), 2);
+      heights += bytes_of(x_m.data() + 2, 1);
+    }
+    value(xy, bytes);
+    if (heights.find_first_not_of('\0') != std::string::npos) value(z, heights);
+  }
+  void height(int field, auto value, double in_plane) {
+    if (value != in_plane || in_plane == 0) this->value(field, value);
   }
   PlanWriter open(int) const { return {}; }
   void close(int field, const PlanWriter& block) { value(field, block.bytes()); }
@@ -130,10 +138,17 @@ class PlanReader {
     const std::vector<double> numbers = numbers_at(field);
     coefficients = Eigen::Map<const Coefficients>(numbers.data(), std::ssize(numbers));
   }
-  void value(int field, std::vector<Eigen::Vector3d>& places_m) const {
-    const std::vector<double> numbers = numbers_at(field);
-    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
-      places_m.emplace_back(numbers[i], numbers[i + 1], 0);
+  void places(int xy, int z, std::vector<Eigen::Vector3d>& places_m) const {
+    const std::vector<double> numbers = numbers_at(xy), heights = numbers_at(z);
+    for (std::size_t i = 0; i < numbers.size() / 2; ++i) {
+      const double height = i < heights.size() ? heights[i] : 0;
+      places_m.emplace_back(numbers[2 * i], numbers[2 * i + 1], height);
+    }
+  }
+  template <class T>
+  void height(int field, T& value, double in_plane) const {
+    this->value(field, value);
+    if (value == 0) value = static_cast<T>(in_plane);
   }
   PlanReader open(int field) const { return PlanReader(at(field).bytes); }
   void close(int, const PlanReader&) const {}
@@ -179,6 +194,9 @@ class PlanFields : public FieldVisitor {
   void number(int field, const char*, auto& value, const Limits&, bool = true) {
     wire_.value(field, value);
   }
+  void height(int field, const char*, auto& value, const Limits&, double in_plane) {
+    wire_.height(field, value, in_plane);
+  }
   void flag(int field, const char*, auto& value) { wire_.value(field, value); }
   void choice(int field, const char*, auto& value, Words) { wire_.value(field, value); }
   void seed(int field, const char*, auto& value) { wire_.value(field, value); }
@@ -189,13 +207,14 @@ class PlanFields : public FieldVisitor {
     list_fields(inner, part);
     wire_.close(field, block);
   }
-  void contraction_center(int field, auto& x_m) {
-    wire_.value(field, x_m.x());
-    wire_.value(field + 1, x_m.y());
+  void contraction_center(int x, int z, auto& x_m) {
+    wire_.value(x, x_m.x());
+    wire_.value(x + 1, x_m.y());
+    wire_.value(z, x_m.z());
   }
   void duration(int field, auto& timing) { wire_.value(field, timing.tick_count); }
   void target(int field, auto& target) { wire_.value(field, target); }
-  void starts(int field, auto& starts_m) { wire_.value(field, starts_m); }
+  void starts(int xy, int z, auto& starts_m) { wire_.places(xy, z, starts_m); }
   void hidden_flag(int field, auto& value) { wire_.value(field, value); }
 
  private:

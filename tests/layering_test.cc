@@ -30,6 +30,7 @@ enum class Outside {
   kCrypto,       // libsodium
   kGenerator,    // Random123
   kPng,          // libpng
+  kLoader,       // dlopen: libnetcdf
   kHttp,         // cpp-httplib
   kPython,       // pybind11
   kEarth,        // PROJ
@@ -49,6 +50,7 @@ const std::vector<Rule> kRules = {
     {"text", {"text"}, {kFiles}},
     {"core", {"core"}, {kGenerator}},
     {"target", {"text", "core", "target"}, {kPng, kFiles}},
+    {"target/netcdf_library.cc", {"target"}, {kLoader}},
     {"team", {"core", "team"}, {}},
     {"team/plan.cc", {"core", "team"}, {kHash}},
     {"lcmtypes", {"text", "core", "team", "lcmtypes"}, {kLcmTypes, kHash, kCrypto}},
@@ -119,6 +121,7 @@ const std::vector<Kind> kKinds = {
     {kCrypto, {"sodium.h"}},
     {kGenerator, {"Random123/*"}},
     {kPng, {"png.h"}},
+    {kLoader, {"dlfcn.h"}},
     {kHttp, {"httplib.h"}},
     {kPython, {"pybind11/*"}},
     {kEarth, {"proj.h"}},

@@ -35,7 +35,8 @@ final class CoefficientsView extends Picture {
 
   @Override
   void draw(Graphics2D g, Team team) {
-    headline(g, "Coefficients of the " + team.plan.modesX + " × " + team.plan.modesY + " modes",
+    String aboveOnly = team.plan.modesZ == 1 ? "" : " without waves along z";
+    headline(g, "Coefficients of the " + team.plan.modesX + " × " + team.plan.modesY + " modes" + aboveOnly,
         "m to the right, n upwards; sums divided by the time they cover; grey: not heard", LEFT);
     List<Tile> tiles = tiles(team);
     int width = Math.max(20, getWidth() - LEFT - RIGHT);

@@ -43,7 +43,8 @@ final class MapView extends Picture {
     Axes axes = axes(plan);
     headline(g, "Target and team",
         "grey: the target of " + plan.modesX + " × " + plan.modesY
-            + " modes, 0 where they make it negative",
+            + " modes, 0 where they make it negative"
+            + (plan.modesZ == 1 ? "" : "; seen from above, averages along z"),
         LEFT);
     g.setRenderingHint(
         RenderingHints.KEY_INTERPOLATION, RenderingHints.VALUE_INTERPOLATION_BILINEAR);

@@ -9,7 +9,8 @@ import java.util.Map;
 
 /** The fields of a compiled plan, listed in team/plan.proto, that the pictures need. */
 final class Plan {
-  static final int MAX_MODES = 64;
+  static final int MAX_MODES = 64; // along an axis
+  static final int MAX_MODES_TOGETHER = 4096;
   static final long MAX_TICKS = 100000000;
 
   final String name;
@@ -17,7 +18,8 @@ final class Plan {
   final double dt, duration; // [s]
   final long lastTick;
   final int modesX, modesY;
-  final double[] target; // mu, m * modesY + n
+  final int modesZ; // 1 in a plane
+  final double[] target; // mu, (l * modesX + m) * modesY + n
 
   /**
    * Reads Protobuf's wire format, with the numbers of team/plan.proto. A number that is not there
@@ -37,13 +39,15 @@ final class Plan {
     sizeY = number(domain, 4, 1e-6, 1e9);
     modesX = modes(basis, 1);
     modesY = modes(basis, 2);
+    modesZ = basis.containsKey(6) ? modes(basis, 6) : 1;
     dt = number(timing, 1, 1e-9, 1e6);
     lastTick = varint(timing.get(2));
     require(lastTick >= 1 && lastTick <= MAX_TICKS);
     duration = lastTick * dt;
     ByteBuffer coefficients = plan.get(6);
-    require(name.length() <= 64 && coefficients.remaining() == 8 * modesX * modesY);
-    target = new double[modesX * modesY];
+    require(name.length() <= 64 && modesX * modesY * modesZ <= MAX_MODES_TOGETHER);
+    require(coefficients.remaining() == 8 * modesX * modesY * modesZ);
+    target = new double[modesX * modesY * modesZ];
     for (int k = 0; k < target.length; ++k)
       target[k] = within(coefficients.getDouble(), -1.001, 1.001);
   }

@@ -26,7 +26,7 @@ class Run:
     """The record of a mission: what its run directory holds.
 
     Frames have the columns of the files, as docs/run_directory.md describes them. Arrays of
-    coefficients have the shape (modes_x, modes_y). Everything was read when the run was loaded,
+    coefficients have the shape (modes_x, modes_y), in a box (modes_z, modes_x, modes_y). Everything was read when the run was loaded,
     so its directory may go.
     """
 
@@ -61,7 +61,7 @@ class Run:
     def trajectory(self) -> pd.DataFrame:
         """trajectory.csv with all its segments: a row for each tick and agent, in this order.
 
-        Columns: tick, t_s [s], agent, x_m, y_m [m], vx_mps, vy_mps [m/s].
+        Columns: tick, t_s [s], agent, x_m, y_m [m], vx_mps, vy_mps [m/s]; in a box also z_m, vz_mps.
         """
         return pd.DataFrame(self._record.trajectory())
 
@@ -81,13 +81,16 @@ class Run:
 
     @property
     def positions_m(self) -> Floats:
-        """Where agents() were: shape (ticks, agents, 2) [m], index 0 is tick 0; nan without row."""
-        return self._by_tick("x_m", "y_m")
+        """Where agents() were: shape (ticks, agents, d) [m], index 0 is tick 0; nan without row.
+
+        d is 2, in a box 3.
+        """
+        return self._by_tick("{}_m")
 
     @property
     def velocities_mps(self) -> Floats:
-        """The velocities applied from each tick on: shape (ticks, agents, 2) [m/s]."""
-        return self._by_tick("vx_mps", "vy_mps")
+        """The velocities applied from each tick on: shape (ticks, agents, d) [m/s]."""
+        return self._by_tick("v{}_mps")
 
     @overload
     def coverage(self, tick: int | None = None) -> Floats: ...
@@ -116,13 +119,14 @@ class Run:
             self.coverage(tick), mission.mu, mission.basis, mission.domain
         )
 
-    def _by_tick(self, x: str, y: str) -> Floats:
+    def _by_tick(self, name: str) -> Floats:
         rows = self.trajectory
+        columns = [name.format(axis) for axis in "xyz" if name.format(axis) in rows]
         agents = self.agents
         ticks = 0 if rows.empty else int(rows["tick"].max()) + 1
-        table = np.full((ticks, len(agents), 2), np.nan)
+        table = np.full((ticks, len(agents), len(columns)), np.nan)
         column = np.searchsorted(agents, rows["agent"])
-        table[rows["tick"], column] = rows[[x, y]]
+        table[rows["tick"], column] = rows[columns]
         return table
 
     def _read_summary(self) -> dict[str, Any]:

@@ -13,6 +13,7 @@
 #include "scenario/scenario.pb.h"
 #include "tests/checks_can_fail/expect_said.h"
 #include "tests/process/programs.h"
+#include "tests/scenario/water_column.h"
 #include "tests/support/grey_png.h"
 
 namespace ergocast::test {
@@ -69,7 +70,7 @@ std::vector<Mistake> mistakes_of_the_text() {
       {"size_x_m: 100", "size_x_m: ten", "domain.size_x_m: ten is not a number"},
       {"size_x_m: 100", "size_x_m 100", "domain.size_x_m: Expected \":\""},
       {"size_x_m: 100", "size_x_m: 100 size_x_m: 1", "domain.size_x_m: is written more than once"},
-      {"size_x_m: 100", "size_x_m: 100 size_z_m: 1", "unknown field \"size_z_m\" in Domain"},
+      {"size_x_m: 100", "size_x_m: 100 size_q_m: 1", "unknown field \"size_q_m\" in Domain"},
       {kLaw, "law { modes_x: 5", "unknown field \"modes_x\" in Law"},
       {kLaw, "law { nonsense: 5", "unknown field \"nonsense\" in Law"},
       {kLaw, "[other.field]: 5 law {", "unknown extension"},
@@ -222,6 +223,82 @@ std::vector<Mistake> mistakes_of_maps() {
   return all;
 }
 
+/// One mistake put into a scenario of a box; the scenario stands in the place of kGood.
+Mistake in_space(const std::string& from, const std::string& to, const std::string& said) {
+  std::string box = R"(domain { size_x_m: 800 size_y_m: 600 origin_z_m: -60 size_z_m: 60 }
+target { uniform_weight: 1 }
+law { u_max_mps: 5 }
+time { duration_s: 60 }
+agents { starts { x_m: 10 y_m: 20 z_m: -3 } }
+)";
+  return {kGood, box.replace(box.find(from), from.size(), to), said};
+}
+
+Mistake of_grid(const std::string& file, const std::string& said,
+                const std::string& choice = "time_index: 1") {
+  return in_space(kUniform, "voxels { file: \"" + file + "\" variable: \"chl\" " + choice + " }",
+                  "target.voxels[0]: " + said);
+}
+
+std::vector<Mistake> mistakes_in_space() {
+  const std::string bell = "gaussians { mean_x_m: 5 mean_y_m: 5 mean_z_m: -5 ";
+  const std::string prism =
+      " vertices { x_m: 10 y_m: 10 } vertices { x_m: 40 y_m: 10 } vertices { x_m: 40 y_m: 40 } } }";
+  const std::string map =
+      "maps { file: \"even.csv\" origin_x_m: 0 origin_y_m: 0 size_x_m: 100 "
+      "size_y_m: 50 layers { low_z_m: -9 high_z_m: -5 value: ";
+  return {
+      {"y_m: 20", "y_m: 20 z_m: 3", "agents.starts[0].z_m: the domain is a plane"},
+      in_space(kLaw, "basis { modes_x: 17 modes_y: 17 modes_z: 17 } law {",
+               "basis: 4913 modes are above the limit"),
+      in_space(kUniform, bell + "sigma_z_m: 5 covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 } }",
+               "target.gaussians[0].sigma_z_m: has no effect with covariance"),
+      in_space(kUniform,
+               bell + "covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 xy_m2: 6 xz_m2: 6 yz_m2: -6 } }",
+               "target.gaussians[0].covariance: is not positive definite enough"),
+      in_space(kUniform, "regions { polygon { low_z_m: -10 high_z_m: -20" + prism,
+               "target.regions[0].polygon: its heights -10 to -20 m enclose nothing"),
+      in_space(kUniform, "regions { polygon { low_z_m: 10 high_z_m: 20" + prism,
+               "target.regions[0].polygon: its heights 10 to 20 m are outside"),
+      in_space(kUniform, map + "0 } }", "target.maps[0]: no layer has a value above 0"),
+      in_space(kUniform, map + "1 } layers { low_z_m: -6 high_z_m: -1 } }",
+               "target.maps[0].layers[1]: overlaps layers[0]"),
+      in_space(kUniform, map + "1 } " + repeated(256, "layers { low_z_m: -9 high_z_m: -5 } ") + "}",
+               "target.maps[0]: 257 layers are above the limit"),
+      in_space(kUniform, repeated(17, "voxels { file: \"a.nc\" variable: \"v\" } "),
+               "target: 17 grids are above the limit"),
+      in_space(kUniform, "voxels { variable: \"v\" }", "target.voxels[0].file: is missing"),
+      in_space(kUniform, "voxels { file: \"even.csv\" variable: \"v\" }",
+               "even.csv does not end in .nc"),
+      in_space(kUniform, "voxels { file: \"a.nc\" }", "target.voxels[0].variable: is missing"),
+      in_space(kUniform, bell + "covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 xz_m2: 9 } }",
+               "target.gaussians[0].covariance.xz_m2: 9 leaves too little"),
+      in_space(kUniform, bell + "covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 yz_m2: 9 } }",
+               "target.gaussians[0].covariance.yz_m2: 9 leaves too little"),
+      in_space("starts { x_m: 10 y_m: 20 z_m: -3 }", "", "agents: the team is empty"),
+      of_grid("sour.nc", ""),
+      of_grid("text.nc", ""),
+      of_grid("salt.nc", ""),
+      of_grid("words.nc", ""),
+      of_grid("good.nc", "", ""),
+      of_grid("good.nc", "", "time_index: 2"),
+      of_grid("member.nc", ""),
+      of_grid("flat.nc", ""),
+      of_grid("billion.nc", ""),
+      of_grid("long.nc", ""),
+      of_grid("uneven.nc", ""),
+      of_grid("bare.nc", ""),
+      of_grid("degrees.nc", ""),
+      of_grid("unitless.nc", ""),
+      of_grid("single.nc", ""),
+      of_grid("shape.nc", ""),
+      of_grid("nan.nc", ""),
+      of_grid("tangled.nc", ""),
+      of_grid("zero.nc", ""),
+      of_grid("away.nc", ""),
+  };
+}
+
 class Scenarios : public OwnHost {
  protected:
   void write(const std::string& name, const std::string& text) {
@@ -229,6 +306,7 @@ class Scenarios : public OwnHost {
   }
 
   void write_files() {
+    write_grids();
     const std::string header = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n";
     write("good.asc", header + "1 2\n");
     write("even.csv", "1,2\n3,4\n");
@@ -265,6 +343,46 @@ class Scenarios : public OwnHost {
     write_png(folder_ / "colour.png", 4, 4, {.color = PNG_COLOR_TYPE_RGB}, grey);
     write_png(folder_ / "bits.png", 4, 4, {.bits = 1}, grey);
     write_png(folder_ / "laced.png", 4, 4, {.interlace = PNG_INTERLACE_ADAM7}, grey);
+  }
+
+  /// A good grid, and one for each mistake.
+  void write_grids() {
+    write("text.nc", "x,y\n1,2\n");
+    NetcdfWriter(folder_ / "grid.nc", {{"time", 2}, {"z", 1}, {"y", 2}, {"x", 2}, {"ends", 2}},
+                 {{"x", {"x"}, {10, 30}, {{"units", "m"}}},
+                  {"y", {"y"}, {10, 30}, {{"units", "m"}}},
+                  {"z", {"z"}, {10}, {{"units", "m"}, {"bounds", "floor"}}},
+                  {"floor", {"z", "ends"}, {0, 20}, {}},
+                  {"v", {"time", "z", "y", "x"}, {1, 2, 3, 4, 5, 6, 7, 8}, {}}});
+    const auto grid = [&](const char* name, const std::function<void(WaterColumn&)>& change) {
+      WaterColumn column;
+      change(column);
+      column.write(folder_ / name);
+    };
+    const auto scale = [](NetcdfVariable& variable, double factor, double offset) {
+      for (double& value : variable.values) value = value * factor + offset;
+    };
+    grid("good.nc", [](WaterColumn&) {});
+    grid("sour.nc", [](WaterColumn& c) { c.at("chl").values[300] = -1; });
+    grid("salt.nc", [](WaterColumn& c) { c.at("chl").name = "salt"; });
+    grid("words.nc", [](WaterColumn& c) { c.at("chl").type = NetcdfType::kText; });
+    grid("member.nc", [](WaterColumn& c) { c.rename("depth", "member"); });
+    grid("flat.nc", [](WaterColumn& c) { c.at("chl").dimensions = {"time", "y", "x"}; });
+    grid("billion.nc", [](WaterColumn& c) { c.grow(1000); });
+    grid("long.nc", [](WaterColumn& c) { c.grow(9000); });
+    grid("uneven.nc", [](WaterColumn& c) { c.at("x").values[3] += 0.02; });
+    grid("bare.nc", [](WaterColumn& c) { c.at("x").name = "east"; });
+    grid("degrees.nc", [](WaterColumn& c) { c.at("x").attributes[1].second = "degrees_east"; });
+    grid("unitless.nc", [](WaterColumn& c) { c.at("x").attributes.pop_back(); });
+    grid("single.nc", [](WaterColumn& c) {
+      c.dimensions[1].second = 1;
+      c.at("depth").attributes.pop_back();
+    });
+    grid("shape.nc", [](WaterColumn& c) { c.at("depth").attributes[2].second = "nothing"; });
+    grid("nan.nc", [](WaterColumn& c) { c.at("x").values[2] = std::nan(""); });
+    grid("tangled.nc", [](WaterColumn& c) { std::swap(c.at("y").values[1], c.at("y").values[3]); });
+    grid("zero.nc", [&](WaterColumn& c) { scale(c.at("chl"), 0, 0); });
+    grid("away.nc", [&](WaterColumn& c) { scale(c.at("y"), 1, 10000); });
   }
 
   /// A file that root cannot open for reading either.
@@ -317,25 +435,26 @@ class Scenarios : public OwnHost {
 constexpr const char* kRich = R"(
 name: "rich" description: "all fields" seed: 1 goal_ergodic_metric: 1
 origin { latitude_deg: 47.5 longitude_deg: 9.2 }
-domain { origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 }
+domain { origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 origin_z_m: 0 size_z_m: 40 }
 target {
-  gaussians { weight: 1 mean_x_m: 30 mean_y_m: 20 sigma_m: 5 }
-  gaussians { weight: 1 mean_x_m: 60 mean_y_m: 20 covariance { xx_m2: 25 yy_m2: 25 xy_m2: 1 } }
+  gaussians { weight: 1 mean_x_m: 30 mean_y_m: 20 mean_z_m: 20 sigma_m: 5 }
+  gaussians { weight: 1 mean_x_m: 60 mean_y_m: 20 mean_z_m: 20 covariance { xx_m2: 25 yy_m2: 25 xy_m2: 1 zz_m2: 25 } }
   uniform_weight: 1
   maps { file: "even.csv" weight: 1 origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 first_row: NORTH }
   regions { weight: 1 polygon { vertices { x_m: 1 y_m: 1 } vertices { x_m: 9 y_m: 1 } vertices { x_m: 9 y_m: 9 } } }
   keep_outs { file: "pier.geojson" }
+  voxels { file: "grid.nc" variable: "v" weight: 1 time_index: 1 }
 }
-basis { modes_x: 8 modes_y: 8 }
+basis { modes_x: 8 modes_y: 8 modes_z: 8 }
 law {
   u_max_mps: 5 regularization: RELATIVE epsilon: 0.2 perturbation: ADAPTIVE noise_intensity: 0.1 noise_ceiling: 2
-  contraction_gain_per_s: 0.001 contraction_center: POINT contraction_x_m: 50 contraction_y_m: 25
+  contraction_gain_per_s: 0.001 contraction_center: POINT contraction_x_m: 50 contraction_y_m: 25 contraction_z_m: 20
   anticipation: 2
 }
 time {
   dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 contribution_encoding: FIXED16 pace: REALTIME
 }
-agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 }
+agents { starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1 }
 world { speed_limit_mps: 100 }
 )";
 
@@ -450,7 +569,7 @@ class CheckCanFail : public Scenarios {
     write("s.textproto", kGood);
     EXPECT_EQ(ergocast({"check", file_}), 0) << output();
     for (const auto& mistakes : {mistakes_of_the_text(), mistakes_between_fields(),
-                                 mistakes_of_targets(), mistakes_of_maps()}) {
+                                 mistakes_of_targets(), mistakes_of_maps(), mistakes_in_space()}) {
       for (const Mistake& mistake : mistakes) expect_mistake(mistake);
     }
   }
@@ -521,6 +640,10 @@ class CheckCanFail : public Scenarios {
 const std::vector<Unsayable> kUnsayable = {
     {"target/csv_map.cc", "changed while it was read", "the map has to change between two reads"},
     {"target/png_map.cc", "cannot be opened any more", "it was opened a moment before"},
+    {"target/netcdf_file.cc", "needs libnetcdf", "this machine has it"},
+    {"target/netcdf_file.cc", "write the file again",
+     "the file has to be cut off amid its numbers"},
+    {"target/netcdf_grid.cc", "is stored in parts of more than", "the classic format has no parts"},
 };
 
 TEST_F(CheckCanFail, InEachOfItsFindings) {

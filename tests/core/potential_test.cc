@@ -102,10 +102,9 @@ class FreshTeam {
     for (int bells = 0; bells < 3; ++bells) {
       const double sigma_m = 30 + 200 * number();
       target.gaussians.push_back(
-          {number(), anywhere().head<2>(), sigma_m * sigma_m * Eigen::Matrix2d::Identity()});
+          {number(), anywhere(), sigma_m * sigma_m * Eigen::Matrix3d::Identity()});
     }
-    mission_.target_coefficients =
-        in_wire_order(target_coefficients(target, base_of(mission_.domain), basis).values);
+    mission_.target_coefficients = target_coefficients(target, mission_.domain, basis).values;
     mission_.law.u_max_mps = 20;
     mission_.law.anticipation = 0.2 + 4 * number();
     mission_.timing.dt_s = kDt;

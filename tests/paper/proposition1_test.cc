@@ -143,10 +143,10 @@ TEST(Proposition1, DiagonalsNeedATargetThatIsTheSameWithXAndYExchanged) {
   // Two peaks on the midline y = 1000: symmetric about both midlines, but not about a diagonal.
   Mission mission = classical({{300, 300, 0}});
   TargetDensity two_peaks;
-  const Eigen::Matrix2d covariance_m2 = 1e4 * Eigen::Matrix2d::Identity();
-  two_peaks.gaussians = {{1, {500, 1000}, covariance_m2}, {1, {1500, 1000}, covariance_m2}};
+  const Eigen::Matrix3d covariance_m2 = 1e4 * Eigen::Matrix3d::Identity();
+  two_peaks.gaussians = {{1, {500, 1000, 0}, covariance_m2}, {1, {1500, 1000, 0}, covariance_m2}};
   mission.target_coefficients =
-      in_wire_order(target_coefficients(two_peaks, base_of(mission.domain), mission.basis).values);
+      target_coefficients(two_peaks, mission.domain, mission.basis).values;
   PaperTeam team(mission);
   team.step();
   const Eigen::Vector3d normal = Eigen::Vector3d(1, -1, 0).normalized();

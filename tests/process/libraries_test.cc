@@ -27,8 +27,8 @@ bool loads(const std::string& said, const std::string& library) {
 TEST(Libraries, ProgramsThatReadNoScenarioLoadNoParserAndNoPictures) {
   for (const char* program : {"ergocast-agent", "ergocast-sim", "ergocast-logger"}) {
     const std::string said = loaded_by(program);
-    for (const char* library :
-         {"liblcm", "libproj", "libprotobuf", "libprotobuf-lite", "libpng16", "libz"}) {
+    for (const char* library : {"liblcm", "libnetcdf", "libproj", "libprotobuf", "libprotobuf-lite",
+                                "libpng16", "libz"}) {
       EXPECT_FALSE(loads(said, library)) << program << " loads " << library << ":\n" << said;
     }
   }

@@ -89,12 +89,11 @@ class Report : public testing::Test {
     mission.basis.modes_y = 6;
     mission.law.u_max_mps = 10;
     mission.timing.tick_count = 1000;
-    cover({{{1, {500, 500}, Eigen::Matrix2d::Identity() * 1e4}}, 0});
+    cover({{{1, {500, 500, 0}, Eigen::Matrix3d::Identity() * 1e4}}, 0});
   }
 
   void cover(const TargetDensity& target) {
-    mission.target_coefficients =
-        in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values);
+    mission.target_coefficients = target_coefficients(target, mission.domain, mission.basis).values;
   }
 
   /// Agents on noisy circles, φ² falling like 1/t.

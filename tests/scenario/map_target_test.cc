@@ -77,15 +77,15 @@ TEST_F(MapTarget, FirstRowSaysWhichWayIsNorth) {
 // of a cell. Half a cell's shift would be off by the first power: 0.05.
 TEST_F(MapTarget, ASampledGaussianIsWhereItWas) {
   constexpr int kColumns = 100, kRows = 50;
-  const TargetDensity bell{{{1, {37, 22}, 36 * Eigen::Matrix2d::Identity()}}, 0};
-  const Rectangle domain{{0, 0}, {100, 50}};
+  const TargetDensity bell{{plane_gaussian(1, {37, 22}, 36 * Eigen::Matrix2d::Identity())}, 0};
+  const Box domain{{0, 0, 0}, {100, 50, 0}};
   write_png(folder_ / "bell.png", kColumns, kRows, {.bits = 16}, [&](int column, int row, int) {
-    const double density = density_unscaled(bell, domain, {column + 0.5, 50 - (row + 0.5)});
+    const double density = density_unscaled(bell, domain, {column + 0.5, 50 - (row + 0.5), 0});
     return static_cast<int>(density * 65535 * 2 * 3.14159 * 36);
   });
   const Coefficients mu = mu_of(map_of("bell.png"));
   const Coefficients expected =
-      in_wire_order(target_coefficients(bell, domain, {.modes_x = 16, .modes_y = 16}).values);
+      target_coefficients(bell, domain, {.modes_x = 16, .modes_y = 16}).values;
   // A cell's average differs from its centre by (k·1 m)²/24 at most; k = 15π/50 makes it 0.04 times
   // the coefficient, which is 0.002 there. 16 bits are good to 1e-4.
   EXPECT_LE((mu - expected).cwiseAbs().maxCoeff(), 2e-3);

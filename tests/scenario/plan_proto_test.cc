@@ -36,6 +36,7 @@ class PlanNames : public FieldVisitor {
   void number(int number, const char* name, auto&, const Limits&, bool = true) {
     expect(number, name);
   }
+  void height(int number, const char* name, auto&, const Limits&, double) { expect(number, name); }
   void flag(int number, const char* name, auto&) { expect(number, name); }
   void choice(int number, const char* name, auto&, Words words) {
     const pb::FieldDescriptor* field = expect(number, name);
@@ -76,7 +77,7 @@ TEST(PlanProto, HasTheFieldsOfAMission) {
 }
 
 TEST(PlanProto, IsWhatAPlansBytesAre) {
-  Mission mission = test::rich_mission();
+  Mission mission = test::rich_mission_in_space();
   mission.wait_for_logger = true;
   const std::vector<std::byte> bytes = encode_plan(mission);
   proto::Plan plan;

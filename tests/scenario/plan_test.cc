@@ -65,9 +65,11 @@ TEST(MissionText, IsThatOfItsScenarioWithoutDescriptionAndTarget) {
 }
 
 TEST(MissionText, ReadsBackToEveryFieldOfAMission) {
-  const Mission mission = rich_mission();
-  const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
-  EXPECT_EQ(plan_of(good(text)), encode_plan(as_scenarios_know_it(mission))) << text;
+  for (const Mission& mission : {rich_mission(), rich_mission_in_space()}) {
+    const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
+    EXPECT_EQ(plan_of(good(text)), encode_plan(as_scenarios_know_it(mission))) << text;
+    EXPECT_EQ(without_block(good(text).print(), "target"), mission_text(mission));
+  }
 }
 
 /// The names in the list of a mission's fields.
@@ -78,6 +80,7 @@ class Names : public FieldVisitor {
   std::set<std::string> all;
 
   void number(int, const char* name, auto&, const Limits&, bool = true) { add(name); }
+  void height(int, const char* name, auto&, const Limits&, double) { add(name); }
   void flag(int, const char* name, auto&) { add(name); }
   void choice(int, const char* name, auto&, Words) { add(name); }
   void part(int, const char* name, auto& part) {
@@ -110,8 +113,8 @@ TEST(Conversion, KnowsEveryFieldOfAScenario) {
   const Mission mission;
   std::set<std::string> known = Names(mission).all;
   known.insert({"name", "description", "seed", "law.contraction_center", "law.contraction_x_m",
-                "law.contraction_y_m", "time.duration_s", "agents.random_count",
-                "origin.latitude_deg", "origin.longitude_deg"});
+                "law.contraction_y_m", "law.contraction_z_m", "time.duration_s",
+                "agents.random_count", "origin.latitude_deg", "origin.longitude_deg"});
   EXPECT_EQ(names_in(*proto::Scenario::descriptor(), ""), known);
 }
 

@@ -54,11 +54,12 @@ bool says(const std::string& comment, double value) {
 /// Fields whose limits depend on other fields or are in their message's comment: the table only
 /// prevents overflow.
 bool limits_stand_elsewhere(const std::string& name) {
-  return name == "Gaussian.sigma_m" || name.starts_with("Covariance.") ||
-         name.starts_with("Start.") || name.starts_with("Vertex.") ||
-         name.starts_with("Domain.origin_") || name == "Law.noise_ceiling" ||
-         name == "World.disturbance_intensity" || name == "Law.contraction_gain_per_s" ||
-         name == "Agents.random_count" || name == "Agents.quorum";
+  return name == "Gaussian.sigma_m" || name == "Gaussian.sigma_z_m" ||
+         name.starts_with("Covariance.") || name.starts_with("Start.") ||
+         name.starts_with("Vertex.") || name.starts_with("Domain.origin_") ||
+         name == "Law.noise_ceiling" || name == "World.disturbance_intensity" ||
+         name == "Law.contraction_gain_per_s" || name == "Agents.random_count" ||
+         name == "Agents.quorum";
 }
 
 bool says_limits(const std::string& comment, const Range& range) {

@@ -165,11 +165,11 @@ TEST(Reading, TargetAndItsCoefficientsBelongTogether) {
   const Scenario scenario = good(small_with(
       "uniform_weight: 1",
       "gaussians { mean_x_m: 20 mean_y_m: 30 covariance { xx_m2: 25 yy_m2: 16 xy_m2: -4 } }"));
-  const TargetDensity target{{{1, {20, 30}, (Eigen::Matrix2d() << 25, -4, -4, 16).finished()}}, 0};
+  const TargetDensity target{
+      {plane_gaussian(1, {20, 30}, (Eigen::Matrix2d() << 25, -4, -4, 16).finished())}, 0};
   const Mission& mission = scenario.mission();
-  EXPECT_EQ(
-      mission.target_coefficients,
-      in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values));
+  EXPECT_EQ(mission.target_coefficients,
+            target_coefficients(target, mission.domain, mission.basis).values);
 }
 
 TEST(Reading, ByteOrderMarkAndWindowsLineEndsDoNoHarm) {
@@ -312,11 +312,10 @@ void expect_paper(const Scenario& scenario, bool stochastic) {
   TargetDensity target;
   for (const Eigen::Vector2d& mean_m :
        {Eigen::Vector2d(500, 500), {500, 1500}, {1500, 500}, {1500, 1500}}) {
-    target.gaussians.push_back({1, mean_m, 1e4 * Eigen::Matrix2d::Identity()});
+    target.gaussians.push_back(plane_gaussian(1, mean_m, 1e4 * Eigen::Matrix2d::Identity()));
   }
-  EXPECT_EQ(
-      mission.target_coefficients,
-      in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values));
+  EXPECT_EQ(mission.target_coefficients,
+            target_coefficients(target, mission.domain, mission.basis).values);
   EXPECT_EQ(mission.basis.modes_x, 15);
   EXPECT_EQ(mission.basis.modes_y, 15);
   EXPECT_EQ(mission.basis.sobolev_form, SobolevForm::kSquaredNorm);

@@ -15,6 +15,7 @@
 #include "lab/random_stream.h"
 #include "scenario/fields.h"
 #include "tests/support/grey_png.h"
+#include "tests/support/netcdf_writer.h"
 
 namespace ergocast::test {
 namespace {
@@ -126,30 +127,48 @@ const std::map<std::string, Rule>& rules() {
       {"Domain.origin_y_m", may(number(-20, 0))},
       {"Domain.size_x_m", must(number(120, 200))},
       {"Domain.size_y_m", must(number(120, 200))},
+      {"Domain.origin_z_m", may(number(-20, 0))},
+      {"Domain.size_z_m", may(number(120, 200))},
 
       {"Target.gaussians", many(0, 3)},
       {"Target.uniform_weight", may(number(0.1, 2))},
       {"Target.maps", many(0, 2)},
       {"Target.regions", many(0, 2)},
       {"Target.keep_outs", many(0, 2)},
+      {"Target.voxels", many(0, 1)},
+      {"Voxels.file", must(text({"a.nc"}))},
+      {"Voxels.variable", must(text({"v"}))},
+      {"Voxels.weight", may(spread(0.1, 10))},
+      {"Voxels.time_index", must(number(0, 1))},
       {"Gaussian.weight", may(spread(0.1, 10))},
       {"Gaussian.mean_x_m", must(kPlace)},
       {"Gaussian.mean_y_m", must(kPlace)},
+      {"Gaussian.mean_z_m", must(kPlace)},
       {"Gaussian.sigma_m", may(spread(3, 50))},
+      {"Gaussian.sigma_z_m", may(spread(3, 50))},
       {"Gaussian.covariance", may(draw_block)},
       {"Covariance.xx_m2", must(spread(10, 1000))},
       {"Covariance.yy_m2", must(spread(10, 1000))},
+      {"Covariance.zz_m2", must(spread(10, 1000))},
       {"Covariance.xy_m2", may(number(-9, 9))},
+      {"Covariance.xz_m2", may(number(-1, 1))},
+      {"Covariance.yz_m2", may(number(-1, 1))},
       {"Map.file", must(text({"a.png", "a.csv", "a.asc"}))},
       {"Map.weight", may(spread(0.1, 10))},
       {"Map.origin_x_m", may(number(-10, 10))},
       {"Map.origin_y_m", may(number(-10, 10))},
       {"Map.size_x_m", may(number(20, 100))},
       {"Map.size_y_m", may(number(20, 100))},
+      {"Map.layers", many(0, 2)},
+      {"Layer.low_z_m", must(number(0, 30))},
+      {"Layer.high_z_m", must(number(40, 50))},  // the second lies above: see agree()
+      {"Layer.value", may(spread(0.1, 10))},
       {"Region.weight", may(spread(0.1, 10))},
       {"Region.polygon", must(draw_block)},
       {"Polygon.vertices", many(3, 6)},
       {"Polygon.holes", many(0, 1)},
+      {"Polygon.low_z_m", may(number(-30, 40))},
+      {"Polygon.high_z_m", may(number(50, 220))},
       {"Polygon.file", may(text({"a.geojson", "b.geojson"}))},
       {"Ring.vertices", many(3, 6)},
       {"Vertex.x_m", must(kPlace)},
@@ -157,6 +176,7 @@ const std::map<std::string, Rule>& rules() {
 
       {"Basis.modes_x", may(number(1, 24))},
       {"Basis.modes_y", may(number(2, 24))},
+      {"Basis.modes_z", may(number(1, 6))},
       {"Basis.sobolev_exponent", may(number(0.1, 3))},
 
       {"Law.u_max_mps", must(spread(1, 40))},
@@ -166,6 +186,7 @@ const std::map<std::string, Rule>& rules() {
       {"Law.contraction_gain_per_s", may(spread(1e-5, 1e-2))},
       {"Law.contraction_x_m", may(kPlace)},
       {"Law.contraction_y_m", may(kPlace)},
+      {"Law.contraction_z_m", may(kPlace)},
       {"Law.anticipation", may(either(0, spread(0.01, 10)))},
 
       {"Time.dt_s", may(spread(0.02, 1))},
@@ -186,6 +207,7 @@ const std::map<std::string, Rule>& rules() {
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
       {"Start.x_m", must(kPlace)},
       {"Start.y_m", must(kPlace)},
+      {"Start.z_m", must(kPlace)},
 
       {"World.disturbance_intensity", may(spread(0.01, 5))},
       {"World.radio_range_m", may(either(0, spread(5, 500)))},
@@ -243,12 +265,34 @@ void make_round(proto::Polygon& polygon, double radius_m) {
   }
 }
 
+/// A plane has no heights.
+void clear_heights(Block& block) {
+  const auto& fields = *block.GetReflection();
+  for (int i = 0; i < block.GetDescriptor()->field_count(); ++i) {
+    const FieldDescriptor& field = *block.GetDescriptor()->field(i);
+    if (is_along_z(field) || name_of(field) == "Map.layers" || name_of(field) == "Target.voxels") {
+      fields.ClearField(&block, &field);
+    } else if (field.message_type() != nullptr && field.is_repeated()) {
+      for (int j = 0; j < fields.FieldSize(block, &field); ++j)
+        clear_heights(*fields.MutableRepeatedMessage(&block, &field, j));
+    } else if (field.message_type() != nullptr && fields.HasField(block, &field)) {
+      clear_heights(*fields.MutableMessage(&block, &field));
+    }
+  }
+}
+
 void agree(proto::Target& target) {
   for (auto& gaussian : *target.mutable_gaussians()) {
     if (gaussian.has_sigma_m()) gaussian.clear_covariance();
     if (!gaussian.has_covariance() && !gaussian.has_sigma_m()) gaussian.set_sigma_m(20);
+    if (!gaussian.has_sigma_m()) gaussian.clear_sigma_z_m();
   }
   for (auto& map : *target.mutable_maps()) {
+    for (int i = 0; i < map.layers_size(); ++i) {
+      auto& layer = *map.mutable_layers(i);
+      layer.set_low_z_m(layer.low_z_m() + 50 * i);
+      layer.set_high_z_m(layer.high_z_m() + 50 * i);
+    }
     const bool says_where = map.file().ends_with(".asc");
     if (says_where || !map.has_origin_x_m()) map.clear_origin_x_m();
     if (says_where) {
@@ -269,6 +313,8 @@ void agree(proto::Target& target) {
 
 void agree(proto::Scenario& scenario) {
   agree(*scenario.mutable_target());
+  const bool planar = !scenario.domain().has_size_z_m();
+  if (planar) clear_heights(scenario);
   if (fields_of(scenario).contains("Polygon.file") && !scenario.has_origin()) {
     scenario.mutable_origin()->set_latitude_deg(54);
     scenario.mutable_origin()->set_longitude_deg(10);
@@ -277,9 +323,16 @@ void agree(proto::Scenario& scenario) {
   if (law.contraction_center() == proto::Law::POINT) {
     if (!law.has_contraction_x_m()) law.set_contraction_x_m(50);
     if (!law.has_contraction_y_m()) law.set_contraction_y_m(50);
+    if (!planar && !law.has_contraction_z_m()) law.set_contraction_z_m(50);
   } else {
     law.clear_contraction_x_m();
     law.clear_contraction_y_m();
+    law.clear_contraction_z_m();
+  }
+  if (auto& basis = *scenario.mutable_basis(); !planar) {  // as fast as a plane
+    basis.set_modes_x(std::min(basis.has_modes_x() ? basis.modes_x() : 8, 8));
+    basis.set_modes_y(std::min(basis.has_modes_y() ? basis.modes_y() : 8, 8));
+    if (!basis.has_modes_z()) basis.set_modes_z(4);
   }
   proto::Time& time = *scenario.mutable_time();
   time.set_duration_s(time.duration_s() * (time.has_dt_s() ? time.dt_s() : 0.1));
@@ -297,6 +350,23 @@ void add_fields(const Descriptor& type, std::set<std::string>& names) {
   }
 }
 
+/// Cells of 20 m from (0, 0, 0) on, at two times.
+void write_grid(const std::filesystem::path& file) {
+  std::vector<NetcdfVariable> variables;
+  const auto axis = [&](const std::string& name, int count) {
+    NetcdfVariable one{name, {name}, {}, {{"units", "m"}}};
+    for (int i = 0; i < count; ++i) one.values.push_back(10 + 20 * i);
+    variables.push_back(one);
+  };
+  axis("x", 4);
+  axis("y", 2);
+  axis("z", 3);
+  NetcdfVariable values{"v", {"time", "z", "y", "x"}, {}, {}};
+  for (int i = 0; i < 48; ++i) values.values.push_back(1 + i % 7);
+  variables.push_back(values);
+  NetcdfWriter(file, {{"time", 2}, {"z", 3}, {"y", 2}, {"x", 4}}, variables);
+}
+
 }  // namespace
 
 void write_files(const std::filesystem::path& folder) {
@@ -311,6 +381,7 @@ void write_files(const std::filesystem::path& folder) {
       << triangle("[10.0002, 54.0002], [10.0006, 54.0002], [10.0002, 54.0005], [10.0002, 54.0002]");
   std::ofstream(folder / "b.geojson")
       << triangle("[10.0012, 54.0006], [10.0014, 54.0006], [10.0012, 54.0008], [10.0012, 54.0006]");
+  write_grid(folder / "a.nc");
   write_png(folder / "a.png", 4, 2, {.bits = 16},
             [](int column, int row, int) { return 1000 * (1 + column + 4 * row); });
 }

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "target/density_picture.h"
-#include "target/target.h"
+#include "tests/target/plane_target.h"
 #include "tests/target/polygon_reference.h"
 
 namespace ergocast {
@@ -22,11 +22,10 @@ Ring box(double x, double y, double width, double height) {
 Gaussian bell(double x_m, double y_m, double deviation_x_m, double deviation_y_m,
               double correlation = 0) {
   const double covariance = correlation * deviation_x_m * deviation_y_m;
-  Gaussian g;
-  g.mean_m = {x_m, y_m};
-  g.covariance_m2 << deviation_x_m * deviation_x_m, covariance, covariance,
+  Eigen::Matrix2d covariance_m2;
+  covariance_m2 << deviation_x_m * deviation_x_m, covariance, covariance,
       deviation_y_m * deviation_y_m;
-  return g;
+  return plane_gaussian(1, {x_m, y_m}, covariance_m2);
 }
 
 PlaneCoefficients area_reference(const Ring& ring) {
@@ -40,7 +39,7 @@ TEST(Regions, WithHolesAreUniformInside) {
     Polygon polygon{outline, {hole}};
     if (clockwise) std::reverse(polygon.holes[0].begin(), polygon.holes[0].end());
     if (clockwise) std::reverse(polygon.outline.begin(), polygon.outline.end());
-    const TargetCoefficients ours = target_coefficients({{}, 0, {{3, polygon}}}, kDomain, kBasis);
+    const PlaneIntegrals ours = target_coefficients({{}, 0, {{3, polygon}}}, kDomain, kBasis);
     const PlaneCoefficients expected = area_reference(outline) - area_reference(hole);
     EXPECT_LE(largest_difference(ours.values, expected / expected(0, 0)), 1e-12);
     EXPECT_LE(ours.error_bound, 1e-10);
@@ -70,19 +69,19 @@ TEST(Regions, OfTheWholeDomainAreTheUniformTarget) {
 // Inclusion and exclusion by hand: the two share a box of 100 × 100.
 TEST(KeepOuts, ThatOverlapTakeAwayTheirUnion) {
   const Ring first = box(200, 300, 300, 300), second = box(400, 500, 300, 300);
-  const TargetDensity target{{}, 1, {}, {{first, {}}, {second, {}}}};
+  const TargetDensity target{{}, 1, {}, {{{first, {}}}, {{second, {}}}}};
   PlaneCoefficients expected = PlaneCoefficients::Zero(12, 9);
   expected(0, 0) = 2000 * 1200;
   expected +=
       area_reference(box(400, 500, 100, 100)) - area_reference(first) - area_reference(second);
-  const TargetCoefficients ours = target_coefficients(target, kDomain, kBasis);
+  const PlaneIntegrals ours = target_coefficients(target, kDomain, kBasis);
   EXPECT_LE(largest_difference(ours.values, expected / expected(0, 0)), 1e-12);
   EXPECT_LE(ours.error_bound, 1e-11);
 }
 
 TEST(KeepOuts, CutRegionsToo) {
   const Ring region = box(0, 100, 1000, 500), keep_out{{500, 50}, {800, 350}, {200, 350}};
-  const TargetDensity target{{}, 0, {{1, {region, {}}}}, {{keep_out, {}}}};
+  const TargetDensity target{{}, 0, {{1, {region, {}}}}, {{{keep_out, {}}}}};
   // The triangle's tip lies below the region, which takes away what is above y = 100.
   const Ring inside{{450, 100}, {550, 100}, {800, 350}, {200, 350}};
   const PlaneCoefficients expected = area_reference(region) - area_reference(inside);
@@ -101,8 +100,7 @@ TEST(KeepOuts, OverGaussiansAreWithinTheStatedError) {
     const PlaneCoefficients taken = over_ring(
         triangle, [&](const Eigen::Vector2d& x_m) { return density_unscaled(alone, kDomain, x_m); },
         kDomain, kBasis, 60);
-    const TargetCoefficients ours =
-        target_integrals({{g}, 0, {}, {{triangle, {}}}}, kDomain, kBasis);
+    const PlaneIntegrals ours = target_integrals({{g}, 0, {}, {{{triangle, {}}}}}, kDomain, kBasis);
     EXPECT_LE(largest_difference(ours.values, whole - taken), ours.error_bound + 1e-12);
     EXPECT_LE(ours.error_bound, 1e-11);
     EXPECT_LT(ours.values(0, 0), 0.9 * whole(0, 0));
@@ -112,14 +110,14 @@ TEST(KeepOuts, OverGaussiansAreWithinTheStatedError) {
 TEST(KeepOuts, ThatTouchNothingChangeNothing) {
   const TargetDensity without{{bell(1000, 600, 90, 60), bell(900, 700, 80, 90, 0.6)}, 0.5};
   TargetDensity with = without;
-  with.keep_outs = {{box(5000, 5000, 10, 10), {}}};
+  with.keep_outs = {{{box(5000, 5000, 10, 10), {}}}};
   EXPECT_LE(largest_difference(target_coefficients(with, kDomain, kBasis).values,
                                target_coefficients(without, kDomain, kBasis).values),
             1e-13);
 }
 
 TEST(KeepOuts, OverEverythingLeaveNoMass) {
-  const TargetDensity target{{bell(500, 500, 50, 50)}, 1, {}, {{box(-400, 0, 3000, 3000), {}}}};
+  const TargetDensity target{{bell(500, 500, 50, 50)}, 1, {}, {{{box(-400, 0, 3000, 3000), {}}}}};
   EXPECT_EQ(mass_inside(target, kDomain), 0);
 }
 
@@ -127,7 +125,7 @@ TEST(Density, IsZeroInKeepOutsAndUniformInRegions) {
   const TargetDensity target{{},
                              1.2,
                              {{2, {box(0, 100, 100, 100), {}}}},
-                             {{box(50, 150, 100, 100), {box(60, 160, 10, 10)}}}};
+                             {{{box(50, 150, 100, 100), {box(60, 160, 10, 10)}}}}};
   const double floor = 1.2 / (2000 * 1200), inside = 2.0 / 10000;
   EXPECT_DOUBLE_EQ(density_unscaled(target, kDomain, {1000, 600}), floor);
   EXPECT_DOUBLE_EQ(density_unscaled(target, kDomain, {10, 110}), floor + inside);
@@ -139,8 +137,9 @@ TEST(DensityPicture, HasTheMassOfTheTarget) {
   const TargetDensity target{{bell(700, 650, 150, 100)},
                              0.5,
                              {{1, {{{0, 100}, {900, 200}, {400, 800}}, {}}}},
-                             {{{{600, 400}, {1000, 700}, {500, 900}}, {}}}};
-  const DensityGrid picture = density_picture(target, DensityGrid::Zero(256, 154), kDomain);
+                             {{{{{600, 400}, {1000, 700}, {500, 900}}, {}}}}};
+  const std::vector<DensityGrid> maps{DensityGrid::Zero(256, 154)};
+  const DensityGrid picture = density_picture(target, maps, plane_of(kDomain));
   EXPECT_NEAR(picture.mean() * 2000 * 1200, mass_inside(target, kDomain), 2e-3);
   EXPECT_EQ(picture(128, 77), 0);  // (700, 650), inside the keep-out
 }

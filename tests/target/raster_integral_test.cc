@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "target/density_picture.h"
+#include "tests/target/plane_target.h"
 #include "tests/target/polygon_reference.h"
 
 namespace ergocast {
@@ -20,8 +21,8 @@ const Basis kBasis{.modes_x = 13, .modes_y = 10};
 /// Values without any symmetry, some of them 0.
 double value_at(int column, int row) { return (3 + 7 * column + 13 * row + column * row) % 11; }
 
-TargetCoefficients shares_of(const RasterGrid& grid, const std::vector<Polygon>& keep_outs = {},
-                             const std::function<double(int, int)>& value = value_at) {
+PlaneIntegrals shares_of(const RasterGrid& grid, const std::vector<Polygon>& keep_outs = {},
+                         const std::function<double(int, int)>& value = value_at) {
   RasterIntegral integral(grid, kDomain, kBasis, free_area(kDomain, keep_outs));
   std::vector<double> values(static_cast<std::size_t>(grid.columns));
   for (int row = 0; row < grid.rows; ++row) {
@@ -71,7 +72,7 @@ TEST(RasterIntegral, IsExactForCellsOfConstantDensity) {
       {{{-30, 5}, {200, 0.5}}, 40, 3},      // thin
   };
   for (const RasterGrid& grid : grids) {
-    const TargetCoefficients ours = shares_of(grid);
+    const PlaneIntegrals ours = shares_of(grid);
     // The last digits are the reference's, which adds 22 500 terms a cell.
     EXPECT_LE(largest_difference(ours.values, reference(grid)), 1e-12);
     EXPECT_LE(ours.error_bound, 1e-13);
@@ -125,7 +126,7 @@ TEST(RasterIntegral, OfAUniformMapIsTheUniformTarget) {
   PlaneCoefficients expected = PlaneCoefficients::Zero(kBasis.modes_x, kBasis.modes_y);
   expected(0, 0) = 1;
   for (const auto& [columns, rows] : {std::pair(1, 1), {7, 5}, {300, 200}}) {
-    const TargetCoefficients ours =
+    const PlaneIntegrals ours =
         shares_of({kDomain, columns, rows}, {}, [](int, int) { return 0.1; });
     EXPECT_LE(largest_difference(ours.values, expected), ours.error_bound);
     EXPECT_LE(ours.error_bound, 1e-13);
@@ -152,7 +153,7 @@ TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
        {RasterGrid{kDomain, 10, 6}, RasterGrid{{{-60, -20}, {270, 160}}, 31, 23},
         RasterGrid{{{0, 20}, {100, 70}}, 2, 2}}) {
     TargetDensity cells;
-    cells.keep_outs = keep_outs();
+    for (const Polygon& polygon : keep_outs()) cells.keep_outs.push_back({polygon});
     double whole = 0;
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
@@ -164,7 +165,7 @@ TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
       }
     }
     const PlaneCoefficients expected = target_integrals(cells, kDomain, kBasis).values / whole;
-    const TargetCoefficients ours = shares_of(grid, keep_outs());
+    const PlaneIntegrals ours = shares_of(grid, keep_outs());
     EXPECT_LE(largest_difference(ours.values, expected), 1e-13);
     EXPECT_LE(ours.error_bound, 1e-11);
     EXPECT_LT(ours.values(0, 0), 0.9 * shares_of(grid).values(0, 0));

@@ -15,6 +15,7 @@ namespace ergocast {
 namespace {
 
 using test::rich_mission;
+using test::rich_mission_in_space;
 using Bytes = std::vector<std::byte>;
 
 /// The mission in a plan, if there is one.
@@ -43,12 +44,14 @@ class Numbers : public FieldVisitor {
   void number(int, const char*, double& value, const Limits&, bool = true) {
     all.push_back(&value);
   }
+  void height(int, const char*, int&, const Limits&, double) {}
+  void height(int, const char*, double& value, const Limits&, double) { all.push_back(&value); }
   void part(int, const char*, auto& part) { list_fields(*this, part); }
-  void contraction_center(int, Eigen::Vector3d& x_m) {
-    all.insert(all.end(), {&x_m.x(), &x_m.y()});
+  void contraction_center(int, int, Eigen::Vector3d& x_m) {
+    all.insert(all.end(), {&x_m.x(), &x_m.y(), &x_m.z()});
   }
-  void starts(int, std::vector<Eigen::Vector3d>& starts_m) {
-    for (Eigen::Vector3d& x_m : starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y()});
+  void starts(int, int, std::vector<Eigen::Vector3d>& starts_m) {
+    for (Eigen::Vector3d& x_m : starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y(), &x_m.z()});
   }
 };
 
@@ -61,8 +64,9 @@ TEST(HostilePlan, CutShortIsRefused) {
 
 TEST(HostilePlan, OfRandomBytesIsRefusedOrWithinLimits) {
   std::mt19937 random(1);
-  const Bytes plan = encode_plan(rich_mission());
+  const Bytes plans[] = {encode_plan(rich_mission()), encode_plan(rich_mission_in_space())};
   for (int i = 0; i < 20000; ++i) {
+    const Bytes& plan = plans[i / 2 % 2];
     Bytes noisy = plan;
     if (i % 2 == 0) noisy.resize(random() % plan.size());
     for (int changes = 1 + i % 8; changes > 0 && !noisy.empty(); --changes) {
@@ -74,14 +78,16 @@ TEST(HostilePlan, OfRandomBytesIsRefusedOrWithinLimits) {
 }
 
 TEST(HostilePlan, WithANumberThatIsNoneOrHugeIsRefused) {
-  Mission mission = rich_mission();
-  const std::size_t count = Numbers(mission).all.size();
-  ASSERT_GT(count, 25u);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const double bad : {std::nan(""), double{INFINITY}, -double{INFINITY}, -1e300, 1e300}) {
-      Mission broken = rich_mission();
-      *Numbers(broken).all[i] = bad;
-      EXPECT_FALSE(is_taken(broken)) << i << ": " << bad;
+  for (const Mission& good : {rich_mission(), rich_mission_in_space()}) {
+    Mission mission = good;
+    const std::size_t count = Numbers(mission).all.size();
+    ASSERT_GT(count, 25u);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const double bad : {std::nan(""), double{INFINITY}, -double{INFINITY}, -1e300, 1e300}) {
+        Mission broken = good;
+        *Numbers(broken).all[i] = bad;
+        EXPECT_FALSE(is_taken(broken)) << i << ": " << bad;
+      }
     }
   }
 }
@@ -98,11 +104,9 @@ TEST(HostilePlan, WithACoefficientThatCannotBeIsRefused) {
   EXPECT_FALSE(is_taken(mission));
 }
 
-// A plan that forgot the height would fly another mission.
-TEST(HostilePlan, SaysNoHeightSoThatAMissionWithOneIsOutsideTheLimits) {
+TEST(HostilePlan, InAPlaneHasNoHeights) {
   ASSERT_TRUE(within_limits(rich_mission()));
   constexpr void (*kHigh[])(Mission&) = {
-      [](Mission& m) { m.domain.size_m.z() = 5; },
       [](Mission& m) { m.domain.origin_m.z() = 5; },
       [](Mission& m) { m.law.contraction_center_m.z() = 5; },
       [](Mission& m) { m.starts_m[1].z() = 5; },
@@ -115,7 +119,32 @@ TEST(HostilePlan, SaysNoHeightSoThatAMissionWithOneIsOutsideTheLimits) {
   for (const auto change : kHigh) {
     Mission mission = rich_mission();
     change(mission);
-    EXPECT_FALSE(within_limits(mission));
+    EXPECT_FALSE(is_taken(mission));
+  }
+}
+
+TEST(HostilePlan, InABoxKeepsToItsHeights) {
+  ASSERT_TRUE(is_taken(rich_mission_in_space()));
+  constexpr void (*kBroken[])(Mission&) = {
+      [](Mission& m) { m.domain.size_m.z() = -53; },
+      [](Mission& m) { m.domain.size_m.z() = 1e-4, m.domain.origin_m.z() = 0; },
+      [](Mission& m) { m.domain.origin_m.z() = -5.4e6, m.law.contraction_gain_per_s = 0; },
+      [](Mission& m) { m.starts_m[1].z() = 46.1; },
+      [](Mission& m) { m.starts_m[0].z() = -7.1; },
+      [](Mission& m) { m.law.u_max_mps = 425; },  // longer steps than the height
+      [](Mission& m) { m.law.contraction_center_m.z() = 1.1e13; },
+      [](Mission& m) { m.law.contraction_center_m.z() = 1e5; },  // too strong a pull
+      [](Mission& m) { m.basis.modes_z = 3; },                   // μ has less
+      [](Mission& m) {
+        m.basis.modes_x = m.basis.modes_y = kMaxModesPerAxis;
+        m.target_coefficients.setZero(m.basis.mode_count());
+        m.target_coefficients[0] = 1;
+      },
+  };
+  for (std::size_t i = 0; i < std::size(kBroken); ++i) {
+    Mission mission = rich_mission_in_space();
+    kBroken[i](mission);
+    EXPECT_FALSE(within_limits(mission)) << "change " << i;
   }
 }
 

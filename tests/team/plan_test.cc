@@ -27,6 +27,9 @@ class Fields : public FieldVisitor {
   void number(int, const char*, double value, const Limits&, bool = true) {
     texts.push_back(text_of(value));
   }
+  void height(int, const char*, double value, const Limits&, double) {
+    texts.push_back(text_of(value));
+  }
   void flag(int, const char*, bool value) { texts.push_back(std::to_string(value)); }
   void choice(int, const char*, auto value, Words) {
     texts.push_back(std::to_string(static_cast<int>(value)));
@@ -34,14 +37,14 @@ class Fields : public FieldVisitor {
   void seed(int, const char*, std::uint64_t value) { texts.push_back(std::to_string(value)); }
   void name(int, const char*, const std::string& value) { texts.push_back(value); }
   void part(int, const char*, const auto& part) { list_fields(*this, part); }
-  void contraction_center(int, const Eigen::Vector3d& x_m) { texts.push_back(text_of(x_m)); }
+  void contraction_center(int, int, const Eigen::Vector3d& x_m) { texts.push_back(text_of(x_m)); }
   void duration(int, const Timing& timing) { texts.push_back(std::to_string(timing.tick_count)); }
   void target(int, const Coefficients& values) {
     std::string all;
     for (const double value : values) all += text_of(value);
     texts.push_back(all);
   }
-  void starts(int, const std::vector<Eigen::Vector3d>& places_m) {
+  void starts(int, int, const std::vector<Eigen::Vector3d>& places_m) {
     std::string all;
     for (const Eigen::Vector3d& x_m : places_m) all += text_of(x_m);
     texts.push_back(all);
@@ -87,12 +90,13 @@ void expect_travels(const Mission& mission) {
 }
 
 TEST(Plan, CarriesEveryFieldOfAMission) {
-  const Mission mission = rich_mission();
+  const Mission mission = test::rich_mission_in_space();
   const auto rich = Fields(mission).texts, plain = Fields(Mission()).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
     EXPECT_NE(rich[i], plain[i]) << "default: field " << i;
   expect_travels(mission);
+  expect_travels(rich_mission());
 }
 
 // Two swapped switches would not show if both are true.

@@ -70,4 +70,18 @@ inline Mission rich_mission() {
   return mission;
 }
 
+/// The same in a box.
+inline Mission rich_mission_in_space() {
+  Mission mission = rich_mission();
+  mission.domain.origin_m.z() = -7;
+  mission.domain.size_m.z() = 53;
+  mission.basis.modes_z = 2;
+  mission.target_coefficients.conservativeResize(12);
+  mission.target_coefficients.tail(6) << 0.15, -0.25, 0.35, 0.45, -0.05, 0.65;
+  mission.law.contraction_center_m.z() = 9;
+  mission.starts_m[0].z() = -6;
+  mission.starts_m[1].z() = 41;
+  return mission;
+}
+
 }  // namespace ergocast::test

@@ -47,8 +47,8 @@ TargetDensity random_target(Draw& draw, const Box& domain) {
   target.uniform_weight = draw.between(0, 1);
   for (int count = draw.whole(0, 4); count > 0; --count) {
     const double sigma_m = draw.between(0.03, 0.3) * domain.shortest_side_m();
-    target.gaussians.push_back({draw.between(0.1, 1), draw.in(domain).head<2>(),
-                                sigma_m * sigma_m * Eigen::Matrix2d::Identity()});
+    target.gaussians.push_back(
+        {draw.between(0.1, 1), draw.in(domain), sigma_m * sigma_m * Eigen::Matrix3d::Identity()});
   }
   return target;
 }
@@ -58,8 +58,9 @@ TargetDensity random_target(Draw& draw, const Box& domain) {
 double mean_square_bound_m2(const Mission& mission, std::size_t agent) {
   const ControlLaw& law = mission.law;
   return std::max(std::pow(start_distance_m(mission, agent), 2),
-                  std::pow(reach_m(law), 2) +
-                      2 * law.noise_intensity * law.noise_intensity / law.contraction_gain_per_s);
+                  std::pow(reach_m(law), 2) + (mission.domain.planar() ? 2 : 3) *
+                                                  law.noise_intensity * law.noise_intensity /
+                                                  law.contraction_gain_per_s);
 }
 
 std::vector<std::vector<MeanSquare>> mean_squares(Mission mission, lab::Edges edges, int seeds,
@@ -166,8 +167,7 @@ Mission random_mission(std::uint64_t seed) {
   mission.basis.modes_y = draw.whole(1, 12);
   mission.basis.sobolev_exponent = draw.between(0.5, 2);
   const TargetDensity target = random_target(draw, mission.domain);
-  mission.target_coefficients =
-      in_wire_order(target_coefficients(target, base_of(mission.domain), mission.basis).values);
+  mission.target_coefficients = target_coefficients(target, mission.domain, mission.basis).values;
   mission.timing.dt_s = draw.decades(0.01, 1);
   mission.timing.tick_count = 500;
   ControlLaw& law = mission.law;

@@ -11,7 +11,7 @@
 
 namespace ergocast::studies {
 
-/// max{‖x(0) − c‖², u_max²/k² + 2σ²/k} of one agent, in two dimensions [m²].
+/// max{‖x(0) − c‖², u_max²/k² + dσ²/k} of one agent in d dimensions [m²].
 double mean_square_bound_m2(const Mission& mission, std::size_t agent);
 
 /// ‖x − c‖² of one agent over time, over many seeds.

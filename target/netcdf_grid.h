@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A density on the cells of a grid in space, from a NetCDF file with CF conventions.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "target/heights.h"
+#include "target/map_file.h"
+#include "target/raster_integral.h"
+
+namespace ergocast {
+
+/// More cells take minutes to read.
+inline constexpr std::size_t kMostVoxels = std::size_t{1} << 28;
+
+/// Reads rows one by one, so that a grid of any size needs the memory of a row and of one of the
+/// file's chunks, at most 64 MiB.
+class NetcdfGrid {
+ public:
+  /// The variable of this name: its axes are x, y, z and perhaps time (target/netcdf_axis.h); x and
+  /// y are evenly spaced. `time_index` chooses one of several times, the first is 0.
+  static std::variant<std::unique_ptr<NetcdfGrid>, MapProblem> open(
+      const std::filesystem::path& file, const std::string& variable,
+      std::optional<int> time_index);
+
+  virtual ~NetcdfGrid() = default;
+  NetcdfGrid(const NetcdfGrid&) = delete;
+  NetcdfGrid& operator=(const NetcdfGrid&) = delete;
+
+  /// Its cells seen from above, and their heights, ascending.
+  virtual const RasterGrid& raster() const = 0;
+  virtual const std::vector<Heights>& layers() const = 0;
+
+  /// Reads a row of a layer, both counted from below and from the south, into raster().columns
+  /// values, the westernmost first: densities from 0 to kMaxMapValue, unpacked, 0 where the file
+  /// has fill values.
+  virtual std::optional<MapProblem> row(int layer, int row, std::span<double> values) = 0;
+
+ protected:
+  NetcdfGrid() = default;
+};
+
+}  // namespace ergocast

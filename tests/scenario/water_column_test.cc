@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Targets from NetCDF grids: exact against the same cells as prisms, and each mistake refused.
+#include "tests/scenario/water_column.h"
+
+#include <gtest/gtest.h>
+
+#include "target/target.h"
+#include "tests/scenario/scenarios.h"
+#include "tests/support/temp_folder.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+class WaterColumnTest : public ::testing::Test {
+ protected:
+  Loaded loaded(const WaterColumn& column, const std::string& choice = "time_index: 1") {
+    column.write(folder_.path() / "column.nc");
+    return Scenario::parse(water_column_scenario(choice),
+                           (folder_.path() / "column.textproto").string());
+  }
+  Coefficients mu_of(const WaterColumn& column) {
+    return good(loaded(column)).mission().target_coefficients;
+  }
+  std::string said_of_column(const WaterColumn& column,
+                             const std::string& choice = "time_index: 1") {
+    const Loaded result = loaded(column, choice);
+    if (std::holds_alternative<Scenario>(result)) return "nothing";
+    std::string all;
+    for (const Problem& problem : std::get<1>(result)) all += to_string(problem) + '\n';
+    return all;
+  }
+
+  TempFolder folder_;
+};
+
+/// The same cells as regions.
+TargetDensity prisms() {
+  TargetDensity target;
+  for (std::uint32_t k = 0; k + 1 < kDepthEdges_m.size(); ++k) {
+    const Heights heights{-kDepthEdges_m[k + 1], -kDepthEdges_m[k]};
+    for (std::uint32_t j = 0; j < kColumnY; ++j) {
+      for (std::uint32_t i = 0; i < kColumnX; ++i) {
+        const double x = 100.0 * i, y = 100.0 * j;
+        const Polygon cell{{{x, y}, {x + 100, y}, {x + 100, y + 100}, {x, y + 100}}, {}};
+        const double mass = chlorophyll(i, j, k) * heights.length_m();
+        if (mass > 0) target.regions.push_back({mass, cell, heights});
+      }
+    }
+  }
+  return target;
+}
+
+TEST_F(WaterColumnTest, IsTheSumOfItsCells) {
+  const Mission mission = good(loaded({})).mission();
+  const Coefficients expected = target_coefficients(prisms(), mission.domain, mission.basis).values;
+  EXPECT_LE((mission.target_coefficients - expected).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST_F(WaterColumnTest, MayBeWrittenInOtherWays) {
+  const Coefficients mu = mu_of({});
+  WaterColumn upwards;  // heights in place of depths, and so the bounds
+  upwards.at("depth").attributes[1] = {"positive", "up"};
+  for (double& value : upwards.at("depth").values) value = -value;
+  for (double& value : upwards.at("depth_bounds").values) value = -value;
+  EXPECT_EQ(mu_of(upwards), mu);
+  WaterColumn unpacked;  // floats, nan for land
+  NetcdfVariable& values = unpacked.at("chl");
+  values.attributes = {{"_FillValue", std::nan("")}};
+  values.type = NetcdfType::kDouble;
+  for (double& value : values.values) value = value == -999 ? std::nan("") : 0.01 * value;
+  EXPECT_LE((mu_of(unpacked) - mu).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST_F(WaterColumnTest, ReadsBackWhatItPrints) {
+  const Scenario scenario = good(loaded({}));
+  EXPECT_EQ(plan_of(good(Scenario::parse(scenario.print(), "/elsewhere/again"))),
+            plan_of(scenario));
+}
+
+TEST_F(WaterColumnTest, RefusesEachMistakeWithItsRemedy) {
+  using Change = void (*)(WaterColumn&);
+  const std::pair<Change, std::string> mistakes[] = {
+      {[](WaterColumn& c) { c.at("chl").name = "salt"; },
+       "chl is none of its variables (write one of x, y, depth, depth_bounds, time, salt)"},
+      {[](WaterColumn& c) { std::swap(c.at("y").values[1], c.at("y").values[3]); },
+       "y does not ascend or descend throughout"},
+      {[](WaterColumn& c) { c.at("x").values[3] += 0.02; }, "along x are not of one size"},
+      {[](WaterColumn& c) { c.at("depth_bounds").values[3] = 20; },
+       "depth does not ascend or descend throughout"},
+      {[](WaterColumn& c) { c.at("depth").attributes[2].second = "nothing"; },
+       "depth: nothing does not have the shape"},
+      {[](WaterColumn& c) { c.at("x").attributes[1].second = "degrees_east"; },
+       "x is in degrees_east (write it in m or km"},
+      {[](WaterColumn& c) { c.at("x").attributes.pop_back(); }, "x has no units"},
+      {[](WaterColumn& c) { c.at("x").values[2] = std::nan(""); },
+       "x has a value that is no place"},
+      {[](WaterColumn& c) { c.rename("depth", "member"); },
+       "has the axis member, which is none of x, y, z and time"},
+      {[](WaterColumn& c) { c.at("chl").values[300] = -1; }, "is negative"},
+      {[](WaterColumn& c) {
+         c.at("chl").type = NetcdfType::kDouble;
+         c.at("chl").values[300] = std::nan("");
+       },
+       "is not a finite number"},
+      {[](WaterColumn& c) {
+         for (double& v : c.at("chl").values) v = 0;
+       },
+       "has no number above 0"},
+      {[](WaterColumn& c) {
+         for (double& v : c.at("y").values) v += 10000;
+       },
+       "nothing of it is left inside the domain"},
+  };
+  for (const auto& [change, said] : mistakes) {
+    WaterColumn column;
+    change(column);
+    const std::string heard = said_of_column(column);
+    EXPECT_NE(heard.find(said), std::string::npos) << said << " is not in " << heard;
+    EXPECT_NE(heard.find(":3:10: target.voxels[0]: "), std::string::npos) << heard;
+  }
+  EXPECT_NE(said_of_column({}, "").find("has 2 times (choose one: time_index: 0 to 1"),
+            std::string::npos);
+  EXPECT_NE(said_of_column({}, "time_index: 2").find("has no time of index 2"), std::string::npos);
+}
+
+// Its numbers are not even read.
+TEST_F(WaterColumnTest, OfABillionCellsIsRefused) {
+  WaterColumn column;
+  column.grow(1000);
+  const std::string said = said_of_column(column, "");
+  EXPECT_NE(said.find("1000000000 cells, above the limit"), std::string::npos) << said;
+}
+
+TEST_F(WaterColumnTest, OfNoNetcdfFileIsRefused) {
+  std::ofstream(folder_.path() / "column.nc") << "x,y\n1,2\n";
+  const Loaded text = Scenario::parse(water_column_scenario(), (folder_.path() / "f").string());
+  ASSERT_TRUE(std::holds_alternative<std::vector<Problem>>(text));
+  EXPECT_NE(to_string(std::get<1>(text)[0]).find("is it a NetCDF file?"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ergocast
