@@ -15,6 +15,8 @@ struct Box {
 
   bool planar() const { return size_m.z() == 0; }
   bool contains(const Eigen::Vector3d& x_m) const;
+  /// The place of the box that is nearest to `x_m`; inside, that itself, bit for bit.
+  Eigen::Vector3d nearest(const Eigen::Vector3d& x_m) const;
   Eigen::Vector3d center_m() const { return origin_m + 0.5 * size_m; }
 
   /// The shortest of the sides along which something moves.

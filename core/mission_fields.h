@@ -87,6 +87,16 @@ void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
   io.number(9, "catch_up_limit_ticks", timing.catch_up_limit_ticks, limits::between(0, 1000));
 }
 
+/// All are 0 where no distance is kept.
+void list_fields(auto& io, MaybeConst<Separation> auto& separation) {
+  const bool kept = separation.distance_m != 0;
+  io.number(1, "distance_m", separation.distance_m, limits::above(0, 1e7), kept);
+  io.number(2, "position_error_m", separation.position_error_m, limits::between(0, 1e7), kept);
+  io.number(3, "disturbance_m", separation.disturbance_m, limits::between(0, 1e7), kept);
+  io.number(4, "response_s", separation.response_s, limits::between(0, 1e4), kept);
+  if (separation.distance_m != 0) io.flag(5, "guard", separation.guard);
+}
+
 /// Number 1 of the plan is the version of the program that wrote it.
 void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.name(2, "name", m.name);
@@ -105,6 +115,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.number(13, "world.radio_range_m", m.radio_range_m, limits::between(0, 1e13));
   io.number(14, "world.speed_limit_mps", m.speed_limit_mps, limits::above(0, 1e9),
             m.speed_limit_mps != 0);
+  io.part(17, "separation", m.separation);
   io.number(11, "goal_ergodic_metric", m.goal_ergodic_metric, limits::above(0, 1e9),
             m.goal_ergodic_metric != 0);
   io.hidden_flag(16, m.wait_for_logger);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/mission_fields.h"
+#include "core/separation.h"
 
 namespace ergocast {
 namespace {
@@ -85,6 +86,18 @@ bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box
          law.u_max_mps >= law.contraction_gain_per_s * reach_m;
 }
 
+/// Everything that keeps bodies apart relies on their speed limit, and on room.
+bool fits(const Separation& separation, const Mission& mission) {
+  if (separation.distance_m == 0) return !separation.guard;
+  const double step_m = mission.speed_limit_mps * mission.timing.dt_s;
+  const auto held = static_cast<double>(unguarded_hold_ticks(mission));
+  return mission.speed_limit_mps > 0 &&
+         separation.distance_m <= mission.domain.shortest_side_m() / 4 &&
+         separation.disturbance_m < step_m / 4 && 2 * held * step_m <= separation.distance_m / 2 &&
+         packing(mission, mission.starts_m.size()) <= kHopelessPacking &&
+         least_distance_m(mission.starts_m) >= start_distance_m(mission);
+}
+
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
@@ -114,7 +127,7 @@ bool within_limits(const Mission& mission) {
          fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
-         is_team(mission);
+         is_team(mission) && fits(mission.separation, mission);
 }
 
 }  // namespace ergocast

@@ -11,6 +11,7 @@
 #include "scenario/explain.h"
 #include "scenario/fields.h"
 #include "scenario/utf8.h"
+#include "scenario/validate_separation.h"
 #include "scenario/validate_target.h"
 
 namespace ergocast {
@@ -39,6 +40,7 @@ class Validator {
     time();
     agents();
     disturbance();
+    if (scenario_.has_separation()) validate_separation(scenario_, checks_);
   }
 
  private:

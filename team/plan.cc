@@ -75,7 +75,9 @@ class PlanWriter {
     value(field, bytes);
   }
   PlanWriter open(int) const { return {}; }
-  void close(int field, const PlanWriter& block) { value(field, block.bytes()); }
+  void close(int field, const PlanWriter& block) {
+    if (const std::string bytes = block.bytes(); !bytes.empty()) value(field, bytes);
+  }
 
   std::string bytes() const {
     std::string all;

@@ -46,7 +46,7 @@ export function showFacts(live) {
 const AGENT_COLUMNS = [
   ['agent', 'id'], ['host', 'host'], ['incarnation', 'incarnation'], ['from tick', 'active_from'], ['until', 'active_until'],
   ['messages sent', 'messages_sent'], ['received', 'messages_received'], ['contributions', 'contributions_received'],
-  ['lost', 'contributions_lost'], ['missed ticks', 'missed_ticks'], ['oldest knowledge [s]', 'max_staleness_s'],
+  ['lost', 'contributions_lost'], ['missed ticks', 'missed_ticks'], ['blocked ticks', 'blocked_ticks'], ['longest block', 'longest_block_ticks'], ['oldest knowledge [s]', 'max_staleness_s'],
   ['kernel drops', 'kernel_drops'], ['own φ²', 'ergodic_metric'],
 ];
 

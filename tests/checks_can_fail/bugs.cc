@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
@@ -14,6 +16,7 @@
 #include "core/coverage_table.h"
 #include "core/forecast.h"
 #include "core/geometry.h"
+#include "core/separation.h"
 #include "lcmtypes/codec.h"
 #include "sim/world.h"
 
@@ -57,6 +60,7 @@ WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantI
 WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
+WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
 // clang-format on
 
 // ---- control and world
@@ -72,6 +76,19 @@ Eigen::Vector3d bug_reflect(const Eigen::Vector3d& x_m, const Box& domain) {
   const Eigen::Vector3d back_m = real_reflect(x_m, domain);
   if (!bug("the edges push outwards")) return back_m;
   return back_m + (back_m - domain.center_m());
+}
+
+SafeVelocity bug_safe(SeparationFilter* self, const Mover& mover, const Eigen::Vector3d& wanted_mps,
+                      std::span<const Neighbour> others) {
+  if (bug("bodies are no bodies")) return {wanted_mps};
+  if (bug("only two bodies count")) others = others.first(std::min<std::size_t>(2, others.size()));
+  std::vector<Neighbour> misjudged;
+  if (bug("a body takes the whole gap")) {
+    misjudged.assign(others.begin(), others.end());
+    for (Neighbour& other : misjudged) other.max_speed_mps *= 1e-9;
+    others = misjudged;
+  }
+  return real_safe(self, mover, wanted_mps, others);
 }
 
 // ---- coverage

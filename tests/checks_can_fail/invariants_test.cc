@@ -30,9 +30,15 @@ const char* const kLateBlocks =
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
 
+const char* const kCrowd =
+    "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1";
+
 const Plant kPlants[] = {
     {Invariant::kPositionsInTheDomain, "the edges push outwards"},
     {Invariant::kInputsBounded, "the input is not cut"},
+    {Invariant::kDistanceKept, "bodies are no bodies", "", kCrowd},
+    {Invariant::kDistanceKept, "only two bodies count", "", kCrowd},
+    {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowd},
     {Invariant::kSumsBounded, "a sum runs away"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},

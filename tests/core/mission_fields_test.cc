@@ -61,6 +61,7 @@ TEST(MissionFields, AreAllMembers) {
   // Two for each corner; no z yet.
   EXPECT_EQ(listed<Box>(), 2 * members<Box>());
   EXPECT_EQ(listed<Basis>(), members<Basis>() - 1);
+  EXPECT_EQ(listed<Separation>(), members<Separation>() - 1) << "guard means nothing without it";
 }
 
 }  // namespace

@@ -88,7 +88,9 @@ void expect_travels(const Mission& mission) {
 
 TEST(Plan, CarriesEveryFieldOfAMission) {
   const Mission mission = rich_mission();
-  const auto rich = Fields(mission).texts, plain = Fields(Mission()).texts;
+  Mission plain_mission;
+  plain_mission.separation.distance_m = 1;  // so that all its fields are listed
+  const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
     EXPECT_NE(rich[i], plain[i]) << "default: field " << i;
@@ -105,6 +107,7 @@ TEST(Plan, CarriesEachSwitchByItself) {
     list_fields(one, mission);
     if (!one.turned()) break;
     if (mission.law.perturbation == Perturbation::kConstant) mission.law.noise_ceiling = 0;
+    if (!mission.separation.guard) mission.timing.command_hold_s = 0;
     expect_travels(mission);
   }
   EXPECT_GE(count, 10);
@@ -114,6 +117,7 @@ TEST(Plan, CarriesEachSwitchByItself) {
 TEST(Plan, KeepsTheBytesOfItsFields) {
   Mission mission = rich_mission();
   mission.wait_for_logger = true;
+  mission.separation = {};
   std::string plan;
   for (const std::byte byte : encode_plan(mission)) {
     plan += "0123456789abcdef"[static_cast<unsigned>(byte) >> 4];
@@ -155,6 +159,7 @@ TEST(Plan, CarriesZerosOfEitherSign) {
   mission.domain.origin_m = {0, -0.0, 0};
   mission.starts_m[0] = {-0.0, 0, 0};
   mission.radio_range_m = mission.speed_limit_mps = mission.goal_ergodic_metric = 0;
+  mission.separation = {};
   mission.target_coefficients[3] = -0.0;
   expect_travels(mission);
 }
@@ -174,7 +179,9 @@ TEST(Plan, OfTheLargestMissionFitsItsMessages) {
   mission.basis.modes_x = mission.basis.modes_y = kMaxModesPerAxis;
   mission.target_coefficients = Coefficients::Constant(kMaxModesPerAxis * kMaxModesPerAxis, 0.7);
   mission.target_coefficients[0] = 1;
-  mission.starts_m.assign(kMaxAgents, {17.5, 20.5, 0});
+  mission.starts_m.clear();
+  for (int i = 0; i < kMaxAgents; ++i)
+    mission.starts_m.emplace_back(17.5 + 2 * (i % 16), 20.5 + 2 * (i / 16), 0);
   mission.quorum = kMaxAgents;
   mission.timing.tick_count = 80'000'000;
   mission.timing.broadcast_period_ticks = mission.timing.catch_up_limit_ticks = 1000;

@@ -65,6 +65,10 @@ inline Mission rich_mission() {
   mission.disturbance_intensity = 0.6;
   mission.radio_range_m = 60;
   mission.speed_limit_mps = 8;
+  mission.separation.distance_m = 0.65;
+  mission.separation.position_error_m = 0.15;
+  mission.separation.disturbance_m = 0.22;
+  mission.separation.response_s = 1.1;
   mission.wait_for_logger = false;
   return mission;
 }

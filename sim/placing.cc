@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where bodies begin, where a restarted world finds them, and what keeps them apart in real time.
+#include <algorithm>
+
+#include "core/geometry.h"
+#include "sim/world.h"
+
+namespace ergocast {
+
+/// Whether it has been told of a state in which all bodies were. In lockstep every agent knows the
+/// last tick that any has answered, or the one before.
+bool World::knows_bodies() const {
+  Tick newest = -1;
+  for (const auto& [id, slot] : vehicles_) newest = std::max(newest, slot.answered());
+  return !keeps_distance() || newest < 0 || question_.before.newest() >= newest - 1;
+}
+
+/// Puts all bodies where they are, so that they keep their distance: in lockstep by their agents'
+/// commands, which are of one tick. In real time those are of several; but all vehicles of one
+/// state were apart. Vehicles whose agents have left are in that state alone.
+void World::settle() {
+  if (world_guards(mission())) guard_.emplace(mission(), 0);
+  const bool realtime = mission().timing.pace == Pace::kRealtime;
+  std::map<AgentId, Eigen::Vector3d> before_m;
+  for (const Neighbour& body : question_.before.neighbours(mission().speed_limit_mps)) {
+    before_m[body.id] = body.position_m;
+    vehicles_.try_emplace(body.id);
+  }
+  std::vector<AgentId> newcomers;
+  for (auto& [id, slot] : vehicles_) {
+    const bool seen = before_m.contains(id);
+    if (realtime && slot.command) slot.command->velocity_mps.setZero();  // from another place
+    if (slot.answered() >= 0 && !(realtime && seen)) {
+      recall(id, slot);
+    } else if (seen) {
+      slot.x_m = before_m.at(id);
+      for (Tick tick = question_.before.newest(); tick < tick_ && !realtime; ++tick)
+        move(id, slot, tick);
+    } else {
+      newcomers.push_back(id);
+    }
+  }
+  for (const AgentId id : newcomers) vehicles_.at(id).placed = false;
+  for (const AgentId id : newcomers) {
+    vehicles_.at(id).x_m = place_for(id);
+    vehicles_.at(id).placed = true;
+  }
+}
+
+/// Where a new body appears: at its start if that is far enough from all others, else where the
+/// seed finds room. At the beginning nobody moves yet.
+Eigen::Vector3d World::place_for(AgentId id) const {
+  const Mission& mission = me_.mission();
+  if (!keeps_distance()) return start_of(mission, id);
+  const bool begins = tick_ == 0 && !schedule_.published;
+  const double distance_m = begins ? start_distance_m(mission) : join_distance_m(mission);
+  std::vector<Eigen::Vector3d> others_m;
+  for (const auto& [other, slot] : vehicles_) {
+    if (other != id && slot.placed) others_m.push_back(slot.x_m);
+  }
+  const bool planned = static_cast<std::size_t>(id) < mission.starts_m.size();
+  const bool free = std::ranges::all_of(others_m, [&](const Eigen::Vector3d& other_m) {
+    return (other_m - start_of(mission, id)).norm() >= distance_m;
+  });
+  return planned && free ? start_of(mission, id) : start_beside(mission, id, others_m, distance_m);
+}
+
+/// Puts a slot where it was at tick_, by its agent's last two commands.
+void World::recall(AgentId id, VehicleSlot& slot) {
+  if (slot.answered() < 0) return;
+  const bool realtime = mission().timing.pace == Pace::kRealtime;
+  slot.x_m = slot.command->position_m;
+  const bool in_a_row =
+      slot.command_before && slot.command_before->header.tick + 1 == slot.answered();
+  if (in_a_row) {
+    slot.applied_mps = within_speed_limit(mission(), slot.command_before->velocity_mps);
+  }
+  // Where a distance is kept in real time, all stand where they were: what they did later, each by
+  // itself, says nothing of how far apart they were.
+  if (realtime && keeps_distance()) return;
+  for (Tick tick = slot.answered(); tick < tick_; ++tick) {
+    drive(slot, tick, realtime);
+    move(id, slot, tick);
+  }
+}
+
+void World::on(const WorldState& before, const Arrival&) {
+  if (!question_.since || !keeps_distance()) return;
+  if (before.header.tick <= mission().timing.tick_count) question_.before.see(before);
+}
+
+/// All vehicles by where all of them are, so that their order does not count. Who is not driven
+/// stands.
+void World::hold_apart() {
+  const double limit_mps = mission().speed_limit_mps;
+  bodies_.clear();
+  for (const auto& [id, slot] : vehicles_) bodies_.push_back({id, slot.x_m, limit_mps});
+  for (auto& [id, slot] : vehicles_) {
+    if (!driven(slot, tick_, true)) continue;
+    slot.applied_mps =
+        guard_->safe({id, tick_, slot.x_m, limit_mps}, slot.applied_mps, bodies_).velocity_mps;
+  }
+}
+
+}  // namespace ergocast
