@@ -38,6 +38,7 @@ Agent::InMission::InMission(const Mission& mission, const Author& self, Tick joi
       anti_entropy(self, mission.seed, mission.timing.dt_s),
       foreseen(Coefficients::Zero(mission.basis.mode_count())),
       team_coverage(foreseen) {
+  table.set_encoding(mission.timing.contribution_encoding);
   if (mission.law.anticipation > 0) {
     forecast.emplace(mission, self);
   } else {
@@ -166,6 +167,8 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
       return count_refused(Refusal::kRange);
     case Merge::kRefusedLimit:
       return count_refused(Refusal::kLimit);
+    case Merge::kRefusedEncoding:
+      return count_refused(Refusal::kEncoding);
     case Merge::kNewer:
       flight->news[theirs.author()] = flight->step.tick;
       return;
@@ -310,8 +313,8 @@ Tick Agent::oldest_news(const InMission& flight) const {
   Tick oldest = 0;
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(flight.step.tick)) continue;
-    const auto news = flight.news.find(entry.author);
-    const Tick last = news == flight.news.end() ? -1 : news->second;
+    const Tick* const news = flight.news.find(entry.author);
+    const Tick last = news == nullptr ? -1 : *news;
     oldest = std::max(oldest, flight.step.tick - std::max(last, entry.active_from - 1));
   }
   return oldest;

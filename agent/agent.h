@@ -8,7 +8,6 @@
 #pragma once
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -22,6 +21,7 @@
 #include "core/forecast.h"
 #include "core/ids.h"
 #include "core/separation.h"
+#include "team/author_map.h"
 #include "team/bodies.h"
 #include "team/deadline.h"
 #include "team/messages.h"
@@ -131,7 +131,7 @@ class Agent {
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
     Tick next_broadcast_tick = 0;
-    std::map<Author, Tick> news;  // when a member's coverage last grew for us
+    AuthorMap<Tick> news;  // when a member's coverage last grew for us
     std::optional<Instant> running_since;
     Instant stalled_said{};
     std::optional<WorldView> pending;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "agent/agent.h"
 
@@ -15,6 +17,20 @@ constexpr auto kDigestPeriod = 1s;
 constexpr double kDigestMissionPeriod_s = 1.0;
 /// An agent without a new tick for so long broadcasts what it has, and again after as long.
 constexpr auto kStallPeriod = 1s;
+
+/// Says what a block has gained on the one broadcast before. Said again in the same tick, it says
+/// the same.
+void tell_gains(const Contribution& before, Contribution& block) {
+  if (before.steps == block.steps) {
+    block.gains = before.gains;
+    block.gained_steps = before.gained_steps;
+    return;
+  }
+  block.gained_steps = block.steps - before.steps;
+  const std::span<double> gains = block.gains.set_all(block.sums.size());
+  const double *now = block.sums.data(), *then = before.sums.data();
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] = now[k] - then[k];
+}
 
 }  // namespace
 
@@ -90,11 +106,13 @@ void Agent::broadcast(InMission& flight, Outbox& out) {
   const Tick tick = flight.step.tick;
   flight.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick);
   for (int b = 0; b < flight.table.block_count(); ++b) {
-    Contribution& block = flight.published[static_cast<std::size_t>(b)];
-    block = flight.table.block(me_.author(), b);
+    Contribution& published = flight.published[static_cast<std::size_t>(b)];
+    Contribution block = flight.table.block(me_.author(), b);
+    if (block.encoding == ContributionEncoding::kFixed16) tell_gains(published, block);
     block.header.tick = tick;  // a repeat says it, too: forecasts count a block's age from it
     block.next_broadcast_tick = flight.next_broadcast_tick;
     me_.publish(Bus::kSwarm, block, tick, out);
+    published = std::move(block);
   }
 }
 

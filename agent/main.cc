@@ -30,6 +30,22 @@ class WaitingLog {
   Instant next_{};
 };
 
+/// Says once that somebody speaks in another encoding than the plan says.
+class EncodingLog {
+ public:
+  void look(const Agent& agent) {
+    const auto refused = agent.refused()[static_cast<std::size_t>(Refusal::kEncoding)];
+    if (refused == 0 || said_) return;
+    said_ = true;
+    spdlog::warn(
+        "somebody sends coverage in another contribution_encoding than the plan says, and it is "
+        "refused: within a run all agents use the plan's");
+  }
+
+ private:
+  bool said_ = false;
+};
+
 int run(const NodeOptions& node, AgentId requested_id) {
   StopSignals signals;
   Agent agent({node.run, requested_id, random_identity(), host_name(), version()});
@@ -47,6 +63,7 @@ int run(const NodeOptions& node, AgentId requested_id) {
   Transport& transport = *std::get<0>(opened);
   TrafficWatch watch(transport);
   WaitingLog waiting;
+  EncodingLog encodings;
   LoopLag lag;
   AgentPhase logged = AgentPhase::kJoining;
   spdlog::info("joining on {}", node.url.base());
@@ -64,6 +81,7 @@ int run(const NodeOptions& node, AgentId requested_id) {
           agent.set_kernel_drops(watch.kernel_drops());
           agent.note_rate_offender(transport.rate_offender());
           waiting.look(agent, now());
+          encodings.look(agent);
         }
         if (agent.phase() == logged) return;
         logged = agent.phase();

@@ -11,8 +11,8 @@
 
 namespace ergocast::cli {
 
-int check(const std::filesystem::path& file, bool print) {
-  const auto scenario = load_or_complain(file, {});
+int check(const std::filesystem::path& file, const Overrides& overrides, bool print) {
+  const auto scenario = load_or_complain(file, overrides);
   if (!scenario) return kExitBadInput;
   for (const Problem& warning : scenario->warnings()) {
     tell("warning: " + to_string(warning));

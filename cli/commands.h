@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/page_server.h"
+#include "cli/study_directory.h"
 #include "lcmtypes/message_authenticator.h"
 #include "runtime/event_log.h"
 #include "runtime/lcm_url.h"
@@ -33,6 +34,7 @@ struct MissionOptions {
   MessageAuthenticator seal;
   std::string key_file;                       ///< the file of the key in `seal`; empty: none
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
+  bool event_log = false;                     ///< `simulate` only; `run` always writes one
   bool watch = false;                         ///< `run` only: serves a page
   PageServer::Options page;
 };
@@ -68,15 +70,29 @@ struct Variation {
 /// The options of `study`.
 struct StudyOptions {
   std::vector<std::filesystem::path> scenarios;
+  std::vector<FieldValue> settings;  ///< of every mission
   std::vector<Variation> variations;
   std::optional<double> duration_s;
   Seeds seeds;
+  std::optional<StudyShard> shard;  ///< index and number only
   int jobs = 1;
   std::filesystem::path out;
 };
 
 /// Simulates each combination of scenario, variation and seed once.
 int study(const StudyOptions& options);
+
+/// The options of `study merge`.
+struct MergeOptions {
+  std::vector<std::filesystem::path> shards;  ///< their folders
+  std::filesystem::path out;
+};
+
+/// Makes the folder of the whole study of its shards.
+int merge_studies(const MergeOptions& options);
+
+/// `list`: the live runs of this user on this host.
+void add_list(CLI::App& app, Action& action);
 
 /// `status`: shows the state of a running team, from any host on its buses.
 void add_status(CLI::App& app, Action& action);
@@ -88,11 +104,17 @@ void add_page_options(CLI::App& app, PageServer::Options& options);
 /// Waits for Ctrl-C or SIGTERM, or until the time is over (−1: for ever). Whether it came.
 bool wait_for_stop(StopSignals& signals, int timeout_ms = -1);
 
+/// `export`: writes a record in the formats of other tools.
+void add_export(CLI::App& app, Action& action);
+
+/// `replay`: sends a recorded run again, for displays.
+void add_replay(CLI::App& app, Action& action);
+
 /// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);
 
 /// Reports every problem of a scenario. With `print`, prints the scenario with all defaults.
-int check(const std::filesystem::path& scenario, bool print);
+int check(const std::filesystem::path& scenario, const Overrides& overrides, bool print);
 
 /// Makes the report of a run directory, again if it exists.
 int report(const std::filesystem::path& run_dir);

@@ -23,11 +23,12 @@ std::string key_problem(const BusOptions& options, const RefusalCounts& refused)
 
 std::string why_nobody(const BusOptions& options, const Transport& transport) {
   const std::string url = options.url.base();
-  std::string text = "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
-                     " was heard on " + url +
-                     ": is the mission flying, and on this URL? `ergocast "
-                     "doctor --lcm-url \"" +
-                     url + "\"` checks the network between the hosts";
+  std::string text =
+      "nobody of " + (options.run == 0 ? "any run" : "run " + to_hex(options.run)) +
+      " was heard on " + url +
+      ": is the mission flying, and on this URL? `ergocast list` names the runs that "
+      "you started here, `ergocast doctor --lcm-url \"" +
+      url + "\"` checks the network between the hosts";
   if (transport.unknown_format().count > 0) {
     text = transport.unknown_format().channel + " arrives on " + url +
            " in a format that version " + version() +

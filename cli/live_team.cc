@@ -26,10 +26,11 @@ std::string event(const char* name, const Json& data) {
 
 }  // namespace
 
-LiveTeam::LiveTeam(RunId run, Instant since, bool authenticated)
+LiveTeam::LiveTeam(RunId run, Instant since, bool authenticated, bool replay)
     : me_(kRole, {run, kUnassigned, 0}),
-      view_(run, since, authenticated),
-      authenticated_(authenticated) {}
+      view_(run, since, authenticated, replay),
+      authenticated_(authenticated),
+      replay_(replay) {}
 
 void LiveTeam::begin(const Mission& mission, const Field& density) {
   if (grid_) return;
@@ -59,14 +60,18 @@ void LiveTeam::log(std::string line) {
   if (lines_.size() > kMostLines) lines_.pop_front();
 }
 
+TeamPicture LiveTeam::notice(Instant now) {
+  TeamPicture picture = view_.picture(now);
+  if (!grid_ || picture.over) return picture;
+  const double t_s = static_cast<double>(picture.tick) * picture.dt_s;
+  for (const AgentRow& row : picture.agents) compare(row, t_s, picture.dt_s);
+  for (const ProcessRow& row : picture.processes) compare(row, t_s);
+  return picture;
+}
+
 void LiveTeam::look(Instant now) {
   if (!grid_) return;
-  const TeamPicture picture = view_.picture(now);
-  const double t_s = static_cast<double>(picture.tick) * picture.dt_s;
-  if (!picture.over) {
-    for (const AgentRow& row : picture.agents) compare(row, t_s, picture.dt_s);
-    for (const ProcessRow& row : picture.processes) compare(row, t_s);
-  }
+  const TeamPicture picture = notice(now);
   end_text_ = picture.reason;
   status_ = Json::parse(team_json(picture));
   ++statuses_;
@@ -174,7 +179,8 @@ std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
     text += event("mission", {{"mission", mission_},
                               {"stride", grid_->stride()},
                               {"run_id", to_hex(run())},
-                              {"authenticated", authenticated_}});
+                              {"authenticated", authenticated_},
+                              {"replay", replay_}});
   }
   Json frame = Json::object();
   if (cursor.rosters != rosters_) frame["roster"] = roster_json();

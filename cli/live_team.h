@@ -29,7 +29,8 @@ class LiveTeam {
 
   /// @param since  when the listening began
   /// @param authenticated  whether what it receives was checked with the team's key
-  LiveTeam(RunId run, Instant since, bool authenticated);
+  /// @param replay  whether `ergocast replay` sends it
+  LiveTeam(RunId run, Instant since, bool authenticated, bool replay = false);
 
   /// The mission and its target density, where they are known before a message comes.
   void begin(const Mission& mission, const Field& density);
@@ -37,8 +38,13 @@ class LiveTeam {
   /// @pre the message is of this view's run
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void log(std::string line);
-  /// Looks for incidents; to be called a few times a second.
+  /// Looks for incidents; to be called a few times a second. The picture that it has looked at.
+  TeamPicture notice(Instant now);
+  /// The same, and keeps what the agents say for the browsers.
   void look(Instant now);
+  /// [{"t", "kind", "sign", "text", "agent", "until"}, …] as the page gets them, the last two only
+  /// if they are known.
+  nlohmann::ordered_json incidents_json() const;
 
   RunId run() const { return me_.run(); }
   /// Whether the mission's end was reported.
@@ -78,12 +84,11 @@ class LiveTeam {
   void compare(const ProcessRow& row, double t_s);
   void add_incident(Incident incident);
   void close_outage(const std::string& of, double t_s);
-  nlohmann::ordered_json incidents_json() const;
   nlohmann::ordered_json roster_json() const;
 
   Participant me_;
   TeamView view_;
-  bool authenticated_;
+  bool authenticated_, replay_;
   std::optional<TrackGrid> grid_;
   nlohmann::ordered_json mission_, status_;  // as the page gets them
   std::map<AgentId, LastLook> last_looks_;

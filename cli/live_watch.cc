@@ -13,6 +13,7 @@
 
 #include "cli/live_team.h"
 #include "cli/log_lines.h"
+#include "cli/recorded_team.h"
 #include "cli/team_monitor.h"
 #include "report/page.h"
 #include "report/report.h"
@@ -35,7 +36,7 @@ constexpr auto kLastFrame = 1s;
 class Watch final : public LiveWatch {
  public:
   explicit Watch(Source source) : source_(std::move(source)), logs_(source_.run_dir / "log") {
-    if (source_.bus.run != 0) adopt(source_.bus.run);
+    if (source_.bus.run != 0 && source_.mission) adopt(source_.bus.run, false);
   }
   ~Watch() override {
     stopping_ = true;
@@ -44,10 +45,7 @@ class Watch final : public LiveWatch {
   }
 
   std::optional<std::string> open(const PageServer::Options& options) {
-    auto opened =
-        listen_to_teams(source_.bus, [this](const Message& message, Bus bus, AgentId transmitter) {
-          hear(message, bus, transmitter);
-        });
+    auto opened = listen_to_teams(source_.bus, hear(false), hear(true));
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     auto started = PageServer::start(
@@ -77,18 +75,25 @@ class Watch final : public LiveWatch {
   }
 
  private:
-  void adopt(RunId run) {
-    team_.emplace(run, now(), source_.bus.seal.keyed());
+  void adopt(RunId run, bool replay) {
+    replay_ = replay;
+    team_.emplace(run, now(), source_.bus.seal.keyed(), replay);
     if (source_.mission) team_->begin(*source_.mission, source_.density);
   }
 
-  void hear(const Message& message, Bus bus, AgentId transmitter) {
+  Hear hear(bool replay) {
+    return [this, replay](const Message& message, Bus bus, AgentId transmitter) {
+      hear(message, bus, transmitter, replay);
+    };
+  }
+
+  void hear(const Message& message, Bus bus, AgentId transmitter, bool replay) {
     const RunId run = header_of(message).run;
     if (run == 0) return;
     const std::scoped_lock lock(mutex_);
-    if (!team_) adopt(run);
+    if (!team_) adopt(run, replay);
     if (run == team_->run()) {
-      team_->receive(message, bus, transmitter, now());
+      if (replay == replay_) team_->receive(message, bus, transmitter, now());
     } else if (others_.size() < kMostRuns && others_.insert(run).second) {
       team_->log("run " + to_hex(run) + " is heard on this URL, too; --run-id " + to_hex(run) +
                  " shows it");
@@ -152,6 +157,7 @@ class Watch final : public LiveWatch {
   std::unique_ptr<Transport> transport_;
   mutable std::mutex mutex_;
   std::optional<LiveTeam> team_;
+  bool replay_ = false;
   std::set<RunId> others_;
   Json data_;  // of the record; null: none yet
   bool finished_ = false;
@@ -171,7 +177,7 @@ std::variant<std::unique_ptr<LiveWatch>, std::string> LiveWatch::start(
 
 std::variant<Json, std::string> recorded_page_data(const std::filesystem::path& run_dir,
                                                    const Mission& mission) {
-  auto record = read_page_record(run_dir, mission);
+  auto record = read_page_record(run_dir, mission, recorded_team(run_dir, mission));
   if (auto* problem = std::get_if<std::string>(&record)) return std::move(*problem);
   std::vector<std::string> lines = LogLines(run_dir / "log").take();
   if (lines.size() > LiveTeam::kMostLines) {

@@ -91,12 +91,11 @@ Variation parse_variation(const std::string& text) {
   const auto refuse = [&text](const std::string& why) {
     throw CLI::ValidationError("--vary", "\"" + text + "\" " + why);
   };
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) refuse("is not FIELD=VALUE,VALUE…");
-  Variation variation{text.substr(0, equals), {}};
-  for (std::size_t begin = equals + 1; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string value = text.substr(begin, end - begin);
+  const auto [path, list] = split_field(text, "--vary", "FIELD=VALUE,VALUE…");
+  Variation variation{path, {}};
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string value = list.substr(begin, end - begin);
     if (value.find_first_not_of(" \t") == std::string::npos) refuse("has an empty value");
     const auto& values = variation.values;
     if (std::find(values.begin(), values.end(), value) != values.end())
@@ -107,9 +106,24 @@ Variation parse_variation(const std::string& text) {
   return variation;
 }
 
+/// "I/N".
+StudyShard parse_shard(const std::string& text) {
+  const std::string_view view = text;
+  const std::size_t slash = std::min(view.find('/'), view.size());
+  const auto index = read_number<std::uint64_t>(view.substr(0, slash));
+  const auto of = read_number<std::uint64_t>(view.substr(std::min(slash + 1, view.size())));
+  if (!index || !of || *index < 1 || *index > *of || *of > kMostStudyRuns) {
+    throw CLI::ValidationError("--shard",
+                               "\"" + text + "\" is not I/N with I from 1 to N, such as 2/8");
+  }
+  StudyShard shard;
+  shard.index = *index;
+  shard.of = *of;
+  return shard;
+}
+
 void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_option("SCENARIO", options.scenarios, "Scenario files, or names of shipped ones")
-      ->required()
       ->transform(shipped_scenario())
       ->type_name("FILE");
   command
@@ -122,18 +136,42 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
           "A field and its values, such as law.noise_intensity=0,0.1,1; again for another field")
       ->allow_extra_args(false)
       ->type_name("FIELD=VALUE,…");
+  add_set_option(command, options.settings);
   command
       .add_option_function<std::string>(
           "--seeds", [&options](const std::string& text) { options.seeds = parse_seeds(text); },
           "One mission of every combination for each seed")
       ->required()
       ->type_name("FIRST:LAST");
+  command
+      .add_option_function<std::string>(
+          "--shard", [&options](const std::string& text) { options.shard = parse_shard(text); },
+          "Only part I of N of the missions; `study merge` joins the folders of all parts")
+      ->type_name("I/N");
   command.add_option("--out", options.out, "The study's folder: new, or one to go on in")
       ->required()
       ->type_name("DIR");
   command.add_option("--duration", options.duration_s, "Mission time [s]");
   command.add_option("--jobs", options.jobs, "Worker processes (default: one a processor)")
       ->check(CLI::Range(1, 1024));
+}
+
+/// `study merge`, whose options are not those of `study`.
+CLI::App* add_merge(CLI::App& study, MergeOptions& options) {
+  auto* command = study.add_subcommand("merge", "Join the folders of all shards of one study");
+  command->add_option("FOLDER", options.shards, "The folder of each shard")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--out", options.out, "The study's folder: new or empty")
+      ->required()
+      ->type_name("DIR");
+  command->preparse_callback([&study](std::size_t) {
+    for (CLI::Option* option : study.get_options()) {
+      if (option->count() > 0) throw CLI::ValidationError("merge", "stands before all options");
+      option->required(false);
+    }
+  });
+  return command;
 }
 
 int parse_and_do(int argc, char** argv) {
@@ -165,6 +203,10 @@ int parse_and_do(int argc, char** argv) {
   TrialsOptions trial_options;
   trial_options.jobs = processors;
   add_trial_options(*simulate_command, trial_options);
+  simulate_command
+      ->add_flag("--event-log", mission.event_log,
+                 "Write every message, as run does: events-000.lcm …")
+      ->excludes("--seeds");
   simulate_command->callback([&] {
     action = [&] {
       if (simulate_command->count("--seeds") == 0) return simulate(mission);
@@ -178,7 +220,15 @@ int parse_and_do(int argc, char** argv) {
   StudyOptions study_options;
   study_options.jobs = processors;
   add_study_options(*study_command, study_options);
-  study_command->callback([&] { action = [&] { return study(study_options); }; });
+  MergeOptions merge_options;
+  const CLI::App* merge_command = add_merge(*study_command, merge_options);
+  study_command->callback([&, merge_command] {
+    action = [&] { return study(study_options); };
+    if (merge_command->parsed()) action = [&] { return merge_studies(merge_options); };
+    // CLI11 would take the word "merge" for a scenario that is required.
+    if (!merge_command->parsed() && study_options.scenarios.empty())
+      throw CLI::RequiredError("SCENARIO");
+  });
 
   auto* check_command = app.add_subcommand("check", "Name every problem of a scenario");
   check_command->add_option("SCENARIO", path, "Scenario file, or the name of a shipped one")
@@ -186,7 +236,8 @@ int parse_and_do(int argc, char** argv) {
       ->transform(shipped_scenario())
       ->type_name("FILE");
   check_command->add_flag("--print", print, "Show the scenario with all defaults filled in");
-  check_command->callback([&] { action = [&] { return check(path, print); }; });
+  add_override_options(*check_command, mission.overrides);
+  check_command->callback([&] { action = [&] { return check(path, mission.overrides, print); }; });
 
   auto* report_command = app.add_subcommand("report", "Make a run's report again");
   report_command->add_option("RUN_DIR", path, "Run directory")->required()->type_name("DIR");
@@ -199,8 +250,11 @@ int parse_and_do(int argc, char** argv) {
 
   add_keygen(app, action);
   add_deploy(app, action);
+  add_list(app, action);
   add_status(app, action);
   add_watch(app, action);
+  add_export(app, action);
+  add_replay(app, action);
   add_stop(app, action);
   add_spy(app, action);
   add_doctor(app, action);

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/recorded_team.h"
 #include "cli/trajectory_comparison.h"
 #include "logger/mission_text.h"
 #include "logger/run_record.h"
@@ -257,7 +258,7 @@ FileComparison compare_summary(const fs::path& run_dir, const Mission& mission,
 }
 
 std::vector<FileComparison> compare_report(const fs::path& run_dir, const Mission& mission) {
-  const auto drawn = draw_report(run_dir, mission);
+  const auto drawn = draw_report(run_dir, mission, recorded_team(run_dir, mission));
   if (const auto* problem = std::get_if<std::string>(&drawn))
     return {{kReportFile, "", "", *problem + '\n'}};
   const bool sources_are_there =

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/recorded_team.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "runtime/node.h"
@@ -14,7 +15,7 @@ namespace ergocast::cli {
 int report(const std::filesystem::path& run_dir) {
   const auto mission = recorded_mission_or_complain(run_dir);
   if (!mission) return kExitBadInput;
-  if (const auto problem = write_report(run_dir, *mission)) {
+  if (const auto problem = write_report(run_dir, *mission, recorded_team(run_dir, *mission))) {
     return report_error(kExitBadInput, *problem);
   }
   std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast run`: prepares the run directory and the key, starts all processes, watches the
 // mission, and completes the summary.
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 
@@ -11,6 +13,7 @@
 #include "cli/progress.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
+#include "cli/run_registry.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "runtime/clock.h"
@@ -25,14 +28,15 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr auto kAttendPeriod = 50ms;
+constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
 
 /// Returns when all processes have ended.
 void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
                StopSignals& signals, ProgressDisplay& display) {
   int asked = 0;
   while (!launcher.all_ended()) {
-    transport.deliver_until(now() + kAttendPeriod, signals.fd());
+    const bool over = mission.stage() == Stage::kOver;
+    transport.deliver_until(now() + (over ? kAttendPeriodAtEnd : kAttendPeriod), signals.fd());
     if (const int count = signals.take(); count > 0) {
       asked += count;
       if (asked == 1) display.say("ending the mission in order; once more to end it now");
@@ -111,6 +115,18 @@ void announce(const Launcher::Setup& setup, const Scenario& scenario, ProgressDi
               (setup.key_file.empty() ? "none: unauthenticated" : setup.key_file.string()));
 }
 
+/// What other commands of this user find out about the run.
+LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
+  return {.run = setup.run,
+          .scenario = scenario.name(),
+          .version = version(),
+          .started = wall_clock_text(),
+          .url = setup.url,
+          .run_dir = fs::absolute(setup.run_dir),
+          .key_file = setup.key_file,
+          .pid = getpid()};
+}
+
 /// The page of the mission, if it is wanted; an error if it cannot be served.
 std::variant<std::unique_ptr<LiveWatch>, std::string> begin_watch(const MissionOptions& options,
                                                                   const Scenario& scenario,
@@ -149,12 +165,17 @@ int fly(const MissionOptions& options, const Scenario& scenario, const Launcher:
   if (const auto* problem = std::get_if<std::string>(&watching)) {
     return report_error(kExitUnavailable, *problem);
   }
+  auto entry = RunEntry::write(live_run(setup, scenario));
+  if (const auto* problem = std::get_if<std::string>(&entry)) {
+    display.say("warning: " + *problem + "; give the other commands --lcm-url");
+  }
   Launcher launcher(setup, display);
   if (const auto problem = launcher.start()) {
     launcher.escalate(2);
     return report_error(kExitFailed, *problem);
   }
   supervise(launcher, mission, *std::get<0>(opened), signals, display);
+  entry = std::string();
   display.end();
 
   const auto summary = amended_summary(scenario, setup, launcher, mission);

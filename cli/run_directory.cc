@@ -6,17 +6,15 @@
 
 #include <cstdio>
 #include <ctime>
-#include <fstream>
-#include <iterator>
-#include <span>
 
+#include "cli/recorded_team.h"
 #include "cli/report_error.h"
+#include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "report/report.h"
 #include "report/target_density.h"
 #include "runtime/node.h"
 #include "team/plan.h"
-#include "text/regular_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -101,20 +99,9 @@ std::optional<Scenario> load_or_complain(const fs::path& file, const Overrides& 
 }
 
 std::optional<Mission> recorded_mission_or_complain(const fs::path& run_dir) {
-  if (const auto why = why_not_regular(run_dir / kPlanFile)) {
-    report_error(kExitBadInput, (run_dir / kPlanFile).string() + ": " + *why);
-    return std::nullopt;
-  }
-  std::ifstream file(run_dir / kPlanFile, std::ios::binary);
-  const std::string plan((std::istreambuf_iterator<char>(file)), {});
-  if (!file.is_open()) {
-    report_error(kExitBadInput, (run_dir / kPlanFile).string() +
-                                    ": missing or not readable: is this a run directory?");
-    return std::nullopt;
-  }
-  auto read = decode_plan(std::as_bytes(std::span(plan)));
+  auto read = read_mission(run_dir);
   if (auto* mission = std::get_if<Mission>(&read)) return std::move(*mission);
-  report_error(kExitBadInput, (run_dir / kPlanFile).string() + ": " + std::get<std::string>(read));
+  report_error(kExitBadInput, std::get<std::string>(read));
   return std::nullopt;
 }
 
@@ -141,7 +128,8 @@ std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted
 }
 
 void conclude(const fs::path& run_dir, const Json& summary, const Scenario& scenario) {
-  const auto problem = write_report(run_dir, scenario.mission());
+  const auto problem =
+      write_report(run_dir, scenario.mission(), recorded_team(run_dir, scenario.mission()));
   print_summary(summary);
   std::printf("  record    %s\n", run_dir.c_str());
   if (!problem) std::printf("  report    %s\n", (fs::absolute(run_dir) / "report.html").c_str());

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast simulate`: steps the simulated team until the mission ends; its recorder writes the
-// tables, this file the summary.
-#include <chrono>
-#include <cstdio>
-
+// `ergocast simulate`: simulates a mission into a run directory and shows how far it is.
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
-#include "lab/simulation.h"
-#include "logger/run_record.h"
-#include "logger/summary.h"
-#include "runtime/node.h"
+#include "cli/simulated_events.h"
+#include "cli/simulated_record.h"
 #include "runtime/signals.h"
-#include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
-
-/// Turns between two updates of the display and checks for signals, which cost time.
-constexpr int kTurnsBetweenLooks = 256;
 
 void show(const lab::Simulation& simulation, const Mission& mission, ProgressDisplay& display) {
   const int agents = static_cast<int>(mission.starts_m.size());
@@ -28,33 +18,19 @@ void show(const lab::Simulation& simulation, const Mission& mission, ProgressDis
                 recorder.facts().ergodic_metric_last, agents, agents});
 }
 
-nlohmann::ordered_json summary_of(const Recorder& recorder, const Scenario& scenario,
-                                  const std::string& started, double wall_time_s) {
-  RunContext context;
-  context.started = started;
-  context.run = recorder.run();
-  context.version = version();
-  context.build = build_text();
-  context.scenario_hash = plan_hash(encode_plan(scenario.mission()));
-  context.simulated = true;
-  context.wall_time_s = wall_time_s;
-  context.cpu_has_fma = cpu_has_fma();
-  return summarize(recorder, context);
-}
-
-/// Runs until the mission is over, a signal arrives, or the disk is full. Returns the wall time.
-double run(lab::Simulation& simulation, const Mission& mission, const RunRecord& record) {
+/// With the progress on the terminal, until a signal arrives.
+std::variant<SimulatedRecord, std::string> simulate_and_show(RunRecord& record,
+                                                             const Scenario& scenario,
+                                                             bool event_log) {
   StopSignals signals;
   ProgressDisplay display;
-  const auto start = std::chrono::steady_clock::now();
-  int turns = 0;
-  while (simulation.step()) {
-    if (++turns % kTurnsBetweenLooks != 0) continue;
-    show(simulation, mission, display);
+  std::optional<SimulatedEvents> events;
+  if (event_log) events.emplace(record.folder(), scenario.mission());
+  const auto look = [&](lab::Simulation& simulation) {
+    show(simulation, scenario.mission(), display);
     if (signals.take() > 0) simulation.end("Ctrl-C or SIGTERM");
-    if (!record.good()) break;
-  }
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  return simulate_into(record, scenario, look, events ? &*events : nullptr);
 }
 
 }  // namespace
@@ -71,19 +47,13 @@ int simulate(const MissionOptions& options) {
   if (const auto* problem = std::get_if<std::string>(&created)) {
     return report_error(kExitBadInput, *problem);
   }
-  RunRecord& record = *std::get<0>(created);
-  lab::Simulation simulation(
-      {.plan = encode_plan(scenario->mission()), .version = version(), .host = host_name()},
-      record.trajectory(), record.metrics());
-
-  const std::string started = wall_clock_text();
-  const double wall_time_s = run(simulation, scenario->mission(), record);
-  const auto summary = summary_of(simulation.recorder(), *scenario, started, wall_time_s);
-  auto error = record.flush();
-  if (!error) error = write_file(folder / kSummaryFile, to_text(summary));
-  if (error) return report_error(kExitFailed, *error + "; the record is incomplete");
-  conclude(folder, summary, *scenario);
-  return simulation.coordinator().state() == MissionState::kFailed ? kExitFailed : kExitDone;
+  const auto simulated = simulate_and_show(*std::get<0>(created), *scenario, options.event_log);
+  if (const auto* error = std::get_if<std::string>(&simulated)) {
+    return report_error(kExitFailed, *error);
+  }
+  const auto& result = std::get<SimulatedRecord>(simulated);
+  conclude(folder, result.summary, *scenario);
+  return result.failed ? kExitFailed : kExitDone;
 }
 
 }  // namespace ergocast::cli

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/find_run.h"
 #include "cli/report_error.h"
 #include "ops/deploy/script.h"
 #include "runtime/lcm_url.h"
@@ -28,8 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct SpyOptions {
-  LcmUrl url;
+struct SpyOptions : BusOptions {
   Bus bus = Bus::kSwarm;
   bool print = false;
 };
@@ -138,6 +138,7 @@ void add_spy(CLI::App& app, Action& action) {
       app.add_subcommand("spy", "Watch a mission's messages in LCM's viewer, with pictures");
   const auto options = std::make_shared<SpyOptions>();
   add_url_option(*command, options->url);
+  add_run_id_option(*command, options->run);
   const std::map<std::string, Bus> buses{
       {"swarm", Bus::kSwarm}, {"world", Bus::kWorld}, {"command", Bus::kCommand}};
   command->add_option("--bus", options->bus, "The bus whose channels are listed")
@@ -145,7 +146,12 @@ void add_spy(CLI::App& app, Action& action) {
       ->default_str("swarm")
       ->type_name("swarm|world|command");
   command->add_flag("--print", options->print, "Print the command that starts the viewer, and end");
-  command->callback([options, &action] { action = [options] { return spy(*options); }; });
+  command->callback([options, command, &action] {
+    action = [options, command] {
+      if (const auto code = find_run(*command, *options)) return *code;
+      return spy(*options);
+    };
+  });
 }
 
 }  // namespace ergocast::cli

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/diagnose_silence.h"
+#include "cli/find_run.h"
 #include "cli/report_error.h"
 #include "cli/team_monitor.h"
 #include "cli/team_screen.h"
@@ -41,10 +42,7 @@ class Listener {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened =
-        listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
-          hear(message, bus, transmitter);
-        });
+    auto opened = listen_to_teams(options_, hear(false), hear(true));
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -55,31 +53,37 @@ class Listener {
   /// To be called at intervals: continues to listen after the network interface was replaced.
   void follow_network() { transport_->renew_membership(); }
   /// From now on accepts only the run that was found.
-  void stay_with_it() { transport_->set_run(runs_.begin()->first); }
+  void stay_with_it() { transport_->set_run(runs_.begin()->first.first); }
 
   Instant since() const { return since_; }
-  const std::map<RunId, TeamView>& runs() const { return runs_; }
+  /// Runs and replays.
+  using Views = std::map<std::pair<RunId, bool>, TeamView>;
+  const Views& runs() const { return runs_; }
   const Transport& transport() const { return *transport_; }
 
  private:
-  void hear(const Message& message, Bus bus, AgentId transmitter) {
-    const RunId run = header_of(message).run;
-    if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(run))) return;
-    TeamView& view = runs_.try_emplace(run, run, since_, options_.seal.keyed()).first->second;
-    view.receive(message, bus, transmitter, now());
+  Hear hear(bool replay) {
+    return [this, replay](const Message& message, Bus bus, AgentId transmitter) {
+      const RunId run = header_of(message).run;
+      const std::pair key(run, replay);
+      if (run == 0 || (runs_.size() >= kMostRuns && !runs_.contains(key))) return;
+      TeamView& view =
+          runs_.try_emplace(key, run, since_, options_.seal.keyed(), replay).first->second;
+      view.receive(message, bus, transmitter, now());
+    };
   }
 
   const StatusOptions& options_;
   Instant since_;
   std::unique_ptr<Transport> transport_;
-  std::map<RunId, TeamView> runs_;
+  Views runs_;
 };
 
 int choose(const Listener& listener) {
   std::string text = "several runs are heard on this URL; choose one with --run-id:";
-  for (const auto& [run, view] : listener.runs()) {
+  for (const auto& [key, view] : listener.runs()) {
     const TeamPicture picture = view.picture(now());
-    text += "\n  --run-id " + to_hex(run) + "  " +
+    text += "\n  --run-id " + to_hex(key.first) + "  " + (key.second ? "replay of " : "") +
             (picture.scenario.empty() ? "a mission not heard yet" : picture.scenario) + ", " +
             std::to_string(picture.agents_alive) + " agents, tick " + std::to_string(picture.tick);
   }
@@ -174,7 +178,12 @@ void add_status(CLI::App& app, Action& action) {
   command->footer(
       "Exit codes: 0 all is well; 1 something is in trouble; 2 several runs are heard;\n"
       "3 LCM cannot be used; 4 nobody is heard, or the mission watched has failed.");
-  command->callback([&action, options] { action = [options] { return status(*options); }; });
+  command->callback([&action, options, command] {
+    action = [options, command] {
+      if (const auto code = find_run(*command, *options)) return *code;
+      return status(*options);
+    };
+  });
 }
 
 }  // namespace ergocast::cli

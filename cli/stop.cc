@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/diagnose_silence.h"
+#include "cli/find_run.h"
 #include "cli/report_error.h"
 #include "cli/stop_request.h"
 #include "cli/team_monitor.h"
@@ -49,10 +50,12 @@ class Stopping {
 
   /// Nothing, or why LCM cannot be used.
   std::optional<std::string> open() {
-    auto opened =
-        listen_to_teams(options_, [this](const Message& message, Bus bus, AgentId transmitter) {
+    auto opened = listen_to_teams(
+        options_,
+        [this](const Message& message, Bus bus, AgentId transmitter) {
           hear(message, bus, transmitter);
-        });
+        },
+        [this](const Message& message, Bus, AgentId) { replay_ = header_of(message).run; });
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
     since_ = now();
@@ -194,7 +197,16 @@ class Stopping {
     return kExitDone;
   }
 
-  int nobody() const { return report_error(kExitFailed, why_nobody(options_, *transport_)); }
+  int nobody() const {
+    if (replay_ != 0) {
+      return report_error(kExitFailed,
+                          "what is heard on " + options_.url.base() + " is a replay of run " +
+                              to_hex(replay_) +
+                              ": no team flies, and there is nothing to stop. Ctrl-C ends "
+                              "`ergocast replay` where it runs");
+    }
+    return report_error(kExitFailed, why_nobody(options_, *transport_));
+  }
 
   int choose() const {
     std::string text = "several runs are heard on this URL; choose one with --run-id:";
@@ -212,6 +224,7 @@ class Stopping {
   std::set<RunId> crowd_;  // beyond kMostRuns, received since the last turn
   bool crowded_ = false;
   Instant since_{};
+  RunId replay_ = 0;  // of the newest message that `ergocast replay` sent; 0: none
 };
 
 int stop(const StopOptions& options) {
@@ -236,7 +249,12 @@ void add_stop(CLI::App& app, Action& action) {
       "stop; with --run-id besides, it listens for nobody first.\n"
       "Exit codes: 0 the team was seen to end; 2 several runs are heard; 3 LCM cannot be used;\n"
       "4 nobody is heard, somebody goes on, or what the vehicles do is not known.");
-  command->callback([&action, options] { action = [options] { return stop(*options); }; });
+  command->callback([&action, options, command] {
+    action = [options, command] {
+      if (const auto code = find_run(*command, *options)) return *code;
+      return stop(*options);
+    };
+  });
 }
 
 }  // namespace ergocast::cli

@@ -7,35 +7,37 @@
 #include <optional>
 #include <utility>
 
+#include "cli/command_text.h"
 #include "cli/commands.h"
 #include "cli/progress_line.h"
 #include "cli/report_error.h"
 #include "cli/study_directory.h"
 #include "cli/study_points.h"
+#include "cli/study_results.h"
 #include "cli/workers.h"
-#include "lab/studies/study_page.h"
 #include "lab/studies/study_run.h"
-#include "logger/run_record.h"
+#include "ops/deploy/script.h"
 #include "runtime/node.h"
 #include "team/plan.h"
 
 namespace ergocast::cli {
 namespace {
 
-constexpr std::uint64_t kMostStudyRuns = 1000000;
 constexpr std::size_t kMostFailuresNamed = 20;
 
 /// One run: a point and a seed.
 using Run = std::pair<std::size_t, std::uint64_t>;
 
 /// The runs that are not done, seed by seed, so that an incomplete table is comparable, too.
-std::vector<Run> missing_runs(std::size_t points, const Seeds& seeds,
+std::vector<Run> missing_runs(std::size_t points, const StudyOptions& options,
                               const std::vector<Run>& done) {
+  const StudyShard shard = options.shard.value_or(StudyShard());
   std::vector<Run> missing;
-  for (std::uint64_t i = 0; i < seeds.count(); ++i) {
+  for (std::uint64_t i = 0; i < options.seeds.count(); ++i) {
     for (std::size_t point = 0; point < points; ++point) {
-      const Run run{point, seeds.first + i};
-      if (!std::binary_search(done.begin(), done.end(), run)) missing.push_back(run);
+      const Run run{point, options.seeds.first + i};
+      if (shard.has(i * points + point) && !std::binary_search(done.begin(), done.end(), run))
+        missing.push_back(run);
     }
   }
   return missing;
@@ -113,30 +115,19 @@ class StudyRunner {
   std::optional<std::string> problem_;
 };
 
-/// The command that makes this study.
+/// The command that makes this study, but for --out.
 std::string command_of(const StudyOptions& options) {
   std::string command = "ergocast study";
-  for (const auto& file : options.scenarios) command += ' ' + file.string();
+  for (const auto& file : options.scenarios) command += ' ' + shell_word(file.string());
   for (const Variation& variation : options.variations) {
-    command += " \\\n  --vary " + variation.path + '=';
+    command += " \\\n  --vary " + shell_word(variation.path) + '=';
     for (const std::string& value : variation.values) {
-      command += (&value == &variation.values.front() ? "" : ",") + value;
+      command += (&value == &variation.values.front() ? "" : ",") + shell_word(value);
     }
   }
-  if (options.duration_s) command += " --duration " + text_of("%.17g", *options.duration_s);
+  command += options_of({.duration_s = options.duration_s, .fields = options.settings});
   return command + " \\\n  --seeds " + std::to_string(options.seeds.first) + ':' +
-         std::to_string(options.seeds.last) + " --out " + options.out.string();
-}
-
-/// Prints the table on the terminal and writes the page.
-std::optional<std::string> show_results(const StudyIdentity& identity,
-                                        const StudyDirectory& directory,
-                                        const StudyOptions& options) {
-  const auto summaries = studies::summarize(identity.study, directory.rows());
-  std::printf("%s", studies::study_text(identity.study, summaries).c_str());
-  return write_file(
-      options.out / "report.html",
-      studies::study_page({identity.study, version(), command_of(options)}, summaries));
+         std::to_string(options.seeds.last);
 }
 
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
@@ -145,6 +136,9 @@ void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
   std::printf("\n%zu runs flown now, %zu in %s\n", runner.flown(), directory.rows().size(),
               (options.out / "study.csv").c_str());
   std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
+  if (runner.missing() == 0 && options.shard) {
+    std::printf("when all shards are flown: ergocast study merge FOLDER… --out DIR\n");
+  }
   if (runner.missing() == 0) return;
   std::printf("%zu runs are missing%s: the same command flies them\n", runner.missing(),
               runner.failed() > 0
@@ -155,11 +149,11 @@ void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
 }  // namespace
 
 int study(const StudyOptions& options) {
-  const auto compiled = study_points(options);
+  auto compiled = study_points(options);
   if (const auto* problems = std::get_if<std::vector<std::string>>(&compiled)) {
     return report_error(kExitBadInput, *problems);
   }
-  const auto& points = std::get<StudyPoints>(compiled);
+  auto& points = std::get<StudyPoints>(compiled);
   const std::size_t count = points.scenarios.size();
   if (options.seeds.count() > kMostStudyRuns / count) {
     return report_error(kExitBadInput, "--seeds: " + std::to_string(count) + " points with " +
@@ -167,16 +161,23 @@ int study(const StudyOptions& options) {
                                            " seeds each are above the limit, " +
                                            std::to_string(kMostStudyRuns) + " runs (give fewer)");
   }
+  const std::string command = command_of(options);
+  if (options.shard) {
+    points.identity.shard = {options.shard->index, options.shard->of, options.seeds.first,
+                             options.seeds.last,   command,           points.missions};
+  }
   auto opened = StudyDirectory::open(options.out, points.identity);
   if (const auto* problem = std::get_if<std::string>(&opened))
     return report_error(kExitBadInput, *problem);
   StudyDirectory& directory = *std::get<0>(opened);
 
-  StudyRunner runner(points, missing_runs(count, options.seeds, directory.done()), directory);
+  StudyRunner runner(points, missing_runs(count, options, directory.done()), directory);
   runner.fly(options.jobs);
   std::optional<std::string> problem = runner.problem();
-  if (!problem) problem = directory.sort();
-  if (!problem) problem = show_results(points.identity, directory, options);
+  if (!problem) {
+    problem = conclude(directory, {points.identity.study, command, points.missions,
+                                   options.seeds.first, options.out});
+  }
   if (problem) {
     tell(*problem + "; the same command goes on");
     return kExitFailed;

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "core/mission_limits.h"
 #include "logger/run_record.h"
 #include "text/regular_file.h"
 
@@ -37,6 +38,12 @@ std::string said(const fs::path& path, const std::string& problem) {
   return "--out " + path.string() + ": " + problem;
 }
 
+Json to_json(const StudyShard& shard) {
+  return {{"index", shard.index},           {"of", shard.of},
+          {"first_seed", shard.first_seed}, {"last_seed", shard.last_seed},
+          {"command", shard.command},       {"missions", shard.missions}};
+}
+
 Json to_json(const StudyIdentity& identity) {
   Json points = Json::array();
   for (std::size_t i = 0; i < identity.study.points.size(); ++i) {
@@ -47,35 +54,67 @@ Json to_json(const StudyIdentity& identity) {
                       {"duration_s", point.duration_s},
                       {"plan_hash", identity.plan_hashes[i]}});
   }
-  return {{"version", identity.version}, {"fields", identity.study.fields}, {"points", points}};
+  Json json = {{"version", identity.version}};
+  if (identity.shard) json["shard"] = to_json(*identity.shard);
+  if (!identity.settings.empty()) json["set"] = identity.settings;
+  json["fields"] = identity.study.fields;
+  json["points"] = points;
+  return json;
 }
 
-/// Why the study `ours` cannot continue in the folder of `theirs`.
-std::string difference(const Json& ours, const Json& theirs) {
-  const std::string fresh = "; give a new folder";
-  for (const char* key : {"version", "fields", "points"}) {
-    if (!theirs.is_object() || !theirs.contains(key)) return "its study.json is damaged" + fresh;
+/// Throws Json::exception if a key is missing or its value is of another type.
+StudyShard shard_from(const Json& json) {
+  StudyShard shard;
+  shard.index = json.at("index").get<std::uint64_t>();
+  shard.of = json.at("of").get<std::uint64_t>();
+  shard.first_seed = json.at("first_seed").get<std::uint64_t>();
+  shard.last_seed = json.at("last_seed").get<std::uint64_t>();
+  shard.command = json.at("command").get<std::string>();
+  shard.missions = json.at("missions").get<std::vector<std::string>>();
+  return shard;
+}
+
+/// The same.
+StudyIdentity identity_from(const Json& json) {
+  StudyIdentity identity;
+  identity.version = json.at("version").get<std::string>();
+  identity.study.fields = json.at("fields").get<std::vector<std::string>>();
+  if (json.contains("set")) identity.settings = json["set"].get<std::vector<std::string>>();
+  for (const Json& point : json.at("points")) {
+    identity.study.points.push_back({point.at("scenario").get<std::string>(),
+                                     point.at("values").get<std::vector<std::string>>(),
+                                     point.at("agents").get<int>(),
+                                     point.at("duration_s").get<double>()});
+    identity.plan_hashes.push_back(point.at("plan_hash").get<std::string>());
   }
-  if (ours["version"] != theirs["version"]) {
-    return "its study was begun by ergocast " + theirs["version"].dump() + fresh;
-  }
-  if (ours["fields"] != theirs["fields"]) {
-    return "its study varies " + theirs["fields"].dump() + fresh;
-  }
-  if (ours["points"].size() != theirs["points"].size()) {
-    return "its study has " + std::to_string(theirs["points"].size()) + " points, this one " +
-           std::to_string(ours["points"].size()) + fresh;
-  }
-  for (std::size_t i = 0; i < ours["points"].size(); ++i) {
-    if (ours["points"][i] == theirs["points"][i]) continue;
-    return "its study differs at point " + std::to_string(i + 1) + ", " +
-           theirs["points"][i].dump() + fresh;
-  }
-  return "";
+  if (json.contains("shard")) identity.shard = shard_from(json["shard"]);
+  return identity;
+}
+
+bool is_sound(const StudyShard& shard, std::size_t points) {
+  return shard.index >= 1 && shard.index <= shard.of && shard.of <= kMostStudyRuns &&
+         shard.last_seed >= shard.first_seed &&
+         shard.last_seed - shard.first_seed < kMostStudyRuns / points &&
+         shard.missions.size() == points;
+}
+
+bool is_sound(const StudyIdentity& identity) {
+  const studies::Study& study = identity.study;
+  const auto sound = [&study](const studies::StudyPoint& point) {
+    return point.values.size() == study.fields.size() && point.agents >= 1 &&
+           point.agents <= kMaxAgents && point.duration_s >= 0;
+  };
+  return !study.points.empty() && study.points.size() <= kMostStudyRuns &&
+         std::all_of(study.points.begin(), study.points.end(), sound) &&
+         (!identity.shard || is_sound(*identity.shard, study.points.size()));
+}
+
+std::string name_of(const std::optional<StudyShard>& shard) {
+  return shard ? shard->name() : "no shard";
 }
 
 /// Why this study cannot use the folder; nothing if it can.
-std::optional<std::string> objection(const fs::path& folder, const Json& identity) {
+std::optional<std::string> objection(const fs::path& folder, const StudyIdentity& ours) {
   std::error_code error;
   const fs::path file = folder / kIdentityFile;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
@@ -87,10 +126,14 @@ std::optional<std::string> objection(const fs::path& folder, const Json& identit
       return said(folder, "is not empty and no study; give a new folder, or empty this one");
     return std::nullopt;
   }
-  const Json theirs = Json::parse(content_of(file), nullptr, false);
-  const std::string why = difference(identity, theirs);
+  const auto read = read_identity(folder);
+  const auto* theirs = std::get_if<StudyIdentity>(&read);
+  std::string why = theirs == nullptr ? std::get<std::string>(read) : difference(ours, *theirs);
+  if (why.empty() && name_of(ours.shard) != name_of(theirs->shard)) {
+    why = "its study is " + name_of(theirs->shard) + ", this one " + name_of(ours.shard);
+  }
   if (why.empty()) return std::nullopt;
-  return said(folder, why);
+  return said(folder, why + "; give a new folder");
 }
 
 bool before(const studies::StudyRow& a, const studies::StudyRow& b) {
@@ -99,15 +142,54 @@ bool before(const studies::StudyRow& a, const studies::StudyRow& b) {
 
 }  // namespace
 
+std::string StudyShard::name() const {
+  return "shard " + std::to_string(index) + '/' + std::to_string(of) + " of seeds " +
+         std::to_string(first_seed) + ':' + std::to_string(last_seed);
+}
+
+std::string difference(const StudyIdentity& our_identity, const StudyIdentity& their_identity) {
+  const Json ours = to_json(our_identity), theirs = to_json(their_identity);
+  if (ours["version"] != theirs["version"]) {
+    return "its study was begun by ergocast " + theirs["version"].dump();
+  }
+  if (our_identity.settings != their_identity.settings) {
+    return "its study sets " + Json(their_identity.settings).dump();
+  }
+  if (ours["fields"] != theirs["fields"]) return "its study varies " + theirs["fields"].dump();
+  if (ours["points"].size() != theirs["points"].size()) {
+    return "its study has " + std::to_string(theirs["points"].size()) + " points, this one " +
+           std::to_string(ours["points"].size());
+  }
+  for (std::size_t i = 0; i < ours["points"].size(); ++i) {
+    if (ours["points"][i] == theirs["points"][i]) continue;
+    return "its study differs at point " + std::to_string(i + 1) + ", " +
+           theirs["points"][i].dump();
+  }
+  return "";
+}
+
+std::variant<StudyIdentity, std::string> read_identity(const fs::path& folder) {
+  const fs::path file = folder / kIdentityFile;
+  std::error_code error;
+  if (!fs::exists(file, error)) return "is no study: there is no study.json";
+  const Json json = Json::parse(content_of(file), nullptr, false);
+  try {
+    StudyIdentity identity = identity_from(json);
+    if (is_sound(identity)) return identity;
+  } catch (const Json::exception&) {  // a key is missing, or its value is of another type
+  }
+  return "its study.json is damaged";
+}
+
 std::variant<std::unique_ptr<StudyDirectory>, std::string> StudyDirectory::open(
     const fs::path& folder, const StudyIdentity& identity) {
-  const Json json = to_json(identity);
-  if (auto problem = objection(folder, json)) return *problem;
+  if (auto problem = objection(folder, identity)) return *problem;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return said(folder, error.message() + "; give another folder");
   if (!fs::exists(folder / kIdentityFile)) {
-    if (auto problem = write_file(folder / kIdentityFile, json.dump(2) + '\n')) return *problem;
+    if (auto problem = write_file(folder / kIdentityFile, to_json(identity).dump(2) + '\n'))
+      return *problem;
   }
   const int lock = ::open((folder / kIdentityFile).c_str(), O_RDONLY | O_CLOEXEC);
   if (lock < 0 || flock(lock, LOCK_EX | LOCK_NB) != 0) {

@@ -16,12 +16,35 @@
 
 namespace ergocast::cli {
 
+inline constexpr std::uint64_t kMostStudyRuns = 1000000;
+
+/// A part of a study. Its runs are numbered seed by seed, and within a seed by point.
+struct StudyShard {
+  std::uint64_t index = 1, of = 1;  ///< from 1; every `of`-th run is of the shard
+  std::uint64_t first_seed = 1, last_seed = 1;
+  std::string command;                ///< that makes the whole study, but for --out
+  std::vector<std::string> missions;  ///< the command of one mission of each point
+
+  bool has(std::uint64_t run) const { return run % of == index - 1; }
+  /// "shard 2/4 of seeds 1:100".
+  std::string name() const;
+};
+
 /// A study and the hashes of its compiled points, which distinguish two studies of equal names.
 struct StudyIdentity {
   studies::Study study;
   std::vector<std::string> plan_hashes;  ///< one for each point
   std::string version;
+  std::vector<std::string> settings{};  ///< of all points, as --set takes them
+  std::optional<StudyShard> shard{};    ///< nothing: the whole study
 };
+
+/// Why these are not shards of one study, or equal to one another without shards; empty if they
+/// are.
+std::string difference(const StudyIdentity& ours, const StudyIdentity& theirs);
+
+/// The study in `folder`, or one sentence that tells why there is none. Checks what is read.
+std::variant<StudyIdentity, std::string> read_identity(const std::filesystem::path& folder);
 
 class StudyDirectory {
  public:

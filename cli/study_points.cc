@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "cli/command_text.h"
+#include "ops/deploy/script.h"
 #include "runtime/node.h"
 #include "team/plan.h"
 
@@ -20,7 +22,12 @@ using Problems = std::vector<std::string>;
 /// Problems of the request itself, before any file is read.
 Problems problems_of(const StudyOptions& options) {
   Problems problems;
-  std::set<std::string> fields;
+  std::set<std::string> fields, set;
+  for (const FieldValue& field : options.settings) {
+    set.insert(field.path);
+    if (field.path == "seed")
+      problems.push_back(field.flag + ": every point gets the same seeds (use --seeds)");
+  }
   double points = static_cast<double>(options.scenarios.size());
   for (const Variation& variation : options.variations) {
     const std::string flag = "--vary " + variation.path;
@@ -28,6 +35,8 @@ Problems problems_of(const StudyOptions& options) {
     if (!fields.insert(variation.path).second) {
       problems.push_back(flag + ": is varied twice (give all its values in one --vary)");
     }
+    if (set.contains(variation.path))
+      problems.push_back(flag + ": --set says it too (leave out one of them)");
     if (variation.path == "seed")
       problems.push_back(flag + ": every point gets the same seeds (use --seeds)");
     if (variation.path == "time.duration_s" && options.duration_s) {
@@ -96,6 +105,8 @@ class Compiler {
       combinations_ *= variation.values.size();
       points_.identity.study.fields.push_back(variation.path);
     }
+    for (const FieldValue& field : options.settings)
+      points_.identity.settings.push_back(field.path + '=' + field.value);
     points_.identity.version = version();
   }
 
@@ -109,14 +120,16 @@ class Compiler {
   void compile(const std::filesystem::path& file) {
     Complaints complaints;
     for (std::size_t i = 0; i < combinations_; ++i) {
-      Overrides overrides;
-      overrides.duration_s = options_.duration_s;
-      overrides.fields = combination(options_.variations, i);
+      const std::vector<FieldValue> varied = combination(options_.variations, i);
+      Overrides overrides{.duration_s = options_.duration_s, .fields = options_.settings};
+      overrides.fields.insert(overrides.fields.end(), varied.begin(), varied.end());
       const auto loaded = Scenario::load(file, overrides);
       if (const auto* scenario = std::get_if<Scenario>(&loaded)) {
-        add(*scenario, overrides.fields, file);
+        add(*scenario, varied, file);
+        points_.missions.push_back("ergocast run " + shell_word(file.string()) +
+                                   options_of(overrides));
       } else {
-        complaints.add(std::get<std::vector<Problem>>(loaded), words_of(overrides.fields));
+        complaints.add(std::get<std::vector<Problem>>(loaded), words_of(varied));
       }
     }
     complaints.say(combinations_, problems_);

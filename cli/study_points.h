@@ -15,7 +15,8 @@ namespace ergocast::cli {
 
 struct StudyPoints {
   StudyIdentity identity;
-  std::vector<Scenario> scenarios;  ///< one for each point
+  std::vector<Scenario> scenarios;    ///< one for each point
+  std::vector<std::string> missions;  ///< `ergocast run` of each point, without a seed
 };
 
 /// All problems of all points, each once, if there are any.

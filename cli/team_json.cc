@@ -13,11 +13,9 @@ nlohmann::ordered_json or_null(bool known, const T& value) {
 }
 
 nlohmann::ordered_json json_of(const AgentRow& row) {
-  constexpr const char* kWords[] = {"silent", "waiting",  "late", "not heard",
-                                    "ok",     "finished", "gone"};
   nlohmann::ordered_json json = {{"id", row.author.agent},
                                  {"incarnation", to_hex(row.author.incarnation)},
-                                 {"state", kWords[static_cast<int>(row.condition)]},
+                                 {"state", to_string(row.condition)},
                                  {"silent_s", row.silent_s},
                                  {"restarts", row.restarts}};
   if (!row.status) return json;
@@ -47,6 +45,7 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
 std::string team_json(const TeamPicture& at) {
   nlohmann::ordered_json json = {
       {"run_id", to_hex(at.run)},
+      {"replay", at.replay},
       {"authenticated", at.authenticated},
       {"scenario", or_null(!at.scenario.empty(), at.scenario)},
       {"state", at.state ? nlohmann::ordered_json(to_string(*at.state)) : nlohmann::ordered_json()},

@@ -25,9 +25,9 @@ std::string name_of(AgentId sender) {
 }  // namespace
 
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
-                                                                      Hear hear) {
+                                                                      Hear hear, Hear hear_replay) {
   return Transport::open(options.url, options.run, options.seal, subscriptions_of(Role::kMonitor),
-                         {.on_message = std::move(hear)});
+                         {.on_message = std::move(hear), .on_replayed = std::move(hear_replay)});
 }
 
 MonitoredRun::MonitoredRun(RunId run) : me_(kRole, {run, kUnassigned, 0}) {}

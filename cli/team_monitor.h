@@ -25,9 +25,10 @@ inline constexpr std::size_t kMostRuns = 16;
 /// Called with each message, its bus and its transmitter.
 using Hear = std::function<void(const Message&, Bus, AgentId transmitter)>;
 
-/// Receives all messages about the state of teams. An error tells why LCM cannot be used.
+/// Receives all messages about the state of teams, and those of replays. An error tells why LCM
+/// cannot be used.
 std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusOptions& options,
-                                                                      Hear hear);
+                                                                      Hear hear, Hear hear_replay);
 
 /// The messages received of one run.
 class MonitoredRun {

@@ -133,7 +133,8 @@ std::vector<Cell> cells_of(const AgentRow& row) {
 }
 
 std::string headline(const TeamPicture& at) {
-  std::string text = at.scenario.empty() ? "a mission not heard yet" : at.scenario;
+  std::string text = at.replay ? "replay of " : "";
+  text += at.scenario.empty() ? "a mission not heard yet" : at.scenario;
   text += ", run " + to_hex(at.run) + ", ";
   text += at.state ? to_string(*at.state) : "no coordinator heard";
   text += ", tick " + std::to_string(at.tick);

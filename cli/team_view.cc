@@ -17,6 +17,8 @@ constexpr PacingClock::duration kOverdue = 2 * kAgentStatusPeriod;
 constexpr PacingClock::duration kStandstill = 750ms;
 /// An event loop blocked for so long, or an agent so far behind the world, is late.
 constexpr double kLate_s = 0.5;
+/// In a replay: agents say their status each mission second.
+constexpr double kSilentInReplay_s = 6;
 
 double to_s(PacingClock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -37,8 +39,17 @@ std::optional<double> median_metric(const std::vector<AgentRow>& rows) {
 
 }  // namespace
 
-TeamView::TeamView(RunId run, Instant since, bool authenticated)
-    : me_(kRole, {run, kUnassigned, 0}), authenticated_(authenticated), since_(since) {}
+const char* to_string(Condition condition) {
+  constexpr const char* kWords[] = {"silent", "waiting",  "late", "not heard",
+                                    "ok",     "finished", "gone"};
+  return kWords[static_cast<int>(condition)];
+}
+
+TeamView::TeamView(RunId run, Instant since, bool authenticated, bool replay)
+    : me_(kRole, {run, kUnassigned, 0}),
+      authenticated_(authenticated),
+      replay_(replay),
+      since_(since) {}
 
 void TeamView::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   const auto arrival = me_.accept(message, bus, transmitter, now);
@@ -83,10 +94,18 @@ void TeamView::on(const AgentStatus& status, const Arrival& arrival) {
   }
 }
 
+bool TeamView::silent(const Author& author, const Seen& seen, Instant now) const {
+  if (!replay_) return me_.silent(author, now);
+  const auto& mission = follower().mission();
+  const auto behind = static_cast<double>(world_tick_ - seen.status.header.tick);
+  return mission && !over() && behind * mission->timing.dt_s > kSilentInReplay_s;
+}
+
 Condition TeamView::condition_of(const Author& author, const Seen& seen, Instant now) const {
   const AgentStatus& status = seen.status;
   if (status.phase == AgentPhase::kFinished) return Condition::kFinished;
-  if (me_.silent(author, now)) return Condition::kSilent;
+  if (silent(author, seen, now)) return Condition::kSilent;
+  if (replay_) return Condition::kOk;
   const bool stands_still = now - seen.tick_since >= kStandstill;
   if (status.waiting_for == kWorld || (status.waiting_for != kUnassigned && stands_still)) {
     return Condition::kWaiting;
@@ -98,7 +117,7 @@ Condition TeamView::condition_of(const Author& author, const Seen& seen, Instant
 
 AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const {
   AgentRow row{author, Condition::kUnheard, to_s(now - since_), 0, {}};
-  if (now - since_ >= silence_of(author.agent)) row.condition = Condition::kSilent;
+  if (!replay_ && now - since_ >= silence_of(author.agent)) row.condition = Condition::kSilent;
   if (const auto seen = agents_.find(author); seen != agents_.end()) {
     row.status = seen->second.status;
     row.silent_s = to_s(now - last_sign(author));
@@ -149,7 +168,8 @@ void TeamView::add_agents(TeamPicture& picture, Instant now) const {
   for (const auto& [id, life] : newest_lives()) {
     const AgentRow& row = picture.agents.emplace_back(row_of(life.first, life.second, now));
     members += life.second ? 1 : 0;
-    picture.agents_alive += life.second && row.status && !me_.silent(life.first, now) ? 1 : 0;
+    picture.agents_alive +=
+        life.second && row.status && row.condition != Condition::kSilent ? 1 : 0;
   }
   const auto& mission = follower().mission();
   const int planned = mission ? static_cast<int>(mission->starts_m.size()) : 0;
@@ -193,7 +213,7 @@ void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) co
     row.tick = heard->second.tick;
   }
   if (sender == kCoordinator) row.host = coordinator_host_;
-  row.trouble = should_speak(sender) && me_.silent(sender, now, since_);
+  row.trouble = !replay_ && should_speak(sender) && me_.silent(sender, now, since_);
   picture.trouble |= row.trouble;
   picture.processes.push_back(std::move(row));
 }
@@ -201,6 +221,7 @@ void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) co
 TeamPicture TeamView::picture(Instant now) const {
   TeamPicture picture;
   picture.run = me_.run();
+  picture.replay = replay_;
   picture.authenticated = authenticated_;
   picture.tick_count = tick_count_;
   if (const auto& mission = follower().mission()) {
@@ -219,7 +240,7 @@ TeamPicture TeamView::picture(Instant now) const {
   add_agents(picture, now);
   add_forgotten(picture);
   for (const AgentId sender : {kCoordinator, kWorld, kLogger}) add_process(picture, sender, now);
-  const bool under_way = picture.state == MissionState::kRunning && !over();
+  const bool under_way = picture.state == MissionState::kRunning && !over() && !replay_;
   picture.trouble |= under_way && picture.agents_alive < picture.agents_expected;
   return picture;
 }

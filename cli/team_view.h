@@ -24,6 +24,9 @@ enum class Condition {
   kGone,      ///< no longer a member, and without a successor
 };
 
+/// "silent", "waiting", "late", "not heard", "ok", "finished" or "gone".
+const char* to_string(Condition condition);
+
 /// The newest member under one number.
 struct AgentRow {
   Author author;
@@ -47,6 +50,7 @@ struct ProcessRow {
 
 struct TeamPicture {
   RunId run = 0;
+  bool replay = false;                ///< sent by `ergocast replay`; nobody flies
   bool authenticated = false;         ///< else any host on the network may have sent it
   std::string scenario;               ///< empty: MISSION was not received
   std::optional<MissionState> state;  ///< nothing: not received
@@ -70,7 +74,8 @@ class TeamView {
 
   /// @param since  when the listening began
   /// @param authenticated  whether what it receives was checked with the team's key
-  TeamView(RunId run, Instant since, bool authenticated = false);
+  /// @param replay  whether `ergocast replay` sends it: then mission time tells who was silent
+  TeamView(RunId run, Instant since, bool authenticated = false, bool replay = false);
 
   /// @pre the message is of this view's run
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
@@ -104,8 +109,10 @@ class TeamView {
   void add_process(TeamPicture& picture, AgentId sender, Instant now) const;
   bool should_speak(AgentId sender) const;
 
+  bool silent(const Author& author, const Seen& seen, Instant now) const;
+
   Participant me_;
-  bool authenticated_;
+  bool authenticated_, replay_;
   Instant since_;
   Tick tick_ = 0, world_tick_ = 0;
   std::map<Author, Seen> agents_;

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 
+#include "cli/command_text.h"
 #include "cli/commands.h"
 #include "cli/fault_file.h"
 #include "cli/progress_line.h"
@@ -60,12 +61,8 @@ TrialReport report_of_death(std::uint64_t seed, const std::string& how) {
 
 /// The command that repeats the trial of one seed.
 std::string replay_of(const TrialsOptions& options, std::uint64_t seed) {
-  std::string command = "ergocast simulate " + shell_word(options.mission.scenario.string());
-  const Overrides& over = options.mission.overrides;
-  if (over.duration_s) command += " --duration " + text_of("%.17g", *over.duration_s);
-  if (over.agents) command += " --agents " + std::to_string(*over.agents);
-  if (over.pace == Pace::kLockstep) command += " --lockstep";
-  if (over.realtime_factor) command += " --realtime " + text_of("%.17g", *over.realtime_factor);
+  std::string command = "ergocast simulate " + shell_word(options.mission.scenario.string()) +
+                        options_of(options.mission.overrides);
   if (!options.faults.empty()) command += " --faults " + shell_word(options.faults);
   return command + " --seeds " + std::to_string(seed);
 }
@@ -126,6 +123,11 @@ class Desk {
 }  // namespace
 
 int trials(const TrialsOptions& options) {
+  for (const FieldValue& field : options.mission.overrides.fields) {
+    if (field.path != "seed") continue;
+    return report_error(kExitBadInput,
+                        field.flag + ": --seeds says it too (leave out one of them)");
+  }
   const auto scenario = load_or_complain(options.mission.scenario, options.mission.overrides);
   if (!scenario) return kExitBadInput;
   const auto faults = faults_by_seed(options.faults);

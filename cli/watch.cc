@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/find_run.h"
 #include "cli/live_watch.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
@@ -52,8 +53,9 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
   return kExitDone;
 }
 
-int watch_team(const WatchOptions& options, StopSignals& signals) {
-  auto started = LiveWatch::start({options, {}, {}, {}}, options.server);
+/// @param run_dir  of the team's run; empty: not known here
+int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
+  auto started = LiveWatch::start({options, run_dir, {}, {}}, options.server);
   if (const auto* problem = std::get_if<std::string>(&started)) {
     return report_error(kExitUnavailable, *problem);
   }
@@ -90,18 +92,20 @@ void add_watch(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "watch", "Show a record, or a team that flies, in a browser; only listens");
   auto options = std::make_shared<WatchOptions>();
-  auto* run_dir =
-      command->add_option("RUN_DIR", options->run_dir, "Run directory (default: a team that flies)")
-          ->type_name("DIR");
+  command->add_option("RUN_DIR", options->run_dir, "Run directory (default: a team that flies)")
+      ->type_name("DIR");
   add_bus_options(*command, *options);
   add_page_options(*command, options->server);
   command->footer(
       "Serves until Ctrl-C. Exit codes: 0 done; 2 no record, or it is damaged; 3 LCM or the\n"
       "address cannot be used.");
-  command->callback([&action, options, run_dir] {
-    action = [options, of_record = run_dir->count() > 0] {
+  command->callback([&action, options, command] {
+    action = [options, command] {
       StopSignals signals;
-      return of_record ? watch_record(*options, signals) : watch_team(*options, signals);
+      if (command->count("RUN_DIR") > 0) return watch_record(*options, signals);
+      fs::path run_dir;
+      if (const auto code = find_run(*command, *options, &run_dir)) return *code;
+      return watch_team(*options, run_dir, signals);
     };
   });
 }

@@ -44,9 +44,23 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
   return std::nullopt;
 }
 
+/// It must hear the end of the mission, too.
+void Coordinator::note_stranger(Incarnation incarnation, Instant now) {
+  const bool known = std::any_of(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
+    return entry.author.incarnation == incarnation;
+  });
+  if (known) return;
+  auto& heard = newcomers_.heard;
+  if (heard.size() >= kMaxRosterEntries) {
+    std::erase_if(heard, [now](const auto& old) { return now - old.second >= silence_of(0); });
+  }
+  if (heard.size() < kMaxRosterEntries) heard[incarnation] = now;
+}
+
 void Coordinator::on(const Hello& hello, const Arrival& arrival) {
   const Instant now = arrival.now;
   if (looking()) return;
+  if (hello.header.sender >= kUnassigned) note_stranger(hello.header.incarnation, now);
   if (state_ == MissionState::kEnded || state_ == MissionState::kFailed) return;
   const Incarnation nonce = hello.header.incarnation;
   if (hello.header.sender == kWorld) return on_question(hello, arrival);
@@ -93,6 +107,7 @@ void Coordinator::admit(const Author& author, Instant now) {
   members_[author];
   me_.presume_alive(author, now);
   newcomers_.asked.erase(author.incarnation);
+  newcomers_.heard.erase(author.incarnation);
   world_.tick_since = now;  // the tick also waits for the newcomer, which gets the full time
   announce();
 }

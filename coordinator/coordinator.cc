@@ -100,6 +100,7 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
     return;
   }
   world_.heard = true;
+  if (arrival.fresh) world_.left = world.last;
   if (world.roster_revision > revisions_.current) {
     world_.newest_revision = std::max(world_.newest_revision, world.roster_revision);
     if (!world_.newer_since) world_.newer_since = now;
@@ -115,6 +116,10 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
     answered = std::max(answered, vehicle.answered_tick);
   }
   if (world_.tick >= timing().tick_count) end(false, "mission complete", now);
+}
+
+void Coordinator::on(const RecordAck& ack, const Arrival& arrival) {
+  if (arrival.fresh) ending_.logger_left = ack.last;
 }
 
 bool Coordinator::alive(const RosterEntry& entry, Instant now) const {
@@ -291,7 +296,28 @@ void Coordinator::lead(Instant now, Outbox& out) {
     said_.last_mission = now;
     said_.next_mission = now + (ending_.since ? kMissionGap : kMissionPeriod);
   }
-  ending_.finished = ending_.since && now - *ending_.since >= kLinger;
+  if (!ending_.since) return;
+  const bool all_left = everybody_left(now);
+  if (all_left) publish_mission(out);  // once more, for those that only watch
+  ending_.finished = all_left || now - *ending_.since >= kLinger;
+}
+
+/// Whether world, logger and agents have said that they leave, and no other process asks to join.
+/// Each of them leaves once it has heard the end.
+bool Coordinator::everybody_left(Instant now) const {
+  const auto& strangers = newcomers_.heard;
+  if (!world_.left || !ending_.logger_left || strangers.size() >= kMaxRosterEntries) return false;
+  if (std::any_of(strangers.begin(), strangers.end(),
+                  [now](const auto& stranger) { return now - stranger.second < kLinger; })) {
+    return false;
+  }
+  return me_.team_has_left(
+      roster_,
+      [&](const Author& author) {
+        const auto& status = members_.at(author).status;
+        return status && status->phase == AgentPhase::kFinished;
+      },
+      now);
 }
 
 /// A process lacks the newest revision. kMissionGap limits the repetitions, so that HELLO messages

@@ -54,7 +54,7 @@ class Coordinator {
   /// Ends the mission in order; `failed` makes it a failure with that reason.
   void end(bool failed, std::string reason, Instant now);
 
-  /// True once the end has been repeated for long enough.
+  /// True once all others have said that they leave, or the end has been repeated for 1 s.
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   /// Null until it has a mission; a takeover needs a moment to find one.
@@ -104,11 +104,12 @@ class Coordinator {
   };
   struct Newcomers {
     std::map<Incarnation, Instant> asked;  // without a number: time of the first request
+    std::map<Incarnation, Instant> heard;  // last HELLO of each process that is no member
     std::set<std::pair<std::string, std::string>> version_mismatches;
   };
   /// The newest information about the world.
   struct WorldSeen {
-    bool heard = false;
+    bool heard = false, left = false;
     Tick tick = 0;
     Instant tick_since{};
     std::int64_t revision = 0;           // the roster revision of that tick
@@ -128,6 +129,7 @@ class Coordinator {
     std::optional<Instant> since;
     std::string reason;
     bool finished = false, left = false;
+    bool logger_left = false;
   };
 
   template <class M>
@@ -137,11 +139,14 @@ class Coordinator {
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const WorldState& world, const Arrival& arrival);
+  void on(const RecordAck& ack, const Arrival& arrival);
   void on(const TeamStatus& theirs, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
   const Timing& timing() const { return flown_.mission->timing; }
   Instant last_sign(const Author& author) const;
   void admit(const Author& author, Instant now);
+  void note_stranger(Incarnation incarnation, Instant now);
+  bool everybody_left(Instant now) const;
   bool may_have_stopped(Instant since, Instant now) const;
   std::optional<AgentId> free_id(Incarnation newcomer, Instant now);
   RosterEntry* active_entry(AgentId id);

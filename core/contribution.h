@@ -2,15 +2,30 @@
 // What an agent says about its coverage: the only message that the method needs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
+#include "core/block_sums.h"
 #include "core/ids.h"
 
 namespace ergocast {
 
-/// Doubles in one block of a contribution; the last block of a mission is padded with zeros.
-inline constexpr int kBlockSize = 128;
+/// How the numbers of contributions travel, the same for all of a run.
+enum class ContributionEncoding {
+  kDouble,   ///< sums, kBlockSize in a block
+  kFixed16,  ///< averages and rates in 16 bits, kMostBlockSize in a block
+};
+
+inline constexpr int block_size_of(ContributionEncoding encoding) {
+  return encoding == ContributionEncoding::kFixed16 ? kMostBlockSize : kBlockSize;
+}
+/// Into how many blocks so many modes fall.
+inline constexpr int block_count_of(int mode_count, ContributionEncoding encoding) {
+  return (mode_count + block_size_of(encoding) - 1) / block_size_of(encoding);
+}
+/// How far an average that has travelled may be from the exact one.
+inline constexpr double rounding_of(ContributionEncoding encoding) {
+  return encoding == ContributionEncoding::kFixed16 ? 1.0 / 65534 : 0;
+}
 
 /// One block of an agent's running sums: the numerator of (4), cumulative since its start.
 struct Contribution {
@@ -20,7 +35,12 @@ struct Contribution {
   double elapsed_s = 0;          ///< time the sums cover, steps · dt
   std::int32_t block = 0;
   std::int32_t mode_count = 0;
-  alignas(16) std::array<double, kBlockSize> sums{};  ///< Σ f_k(x) dt, not divided by h_k [s]
+  BlockSums sums;  ///< Σ f_k(x) dt, not divided by h_k [s]
+  ContributionEncoding encoding = ContributionEncoding::kDouble;
+  /// kFixed16: what the sums have gained in the last `gained_steps` steps [s]. Receivers cannot
+  /// tell it from two rounded averages.
+  BlockSums gains;
+  std::int64_t gained_steps = 0;
 
   Author author() const { return {header.sender, header.incarnation}; }
 };

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
 
 #include "core/require.h"
 #include "core/vectorized.h"
@@ -17,19 +20,37 @@ namespace {
 /// cosines by recurrence, which exceed 1 by about 3e-15.
 double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(steps) * 0x1p-53; }
 
-static_assert(kBlockSize % kModesPerStride == 0, "reading so many never leaves a row");
+static_assert(kBlockSize % kModesPerStride == 0 && kMostBlockSize % kModesPerStride == 0,
+              "reading so many never leaves a row");
 
-/// Whether none of a block's |values| exceeds `limit`, and none is NaN.
+/// Whether no sum of a block has changed by more than `limit`.
 ERGOCAST_VECTORIZED
-bool all_within(const double* values, double limit) {
+bool gains_within(const double* sums, const double* before, double limit) {
   std::int64_t beyond = 0;  // counted, because a loop with a way out is not vectorised
-  for (std::size_t k = 0; k < kBlockSize; ++k) beyond += !(std::abs(values[k]) <= limit);
+  for (std::size_t k = 0; k < kBlockSize; ++k) {
+    beyond += !(std::abs(sums[k] - before[k]) <= limit);
+  }
   return beyond == 0;
 }
 
+/// out = Σ rows · per_second, for the first `modes` modes of a block.
 ERGOCAST_VECTORIZED
-void subtract(const double* a, const double* b, double* difference) {
-  for (std::size_t k = 0; k < kBlockSize; ++k) difference[k] = a[k] - b[k];
+void average_rows(std::span<const double* const> rows, int modes, double per_second, double* out) {
+  for (int first = 0; first < modes; first += kModesPerStride) {
+    std::array<double, kModesPerStride> team{};
+    for (const double* row : rows) {
+      for (int k = 0; k < kModesPerStride; ++k) team[k] += row[first + k];
+    }
+    const int count = std::min(kModesPerStride, modes - first);
+    for (int k = 0; k < count; ++k) out[first + k] = team[k] * per_second;
+  }
+}
+
+/// What has travelled in 16 bits may have been rounded up, but not beyond 1.
+bool gains_in_range(const Contribution& c, double dt_s) {
+  const double gained_s = static_cast<double>(c.gained_steps) * dt_s;
+  return c.gained_steps >= 0 && c.gained_steps <= c.steps &&
+         c.gains.largest() <= gained_s * (1 + rounding_margin(c.steps));
 }
 
 bool in_range(const Contribution& c, double dt_s) {
@@ -38,7 +59,7 @@ bool in_range(const Contribution& c, double dt_s) {
   if (!(std::abs(c.elapsed_s - expected_s) <= margin_s)) return false;
   // f_00 = 1, so S_00 is the time covered.
   if (c.block == 0 && !(std::abs(c.sums[0] - expected_s) <= margin_s)) return false;
-  return all_within(c.sums.data(), expected_s + margin_s);
+  return c.sums.largest() <= expected_s + margin_s;
 }
 
 }  // namespace
@@ -47,7 +68,18 @@ CoverageTable::CoverageTable(const Basis& basis, double dt_s, Tick joined)
     : basis_(basis),
       dt_s_(dt_s),
       joined_(joined),
-      block_count_((basis.mode_count() + kBlockSize - 1) / kBlockSize) {}
+      block_count_(block_count_of(basis.mode_count(), encoding_)) {}
+
+void CoverageTable::set_encoding(ContributionEncoding encoding) {
+  ERGOCAST_REQUIRE(rows_.empty());
+  encoding_ = encoding;
+  block_size_ = block_size_of(encoding);
+  block_count_ = block_count_of(basis_.mode_count(), encoding);
+}
+
+CoverageTable::Row* CoverageTable::find(const Author& author) {
+  return const_cast<Row*>(static_cast<const CoverageTable&>(*this).find(author));
+}
 
 const CoverageTable::Row* CoverageTable::find(const Author& author) const {
   const auto at = std::lower_bound(rows_.begin(), rows_.end(), author,
@@ -64,9 +96,8 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
   if (incarnations >= kMaxIncarnationsPerAgent) return nullptr;
   if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
   const auto blocks = static_cast<std::size_t>(block_count_);
-  return &*rows_.insert(
-      at, Row{author, true, std::vector<Block>(blocks), std::vector<double>(blocks * kBlockSize),
-              std::vector<double>(blocks * kBlockSize)});
+  counted_.resize(rows_.size() + 1);
+  return &*rows_.insert(at, Row{author, true, 0, kNeverSaid, std::vector<Block>(blocks), {}});
 }
 
 void CoverageTable::add_row(const Author& author) {
@@ -76,59 +107,89 @@ void CoverageTable::add_row(const Author& author) {
 void CoverageTable::add_sample(const Author& author, const BasisAt& at) {
   Row* row = find_or_add(author);
   ERGOCAST_REQUIRE(row != nullptr);
-  accumulate_basis(at, basis_, dt_s_, row->sums.data());
+  if (row->samples.empty()) {
+    const auto size = static_cast<std::size_t>(block_size_);
+    row->samples.resize(row->blocks.size() * size);
+    for (std::size_t b = 0; b < row->blocks.size(); ++b) {
+      std::copy_n(row->blocks[b].sums.data(), size, row->samples.data() + b * size);
+      row->blocks[b].gained_steps = 0;
+    }
+  }
+  accumulate_basis(at, basis_, dt_s_, row->samples.data());
   for (Block& block : row->blocks) ++block.steps;
+  row->sum_up();
 }
 
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
+  if (theirs.encoding != encoding_) return Merge::kRefusedEncoding;
   if (theirs.mode_count != basis_.mode_count() || theirs.block < 0 ||
       theirs.block >= block_count_ || theirs.steps < 1 || theirs.steps > max_steps ||
-      theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_)) {
+      theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_) ||
+      !gains_in_range(theirs, dt_s_)) {
     return Merge::kRefusedRange;
   }
   Row* row = find_or_add(theirs.author());
   if (row == nullptr) return Merge::kRefusedLimit;
-  Block& block = row->blocks[static_cast<std::size_t>(theirs.block)];
+  const auto number = static_cast<std::size_t>(theirs.block);
+  Block& block = row->blocks[number];
   if (theirs.steps <= block.steps) return Merge::kStale;
-  const std::int64_t gained_steps = notes_gains_ ? take_gains(theirs, block, *row) : 0;
-  block = {theirs.steps, theirs.next_broadcast_tick, theirs.header.sequence, theirs.header.tick,
-           gained_steps};
-  std::copy(theirs.sums.begin(), theirs.sums.end(), row->sums.begin() + theirs.block * kBlockSize);
+  if (!row->samples.empty()) {
+    const auto size = static_cast<std::size_t>(block_size_);
+    std::copy_n(theirs.sums.data(), size, row->samples.data() + number * size);
+    block.gained_steps = 0;
+  } else if (encoding_ == ContributionEncoding::kFixed16) {
+    block.sums_before = theirs.gains;
+    block.gained_steps = theirs.gained_steps;
+  } else if (notes_gains_) {
+    // Who joined later than the block was said compares with nothing.
+    const bool comparable = block.tick >= joined_;
+    block.steps_before = comparable ? block.steps : 0;
+    block.sums_before = comparable ? std::move(block.sums) : BlockSums();
+    block.gained_steps = kNotCompared;
+  } else {
+    block.gained_steps = 0;
+  }
+  block.steps = theirs.steps;
+  block.next_broadcast_tick = theirs.next_broadcast_tick;
+  block.sequence = theirs.header.sequence;
+  block.tick = theirs.header.tick;
+  block.sums = theirs.sums;
+  row->sum_up();
   return Merge::kNewer;
 }
 
-/// Writes what `theirs` adds to the block held before; returns over how many steps, 0 if no agent
-/// can have gained that in them.
-std::int64_t CoverageTable::take_gains(const Contribution& theirs, const Block& before,
-                                       Row& row) const {
-  const bool comparable = before.tick >= joined_;
-  const std::int64_t steps = theirs.steps - (comparable ? before.steps : 0);
-  const double margin_s = static_cast<double>(theirs.steps) * dt_s_ * rounding_margin(theirs.steps);
-  const double most_s = static_cast<double>(steps) * dt_s_ + 2 * margin_s;
-  const std::ptrdiff_t first = std::ptrdiff_t{theirs.block} * kBlockSize;
-  double* gains = row.gains.data() + first;
-  if (comparable) {
-    subtract(theirs.sums.data(), row.sums.data() + first, gains);
-  } else {
-    std::copy(theirs.sums.begin(), theirs.sums.end(), gains);
-  }
-  return all_within(gains, most_s) ? steps : 0;
+const double* CoverageTable::Row::sums(std::size_t block, int block_size) const {
+  if (samples.empty()) return blocks[block].sums.data();
+  return samples.data() + block * static_cast<std::size_t>(block_size);
 }
 
 CoverageTable::BlockView CoverageTable::view(std::size_t row, int block) const {
   const Row& one = rows_[row];
-  const Block& held = one.blocks[static_cast<std::size_t>(block)];
-  const std::ptrdiff_t first = std::ptrdiff_t{block} * kBlockSize;
-  return {one.sums.data() + first,
-          one.gains.data() + first,
-          held.steps,
-          held.gained_steps,
-          held.tick,
+  const auto number = static_cast<std::size_t>(block);
+  const Block& held = one.blocks[number];
+  return {one.sums(number, block_size_), held.steps, held.tick,
           held.next_broadcast_tick - held.tick};
 }
 
+/// Over how many steps a block has gained; 0 if no agent can have gained that in them.
+std::int64_t CoverageTable::gained_steps(const Block& block) const {
+  if (block.gained_steps != kNotCompared) return block.gained_steps;
+  const std::int64_t steps = block.steps - block.steps_before;
+  const double margin_s = static_cast<double>(block.steps) * dt_s_ * rounding_margin(block.steps);
+  const double most_s = static_cast<double>(steps) * dt_s_ + 2 * margin_s;
+  const bool possible = gains_within(block.sums.data(), block.sums_before.data(), most_s);
+  return block.gained_steps = possible ? steps : 0;
+}
+
+CoverageTable::Gains CoverageTable::gains(std::size_t row, int block) const {
+  const Block& held = rows_[row].blocks[static_cast<std::size_t>(block)];
+  const std::int64_t steps = notes_gains_ ? gained_steps(held) : 0;
+  if (encoding_ == ContributionEncoding::kFixed16) return {nullptr, held.sums_before.data(), steps};
+  return {held.sums_before.data(), nullptr, steps};
+}
+
 bool CoverageTable::Block::looks_like(const Block& other) const {
-  return steps == other.steps && gained_steps == other.gained_steps && tick == other.tick &&
+  return steps == other.steps && tick == other.tick &&
          next_broadcast_tick == other.next_broadcast_tick;
 }
 
@@ -138,12 +199,20 @@ bool CoverageTable::blocks_alike(std::size_t row) const {
                      [&](const Block& block) { return block.looks_like(blocks.front()); });
 }
 
+bool CoverageTable::gains_alike(std::size_t row) const {
+  const auto& blocks = rows_[row].blocks;
+  return std::all_of(blocks.begin() + 1, blocks.end(), [&](const Block& block) {
+    return gained_steps(block) == gained_steps(blocks.front());
+  });
+}
+
 Contribution CoverageTable::block(const Author& author, int block) const {
   Contribution out;
   out.header.sender = author.agent;
   out.header.incarnation = author.incarnation;
   out.block = block;
   out.mode_count = basis_.mode_count();
+  out.encoding = encoding_;
   if (const Row* row = find(author)) {
     const Block& held = row->blocks[static_cast<std::size_t>(block)];
     out.header.sequence = held.sequence;
@@ -151,7 +220,17 @@ Contribution CoverageTable::block(const Author& author, int block) const {
     out.steps = held.steps;
     out.next_broadcast_tick = held.next_broadcast_tick;
     out.elapsed_s = static_cast<double>(held.steps) * dt_s_;
-    std::copy_n(row->sums.begin() + block * kBlockSize, kBlockSize, out.sums.begin());
+    if (row->samples.empty()) {
+      out.sums = held.sums;
+    } else {
+      const auto size = static_cast<std::size_t>(block_size_);
+      std::copy_n(row->sums(static_cast<std::size_t>(block), block_size_), size,
+                  out.sums.set_all(size).begin());
+    }
+    if (encoding_ == ContributionEncoding::kFixed16 && row->samples.empty()) {
+      out.gains = held.sums_before;
+      out.gained_steps = held.gained_steps;
+    }
   }
   return out;
 }
@@ -162,36 +241,33 @@ void CoverageTable::forget(const Author& author) {
 
 void CoverageTable::remember(const Author& author) {
   // An unknown author counts when its first block arrives.
-  if (find(author) != nullptr) find_or_add(author)->counts = true;
+  if (Row* row = find(author)) row->counts = true;
 }
 
-ERGOCAST_VECTORIZED
 void CoverageTable::average(Coefficients& coverage) const {
   for (int b = 0; b < block_count_; ++b) {
+    const auto number = static_cast<std::size_t>(b);
     std::int64_t steps = 0;
+    std::size_t count = 0;
     for (const Row& row : rows_) {
-      if (row.counts) steps += row.blocks[static_cast<std::size_t>(b)].steps;
+      if (!row.counts) continue;
+      steps += row.blocks[number].steps;
+      counted_[count++] = row.sums(number, block_size_);
     }
     const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
-    const int end = std::min((b + 1) * kBlockSize, basis_.mode_count());
-    for (int first = b * kBlockSize; first < end; first += kModesPerStride) {
-      std::array<double, kModesPerStride> team{};
-      for (const Row& row : rows_) {
-        if (!row.counts) continue;
-        const double* sums = row.sums.data() + first;
-        for (int k = 0; k < kModesPerStride; ++k) team[k] += sums[k];
-      }
-      double* out = coverage.data() + first;
-      const int count = std::min(kModesPerStride, end - first);
-      for (int k = 0; k < count; ++k) out[k] = team[k] * per_second;
-    }
+    const int first = b * block_size_;
+    average_rows({counted_.data(), count}, std::min(block_size_, basis_.mode_count() - first),
+                 per_second, coverage.data() + first);
   }
 }
 
-std::int64_t CoverageTable::Row::min_steps() const {
-  std::int64_t fewest = blocks.front().steps;
-  for (const Block& block : blocks) fewest = std::min(fewest, block.steps);
-  return fewest;
+void CoverageTable::Row::sum_up() {
+  fewest_steps = blocks.front().steps;
+  due_tick = std::numeric_limits<Tick>::max();
+  for (const Block& block : blocks) {
+    fewest_steps = std::min(fewest_steps, block.steps);
+    due_tick = std::min(due_tick, block.steps > 0 ? block.next_broadcast_tick : kNeverSaid);
+  }
 }
 
 Tick CoverageTable::Row::announced_period() const {
@@ -209,7 +285,7 @@ Tick CoverageTable::announced_period(const Author& author) const {
 
 std::optional<std::int64_t> CoverageTable::steps_held(const Author& author) const {
   const Row* row = find(author);
-  return row == nullptr ? std::nullopt : std::optional(row->min_steps());
+  return row == nullptr ? std::nullopt : std::optional(row->fewest_steps);
 }
 
 std::int64_t CoverageTable::Row::max_steps() const {
@@ -228,7 +304,7 @@ std::uint64_t CoverageTable::Row::state_hash() const {
 }
 
 CoverageTable::RowSummary CoverageTable::Row::holding() const {
-  return {author, min_steps(), max_steps(), announced_period(), state_hash()};
+  return {author, fewest_steps, max_steps(), announced_period(), state_hash()};
 }
 
 CoverageTable::RowSummary CoverageTable::holding(std::size_t i) const { return rows_[i].holding(); }
@@ -240,7 +316,8 @@ CoverageTable::RowSummary CoverageTable::holding(const Author& author) const {
 
 const double* CoverageTable::sums_of(const Author& author) const {
   const Row* row = find(author);
-  return row == nullptr ? nullptr : row->sums.data();
+  ERGOCAST_REQUIRE(row != nullptr && !row->samples.empty());
+  return row->samples.data();
 }
 
 double CoverageTable::covered_s() const {
@@ -253,9 +330,7 @@ double CoverageTable::covered_s() const {
 
 bool CoverageTable::holds_due(const Author& author, Tick tick) const {
   const Row* row = find(author);
-  return row != nullptr && std::all_of(row->blocks.begin(), row->blocks.end(), [&](const Block& b) {
-           return b.steps > 0 && b.next_broadcast_tick > tick;
-         });
+  return row != nullptr && row->due_tick > tick;
 }
 
 }  // namespace ergocast

@@ -8,16 +8,18 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "core/basis.h"
+#include "core/block_sums.h"
 #include "core/contribution.h"
 #include "core/ids.h"
 
 namespace ergocast {
 
-enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit };
+enum class Merge { kNewer, kStale, kRefusedRange, kRefusedLimit, kRefusedEncoding };
 
 class CoverageTable {
  public:
@@ -29,7 +31,12 @@ class CoverageTable {
   /// for who does not look ahead.
   void forgo_gains() { notes_gains_ = false; }
 
+  /// From now on blocks come, and are given out, in this encoding; at first in doubles.
+  /// @pre no rows
+  void set_encoding(ContributionEncoding encoding);
+
   int block_count() const { return block_count_; }
+  int block_size() const { return block_size_; }
 
   /// Adds an empty row, if `author` has none.
   /// @pre the table has room.
@@ -38,10 +45,10 @@ class CoverageTable {
   /// S += f(x)·dt for the row of `author`, (4)'s integral; creates the row if it is new.
   void add_sample(const Author& author, const BasisAt& at);
 
-  /// Takes in one block. Refused, without effect: another number of modes, a block that does not
-  /// exist, an elapsed time that is not steps·dt, an S_00 that is not the elapsed time, |S| >
-  /// elapsed (both but for rounding, 1e-9 and half an ulp a step), more steps than `max_steps` (a
-  /// forged future would win for ever), a full table.
+  /// Takes in one block. Refused, without effect: another encoding, another number of modes, a
+  /// block that does not exist, an elapsed time that is not steps·dt, an S_00 that is not the
+  /// elapsed time, |S| > elapsed (both but for rounding, 1e-9 and half an ulp a step), more steps
+  /// than `max_steps` (a forged future would win for ever), a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
   /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.
@@ -75,26 +82,33 @@ class CoverageTable {
   RowSummary holding(std::size_t i) const;
   const Author& author(std::size_t i) const { return rows_[i].author; }
   bool counts(std::size_t i) const { return rows_[i].counts; }
-  std::int64_t min_steps(std::size_t i) const { return rows_[i].min_steps(); }
+  std::int64_t min_steps(std::size_t i) const { return rows_[i].fewest_steps; }
   /// The row of `author`; all 0 if it is unknown.
   RowSummary holding(const Author& author) const;
 
-  /// One block of a row, and what it has gained.
+  /// One block of a row.
   struct BlockView {
-    const double* sums;   ///< kBlockSize of them [s]
-    const double* gains;  ///< sums less those of the block held before [s]
+    const double* sums;  ///< block_size() of them [s]
     std::int64_t steps;
-    std::int64_t gained_steps;  ///< less its steps; 0 if the gains are impossible, |gain| > their
-                                ///< time, or not noted
-    Tick tick;                  ///< when it was said
-    Tick period;                ///< until its author speaks again, as announced
+    Tick tick;    ///< when it was said
+    Tick period;  ///< until its author speaks again, as announced
   };
   BlockView view(std::size_t row, int block) const;
-  /// Whether the views of all blocks of a row differ only in their pointers, which then are
-  /// consecutive.
+  /// What a block has gained on the one held before.
+  struct Gains {
+    const double* before;  ///< block_size() sums of the one held before [s]; null if `told` is set
+    const double* told;    ///< block_size() gains as the author has told them [s], or null
+    std::int64_t steps;    ///< less its steps; 0 if the gains are impossible, |gain| > their time,
+                           ///< or not noted
+  };
+  Gains gains(std::size_t row, int block) const;
+  /// Whether the views of all blocks of a row differ only in their sums.
   bool blocks_alike(std::size_t row) const;
+  /// Whether all blocks have gained in as many steps.
+  bool gains_alike(std::size_t row) const;
 
-  /// The sums of a row [s], mode_count() of them and then zeros; null if it is unknown.
+  /// The sums of a row that only add_sample() fills [s]: mode_count() of them and then zeros.
+  /// @pre `author` has samples
   const double* sums_of(const Author& author) const;
 
   /// Time covered by all rows that count, by their first block: the denominator of c_k [s].
@@ -106,21 +120,28 @@ class CoverageTable {
   std::size_t row_count() const { return rows_.size(); }
 
  private:
+  static constexpr std::int64_t kNotCompared = -1;
+  static constexpr Tick kNeverSaid = std::numeric_limits<Tick>::min();
   struct Block {
     std::int64_t steps = 0;
     Tick next_broadcast_tick = 0;
     std::int64_t sequence = 0;  // of the message that brought it, for a relay
     Tick tick = 0;
-    std::int64_t gained_steps = 0;
+    std::int64_t steps_before = 0;  // of the block that it is compared with
+    BlockSums sums, sums_before;    // the latter in kFixed16: gains
+    mutable std::int64_t gained_steps = kNotCompared;
     bool looks_like(const Block& other) const;
   };
   struct Row {
     Author author;
     bool counts = true;
+    std::int64_t fewest_steps = 0;  // among the blocks
+    Tick due_tick = kNeverSaid;     // of the block that is due first
     std::vector<Block> blocks;
-    std::vector<double> sums;   // block_count · kBlockSize, zero beyond the last mode
-    std::vector<double> gains;  // likewise
-    std::int64_t min_steps() const;
+    std::vector<double> samples;  // instead of the blocks' sums, once there are samples
+    const double* sums(std::size_t block, int block_size) const;
+    /// After a block has changed.
+    void sum_up();
     std::int64_t max_steps() const;
     std::uint64_t state_hash() const;
     RowSummary holding() const;
@@ -128,16 +149,20 @@ class CoverageTable {
   };
 
   const Row* find(const Author& author) const;
+  Row* find(const Author& author);
   Row* find_or_add(const Author& author);
 
-  std::int64_t take_gains(const Contribution& theirs, const Block& before, Row& row) const;
+  std::int64_t gained_steps(const Block& block) const;
 
   Basis basis_;
   double dt_s_;
   Tick joined_;
+  ContributionEncoding encoding_ = ContributionEncoding::kDouble;
+  int block_size_ = kBlockSize;
   int block_count_;
   bool notes_gains_ = true;
-  std::vector<Row> rows_;  // ascending by author
+  std::vector<Row> rows_;                       // ascending by author
+  mutable std::vector<const double*> counted_;  // of each row that counts, the sums of a block
 };
 
 }  // namespace ergocast

@@ -51,10 +51,20 @@ void add_sums(const double* sums, Modes modes, const double* before, double* sum
   for (int k = modes.first; k < modes.first + modes.count; ++k) sum[k] = before[k] + sums[k];
 }
 
+/// sum = before + S + share · (S − S').
+ERGOCAST_VECTORIZED
+void add_gaining(const double* sums, const double* sums_before, double share, Modes modes,
+                 const double* before, double* sum) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    sum[k] = before[k] + (sums[k] + share * (sums[k] - sums_before[k]));
+  }
+}
+
 /// sum = before + S + share · gains.
 ERGOCAST_VECTORIZED
-void add_gaining(const double* sums, const double* gains, double share, Modes modes,
-                 const double* before, double* sum) {
+void add_told(const double* sums, const double* gains, double share, Modes modes,
+              const double* before, double* sum) {
   ERGOCAST_INDEPENDENT
   for (int k = modes.first; k < modes.first + modes.count; ++k) {
     sum[k] = before[k] + (sums[k] + share * gains[k]);
@@ -114,6 +124,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       domain_(mission.domain),
       basis_(mission.basis),
       dt_s_(mission.timing.dt_s),
+      block_size_(block_size_of(mission.timing.contribution_encoding)),
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
@@ -149,7 +160,7 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);
     track.due.assign(blocks, 0);
-    track.sums.assign(blocks * kBlockSize, 0);
+    track.sums.assign(blocks * static_cast<std::size_t>(block_size_), 0);
     track.newest.reset();
     track.newest_tick = -1;
   }
@@ -184,8 +195,8 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
   for (std::size_t b = 0; b < track.until.size(); ++b) {
     if (track.said_steps[b] == 0 || place.tick <= track.until[b]) continue;
     if (track.steps[b] == track.said_steps[b]) {
-      std::copy_n(table.view(row, static_cast<int>(b)).sums, kBlockSize,
-                  track.sums.data() + b * kBlockSize);
+      std::copy_n(table.view(row, static_cast<int>(b)).sums, block_size_,
+                  track.sums.data() + b * static_cast<std::size_t>(block_size_));
     }
     track.due[b] = 1;
     track.until[b] = place.tick;
@@ -196,7 +207,7 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
 void Forecast::add_what_is_due(Track& track) const {
   for (std::size_t b = 0; b < track.due.size(); ++b) {
     if (!track.due[b]) continue;
-    add_gain(*track.newest, basis_, dt_s_, modes_of(static_cast<int>(b), 1), track.sums.data());
+    add_gain(*track.newest, basis_, dt_s_, modes_of(static_cast<int>(b)), track.sums.data());
     track.due[b] = 0;
   }
 }
@@ -224,6 +235,8 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
     if (!table.counts(row)) continue;
     if (!table.blocks_alike(row)) return false;
     const Track* track = reckoned_[row];
+    const bool by_blocks = track == nullptr || track->newest_tick < table.view(row, 0).tick;
+    if (by_blocks && flies_[row] && !table.gains_alike(row)) return false;
     if (track == nullptr) continue;
     const auto& [steps, due] = std::tie(track->steps, track->due);
     if (!std::equal(steps.begin() + 1, steps.end(), steps.begin())) return false;
@@ -234,27 +247,48 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
-  const int first = modes_of(block, 1).first;
-  Term term{said.sums - first, said.gains - first, nullptr, said.steps, 0,
-            said.tick,         said.period,        0};
+  Term term{nullptr, nullptr, nullptr, nullptr, said.steps, 0, said.tick, said.period, 0};
   if (!flies_[row] || said.steps == 0) return term;
-  term.gained_steps = said.gained_steps;
   Track* track = reckoned_[row];
-  if (track == nullptr || track->newest_tick < said.tick) return term;
-  const auto b = static_cast<std::size_t>(block);
-  if (track->steps[b] > said.steps) term.sums = track->sums.data();
+  if (track == nullptr || track->newest_tick < said.tick) {
+    term.gained_steps = table.gains(row, block).steps;
+    return term;
+  }
   term.track = track;
-  term.steps = track->steps[b];
+  term.steps = track->steps[static_cast<std::size_t>(block)];
   term.gained_steps = 1;
   term.tick = track->newest_tick;
   return term;
 }
 
-/// Gathers what counts in a block; returns what its sum is to be multiplied by.
+/// Where the terms' sums of this block are.
+void Forecast::point_terms(const CoverageTable& table, int block) {
+  const int first = modes_of(block).first;
+  own_sums_ = nothing_.data();
+  auto term = terms_.begin();
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (!table.counts(row)) continue;
+    const CoverageTable::BlockView said = table.view(row, block);
+    if (table.author(row) == self_) {
+      own_sums_ = said.sums - first;
+      continue;
+    }
+    const bool further =
+        term->track != nullptr && term->track->steps[static_cast<std::size_t>(block)] > said.steps;
+    term->sums = further ? term->track->sums.data() : said.sums - first;
+    if (term->track == nullptr && term->gained_steps > 0) {
+      const CoverageTable::Gains gains = table.gains(row, block);
+      term->sums_before = gains.told == nullptr ? gains.before - first : nullptr;
+      term->told_gains = gains.told != nullptr ? gains.told - first : nullptr;
+    }
+    ++term;
+  }
+}
+
+/// Weighs what counts in a block; returns what its sum is to be multiplied by.
 double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   terms_.clear();
   before_own_ = 0;
-  own_sums_ = nothing_.data();
   std::int64_t steps = 0;
   int n = 1;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -262,10 +296,7 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
     const Term term = term_of(table, row, block);
     steps += term.steps;
     n += term.gained_steps > 0;
-    if (table.author(row) == self_) {
-      own_sums_ = term.sums;
-      continue;
-    }
+    if (table.author(row) == self_) continue;
     before_own_ += table.author(row) < self_;
     terms_.push_back(term);
   }
@@ -284,16 +315,18 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
 /// Adds what a row will have covered to `before`.
 void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) const {
   Track* track = term.track;
-  const auto block = modes.first / kBlockSize;
+  const auto block = modes.first / block_size_;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
     add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before, sum);
-    std::fill_n(track->due.begin() + block, (modes.count + kBlockSize - 1) / kBlockSize, 0);
+    track->due[static_cast<std::size_t>(block)] = 0;
   } else if (term.share == 0) {
     add_sums(term.sums, modes, before, sum);
   } else if (track != nullptr) {
     add_staying(*track->newest, basis_, dt_s_, term.sums, term.share, modes, before, sum);
+  } else if (term.told_gains != nullptr) {
+    add_told(term.sums, term.told_gains, term.share, modes, before, sum);
   } else {
-    add_gaining(term.sums, term.gains, term.share, modes, before, sum);
+    add_gaining(term.sums, term.sums_before, term.share, modes, before, sum);
   }
 }
 
@@ -316,15 +349,18 @@ void Forecast::add_up(Modes modes, double per_second, double* coverage) {
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                           Tick tick, Coefficients& coverage) {
   gather(table, roster, tick);
-  const int at_once = blocks_alike(table) ? table.block_count() : 1;
-  for (int b = 0; b < table.block_count(); b += at_once) {
-    add_up(modes_of(b, at_once), weigh_terms(table, b, tick), coverage.data());
+  const bool alike = blocks_alike(table);
+  double per_second = 0;
+  for (int b = 0; b < table.block_count(); ++b) {
+    if (b == 0 || !alike) per_second = weigh_terms(table, b, tick);
+    point_terms(table, b);
+    add_up(modes_of(b), per_second, coverage.data());
   }
 }
 
-Forecast::Modes Forecast::modes_of(int block, int count) const {
-  const int first = block * kBlockSize;
-  return {first, std::min(count * kBlockSize, basis_.mode_count() - first)};
+Forecast::Modes Forecast::modes_of(int block) const {
+  const int first = block * block_size_;
+  return {first, std::min(block_size_, basis_.mode_count() - first)};
 }
 
 }  // namespace ergocast

@@ -2,7 +2,7 @@
 // The forecast of the team's coverage by one agent, which its law answers to.
 //
 //   ĉ_i = [Σ_j S_j + Σ_{j≠i} w_j r_j] / [Σ_j T_j + Σ_{j≠i} w_j]
-//   r_j = (S_j − S'_j) / (T_j − T'_j)
+//   r_j = (S_j − S'_j) / (T_j − T'_j), or as j has told it where averages travel in 16 bits
 //
 // Each teammate j continues for w_j as since the block before (core/look_ahead.h has w_j). Agents
 // that steer by the team's *past* coverage chase the same deficit. With ĉ, each leaves to the
@@ -73,7 +73,8 @@ class Forecast {
   };
   /// One row's part in one block.
   struct Term {
-    const double *sums, *gains;        // from the first mode on
+    // Where the first mode would be. One that gains has the sums before, or the gains as told.
+    const double *sums, *sums_before, *told_gains;
     Track* track;                      // null: by its blocks
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
@@ -88,14 +89,16 @@ class Forecast {
   bool blocks_alike(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
+  void point_terms(const CoverageTable& table, int block);
   void add_up(Modes modes, double per_second, double* coverage);
   void add(const Term& term, Modes modes, const double* before, double* sum) const;
-  Modes modes_of(int block, int count) const;
+  Modes modes_of(int block) const;
 
   Author self_;
   Box domain_;
   Basis basis_;
   double dt_s_;
+  int block_size_;
   LookAhead look_ahead_;
   bool reckons_;
   std::size_t most_places_;

@@ -29,7 +29,7 @@ class IdealTeam {
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
 
   /// Whether a distributed team would compute the same: lockstep, every agent hears every other,
-  /// and all coverage is broadcast each tick or known by dead reckoning.
+  /// and all coverage is broadcast each tick or known by dead reckoning, without rounding.
   static bool stands_for(const Mission& mission);
 
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.

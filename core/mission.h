@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/contribution.h"
 #include "core/geometry.h"
 #include "core/ids.h"
 
@@ -56,6 +57,7 @@ struct Timing {
   double admission_timeout_s = 30;  ///< wall time the quorum may take
   int catch_up_limit_ticks = 5;     ///< late ticks the world makes up for; the rest are skipped
   OnTimeout on_timeout = OnTimeout::kEndMission;
+  ContributionEncoding contribution_encoding = ContributionEncoding::kDouble;
 };
 
 /// How far bodies keep from each other, and what is known of their motion; core/separation.h.

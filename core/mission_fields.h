@@ -85,6 +85,7 @@ void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
   io.number(7, "command_hold_s", timing.command_hold_s, limits::between(0, 1e6));
   io.number(8, "admission_timeout_s", timing.admission_timeout_s, limits::kTimeout_s);
   io.number(9, "catch_up_limit_ticks", timing.catch_up_limit_ticks, limits::between(0, 1000));
+  io.choice(11, "contribution_encoding", timing.contribution_encoding, {"DOUBLE", "FIXED16"});
 }
 
 /// All are 0 where no distance is kept.

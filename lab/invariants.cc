@@ -38,7 +38,8 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
 Invariants::Invariants(const Mission& mission)
     : mission_(mission),
       weights_(sobolev_weights(mission.basis, mission.domain)),
-      block_count_((mission.basis.mode_count() + kBlockSize - 1) / kBlockSize) {}
+      block_count_(
+          block_count_of(mission.basis.mode_count(), mission.timing.contribution_encoding)) {}
 
 void Invariants::violate(double t_s, Invariant invariant, const std::string& who,
                          std::string numbers) {

@@ -189,7 +189,7 @@ class Invariants {
  private:
   struct Best {
     std::int64_t steps = 0;
-    std::array<double, kBlockSize> sums{};
+    BlockSums sums;
   };
   void violate(double t_s, Invariant invariant, const std::string& who, std::string numbers);
   void check(double t_s, const WorldState& world);

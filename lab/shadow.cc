@@ -79,13 +79,20 @@ Coefficients gain_at(const Mission& mission, const Eigen::Vector3d& x_m) {
   return gain;
 }
 
+int block_size(const Mission& mission) {
+  return block_size_of(mission.timing.contribution_encoding);
+}
+
 /// One block of `all`, and zeros beyond the last mode.
-std::array<double, kBlockSize> block_of(const Coefficients& all, int block) {
-  std::array<double, kBlockSize> sums{};
-  const auto first = Eigen::Index{block} * kBlockSize;
-  std::copy_n(all.data() + first, std::min<Eigen::Index>(kBlockSize, all.size() - first),
-              sums.begin());
+std::vector<double> block_of(const Coefficients& all, int block, int size) {
+  std::vector<double> sums(static_cast<std::size_t>(size));
+  const auto first = Eigen::Index{block} * size;
+  std::copy_n(all.data() + first, std::min<Eigen::Index>(size, all.size() - first), sums.begin());
   return sums;
+}
+
+std::vector<double> vector_of(const BlockSums& sums, int size) {
+  return {sums.data(), sums.data() + size};
 }
 
 /// Whether it takes part in the tick and is the newest life of its number.
@@ -125,7 +132,8 @@ void Shadow::take(const TableView& agent, const Contribution& theirs) {
   if (theirs.steps <= block.held.steps) return;
   if (agent.table->block(theirs.author(), theirs.block).steps != theirs.steps) return;
   block.before = block.held;
-  block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick, theirs.sums};
+  block.held = {theirs.steps, theirs.header.tick, theirs.next_broadcast_tick,
+                theirs.sums,  theirs.gains,       theirs.gained_steps};
 }
 
 void Shadow::note_places(const Mission& mission, const TableView& agent, const WorldState& world) {
@@ -192,13 +200,22 @@ void Shadow::reckon(const RosterEntry& entry, Row& row) const {
 // ---- the equation -------------------------------------------------------------------------------
 
 /// By its blocks alone.
-Shadow::Part Shadow::said(const Block& block) const {
+Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {
   const Said& held = block.held;
   // What was said before an agent's own time may be this or that, whichever way it came to know it.
   const Said before = block.before.tick >= active_from_.value_or(0) ? block.before : Said{};
-  Part part{
-      held.sums, {}, held.steps, held.steps - before.steps, held.tick, held.next_tick - held.tick};
-  for (std::size_t k = 0; k < kBlockSize; ++k) part.gains[k] = held.sums[k] - before.sums[k];
+  const int size = block_size(mission);
+  Part part{vector_of(held.sums, size),
+            vector_of(held.gains, size),
+            held.steps,
+            held.gained_steps,
+            held.tick,
+            held.next_tick - held.tick};
+  if (mission.timing.contribution_encoding == ContributionEncoding::kFixed16) return part;
+  part.gained_steps = held.steps - before.steps;
+  for (std::size_t k = 0; k < part.gains.size(); ++k) {
+    part.gains[k] = held.sums[k] - before.sums[k];
+  }
   return part;
 }
 
@@ -209,17 +226,17 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
   const auto gain = [&](const Place& place, int b) {
     auto found = gains.find(place.tick);
     if (found == gains.end()) found = gains.emplace(place.tick, gain_at(mission, place.x_m)).first;
-    return block_of(found->second, b);
+    return block_of(found->second, b, block_size(mission));
   };
   std::vector<Part> parts;
   for (int b = 0; b < static_cast<int>(row.blocks.size()); ++b) {
     const Block& block = row.blocks[static_cast<std::size_t>(b)];
-    Part& part = parts.emplace_back(said(block));
+    Part& part = parts.emplace_back(said(mission, block));
     if (!flies) part.gained_steps = 0;
     if (part.gained_steps == 0 || !row.newest || row.newest->tick < block.held.tick) continue;
     for (const Place& place : block.since) {
       const auto more = gain(place, b);
-      for (std::size_t k = 0; k < kBlockSize; ++k) part.sums[k] += more[k];
+      for (std::size_t k = 0; k < more.size(); ++k) part.sums[k] += more[k];
     }
     part.steps += std::ssize(block.since);
     part.gains = gain(*row.newest, b);
@@ -234,7 +251,9 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
   std::vector<std::vector<Part>> team(1);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const Contribution own = agent.table->block(agent.self, b);
-    team[0].push_back({own.sums, {}, own.steps});
+    const int size = block_size(mission);
+    const std::vector<double> nothing(static_cast<std::size_t>(size));
+    team[0].push_back({vector_of(own.sums, size), nothing, own.steps});
   }
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
@@ -248,13 +267,14 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
   const double dt_s = mission.timing.dt_s;
   Coefficients c = Coefficients::Zero(mission.basis.mode_count());
   const auto team = this->team(mission, agent);
+  const int size = block_size(mission);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const auto at = static_cast<std::size_t>(b);
     const auto fly = std::count_if(team.begin(), team.end(),
                                    [at](const auto& parts) { return parts[at].gained_steps > 0; });
     const double h_s = horizon_s(mission, 1 + static_cast<int>(fly), agent.answered);
     double time_s = 0;
-    std::array<double, kBlockSize> sums{};
+    std::vector<double> sums(static_cast<std::size_t>(size));
     for (const auto& parts : team) {
       const Part& part = parts[at];
       const double gained_s = static_cast<double>(part.gained_steps) * dt_s;
@@ -263,10 +283,11 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
           gained_s > 0 ? weight_s(mission, h_s, part.gained_steps, age, part.period) : 0;
       const double share = w_s > 0 ? w_s / gained_s : 0;
       time_s += static_cast<double>(part.steps) * dt_s + w_s;
-      for (std::size_t k = 0; k < kBlockSize; ++k) sums[k] += part.sums[k] + share * part.gains[k];
+      for (std::size_t k = 0; k < sums.size(); ++k) {
+        sums[k] += part.sums[k] + share * part.gains[k];
+      }
     }
-    const int first = b * kBlockSize,
-              count = std::min(kBlockSize, mission.basis.mode_count() - first);
+    const int first = b * size, count = std::min(size, mission.basis.mode_count() - first);
     for (int k = 0; k < count && time_s > 0; ++k)
       c[first + k] = sums[static_cast<std::size_t>(k)] / time_s;
   }

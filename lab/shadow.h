@@ -40,7 +40,8 @@ class Shadow {
   struct Said {
     std::int64_t steps = 0;
     Tick tick = 0, next_tick = 0;
-    std::array<double, kBlockSize> sums{};
+    BlockSums sums, gains;  ///< the latter, and its steps, as told by its author
+    std::int64_t gained_steps = 0;
   };
   struct Block {
     Said held, before;                ///< the latter by steps, whenever older ones came
@@ -53,7 +54,7 @@ class Shadow {
   };
   /// What one row adds to one block of ĉ.
   struct Part {
-    std::array<double, kBlockSize> sums{}, gains{};
+    std::vector<double> sums, gains;
     std::int64_t steps = 0, gained_steps = 0;  ///< the latter 0: it has no forecast
     Tick tick = 0, period = 0;
   };
@@ -62,7 +63,7 @@ class Shadow {
   void note_places(const Mission& mission, const TableView& agent, const WorldState& world);
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void reckon(const RosterEntry& entry, Row& row) const;
-  Part said(const Block& block) const;
+  Part said(const Mission& mission, const Block& block) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, bool flies) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 

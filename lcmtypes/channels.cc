@@ -2,6 +2,7 @@
 // Creates all channel names once, by message type and agent, so that publishing builds no string.
 #include "lcmtypes/channels.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -81,6 +82,20 @@ bool is_channel_of(MessageTypes types, std::string_view channel) {
     if (name.per_agent ? channel.starts_with(name.text) : channel == name.text) return true;
   }
   return false;
+}
+
+// Both have the same length, so that the kernel's filter compares names at the same places.
+constexpr std::string_view kLive = "ERGOCAST_", kReplayed = "REPLAYED_";
+static_assert(kLive.size() == kReplayed.size());
+
+std::string replayed(std::string_view channel) {
+  return std::string(kReplayed) +
+         std::string(channel.substr(std::min(kLive.size(), channel.size())));
+}
+
+std::optional<std::string> without_replay(std::string_view channel) {
+  if (!channel.starts_with(kReplayed)) return std::nullopt;
+  return std::string(kLive) + std::string(channel.substr(kReplayed.size()));
 }
 
 std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel) {

@@ -29,6 +29,12 @@ std::span<const ChannelName> channel_names();
 /// transmitter_of() also checks the number.
 bool is_channel_of(MessageTypes types, std::string_view channel);
 
+/// `ergocast replay` sends a recorded message on this name in place of its own. Only displays
+/// listen to such names, so a replay reaches no participant of a mission.
+std::string replayed(std::string_view channel);
+/// The message's own name; nothing if `channel` is no replay's.
+std::optional<std::string> without_replay(std::string_view channel);
+
 /// The transmitter of a message on `channel`: its sender, or for contributions the agent of that
 /// channel. Nothing if `message` does not belong on `channel`.
 std::optional<AgentId> transmitter_of(const Message& message, std::string_view channel);

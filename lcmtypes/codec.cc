@@ -35,13 +35,15 @@ AgentId speaker_of(const TeamStatus&) { return kCoordinator; }
 
 /// Decodes the message into the return value: a contribution is a kilobyte and should not be
 /// copied.
-template <class Plain>
+/// @tparam Form  whose fields the bytes are
+template <class Plain, class Form>
 std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   std::variant<Message, Refusal> result;
   auto& plain = result.emplace<Message>().emplace<Plain>();
   Reader reader(bytes.subspan(sizeof(std::uint64_t)));
   Fields<Header>::list(reader, plain.header);
-  Fields<Plain>::list(reader, plain);
+  Fields<Form>::list(reader, plain);
+  if constexpr (std::is_same_v<Form, Averages>) plain.encoding = ContributionEncoding::kFixed16;
   const bool can_be_true = reader.plausible() && plain.header.sender == speaker_of(plain);
   if (!reader.complete()) {
     result = Refusal::kSize;
@@ -62,20 +64,36 @@ struct Decoder {
   std::variant<Message, Refusal> (*decode)(std::span<const std::byte>);
 };
 
-template <class Plain>
+template <class Plain, class Form = Plain>
 Decoder entry() {
-  return {fingerprint<Plain>(), kSigned<Plain>, &decode_as<Plain>};
+  return {fingerprint<Form>(), kSigned<Plain>, &decode_as<Plain, Form>};
 }
 
 const Decoder* decoder_for(std::uint64_t wanted) {
-  static const std::array kDecoders = {
-      entry<Contribution>(), entry<WorldState>(),  entry<Command>(),    entry<AgentStatus>(),
-      entry<RecordAck>(),    entry<MissionPart>(), entry<TeamStatus>(), entry<Hello>(),
-      entry<Stop>(),         entry<Digest>()};
+  static const std::array kDecoders = {entry<Contribution>(),
+                                       entry<WorldState>(),
+                                       entry<Command>(),
+                                       entry<AgentStatus>(),
+                                       entry<RecordAck>(),
+                                       entry<MissionPart>(),
+                                       entry<TeamStatus>(),
+                                       entry<Hello>(),
+                                       entry<Stop>(),
+                                       entry<Digest>(),
+                                       entry<Contribution, Averages>()};
   const auto at = std::find_if(kDecoders.begin(), kDecoders.end(), [&](const Decoder& decoder) {
     return decoder.fingerprint == wanted;
   });
   return at == kDecoders.end() ? nullptr : &*at;
+}
+
+template <class Form, class Plain>
+void write(const Plain& plain, std::vector<std::byte>& out) {
+  Writer writer(out);
+  writer.number(fingerprint<Form>());
+  Fields<Header>::list(writer, plain.header);
+  Fields<Form>::list(writer, plain);
+  out.resize(writer.size());
 }
 
 }  // namespace
@@ -85,11 +103,12 @@ void encode(const Message& message, std::vector<std::byte>& out, const MessageAu
   std::visit(
       [&](const auto& plain) {
         using Plain = std::decay_t<decltype(plain)>;
-        Writer writer(out);
-        writer.number(fingerprint<Plain>());
-        Fields<Header>::list(writer, plain.header);
-        Fields<Plain>::list(writer, plain);
-        out.resize(writer.size());
+        if constexpr (std::is_same_v<Plain, Contribution>) {
+          const bool rounds = plain.encoding == ContributionEncoding::kFixed16;
+          rounds ? write<Averages>(plain, out) : write<Plain>(plain, out);
+        } else {
+          write<Plain>(plain, out);
+        }
         seal.close(out, kSigned<Plain>, channel);
       },
       message);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <ergocast/agent_status_t.hpp>
+#include <ergocast/averages_t.hpp>
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
@@ -74,7 +75,27 @@ struct Fields<Contribution> {
     io.finite(m.elapsed_s);
     io.number(m.block);
     io.number(m.mode_count);
-    io.numbers(m.sums);
+    io.sums(m.sums);
+  }
+};
+
+/// A contribution whose numbers travel in 16 bits.
+struct Averages;
+
+template <>
+struct Fields<Averages> {
+  using Generated = averages_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= 0);
+    io.count(m.steps);
+    io.count(m.next_broadcast_tick);
+    io.finite(m.elapsed_s);
+    io.count(m.gained_steps);
+    io.number(m.block);
+    io.number(m.mode_count);
+    io.averages(m.sums, m.elapsed_s);
+    const double step_s = m.steps > 0 ? m.elapsed_s / static_cast<double>(m.steps) : 0;
+    io.averages(m.gains, static_cast<double>(m.gained_steps) * step_s);
   }
 };
 
@@ -147,6 +168,7 @@ struct Fields<WorldState> {
     io.within(m.part, 0, kMaxAgents - 1);
     io.within(m.parts, 1, kMaxAgents);
     io.holds(m.part < m.parts);
+    io.flag(m.last);
     for (auto& vehicle : io.length(m.vehicles, m.vehicle_count)) {
       io.within(vehicle.id, 0, kMaxAgents - 1);
       io.count_or_none(vehicle.answered_tick);
@@ -170,7 +192,7 @@ struct Fields<Command> {
 template <>
 struct Fields<RecordAck> {
   using Generated = record_ack_t;
-  static void list(auto&, auto&) {}
+  static void list(auto& io, auto& m) { io.flag(m.last); }
 };
 
 template <>

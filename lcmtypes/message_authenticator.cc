@@ -46,18 +46,29 @@ class MaskedBytes {
 
 constexpr std::size_t kUnsignedBytes = kTagBytes + sizeof(Signature);
 
-Tag hash_of(const MaskedBytes& message) {
+Tag hash_of(const unsigned char* message, std::size_t size) {
   XXH128_canonical_t canonical;
-  XXH128_canonicalFromHash(&canonical, XXH3_128bits(message.data(), message.size()));
+  XXH128_canonicalFromHash(&canonical, XXH3_128bits(message, size));
   Tag tag;
   std::memcpy(tag.data(), canonical.digest, kTagBytes);
   return tag;
 }
 
-Tag keyed_hash_of(const MaskedBytes& message, std::string_view channel, const MissionKey& key) {
+/// The tag without a key. XXH3 takes longer over three parts than over a copy.
+Tag hash_of(std::span<const std::byte> bytes) {
+  const MaskedBytes message(bytes, kTagBytes);
+  return hash_of(message.data(), message.size());
+}
+
+/// The tag with a key, of the bytes before the tag, zeros and the bytes after it.
+Tag keyed_hash_of(std::span<const std::byte> bytes, std::string_view channel,
+                  const MissionKey& key) {
+  static constexpr unsigned char kNoTag[kTagBytes] = {};
   crypto_generichash_state state;
   crypto_generichash_init(&state, raw(key.shared), key.shared.size(), kTagBytes);
-  crypto_generichash_update(&state, message.data(), message.size());
+  crypto_generichash_update(&state, raw(bytes), kTagOffset);
+  crypto_generichash_update(&state, kNoTag, kTagBytes);
+  crypto_generichash_update(&state, raw(bytes) + kHeaderEnd, bytes.size() - kHeaderEnd);
   crypto_generichash_update(&state, raw(channel), channel.size());
   Tag tag;
   crypto_generichash_final(&state, raw(tag), tag.size());
@@ -84,8 +95,9 @@ std::uint64_t MessageAuthenticator::fingerprint() const {
 void MessageAuthenticator::close(std::span<std::byte> bytes, bool has_signature,
                                  std::string_view channel) const {
   if (has_signature && keyed() && key_->signing) sign(bytes);
-  const MaskedBytes message(bytes, kTagBytes);
-  const Tag tag = keyed() ? keyed_hash_of(message, channel, *key_) : hash_of(message);
+  std::fill_n(bytes.begin() + kTagOffset, kTagBytes, std::byte{0});
+  const Tag tag =
+      keyed() ? keyed_hash_of(bytes, channel, *key_) : hash_of(raw(bytes), bytes.size());
   std::copy(tag.begin(), tag.end(), bytes.begin() + kTagOffset);
 }
 
@@ -101,13 +113,14 @@ void MessageAuthenticator::sign(std::span<std::byte> bytes) const {
 
 std::optional<Refusal> MessageAuthenticator::check_tag(std::span<const std::byte> bytes,
                                                        std::string_view channel) const {
-  const MaskedBytes message(bytes, kTagBytes);
-  const auto fits = [&bytes](const Tag& tag) {
-    return sodium_memcmp(tag.data(), bytes.data() + kTagOffset, kTagBytes) == 0;
+  const std::byte* const theirs = bytes.data() + kTagOffset;
+  const auto looks_unkeyed = [&] {
+    return std::memcmp(hash_of(bytes).data(), theirs, kTagBytes) == 0;
   };
-  if (fits(keyed() ? keyed_hash_of(message, channel, *key_) : hash_of(message)))
-    return std::nullopt;
-  return keyed() && fits(hash_of(message)) ? Refusal::kUnkeyed : Refusal::kTag;
+  if (!keyed()) return looks_unkeyed() ? std::nullopt : std::optional(Refusal::kTag);
+  const Tag tag = keyed_hash_of(bytes, channel, *key_);
+  if (sodium_memcmp(tag.data(), theirs, kTagBytes) == 0) return std::nullopt;
+  return looks_unkeyed() ? Refusal::kUnkeyed : Refusal::kTag;
 }
 
 bool MessageAuthenticator::signature_holds(std::span<const std::byte> bytes,

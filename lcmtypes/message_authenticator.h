@@ -74,7 +74,8 @@ class MessageAuthenticator {
   /// @param has_signature  whether the message has a signature field after the header
   void close(std::span<std::byte> bytes, bool has_signature, std::string_view channel) const;
 
-  /// Nothing if the tag is valid, or kTag, or kUnkeyed for a sender without a key.
+  /// Nothing if the tag is valid, or kTag, or kUnkeyed for a sender without a key. Only with a key
+  /// the comparison takes the same time for every tag.
   /// @pre kHeaderEnd to kMaxDatagramBytes bytes
   std::optional<Refusal> check_tag(std::span<const std::byte> bytes,
                                    std::string_view channel) const;

@@ -8,6 +8,9 @@
 namespace ergocast {
 namespace {
 
+/// An average of 1 in 16 bits.
+constexpr double kUnits = 32767;
+
 /// The first control character for terminals: C0, DEL, or C1 in UTF-8.
 std::string_view find_control(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -33,6 +36,35 @@ std::string bounded(const std::string& text, int limit) {
     cut.replace(static_cast<std::size_t>(control.data() - cut.data()), control.size(), " ");
   }
   return cut;
+}
+
+/// A sum over that time that was read before is written as the same bits.
+void Writer::averages(const BlockSums& sums, double time_s) {
+  std::byte* const at = room(kMostBlockSize * sizeof(std::int16_t));
+  const double scale = time_s > 0 ? kUnits / time_s : 0;
+  const double* const values = sums.data();
+  for (std::size_t k = 0; k < kMostBlockSize; ++k) {
+    const double units = k < sums.size() ? std::clamp(values[k] * scale, -kUnits, kUnits) : 0;
+    const auto rounded = static_cast<std::int32_t>(units + (units < 0 ? -0.5 : 0.5));
+    const auto bits = __builtin_bswap16(static_cast<std::uint16_t>(rounded));
+    std::memcpy(at + 2 * k, &bits, sizeof bits);
+  }
+}
+
+void Reader::averages(BlockSums& sums, double time_s) {
+  const std::byte* const at = take(kMostBlockSize * sizeof(std::int16_t));
+  if (at == nullptr) return;
+  const double unit = time_s / kUnits;
+  double* const values = sums.set_all(kMostBlockSize).data();
+  bool possible = true;
+  for (std::size_t k = 0; k < kMostBlockSize; ++k) {
+    std::uint16_t bits;
+    std::memcpy(&bits, at + 2 * k, sizeof bits);
+    const auto units = static_cast<std::int16_t>(__builtin_bswap16(bits));
+    possible &= units >= -kUnits;
+    values[k] = units * unit;
+  }
+  holds(possible);
 }
 
 /// The length counts the final NUL.

@@ -17,6 +17,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/block_sums.h"
 #include "core/require.h"
 #include "lcmtypes/message_authenticator.h"
 
@@ -57,6 +58,9 @@ class Writer {
       std::memcpy(at + 8 * k, &bits, sizeof bits);
     }
   }
+  void sums(const BlockSums& values) { numbers({values.data(), values.size()}); }
+  /// Sums over `time_s` as averages of 16 bits each, kMostBlockSize of them.
+  void averages(const BlockSums& sums, double time_s);
   void count(std::int64_t value) { number(value); }
   /// For counts that other processes can increase: a jump in a sender's numbering counts as losses.
   void capped_count(std::int64_t value) { number(std::min(value, kMostEver)); }
@@ -125,6 +129,8 @@ class Reader {
       values[k] = std::bit_cast<double>(swapped(bits));
     }
   }
+  void sums(BlockSums& values) { numbers(values.set_all()); }
+  void averages(BlockSums& sums, double time_s);
   void count(std::int64_t& value) { number(value), holds(value >= 0 && value <= kMostEver); }
   void capped_count(std::int64_t& value) { count(value); }
   void count_or_none(std::int64_t& value) {

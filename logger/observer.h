@@ -25,9 +25,11 @@ class Observer {
   }
   bool has_seen_any() const { return covered_s_ > 0; }
 
+  /// c_k of (4) so far. @pre has_seen_any()
+  Coefficients coverage() const { return sums_s_ / covered_s_; }
   /// φ² of the coverage so far. @pre has_seen_any()
   double metric(const Mission& mission) const {
-    return ergodic_metric(sums_s_ / covered_s_, mission.target_coefficients, weights_);
+    return ergodic_metric(coverage(), mission.target_coefficients, weights_);
   }
 
  private:

@@ -151,6 +151,7 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
     if (tick > mission().timing.tick_count) return;
     heard_.newest = std::max(heard_.newest, tick);
     if (arrival.fresh) meet(world.header, arrival.now);
+    if (arrival.fresh) heard_.world_left = world.last;
   }
   const Tick horizon = std::max(next_row_, heard_.lost_before) + kLeadTicks;
   if (tick < next_row_ || (is_lockstep() && tick > horizon)) return;
@@ -191,11 +192,28 @@ void Recorder::advance(Instant now, Outbox& out) {
       ending_.reason = "mission complete";
     }
   }
-  if (ending_.since && now - std::max(*ending_.since, progress_) >= kLinger) close();
+  const bool patience_ends = ending_.since && now - std::max(*ending_.since, progress_) >= kLinger;
+  if (patience_ends || everybody_left(now)) close();
   if (abandoned(now)) {
     stop("neither the world nor the coordinator can be heard, and the mission must be over by now");
   }
   if (me_.knows_mission()) acknowledge(now, out);
+  if (ending_.finished && follower().over()) {
+    me_.publish(Bus::kWorld, RecordAck{{}, true}, next_row_ - 1, out);  // to the coordinator
+  }
+}
+
+/// Whether nothing more can arrive that the record lacks.
+bool Recorder::everybody_left(Instant now) const {
+  if (!ending_.since || !follower().over() || !heard_.world_left) return false;
+  if (next_row_ < heard_.newest) return false;
+  return me_.team_has_left(
+      follower().roster(),
+      [&](const Author& author) {
+        const auto status = statuses_.find(author);
+        return status != statuses_.end() && status->second.phase == AgentPhase::kFinished;
+      },
+      now);
 }
 
 void Recorder::write_rows(Instant now) {
@@ -208,8 +226,9 @@ void Recorder::write_rows(Instant now) {
 
 void Recorder::acknowledge(Instant now, Outbox& out) {
   const Tick recorded = next_row_ - 1;
+  const bool last = ending_.finished || next_row_ >= mission().timing.tick_count;
   const bool progress =
-      recorded > acked_.tick + kAckEveryTicks - 1 || (ending_.finished && recorded > acked_.tick);
+      recorded > acked_.tick + kAckEveryTicks - 1 || (last && recorded > acked_.tick);
   if (!progress && now < acked_.next) return;
   trajectory_.flush();
   metrics_.flush();

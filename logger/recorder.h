@@ -67,7 +67,8 @@ class Recorder {
   void stop(std::string reason);
   Instant next_wakeup() const;
 
-  /// True once the last tick is recorded or the mission is over, and nothing more can arrive.
+  /// True once the last tick is recorded or the mission is over, and nothing more can arrive: world
+  /// and agents have said that they leave, or 1 s has passed.
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   const MissionFollower& follower() const { return me_.follower(); }
@@ -91,9 +92,10 @@ class Recorder {
 
   /// The messages received of the world.
   struct Heard {
-    Incarnation world = 0;  // the last one received
-    Tick newest = 0;        // of the states received
-    Tick lost_before = 0;   // states of earlier ticks may be gone for good
+    Incarnation world = 0;    // the last one received
+    Tick newest = 0;          // of the states received
+    Tick lost_before = 0;     // states of earlier ticks may be gone for good
+    bool world_left = false;  // it has said its last message
   };
   struct Acknowledged {
     Tick tick = -2;
@@ -134,6 +136,7 @@ class Recorder {
   void skip_gap();
   void fail(std::string reason);
   bool abandoned(Instant now) const;
+  bool everybody_left(Instant now) const;
   void close();
   bool is_lockstep() const;
   void write_trajectory(const State& now, const State& next);

@@ -7,7 +7,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -16,6 +18,8 @@
 #include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "logger/table_lines.h"
+#include "team/plan.h"
+#include "text/regular_file.h"
 
 namespace ergocast {
 namespace {
@@ -26,32 +30,47 @@ using Fields = std::array<double, kColumns>;
 /// Larger than any mission; squares and sums of such numbers are still finite.
 constexpr double kLargest = 1e100;
 
-/// Seven numbers separated by commas, and nothing else.
-std::optional<Fields> parse_fields(std::string_view line) {
-  Fields fields;
+/// Reads seven numbers separated by commas, and nothing else. Returns the first column that is not
+/// one, kColumns if more follows, or nothing.
+std::optional<std::size_t> first_bad_column(std::string_view line, Fields& fields) {
   const char* at = line.data();
   const char* const end = at + line.size();
   for (std::size_t i = 0; i < kColumns; ++i) {
-    if (i > 0 && (at == end || *at++ != ',')) return {};
+    if (i > 0 && at == end) return i;
+    if (i > 0 && *at++ != ',') return i - 1;
     const auto [next, error] = std::from_chars(at, end, fields[i]);
-    if (error != std::errc() || !(std::abs(fields[i]) <= kLargest)) return {};
+    if (error != std::errc() || !(std::abs(fields[i]) <= kLargest)) return i;
     at = next;
   }
-  if (at != end) return {};
-  return fields;
+  if (at != end) return kColumns;
+  return {};
+}
+
+/// "agent", the name of a column in the header of its table.
+std::string_view name_of(std::size_t column, std::string_view header) {
+  for (; column > 0; --column) header.remove_prefix(header.find(',') + 1);
+  return header.substr(0, header.find(','));
+}
+
+std::string not_numbers(const std::string& line, std::size_t column, std::string_view header) {
+  return "expected 7 numbers separated by commas, found " + in_quotes(line) +
+         (column == kColumns ? ", which goes on"
+                             : ", whose " + std::string(name_of(column, header)) + " is no number");
 }
 
 /// Passes each row to `accept`, which returns the error of the row or nothing. After a bad row the
 /// rest of its segment is skipped.
 std::optional<std::string> read_table(
-    TableLines lines, const std::function<std::optional<std::string>(const Fields&)>& accept) {
+    const std::filesystem::path& run_dir, const char* table, const char* header,
+    const std::function<std::optional<std::string>(const Fields&)>& accept) {
+  TableLines lines(run_dir, table, header);
   std::optional<std::string> damage;
   do {
     std::optional<std::string> wrong;
     for (std::string line; !wrong && lines.next(line);) {
-      const std::optional<Fields> fields = parse_fields(line);
-      wrong = fields ? accept(*fields)
-                     : "expected 7 numbers separated by commas, found " + in_quotes(line);
+      Fields fields;
+      const std::optional<std::size_t> bad = first_bad_column(line, fields);
+      wrong = bad ? not_numbers(line, *bad, header) : accept(fields);
     }
     if (damage) continue;
     damage = wrong ? lines.place() + *wrong +
@@ -107,9 +126,21 @@ double RunData::end_s() const {
   return end_s;
 }
 
+std::variant<Mission, std::string> read_mission(const std::filesystem::path& run_dir) {
+  const auto file = run_dir / kPlanFile;
+  const std::string name = file.string() + ": ";
+  if (const auto why = why_not_regular(file)) return name + *why;
+  std::ifstream in(file, std::ios::binary);
+  const std::string plan((std::istreambuf_iterator<char>(in)), {});
+  if (!in.is_open()) return name + "missing or not readable: is this a run directory?";
+  auto read = decode_plan(std::as_bytes(std::span(plan)));
+  if (const auto* problem = std::get_if<std::string>(&read)) return name + *problem;
+  return read;
+}
+
 std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_dir) {
   RunData run;
-  auto problem = read_table({run_dir, kTrajectoryFile, kTrajectoryHeader},
+  auto problem = read_table(run_dir, kTrajectoryFile, kTrajectoryHeader,
                             [&run](const Fields& fields) { return add_point(run, fields); });
   if (problem) return *problem;
   return run;
@@ -117,10 +148,10 @@ std::variant<RunData, std::string> read_tracks(const std::filesystem::path& run_
 
 std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_dir, RunData& run) {
   const auto trajectory =
-      read_table({run_dir, kTrajectoryFile, kTrajectoryHeader},
+      read_table(run_dir, kTrajectoryFile, kTrajectoryHeader,
                  [&run](const Fields& fields) { return add_point(run, fields); });
   const auto metrics =
-      read_table({run_dir, kMetricsFile, kMetricsHeader},
+      read_table(run_dir, kMetricsFile, kMetricsHeader,
                  [&run](const Fields& fields) { return add_metrics(run, fields); });
   return trajectory ? trajectory : metrics;
 }

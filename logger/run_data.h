@@ -45,6 +45,9 @@ struct RunData {
   double end_s() const;  ///< time of the last row, 0 if there is none
 };
 
+/// The mission of the record's plan.binpb, or an error that names the file.
+std::variant<Mission, std::string> read_mission(const std::filesystem::path& run_dir);
+
 /// Reads trajectory.csv and metrics.csv with all their segments, or reports the file and line of an
 /// error with the remedy. A file's last line without its line break comes from a killed process and
 /// is ignored.

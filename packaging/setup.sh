@@ -25,8 +25,9 @@ missing_packages() {
   local package
   cat "${packages[@]/#/$root/packaging/}" | sed 's/#.*//' | while read -r package; do
     [ -n "$package" ] || continue
+    # A command of that name stands for its package, such as the npm that other nodejs bring.
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
-      printf '%s\n' "$package"
+      command -v "$package" >/dev/null || printf '%s\n' "$package"
   done
 }
 

@@ -78,14 +78,6 @@ std::vector<AxisMark> marks_within_a_decade(Axis axis, int count) {
   return result;
 }
 
-std::vector<AxisMark> named_marks(const Axis& axis) {
-  std::vector<AxisMark> result;
-  for (const std::string& name : axis.names) {
-    result.push_back({static_cast<double>(result.size() + 1), name});
-  }
-  return result;
-}
-
 }  // namespace
 
 double Axis::position(double value) const {
@@ -96,7 +88,7 @@ double Axis::position(double value) const {
 Axis range_axis(const std::string& title, const std::string& unit, double low, double high) {
   if (!(std::isfinite(low) && std::isfinite(high))) low = high = 0;
   if (!(low < high)) high = low + std::max(1.0, std::abs(low));
-  return {titled(title, unit), low, high, Scale::kLinear, 1, {}};
+  return {titled(title, unit), low, high, Scale::kLinear, 1};
 }
 
 Axis amount_axis(const std::string& title, const std::string& unit, double largest) {
@@ -113,16 +105,10 @@ Axis log_axis(const std::string& title, double low, double high) {
   if (!(high > 0 && std::isfinite(high))) high = 1;
   if (!(low > 0 && low <= high)) low = high / 10;
   if (low == high) high *= 10;
-  return {title, low, high, Scale::kLog, 1, {}};
-}
-
-Axis named_axis(const std::string& title, std::vector<std::string> names) {
-  const auto count = static_cast<double>(names.size());
-  return {title, 0.5, count + 0.5, Scale::kLinear, 1, std::move(names)};
+  return {title, low, high, Scale::kLog, 1};
 }
 
 std::vector<AxisMark> marks(const Axis& axis, int count) {
-  if (!axis.names.empty()) return named_marks(axis);
   if (axis.scale == Scale::kLinear) return linear_marks(axis, count);
   std::vector<AxisMark> result = log_marks(axis);
   const auto labelled = std::count_if(result.begin(), result.end(),

@@ -23,8 +23,7 @@ struct Axis {
   std::string title;
   double low = 0, high = 1;
   Scale scale = Scale::kLinear;
-  double label_unit = 1;             ///< labels are values divided by this
-  std::vector<std::string> names{};  ///< names of the values 1, 2 …; if any, the only marks
+  double label_unit = 1;  ///< labels are values divided by this
 
   /// 0 at the low end, 1 at the high end.
   double position(double value) const;
@@ -37,8 +36,6 @@ Axis range_axis(const std::string& title, const std::string& unit, double low, d
 Axis amount_axis(const std::string& title, const std::string& unit, double largest);
 /// Logarithmic from `low` to `high`; each must be > 0 or is replaced.
 Axis log_axis(const std::string& title, double low, double high);
-/// Names side by side, at 1, 2 …
-Axis named_axis(const std::string& title, std::vector<std::string> names);
 
 struct AxisMark {
   double value = 0;

@@ -14,10 +14,7 @@ namespace ergocast {
 
 struct Figure {
   std::string name;  ///< of its file, without ".svg"
-  std::string title;
-  std::string caption;  ///< what it shows, in a sentence or two; plain text
   std::string svg;
-  bool wide = false;  ///< needs the width of two other figures
 };
 
 /// The agents' tracks over the target density: crosses are starts, circles are ends.

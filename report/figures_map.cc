@@ -165,18 +165,6 @@ void draw_signs(Svg& svg, double right, double y) {
   svg.text({x + 64, y + 12}, "class=\"tick\"", "end");
 }
 
-std::string trajectories_caption(const RunData& run, double from_s) {
-  if (run.empty()) return "No position was recorded; the ground shows the target density.";
-  std::string caption =
-      "Crosses mark where the agents started, circles where they were at the end; the darker the "
-      "ground, the more of their time the target asks for there.";
-  if (from_s > 0) {
-    caption += " Only the last " + duration(run.end_s() - from_s) +
-               " of the paths are drawn: all of it would hide the ground.";
-  }
-  return caption;
-}
-
 // --- coverage and coefficients ---
 
 void draw_field(Svg& svg, const Area& area, const Field& field, double brightest,
@@ -225,8 +213,7 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
   agent_legend(svg, run, kRoomLeft, 4, area.width);
   if (!run.empty()) draw_signs(svg, area.right() + kBar - 8, 4);
   color_bar(svg, area, pencil(), range_axis("density, × uniform", "", 0, densest));
-  return {"trajectories", "Where the agents went", trajectories_caption(run, tracks.from_s),
-          svg.str(), long_domain(domain)};
+  return {"trajectories", svg.str()};
 }
 
 Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
@@ -247,16 +234,7 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission) {
   draw_field(svg, first, achieved, brightest, domain, "achieved: Σ cₖ fₖ");
   draw_field(svg, second, target, brightest, domain, "target: Σ μₖ fₖ");
   color_bar(svg, second, viridis(), range_axis("time spent, × uniform", "", 0, brightest));
-
-  std::string caption =
-      "Where the team spent its time beside where the target wants it, both as blurred as " +
-      std::to_string(mission.basis.modes_x) + " × " + std::to_string(mission.basis.modes_y) +
-      " modes show them.";
-  if (achieved.maxCoeff() > 1.01 * brightest) {
-    caption += " The achieved coverage reaches " + readable(achieved.maxCoeff()) +
-               " × uniform, beyond the end of the scale.";
-  }
-  return {"coverage", "Coverage achieved and wanted", caption, svg.str(), true};
+  return {"coverage", svg.str()};
 }
 
 Figure coefficients_figure(const Coefficients& coverage, const Mission& mission) {
@@ -275,10 +253,7 @@ Figure coefficients_figure(const Coefficients& coverage, const Mission& mission)
   }
   plot.frame();
   color_bar(svg, area, viridis(), colors);
-  return {"coefficients", "What is left to cover, by scale",
-          "Each cell is one mode; large features of the target are at the lower left, fine ones at "
-          "the upper right, and bright cells still differ from the target.",
-          svg.str()};
+  return {"coefficients", svg.str()};
 }
 
 }  // namespace ergocast

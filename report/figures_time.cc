@@ -142,14 +142,6 @@ void draw_limit(Svg& svg, const Plot& plot, const Mission& mission) {
            "dashed: u_max = " + readable(u_max_mps) + " m/s");
 }
 
-std::string speeds_caption(const RunData& run, double bin_s) {
-  if (run.empty()) return "No command was recorded.";
-  return "Lines are each agent's mean over " + readable(bin_s) + " s" +
-         (run.tracks.size() > kAgentColors ? " (the strong line is the team's)" : "") +
-         ", the grey band everything between the slowest and the fastest command; u_max bounds "
-         "the ergodic input alone, contraction and noise come on top.";
-}
-
 // --- communication ---
 
 struct Panel {
@@ -189,15 +181,7 @@ Figure metric_figure(const RunData& run, const Mission& mission) {
   if (metric.points.size() < 2) plot.say(run.metrics.empty() ? kNothing : "too short for a curve");
   plot.frame();
   svg.text({kRoomLeft, kTop - 10}, "class=\"note\"", conventions_line(mission.basis));
-
-  std::string caption =
-      "How far the team's time-averaged positions are from the target, seen by an observer who "
-      "knows every position; 0 is a perfect match.";
-  if (law) {
-    caption += " The dashed line is the power of t that fits " + duration(std::round(law->from_s)) +
-               " to " + duration(std::round(law->to_s)) + ".";
-  }
-  return {"ergodic_metric", "How fast the coverage became ergodic", caption, svg.str()};
+  return {"ergodic_metric", svg.str()};
 }
 
 Figure speeds_figure(const RunData& run, const Mission& mission) {
@@ -214,8 +198,7 @@ Figure speeds_figure(const RunData& run, const Mission& mission) {
   draw_limit(svg, plot, mission);
   if (run.empty()) plot.say(kNothing);
   plot.frame();
-  return {"speeds", "How fast the agents were told to move", speeds_caption(run, speeds.bin_s),
-          svg.str()};
+  return {"speeds", svg.str()};
 }
 
 Figure communication_figure(const RunData& run, const Mission& mission) {
@@ -238,11 +221,7 @@ Figure communication_figure(const RunData& run, const Mission& mission) {
     const double top = kTop + row * (kPanelHeight + kRowGap);
     draw_panel(svg, {left, top, kPanelWidth, kPanelHeight}, time_axis(run, mission), panels[i]);
   }
-  return {"communication", "What the agents heard of each other",
-          "Contributions are what agents tell each other of their coverage; losing one only ages "
-          "what a teammate knows, since the next contains it, and the spread of φ² is how far the "
-          "agents' own pictures of the coverage differ.",
-          svg.str(), true};
+  return {"communication", svg.str()};
 }
 
 }  // namespace ergocast

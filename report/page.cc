@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -20,17 +18,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// `value` with so many digits as JSON; null if it is not finite.
-Json rounded(double value, int digits = 6) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return std::isfinite(value) ? Json(std::strtod(text, nullptr)) : Json(nullptr);
-}
-
 template <class Values>
 Json rounded_list(const Values& values, int digits = 6) {
   Json list = Json::array();
-  for (const double value : values) list.push_back(rounded(value, digits));
+  for (const double value : values) list.push_back(page_number(value, digits));
   return list;
 }
 
@@ -103,7 +94,7 @@ Json encoded_density(const Field& density) {
   }
   return {{"width", density.rows()},
           {"height", density.cols()},
-          {"full", rounded(full)},
+          {"full", page_number(full)},
           {"data", base64(bytes)}};
 }
 
@@ -116,10 +107,10 @@ Json metrics(const RunData& run) {
   for (std::size_t i = 0; i < run.metrics.size(); ++i) {
     if (i > kFirst && i % every != 0 && i + 1 != run.metrics.size()) continue;
     const MetricsRow& row = run.metrics[i];
-    t.push_back(rounded(row.t_s, 9));
-    phi.push_back(rounded(row.ergodic_metric));
-    spread.push_back(rounded(row.spread, 3));
-    age.push_back(rounded(row.max_staleness_s, 4));
+    t.push_back(page_number(row.t_s, 9));
+    phi.push_back(page_number(row.ergodic_metric));
+    spread.push_back(page_number(row.spread, 3));
+    age.push_back(page_number(row.max_staleness_s, 4));
     received.push_back(row.received);
     lost.push_back(row.lost);
   }
@@ -153,7 +144,7 @@ Json page_mission(const Mission& mission, const Field& density) {
 }
 
 Json page_record(const RunData& run, const Mission& mission, const Json& summary,
-                 const Field& density) {
+                 const Field& density, const Json& team) {
   Tick ticks = 0;
   for (const auto& [agent, track] : run.tracks) ticks = std::max(ticks, track.back().tick + 1);
   TrackGrid grid(base_of(mission.domain), run.tracks.size());
@@ -164,17 +155,18 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
   return {{"mission", page_mission(mission, density)},
           {"summary", summary},
           {"metrics", metrics(run)},
-          {"slope", law ? rounded(law->slope, 3) : Json(nullptr)},
+          {"slope", law ? page_number(law->slope, 3) : Json(nullptr)},
           {"ticks", ticks},
           {"stride", grid.stride()},
           {"rows", grid.rows()},
-          {"tracks", grid.encode(0, grid.rows())}};
+          {"tracks", grid.encode(0, grid.rows())},
+          {"team", team}};
 }
 
 std::string report_page(const RunData& run, const Mission& mission, const Json& summary,
-                        const Field& density) {
+                        const Field& density, const Json& team) {
   return html_file(run_web_page(), title_of(mission),
-                   {{"record", page_record(run, mission, summary, density)}});
+                   {{"record", page_record(run, mission, summary, density, team)}});
 }
 
 }  // namespace ergocast

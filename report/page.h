@@ -19,13 +19,17 @@ namespace ergocast {
 /// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
 
-/// {"mission", "summary", "metrics", "tracks", "stride", "rows"}: what the page needs of a record.
+/// {"mission", "summary", "metrics", "tracks", "stride", "rows", "team"}: what the page needs of a
+/// record.
+/// @param team  how the agents were over time (cli/recorded_team.h), or null
 nlohmann::ordered_json page_record(const RunData& run, const Mission& mission,
-                                   const nlohmann::ordered_json& summary, const Field& density);
+                                   const nlohmann::ordered_json& summary, const Field& density,
+                                   const nlohmann::ordered_json& team);
 
 /// report.html. Keys that are missing in `summary`, or have another type, are left out.
 std::string report_page(const RunData& run, const Mission& mission,
-                        const nlohmann::ordered_json& summary, const Field& density);
+                        const nlohmann::ordered_json& summary, const Field& density,
+                        const nlohmann::ordered_json& team);
 
 /// "quadrimodal_corners", or "unnamed mission".
 std::string title_of(const Mission& mission);

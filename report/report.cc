@@ -35,7 +35,8 @@ std::variant<Record, std::string> read_record(const fs::path& run_dir) {
 }  // namespace
 
 std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& run_dir,
-                                                               const Mission& mission) {
+                                                               const Mission& mission,
+                                                               const nlohmann::ordered_json& team) {
   auto read = read_record(run_dir);
   if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
   const auto& [run, summary, target] = std::get<Record>(read);
@@ -43,20 +44,21 @@ std::variant<std::vector<ReportFile>, std::string> draw_report(const fs::path& r
   for (const Figure& figure : draw_figures(run, mission, target)) {
     files.push_back({fs::path("figures") / (figure.name + ".svg"), figure.svg});
   }
-  files.push_back({kReportFile, report_page(run, mission, summary, target)});
+  files.push_back({kReportFile, report_page(run, mission, summary, target, team)});
   return files;
 }
 
-std::variant<nlohmann::ordered_json, std::string> read_page_record(const fs::path& run_dir,
-                                                                   const Mission& mission) {
+std::variant<nlohmann::ordered_json, std::string> read_page_record(
+    const fs::path& run_dir, const Mission& mission, const nlohmann::ordered_json& team) {
   auto read = read_record(run_dir);
   if (auto* problem = std::get_if<std::string>(&read)) return std::move(*problem);
   const auto& [run, summary, target] = std::get<Record>(read);
-  return page_record(run, mission, summary, target);
+  return page_record(run, mission, summary, target, team);
 }
 
-std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission) {
-  const auto drawn = draw_report(run_dir, mission);
+std::optional<std::string> write_report(const fs::path& run_dir, const Mission& mission,
+                                        const nlohmann::ordered_json& team) {
+  const auto drawn = draw_report(run_dir, mission, team);
   if (const auto* problem = std::get_if<std::string>(&drawn)) return *problem;
   std::error_code error;
   fs::create_directories(run_dir / "figures", error);

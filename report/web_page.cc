@@ -2,6 +2,9 @@
 // Puts style, script, policy and data of a page into one file.
 #include "report/web_page.h"
 
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "report/base64.h"
@@ -9,7 +12,7 @@
 
 namespace ergocast {
 
-extern const WebPage k_run_page;  // which the build writes, web/embed.cmake
+extern const WebPage k_run_page, k_study_page;  // which the build writes, web/embed.cmake
 
 namespace {
 
@@ -40,6 +43,14 @@ std::string json_in_html(const nlohmann::ordered_json& data) {
 }  // namespace
 
 const WebPage& run_web_page() { return k_run_page; }
+const WebPage& study_web_page() { return k_study_page; }
+
+nlohmann::ordered_json page_number(double value, int digits) {
+  if (!std::isfinite(value)) return nullptr;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return std::strtod(text, nullptr);
+}
 
 std::string content_security_policy(const WebPage& page) {
   return "default-src 'none'; script-src " + source(page.script_sha256) + "; style-src " +

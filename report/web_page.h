@@ -15,8 +15,12 @@ struct WebPage {
   std::string_view script, script_sha256;
 };
 
-/// The page of a run.
+/// The page of a run, and that of a study.
 const WebPage& run_web_page();
+const WebPage& study_web_page();
+
+/// A number with so many digits as JSON; null if it is not finite.
+nlohmann::ordered_json page_number(double value, int digits = 6);
 
 /// What the page may do, for the header Content-Security-Policy and for the file: run this one
 /// script and style, show pictures that it has made, and ask its own origin.

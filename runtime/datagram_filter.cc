@@ -30,7 +30,8 @@ constexpr std::uint32_t kLifeAt = 20, kSequenceAt = 28;
 /// A program for the kernel. Jumps only go forward, and conditional jumps only a short distance.
 class Filter {
  public:
-  Filter(MessageTypes types, std::span<const Repeated> flooded) : to_repeats_(!flooded.empty()) {
+  Filter(MessageTypes types, std::span<const Repeated> flooded, bool replays)
+      : to_repeats_(!flooded.empty()) {
     load(BPF_LD | BPF_W | BPF_LEN, 0);
     pass_if(BPF_JGE, kShortest);
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kLongest, 0, 1));
@@ -38,7 +39,10 @@ class Filter {
     load(BPF_LD | BPF_W | BPF_ABS, kMagicAt);
     pass_if(BPF_JEQ, kLcmMagic);
     for (std::size_t type = 0; type < kMessageTypeCount; ++type) {
-      if ((types >> type & 1) != 0) accept(channel_names()[type]);
+      if ((types >> type & 1) == 0) continue;
+      const ChannelName& name = channel_names()[type];
+      accept(name.text, name.per_agent);
+      if (replays) accept(replayed(name.text), name.per_agent);
     }
     end(kReject);
     if (to_repeats_) drop_repeats(flooded);
@@ -68,9 +72,9 @@ class Filter {
   }
 
   /// Keeps a datagram of that name; for others the program continues after this code.
-  void accept(const ChannelName& name) {
-    std::string text(name.text);
-    if (!name.per_agent) text.push_back('\0');
+  void accept(std::string_view name, bool per_agent) {
+    std::string text(name);
+    if (!per_agent) text.push_back('\0');
     std::vector<std::size_t> misses;
     std::uint32_t at = kNameAt;
     for (std::string_view rest = text; !rest.empty();) {
@@ -83,8 +87,8 @@ class Filter {
       rest.remove_prefix(bytes);
       at += static_cast<std::uint32_t>(bytes);
     }
-    if (name.per_agent) accept_number(at);
-    if (!name.per_agent) keep(at);
+    if (per_agent) accept_number(at);
+    if (!per_agent) keep(at);
     for (const std::size_t miss : misses) {
       code_[miss].jf = static_cast<std::uint8_t>(code_.size() - miss - 1);
     }
@@ -152,8 +156,8 @@ class Filter {
 
 }  // namespace
 
-bool admit_only(int socket, MessageTypes types, std::span<const Repeated> flooded) {
-  return Filter(types, flooded).attach(socket);
+bool admit_only(int socket, MessageTypes types, std::span<const Repeated> flooded, bool replays) {
+  return Filter(types, flooded, replays).attach(socket);
 }
 
 }  // namespace ergocast

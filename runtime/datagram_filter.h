@@ -24,8 +24,10 @@ inline constexpr std::uint32_t kShareThatPasses = 32;
 /// of `types` (with any number of up to three digits where there is one channel for each agent),
 /// and no longer than ours. Needs no privileges. False if the kernel cannot do it: the old filter
 /// then stays. The kernel counts what it drops in the counter for want of buffer space, too.
+/// @param replays  those of `ergocast replay` (lcmtypes/channels.h) as well
 /// @param flooded  messages of these incarnations up to their newest sequences are dropped, except
 ///                 for a share. Incarnations are compared by 32 of their bits.
-bool admit_only(int socket, MessageTypes types, std::span<const Repeated> flooded = {});
+bool admit_only(int socket, MessageTypes types, std::span<const Repeated> flooded = {},
+                bool replays = false);
 
 }  // namespace ergocast

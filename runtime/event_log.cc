@@ -3,11 +3,11 @@
 // event off.
 #include "runtime/event_log.h"
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -17,8 +17,6 @@
 namespace ergocast {
 namespace {
 
-/// The bytes that LCM writes before a message: its number, time and lengths.
-constexpr std::int64_t kEventHeaderBytes = 28;
 /// Our segments have lower numbers; a foreign file with a higher number leaves enough of them free.
 constexpr int kFirstForeignNumber = 1'000'000'000;
 /// More bytes than the C library buffers before it writes.
@@ -29,13 +27,24 @@ std::int64_t wall_clock_us() {
   return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
-std::optional<int> segment_number(std::string_view file) {
-  constexpr std::string_view kBefore = "events-", kAfter = ".lcm";
-  if (!file.starts_with(kBefore) || !file.ends_with(kAfter)) return std::nullopt;
-  file.remove_prefix(kBefore.size());
-  file.remove_suffix(kAfter.size());
-  const auto number = read_number<int>(file);
-  return number >= 0 && number < kFirstForeignNumber ? number : std::nullopt;
+/// Writes numbers big-endian, one after the other.
+class HeaderBytes {
+ public:
+  template <class Number>
+  void add(Number number) {
+    for (int shift = 8 * static_cast<int>(sizeof number) - 8; shift >= 0; shift -= 8) {
+      bytes_[size_++] = static_cast<std::byte>(static_cast<std::uint64_t>(number) >> shift);
+    }
+  }
+  std::span<const std::byte> bytes() const { return std::span(bytes_).first(size_); }
+
+ private:
+  std::array<std::byte, kEventHeaderBytes> bytes_{};
+  std::size_t size_ = 0;
+};
+
+bool put(std::FILE* file, std::span<const std::byte> bytes) {
+  return std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
 }
 
 /// Sizes of the segments in a folder, by number.
@@ -53,6 +62,15 @@ std::map<int, std::int64_t> segments_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
+std::optional<int> segment_number(std::string_view file) {
+  constexpr std::string_view kBefore = "events-", kAfter = ".lcm";
+  if (!file.starts_with(kBefore) || !file.ends_with(kAfter)) return std::nullopt;
+  file.remove_prefix(kBefore.size());
+  file.remove_suffix(kAfter.size());
+  const auto number = read_number<int>(file);
+  return number >= 0 && number < kFirstForeignNumber ? number : std::nullopt;
+}
+
 EventLog::EventLog(std::filesystem::path folder, EventLogLimits limits)
     : folder_(std::move(folder)), limits_(limits) {
   const auto there = segments_in(folder_);
@@ -62,8 +80,6 @@ EventLog::EventLog(std::filesystem::path folder, EventLogLimits limits)
   segment_ = first_segment_;
   open_next();
 }
-
-EventLog::~EventLog() = default;
 
 void EventLog::fail() {
   if (error_) return;
@@ -93,8 +109,9 @@ void EventLog::open_next() {
   written_ = 0;
   ends_.clear();
   file_ = segment_file(segment_++);
-  log_ = std::make_unique<lcm::LogFile>(file_.string(), "w");
-  if (!log_->good()) fail();
+  number_ = 0;
+  log_.reset(std::fopen(file_.c_str(), "wb"));
+  if (!log_) fail();
 }
 
 /// Removes old segments until a new one has room.
@@ -112,27 +129,35 @@ void EventLog::make_room() {
 }
 
 void EventLog::write(std::string_view channel, std::span<const std::byte> bytes) {
+  write(channel, bytes, wall_clock_us());
+}
+
+void EventLog::write(std::string_view channel, std::span<const std::byte> bytes,
+                     std::int64_t time_us) {
   if (error_) return;
   if (written_ >= limits_.segment_bytes) {
-    if (std::fflush(log_->getFilePtr()) != 0) return fail();
+    if (std::fflush(log_.get()) != 0) return fail();
     open_next();
     if (error_) return;
   }
-  lcm::LogEvent event{};
-  event.timestamp = wall_clock_us();
-  event.channel = channel;
-  event.datalen = static_cast<std::int32_t>(bytes.size());
-  // LCM only reads it; its type is not const because the same struct serves for reading a log.
-  event.data = const_cast<std::byte*>(bytes.data());
-  if (log_->writeEvent(&event) != 0) return fail();
-  written_ += kEventHeaderBytes + static_cast<std::int64_t>(channel.size() + bytes.size());
+  HeaderBytes header;
+  header.add(kEventSync);
+  header.add(number_++);
+  header.add(time_us);
+  header.add(static_cast<std::uint32_t>(channel.size()));
+  header.add(static_cast<std::uint32_t>(bytes.size()));
+  const auto name = std::as_bytes(std::span(channel));
+  if (!put(log_.get(), header.bytes()) || !put(log_.get(), name) || !put(log_.get(), bytes)) {
+    return fail();
+  }
+  written_ += static_cast<std::int64_t>(kEventHeaderBytes + channel.size() + bytes.size());
   ends_.push_back(written_);
   while (ends_.front() < written_ - kUnwrittenBytes) ends_.pop_front();
 }
 
 std::optional<std::string> EventLog::flush() {
   if (error_ && told_) open_next();
-  if (!error_ && std::fflush(log_->getFilePtr()) != 0) fail();
+  if (!error_ && std::fflush(log_.get()) != 0) fail();
   told_ = error_.has_value();
   return error_;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -11,11 +12,12 @@
 #include <string>
 #include <string_view>
 
-namespace lcm {
-class LogFile;
-}
-
 namespace ergocast {
+
+/// What an event of LCM's log format begins with: this word, its number and time stamp [µs] in 64
+/// bits, the lengths of channel and message in 32; all big-endian.
+inline constexpr std::uint32_t kEventSync = 0xEDA1DA01;
+inline constexpr std::size_t kEventHeaderBytes = 28;
 
 inline constexpr std::int64_t kEventLogMib = 4096;
 
@@ -29,10 +31,11 @@ struct EventLogLimits {
 class EventLog {
  public:
   explicit EventLog(std::filesystem::path folder, EventLogLimits limits = {});
-  ~EventLog();
 
-  /// Appends a message; discards it while the log cannot be written.
+  /// Appends a message, at the wall clock's time; discards it while the log cannot be written.
   void write(std::string_view channel, std::span<const std::byte> bytes);
+  /// The same at a time of the caller's [µs since 1970].
+  void write(std::string_view channel, std::span<const std::byte> bytes, std::int64_t time_us);
 
   /// Passes all data to the operating system. Returns the write error since the last call, if any:
   /// the segment then ends with its last whole event, and the next call begins a new segment.
@@ -55,9 +58,13 @@ class EventLog {
   std::int64_t written_ = 0;       // bytes of the current segment
   std::deque<std::int64_t> ends_;  // of its last events
   int first_segment_ = 0, segment_ = 0, removed_ = 0;
-  std::unique_ptr<lcm::LogFile> log_;
+  std::int64_t number_ = 0;  // of the next event of the segment
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_{nullptr, &std::fclose};
   std::optional<std::string> error_;
   bool told_ = false;  // the caller has received the error
 };
+
+/// The number of a segment's file, or nothing for other names.
+std::optional<int> segment_number(std::string_view file);
 
 }  // namespace ergocast

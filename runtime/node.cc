@@ -74,6 +74,7 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
     if (commands.empty() || word.starts_with('-')) continue;
     for (const CLI::App* one : commands) names.push_back(one->get_name());
     const auto known = std::find(names.begin(), names.end(), word);
+    if (known == names.end() && command->get_require_subcommand_min() == 0) continue;
     if (known == names.end()) {
       return command->get_name() + ": there is no command " + word + "; " + remedy_for(word, names);
     }
@@ -122,13 +123,16 @@ std::string cannot_sign(const std::string& key_file) {
          "`ergocast keygen` wrote together with it";
 }
 
+void add_run_id_option(CLI::App& app, RunId& run) {
+  app.add_option_function<std::string>(
+         "--run-id", [&run](const std::string& text) { read_run_id(text, run); }, "This run only")
+      ->type_name("HEX");
+}
+
 void add_bus_options(CLI::App& app, BusOptions& options) {
   add_url_option(app, options.url);
   add_key_option(app, options.seal, &options.key_file);
-  app.add_option_function<std::string>(
-         "--run-id", [&options](const std::string& text) { read_run_id(text, options.run); },
-         "This run only")
-      ->type_name("HEX");
+  add_run_id_option(app, options.run);
 }
 
 void add_node_options(CLI::App& app, NodeOptions& options) {

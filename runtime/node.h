@@ -38,6 +38,9 @@ void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file
 /// The error text for a command that needs the coordinator's key file.
 std::string cannot_sign(const std::string& key_file);
 
+/// --run-id.
+void add_run_id_option(CLI::App& app, RunId& run);
+
 /// --lcm-url, --key-file and --run-id.
 void add_bus_options(CLI::App& app, BusOptions& options);
 

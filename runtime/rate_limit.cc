@@ -30,7 +30,7 @@ double parts(std::size_t count, int of) {
 
 RateBudget allowance_of(const Mission& mission, std::size_t members) {
   const Timing& timing = mission.timing;
-  const double blocks = parts(static_cast<std::size_t>(mission.basis.mode_count()), kBlockSize);
+  const double blocks = block_count_of(mission.basis.mode_count(), timing.contribution_encoding);
   const double digests = parts(members, kMaxDigestEntriesPerMessage);
   const double repeats =
       timing.pace == Pace::kLockstep ? kLockstepRepeatsPerSecond : kRealtimeRepeatsPerSecond;

@@ -67,7 +67,7 @@ class BusTransport final : public Transport {
   }
   void read(Line& line);
   void take(Line& line, std::span<const std::byte> bytes) noexcept;
-  void take(Line& line, const LcmDatagram& datagram);
+  void take(Line& line, const LcmDatagram& datagram, bool is_replay);
   void cut_repeats(Line& line);
   void count_cut(Line& line) noexcept;
 
@@ -91,7 +91,7 @@ std::optional<std::string> BusTransport::connect(const LcmUrl& url, const Subscr
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) {
     const MessageTypes types = hears[static_cast<std::size_t>(bus)];
     if (types == 0) continue;
-    auto opened = BusReader::open(url, bus, types);
+    auto opened = BusReader::open(url, bus, types, handlers_.on_replayed != nullptr);
     if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
     if (auto problem = why_deaf(url, bus)) return problem;
     lines_.push_back({std::get<0>(std::move(opened)), types, RepeatGuard(bus)});
@@ -140,7 +140,7 @@ void BusTransport::cut_repeats(Line& line) {
   line.is_cut = !line.guard.flooded().empty();
 }
 
-void BusTransport::take(Line& line, const LcmDatagram& datagram) {
+void BusTransport::take(Line& line, const LcmDatagram& datagram, bool is_replay) {
   const auto& [channel, bytes] = datagram;
   const auto decoded = decode(bytes, run_, seal_, channel, &signatures_);
   if (const auto* refusal = std::get_if<Refusal>(&decoded)) {
@@ -158,6 +158,7 @@ void BusTransport::take(Line& line, const LcmDatagram& datagram) {
     return refuse(Refusal::kRate);
   }
   const Bus bus = line.reader->bus();
+  if (is_replay) return handlers_.on_replayed(message, bus, *transmitter);
   if (handlers_.on_accepted) handlers_.on_accepted(bus, channel, bytes);
   handlers_.on_message(message, bus, *transmitter);
 }
@@ -166,8 +167,12 @@ void BusTransport::take(Line& line, const LcmDatagram& datagram) {
 /// nobody's mistake.
 void BusTransport::take(Line& line, std::span<const std::byte> bytes) noexcept {
   try {
-    const auto datagram = parse_datagram(bytes);
-    if (datagram && is_channel_of(line.hears, datagram->channel)) take(line, *datagram);
+    auto datagram = parse_datagram(bytes);
+    if (!datagram) return;
+    const auto original =
+        handlers_.on_replayed ? without_replay(datagram->channel) : std::optional<std::string>();
+    if (original) datagram->channel = *original;
+    if (is_channel_of(line.hears, datagram->channel)) take(line, *datagram, original.has_value());
   } catch (...) {  // for want of memory
     refuse(Refusal::kLimit);
   }

@@ -32,6 +32,8 @@ class Transport {
     std::function<void(const Message&, Bus, AgentId transmitter)> on_message;
     std::function<void(Refusal)> on_refused = {};
     std::function<void(Bus, std::string_view channel, std::span<const std::byte>)> on_accepted = {};
+    /// Messages of `ergocast replay`, which nobody else receives.
+    std::function<void(const Message&, Bus, AgentId transmitter)> on_replayed = {};
   };
 
   /// Opens every bus for publishing and listens where `hears` has a message. An error names its

@@ -40,6 +40,9 @@ class Assignment {
       : field_(field), scenario_(scenario), findings_(findings) {}
 
   void run() {
+    if (const std::string other = findings_.blamed(field_.path); !other.empty()) {
+      return problem(other + " says it too", "leave out one of them");
+    }
     const std::optional<Target> target = find();
     if (!target) return;
     if (target->field->cpp_type() == FieldDescriptor::CPPTYPE_STRING) {

@@ -40,9 +40,11 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
   }
 }
 
-/// Without a covariance a Gaussian is round; without a separation bodies keep no distance.
+/// Without a covariance a Gaussian is round; without an origin places are metres alone; without a
+/// separation bodies keep no distance.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
+         field.message_type() == proto::Origin::descriptor() ||
          field.message_type() == proto::Separation::descriptor();
 }
 
@@ -121,13 +123,23 @@ void fill_separation(proto::Scenario& scenario) {
       std::sqrt(std::max(0.0, scenario.time().dt_s())));
 }
 
-/// A map's name is relative to the scenario's folder, not to the working directory.
+/// The name of a map or GeoJSON file is relative to the scenario's folder, not to the working
+/// directory.
 void make_absolute(const std::filesystem::path& scenario, proto::Target& target) {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::absolute(scenario, error).parent_path();
+  const auto whole = [&folder](const std::string& name) {
+    return name.empty() ? name : (folder / name).lexically_normal().string();
+  };
   for (proto::Map& map : *target.mutable_maps()) {
-    if (map.file().empty()) continue;
-    map.set_file((folder / map.file()).lexically_normal().string());
+    if (map.has_file()) map.set_file(whole(map.file()));
+  }
+  for (proto::Region& region : *target.mutable_regions()) {
+    if (region.polygon().has_file())
+      region.mutable_polygon()->set_file(whole(region.polygon().file()));
+  }
+  for (proto::Polygon& keep_out : *target.mutable_keep_outs()) {
+    if (keep_out.has_file()) keep_out.set_file(whole(keep_out.file()));
   }
 }
 
@@ -140,7 +152,10 @@ void resize_team(int size, proto::Agents& agents) {
 }
 
 void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
-  if (overrides.seed) scenario.set_seed(*overrides.seed);
+  if (overrides.seed) {
+    scenario.set_seed(*overrides.seed);
+    findings.blame("seed", "--seed");
+  }
   if (overrides.duration_s) {
     scenario.mutable_time()->set_duration_s(*overrides.duration_s);
     findings.blame("time.duration_s", "--duration");
@@ -148,12 +163,14 @@ void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findi
   if (overrides.pace) {
     scenario.mutable_time()->set_pace(*overrides.pace == Pace::kLockstep ? proto::Time::LOCKSTEP
                                                                          : proto::Time::REALTIME);
+    findings.blame("time.pace", *overrides.pace == Pace::kLockstep ? "--lockstep" : "--realtime");
   }
   if (overrides.realtime_factor) {
     scenario.mutable_time()->set_realtime_factor(*overrides.realtime_factor);
     findings.blame("time.realtime_factor", "--realtime");
   }
   if (!overrides.agents) return;
+  findings.blame("agents.random_count", "--agents");
   const std::string limits = "1 to " + std::to_string(kMaxAgents);
   if (*overrides.agents >= 1 && *overrides.agents <= kMaxAgents) {
     resize_team(*overrides.agents, *scenario.mutable_agents());

@@ -36,6 +36,9 @@ struct Row {
   double default_value = 0;
 };
 constexpr Row kRows[] = {
+    {"Origin", "latitude_deg", between(-90, 90), kRefused},
+    {"Origin", "longitude_deg", between(-180, 180), kRefused},
+
     {"Domain", "size_x_m", kMissions, kRefused},
     {"Domain", "size_y_m", kMissions, kRefused},
 

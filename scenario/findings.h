@@ -29,6 +29,12 @@ class Findings {
   /// From now on problems of the field at `path` are the command line's, not the file's.
   void blame(const std::string& path, const std::string& flag) { flags_[path] = flag; }
 
+  /// The flag that is blamed for the field at `path`; empty if none is.
+  std::string blamed(const std::string& path) const {
+    const auto found = flags_.find(path);
+    return found == flags_.end() ? "" : found->second;
+  }
+
   /// The field at `path` is in the file but cannot be read, so its value is unknown.
   void give_up(const std::string& path) { given_up_.insert(path); }
   const std::set<std::string>& given_up() const { return given_up_; }

@@ -2,8 +2,6 @@
 // Declares one option for each override; only lockstep and real time exclude each other.
 #include "scenario/override_options.h"
 
-#include <string>
-
 namespace ergocast {
 
 void add_override_options(CLI::App& command, Overrides& overrides) {
@@ -29,6 +27,31 @@ void add_override_options(CLI::App& command, Overrides& overrides) {
       ->default_str("1")
       ->type_name("FACTOR")
       ->excludes(lockstep);
+  add_set_option(command, overrides.fields);
+}
+
+void add_set_option(CLI::App& command, std::vector<FieldValue>& fields) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&fields](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              auto [path, value] = split_field(text, "--set", "FIELD=VALUE");
+              fields.push_back({std::move(path), std::move(value), "--set " + text});
+            }
+          },
+          "A field of the scenario and its value, such as law.epsilon=0.1; again for another field")
+      ->allow_extra_args(false)
+      ->type_name("FIELD=VALUE");
+}
+
+std::pair<std::string, std::string> split_field(const std::string& text, const std::string& option,
+                                                const std::string& form) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw CLI::ValidationError(option, "\"" + text + "\" is not " + form);
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 }  // namespace ergocast

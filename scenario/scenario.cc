@@ -11,6 +11,8 @@
 #include "scenario/convert.h"
 #include "scenario/defaults.h"
 #include "scenario/findings.h"
+#include "scenario/geojson_target.h"
+#include "scenario/origin.h"
 #include "scenario/scenario.pb.h"
 #include "scenario/text.h"
 #include "scenario/validate.h"
@@ -53,6 +55,8 @@ struct Scenario::State {
   int listed_starts;  ///< the others were drawn
   Problems warnings;
 
+  std::vector<std::filesystem::path> polygon_files;
+
   State(proto::Scenario scenario, CompiledTarget target, int listed)
       : text(std::move(scenario)),
         target_density(std::move(target.density)),
@@ -77,6 +81,7 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   put_over(overrides, scenario, findings);
   fill_in(scenario, file);
   Checks checks(findings);
+  auto polygon_files = read_geojson_files(scenario, checks, findings);
   validate(scenario, checks);
   std::optional<CompiledTarget> target;
   if (checks.sound("domain") && checks.sound("basis") && checks.sound("target")) {
@@ -87,9 +92,25 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
+  state->polygon_files = std::move(polygon_files);
   warn(state->mission, findings);
   state->warnings = findings.take();
   return Scenario(std::move(state));
+}
+
+std::variant<std::optional<GeoPlace>, Problems> read_origin(const std::filesystem::path& file) {
+  std::variant<std::string, Problem> text = read_file(file);
+  if (auto* problem = std::get_if<Problem>(&text)) return Problems{std::move(*problem)};
+  Findings findings(file.string());
+  proto::Scenario scenario;
+  if (!read_text(std::get<std::string>(text), scenario, findings)) return findings.take();
+  if (!scenario.has_origin()) return std::optional<GeoPlace>();
+  const GeoPlace place{scenario.origin().latitude_deg(), scenario.origin().longitude_deg()};
+  Checks checks(findings);
+  checks.in_range("origin.latitude_deg", place.latitude_deg, {limits::between(-90, 90)});
+  checks.in_range("origin.longitude_deg", place.longitude_deg, {limits::between(-180, 180)});
+  if (!findings.empty()) return findings.take();
+  return std::optional(place);
 }
 
 Scenario Scenario::with_seed(std::uint64_t seed) const {
@@ -121,6 +142,7 @@ const std::string& Scenario::description() const { return state_->text.descripti
 std::vector<std::filesystem::path> Scenario::map_files() const {
   std::vector<std::filesystem::path> files;
   for (const proto::Map& map : state_->text.target().maps()) files.emplace_back(map.file());
+  files.insert(files.end(), state_->polygon_files.begin(), state_->polygon_files.end());
   return files;
 }
 const DensityGrid& Scenario::target_density() const { return state_->target_density; }

@@ -68,7 +68,7 @@ class Scenario {
   ~Scenario();
 
   /// Text that load() reads back to an equal scenario: every field with its value, maps with
-  /// absolute paths.
+  /// absolute paths, the polygons of GeoJSON files in metres.
   std::string print() const;
 
   /// Settings that are allowed but probably not intended. Only after load() and parse().
@@ -77,7 +77,8 @@ class Scenario {
   const std::string& name() const;
   const std::string& description() const;
 
-  /// Absolute paths of the other files that its target needs.
+  /// Absolute paths of the other files that its target was made from: maps and GeoJSON. Only after
+  /// load() and parse() the latter, whose polygons print() has.
   std::vector<std::filesystem::path> map_files() const;
 
   /// The target density in multiples of the uniform density, for people: at most 256 cells along

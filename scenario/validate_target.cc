@@ -17,7 +17,6 @@ constexpr int kMaxGaussians = 64;
 constexpr int kMaxMaps = 16;
 constexpr int kMaxRegions = 64;
 constexpr int kMaxKeepOuts = 64;
-constexpr int kMaxVertices = 4096;
 /// Above this the ridge is too narrow for the quadrature of μ.
 constexpr double kMaxCorrelation = 0.99;
 
@@ -154,10 +153,9 @@ class TargetValidator {
   }
 
   void polygon(const proto::Polygon& written, const std::string& path) {
+    if (written.has_file()) return;  // it could not be read, which is said already
     if (!checks_.sound(path) || longer_side_m_ == 0) return;
-    constexpr double kMinAreaPerSide2 = 1e-8;
-    const auto flaw =
-        flaw_of(polygon_of(written), kMinAreaPerSide2 * longer_side_m_ * longer_side_m_);
+    const auto flaw = flaw_of(polygon_of(written), least_area_m2(longer_side_m_));
     if (!flaw) return;
     const std::string place = flaw->hole < 0 ? path : indexed(path + ".holes", flaw->hole);
     checks_.problem(place, flaw->what, flaw->remedy);

@@ -203,9 +203,9 @@ bool World::record_is_close(Instant now) {
 
 void World::advance(Instant now, Outbox& out) {
   if (over_since_ && now - std::max(*over_since_, record_.progress()) > kLinger) {
-    return finish(why_over());
+    finish(why_over());
   }
-  if (finished_) return;
+  if (finished_) return say_farewell(out);
   if (!started_) return ask_for_mission(now, out);
   if (!over_since_ && me_.cut_off(tick_, now)) {
     return finish("the mission must be over: no agent and no coordinator is heard");
@@ -381,6 +381,15 @@ Instant World::next_wakeup() const {
 void World::finish(std::string reason) {
   finished_ = true;
   reason_ = std::move(reason);
+  farewell_due_ = (over_since_ || follower().over()) && !record_.empty();
+}
+
+/// Coordinator and logger need not wait for a world that has left.
+void World::say_farewell(Outbox& out) {
+  if (!std::exchange(farewell_due_, false)) return;
+  WorldState farewell = record_.newest().front();
+  farewell.last = true;
+  me_.publish(Bus::kWorld, farewell, farewell.header.tick, out);
 }
 
 }  // namespace ergocast

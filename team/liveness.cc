@@ -41,10 +41,8 @@ bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silen
 }
 
 Liveness::Life* Liveness::find_or_add(const Author& life) {
-  const auto at = lives_.lower_bound(life);
-  if (at != lives_.end() && at->first == life) return &at->second;
-  if (lives_.size() >= kMostLives) return nullptr;
-  return &lives_.emplace_hint(at, life, Life{})->second;
+  if (Life* known = lives_.find(life)) return known;
+  return lives_.size() >= kMostLives ? nullptr : &lives_[life];
 }
 
 bool Liveness::record(const Header& from, Bus bus, Instant now, bool is_sign) {
@@ -62,14 +60,14 @@ bool Liveness::record(const Header& from, Bus bus, Instant now, bool is_sign) {
 void Liveness::presume_alive(const Author& life, Instant now) { lives_[life].sign = now; }
 
 std::optional<Instant> Liveness::last_sign(const Author& life) const {
-  const auto at = lives_.find(life);
-  return at == lives_.end() ? std::nullopt : at->second.sign;
+  const Life* const known = lives_.find(life);
+  return known == nullptr ? std::nullopt : known->sign;
 }
 
 const Liveness::Heard* Liveness::heard_of(const Author& life, Bus bus) const {
-  const auto at = lives_.find(life);
-  if (at == lives_.end()) return nullptr;
-  const Heard& heard = at->second.on_bus[static_cast<std::size_t>(bus)];
+  const Life* const known = lives_.find(life);
+  if (known == nullptr) return nullptr;
+  const Heard& heard = known->on_bus[static_cast<std::size_t>(bus)];
   return heard.count == 0 ? nullptr : &heard;
 }
 

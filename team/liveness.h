@@ -10,11 +10,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 
 #include "core/ids.h"
 #include "core/mission.h"
+#include "team/author_map.h"
 #include "team/messages.h"
 
 namespace ergocast {
@@ -88,7 +88,7 @@ class Liveness {
   Life* find_or_add(const Author& life);
   const Heard* heard_of(const Author& life, Bus bus) const;
 
-  std::map<Author, Life> lives_;
+  AuthorMap<Life> lives_;
   std::array<std::optional<Instant>, 1 - kOperator> kinds_;  // agents, then from kUnassigned down
 };
 

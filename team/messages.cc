@@ -5,8 +5,8 @@
 namespace ergocast {
 
 const char* to_string(Refusal refusal) {
-  constexpr const char* kNames[kRefusalKinds] = {"size", "type",  "tag",   "unkeyed", "unsigned",
-                                                 "run",  "range", "limit", "rate"};
+  constexpr const char* kNames[kRefusalKinds] = {"size", "type",  "tag",   "unkeyed",  "unsigned",
+                                                 "run",  "range", "limit", "encoding", "rate"};
   return kNames[static_cast<int>(refusal)];
 }
 

@@ -36,9 +36,10 @@ enum class Refusal {
   kRun,       ///< of another run
   kRange,     ///< an impossible number: NaN, |S| > elapsed, a coverage from the future
   kLimit,     ///< a table is full
+  kEncoding,  ///< a contribution in another encoding than the plan says
   kRate,      ///< its sender exceeds its rate budget
 };
-inline constexpr int kRefusalKinds = 9;
+inline constexpr int kRefusalKinds = 10;
 const char* to_string(Refusal refusal);
 using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
 
@@ -148,6 +149,7 @@ struct WorldState {
   std::int64_t skipped_ticks = 0;     ///< real time: ticks that a delayed world skipped
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
   std::int32_t part = 0, parts = 1;
+  bool last = false;  ///< the mission is over, and the world leaves: this is its last message
   std::int32_t vehicle_count = 0;
   std::array<Vehicle, kMaxVehiclesPerState> vehicles;
 };
@@ -163,6 +165,7 @@ struct Command {
 /// The logger has recorded all ticks up to and including header.tick (−1: it is ready).
 struct RecordAck {
   Header header;
+  bool last = false;  ///< the mission is over, and the logger leaves: this is its last message
 };
 /// Lockstep: how many ticks the world may be ahead of the logger's acknowledgement, unless it has
 /// given that logger up.

@@ -56,6 +56,11 @@ bool MissionFollower::commit(std::int64_t revision, Parts& parts) {
     roster_.insert(roster_.end(), part->roster.begin(), part->roster.end());
     parts_.push_back(std::move(*part));
   }
+  by_incarnation_.clear();
+  for (std::size_t i = 0; i < roster_.size(); ++i) {
+    by_incarnation_.emplace_back(roster_[i].author.incarnation, i);
+  }
+  std::sort(by_incarnation_.begin(), by_incarnation_.end());
   if (!first) return true;
   if (!expected_plan_.empty() && plan_ != expected_plan_) {
     plan_problem_ = "another mission";
@@ -68,10 +73,10 @@ bool MissionFollower::commit(std::int64_t revision, Parts& parts) {
 }
 
 const RosterEntry* MissionFollower::entry_of(Incarnation incarnation) const {
-  const auto at = std::find_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
-    return entry.author.incarnation == incarnation;
-  });
-  return at == roster_.end() ? nullptr : &*at;
+  const auto at = std::lower_bound(by_incarnation_.begin(), by_incarnation_.end(),
+                                   std::pair(incarnation, std::size_t{0}));
+  const bool known = at != by_incarnation_.end() && at->first == incarnation;
+  return known ? &roster_[at->second] : nullptr;
 }
 
 }  // namespace ergocast

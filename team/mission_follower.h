@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/ids.h"
@@ -58,6 +59,7 @@ class MissionFollower {
   MissionState state_ = MissionState::kWaiting;
   std::string reason_;
   std::vector<RosterEntry> roster_;
+  std::vector<std::pair<Incarnation, std::size_t>> by_incarnation_;  // places in it, ascending
   std::vector<std::byte> plan_;
   std::vector<MissionPart> parts_;
 

@@ -6,6 +6,7 @@
 // to accept() first. No socket, thread, clock or file.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -75,6 +76,15 @@ class Participant {
   /// silent: for the world these are coordinator and agents, for others coordinator and world.
   /// @param newest  the newest known tick
   bool cut_off(Tick newest, Instant now) const;
+  /// Whether nobody in `roster` will speak again: each incarnation has said that it has finished,
+  /// or is a former member that is silent.
+  /// @param finished  whether an incarnation's last status says so
+  template <class F>
+  bool team_has_left(const std::vector<RosterEntry>& roster, const F& finished, Instant now) const {
+    return std::all_of(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
+      return finished(entry.author) || (entry.active_until >= 0 && silent(entry.author, now));
+    });
+  }
 
   // ---- ourselves
   // ---------------------------------------------------------------------------------

@@ -60,7 +60,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   hears(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop>);
   hears(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
   hears(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
-  hears(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState>);
+  hears(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);
   hears(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, WorldState, Command, RecordAck, Stop>);
   hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);

@@ -1,118 +1,78 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of columns say what a study shows; page and terminal print the columns for which there
-// are values.
+// Chooses what the page needs of each point, with as few digits as it shows.
 #include "lab/studies/study_page.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
+#include <nlohmann/json.hpp>
 #include <set>
-#include <span>
 
-#include "lab/studies/html.h"
-#include "lab/studies/study_figures.h"
-#include "lab/studies/study_style.h"
-#include "report/markup.h"
+#include "report/web_page.h"
 
 namespace ergocast::studies {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using Summaries = std::vector<PointSummary>;
-using Cell = std::optional<std::string>;
 
-/// "1.1 [0.764, 1.46] × 10⁻³": a small value and its interval in the same power of ten.
-std::string interval(const Estimate& estimate) {
-  const bool small = estimate.value > 0 && estimate.value < 0.01;
-  const int decade = small ? static_cast<int>(std::floor(std::log10(estimate.value))) : 0;
-  const auto scaled = [unit = std::pow(10, decade)](double value) {
-    return readable(value / unit);
-  };
-  const std::string text =
-      scaled(estimate.value) + " [" + scaled(estimate.low) + ", " + scaled(estimate.high) + ']';
-  return small ? text + " × " + power_of_ten(decade, false) : text;
+/// Longer distributions are thinned out.
+constexpr std::size_t kMostSteps = 100;
+
+Json number(double value) { return page_number(value, 4); }
+
+Json interval(const Estimate& estimate) {
+  return Json::array({number(estimate.value), number(estimate.low), number(estimate.high)});
 }
 
-std::string percent(double share) { return readable(std::round(share * 1000) / 10) + "\u00a0%"; }
+/// "never" if most agents do not escape.
+Json time_or_never(double t_s) { return std::isinf(t_s) ? Json("never") : number(t_s); }
 
-std::string seconds(double t_s) { return std::isinf(t_s) ? "never" : readable(t_s) + "\u00a0s"; }
-
-struct Described {
-  const char* title;
-  Cell (*cell)(const PointSummary&);
-};
-
-constexpr Described kResults[] = {
-    {"runs", [](const PointSummary& s) -> Cell { return readable(static_cast<double>(s.runs)); }},
-    {"φ² at the end [95 %]", [](const PointSummary& s) -> Cell { return interval(s.metric); }},
-    {"against the first [95 %]",
-     [](const PointSummary& s) -> Cell { return s.ratio ? Cell(interval(*s.ratio)) : Cell(); }},
-    {"slope",
-     [](const PointSummary& s) -> Cell {
-       return s.slope ? Cell(readable(std::round(*s.slope * 100) / 100)) : Cell();
-     }},
-};
-
-constexpr Described kEscapes[] = {
-    {"agents",
-     [](const PointSummary& s) -> Cell {
-       return readable(static_cast<double>(s.escape_times_s.size()));
-     }},
-    {"within 15 s", [](const PointSummary& s) -> Cell { return percent(s.escaped_share(15)); }},
-    {"within 60 s", [](const PointSummary& s) -> Cell { return percent(s.escaped_share(60)); }},
-    {"median",
-     [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.5)); }},
-    {"99th percentile",
-     [](const PointSummary& s) -> Cell { return seconds(quantile(s.escape_times_s, 0.99)); }},
-};
-
-constexpr Described kMotion[] = {
-    {"mean ‖x − centre‖²",
-     [](const PointSummary& s) -> Cell { return readable(s.offset2_mean_m2) + "\u00a0m²"; }},
-    {"greatest",
-     [](const PointSummary& s) -> Cell { return readable(s.offset2_max_m2) + "\u00a0m²"; }},
-    {"time at the edge", [](const PointSummary& s) -> Cell { return percent(s.edge_share); }},
-    {"mean speed",
-     [](const PointSummary& s) -> Cell { return with_unit(s.speed_mean_mps, "m/s"); }},
-    {"contributions a run",
-     [](const PointSummary& s) -> Cell { return readable(std::round(s.messages)); }},
-};
-
-/// What tells the points apart, a column each.
-std::vector<Column> point_columns(const Study& study) {
-  std::vector<Column> columns;
-  const bool several_scenarios = study.points.front().scenario != study.points.back().scenario;
-  if (several_scenarios || study.fields.empty()) {
-    columns.push_back({"scenario", true});
-    for (const StudyPoint& point : study.points)
-      columns.back().cells.push_back(escape(point.scenario));
+/// [t, share of the agents that have escaped by then], ascending, up to the end of the mission.
+Json shares(const std::vector<double>& times_s, double end_s) {
+  const std::size_t every = times_s.size() / kMostSteps + 1;
+  const auto all = static_cast<double>(times_s.size());
+  Json list = Json::array();
+  double last = 0;
+  for (std::size_t i = 0; i < times_s.size() && times_s[i] <= end_s; ++i) {
+    last = static_cast<double>(i + 1) / all;
+    const bool drawn = (i + 1) % every == 0 || i + 1 == times_s.size() || times_s[i + 1] > end_s;
+    if (drawn) list.push_back(Json::array({number(times_s[i]), number(last)}));
   }
-  for (std::size_t i = 0; i < study.fields.size(); ++i) {
-    columns.push_back({escape(study.fields[i]), true});
-    for (const StudyPoint& point : study.points)
-      columns.back().cells.push_back(escape(point.values[i]));
-  }
-  return columns;
+  list.push_back(Json::array({number(end_s), number(last)}));
+  return list;
 }
 
-/// A row for each point; empty where `holds` does not.
-std::string points_table(const Study& study, const Summaries& summaries,
-                         std::span<const Described> described, bool (*holds)(const PointSummary&)) {
-  std::vector<Column> columns = point_columns(study);
-  for (const Described& column : described) {
-    columns.push_back({column.title, false});
-    for (const PointSummary& summary : summaries) {
-      columns.back().cells.push_back(holds(summary) ? column.cell(summary) : Cell());
-    }
-  }
-  return table(std::move(columns), study.points.size());
+Json escapes(const PointSummary& summary, double end_s) {
+  const std::vector<double>& times_s = summary.escape_times_s;
+  return {{"within_15_s", number(summary.escaped_share(15))},
+          {"within_60_s", number(summary.escaped_share(60))},
+          {"median_s", time_or_never(quantile(times_s, 0.5))},
+          {"late_s", time_or_never(quantile(times_s, 0.99))},
+          {"shares", shares(times_s, end_s)}};
 }
 
-bool was_flown(const PointSummary& summary) { return summary.runs > 0; }
-bool has_escapes(const PointSummary& summary) { return !summary.escape_times_s.empty(); }
-
-std::string section(const std::string& title, const std::string& content) {
-  return "<section><h2>" + title + "</h2>\n" + content + "</section>\n";
+Json point_json(const StudyPoint& point, const std::string& command, const PointSummary& summary) {
+  Json json = {{"scenario", point.scenario},
+               {"values", point.values},
+               {"command", command},
+               {"runs", summary.runs}};
+  if (summary.runs == 0) return json;
+  json["metric"] = interval(summary.metric);
+  if (summary.ratio) json["ratio"] = interval(*summary.ratio);
+  if (summary.slope) json["slope"] = number(*summary.slope);
+  json["over_time"] = Json::array();
+  for (const auto& [t_s, median] : summary.metric_over_time) {
+    json["over_time"].push_back(
+        Json::array({number(t_s), number(median.value), number(median.low), number(median.high)}));
+  }
+  if (!summary.escape_times_s.empty()) json["escapes"] = escapes(summary, point.duration_s);
+  json["offset2_mean_m2"] = number(summary.offset2_mean_m2);
+  json["offset2_max_m2"] = number(summary.offset2_max_m2);
+  json["edge_share"] = number(summary.edge_share);
+  json["speed_mean_mps"] = number(summary.speed_mean_mps);
+  json["messages"] = number(summary.messages);
+  return json;
 }
 
 std::string title_of(const Study& study) {
@@ -121,43 +81,6 @@ std::string title_of(const Study& study) {
   std::string title;
   for (const std::string& scenario : scenarios) title += (title.empty() ? "" : ", ") + scenario;
   return title;
-}
-
-std::string counts(const Study& study, const Summaries& summaries) {
-  std::size_t runs = 0, fewest = summaries.front().runs, most = 0;
-  for (const PointSummary& summary : summaries) {
-    runs += summary.runs;
-    fewest = std::min(fewest, summary.runs);
-    most = std::max(most, summary.runs);
-  }
-  const std::string seeds = readable(static_cast<double>(most));
-  Facts facts("cards");
-  facts.add("runs", readable(static_cast<double>(runs)));
-  facts.add("points", readable(static_cast<double>(study.points.size())));
-  facts.add("seeds a point",
-            fewest == most ? seeds : readable(static_cast<double>(fewest)) + " to " + seeds);
-  return facts.html();
-}
-
-std::string conventions() {
-  Facts facts("facts");
-  facts.add(
-      "φ²",
-      "at the last tick; it can be compared only between points with the same weights and modes");
-  facts.add("[95 %] of a median",
-            "order statistics, which assume nothing about the distribution; below six "
-            "seeds from the smallest to the largest, which is less sure");
-  facts.add("against the first",
-            "the geometric mean of φ² over φ² of the first point with the same seed; "
-            "bootstrap over the seeds");
-  facts.add("slope", "the power of t that fits φ² over the last decade of time; median");
-  facts.add(
-      "escaped",
-      "of the agents that start on a symmetry line or point of the domain, those that have been "
-      "farther from it than 1 % of the shorter side");
-  facts.add("time at the edge",
-            "share of all agents’ ticks closer to an edge than 0.1 % of the shorter side");
-  return facts.html();
 }
 
 std::string short_number(double value) {
@@ -180,42 +103,21 @@ std::vector<std::string> terminal_cells(const PointSummary& s) {
           held ? short_number(100 * s.escaped_share(60)) + " %" : "-"};
 }
 
-/// The figures, two side by side.
-std::string figures_section(const std::vector<Figure>& figures) {
-  std::string html = "<section class=\"figures\">\n";
-  for (const Figure& figure : figures) {
-    html += std::string("<figure") + (figure.wide ? " class=\"wide\"" : "") + "><h2>" +
-            escape(figure.title) + "</h2>\n<div class=\"scroll\">" + figure.svg +
-            "</div><figcaption>" + escape(figure.caption) + "</figcaption></figure>\n";
-  }
-  return html + "</section>\n";
-}
-
-std::string framed_page(const std::string& title, const std::string& kind,
-                        const std::string& header, const std::string& content) {
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>\n";
-  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  html += element("title", escape(title) + " – Ergocast") + element("style", kPageStyle);
-  html += "</head><body><main>\n<header><p>" + escape(kind) + "</p>\n" +
-          element("h1", escape(title)) + header + "</header>\n";
-  return html + content + "</main></body></html>\n";
-}
-
 }  // namespace
 
 std::string study_page(const StudyFacts& facts, const Summaries& summaries) {
-  std::string html = counts(facts.study, summaries);
-  html += section("Results", points_table(facts.study, summaries, kResults, was_flown));
-  html += figures_section(study_figures(facts.study, summaries));
-  if (std::any_of(summaries.begin(), summaries.end(), has_escapes)) {
-    html += section("Escapes", points_table(facts.study, summaries, kEscapes, has_escapes));
+  Json points = Json::array();
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    points.push_back(point_json(facts.study.points[i], facts.point_commands[i], summaries[i]));
   }
-  html += section("Motion and messages", points_table(facts.study, summaries, kMotion, was_flown));
-  html += section("Conventions", conventions());
-  html += section("How to reproduce", "<pre>" + escape(facts.command) +
-                                          "</pre>\n<p>Made by ergocast " + escape(facts.version) +
-                                          ". Every run is a row of study.csv.</p>\n");
-  return framed_page(title_of(facts.study), "Ergocast study", "", html);
+  const std::string title = title_of(facts.study);
+  return html_file(study_web_page(), title,
+                   {{"study",
+                     {{"title", title},
+                      {"fields", facts.study.fields},
+                      {"points", std::move(points)},
+                      {"command", facts.command},
+                      {"version", facts.version}}}});
 }
 
 std::string study_text(const Study& study, const Summaries& summaries) {

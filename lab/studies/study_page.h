@@ -12,7 +12,8 @@ namespace ergocast::studies {
 struct StudyFacts {
   const Study& study;
   std::string version;
-  std::string command;  ///< that makes it
+  std::string command;                      ///< that makes it
+  std::vector<std::string> point_commands;  ///< one a point: flies it once
 };
 
 /// report.html: one page that needs nothing but itself.

@@ -27,8 +27,6 @@ std::int64_t broadcasts_of(const Mission& mission) {
   return count;
 }
 
-int blocks_of(const Basis& basis) { return (basis.mode_count() + kBlockSize - 1) / kBlockSize; }
-
 /// Hears what the logger hears, and adds up coverage as an ideal team does.
 class Observer : public lab::SimulationObserver {
  public:
@@ -112,7 +110,8 @@ StudyFigures fly_without_messages(const Mission& mission) {
     if (measure.wants_metric(tick)) measure.metric(tick, team.metric());
   }
   StudyFigures figures = measure.figures();
-  figures.messages = broadcasts_of(mission) * blocks_of(mission.basis);
+  figures.messages = broadcasts_of(mission) * block_count_of(mission.basis.mode_count(),
+                                                             mission.timing.contribution_encoding);
   return figures;
 }
 

@@ -15,10 +15,20 @@
 
 namespace ergocast::studies {
 
-/// Times at which φ² is noted [s]: 1, 2, 5, 10 … 10⁷, as far as a mission goes.
-inline constexpr std::array<double, 22> kLadder_s = {1,   2,   5,   10,  20,  50,  100, 200,
-                                                     500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5,
-                                                     2e5, 5e5, 1e6, 2e6, 5e6, 1e7};
+/// Ten a decade (Renard's R10: 1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8, 10 …) up to 10⁷.
+constexpr std::array<double, 71> times_to_note_s() {
+  constexpr double kDecade[] = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8};
+  std::array<double, 71> times{};
+  double power = 1;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    times[i] = kDecade[i % 10] * power;
+    if (i % 10 == 9) power *= 10;
+  }
+  return times;
+}
+
+/// Times at which φ² is noted, as far as a mission goes.
+inline constexpr std::array<double, 71> kLadder_s = times_to_note_s();
 
 /// Closer to an edge than this share of the domain's shorter side counts as at the edge.
 inline constexpr double kAtEdgeShare = 1e-3;

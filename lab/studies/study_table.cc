@@ -85,7 +85,10 @@ std::string StudyTable::header() const {
   line += ",seed,agents,messages";
   for (const Quantity& quantity : kQuantities) line += std::string(",") + quantity.column;
   for (std::size_t i = 0; i < steps_; ++i) {
-    line += ",ergodic_metric_at_" + std::to_string(static_cast<std::int64_t>(kLadder_s[i])) + "_s";
+    char time[16];  // "1.25", never "1e+06"
+    const auto end =
+        std::to_chars(time, time + sizeof time, kLadder_s[i], std::chars_format::fixed).ptr;
+    line += ",ergodic_metric_at_" + std::string(time, end) + "_s";
   }
   for (std::size_t i = 0; i < agents_; ++i) line += ",escape_time_" + std::to_string(i) + "_s";
   return line;

@@ -16,7 +16,7 @@ final class Buses {
 
   private static final Pattern URL = Pattern.compile("(udpm://[0-9.]+:)([0-9]{1,5})(.*)");
   private static final String CHANNELS =
-      "ERGOCAST_(MISSION|WORLD_STATE|TEAM_STATUS|AGENT_STATUS_[0-9]+|CONTRIBUTION_[0-9]+)";
+      "(ERGOCAST|REPLAYED)_(MISSION|WORLD_STATE|TEAM_STATUS|AGENT_STATUS_[0-9]+|CONTRIBUTION_[0-9]+)";
   private static final Map<String, Team> TEAMS = new HashMap<>();
 
   private Buses() {}
@@ -42,6 +42,7 @@ final class Buses {
         new LCM(above(base, bus)).subscribe(CHANNELS, (lcm, channel, in) -> {
           synchronized (team) {
             team.receive(in);
+            team.replay = channel.startsWith("REPLAYED_");
       }
     });
   }

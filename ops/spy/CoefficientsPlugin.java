@@ -11,7 +11,8 @@ import lcm.spy.SpyPlugin;
 public final class CoefficientsPlugin implements SpyPlugin {
   @Override
   public boolean canHandle(long fingerprint) {
-    return fingerprint == ergocast.contribution_t.LCM_FINGERPRINT;
+    return fingerprint == ergocast.contribution_t.LCM_FINGERPRINT
+        || fingerprint == ergocast.averages_t.LCM_FINGERPRINT;
   }
 
   @Override

@@ -8,22 +8,21 @@ import java.util.function.IntPredicate;
 
 /** The running sums of all agents received: of each block the one with most steps, as agents do. */
 final class Coverage {
-  static final int BLOCK = 128;
+  private static final double UNITS = 32767; // an average of 1 in 16 bits
   private static final int MAX_AUTHORS = 512;
 
-  /** One incarnation of an agent. */
+  /** One incarnation of an agent, by mode. */
   private static final class Row {
     final int agent;
-    final long[] steps; // by block
-    final double[] elapsed; // by block [s]
-    final double[] sums; // by mode [s]
+    final long[] steps;
+    final double[] elapsed; // [s]
+    final double[] sums; // [s]
 
     Row(int agent, int modes) {
       this.agent = agent;
-      int blocks = (modes + BLOCK - 1) / BLOCK;
-      steps = new long[blocks];
-      elapsed = new double[blocks];
-      sums = new double[blocks * BLOCK];
+      steps = new long[modes];
+      elapsed = new double[modes];
+      sums = new double[modes];
     }
   }
 
@@ -35,22 +34,35 @@ final class Coverage {
   }
 
   void add(ergocast.contribution_t heard) {
-    boolean sane = heard.mode_count == modes && heard.block >= 0
-        && heard.block * (long) BLOCK < modes && heard.elapsed_s > 0 && heard.elapsed_s < 1e12;
-    if (!sane
-        || !Arrays.stream(heard.sums).allMatch(sum -> Math.abs(sum) <= 1.001 * heard.elapsed_s)) {
-      return;
+    add(heard.header, heard.steps, heard.elapsed_s, heard.mode_count, heard.block, heard.sums);
+  }
+
+  void add(ergocast.averages_t heard) {
+    double[] sums = new double[heard.averages.length];
+    for (int k = 0; k < sums.length; ++k) {
+      sums[k] = heard.averages[k] / UNITS * heard.averages_elapsed_s;
     }
-    Row row = rows.get(heard.header.incarnation);
+    add(heard.header, heard.averages_steps, heard.averages_elapsed_s, heard.averages_mode_count,
+        heard.averages_block, sums);
+  }
+
+  private void add(ergocast.header_t header, long steps, double elapsed, int modeCount, int block,
+      double[] sums) {
+    long first = block * (long) sums.length;
+    boolean sane =
+        modeCount == modes && block >= 0 && first < modes && elapsed > 0 && elapsed < 1e12;
+    if (!sane || !Arrays.stream(sums).allMatch(sum -> Math.abs(sum) <= 1.001 * elapsed)) return;
+    Row row = rows.get(header.incarnation);
     if (row == null && rows.size() < MAX_AUTHORS) {
-      row = new Row(heard.header.sender, modes);
-      rows.put(heard.header.incarnation, row);
+      row = new Row(header.sender, modes);
+      rows.put(header.incarnation, row);
     }
-    if (row == null || row.agent != heard.header.sender || row.steps[heard.block] >= heard.steps)
-      return;
-    row.steps[heard.block] = heard.steps;
-    row.elapsed[heard.block] = heard.elapsed_s;
-    System.arraycopy(heard.sums, 0, row.sums, heard.block * BLOCK, BLOCK);
+    if (row == null || row.agent != header.sender || row.steps[(int) first] >= steps) return;
+    for (int k = (int) first; k < Math.min(modes, first + sums.length); ++k) {
+      row.steps[k] = steps;
+      row.elapsed[k] = elapsed;
+      row.sums[k] = sums[k - (int) first];
+    }
   }
 
   int[] agents() {
@@ -65,7 +77,7 @@ final class Coverage {
       if (!which.test(row.agent)) continue;
       for (int k = 0; k < modes; ++k) {
         sums[k] += row.sums[k];
-        elapsed[k] += row.elapsed[k / BLOCK];
+        elapsed[k] += row.elapsed[k];
       }
     }
     for (int k = 0; k < modes; ++k) sums[k] /= elapsed[k];

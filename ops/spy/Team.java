@@ -38,6 +38,7 @@ final class Team {
   Coverage coverage;
   long tick; // newest received
   String status = ""; // the coordinator's report
+  boolean replay; // sent by `ergocast replay`: nobody flies
 
   private final LongSupplier clock; // [ns]
   private long run;
@@ -67,7 +68,12 @@ final class Team {
       }
       if (fingerprint == ergocast.team_status_t.LCM_FINGERPRINT) on(new ergocast.team_status_t(in));
       if (fingerprint == ergocast.contribution_t.LCM_FINGERPRINT) {
-        on(new ergocast.contribution_t(in));
+        ergocast.contribution_t heard = new ergocast.contribution_t(in);
+        if (isOfAnAgent(heard.header)) coverage.add(heard);
+      }
+      if (fingerprint == ergocast.averages_t.LCM_FINGERPRINT) {
+        ergocast.averages_t heard = new ergocast.averages_t(in);
+        if (isOfAnAgent(heard.header)) coverage.add(heard);
       }
     } catch (IOException | RuntimeException notOurs) {
       // Any error of invalid bytes ends here: LCM's thread must continue.
@@ -146,8 +152,8 @@ final class Team {
         + (message.silent_agent >= 0 ? ", agent " + message.silent_agent + " is silent" : "");
   }
 
-  private void on(ergocast.contribution_t message) {
-    if (isUnderWay(message.header) && agent(message.header.sender) != null) coverage.add(message);
+  private boolean isOfAnAgent(ergocast.header_t header) {
+    return isUnderWay(header) && agent(header.sender) != null;
   }
 
   /** Whether the agent's value of phi^2 is from the last ten seconds. */

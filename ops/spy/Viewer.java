@@ -70,7 +70,8 @@ final class Viewer extends AbstractAction {
   private static String title(Team team) {
     synchronized (team) {
       if (team.plan == null) return "waiting for the mission, which is said once a second";
-      return String.format(Locale.ROOT, "%s: %.1f of %.0f s%s", team.plan.name,
+      return String.format(Locale.ROOT, "%s%s: %.1f of %.0f s%s",
+          team.replay ? "replay of " : "", team.plan.name,
           team.tick * team.plan.dt, team.plan.duration,
           team.status.isEmpty() ? "" : ", " + team.status);
     }

@@ -7,8 +7,8 @@ export const HUES = {
 
 // From little to much, and from too little over as wanted to too much.
 export const STOPS = {
-  light: { amount: ['#ffffff', '#a7b2bf'], difference: ['#b98a5e', '#fbfbfb', '#6f90bd'] },
-  dark: { amount: ['#0f151b', '#536170'], difference: ['#96653a', '#12181f', '#436a9c'] },
+  light: { heat: ['#eef1f5', '#5f9bd3', '#0a4f9c'], amount: ['#ffffff', '#a7b2bf'], difference: ['#b98a5e', '#fbfbfb', '#6f90bd'] },
+  dark: { heat: ['#1d2630', '#2f6aa5', '#7cc0ff'], amount: ['#0f151b', '#536170'], difference: ['#96653a', '#12181f', '#436a9c'] },
 };
 
 const linear = v => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
@@ -38,15 +38,25 @@ function toBytes([lightness, a, b]) {
   ].map(v => Math.round(255 * gamma(Math.min(1, Math.max(0, v)))));
 }
 
+// At a share of the way along colours.
+function between(lab, u) {
+  const at = u * (lab.length - 1), k = Math.min(Math.floor(at), lab.length - 2);
+  return lab[k].map((v, j) => v + (lab[k + 1][j] - v) * (at - k));
+}
+
 // 256 pixels of an ImageData, as 32-bit numbers.
 export function ramp(stops) {
   const lab = stops.map(toOklab), pixels = new Uint32Array(256);
   for (let i = 0; i < 256; i++) {
-    const u = (i / 255) * (lab.length - 1), k = Math.min(Math.floor(u), lab.length - 2);
-    const [r, g, b] = toBytes(lab[k].map((v, j) => v + (lab[k + 1][j] - v) * (u - k)));
+    const [r, g, b] = toBytes(between(lab, i / 255));
     pixels[i] = 0xff000000 | (b << 16) | (g << 8) | r;
   }
   return pixels;
+}
+
+// The colour at a share of the way along these stops, "#rrggbb".
+export function mix(stops, u) {
+  return '#' + toBytes(between(stops.map(toOklab), u)).map(v => v.toString(16).padStart(2, '0')).join('');
 }
 
 // What can be read on that colour.
@@ -60,6 +70,7 @@ export function themeColours(theme) {
   for (const name of NAMES) colours[name] = style.getPropertyValue('--' + name).trim();
   const hues = HUES[theme];
   colours.agent = id => hues[id % hues.length];
+  colours.heat = STOPS[theme].heat;
   colours.amount = ramp(STOPS[theme].amount);
   colours.difference = ramp(STOPS[theme].difference);
   return colours;

@@ -32,7 +32,7 @@ export function showFacts(live) {
   const pairs = live ? [
     ['messages each s', readable(live.rate)], ['messages lost', grouped(live.lost)], ['late commands', grouped(live.missed)],
     ['authenticated', live.authenticated ? 'yes' : 'no'], ['ticks', `${grouped(mission.tick_count)} × ${mission.dt_s} s`],
-    ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['run', live.run.slice(0, 8)],
+    ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['run', (live.replay ? 'replay of ' : '') + live.run.slice(0, 8)],
   ] : [
     ['result', said(summary, 'result') ?? 'no summary'], ['φ² first', readable(phi[0])], ['φ² last', readable(phi[phi.length - 1])],
     ['slope, last decade', slopeText(run)], ['ticks', `${grouped(run.ticks)}${run.ticks < mission.tick_count ? ` of ${grouped(mission.tick_count)}` : ''} × ${mission.dt_s} s`],

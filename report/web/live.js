@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A team that flies: frames from the server become rows, statuses, incidents and log lines.
-import { Run, recordedRun } from './run.js';
-import { S } from './state.js';
+import { Run, recordedRun, withMore } from './run.js';
 import { $, element } from './text.js';
 
 const MOST_LINES = 400, MOST_STATUSES = 20000;
@@ -71,7 +70,7 @@ export function watchLive(page) {
     const before = run;
     run = new Run(message.mission, message.stride, Math.ceil(message.mission.tick_count / message.stride) + 1);
     if (before && facts.run === message.run_id) { run.history = before.history; run.times = before.times; }
-    facts = { run: message.run_id, rate: 0, lost: 0, missed: 0, authenticated: message.authenticated, state: null };
+    facts = { run: message.run_id, rate: 0, lost: 0, missed: 0, authenticated: message.authenticated, replay: message.replay, state: null };
     page.began(run, facts);
   });
   on('frame', frame => {
@@ -108,10 +107,9 @@ export function watchLive(page) {
 
 // The record, with what only the live page has heard.
 function withHistory(record, live) {
-  if (!live) return record;
+  if (!live || record.history.length) return record;
   record.history = live.history;
   record.times = live.times;
-  const known = new Set(live.incidents.map(incident => incident.agent));
-  record.incidents = [...live.incidents, ...record.incidents.filter(incident => !known.has(incident.agent))].sort((a, b) => a.t - b.t);
+  record.incidents = withMore(live.incidents, record.incidents);
   return record;
 }

@@ -109,8 +109,27 @@ export function recordedRun(record) {
   run.ticks = record.ticks;
   const agents = Array.isArray(run.summary?.agents) ? run.summary.agents.filter(a => a && typeof a === 'object') : [];
   run.setRoster(agents);
-  run.incidents = rosterIncidents(agents, run.mission.dt_s, run.end);
+  const roster = rosterIncidents(agents, run.mission.dt_s, run.end);
+  run.incidents = withMore(record.team?.incidents ?? [], roster);
+  if (record.team) recordHistory(run, record.team);
   return run;
+}
+
+// What was heard, and what only the roster tells: of agents of which nothing was heard.
+export function withMore(heard, roster) {
+  const known = new Set(heard.map(incident => incident.agent));
+  return [...heard, ...roster.filter(incident => !known.has(incident.agent))].sort((a, b) => a.t - b.t);
+}
+
+// How the agents were, as cli/recorded_team.h writes it, in the shape of live statuses.
+function recordHistory(run, { t, metric, agents, words }) {
+  run.times = t;
+  run.history = t.map((at, i) => {
+    const list = Object.entries(agents).filter(([, own]) => own.state[i] !== null).map(([id, own]) => ({
+      id: Number(id), state: words[own.state[i]], silent_s: own.silent_s[i], waiting_for: own.waits_for[i], ergodic_metric: own.metric[i],
+      max_staleness_s: own.age_s[i], loop_lag_s: own.lag_s[i], contributions_lost: own.lost[i], kernel_drops: own.drops[i] }));
+    return { t: at, team: { ergodic_metric: metric[i], agents: list, byId: new Map(list.map(agent => [agent.id, agent])) } };
+  });
 }
 
 // What the roster tells of departures and returns.

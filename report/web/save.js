@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures and films of what the page shows.
 import { S, mapState } from './state.js';
-import { paintMarkers, paintShading, paintTracks, trailOf, TAILS } from './map.js';
+import { paintShading } from './ground.js';
+import { paintMarkers, paintTracks, trailOf, TAILS } from './map.js';
 import { paintChart } from './chart.js';
+import { download } from './download.js';
 import { SvgContext } from './svg.js';
 import { seek, setPlaying } from './timeline.js';
 import { $, element, put, readable } from './text.js';
@@ -14,13 +16,7 @@ function title() {
   return `${run.mission.name}, ${run.tracks.length} agents, t = ${t.toFixed(1)} s, φ² = ${readable(run.metricAt(t))}`;
 }
 
-function save(blob, ending) {
-  const link = element('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = `${S.run.mission.name.replace(/[^\w.-]+/g, '_')}-${S.t.toFixed(0)}s.${ending}`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
+const save = (blob, ending) => download(blob, `${S.run.mission.name}-${S.t.toFixed(0)}s.${ending}`);
 
 // Title, map and chart on one canvas, as they are on the screen.
 function compose(canvas) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A canvas context that writes SVG: the methods that map.js and chart.js use.
+// A canvas context that writes SVG: the methods that the figures use.
 const two = v => String(Math.round(v * 100) / 100);
 const escaped = text => text.replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
 
@@ -41,6 +41,12 @@ export class SvgContext {
     this.out.push(`<clipPath id="${id}"><path d="${this.path}"/></clipPath><g clip-path="url(#${id})">`);
     this.groups[this.groups.length - 1]++;
   }
+  transform(what) {
+    this.out.push(`<g transform="${what}">`);
+    this.groups[this.groups.length - 1]++;
+  }
+  translate(x, y) { this.transform(`translate(${two(x)} ${two(y)})`); }
+  rotate(angle) { this.transform(`rotate(${two((angle * 180) / Math.PI)})`); }
   restore() {
     for (let n = this.groups.pop(); n > 0; n--) this.out.push('</g>');
     this.globalAlpha = 1;

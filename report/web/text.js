@@ -37,3 +37,9 @@ export function duration(s) {
   const whole = Math.round(s), h = Math.floor(whole / 3600), m = Math.floor(whole / 60) % 60;
   return h ? `${h} h ${m} min` : `${m} min ${whole % 60} s`;
 }
+
+// 0.125 → 12.5 %.
+export const share = v => (typeof v === 'number' ? `${+(100 * v).toFixed(1)}\u00a0%` : '–');
+
+// A time, or that it never comes.
+export const seconds = s => (s === Infinity ? 'never' : `${readable(s)}\u00a0s`);

@@ -78,6 +78,27 @@ TEST(AgentTick, ContributionsAreCumulative) {
   }
 }
 
+TEST(AgentTick, WhereAveragesTravelSaysWhatItHasGainedSinceItLastSpoke) {
+  Mission mission = two_block_mission(1);
+  mission.timing.broadcast_period_ticks = 3;
+  mission.timing.contribution_encoding = ContributionEncoding::kFixed16;
+  Agent agent = running_agent(mission);
+  Contribution last;
+  for (Tick tick = 0; tick < 12; ++tick) {
+    const auto said = only<Contribution>(
+        tell(agent, world_state(tick, {{100 + 50 * static_cast<double>(tick), 500, 0}})));
+    if (said.empty()) continue;
+    ASSERT_EQ(said.size(), 1u) << "all 144 modes in one";
+    EXPECT_EQ(said[0].encoding, ContributionEncoding::kFixed16);
+    EXPECT_EQ(said[0].gained_steps, said[0].steps - last.steps);
+    for (std::size_t k = 0; k < 144; ++k) {
+      ASSERT_EQ(said[0].gains[k], said[0].sums[k] - last.sums.data()[k]) << k;
+    }
+    last = said[0];
+  }
+  EXPECT_GT(last.steps, 6);
+}
+
 TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
   Mission mission = small_mission(4);
   mission.timing.broadcast_period_ticks = 4;

@@ -32,10 +32,10 @@ TEST(AgentRefuses, UntrueContributionsAndCountsThem) {
   const Mission mission = small_mission(2);
   const Contribution honest = block_of(mission, 1, {{200, 500, 0}}, 1);
   Contribution lie = honest;
-  lie.sums[3] = kNan;
+  lie.sums.edit()[3] = kNan;
   expect_refused(lie, Refusal::kRange);
   lie = honest;
-  lie.sums[3] = 0.1 * (1 + 1e-8);
+  lie.sums.edit()[3] = 0.1 * (1 + 1e-8);
   expect_refused(lie, Refusal::kRange);
   lie = honest;
   lie.mode_count = 21;
@@ -56,8 +56,8 @@ TEST(AgentRefuses, CoverageFromTheFuture) {
   const auto claim = [&future](std::int64_t steps) {
     future.steps = steps;
     future.elapsed_s = 0.1 * static_cast<double>(steps);
-    future.sums.fill(0);
-    future.sums[0] = future.elapsed_s;
+    std::ranges::fill(future.sums.edit(), 0);
+    future.sums.edit()[0] = future.elapsed_s;
   };
   claim(602);
   expect_refused(future, Refusal::kRange);
@@ -190,6 +190,16 @@ TEST(AgentStatusReport, SequencesGrowByOneOnEachBus) {
   }
   EXPECT_GT(last[static_cast<std::size_t>(Bus::kSwarm)], 20);
   EXPECT_GE(last[static_cast<std::size_t>(Bus::kCommand)], 20);
+}
+
+TEST(AgentRefuses, CoverageInAnotherEncodingThanThePlan) {
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  Contribution theirs = block_of(mission, 1, {{700, 900, 0}}, 1);
+  theirs.encoding = ContributionEncoding::kFixed16;
+  give(agent, theirs, at(0s));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(1)), std::nullopt);
+  EXPECT_EQ(agent.refused()[static_cast<std::size_t>(Refusal::kEncoding)], 1);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ namespace {
 void Simulation(benchmark::State& state, const std::string& name) {
   const std::string file = std::string(ERGOCAST_SCENARIO_DIR) + '/' + name + ".textproto";
   Overrides overrides;
-  overrides.duration_s = 600;  // long enough for the start not to count
+  overrides.agents = static_cast<int>(state.range(0));
+  overrides.duration_s = 2400.0 / *overrides.agents;  // long enough for the start not to count
   const auto loaded = Scenario::load(file, overrides);
   const auto* scenario = std::get_if<Scenario>(&loaded);
   if (scenario == nullptr) return state.SkipWithError("the scenario cannot be loaded");
@@ -46,9 +47,12 @@ void Simulation(benchmark::State& state, const std::string& name) {
       static_cast<double>(messages) / static_cast<double>(agent_steps);
 }
 
-BENCHMARK_CAPTURE(Simulation, paper_fig1a, "paper_fig1a")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Simulation, quadrimodal_corners, "quadrimodal_corners")
-    ->Unit(benchmark::kMillisecond);
+void each_size(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgName("agents")->Arg(4)->Arg(64)->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(Simulation, paper_fig1a, "paper_fig1a")->Apply(each_size);
+BENCHMARK_CAPTURE(Simulation, quadrimodal_corners, "quadrimodal_corners")->Apply(each_size);
 
 }  // namespace
 }  // namespace ergocast::bench

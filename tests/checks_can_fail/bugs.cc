@@ -149,9 +149,9 @@ Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t ma
   if (bug("one agent's rows are dropped") && theirs.author().agent == 0) return Merge::kStale;
   Contribution changed = theirs;
   // Still within the rounding that a receiver allows.
-  if (bug("a receiver rounds") && theirs.block == 0) changed.sums[0] *= 1 + 5e-10;
+  if (bug("a receiver rounds") && theirs.block == 0) changed.sums.edit()[0] *= 1 + 5e-10;
   if (bug("a receiver mixes up modes")) {
-    for (std::size_t k = 1; k < changed.sums.size(); ++k) changed.sums[k] *= -1;
+    for (std::size_t k = 1; k < changed.sums.size(); ++k) changed.sums.edit()[k] *= -1;
   }
   if (bug("a block's age counts from its arrival")) {
     changed.header.tick = std::max(changed.header.tick, listener->tick());
@@ -163,7 +163,7 @@ Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t ma
 
 Contribution bug_block(const CoverageTable* self, const Author& author, int block) {
   Contribution out = real_block(self, author, block);
-  if (bug("a sum runs away")) out.sums[5] += 2 * out.elapsed_s;
+  if (bug("a sum runs away")) out.sums.edit()[5] += 2 * out.elapsed_s;
   return out;
 }
 

@@ -167,6 +167,18 @@ std::vector<Mistake> mistakes_of_targets() {
       {kUniform, repeated(65, "keep_outs { } "), "target: 65 keep-outs are above the limit"},
       {kUniform, big, "target: 4207 vertices are above the limit"},
 
+      {kUniform, "regions { polygon { file: \"pier.geojson\" } }",
+       "target.regions[0].polygon.file: needs to know where on the earth"},
+      {kUniform, "regions { polygon { file: \"pier.geojson\" vertices { x_m: 1 y_m: 1 } } }",
+       "target.regions[0].polygon.file: stands beside vertices"},
+      {kUniform,
+       "regions { polygon { file: \"many.geojson\" } } } "
+       "origin { latitude_deg: 47.5 longitude_deg: 9.2",
+       "target.regions[0].polygon.file: "},
+      {kUniform,
+       "regions { polygon { file: \"line.geojson\" } } } "
+       "origin { latitude_deg: 47.5 longitude_deg: 9.2",
+       "target.regions[0].polygon.file: "},
       {kUniform, "regions { polygon { " + repeated(2, "vertices { x_m: 1 y_m: 1 } ") + "} }",
        "target.regions[0].polygon: 2 vertices enclose nothing"},
       {kUniform, "uniform_weight: 1 keep_outs { vertices { x_m: 1 y_m: 1 } }",
@@ -233,10 +245,15 @@ class Scenarios : public OwnHost {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
 
-  void write_maps() {
+  void write_files() {
     const std::string header = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 50\n";
     write("good.asc", header + "1 2\n");
     write("even.csv", "1,2\n3,4\n");
+    write("pier.geojson", R"({"type":"Polygon","coordinates":[[[9.2005,47.5001],[9.2006,47.5001],)"
+                          R"([9.2006,47.5002],[9.2005,47.5001]]]})");
+    write("many.geojson", R"({"type":"Polygon","coordinates":[[)" + repeated(4100, "[9.2,47.5],") +
+                              "[9.2,47.5]]]}");
+    write("line.geojson", R"({"type":"LineString","coordinates":[]})");
     fs::create_directory(folder_ / "folder.csv");
     fs::create_symlink(unreadable_file(), folder_ / "locked.csv");
     write("empty.csv", "");
@@ -316,6 +333,7 @@ class Scenarios : public OwnHost {
 /// A scenario with every block, and every number that other fields determine or limit.
 constexpr const char* kRich = R"(
 name: "rich" description: "all fields" seed: 1 goal_ergodic_metric: 1
+origin { latitude_deg: 47.5 longitude_deg: 9.2 }
 domain { origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 }
 target {
   gaussians { weight: 1 mean_x_m: 30 mean_y_m: 20 sigma_m: 5 }
@@ -323,6 +341,7 @@ target {
   uniform_weight: 1
   maps { file: "even.csv" weight: 1 origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 first_row: NORTH }
   regions { weight: 1 polygon { vertices { x_m: 1 y_m: 1 } vertices { x_m: 9 y_m: 1 } vertices { x_m: 9 y_m: 9 } } }
+  keep_outs { file: "pier.geojson" }
 }
 basis { modes_x: 8 modes_y: 8 }
 law {
@@ -331,7 +350,7 @@ law {
   anticipation: 2
 }
 time {
-  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 pace: REALTIME
+  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 contribution_encoding: FIXED16 pace: REALTIME
 }
 agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 }
 world { speed_limit_mps: 100 }
@@ -486,6 +505,9 @@ class CheckCanFail : public Scenarios {
       expect_refused({"study", file_, "--vary", flag, "--seeds", "1", "--out", out()}, what);
       said_of_flags_.push_back(output());
     }
+    expect_refused({"check", file_, "--set", "law.epsilon=1", "--set", "law.epsilon=2"},
+                   "--set law.epsilon=1 says it too");
+    said_of_flags_.push_back(output());
   }
 
   void expect_warning(const std::string& law, const std::string& limit, const std::string& what) {
@@ -533,7 +555,7 @@ const std::vector<Unsayable> kUnsayable = {
 };
 
 TEST_F(CheckCanFail, InEachOfItsFindings) {
-  write_maps();
+  write_files();
   plant_in_fields();
   plant_in_the_text();
   plant_outside_the_text();

@@ -91,7 +91,7 @@ class RefusalsCanBeSeen : public FlyingMission {
       block.header = from(kMany, run());
       block.header.incarnation = static_cast<Incarnation>(1000 + i);
       block.steps = block.next_broadcast_tick = 1;
-      block.elapsed_s = block.sums[0] = follower_.mission()->timing.dt_s;
+      block.elapsed_s = block.sums.edit()[0] = follower_.mission()->timing.dt_s;
       block.mode_count = follower_.mission()->basis.mode_count();
       usurper.say(Bus::kSwarm, block);
     }
@@ -131,6 +131,15 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
       {Refusal::kRun, [this] { say(seal(team_), hello(run() + 1)); }},
       // An agent that sends the places of all vehicles.
       {Refusal::kRange, [this] { say(seal(team_), world_of(3), Bus::kWorld); }},
+      {Refusal::kEncoding,
+       [this] {
+         const Author teammate = follower_.roster().back().author;
+         Contribution block;
+         block.header = from(teammate.agent, run());
+         block.header.incarnation = teammate.incarnation;
+         block.encoding = ContributionEncoding::kFixed16;
+         say(seal(team_), block);
+       }},
       {Refusal::kRate, [this] { exceed_rate(); }},
       {Refusal::kLimit, [this] { crowd(); }},
   };
@@ -158,7 +167,9 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
   for (const Refusal reason : order) {
     if (reason == Refusal::kLimit) continue;
     const std::string name = to_string(reason);
-    EXPECT_TRUE(logs("agent-0", " " + name + "=")) << name << ":\n" << log_of("agent-0");
+    const bool by_table = reason == Refusal::kEncoding;  // which says a sentence of its own
+    const std::string said = by_table ? "another contribution_encoding" : " " + name + "=";
+    EXPECT_TRUE(logs("agent-0", said)) << name << ":\n" << log_of("agent-0");
   }
   mission.send(SIGTERM);
   wait_for(mission);

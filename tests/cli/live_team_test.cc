@@ -71,6 +71,17 @@ TEST_F(LiveTeamFrames, OfOtherRunsShowNothing) {
   EXPECT_EQ(other.frame(cursor, more), "");
 }
 
+TEST_F(LiveTeamFrames, SayWhetherTheyAreAReplay) {
+  for (const bool replay : {false, true}) {
+    LiveTeam one(kWatchedRun, kListening, false, replay);
+    one.begin(test::small_mission(2), {});
+    LiveTeam::Cursor cursor;
+    bool more = false;
+    const std::string wanted = std::string(R"("replay":)") + (replay ? "true" : "false");
+    EXPECT_NE(one.frame(cursor, more).find(wanted), std::string::npos);
+  }
+}
+
 TEST_F(LiveTeamFrames, KeepTheNewestLinesAndEscapeThem) {
   for (int i = 0; i < 1000; ++i) team.log("line " + std::to_string(i));
   team.log("</script>\xff\n\nevent: end\ndata: {}");

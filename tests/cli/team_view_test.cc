@@ -323,4 +323,24 @@ TEST_F(TeamViewTest, InventedAgentsCostNoMemory) {
 }
 
 }  // namespace
+TEST(TeamViewOfAReplay, JudgesSilenceByMissionTimeAlone) {
+  TeamView view(kRun, at(0s), false, true);
+  announce(small_mission(1));
+  give(view, test::mission_part(0, MissionState::kRunning, roster_of(1), ""), at(0s));
+  give(view, coordinator_at(0), at(0s));
+  AgentStatus status = status_of(0, 1, 0);
+  give(view, status, at(0s));
+  const double dt_s = small_mission(1).timing.dt_s;
+  give(view, world_state(static_cast<Tick>(5.9 / dt_s), {{1, 1, 0}}), at(60s));
+  TeamPicture picture = view.picture(at(100s));
+  EXPECT_TRUE(picture.replay);
+  EXPECT_FALSE(picture.trouble);
+  EXPECT_EQ(picture.agents_alive, 1);
+  give(view, world_state(static_cast<Tick>(6.2 / dt_s), {{1, 1, 0}}), at(100s));
+  picture = view.picture(at(100s));
+  EXPECT_TRUE(picture.trouble);
+  EXPECT_EQ(picture.agents.at(0).condition, Condition::kSilent);
+  EXPECT_EQ(picture.agents_alive, 0);
+}
+
 }  // namespace ergocast

@@ -146,7 +146,9 @@ TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
       ASSERT_GT(controller.metric(coverage), 0);
     };
     EXPECT_GT(allocations_in([&] { step(0); }), 0u) << "the first one makes the rows";
-    for (Tick tick = 1; tick < 20; ++tick) {
+    step(1);  // and the next ones the blocks: each row keeps the one before, too
+    step(2);
+    for (Tick tick = 3; tick < 20; ++tick) {
       EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
     }
   }
@@ -197,8 +199,9 @@ TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
       ASSERT_NEAR(foreseen[0], 1, 1e-12);
     };
     EXPECT_GT(allocations_in([&] { step(0); }), 0u) << "the first one makes the rows";
+    for (Tick tick = 1; tick < 20; ++tick) step(tick);  // each row keeps the block before, too
     // For longer than places are kept.
-    for (Tick tick = 1; tick < 200; ++tick) {
+    for (Tick tick = 20; tick < 200; ++tick) {
       EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
     }
   }

@@ -142,7 +142,7 @@ TEST(CoverageTable, WithoutGainsItHoldsTheSame) {
   for (const Contribution& block : said) table.merge(block, kManySteps);
   expect_same(held(table, kTeam), held_after(said));
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    EXPECT_EQ(table.view(row, 0).gained_steps, 0);
+    EXPECT_EQ(table.gains(row, 0).steps, 0);
   }
 }
 
@@ -330,20 +330,20 @@ TEST(CoverageTableRefuses, SumsThatCannotBeTrue) {
     for (const double sum : {0.4 * (1 + 1e-8), -0.4 * (1 + 1e-8), kNan, -kNan,
                              std::numeric_limits<double>::infinity()}) {
       Contribution lie = blocks_of({1, 5}, 4)[0];
-      lie.sums[mode] = sum;
+      lie.sums.edit()[mode] = sum;
       expect_refused(lie);
     }
   }
   // The padding too: what is not used today must not carry anything.
   Contribution lie = blocks_of({1, 5}, 4)[1];
-  lie.sums[127] = 0.5;
+  lie.sums.edit()[127] = 0.5;
   expect_refused(lie);
 }
 
 TEST(CoverageTableRefuses, AnS00ThatIsNotTheTimeItCovers) {
   for (const double s00 : {0.0, 0.2, -0.4, 0.4 * (1 - 1e-8)}) {
     Contribution lie = blocks_of({1, 5}, 4)[0];
-    lie.sums[0] = s00;
+    lie.sums.edit()[0] = s00;
     expect_refused(lie);
   }
 }
@@ -359,8 +359,8 @@ TEST(CoverageTableRefuses, AForgedFutureWhichWouldWinForEver) {
 TEST(CoverageTableAccepts, HonestRoundingOfACosine) {
   // |cos| by recurrence may exceed 1 by 3e-15.
   Contribution block = blocks_of({1, 5}, 1)[0];
-  block.sums.fill(0.1 * (1 + 3e-15));
-  block.sums[0] = 0.1;
+  std::ranges::fill(block.sums.edit(), 0.1 * (1 + 3e-15));
+  block.sums.edit()[0] = 0.1;
   CoverageTable table = table_of();
   EXPECT_EQ(table.merge(block, kManySteps), Merge::kNewer);
 }
@@ -378,7 +378,7 @@ TEST(CoverageTableAccepts, HonestRoundingOfManyAdditions) {
   block.steps = kSteps;
   block.elapsed_s = elapsed_s;
   block.mode_count = 225;
-  block.sums[0] = s00;
+  block.sums.edit()[0] = s00;
   CoverageTable table(basis_of(), 0.3);
   EXPECT_EQ(table.merge(block, kSteps), Merge::kNewer);
 }
@@ -389,7 +389,7 @@ Contribution first_step() {
   block.steps = 1;
   block.elapsed_s = kDt;
   block.mode_count = 4;
-  block.sums[0] = kDt;
+  block.sums.edit()[0] = kDt;
   return block;
 }
 
@@ -408,7 +408,7 @@ TEST(CoverageTableLimits, SixteenLivesOfAnAgentAndTheOthersAreNotAffected) {
   block.header.sender = 3;
   block.header.incarnation = 7;
   block.steps = 2;
-  block.elapsed_s = block.sums[0] = 2 * kDt;
+  block.elapsed_s = block.sums.edit()[0] = 2 * kDt;
   EXPECT_EQ(table.merge(block, 10), Merge::kNewer) << "a known life goes on";
 }
 

@@ -136,7 +136,8 @@ TEST(MergeProperty, IsCommutativeAndIdempotent) {
   in_every_history([](const auto& said, Dice& dice) {
     std::vector<Contribution> heard = part_of(said, dice);
     const CoverageTable once = table_after(heard);
-    heard.insert(heard.end(), heard.begin(), heard.end());
+    const std::vector<Contribution> again = heard;
+    heard.insert(heard.end(), again.begin(), again.end());
     dice.shuffle(heard);
     expect_same(table_after(heard), once);
   });

@@ -19,7 +19,7 @@ FUZZ_TARGET(summary) {
     return;
   }
   const auto& summary = std::get<nlohmann::ordered_json>(read);
-  const std::string page = report_page({}, mission, summary, {});
+  const std::string page = report_page({}, mission, summary, {}, nullptr);
   ERGOCAST_REQUIRE(page.find("<script>alert") == std::string::npos);
   to_text(summary);
 }

@@ -138,7 +138,7 @@ TEST_F(InvariantsTest, SumsAreAtMostTheTimeCovered) {
   Contribution block = table.block(kOne, 0);
   team_.sent(1, {Bus::kSwarm, block}, nullptr);
   EXPECT_EQ(violated(), "");
-  block.sums[5] = 2.1;
+  block.sums.edit()[5] = 2.1;
   team_.sent(1, {Bus::kSwarm, block}, nullptr);
   EXPECT_EQ(violated(), "|S_mn| <= S_00 = steps dt");
 }

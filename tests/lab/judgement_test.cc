@@ -76,7 +76,9 @@ bool never_missed(const Heard& heard) {
   if (heard.role == Role::kAgent) return type == kTypes<AgentStatus>;
   if (heard.role == Role::kCoordinator) {
     // It asks in lockstep only the agent that a starting world waits for.
-    return type == kTypes<TeamStatus> || (type == kTypes<Hello> && heard.bus == Bus::kWorld);
+    const bool question = type == kTypes<Hello> && heard.bus == Bus::kWorld;
+    // The logger's farewell only spares it a second.
+    return type == kTypes<TeamStatus> || type == kTypes<RecordAck> || question;
   }
   // The logger records everything for later readers of the event log; its tables need this only.
   return heard.role == Role::kLogger && !(type == kTypes<WorldState> && heard.bus == Bus::kWorld);

@@ -73,6 +73,28 @@ TEST(MessageLoss, NothingIsDroppedWithoutAFault) {
   EXPECT_EQ(lines(outcome.trajectory), 1U + 3 * 200);
 }
 
+/// Whether a message says that world, logger or an agent leaves.
+bool says_farewell(const Message& message) {
+  const auto* world = std::get_if<WorldState>(&message);
+  const auto* logger = std::get_if<RecordAck>(&message);
+  const auto* agent = std::get_if<AgentStatus>(&message);
+  return (world != nullptr && world->last) || (logger != nullptr && logger->last) ||
+         (agent != nullptr && agent->phase == AgentPhase::kFinished);
+}
+
+TEST(MessageLoss, AllLeaveAtOnceButForLostFarewells) {
+  const auto scenario = std::get<Scenario>(Scenario::parse(kScenario, "loss"));
+  const auto takes = [&](const Drop& drop) {
+    SimulatedTeam team(scenario.mission(), drop);
+    EXPECT_TRUE(team.run());
+    EXPECT_EQ(team.trajectory.str(), lossless());
+    return team.simulation.now().time_since_epoch();
+  };
+  EXPECT_LT(takes({}), std::chrono::milliseconds(100));
+  EXPECT_GE(takes([](const Message& message, int) { return says_farewell(message); }),
+            std::chrono::seconds(1));
+}
+
 class EachKind : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(EachKind, LosingAThirdChangesNoTrajectory) {

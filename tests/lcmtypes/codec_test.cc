@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <ergocast/agent_status_t.hpp>
+#include <ergocast/averages_t.hpp>
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
@@ -57,6 +58,18 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(sums_wire.block, 1);
   EXPECT_EQ(sums_wire.mode_count, 225);
   EXPECT_EQ(std::memcmp(sums_wire.sums, sums.sums.data(), sizeof sums_wire.sums), 0);
+
+  const auto averages_wire = read_by_lcm<averages_t>(encoded(averages()));
+  expect_header(averages_wire.header, 3);
+  EXPECT_EQ(averages_wire.averages_steps, 1000);
+  EXPECT_EQ(averages_wire.averages_next_broadcast_tick, 1001);
+  EXPECT_EQ(averages_wire.averages_elapsed_s, 100);
+  EXPECT_EQ(averages_wire.gained_steps, 10);
+  EXPECT_EQ(averages_wire.averages_block, 0);
+  EXPECT_EQ(averages_wire.averages_mode_count, 225);
+  EXPECT_EQ(averages_wire.averages[0], 32767);
+  EXPECT_EQ(averages_wire.averages[3], -32439) << "cos 3 in 1/32767";
+  EXPECT_EQ(averages_wire.rates[1], -32439) << "likewise";
 
   const auto status_wire = read_by_lcm<agent_status_t>(encoded(agent_status()));
   expect_header(status_wire.header, 3);
@@ -222,6 +235,7 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
     EXPECT_EQ(verdict(message), "accepted");
   }
   EXPECT_LE(encoded(contribution()).size(), kMaxDatagramBytes);
+  EXPECT_LE(encoded(averages()).size(), kMaxDatagramBytes);
 }
 
 TEST(Codec, StringsAreCutAtTheirLimitsAndAtANul) {

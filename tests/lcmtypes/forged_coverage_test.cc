@@ -2,6 +2,7 @@
 // Forged coverage that only the table can detect, not the codec: it has no effect.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/coverage_table.h"
@@ -28,8 +29,8 @@ Contribution standing_still(double cosine) {
   m.steps = kSteps;
   m.elapsed_s = kSteps * kDt;
   m.block = 0;
-  m.sums.fill(m.elapsed_s * cosine);
-  m.sums[0] = m.elapsed_s;
+  std::ranges::fill(m.sums.edit(), m.elapsed_s * cosine);
+  m.sums.edit()[0] = m.elapsed_s;
   return m;
 }
 
@@ -62,7 +63,7 @@ TEST(CodecAndTable, ASumLargerThanItsOwnS00IsRefused) {
   // S_00 is the sum of dt itself, because f_00 = 1: it cannot differ from the time covered.
   for (const double s00 : {0.0, 50.0, -100.0, 100 * (1 - 1e-8)}) {
     Contribution lie = standing_still(1);
-    lie.sums[0] = s00;
+    lie.sums.edit()[0] = s00;
     expect_no_effect(lie);
   }
 }
@@ -71,7 +72,7 @@ TEST(CodecAndTable, ASumThatIsNotANumberIsRefused) {
   for (const double bad : {kNan, -kNan, kInfinity, -kInfinity}) {
     for (const std::size_t mode : {0, 1, 127}) {
       Contribution lie = standing_still(0.5);
-      lie.sums[mode] = bad;
+      lie.sums.edit()[mode] = bad;
       expect_no_effect(lie);
     }
   }

@@ -88,7 +88,7 @@ constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
 
 TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
   constexpr std::size_t kRosterCount = kSignatureEnd + 17, kPlanSize = kSignatureEnd + 21,
-                        kVehicleCount = kHeaderBytes + 40;
+                        kVehicleCount = kHeaderBytes + 41;
   // The offsets are right: writing the true counts there changes nothing.
   ASSERT_EQ(with_count(mission_part(), kRosterCount, 2), encoded(mission_part()));
   ASSERT_EQ(with_count(mission_part(), kPlanSize, 300), encoded(mission_part()));

@@ -61,9 +61,25 @@ inline Contribution contribution() {
   m.elapsed_s = 100;
   m.block = 1;
   m.mode_count = 225;
-  for (int k = 0; k < kBlockSize; ++k) m.sums[static_cast<std::size_t>(k)] = 99.5 * std::sin(k) / 3;
-  m.sums[5] = -0.0;
-  m.sums[6] = 5e-324;
+  const std::span<double> sums = m.sums.set_all();
+  for (int k = 0; k < kBlockSize; ++k) sums[static_cast<std::size_t>(k)] = 99.5 * std::sin(k) / 3;
+  sums[5] = -0.0;
+  sums[6] = 5e-324;
+  return m;
+}
+
+/// The same coverage with numbers that travel in 16 bits.
+inline Contribution averages() {
+  Contribution m = contribution();
+  m.encoding = ContributionEncoding::kFixed16;
+  m.block = 0;
+  m.gained_steps = 10;
+  const std::span<double> sums = m.sums.set_all(kMostBlockSize);
+  const std::span<double> gains = m.gains.set_all(kMostBlockSize);
+  for (std::size_t k = 0; k < kMostBlockSize; ++k) {
+    sums[k] = 100 * std::cos(static_cast<double>(k));
+    gains[k] = std::cos(3 * static_cast<double>(k));
+  }
   return m;
 }
 
@@ -138,8 +154,8 @@ inline Digest digest() {
 }
 
 inline std::vector<Message> every_message() {
-  return {hello(), mission_part(), contribution(), agent_status(), team_status(),
-          stop(),  world_state(),  command(),      record_ack(),   digest()};
+  return {hello(),       mission_part(), contribution(), agent_status(), team_status(), stop(),
+          world_state(), command(),      record_ack(),   digest(),       averages()};
 }
 
 // ---- bytes

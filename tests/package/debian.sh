@@ -34,6 +34,19 @@ fi
 
 in_root() { chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
 
+expect_file() { [ -s "$root/$1" ] || fail "$1 is not installed"; }
+
+# All files of the system, without temporary files and those of the package manager.
+files_of_system() {
+  (cd "$root" && find . -xdev \( -path ./tmp -o -path ./proc -o -path ./var/cache -o -path ./var/log \
+    -o -path ./var/lib/apt -o -path ./var/lib/dpkg \) -prune -o -print | sort)
+}
+
+# A command on a network of its own; the array is for commands that are to be killed.
+offline=(unshare --net sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec "$@"' _
+  chroot "$root" env LC_ALL=C.UTF-8)
+offline() { "${offline[@]}" "$@"; }
+
 # Fetched packages are kept for the next time.
 apt_install() {
   local status=0
@@ -42,7 +55,7 @@ apt_install() {
   [ "$status" = 0 ] || { cat "$work/apt.log" >&2; fail "apt install $*"; }
 }
 
-# Sets $deb: the package of this build.
+# Packs all packages into $work. Sets $deb: that of the programs.
 # shellcheck disable=SC2034  # the tests that source this file read it
 pack() {
   (cd "$work" && cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work" >"$work/cpack.log" 2>&1) ||

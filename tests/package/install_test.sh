@@ -4,14 +4,6 @@
 # shellcheck source=tests/package/debian.sh
 . "$(dirname "$0")/debian.sh"
 
-expect_file() { [ -s "$root/$1" ] || fail "$1 is not installed"; }
-
-# All files of the system, without temporary files and those of the package manager.
-files_of_system() {
-  (cd "$root" && find . -xdev \( -path ./tmp -o -path ./proc -o -path ./var/cache -o -path ./var/log \
-    -o -path ./var/lib/apt -o -path ./var/lib/dpkg \) -prune -o -print | sort)
-}
-
 check_contents() {
   local strange
   strange=$(dpkg-deb --fsys-tarfile "$deb" | tar -t | grep -vE '^\./((usr|etc/ergocast)(/.*)?|etc/)?$' || true)
@@ -23,6 +15,10 @@ check_contents() {
   for field in Package Version Architecture Maintainer Description Section Depends; do
     [ -n "$(dpkg-deb -f "$deb" $field)" ] || fail "the package says no $field"
   done
+  case $(dpkg-deb -f "$deb" Depends) in
+    *libcpp-httplib*) ;;
+    *) fail 'the library of the page is not among Depends' ;;
+  esac
   case $(basename "$deb") in
     "ergocast_$(dpkg-deb -f "$deb" Version)_$(dpkg --print-architecture).deb") ;;
     *) fail "the package is called $(basename "$deb")" ;;
@@ -40,18 +36,14 @@ check_files() {
     gzip -dc "$root/usr/share/man/man1/ergocast.1.gz" | grep -q "^.SS $name$" ||
       fail "ergocast(1) does not speak of $name"
   done
+  expect_file usr/share/bash-completion/completions/ergocast
+  expect_file usr/share/doc/ergocast/examples/slurm/study.sbatch
   expect_file usr/share/doc/ergocast/README.md
   expect_file usr/share/doc/ergocast/copyright
   expect_file etc/ergocast/ergocast.env
   for name in agent@ coordinator logger sim; do
     expect_file "usr/lib/systemd/system/ergocast-$name.service"
   done
-}
-
-# On a network of its own.
-offline() {
-  unshare --net sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec "$@"' _ \
-    chroot "$root" env LC_ALL=C.UTF-8 "$@"
 }
 
 check_missions() {
@@ -65,6 +57,24 @@ check_missions() {
   grep -q harbour_patrol "$work/said" || fail 'the shipped scenarios are not named'
 }
 
+# The page is served from the programs alone.
+check_page() {
+  "${offline[@]}" ergocast watch --port 8765 /tmp/test/simulated >"$work/watch" 2>&1 &
+  local watch=$!
+  until grep -q Ctrl-C "$work/watch"; do
+    kill -0 "$watch" || fail "ergocast watch: $(cat "$work/watch")"
+    sleep 0.1
+  done
+  # shellcheck disable=SC2016  # for the shell inside
+  nsenter --target "$watch" --net bash -c '
+    exec 3<>/dev/tcp/127.0.0.1/8765
+    printf "GET / HTTP/1.1\r\nHost: 127.0.0.1:8765\r\nConnection: close\r\n\r\n" >&3
+    cat <&3' >"$work/page" || fail 'nothing answers'
+  grep -q quadrimodal_corners "$work/page" || fail "the page is not served: $(head -c 300 "$work/page")"
+  kill -INT "$watch"
+  wait "$watch" || fail 'ergocast watch does not end in order'
+}
+
 make_bare_system
 pack
 check_contents
@@ -73,6 +83,7 @@ cp "$deb" "$root/tmp/"
 apt_install "/tmp/$(basename "$deb")"
 check_files
 check_missions
+check_page
 in_root ergocast --version
 
 in_root dpkg --remove ergocast >/dev/null

@@ -57,6 +57,17 @@ TEST_F(DatagramFilter, PassesOnOurMessagesUnderOurNamesOnly) {
   }
 }
 
+TEST_F(DatagramFilter, PassesOnReplaysOnlyToThoseWhoAskForThem) {
+  for (const bool asks : {false, true}) {
+    ASSERT_TRUE(admit_only(ear_.fd(), kEveryType, {}, asks));
+    for (const Message& message : every_message()) {
+      EXPECT_TRUE(passes(message)) << channel_of(message);
+      EXPECT_EQ(passes(message, replayed(channel_of(message))), asks) << channel_of(message);
+      EXPECT_FALSE(passes(message, replayed(channel_of(message)) + "X")) << channel_of(message);
+    }
+  }
+}
+
 TEST_F(DatagramFilter, PassesOnToEachRoleWhatItSubscribesTo) {
   for (const Subscriptions& subscriptions : kSubscriptions) {
     for (int bus = 0; bus < kBusCount; ++bus) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every test of this program runs on a host of its own.
+// Every test of this program runs on a host of its own, and knows no run of other tests.
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "tests/support/own_host.h"
+#include "tests/support/temp_folder.h"
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
@@ -17,5 +19,7 @@ int main(int argc, char** argv) {
       return 1;
     }
   }
+  const ergocast::test::TempFolder session;
+  setenv("XDG_RUNTIME_DIR", session.path().c_str(), 1);
   return RUN_ALL_TESTS();
 }

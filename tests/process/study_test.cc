@@ -109,6 +109,31 @@ TEST_F(Study, ARunIsTheMissionThatSimulateFlies) {
   EXPECT_NEAR(std::stod(rows[0][5]) / metric, 1, 1e-9);
 }
 
+TEST_F(Study, SetsFieldsOfEveryPointAndNamesTheCommandOfEachRow) {
+  auto words = arguments("7:8", out());
+  words.insert(words.end(), {"--set", "agents.starts[0].x_m=40", "--set", "law.epsilon=0.2"});
+  ASSERT_EQ(ergocast(words), 0) << output();
+  const std::string mission = folder_ / "mission.textproto";
+  EXPECT_TRUE(said("\n  ergocast run " + mission +
+                   " --set 'agents.starts[0].x_m'=40 --set law.epsilon=0.2"
+                   " --set law.noise_intensity=1 --seed 7\n"))
+      << output();
+  const auto study = nlohmann::json::parse(text_of(out() / "study.json"));
+  EXPECT_EQ(study["set"],
+            nlohmann::json::parse(R"(["agents.starts[0].x_m=40", "law.epsilon=0.2"])"));
+
+  const auto simulated = folder_ / "simulated";
+  ASSERT_EQ(
+      ergocast({"simulate", mission, "--set", "agents.starts[0].x_m=40", "--set", "law.epsilon=0.2",
+                "--set", "law.noise_intensity=1", "--seed", "7", "--out", simulated}),
+      0);
+  const auto summary = nlohmann::json::parse(text_of(simulated / "summary.json"));
+  const double metric = summary["ergodic_metric"]["last"];
+  const auto rows = rows_of(table());
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_NEAR(std::stod(rows[2][5]) / metric, 1, 1e-9);
+}
+
 TEST_F(Study, GoesOnAfterCtrlCAndLosesNothing) {
   Child child = start("ergocast", arguments("1:500000", out()));
   ASSERT_TRUE(eventually([this] { return lines(table()) > 20; }));
@@ -166,6 +191,114 @@ TEST_F(Study, AWorkerThatDiesCostsItsRun) {
   EXPECT_EQ(lines(table()), 1U);
 }
 
+/// The shards of one study and what `merge` makes of them.
+class Shards : public Study {
+ protected:
+  std::filesystem::path part(int index) const {
+    return folder_ / ("part-" + std::to_string(index));
+  }
+  void fly(int index, const std::string& seeds, const std::string& of = "3") {
+    auto words = arguments(seeds, part(index));
+    words.insert(words.end(), {"--shard", std::to_string(index) + "/" + of});
+    EXPECT_EQ(ergocast(words), 0) << output();
+  }
+  int merge(const std::vector<std::filesystem::path>& parts) {
+    std::vector<std::string> words{"study", "merge", "--out", out()};
+    words.insert(words.end(), parts.begin(), parts.end());
+    return ergocast(words);
+  }
+  void refused(const std::vector<std::filesystem::path>& parts, const std::string& why) {
+    EXPECT_EQ(merge(parts), 2) << why;
+    EXPECT_TRUE(said(why)) << why << " in\n" << output();
+    EXPECT_FALSE(std::filesystem::exists(out()));
+  }
+};
+
+TEST_F(Shards, MergedAreTheBytesOfOneRunOfAll) {
+  ASSERT_EQ(study("4:10", out()), 0) << output();
+  const auto whole = folder_ / "whole";
+  std::filesystem::rename(out(), whole);
+  for (const int index : {1, 2, 3}) fly(index, "4:10");
+  EXPECT_EQ(lines(text_of(part(1) / "study.csv")), 6U);
+  EXPECT_EQ(lines(text_of(part(3) / "study.csv")), 5U);
+  ASSERT_EQ(merge({part(2), part(3), part(1)}), 0) << output();
+  EXPECT_TRUE(said("ergocast run ")) << output();
+  for (const char* file : {"study.csv", "study.json", "report.html"}) {
+    EXPECT_EQ(text_of(out() / file), text_of(whole / file)) << file;
+  }
+  EXPECT_EQ(merge({part(1), part(2), part(3)}), 2);
+  EXPECT_TRUE(said("is not empty; give a new folder")) << output();
+}
+
+TEST_F(Shards, OnlyAllShardsOfOneStudyEachOnceAreMerged) {
+  for (const int index : {1, 2, 3}) fly(index, "1:2");
+  refused({part(1), part(3)}, "1 of 3 shards are missing, the first is 2/3");
+  refused({part(1), part(2), part(1), part(3)},
+          "is shard 1/3 of seeds 1:2, and so is " + part(1).string());
+  refused({part(1), folder_ / "nothing"}, "nothing: is no study");
+  fly(4, "1:2", "4");
+  refused({part(1), part(2), part(4)}, "is shard 4/4 of seeds 1:2, but " + part(1).string());
+  fly(5, "1:3", "5");
+  refused({part(1), part(5)}, "is shard 5/5 of seeds 1:3, but ");
+  const auto whole = folder_ / "whole";
+  ASSERT_EQ(study("1:2", whole), 0);
+  refused({part(1), whole}, "whole: is no shard of a study");
+  auto other = arguments("1:2", part(6));
+  other.insert(other.end(), {"--shard", "2/3", "--set", "law.epsilon=1"});
+  ASSERT_EQ(ergocast(other), 0) << output();
+  refused({part(1), part(6), part(3)}, "its study sets [\"law.epsilon=1\"]; it is no shard of");
+}
+
+TEST_F(Shards, AShardThatIsIncompleteOrDamagedIsNotMerged) {
+  for (const int index : {1, 2}) fly(index, "1:3", "2");
+  const auto table = part(2) / "study.csv";
+  const std::string good = text_of(table);
+  const auto with = [&](const std::string& text) { std::ofstream(table) << text; };
+  with(good.substr(0, good.rfind('\n', good.size() - 2) + 1));
+  refused({part(1), part(2)}, "1 of its 3 runs are missing (the command that made it flies them)");
+  with(good + good.substr(good.rfind('\n', good.size() - 2) + 1));
+  refused({part(1), part(2)}, "has a run that is there already");
+  with(text_of(part(1) / "study.csv"));
+  refused({part(1), part(2)}, "has a run that is of another shard");
+  with(good + "nonsense\n");
+  refused({part(1), part(2)}, "is no row of this study");
+  with(good);
+  const auto json = part(2) / "study.json";
+  const std::string identity = text_of(json);
+  std::string later = identity;
+  const auto at = later.find("\"version\": \"") + 12;
+  later.insert(at, "9");
+  std::ofstream(json) << later;
+  refused({part(1), part(2)}, "its study was begun by ergocast \"9");
+  refused({part(2), part(1)}, "(merge with the version that flew)");
+  std::ofstream(json) << identity.substr(0, identity.size() / 2);
+  refused({part(1), part(2)}, "its study.json is damaged");
+  std::ofstream(json) << identity;
+  EXPECT_EQ(merge({part(1), part(2)}), 0) << output();
+}
+
+TEST_F(Shards, AFolderIsOfOneShard) {
+  fly(1, "1:3");
+  const auto again = [&](std::vector<std::string> more, const std::string& seeds,
+                         const std::string& why) {
+    auto words = arguments(seeds, part(1));
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(ergocast(words), 2);
+    EXPECT_TRUE(said("its study is shard 1/3 of seeds 1:3, this one " + why)) << output();
+  };
+  again({"--shard", "2/3"}, "1:3", "shard 2/3 of seeds 1:3; give a new folder");
+  again({"--shard", "1/3"}, "1:4", "shard 1/3 of seeds 1:4");
+  again({}, "1:3", "no shard");
+  for (const char* shard : {"0/3", "4/3", "1", "1/", "/3", "a/b", "1/1000001", "-1/3"}) {
+    auto words = arguments("1:3", out());
+    words.insert(words.end(), {"--shard", shard});
+    EXPECT_EQ(ergocast(words), 2);
+    EXPECT_TRUE(said("is not I/N with I from 1 to N")) << output();
+  }
+  EXPECT_EQ(ergocast({"study", "--seeds", "1:3", "merge", part(1), "--out", out()}), 2);
+  EXPECT_TRUE(said("stands before all options")) << output();
+}
+
 TEST_F(Study, RefusesAnotherStudysFolder) {
   ASSERT_EQ(study("1:2", out()), 0);
   const std::string before = table();
@@ -180,6 +313,7 @@ TEST_F(Study, RefusesAnotherStudysFolder) {
   refused({"--vary", "law.noise_intensity=0.1"}, "its study has 2 points, this one 1");
   refused({"--vary", "law.noise_intensity=0.1,2"}, "differs at point 2");
   refused({"--vary", "law.noise_intensity=0.1,1", "--duration", "31"}, "differs at point 1");
+  refused({"--vary", "law.noise_intensity=0.1,1", "--set", "law.epsilon=1"}, "its study sets []");
   EXPECT_EQ(table(), before);
 }
 
@@ -225,6 +359,13 @@ TEST_F(Study, RefusesWhatCannotBeFlownBeforeItFliesAnything) {
           "is varied twice");
   refused({"--seeds", "1", "--vary", "time.duration_s=1,2", "--duration", "3"},
           "--duration says it too");
+  refused({"--seeds", "1", "--set", "seed=3"}, "--set seed=3: every point gets the same seeds");
+  refused({"--seeds", "1", "--set", "law.epsilom=3"}, "did you mean law.epsilon?");
+  refused({"--seeds", "1", "--set", "law.epsilon"}, "is not FIELD=VALUE");
+  refused({"--seeds", "1", "--set", "law.epsilon=1", "--set", "law.epsilon=2"},
+          "--set law.epsilon=2: --set law.epsilon=1 says it too");
+  refused({"--seeds", "1", "--set", "law.epsilon=1", "--vary", "law.epsilon=2,3"},
+          "--vary law.epsilon: --set says it too");
   refused({"--seeds", "1:2000000"}, "are above the limit, 1000000 runs");
   refused({"--seeds", "1", "--jobs", "0"}, "--jobs");
   std::string many = "law.epsilon=0";

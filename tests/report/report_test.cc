@@ -118,7 +118,7 @@ class Report : public testing::Test {
     write(dir / "metrics.csv", metrics.str());
   }
 
-  std::optional<std::string> report() { return write_report(dir, mission); }
+  std::optional<std::string> report() { return write_report(dir, mission, nullptr); }
   std::string page() { return read(dir / "report.html"); }
 
   /// The data in the page.

@@ -12,6 +12,7 @@
 #include <set>
 #include <vector>
 
+#include "runtime/event_log_reader.h"
 #include "tests/support/temp_folder.h"
 
 namespace ergocast {
@@ -121,6 +122,77 @@ TEST_F(EventLogTest, AFullDiskCostsEventsButTearsNone) {
   log.write("NAME", kEvent);
   ASSERT_EQ(log.flush(), std::nullopt);
   EXPECT_EQ(events("events-001.lcm"), 1);
+}
+
+/// The names of all events that the reader finds, and its problem.
+std::string read_back(const fs::path& folder) {
+  auto opened = EventLogReader::open(folder);
+  if (const auto* problem = std::get_if<std::string>(&opened)) return *problem;
+  auto& reader = std::get<EventLogReader>(opened);
+  std::string said;
+  while (const LoggedEvent* event = reader.next()) {
+    EXPECT_EQ(event->time_us, 1000000 + event->bytes.size());
+    said += event->channel + ' ';
+  }
+  return said + reader.problem().value_or("");
+}
+
+class EventLogReaderTest : public EventLogTest {
+ protected:
+  /// Events of 100 bytes and more, four to a segment.
+  void write(std::initializer_list<const char*> names) const {
+    EventLog log(folder_, {.segment_bytes = 4 * 129, .total_bytes = 1 << 20});
+    std::size_t size = 100;
+    for (const char* name : names) {
+      const std::vector<std::byte> bytes(size++);
+      log.write(name, bytes, 1000000 + static_cast<std::int64_t>(bytes.size()));
+    }
+    EXPECT_EQ(log.flush(), std::nullopt);
+  }
+  fs::path segment(int number) const {
+    return folder_ / ("events-00" + std::to_string(number) + ".lcm");
+  }
+};
+
+TEST_F(EventLogReaderTest, GivesBackEachEventOfAllSegmentsInOrder) {
+  write({"A", "B", "C", "D", "E", "F"});
+  EXPECT_TRUE(fs::exists(segment(1)));
+  EXPECT_EQ(read_back(folder_), "A B C D E F ");
+}
+
+TEST_F(EventLogReaderTest, LeavesOutWhatAKilledLoggerBegan) {
+  write({"A", "B", "C", "D", "E", "F"});
+  for (const int number : {0, 1})
+    fs::resize_file(segment(number), fs::file_size(segment(number)) - 1);
+  EXPECT_EQ(read_back(folder_), "A B C E ");
+}
+
+TEST_F(EventLogReaderTest, NamesFileByteAndRemedyOfDamage) {
+  write({"A", "B", "C"});
+  const auto spoil = [&](int at, char byte) {
+    std::fstream file(segment(0), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(at);
+    file.put(byte);
+  };
+  spoil(129, 0);
+  const std::string place = segment(0).string() + ", byte 129: ";
+  const std::string remedy = "; what stands before is sound: `truncate -s 129` on a copy keeps it";
+  EXPECT_EQ(read_back(folder_), "A " + place + "no event of LCM's log format" + remedy);
+  spoil(129, '\xED');
+  EXPECT_EQ(read_back(folder_), "A B C ");
+  spoil(129 + 24, 1);
+  EXPECT_EQ(read_back(folder_),
+            "A " + place + "an event longer than any message of Ergocast" + remedy);
+}
+
+TEST_F(EventLogReaderTest, SaysWhatIsMissing) {
+  EXPECT_NE(read_back(folder_).find("has no event log"), std::string::npos);
+  EXPECT_NE(read_back(folder_ / "none").find("name a run directory"), std::string::npos);
+  write({"A", "B", "C", "D", "E"});
+  write({"F", "G"});
+  fs::remove(segment(1));
+  EXPECT_NE(read_back(folder_).find("events-002.lcm: the segment before it is missing"),
+            std::string::npos);
 }
 
 }  // namespace

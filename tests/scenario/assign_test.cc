@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields set by their paths, as `ergocast study --vary` does.
+// Fields set by their paths, as --set and --vary do.
 #include <gtest/gtest.h>
+
+#include <functional>
 
 #include "tests/scenario/scenarios.h"
 
@@ -77,6 +79,32 @@ TEST(Assign, RefusesValuesThatTheFieldDoesNotTakeAndBlamesTheFlag) {
   EXPECT_TRUE(has(said_of("time.broadcast_period_ticks", "1.5"), "is not a whole number"));
   EXPECT_TRUE(has(said_of("law.epsilon", "1 2"), "--vary law.epsilon=1 2: "));
   EXPECT_TRUE(has(said_of("law.epsilon", ""), "--vary law.epsilon=: "));
+}
+
+TEST(Assign, RefusesWhatAnotherFlagSays) {
+  const auto said = [](const std::string& path, const std::string& value,
+                       const std::function<void(Overrides&)>& say) {
+    Overrides overrides = with(path, value);
+    say(overrides);
+    return joined(problems_of(kSmall, overrides));
+  };
+  EXPECT_EQ(said("seed", "3", [](Overrides& o) { o.seed = 4; }),
+            "--vary seed=3: --seed says it too (leave out one of them)\n");
+  EXPECT_TRUE(has(said("time.duration_s", "3", [](Overrides& o) { o.duration_s = 4; }),
+                  "--duration says it too"));
+  EXPECT_TRUE(has(said("time.pace", "REALTIME", [](Overrides& o) { o.pace = Pace::kLockstep; }),
+                  "--lockstep says it too"));
+  EXPECT_TRUE(has(said("time.realtime_factor", "3",
+                       [](Overrides& o) {
+                         o.pace = Pace::kRealtime;
+                         o.realtime_factor = 1;
+                       }),
+                  "--realtime says it too"));
+  EXPECT_TRUE(has(said("agents.random_count", "3", [](Overrides& o) { o.agents = 4; }),
+                  "--agents says it too"));
+  EXPECT_TRUE(
+      has(said("law.epsilon", "3", [](Overrides& o) { o.fields.push_back(o.fields.front()); }),
+          "--vary law.epsilon=3 says it too"));
 }
 
 TEST(WithSeed, IsTheScenarioReadWithThatSeed) {

@@ -111,7 +111,8 @@ TEST(Conversion, KnowsEveryFieldOfAScenario) {
   mission.separation.distance_m = 1;  // so that all its fields are listed
   std::set<std::string> known = Names(mission).all;
   known.insert({"name", "description", "seed", "law.contraction_center", "law.contraction_x_m",
-                "law.contraction_y_m", "time.duration_s", "agents.random_count"});
+                "law.contraction_y_m", "time.duration_s", "agents.random_count",
+                "origin.latitude_deg", "origin.longitude_deg"});
   EXPECT_EQ(names_in(*proto::Scenario::descriptor(), ""), known);
 }
 

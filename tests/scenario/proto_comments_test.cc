@@ -44,7 +44,7 @@ std::map<std::string, std::string> read_comments() {
 
 /// Whether `comment` has `value` as a separate number in any notation: 1e7 or 10000000.
 bool says(const std::string& comment, double value) {
-  const std::regex number(R"((?:^|[^\w.])(\d+(?:\.\d+)?(?:e-?\d+)?)(?![\w]))");
+  const std::regex number(R"((?:^|[^\w.])(-?\d+(?:\.\d+)?(?:e-?\d+)?)(?![\w]))");
   for (std::sregex_iterator at(comment.begin(), comment.end(), number), end; at != end; ++at) {
     if (std::strtod((*at)[1].str().c_str(), nullptr) == value) return true;
   }

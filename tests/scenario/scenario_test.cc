@@ -282,6 +282,7 @@ TEST(Print, ShowsEveryFieldInTheFewestDigits) {
                            "contraction_gain_per_s: ",
                            "contraction_center: DOMAIN_CENTER",
                            "dt_s: 0.1\n",
+                           "contribution_encoding: DOUBLE",
                            "pace: LOCKSTEP",
                            "on_timeout: END_MISSION",
                            "catch_up_limit_ticks: 5",

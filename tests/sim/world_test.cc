@@ -251,6 +251,30 @@ TEST(WorldEnd, RepeatsTheLastStateForTwoSecondsAndIsDone) {
   EXPECT_EQ(world.next_wakeup(), Instant::max());
 }
 
+TEST(WorldEnd, ItsLastMessageSaysThatItLeavesOnceTheRecordIsCompleteAndTheMissionOver) {
+  Mission mission = small_mission(1);
+  mission.timing.tick_count = 1;
+  World world = running_world(mission);
+  advance(world, at(0s));
+  give(world, command_of(0, 0, {1, 0, 0}), at(0s));
+  EXPECT_FALSE(state_after(world, at(0s)).last);
+  give(world, mission_part(1, MissionState::kEnded, roster_of(1)), at(0s));
+  EXPECT_TRUE(states_after(world, at(0s)).empty()) << "the logger may lack a state";
+  give(world, ack_of(0), at(0s));
+  EXPECT_TRUE(world.finished());
+  const WorldState farewell = state_after(world, at(0s));
+  EXPECT_TRUE(farewell.last);
+  EXPECT_EQ(farewell.header.tick, 1);
+  EXPECT_TRUE(advance(world, at(1s)).empty()) << "once";
+}
+
+TEST(WorldEnd, AWorldThatIsToldToStopAloneSaysNothing) {
+  World world = running_world(small_mission(1));
+  advance(world, at(0s));
+  world.stop("SIGTERM");
+  EXPECT_TRUE(advance(world, at(1s)).empty()) << "another may go on in its place";
+}
+
 TEST(WorldEnd, TheMissionsEndAndItsProcessEndItAtOnce) {
   World by_mission = running_world(small_mission(1));
   give(by_mission, mission_part(1, MissionState::kFailed, roster_of(1), "agent 3 is late"), at(0s));

@@ -54,9 +54,13 @@ Browser::Browser(const std::filesystem::path& folder) {
     throw std::runtime_error("chromedriver does not answer");
   }
   json options;
-  options["args"] = {"--headless=new",    "--no-sandbox",
-                     "--disable-gpu",     "--disable-dev-shm-usage",
-                     "--hide-scrollbars", "--user-data-dir=" + (folder / "profile").string()};
+  options["args"] = {"--headless=new",
+                     "--no-sandbox",
+                     "--disable-gpu",
+                     "--disable-dev-shm-usage",
+                     "--hide-scrollbars",
+                     "--host-resolver-rules=MAP evil.example 127.0.0.1",
+                     "--user-data-dir=" + (folder / "profile").string()};
   const json capabilities = {{"browserName", "chrome"},
                              {"goog:chromeOptions", options},
                              {"goog:loggingPrefs", {{"browser", "ALL"}}},
@@ -124,6 +128,18 @@ std::vector<std::string> Browser::errors() {
     if (entry.at("level") == "SEVERE") messages.push_back(entry.at("message"));
   }
   return messages;
+}
+
+double Browser::main_thread_s() {
+  const auto ask_for = [this](const char* command, const json& parameters) {
+    return ask("POST", "/goog/cdp/execute", {{"cmd", command}, {"params", parameters}});
+  };
+  ask_for("Performance.enable", {{"timeDomain", "threadTicks"}});
+  const json metrics = ask_for("Performance.getMetrics", json::object());
+  for (const json& metric : metrics.at("metrics")) {
+    if (metric.at("name") == "TaskDuration") return metric.at("value").get<double>();
+  }
+  throw std::runtime_error("the browser does not know TaskDuration");
 }
 
 void Browser::save_screenshot(const std::filesystem::path& png) {

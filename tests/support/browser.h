@@ -11,8 +11,8 @@
 
 namespace ergocast::test {
 
-/// One browser with one window. Each call waits for its answer; a failure throws with the driver's
-/// words.
+/// One browser with one window, which takes evil.example for a name of this host. Each call waits
+/// for its answer; a failure throws with the driver's words.
 class Browser {
  public:
   /// @param folder  for its profile and its driver's log
@@ -32,6 +32,8 @@ class Browser {
   void click(const std::string& selector);
   /// Errors in its console since the last call, also of the page's policy.
   std::vector<std::string> errors();
+  /// Processor time of the page's main thread since the first call [s].
+  double main_thread_s();
   void save_screenshot(const std::filesystem::path& png);
 
  private:

@@ -119,6 +119,9 @@ const std::map<std::string, Rule>& rules() {
       {"Scenario.world", may(draw_block)},
       {"Scenario.separation", may(draw_block)},
       {"Scenario.goal_ergodic_metric", may(spread(1e-9, 1))},
+      {"Scenario.origin", may(draw_block)},
+      {"Origin.latitude_deg", must(number(54, 54))},  // where the GeoJSON files lie
+      {"Origin.longitude_deg", must(number(10, 10))},
 
       {"Domain.origin_x_m", may(number(-20, 0))},
       {"Domain.origin_y_m", may(number(-20, 0))},
@@ -148,6 +151,7 @@ const std::map<std::string, Rule>& rules() {
       {"Region.polygon", must(draw_block)},
       {"Polygon.vertices", many(3, 6)},
       {"Polygon.holes", many(0, 1)},
+      {"Polygon.file", may(text({"a.geojson", "b.geojson"}))},
       {"Ring.vertices", many(3, 6)},
       {"Vertex.x_m", must(kPlace)},
       {"Vertex.y_m", must(kPlace)},
@@ -168,6 +172,7 @@ const std::map<std::string, Rule>& rules() {
       {"Time.dt_s", may(spread(0.02, 1))},
       {"Time.duration_s", must(number(0.5, 60))},  // in ticks: see agree()
       {"Time.broadcast_period_ticks", may(either(1, number(1, 10)))},
+      {"Time.contribution_encoding", may(word(0.8))},
       {"Time.pace", may(word(0.8))},
       {"Time.realtime_factor", may(spread(0.1, 10))},
       {"Time.lockstep_timeout_s", may(spread(1e-3, 1e4))},
@@ -232,6 +237,11 @@ void make_round(Vertices& vertices, double radius_m, const proto::Vertex& center
   }
 }
 void make_round(proto::Polygon& polygon, double radius_m) {
+  if (polygon.has_file()) {  // in place of the vertices
+    polygon.clear_vertices();
+    polygon.clear_holes();
+    return;
+  }
   const proto::Vertex center = polygon.vertices(0);
   make_round(*polygon.mutable_vertices(), radius_m, center);
   for (auto& hole : *polygon.mutable_holes()) {
@@ -279,6 +289,10 @@ void agree_on_distance(proto::Scenario& scenario) {
 
 void agree(proto::Scenario& scenario) {
   agree(*scenario.mutable_target());
+  if (fields_of(scenario).contains("Polygon.file") && !scenario.has_origin()) {
+    scenario.mutable_origin()->set_latitude_deg(54);
+    scenario.mutable_origin()->set_longitude_deg(10);
+  }
   proto::Law& law = *scenario.mutable_law();
   if (law.contraction_center() == proto::Law::POINT) {
     if (!law.has_contraction_x_m()) law.set_contraction_x_m(50);
@@ -306,10 +320,18 @@ void add_fields(const Descriptor& type, std::set<std::string>& names) {
 
 }  // namespace
 
-void write_maps(const std::filesystem::path& folder) {
+void write_files(const std::filesystem::path& folder) {
   std::ofstream(folder / "a.csv") << "0,1,2,9\n3,0,1,4\n";
   std::ofstream(folder / "a.asc")
       << "ncols 4\nnrows 2\nxllcorner 5\nyllcorner 5\ncellsize 20\n0 1 2 9\n3 0 1 4\n";
+  // A degree is 111 km to the north, and here 65 km to the east.
+  const auto triangle = [](const char* ring) {
+    return std::string(R"({"type": "Polygon", "coordinates": [[)") + ring + "]]}\n";
+  };
+  std::ofstream(folder / "a.geojson")
+      << triangle("[10.0002, 54.0002], [10.0006, 54.0002], [10.0002, 54.0005], [10.0002, 54.0002]");
+  std::ofstream(folder / "b.geojson")
+      << triangle("[10.0012, 54.0006], [10.0014, 54.0006], [10.0012, 54.0008], [10.0012, 54.0006]");
   write_png(folder / "a.png", 4, 2, {.bits = 16},
             [](int column, int row, int) { return 1000 * (1 + column + 4 * row); });
 }

@@ -12,8 +12,8 @@
 
 namespace ergocast::test {
 
-/// Writes the maps that the drawn scenarios use.
-void write_maps(const std::filesystem::path& folder);
+/// Writes the maps and polygons that the drawn scenarios use.
+void write_files(const std::filesystem::path& folder);
 
 /// A small mission: up to 24 agents, 24 × 24 modes and 60 ticks, with each optional field in every
 /// second scenario. Not all are valid. If scenario.proto has a block or a text that

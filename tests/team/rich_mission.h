@@ -58,6 +58,7 @@ inline Mission rich_mission() {
   timing.command_hold_s = 0.8;
   timing.admission_timeout_s = 31;
   timing.catch_up_limit_ticks = 6;
+  timing.contribution_encoding = ContributionEncoding::kFixed16;
   mission.starts_m = {{17, 20, 0}, {18, 21, 0}};
   mission.quorum = 2;
   mission.forget_silent_after_s = 12;

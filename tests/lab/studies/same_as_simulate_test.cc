@@ -23,7 +23,7 @@ constexpr int kMissions = 150;
 
 class Drawn {
  public:
-  Drawn() { write_maps(folder_.path()); }
+  Drawn() { write_files(folder_.path()); }
 
   /// The text of the next one that is valid.
   std::string next() {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "lab/studies/study_page.h"
 #include "lab/studies/study_summary.h"
@@ -64,8 +65,10 @@ TEST(StudyTable, HasAColumnForEachFieldTimeAndAgent) {
   EXPECT_EQ(StudyTable(study).header(),
             "scenario,law.epsilon,law.regularization,seed,agents,messages,ergodic_metric,slope,"
             "offset2_mean_m2,offset2_max_m2,edge_share,speed_mean_mps,ergodic_metric_at_1_s,"
-            "ergodic_metric_at_2_s,ergodic_metric_at_5_s,ergodic_metric_at_10_s,escape_time_0_s,"
-            "escape_time_1_s");
+            "ergodic_metric_at_1.25_s,ergodic_metric_at_1.6_s,ergodic_metric_at_2_s,"
+            "ergodic_metric_at_2.5_s,ergodic_metric_at_3.2_s,ergodic_metric_at_4_s,"
+            "ergodic_metric_at_5_s,ergodic_metric_at_6.3_s,ergodic_metric_at_8_s,"
+            "ergodic_metric_at_10_s,ergodic_metric_at_12.5_s,escape_time_0_s,escape_time_1_s");
 }
 
 TEST(StudyTable, RefusesWhatIsNoRowOfTheStudy) {
@@ -116,20 +119,48 @@ TEST(Summarize, CountsEscapesByAgents) {
   EXPECT_NEAR(summary.escaped_share(1e9), 2.0 / 3, 1e-15);
 }
 
+/// The data of a page.
+nlohmann::json data_of(const std::string& page) {
+  const std::string begin = "id=\"data\">";
+  const auto at = page.find(begin) + begin.size();
+  return nlohmann::json::parse(page.substr(at, page.find("</script>", at) - at));
+}
+
 TEST(StudyPage, IsWholeForAnyStudyAlsoAnEmptyOne) {
   const Study study = two_by_two();
+  const std::vector<std::string> commands(4, "fly it");
   std::vector<StudyRow> rows;
-  for (int runs = 0; runs < 3; ++runs) {
+  for (std::size_t runs = 0; runs < 3; ++runs) {
     const std::string page =
-        study_page({study, "1.2.3", "ergocast study <&>"}, summarize(study, rows));
+        study_page({study, "1.2.3", "ergocast study <&>", commands}, summarize(study, rows));
     EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
     EXPECT_TRUE(page.ends_with("</html>\n"));
-    EXPECT_EQ(page.find("nan"), std::string::npos);
     EXPECT_EQ(page.find("<&>"), std::string::npos);
-    EXPECT_EQ(page.find("http://www.w3.org") == std::string::npos,
-              page.find("<svg") == std::string::npos);
-    rows.push_back({static_cast<std::size_t>(runs), figures_of(1, 0.5)});
+    const auto data = data_of(page)["study"];
+    EXPECT_EQ(data["command"], "ergocast study <&>");
+    ASSERT_EQ(data["points"].size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(data["points"][i]["runs"], i < runs ? 1 : 0);
+      EXPECT_EQ(data["points"][i].contains("metric"), i < runs);
+      EXPECT_EQ(data["points"][i]["command"], "fly it");
+    }
+    rows.push_back({runs, figures_of(1, 0.5)});
   }
+}
+
+TEST(StudyPage, HasWhatThePointsAreLike) {
+  const Study study = two_by_two();
+  StudyFigures second = figures_of(2, 0.25);
+  second.escape_time_s[1] = 3;
+  const auto data = data_of(study_page({study, "1.2.3", "", std::vector<std::string>(4)},
+                                       summarize(study, {{0, figures_of(1, 0.5)}, {0, second}})));
+  const auto point = data["study"]["points"][0];
+  EXPECT_EQ(point["values"], nlohmann::json::parse(R"(["0.1", "ABSOLUTE"])"));
+  EXPECT_EQ(point["metric"], nlohmann::json::parse("[0.375, 0.25, 0.5]"));
+  EXPECT_EQ(point["over_time"][0], nlohmann::json::parse("[1, 1.875, 1.25, 2.5]"));
+  EXPECT_EQ(point["escapes"]["within_15_s"], 0.3333);
+  EXPECT_EQ(point["escapes"]["late_s"], "never");
+  EXPECT_EQ(point["escapes"]["shares"], nlohmann::json::parse("[[3, 0.3333], [15, 0.3333]]"));
 }
 
 TEST(StudyText, NamesEveryPoint) {

@@ -1,0 +1,54 @@
+# The libraries that other programs build on: what libergocast-dev installs (find_package(Ergocast)).
+include(GNUInstallDirs)
+if(CMAKE_LIBRARY_ARCHITECTURE)
+  set(ERGOCAST_LIBDIR lib/${CMAKE_LIBRARY_ARCHITECTURE})
+else()
+  set(ERGOCAST_LIBDIR ${CMAKE_INSTALL_LIBDIR})
+endif()
+set(ERGOCAST_CMAKEDIR ${ERGOCAST_LIBDIR}/cmake/Ergocast)
+
+# Who has ergocast_agent also wants messages as bytes.
+add_library(ergocast_agent_and_codec INTERFACE)
+target_link_libraries(ergocast_agent_and_codec INTERFACE ergocast_agent ergocast_codec)
+set(INSTALLED ergocast_text ergocast_core ergocast_target ergocast_team ergocast_codec ergocast_agent)
+
+# They may become part of a shared library, as of a robot's plug-in or of a Python module.
+set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_event_log ergocast_geo ergocast_lab ergocast_logger
+  ergocast_report ergocast_run_directory ergocast_runtime ergocast_scenario ergocast_scenario_messages ergocast_sim
+  ergocast_status ergocast_watch ergocast_web_page)
+foreach(library ${SHAREABLE})
+  set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${library} PRIVATE -fno-semantic-interposition)
+endforeach()
+
+target_compile_features(ergocast_core PUBLIC cxx_std_20)
+# Eigen lays values out by the vector instructions of its user; here they are those of our build.
+target_compile_definitions(ergocast_core INTERFACE
+  $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>
+  $<INSTALL_INTERFACE:ERGOCAST_VERSION="${PROJECT_VERSION}">)
+
+set_target_properties(ergocast_core PROPERTIES EXPORT_NAME core)
+set_target_properties(ergocast_target PROPERTIES EXPORT_NAME target)
+set_target_properties(ergocast_agent_and_codec PROPERTIES EXPORT_NAME agent)
+install(TARGETS ${INSTALLED} ergocast_agent_and_codec EXPORT Ergocast COMPONENT dev
+  ARCHIVE DESTINATION ${ERGOCAST_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT Ergocast NAMESPACE Ergocast:: FILE ErgocastTargets.cmake
+  DESTINATION ${ERGOCAST_CMAKEDIR} COMPONENT dev)
+
+include(CMakePackageConfigHelpers)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/ErgocastConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_SOURCE_DIR}/cmake/ErgocastConfig.cmake
+    ${CMAKE_BINARY_DIR}/ErgocastConfigVersion.cmake
+  DESTINATION ${ERGOCAST_CMAKEDIR} COMPONENT dev)
+
+# Their headers. Here they include "core/basis.h", there "ergocast/core/basis.h".
+file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
+  ${CMAKE_SOURCE_DIR}/core/*.h ${CMAKE_SOURCE_DIR}/target/*.h ${CMAKE_SOURCE_DIR}/team/*.h
+  ${CMAKE_SOURCE_DIR}/agent/*.h)
+list(REMOVE_ITEM HEADERS core/vectorized.h)
+list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h)
+set(INSTALLED_HEADERS ${HEADERS})
+configure_file(${CMAKE_SOURCE_DIR}/cmake/install_headers.cmake.in
+  ${CMAKE_BINARY_DIR}/install_headers.cmake @ONLY)
+install(SCRIPT ${CMAKE_BINARY_DIR}/install_headers.cmake COMPONENT dev)

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A record in the formats of other people's tools; docs/export.md describes each file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "export/record.h"
+
+namespace ergocast {
+
+/// One MCAP file with poses, densities, metrics and log lines. Nothing on success, else the error.
+std::optional<std::string> write_mcap(const ExportRecord& record,
+                                      const std::filesystem::path& file);
+
+/// A folder with trajectory.csv, metrics.csv, density.csv and log.csv.
+std::optional<std::string> write_tables(const ExportRecord& record,
+                                        const std::filesystem::path& folder);
+
+/// One FeatureCollection with the domain and each agent's track.
+/// @pre the record has an origin
+std::optional<std::string> write_geojson(const ExportRecord& record,
+                                         const std::filesystem::path& file);
+
+}  // namespace ergocast

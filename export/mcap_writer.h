@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes MCAP files (https://mcap.dev/spec): indexed, in chunks without compression.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace ergocast {
+
+/// CRC-32 as in zip files; `before` is that of the bytes in front.
+std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
+
+/// All messages are JSON, with JSON Schemas. The file is complete after finish() alone.
+class McapWriter {
+ public:
+  using Channel = std::uint16_t;
+
+  explicit McapWriter(const std::filesystem::path& file);
+
+  /// @param schema  its name; the same name has the same text
+  Channel add_channel(const std::string& topic, const std::string& schema,
+                      std::string_view schema_text);
+  /// @param time_ns  since 1970; in any order, but readers like ascending ones
+  void add_message(Channel channel, std::uint64_t time_ns, std::string_view json);
+  void add_metadata(const std::string& name, const std::map<std::string, std::string>& entries);
+
+  /// Writes the indexes. The write error, if there was any.
+  std::optional<std::string> finish();
+
+ private:
+  struct Chunk {
+    std::uint64_t start_ns = 0, end_ns = 0, at = 0, bytes = 0, index_bytes = 0, content_bytes = 0;
+    std::map<Channel, std::uint64_t> indexes;  // where those of its channels begin
+  };
+  struct MetadataPlace {
+    std::uint64_t at = 0, bytes = 0;
+    std::string name;
+  };
+
+  void write(const std::string& bytes);
+  void end_chunk();
+  std::string summary(std::uint64_t at) const;
+  std::string statistics() const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  bool failed_ = false;
+  std::uint64_t at_ = 0;  // bytes written
+
+  std::map<std::string, std::uint16_t> schemas_;
+  std::string schema_records_, channel_records_;  // repeated in the summary
+  std::vector<std::uint64_t> counts_;             // messages by channel
+
+  std::string chunk_;
+  Chunk open_;
+  std::map<Channel, std::vector<std::pair<std::uint64_t, std::uint64_t>>> index_;
+  std::vector<Chunk> chunks_;
+  std::vector<MetadataPlace> metadata_;
+};
+
+}  // namespace ergocast

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Ergodic coverage by teams of agents: records, simulations, and the method.
+
+load() reads a run directory, simulate() flies a mission. The classes of the method are those of
+the C++ code, and compute the same bits. docs/python.md is the introduction.
+"""
+
+from ergocast._errors import ErgocastError, RecordError, ScenarioError
+from ergocast._native import (
+    Basis,
+    ControlLaw,
+    Controller,
+    CoverageTable,
+    Domain,
+    Gaussian,
+    IdealTeam,
+    Mission,
+    Region,
+    Target,
+    __version__,
+    ergodic_metric,
+)
+from ergocast._run import Run, load
+from ergocast._simulate import compile_mission, simulate
+
+__all__ = [
+    "Basis",
+    "ControlLaw",
+    "Controller",
+    "CoverageTable",
+    "Domain",
+    "ErgocastError",
+    "Gaussian",
+    "IdealTeam",
+    "Mission",
+    "RecordError",
+    "Region",
+    "Run",
+    "ScenarioError",
+    "Target",
+    "__version__",
+    "compile_mission",
+    "ergodic_metric",
+    "load",
+    "simulate",
+]

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Missions simulated in this process."""
+
+from __future__ import annotations
+
+import numbers
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Union
+
+import numpy as np
+
+from ergocast import _native
+from ergocast._errors import RecordError, ScenarioError, raised_as
+from ergocast._run import Run
+
+Value = Union[bool, int, float, str, "np.generic"]
+"""A number, a truth value, or one of a field's words."""
+
+
+def simulate(
+    scenario: str | os.PathLike[str],
+    *,
+    seed: int | None = None,
+    set: Mapping[str, Value] | None = None,
+    out: str | os.PathLike[str] | None = None,
+) -> Run:
+    """Simulates a mission, as `ergocast simulate` does: the same bytes in the same files.
+
+    scenario: a file, or the name of a shipped one.
+    seed: other random numbers.
+    set: fields and their values, such as {"law.epsilon": 0.2, "agents.starts[0].x_m": 3}; the
+        paths and values of `ergocast study --vary`.
+    out: a new folder, which becomes the run directory with its report; without it nothing stays
+        on the disk.
+
+    Other threads run meanwhile. Ctrl-C ends the mission in order, and raises KeyboardInterrupt.
+    Raises ScenarioError with all problems at once, RecordError if `out` cannot be used.
+    """
+    compiled = _compile(scenario, seed, set)
+    with raised_as(RecordError):
+        if out is not None:
+            compiled.simulate(os.fspath(out), True)
+            return Run(out)
+        with tempfile.TemporaryDirectory(prefix="ergocast-") as folder:
+            run_dir = Path(folder) / "run"
+            compiled.simulate(os.fspath(run_dir), False)
+            return Run(run_dir)
+
+
+def compile_mission(
+    scenario: str | os.PathLike[str],
+    *,
+    seed: int | None = None,
+    set: Mapping[str, Value] | None = None,
+) -> _native.Mission:
+    """The mission that simulate() would fly: for IdealTeam, Controller and others.
+
+    Parameters and errors as for simulate().
+    """
+    return _compile(scenario, seed, set).mission
+
+
+def _compile(
+    scenario: str | os.PathLike[str], seed: int | None, values: Mapping[str, Value] | None
+) -> _native.Scenario:
+    if seed is not None and not 0 <= seed < 2**64:
+        raise ScenarioError(f"seed={seed}: is not a whole number from 0 to 2**64 - 1")
+    with raised_as(ScenarioError):
+        return _native.Scenario(_file(scenario), seed, _fields(values))
+
+
+def _file(scenario: str | os.PathLike[str]) -> str:
+    """The file of a shipped scenario, if `scenario` is the name of one; else `scenario`."""
+    name = os.fspath(scenario)
+    here = Path(__file__).resolve()
+    if name.isidentifier() and not os.path.exists(name):
+        # Below the prefix of an installation, or in the source tree.
+        for folder in (here.parents[4] / "share/ergocast/scenarios", here.parents[2] / "scenarios"):
+            file = folder / f"{name}.textproto"
+            if file.exists():
+                return str(file)
+    return name
+
+
+def _fields(values: Mapping[str, Value] | None) -> list[tuple[str, str, str]]:
+    """(path, value as a scenario writes it, how errors call it)."""
+    fields = []
+    for path, value in (values or {}).items():
+        text = _text(value)
+        fields.append((path, text, f"set {path}={text}"))
+    return fields
+
+
+def _text(value: Value) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        return repr(float(value))
+    return str(value)

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The module itself; python/ergocast/ is what people import.
+#include "python/module.h"
+
+#include "runtime/node.h"
+
+PYBIND11_MODULE(_native, module) {
+  module.doc() = "The C++ part of the package ergocast.";
+  module.attr("__version__") = ergocast::version();
+  ergocast::python::add_method(module);
+  ergocast::python::add_target(module);
+  ergocast::python::add_team(module);
+  ergocast::python::add_records(module);
+}

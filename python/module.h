@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of the module ergocast._native. Each function adds its classes.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace ergocast::python {
+
+/// Domain, Basis, Mission, ControlLaw, and what is computed with them: core/basis.h.
+void add_method(pybind11::module_& module);
+/// Controller, CoverageTable, IdealTeam: core/control.h, core/coverage_table.h, core/ideal_team.h.
+void add_team(pybind11::module_& module);
+/// Gaussian, Region, Target: target/target.h.
+void add_target(pybind11::module_& module);
+/// Record, compile_mission(), simulate(): logger/run_data.h, cli/simulated_record.h.
+void add_records(pybind11::module_& module);
+
+}  // namespace ergocast::python

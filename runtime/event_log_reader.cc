@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks the word and the lengths of each event before it reads what they announce.
+#include "runtime/event_log_reader.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "lcmtypes/message_authenticator.h"
+#include "runtime/event_log.h"
+#include "runtime/lcm_datagram.h"
+
+namespace ergocast {
+namespace {
+
+template <class Number>
+Number big_endian(std::span<const std::byte> bytes) {
+  std::uint64_t number = 0;
+  for (const std::byte byte : bytes.first(sizeof(Number))) {
+    number = number << 8 | std::to_integer<std::uint64_t>(byte);
+  }
+  return static_cast<Number>(number);
+}
+
+}  // namespace
+
+std::variant<EventLogReader, std::string> EventLogReader::open(
+    const std::filesystem::path& folder) {
+  std::map<int, std::filesystem::path> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (const auto number = segment_number(entry.path().filename().string()))
+      found.emplace(*number, entry.path());
+  }
+  if (error) return folder.string() + ": " + error.message() + "; name a run directory";
+  if (found.empty()) {
+    return folder.string() +
+           ": has no event log (events-000.lcm …); `ergocast run` writes one, and `ergocast "
+           "simulate --event-log`";
+  }
+  std::vector<std::filesystem::path> segments;
+  int expected = found.begin()->first;
+  for (auto& [number, path] : found) {
+    if (number != expected++) {
+      return path.string() + ": the segment before it is missing; copy it back, or move the " +
+             "segments on one side of the gap away";
+    }
+    segments.push_back(std::move(path));
+  }
+  return EventLogReader(std::move(segments));
+}
+
+bool EventLogReader::open_next() {
+  if (next_segment_ == segments_.size()) return false;
+  const auto& path = segments_[next_segment_++];
+  file_.reset(std::fopen(path.c_str(), "rb"));
+  if (!file_) problem_ = path.string() + ": " + std::strerror(errno);
+  at_ = 0;
+  return file_ != nullptr;
+}
+
+std::string EventLogReader::place() const {
+  return segments_[next_segment_ == 0 ? 0 : next_segment_ - 1].string() + ", byte " +
+         std::to_string(begin_);
+}
+
+const LoggedEvent* EventLogReader::refuse(const std::string& what) {
+  problem_ = place() + ": " + what + "; what stands before is sound: `truncate -s " +
+             std::to_string(begin_) + "` on a copy keeps it";
+  return nullptr;
+}
+
+const LoggedEvent* EventLogReader::next() {
+  if (problem_ || (!file_ && !open_next())) return nullptr;
+  std::array<std::byte, kEventHeaderBytes> header{};
+  const auto read = [this](void* to, std::size_t bytes) {
+    const std::size_t got = std::fread(to, 1, bytes, file_.get());
+    at_ += got;
+    return got == bytes;
+  };
+  begin_ = at_;
+  if (!read(header.data(), header.size())) {
+    file_.reset();  // an incomplete event, or none: on to the next segment
+    return next();
+  }
+  const std::span<const std::byte> bytes(header);
+  if (big_endian<std::uint32_t>(bytes) != kEventSync) return refuse("no event of LCM's log format");
+  event_.time_us = big_endian<std::int64_t>(bytes.subspan(12));
+  const auto name = big_endian<std::uint32_t>(bytes.subspan(20));
+  const auto size = big_endian<std::uint32_t>(bytes.subspan(24));
+  if (name >= kMaxChannelBytes || size > kMaxDatagramBytes) {
+    return refuse("an event longer than any message of Ergocast");
+  }
+  event_.channel.resize(name);
+  event_.bytes.resize(size);
+  if (read(event_.channel.data(), name) && read(event_.bytes.data(), size)) return &event_;
+  file_.reset();
+  return next();
+}
+
+}  // namespace ergocast

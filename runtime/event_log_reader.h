@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads the event log of a run directory, segment by segment.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace ergocast {
+
+/// A logged message. The bytes may be anything.
+struct LoggedEvent {
+  std::int64_t time_us = 0;
+  std::string channel;
+  std::vector<std::byte> bytes;
+};
+
+class EventLogReader {
+ public:
+  /// Finds the segments. An error if there is none, or a removed one is missing in between.
+  static std::variant<EventLogReader, std::string> open(const std::filesystem::path& folder);
+
+  /// The next event, valid until the next call; null at the end and after a problem. An incomplete
+  /// event at a segment's end comes from a killed logger and is left out.
+  const LoggedEvent* next();
+
+  /// What ended the reading before the end: file, byte and remedy.
+  const std::optional<std::string>& problem() const { return problem_; }
+  /// "FILE, byte N": where the last event begins.
+  std::string place() const;
+
+ private:
+  explicit EventLogReader(std::vector<std::filesystem::path> segments)
+      : segments_(std::move(segments)) {}
+  bool open_next();
+  const LoggedEvent* refuse(const std::string& what);
+
+  std::vector<std::filesystem::path> segments_;
+  std::size_t next_segment_ = 0;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_{nullptr, &std::fclose};
+  std::uint64_t at_ = 0, begin_ = 0;
+  LoggedEvent event_;
+  std::optional<std::string> problem_;
+};
+
+}  // namespace ergocast

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What one agent can know of a team, and ĉ by its formula, evaluated again from all received
+// blocks.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/forecast.h"
+#include "core/noise.h"
+
+namespace ergocast::test {
+
+constexpr double kDt = 0.1;
+constexpr std::int64_t kManySteps = 1000000;
+constexpr std::uint64_t kHistories = 60;
+constexpr Tick kPeriod = 5, kEnd = 60;
+const Author kSelf{0, 9};
+
+/// 12 × 12 modes: two blocks, the second not full.
+inline Mission mission_of(bool dead_reckoning) {
+  Mission mission;
+  mission.domain = {{-100, 30, 0}, {2000, 1000, 0}};
+  mission.basis.modes_x = mission.basis.modes_y = 12;
+  mission.target_coefficients = Coefficients::Zero(144);
+  mission.target_coefficients[0] = 1;
+  mission.target_coefficients[24] = -0.3;
+  mission.law.u_max_mps = 100;
+  mission.law.anticipation = 2;
+  mission.timing.dt_s = kDt;
+  mission.timing.tick_count = 1000;
+  mission.timing.broadcast_period_ticks = kPeriod;
+  mission.dead_reckoning = dead_reckoning;
+  return mission;
+}
+
+/// Numbers of one history.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t history) : history_(history) {}
+  std::uint64_t below(std::uint64_t limit) {
+    return random_words(history_, Purpose::kFault, 2, ++throws_).first % limit;
+  }
+  bool one_in(std::uint64_t many) { return below(many) == 0; }
+  Tick tick(Tick from, Tick until) {
+    return from + static_cast<Tick>(below(static_cast<std::uint64_t>(until - from)));
+  }
+
+ private:
+  std::uint64_t history_, throws_ = 0;
+};
+
+/// Where the vehicle of `agent` is.
+inline Eigen::Vector3d place(AgentId agent, Tick tick, const Mission& mission) {
+  return uniform_in(mission.domain, 11, Purpose::kStart, static_cast<std::uint32_t>(agent),
+                    static_cast<std::uint64_t>(tick));
+}
+
+/// An agent that covers the place of its vehicle, tick by tick, and broadcasts when it is asked to.
+class Life {
+ public:
+  Life(const Author& author, const Mission& mission)
+      : author_(author), mission_(mission), own_(mission.basis, kDt) {}
+  void cover(Tick tick) {
+    own_.add_sample(author_,
+                    BasisAt(place(author_.agent, tick, mission_), mission_.domain, mission_.basis));
+  }
+  std::vector<Contribution> speak(Tick tick, Tick period = kPeriod) const {
+    std::vector<Contribution> said;
+    for (int b = 0; b < own_.block_count(); ++b) {
+      said.push_back(own_.block(author_, b));
+      said.back().header.tick = tick;
+      said.back().next_broadcast_tick = tick + period;
+    }
+    return said;
+  }
+
+ private:
+  Author author_;
+  const Mission& mission_;
+  CoverageTable own_;
+};
+
+/// All that one agent can know at a tick.
+struct Known {
+  std::vector<Contribution> heard;  // in the order of arrival
+  std::vector<RosterEntry> roster;  // ascending by author
+  std::vector<Author> forgotten;
+  std::map<AgentId, std::vector<Tick>> seen;  // ascending
+  Tick joined = 0, tick = 0;
+};
+
+inline CoverageTable table_of(const Known& known, const Mission& mission) {
+  CoverageTable table(mission.basis, kDt, known.joined);
+  for (const Contribution& block : known.heard) table.merge(block, kManySteps);
+  for (const Author& author : known.forgotten) table.forget(author);
+  return table;
+}
+
+inline Coefficients foreseen(const Known& known, const Mission& mission) {
+  Forecast forecast(mission, kSelf);
+  for (const auto& [agent, ticks] : known.seen) {
+    for (const Tick tick : ticks) forecast.see(agent, tick, place(agent, tick, mission));
+  }
+  Coefficients coverage = Coefficients::Constant(144, 77);
+  forecast.look_ahead(table_of(known, mission), known.roster, known.tick, coverage);
+  return coverage;
+}
+
+// ---- the formula, again ------------------------------------------------------------------------
+
+struct Row {
+  std::int64_t steps = 0, gained_steps = 0;
+  Tick tick = 0, period = 0;
+  std::vector<double> sums = std::vector<double>(kBlockSize), gains = sums;
+};
+
+/// What is held of each author and block, and what it has gained since the one held before.
+inline std::map<std::pair<Author, int>, Row> rows_of(const Known& known) {
+  std::map<std::pair<Author, int>, Row> rows;
+  for (const Contribution& said : known.heard) {
+    Row& row = rows[{said.author(), said.block}];
+    if (said.steps <= row.steps) continue;
+    const bool has_before = row.steps > 0 && row.tick >= known.joined;
+    const std::int64_t before = has_before ? row.steps : 0;
+    bool possible = true;
+    for (std::size_t k = 0; k < kBlockSize; ++k) {
+      row.gains[k] = said.sums[k] - (has_before ? row.sums[k] : 0);
+      row.sums[k] = said.sums[k];
+      possible &=
+          std::abs(row.gains[k]) < static_cast<double>(said.steps - before) * kDt * (1 + 1e-6);
+    }
+    row.steps = said.steps;
+    row.gained_steps = possible ? said.steps - before : 0;
+    row.tick = said.header.tick;
+    row.period = said.next_broadcast_tick - said.header.tick;
+  }
+  return rows;
+}
+
+inline bool flies(const Author& author, const Known& known) {
+  const RosterEntry* own = nullptr;
+  for (const RosterEntry& entry : known.roster) {
+    if (entry.author == author && entry.active_at(known.tick)) own = &entry;
+  }
+  return own != nullptr && author != kSelf &&
+         std::none_of(known.roster.begin(), known.roster.end(), [&](const RosterEntry& entry) {
+           return entry.author.agent == author.agent && entry.active_from <= known.tick &&
+                  entry.active_from > own->active_from;
+         });
+}
+
+/// Adds where the author's vehicle has been since it spoke.
+inline void reckon(const Author& author, int block, const Known& known, const Mission& mission,
+                   Row& row) {
+  const auto seen = known.seen.find(author.agent);
+  if (seen == known.seen.end() || author.agent == kSelf.agent || row.steps == 0) return;
+  const auto entry = std::find_if(known.roster.begin(), known.roster.end(),
+                                  [&](const RosterEntry& one) { return one.author == author; });
+  for (const Tick tick : seen->second) {
+    if (tick < row.tick || !entry->active_at(tick)) continue;
+    const Coefficients f =
+        basis_values(place(author.agent, tick, mission), mission.domain, mission.basis);
+    std::fill(row.gains.begin(), row.gains.end(), 0);
+    for (int k = block * kBlockSize;
+         k < std::min((block + 1) * kBlockSize, mission.basis.mode_count()); ++k) {
+      const auto at = static_cast<std::size_t>(k - block * kBlockSize);
+      row.gains[at] = f.data()[k] * kDt;
+      if (tick > row.tick) row.sums[at] += f.data()[k] * kDt;
+    }
+    row.gained_steps = 1;
+    row.steps += tick > row.tick;
+    row.tick = tick;
+  }
+}
+
+inline double weight_s(const Row& row, double horizon_s, Tick now) {
+  const double cap_s = 8 * kDt * static_cast<double>(std::min(row.period, kPeriod));
+  const double age_s = kDt * static_cast<double>(now - row.tick);
+  if (age_s > std::max(horizon_s, cap_s)) return 0;
+  return horizon_s + std::min(kDt * static_cast<double>(row.gained_steps), cap_s) + age_s;
+}
+
+inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
+  const double spread_m =
+      target_spread_m(mission.target_coefficients, mission.basis, mission.domain);
+  Coefficients foreseen = Coefficients::Zero(144);
+  auto rows = rows_of(known);
+  for (int b = 0; b < 2; ++b) {
+    int n = 1;
+    std::vector<Row*> counting, flying;
+    for (auto& [key, row] : rows) {
+      const auto& [author, block] = key;
+      const bool forgotten = std::count(known.forgotten.begin(), known.forgotten.end(), author) > 0;
+      if (block != b || forgotten) continue;
+      counting.push_back(&row);
+      if (!flies(author, known)) continue;
+      if (mission.dead_reckoning) reckon(author, b, known, mission, row);
+      if (row.gained_steps == 0) continue;
+      flying.push_back(&row);
+      ++n;
+    }
+    const double horizon_s =
+        mission.law.anticipation * spread_m / (mission.law.u_max_mps * std::sqrt(n));
+    for (int k = b * kBlockSize; k < std::min((b + 1) * kBlockSize, 144); ++k) {
+      const auto at = static_cast<std::size_t>(k - b * kBlockSize);
+      double above = 0, below_s = 0;
+      for (const Row* row : counting) {
+        above += row->sums[at];
+        below_s += static_cast<double>(row->steps) * kDt;
+      }
+      for (const Row* row : flying) {
+        const double w_s = weight_s(*row, horizon_s, known.tick);
+        above += w_s * row->gains[at] / (static_cast<double>(row->gained_steps) * kDt);
+        below_s += w_s;
+      }
+      if (below_s > 0) foreseen.data()[k] = above / below_s;
+    }
+  }
+  return foreseen;
+}
+
+// ---- teams
+// ---------------------------------------------------------------------------------------
+
+inline RosterEntry entry_of(const Author& author, Tick from, Tick until = -1) {
+  return {author, from, until};
+}
+
+/// A team of `agents` that has broadcast all at each of the ticks 0 … kEnd − 1, as its messages.
+inline std::vector<Contribution> told_each_tick(int agents, const Mission& mission,
+                                                Tick every = 1) {
+  std::vector<Contribution> said;
+  std::vector<Life> lives;
+  for (AgentId id = 0; id < agents; ++id)
+    lives.emplace_back(id == 0 ? kSelf : Author{id, 1}, mission);
+  for (Tick tick = 0; tick < kEnd; ++tick) {
+    for (Life& life : lives) {
+      life.cover(tick);
+      if (tick % every != 0) continue;
+      for (const Contribution& block : life.speak(tick)) said.push_back(block);
+    }
+  }
+  return said;
+}
+
+inline Known team_of(int agents, const Mission& mission, Tick every = 1) {
+  Known known;
+  known.heard = told_each_tick(agents, mission, every);
+  for (AgentId id = 0; id < agents; ++id) {
+    known.roster.push_back(entry_of(id == 0 ? kSelf : Author{id, 1}, 0));
+  }
+  known.tick = kEnd - 1;
+  return known;
+}
+
+}  // namespace ergocast::test

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coverage that travels in 16 bits costs a team nothing that can be seen. docs/network.md has the
+// command that flies many more seeds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lab/studies/study_run.h"
+#include "scenario/scenario.h"
+#include "team/plan.h"
+
+namespace ergocast {
+namespace {
+
+double metric_of(const char* encoding, const char* period_ticks, const char* reckons,
+                 std::uint64_t seed) {
+  Overrides overrides;
+  overrides.seed = seed;
+  overrides.duration_s = 30;
+  overrides.fields = {{"time.contribution_encoding", encoding, ""},
+                      {"time.broadcast_period_ticks", period_ticks, ""},
+                      {"agents.dead_reckoning", reckons, ""}};
+  const auto loaded = Scenario::load(
+      std::string(ERGOCAST_SCENARIO_DIR) + "/quadrimodal_corners.textproto", overrides);
+  const auto plan = encode_plan(std::get<Scenario>(loaded).mission());
+  return studies::fly_with_messages(plan).metric;
+}
+
+TEST(Encoding, OfSixteenBitsEndsWhereDoublesDo) {
+  constexpr int kSeeds = 8;
+  for (const char* period_ticks : {"1", "5", "20"}) {
+    for (const char* reckons : {"true", "false"}) {
+      double log_ratio = 0;
+      bool differs = false;
+      for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        const double exact = metric_of("DOUBLE", period_ticks, reckons, seed);
+        const double rounded = metric_of("FIXED16", period_ticks, reckons, seed);
+        differs = differs || exact != rounded;
+        log_ratio += std::log(rounded / exact) / kSeeds;
+      }
+      EXPECT_LE(std::abs(log_ratio), 0.02) << period_ticks << " ticks, reckons: " << reckons;
+      EXPECT_TRUE(differs) << "it is rounded";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ergocast

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coverage that travels in 16 bits: how far it is from the exact one, that errors do not add up,
+// that it merges in any order, and that the two encodings never mix.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/coverage_table.h"
+#include "core/noise.h"
+#include "lcmtypes/codec.h"
+#include "tests/lcmtypes/sample_messages.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+constexpr double kTick_s = 0.1;
+constexpr std::int64_t kManySteps = 100000;
+const Box kDomain{{0, 0, 0}, {2000, 1000, 0}};
+
+/// 18 × 18 modes: two blocks of 256, or three of 128.
+Basis modes() {
+  Basis basis;
+  basis.modes_x = basis.modes_y = 18;
+  return basis;
+}
+
+CoverageTable table_in(ContributionEncoding encoding) {
+  CoverageTable table(modes(), kTick_s);
+  table.set_encoding(encoding);
+  return table;
+}
+CoverageTable rounded_table() { return table_in(ContributionEncoding::kFixed16); }
+
+Eigen::Vector3d place(AgentId agent, Tick tick) {
+  return uniform_in(kDomain, 7, Purpose::kStart, static_cast<std::uint32_t>(agent),
+                    static_cast<std::uint64_t>(tick));
+}
+
+/// Agent `id` samples every tick and broadcasts every `period` of them, as it does in a mission.
+class Author16 {
+ public:
+  explicit Author16(AgentId id) : author_{id, 5}, table_(rounded_table()) {}
+
+  /// What it has said by the end of so many ticks, as it arrives.
+  std::vector<Contribution> fly(Tick ticks, Tick period) {
+    std::vector<Contribution> said;
+    std::vector<Contribution> before(static_cast<std::size_t>(table_.block_count()));
+    for (Tick tick = 0; tick < ticks; ++tick) {
+      table_.add_sample(author_, BasisAt(place(author_.agent, tick), kDomain, modes()));
+      if (tick % period != 0) continue;
+      for (int b = 0; b < table_.block_count(); ++b) {
+        Contribution block = table_.block(author_, b);
+        Contribution& last = before[static_cast<std::size_t>(b)];
+        block.header.run = kRun;
+        block.header.tick = tick;
+        block.next_broadcast_tick = tick + period;
+        block.gained_steps = block.steps - last.steps;
+        const std::span<double> gains = block.gains.set_all(block.sums.size());
+        for (std::size_t k = 0; k < gains.size(); ++k)
+          gains[k] = block.sums[k] - last.sums.data()[k];
+        said.push_back(arrived(block));
+        last = block;
+      }
+    }
+    return said;
+  }
+  static Contribution arrived(const Contribution& block) {
+    return decoded_as<Contribution>(encoded(block));
+  }
+  const CoverageTable& table() const { return table_; }
+
+ private:
+  Author author_;
+  CoverageTable table_;
+};
+
+TEST(Fixed16, IsWithinHalfAUnitOfTheExactAverageHoweverLongItFlies) {
+  for (const Tick ticks : {1, 10, 1000, 4999}) {
+    Author16 author(1);
+    CoverageTable heard = rounded_table();
+    const Tick period = ticks > 1000 ? 7 : 1;  // its last broadcast is at its last tick
+    for (const Contribution& block : author.fly(ticks, period)) {
+      ASSERT_EQ(heard.merge(block, kManySteps), Merge::kNewer);
+    }
+    double furthest = 0;
+    for (int b = 0; b < heard.block_count(); ++b) {
+      const Contribution ours = heard.block({1, 5}, b), theirs = author.table().block({1, 5}, b);
+      ASSERT_EQ(ours.steps, theirs.steps);
+      for (std::size_t k = 0; k < kMostBlockSize; ++k) {
+        furthest = std::max(furthest, std::abs(ours.sums[k] - theirs.sums[k]) / theirs.elapsed_s);
+      }
+    }
+    EXPECT_LE(furthest, (1 + 1e-9) / 65534) << ticks;
+    EXPECT_GT(furthest, 0) << "it is rounded, " << ticks;
+  }
+}
+
+TEST(Fixed16, PassedOnItIsTheSameBytes) {
+  Author16 author(2);
+  for (const Contribution& block : author.fly(50, 3)) {
+    CoverageTable one = rounded_table();
+    ASSERT_EQ(one.merge(block, kManySteps), Merge::kNewer);
+    Contribution relayed = one.block(block.author(), block.block);
+    relayed.header.run = kRun;
+    EXPECT_EQ(encoded(relayed), encoded(block));
+  }
+}
+
+/// Bit for bit.
+void expect_same(const CoverageTable& a, const CoverageTable& b) {
+  Coefficients ours = Coefficients::Zero(324), theirs = Coefficients::Zero(324);
+  a.average(ours);
+  b.average(theirs);
+  EXPECT_EQ(ours, theirs);
+  ASSERT_EQ(a.row_count(), b.row_count());
+  for (std::size_t row = 0; row < a.row_count(); ++row) {
+    EXPECT_EQ(a.holding(row).state_hash, b.holding(row).state_hash);
+    for (int block = 0; block < a.block_count(); ++block) {
+      const Contribution one = a.block(a.author(row), block), other = b.block(a.author(row), block);
+      EXPECT_EQ(one.sums, other.sums);
+      EXPECT_EQ(one.gains, other.gains);
+      EXPECT_EQ(one.gained_steps, other.gained_steps);
+    }
+  }
+}
+
+TEST(Fixed16, MergesInAnyOrderAndAnyNumberOfTimes) {
+  std::vector<Contribution> said;
+  for (AgentId id = 0; id < 3; ++id) {
+    const auto more = Author16(id).fly(20, 2);
+    said.insert(said.end(), more.begin(), more.end());
+  }
+  CoverageTable in_order = rounded_table();
+  for (const Contribution& block : said) in_order.merge(block, kManySteps);
+  for (std::uint64_t shuffle = 0; shuffle < 20; ++shuffle) {
+    std::vector<Contribution> heard = said;
+    heard.insert(heard.end(), said.begin(), said.end());
+    for (std::size_t i = heard.size(); i > 1; --i) {
+      std::swap(heard[i - 1], heard[random_words(shuffle, Purpose::kFault, 1, i).first % i]);
+    }
+    CoverageTable table = rounded_table();
+    for (const Contribution& block : heard) table.merge(block, kManySteps);
+    expect_same(table, in_order);
+  }
+}
+
+TEST(Fixed16, NeverMixesWithDoubles) {
+  const std::vector<Contribution> rounded = Author16(1).fly(1, 1);
+  CoverageTable doubles = table_in(ContributionEncoding::kDouble), rounds = rounded_table();
+  EXPECT_EQ(doubles.merge(rounded.front(), kManySteps), Merge::kRefusedEncoding);
+  EXPECT_EQ(doubles.row_count(), 0u);
+  CoverageTable exact = table_in(ContributionEncoding::kDouble);
+  exact.add_sample({1, 5}, BasisAt(place(1, 0), kDomain, modes()));
+  EXPECT_EQ(rounds.merge(exact.block({1, 5}, 0), kManySteps), Merge::kRefusedEncoding);
+  EXPECT_EQ(rounds.row_count(), 0u);
+}
+
+TEST(Fixed16, RefusesAverageBeyondOneAndGainsOfMoreStepsThanThereAre) {
+  const Contribution honest = Author16(1).fly(1, 1).front();
+  Bytes bytes = encoded(honest);
+  constexpr std::size_t kFirstAverage = 100;
+  bytes[kFirstAverage + 2] = std::byte{0x80};  // −32768
+  bytes[kFirstAverage + 3] = std::byte{0};
+  EXPECT_EQ(verdict(retagged(bytes)), "range");
+  Contribution lie = honest;
+  lie.gained_steps = lie.steps + 1;
+  EXPECT_EQ(rounded_table().merge(lie, kManySteps), Merge::kRefusedRange);
+  lie = honest;
+  lie.sums.edit()[0] *= 32766.0 / 32767;
+  EXPECT_EQ(rounded_table().merge(lie, kManySteps), Merge::kRefusedRange) << "S_00 is the time";
+}
+
+}  // namespace
+}  // namespace ergocast

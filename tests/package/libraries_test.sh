@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# libergocast-dev and python3-ergocast on a bare Debian 12: each header compiles alone, the example flies
+# in a team of the packaged processes, Python reads what was flown, and nothing is left.
+# shellcheck source=tests/package/debian.sh
+. "$(dirname "$0")/debian.sh"
+
+source=$(cd "$(dirname "$0")/../.." && pwd)
+
+check_headers() {
+  (cd "$root/usr/include" && find ergocast -name '*.h' | sort) >"$work/headers"
+  grep -q ergocast/core/control.h "$work/headers" || fail 'no headers'
+  cat >"$work/alone" <<'END'
+echo "#include <$1>" | g++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -isystem /usr/include/eigen3 -x c++ -
+END
+  in_root xargs -P2 -n1 sh /tmp/test/alone <"$work/headers" || fail 'a header does not compile alone'
+}
+
+check_versions() {
+  mkdir "$work/other"
+  printf 'cmake_minimum_required(VERSION 3.25)\nproject(x LANGUAGES CXX)\nfind_package(Ergocast 9.9 REQUIRED)\n' \
+    >"$work/other/CMakeLists.txt"
+  ! in_root cmake -S /tmp/test/other -B /tmp/test/other/build >"$work/said" 2>&1 || fail 'any version will do'
+  grep -q 'version: 0' "$work/said" || { cat "$work/said"; fail 'the version is not named'; }
+}
+
+# In a team of the packaged processes; its trajectory is that of the simulation.
+check_example() {
+  cp -r "$source/examples/embed" "$work/embed"
+  in_root cmake -S /tmp/test/embed -B /tmp/test/embed/build >"$work/said" 2>&1 &&
+    in_root cmake --build /tmp/test/embed/build >>"$work/said" 2>&1 || { cat "$work/said"; fail 'the example'; }
+  cat >"$work/team" <<'END'
+cd /tmp/test
+ergocast-sim & ergocast-logger --out flown & ergocast-agent & ergocast-agent & ergocast-agent &
+embed/build/embed >embedded &
+ergocast-coordinator --duration 20 quadrimodal_corners
+wait
+END
+  mkdir "$work/flown"
+  offline bash /tmp/test/team >"$work/said" 2>&1 || { cat "$work/said"; fail 'the team'; }
+  grep -q 'mission complete' "$work/embedded" || { cat "$work/said" "$work/embedded"; fail 'embedded'; }
+  offline ergocast simulate quadrimodal_corners --duration 20 --out /tmp/test/simulated >/dev/null || fail simulate
+  cmp "$work/simulated/trajectory.csv" "$work/flown/trajectory.csv" || fail 'the embedded agent flies another law'
+}
+
+check_python() {
+  cat >"$work/program.py" <<'END'
+import ergocast
+
+run = ergocast.load("/tmp/test/flown")
+same = ergocast.simulate("quadrimodal_corners", set={"time.duration_s": 20})
+assert run.trajectory.equals(same.trajectory)
+assert run.ergodic_metric() == run.summary["ergodic_metric"]["last"] == same.ergodic_metric()
+print("python", ergocast.__version__)
+END
+  in_root python3 -I /tmp/test/program.py || fail 'python3-ergocast'
+  expect_file usr/share/doc/python3-ergocast/examples/run_and_sweep.ipynb
+}
+
+make_bare_system
+pack
+for name in ergocast libergocast-dev python3-ergocast; do
+  cp "$work"/${name}_*.deb "$root/tmp/$name.deb"
+done
+apt_install g++ cmake make /tmp/ergocast.deb /tmp/libergocast-dev.deb /tmp/python3-ergocast.deb
+check_headers
+check_versions
+check_example
+check_python
+in_root dpkg --purge ergocast libergocast-dev python3-ergocast >/dev/null
+left=$(files_of_system | grep -i ergocast || true)
+[ -z "$left" ] || fail "purged, and there still is: $left"
+echo 'an agent is embedded, and Python reads its run'

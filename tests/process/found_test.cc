@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A run is found without its URL: list, status, watch, spy and stop take the only live one.
+#include "tests/process/programs.h"
+
+namespace ergocast::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Found : public OwnHost {
+ protected:
+  ~Found() override { fs::remove_all(registry()); }
+  static fs::path registry() { return fs::path(std::getenv("XDG_RUNTIME_DIR")) / "ergocast"; }
+  static std::vector<fs::path> entries() {
+    std::vector<fs::path> files;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(registry(), none)) {
+      if (entry.path().filename().string().front() != '.') files.push_back(entry.path());
+    }
+    return files;
+  }
+  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+
+  /// Starts a mission that flies until it is stopped, and waits for its entry and first rows.
+  Child fly(const std::string& name, const std::vector<std::string>& more = {}) {
+    const auto known = entries().size();
+    std::vector<std::string> words{"run",         scenario_file("quadrimodal_corners"),
+                                   "--realtime",  "--duration",
+                                   "100000",      "--out",
+                                   folder_ / name};
+    words.insert(words.end(), more.begin(), more.end());
+    Child child = start("ergocast", words);
+    const auto table = folder_ / name / "trajectory.csv";
+    std::error_code none;
+    EXPECT_TRUE(eventually([&] {
+      return entries().size() > known && fs::exists(table, none) && fs::file_size(table, none) > 0;
+    })) << output();
+    return child;
+  }
+  /// The runs of `list --json`.
+  nlohmann::json listed() {
+    EXPECT_EQ(ergocast({"list", "--json"}), 0);
+    const std::string text = output();
+    return nlohmann::json::parse(text.substr(text.find('[')));
+  }
+};
+
+TEST_F(Found, TheOnlyLiveRunNeedsNoUrl) {
+  EXPECT_EQ(ergocast({"list"}), 0);
+  EXPECT_TRUE(said("no run of this user is live on this host")) << output();
+  Child run = fly("one");
+  const auto runs = listed();
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_EQ(runs[0]["run_dir"], (folder_ / "one").string());
+  const std::string id = runs[0]["run_id"];
+  EXPECT_EQ(ergocast({"list"}), 0);
+  EXPECT_TRUE(said(id + "  quadrimodal_corners, since ")) << output();
+  ergocast({"status"});
+  EXPECT_TRUE(said("quadrimodal_corners, run " + id + ", running")) << output();
+  EXPECT_EQ(ergocast({"stop"}), 0) << output();
+  EXPECT_TRUE(said("run " + id + ": asking the coordinator")) << output();
+  EXPECT_EQ(wait_for(run), 0);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Found, ItsKeyIsTakenWithIt) {
+  const auto key = folder_ / "mission";
+  ASSERT_EQ(ergocast({"keygen", key}), 0) << output();
+  Child run = fly("one", {"--key-file", key.string() + ".coordinator.key"});
+  ergocast({"status"});
+  EXPECT_TRUE(said(", running")) << output();
+  EXPECT_EQ(ergocast({"stop", "--now"}), 0) << output();
+  wait_for(run);
+}
+
+TEST_F(Found, OfTwoOneMustBeChosen) {
+  Child first = fly("one"), second = fly("two");
+  for (const char* command : {"status", "stop", "watch"}) {
+    EXPECT_EQ(ergocast({command}), 2);
+    EXPECT_TRUE(said("several runs of this user are live; choose one with --run-id:\n  --run-id "))
+        << output();
+  }
+  EXPECT_TRUE(first.running() && second.running());
+  for (const auto& one : listed()) {
+    EXPECT_EQ(ergocast({"stop", "--run-id", one["run_id"]}), 0) << output();
+  }
+  EXPECT_EQ(wait_for(first), 0);
+  EXPECT_EQ(wait_for(second), 0);
+}
+
+TEST_F(Found, ARunThatWasKilledIsSaidAndNotTaken) {
+  Child run = fly("one");
+  run.send(SIGKILL);
+  wait_for(run);
+  ASSERT_EQ(entries().size(), 1U);
+  EXPECT_EQ(ergocast({"list"}), 0);
+  EXPECT_TRUE(said("warning: run ") && said("was killed") && said("no run of this user is live"))
+      << output();
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(Found, ARunOfAnotherVersionIsNotTaken) {
+  Child run = fly("one");
+  const auto file = entries().front();
+  std::string text = text_of(file);
+  const auto at = text.find("\"version\": \"") + 12;
+  text.replace(at, text.find('"', at) - at, "9.9.9");
+  std::ofstream(file) << text;  // the same file: its lock stays
+  EXPECT_EQ(ergocast({"stop"}), 2);
+  EXPECT_TRUE(said("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_TRUE(run.running());
+  run.send(SIGINT);
+  EXPECT_EQ(wait_for(run), 0);
+}
+
+TEST_F(Found, AGivenUrlIsNotLookedUp) {
+  Child run = fly("one");
+  const std::string url = listed()[0]["lcm_url"];
+  EXPECT_EQ(ergocast({"status", "--lcm-url", "udpm://239.255.76.67:23000?ttl=0"}), 4);
+  setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:23000?ttl=0", 1);
+  EXPECT_EQ(ergocast({"stop"}), 4);
+  setenv("LCM_DEFAULT_URL", url.c_str(), 1);
+  EXPECT_EQ(ergocast({"stop"}), 0) << output();
+  unsetenv("LCM_DEFAULT_URL");
+  EXPECT_EQ(wait_for(run), 0);
+}
+
+TEST_F(Found, AMissionFliesWhereNothingCanBeRegistered) {
+  fs::create_directory(registry());
+  fs::permissions(registry(), fs::perms::all);
+  EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
+                      folder_ / "one"}),
+            0);
+  EXPECT_TRUE(said("warning: " + registry().string() + ": other users own it, read it or write"))
+      << output();
+  EXPECT_TRUE(fs::is_empty(registry()));
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The notebook runs to its end, and draws. notebook_test.py NOTEBOOK"""
+
+import sys
+import unittest
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+
+NOTEBOOK = Path(sys.argv.pop())
+
+
+class Notebook(unittest.TestCase):
+    def test_runs(self):
+        notebook = nbformat.read(NOTEBOOK, as_version=4)
+        nbformat.validate(notebook)
+        cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+        self.assertFalse(any(cell.outputs for cell in cells), "commit it without outputs")
+        NotebookClient(notebook, timeout=None, kernel_name="python3").execute()
+        pictures = [
+            output
+            for cell in cells
+            for output in cell.outputs
+            if "image/png" in output.get("data", {})
+        ]
+        self.assertEqual(len(pictures), 3)
+
+
+if __name__ == "__main__":
+    unittest.main()

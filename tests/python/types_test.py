@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The types of the package: complete, true of the C++ part, and of use to who calls it.
+
+types_test.py FOLDER: mypy's memory lies in FOLDER.
+"""
+
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import ergocast
+
+PACKAGE = Path(ergocast.__file__).parent
+FOLDER = Path(sys.argv.pop())
+CONFIGURATION = "[mypy]\nstrict = True\n[mypy-pandas.*]\nignore_missing_imports = True\n"
+
+# What pybind11 gives every class, and classes that only C++ makes.
+ALLOWED = """ergocast\\._native\\.[A-Z][A-Za-z]*
+ergocast\\._native\\.(ControlLaw|Mission)\\.__init__
+"""
+
+GOOD = """
+import numpy as np
+import numpy.typing as npt
+import ergocast
+
+run: ergocast.Run = ergocast.load("runs/one")
+c: npt.NDArray[np.float64] = run.coverage(5)
+many = run.coverage([1, 2])
+phi2: float = run.ergodic_metric()
+flown = ergocast.simulate("x", seed=1, set={"law.epsilon": 0.2, "time.pace": "LOCKSTEP"}, out=None)
+mu, error = ergocast.Target([ergocast.Gaussian((0, 0), sigma_m=1)]).coefficients(
+    flown.mission.domain, flown.mission.basis
+)
+command: npt.NDArray[np.float64] = ergocast.Controller(run.mission).command(0, 0, (1.0, 2.0))
+"""
+
+# From the second line on each is wrong.
+BAD = """import ergocast
+ergocast.simulate("x", seed="one")
+ergocast.load("x").coverage("end")
+x: int = ergocast.load("x").mission.dt_s
+ergocast.Basis(1)
+"""
+
+
+def mypy(*arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "mypy", "--config-file", FOLDER / "mypy.ini", "--cache-dir",
+         FOLDER / "mypy", *arguments],
+        capture_output=True, text=True,
+    )
+
+
+class Types(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        (FOLDER / "mypy.ini").write_text(CONFIGURATION)
+
+    def test_the_package_is_strictly_typed(self):
+        self.assertTrue((PACKAGE / "py.typed").exists())
+        checked = mypy("-p", "ergocast")
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+    def test_callers_are_checked(self):
+        self.assertEqual(mypy("-c", GOOD).stdout.splitlines()[-1], "Success: no issues found in 1 source file")
+        errors = re.findall(r"^<string>:(\d+): error", mypy("-c", BAD).stdout, re.MULTILINE)
+        self.assertEqual(sorted(set(errors)), ["2", "3", "4", "5"])
+
+    def test_the_stub_is_true(self):
+        (FOLDER / "allowed").write_text(ALLOWED)
+        checked = subprocess.run(
+            [sys.executable, "-m", "mypy.stubtest", "ergocast._native", "--allowlist", FOLDER / "allowed",
+             "--ignore-missing-stub", "--mypy-config-file", FOLDER / "mypy.ini"],
+            capture_output=True, text=True, cwd=FOLDER,
+        )
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+    def test_everything_public_has_a_contract(self):
+        for name in ergocast.__all__:
+            thing = getattr(ergocast, name)
+            if name.startswith("__"):
+                continue
+            self.assertTrue(thing.__doc__, name)
+            for member, value in vars(thing).items() if isinstance(thing, type) else ():
+                if not member.startswith("_") and (callable(value) or hasattr(value, "fget")):
+                    self.assertTrue(value.__doc__, f"{name}.{member}")
+
+
+if __name__ == "__main__":
+    unittest.main()
