@@ -7,43 +7,45 @@
 
 namespace ergocast {
 
-/// Whether it has been told of a state in which all bodies were. In lockstep every agent knows the
-/// last tick that any has answered, or the one before.
+/// Whether it has been told of a state in which all bodies were. Who has answered a tick knows its
+/// whole state, and says it before the answer.
 bool World::knows_bodies() const {
   Tick newest = -1;
-  for (const auto& [id, slot] : vehicles_) newest = std::max(newest, slot.answered());
-  return !keeps_distance() || newest < 0 || question_.before.newest() >= newest - 1;
+  for (const auto& [id, slot] : vehicles_) {
+    if (slot.author.incarnation != 0) newest = std::max(newest, slot.answered());
+  }
+  return !keeps_distance() || question_.before.newest() >= newest;
 }
 
-/// Puts all bodies where they are, so that they keep their distance: in lockstep by their agents'
-/// commands, which are of one tick. In real time those are of several; but all vehicles of one
-/// state were apart. Vehicles whose agents have left are in that state alone.
+/// Puts all bodies where they were in one state, so that they keep their distance; vehicles whose
+/// agents have left are in no other message. In lockstep they go on by the answers to that tick. In
+/// real time all stand: held commands were for other places.
 void World::settle() {
   if (world_guards(mission())) guard_.emplace(mission(), 0);
   const bool realtime = mission().timing.pace == Pace::kRealtime;
-  std::map<AgentId, Eigen::Vector3d> before_m;
-  for (const Neighbour& body : question_.before.neighbours(mission().speed_limit_mps)) {
-    before_m[body.id] = body.position_m;
-    vehicles_.try_emplace(body.id);
-  }
-  std::vector<AgentId> newcomers;
   for (auto& [id, slot] : vehicles_) {
-    const bool seen = before_m.contains(id);
-    if (realtime && slot.command) slot.command->velocity_mps.setZero();  // from another place
-    if (slot.answered() >= 0 && !(realtime && seen)) {
-      recall(id, slot);
-    } else if (seen) {
-      slot.x_m = before_m.at(id);
-      for (Tick tick = question_.before.newest(); tick < tick_ && !realtime; ++tick)
-        move(id, slot, tick);
-    } else {
-      newcomers.push_back(id);
+    slot.placed = false;
+    if (realtime && slot.command) slot.command->velocity_mps.setZero();
+  }
+  for (const WorldState& state : question_.before.states()) {
+    for (int i = 0; i < state.vehicle_count; ++i) {
+      const Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
+      VehicleSlot& slot = vehicles_[vehicle.id];
+      slot.x_m = vehicle.position_m;
+      slot.applied_mps = vehicle.velocity_mps;
+      slot.placed = true;
     }
   }
-  for (const AgentId id : newcomers) vehicles_.at(id).placed = false;
-  for (const AgentId id : newcomers) {
-    vehicles_.at(id).x_m = place_for(id);
-    vehicles_.at(id).placed = true;
+  for (Tick tick = question_.before.newest(); tick >= 0 && tick < tick_ && !realtime; ++tick) {
+    for (auto& [id, slot] : vehicles_) {
+      drive(slot, tick, false);
+      move(id, slot, tick);
+    }
+  }
+  for (auto& [id, slot] : vehicles_) {
+    if (slot.placed) continue;
+    slot.x_m = place_for(id);
+    slot.placed = true;
   }
 }
 
@@ -75,9 +77,6 @@ void World::recall(AgentId id, VehicleSlot& slot) {
   if (in_a_row) {
     slot.applied_mps = within_speed_limit(mission(), slot.command_before->velocity_mps);
   }
-  // Where a distance is kept in real time, all stand where they were: what they did later, each by
-  // itself, says nothing of how far apart they were.
-  if (realtime && keeps_distance()) return;
   for (Tick tick = slot.answered(); tick < tick_; ++tick) {
     drive(slot, tick, realtime);
     move(id, slot, tick);

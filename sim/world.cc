@@ -96,18 +96,16 @@ void World::ask_team(Instant now, Outbox& out) {
   const bool may_begin_without =
       mission().timing.pace == Pace::kRealtime && now - *question_.since >= kQuestionPatience;
   const AgentId unheard = first_unheard();
-  if ((unheard == kUnassigned && knows_bodies()) || may_begin_without) return begin(now);
+  if (knows_bodies() && (unheard == kUnassigned || may_begin_without)) return begin(now);
   if (now < question_.next) return;
   question_.next = now + kQuestionPeriod;
   ask(0, unheard, out);
 }
 
-/// The first member that has not answered with its last two commands, or with one that says that
-/// there is none; kUnassigned: all have.
+/// The first member that has not answered with its last two commands; kUnassigned: all have.
 AgentId World::first_unheard() const {
   for (const auto& [id, slot] : vehicles_) {
-    const bool heard = slot.command_before || (slot.command && slot.answered() < 0);
-    if (slot.author.incarnation != 0 && !heard) return id;
+    if (slot.author.incarnation != 0 && !slot.command_before) return id;
   }
   return kUnassigned;
 }
@@ -122,6 +120,7 @@ void World::begin(Instant now) {
   for (const RosterEntry& entry : follower().roster()) {
     tick_ = std::max({tick_, entry.active_from, entry.active_until});
   }
+  if (keeps_distance()) tick_ = std::max(tick_, question_.before.newest());
   tick_ = std::min(tick_, mission().timing.tick_count);  // whatever the roster says
   begun_at_ = tick_;
   if (keeps_distance()) return settle();
@@ -175,7 +174,12 @@ void World::on(const Command& command, const Arrival&) {
     return !known || command.header.tick > known->header.tick;
   };
   const bool again = slot.command && command.header.tick == slot.answered();
-  if (again && command.velocity_mps.isZero(0)) {
+  if (again && slot.answered() < 0) {
+    // One of the two may come before the answer to tick 0. Only both say that there is none.
+    const auto apart = std::abs(command.header.sequence - slot.command->header.sequence);
+    if (apart == 1) slot.command_before = slot.command;
+    slot.command = command;
+  } else if (again && command.velocity_mps.isZero(0)) {
     slot.command->velocity_mps.setZero();  // the one second thought that an agent may have
   } else if (newer_than(slot.command)) {
     slot.command_before = std::exchange(slot.command, command);

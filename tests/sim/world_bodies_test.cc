@@ -114,6 +114,19 @@ TEST(RestartedWorld, KnowsTheBodiesOfThoseWhoHaveLeft) {
   EXPECT_EQ(place(state, 2), Eigen::Vector3d(400, 400, 0));
 }
 
+/// Its former life had stepped on by the answers to tick 9; agent 1 has crashed since.
+TEST(RestartedWorld, GoesOnFromTheNewestStateThatAnyAgentKnows) {
+  World world = asking(apart(3, Pace::kLockstep));
+  for (const Tick tick : {8, 9}) give(world, answer(0, tick, 300), at(1ms));
+  nobody_has_moved(world, 2, at(1ms));
+  give(world, state_before(9, 0), at(1ms), 0);
+  give(world, state_before(10, 4), at(1ms), 0);
+  const WorldState state = state_after(world, at(2ms));
+  EXPECT_EQ(state.header.tick, 10);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(place(state, i), state_before(10, 4).vehicles[static_cast<std::size_t>(i)].position_m);
+}
+
 /// The answers of two ticks are of two times, at which other distances held.
 TEST(RestartedWorld, InRealTimePutsAllWhereOneStateSaysAndLetsThemStand) {
   World world = asking(apart(3, Pace::kRealtime));
