@@ -93,7 +93,7 @@ bool fits(const Separation& separation, const Mission& mission) {
   const auto held = static_cast<double>(unguarded_hold_ticks(mission));
   return mission.speed_limit_mps > 0 &&
          separation.distance_m <= mission.domain.shortest_side_m() / 4 &&
-         separation.disturbance_m < step_m / 4 && 2 * held * step_m <= separation.distance_m / 2 &&
+         separation.disturbance_m < step_m / 4 && 2 * held * step_m <= separation.distance_m / 2 * (1 + 1e-9) &&
          packing(mission, mission.starts_m.size()) <= kHopelessPacking &&
          least_distance_m(mission.starts_m) >= start_distance_m(mission);
 }

@@ -51,7 +51,7 @@ class SeparationRules {
     const double held_s =
         static_cast<double>(unguarded_hold_ticks(mission_)) * mission_.timing.dt_s;
     const double most_s = mission_.separation.distance_m / (4 * mission_.speed_limit_mps);
-    if (held_s <= most_s) return;
+    if (held_s <= most_s * (1 + 1e-9)) return;
     checks_.problem("time.command_hold_s",
                     shortest(mission_.timing.command_hold_s) +
                         " is too long without separation.guard: a vehicle may be anywhere within "
