@@ -24,25 +24,30 @@
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kColumns = 7;  // of either table
-using Fields = std::array<double, kColumns>;
+constexpr std::size_t kMostColumns = 8;  // of either table
+using Fields = std::array<double, kMostColumns>;
 
 /// Larger than any mission; squares and sums of such numbers are still finite.
 constexpr double kLargest = 1e100;
 
-/// Reads seven numbers separated by commas, and nothing else. Returns the first column that is not
-/// one, kColumns if more follows, or nothing.
-std::optional<std::size_t> first_bad_column(std::string_view line, Fields& fields) {
+std::size_t columns_of(std::string_view header) {
+  return 1 + static_cast<std::size_t>(std::ranges::count(header, ','));
+}
+
+/// Reads so many numbers separated by commas, and nothing else. Returns the first column that is
+/// not one, `columns` if more follows, or nothing.
+std::optional<std::size_t> first_bad_column(std::string_view line, std::size_t columns,
+                                            Fields& fields) {
   const char* at = line.data();
   const char* const end = at + line.size();
-  for (std::size_t i = 0; i < kColumns; ++i) {
+  for (std::size_t i = 0; i < columns; ++i) {
     if (i > 0 && at == end) return i;
     if (i > 0 && *at++ != ',') return i - 1;
     const auto [next, error] = std::from_chars(at, end, fields[i]);
     if (error != std::errc() || !(std::abs(fields[i]) <= kLargest)) return i;
     at = next;
   }
-  if (at != end) return kColumns;
+  if (at != end) return columns;
   return {};
 }
 
@@ -53,9 +58,11 @@ std::string_view name_of(std::size_t column, std::string_view header) {
 }
 
 std::string not_numbers(const std::string& line, std::size_t column, std::string_view header) {
-  return "expected 7 numbers separated by commas, found " + in_quotes(line) +
-         (column == kColumns ? ", which goes on"
-                             : ", whose " + std::string(name_of(column, header)) + " is no number");
+  const std::size_t columns = columns_of(header);
+  return "expected " + std::to_string(columns) + " numbers separated by commas, found " +
+         in_quotes(line) +
+         (column == columns ? ", which goes on"
+                            : ", whose " + std::string(name_of(column, header)) + " is no number");
 }
 
 /// Passes each row to `accept`, which returns the error of the row or nothing. After a bad row the
@@ -69,7 +76,7 @@ std::optional<std::string> read_table(
     std::optional<std::string> wrong;
     for (std::string line; !wrong && lines.next(line);) {
       Fields fields;
-      const std::optional<std::size_t> bad = first_bad_column(line, fields);
+      const std::optional<std::size_t> bad = first_bad_column(line, columns_of(header), fields);
       wrong = bad ? not_numbers(line, *bad, header) : accept(fields);
     }
     if (damage) continue;
@@ -109,7 +116,8 @@ std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
   if (!is_count(f[5], kMostSaid) || !is_count(f[6], kMostSaid)) {
     return "the contributions received and lost are not whole numbers ≥ 0";
   }
-  const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6]};
+  if (f[7] < 0 || f[7] > 1) return "the blocked share is not between 0 and 1";
+  const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
   if (!run.metrics.empty() &&
       (row.tick <= run.metrics.back().tick || row.t_s <= run.metrics.back().t_s)) {
     return "the tick or its time does not follow the previous row";

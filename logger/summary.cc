@@ -85,21 +85,12 @@ Json conventions(const Basis& basis) {
           {"lambda", (squared ? "(1 + |k|^2)^-" : "(1 + |k|)^-") + s}};
 }
 
-/// How much the distance has cost, by the agents' last statuses.
+/// How much the distance has cost.
 Json separation(const Recorder& recorder, const Mission& mission) {
-  std::int64_t blocked = 0, longest = 0, answered = 0;
-  for (const auto& [author, status] : recorder.statuses()) {
-    const RosterEntry* entry = recorder.follower().entry_of(author.incarnation);
-    const Tick from = entry == nullptr ? 0 : entry->active_from;
-    answered += std::max<std::int64_t>(0, status.answered_tick + 1 - from);
-    blocked += status.blocked_ticks;
-    longest = std::max(longest, status.longest_block_ticks);
-  }
-  const double share =
-      static_cast<double>(blocked) / static_cast<double>(std::max<std::int64_t>(1, answered));
+  const Blocks blocks = recorder.blocks();
   return {{"distance_m", mission.separation.distance_m},
-          {"blocked_share", share},
-          {"longest_block_s", static_cast<double>(longest) * mission.timing.dt_s}};
+          {"blocked_share", blocks.share},
+          {"longest_block_s", static_cast<double>(blocks.longest_ticks) * mission.timing.dt_s}};
 }
 
 void add_mission(const Mission& mission, const RunContext& context, Json& summary) {
