@@ -44,7 +44,7 @@ Agent::InMission::InMission(const Mission& mission, const Author& self, Tick joi
   } else {
     table.forgo_gains();
   }
-  if (mission.separation.distance_m > 0) separation.emplace(mission, unguarded_hold_ticks(mission));
+  if (filters_commands(mission)) separation.emplace(mission, unguarded_hold_ticks(mission));
   table.add_row(self);  // before any other incarnation could take its place
   published.resize(static_cast<std::size_t>(table.block_count()));
   last_command.header.tick = command_before.header.tick = -1;
@@ -205,7 +205,8 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
       step.repeat_wanted = step.repeat_wanted || arrival.fresh;
       return;
     }
-    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.position_m};
+    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.position_m,
+                                vehicle.velocity_mps};
   }
 }
 

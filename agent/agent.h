@@ -105,6 +105,7 @@ class Agent {
     std::int64_t roster_revision = 0;  // of the world, at `tick`
     Eigen::Vector3d x_m{0, 0, 0};      // in the domain
     Eigen::Vector3d body_m{0, 0, 0};   // a robot may be beside it
+    Eigen::Vector3d body_mps{0, 0, 0};
     std::optional<BasisAt> basis_at;
     Instant begun{};
     bool repeat_wanted = false;
@@ -113,7 +114,7 @@ class Agent {
   struct WorldView {
     Tick tick;
     std::int64_t roster_revision;
-    Eigen::Vector3d position_m;
+    Eigen::Vector3d position_m, velocity_mps;
   };
   /// From its admission on. While the mission waits for its quorum, no tick comes.
   struct InMission {

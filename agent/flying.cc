@@ -86,6 +86,7 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   step.begun = now;
   step.roster_revision = view.roster_revision;
   step.body_m = view.position_m;
+  step.body_mps = view.velocity_mps;
   step.x_m = mission.domain.nearest(view.position_m);
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
@@ -184,9 +185,9 @@ void Agent::answer(InMission& flight, Outbox& out) {
 Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps) {
   if (!flight.separation) return wanted_mps;
   const double limit_mps = mission().speed_limit_mps;
-  const SafeVelocity safe =
-      flight.separation->safe({me_.id(), flight.step.tick, flight.step.body_m, limit_mps},
-                              wanted_mps, flight.bodies.neighbours(limit_mps));
+  const SafeVelocity safe = flight.separation->safe(
+      {me_.id(), flight.step.tick, flight.step.body_m, limit_mps, flight.step.body_mps}, wanted_mps,
+      flight.bodies.neighbours(limit_mps));
   status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
   status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
   status_.blocked_ticks += safe.blocked ? 1 : 0;

@@ -46,7 +46,7 @@ class IdealTeam {
   std::size_t size() const { return agents_.size(); }
   /// Where an agent is now.
   const Eigen::Vector3d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
-  /// Its velocity in the last step: the command, cut to the speed limit.
+  /// Its velocity in the last step, or with inertia at its end.
   const Eigen::Vector3d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
   const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }
@@ -61,7 +61,7 @@ class IdealTeam {
  private:
   struct Agent {
     Author author;
-    Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, b{0, 0, 0};
+    Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
     std::optional<BasisAt> at;       // x_m
     std::vector<double> said;        // its sums a tick ago
     std::vector<double> gain;        // since then

@@ -69,6 +69,17 @@ struct Separation {
   bool guard = false;           ///< real time: the world filters the commands again
 };
 
+enum class VehicleKind {
+  kPoint,         ///< takes every velocity at once
+  kAcceleration,  ///< changes its velocity by at most max_acceleration_mps2 · dt in a tick
+};
+
+/// What the vehicles can do within the speed limit; core/vehicle.h. One kind for the whole team.
+struct VehicleLimits {
+  VehicleKind kind = VehicleKind::kPoint;
+  double max_acceleration_mps2 = 0;  ///< A; 0: of a point
+};
+
 struct Mission {
   std::string name;
   std::uint64_t seed = 0;
@@ -84,6 +95,7 @@ struct Mission {
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;          ///< how far agents hear each other; 0: everywhere
   double speed_limit_mps = 0;        ///< the limit of every vehicle; 0: none
+  VehicleLimits vehicle;
   Separation separation;
   bool dead_reckoning = false;  ///< whether forecasts use teammates' places, core/forecast.h
   bool wait_for_logger =
@@ -98,7 +110,7 @@ Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps);
 /// @pre v_mps is finite.
 Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d& v_mps);
 
-/// Where a vehicle at `x_m` with velocity `v_mps` is one step of `tick` later, edges not yet
+/// Where a vehicle at `x_m` with mean velocity `v_mps` is one step of `tick` later, edges not yet
 /// considered: x + v dt + disturbance_intensity √dt ξ. Where a distance is kept, the last term is
 /// cut to separation.disturbance_m.
 Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,

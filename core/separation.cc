@@ -10,6 +10,7 @@
 
 #include "core/noise.h"
 #include "core/require.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -38,98 +39,134 @@ double gain_of(double response_s, double dt_s) {
 }  // namespace
 
 SeparationFilter::SeparationFilter(const Mission& mission, Tick hold_ticks)
-    : domain_(mission.domain),
-      rule_(mission.separation),
-      seed_(mission.seed),
-      dt_s_(mission.timing.dt_s),
+    : mission_(mission),
       hold_ticks_(static_cast<double>(hold_ticks)),
-      gain_(gain_of(rule_.response_s, dt_s_)),
+      gain_(gain_of(mission.separation.response_s, mission.timing.dt_s)),
       rounding_m_(kContactTicks * 4 * std::numeric_limits<double>::epsilon() *
-                  (greatest_coordinate_m(domain_) + rule_.distance_m)),
+                  (greatest_coordinate_m(mission.domain) + mission.separation.distance_m)),
       constraints_(kMaxAgents) {
-  ERGOCAST_REQUIRE(rule_.distance_m > 0);
+  ERGOCAST_REQUIRE(filters_commands(mission));
 }
 
 double SeparationFilter::contact_m(double max_speed_mps) const {
-  const double tolerance_m = 2 * StepConstraints::kTolerance * max_speed_mps * dt_s_;
-  return rule_.distance_m + margin_m(max_speed_mps) + rounding_m_ + kContactTicks * tolerance_m;
+  const double reach_m = max_speed_mps * mission_.timing.dt_s + longest_braking_path_m(mission_);
+  const double tolerance_m = 2 * StepConstraints::kTolerance * reach_m;
+  return mission_.separation.distance_m + margin_m(max_speed_mps) + 2 * bulge_m(mission_) +
+         rounding_m_ + kContactTicks * tolerance_m;
 }
 
 /// What disturbance and response time add to D. A disturbance closes 2 w in a tick, and where one
 /// of the two bodies cannot move away, the other opens κ/2 of the gap that is missing.
 double SeparationFilter::margin_m(double fastest_mps) const {
-  return 4 * rule_.disturbance_m / gain_ + rule_.response_s * fastest_mps;
+  const Separation& rule = mission_.separation;
+  return 4 * rule.disturbance_m / gain_ + rule.response_s * fastest_mps;
 }
 
 double SeparationFilter::uncertainty_m(const Mover& self, const Neighbour& other) const {
+  const Separation& rule = mission_.separation;
+  const double dt_s = mission_.timing.dt_s;
   const auto age_ticks = static_cast<double>(other.age_ticks);
-  return age_ticks * (other.max_speed_mps * dt_s_ + rule_.disturbance_m) +
+  return age_ticks * (other.max_speed_mps * dt_s + rule.disturbance_m) +
          hold_ticks_ *
-             ((self.max_speed_mps + other.max_speed_mps) * dt_s_ + 2 * rule_.disturbance_m) +
-         2 * rule_.position_error_m;
+             ((self.max_speed_mps + other.max_speed_mps) * dt_s + 2 * rule.disturbance_m) +
+         2 * rule.position_error_m;
 }
 
-/// The domain, seen from the body. A step that leaves it would be folded back at its edge, into
-/// whoever is there.
-StepConstraints::Room SeparationFilter::room_of(const Mover& self) const {
-  const double reach_m = self.max_speed_mps * dt_s_ * kReachShare;
+/// Forgets all others. The domain, seen from the body, stays: a step that leaves it would be folded
+/// back at its edge, into whoever is there.
+void SeparationFilter::begin(const Mover& self, double reach_m) {
+  const Separation& rule = mission_.separation;
+  const Box& domain = mission_.domain;
   const double unsure_m =
-      hold_ticks_ * (self.max_speed_mps * dt_s_ + rule_.disturbance_m) + rule_.position_error_m;
+      hold_ticks_ * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m) +
+      rule.position_error_m;
   const Eigen::Vector3d inset_m = Eigen::Vector3d::Constant(unsure_m);
-  const Eigen::Vector3d low_m = domain_.origin_m - self.position_m + inset_m;
-  const Eigen::Vector3d high_m = domain_.origin_m + domain_.size_m - self.position_m - inset_m;
+  const Eigen::Vector3d low_m = domain.origin_m - self.position_m + inset_m;
+  const Eigen::Vector3d high_m = domain.origin_m + domain.size_m - self.position_m - inset_m;
   StepConstraints::Room room{reach_m, low_m.cwiseMin(0.0), high_m.cwiseMax(0.0)};
-  if (domain_.planar()) room.low_m.z() = room.high_m.z() = 0;
-  return room;
+  if (domain.planar()) room.low_m.z() = room.high_m.z() = 0;
+  constraints_.begin(room);
+  taken_count_ = 0;
 }
+
+void SeparationFilter::take(const Neighbour& other, const StepConstraints::Set& set) {
+  taken_[taken_count_++] = other.id;
+  constraints_.add(set);
+}
+
+/// Whose set the step exceeds most; kUnassigned: none, or an edge.
+AgentId SeparationFilter::blocker(const Eigen::Vector3d& wanted_m) const {
+  const int by = constraints_.most_exceeded(wanted_m);
+  return by < 0 ? kUnassigned : taken_[static_cast<std::size_t>(by)];
+}
+
+/// ±1: all on one side would still block each other, so each draws its side, again and again.
+double SeparationFilter::side(const Mover& self) const {
+  const RandomBits bits =
+      random_words(mission_.seed, Purpose::kSide, static_cast<std::uint32_t>(self.id),
+                   static_cast<std::uint64_t>(self.tick / kSideTicks));
+  return bits.first >> 63 == 0 ? 1 : -1;
+}
+
+SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                                    std::span<const Neighbour> others) {
+  ERGOCAST_REQUIRE(self.max_speed_mps > 0);
+  if (mission_.separation.distance_m == 0) others = {};
+  for (const Neighbour& other : others) {
+    if (other.id != self.id && !other.known) return stopped(self, other);
+  }
+  return mission_.vehicle.kind == VehicleKind::kPoint ? safe_step(self, wanted_mps, others)
+                                                      : safe_change(self, wanted_mps, others);
+}
+
+/// It stands, or brakes as hard as it can, since `other` may be anywhere around.
+SafeVelocity SeparationFilter::stopped(const Mover& self, const Neighbour& other) const {
+  return {executed(mission_, self.velocity_mps, {0, 0, 0}), true, other.id, true};
+}
+
+// ---- points
+// ----------------------------------------------------------------------------------------
 
 /// False if the neighbour may be anywhere around.
-bool SeparationFilter::take(const Mover& self, const Neighbour& other) {
+bool SeparationFilter::take_step(const Mover& self, const Neighbour& other) {
+  const Separation& rule = mission_.separation;
   Eigen::Vector3d y_m = other.position_m - self.position_m;
-  if (domain_.planar()) y_m.z() = 0;
+  if (mission_.domain.planar()) y_m.z() = 0;
   const double share = self.max_speed_mps / (self.max_speed_mps + other.max_speed_mps);
   const double near_m = uncertainty_m(self, other);
   const double kept_m = contact_m(std::max(self.max_speed_mps, other.max_speed_mps));
-  const double reach_m = self.max_speed_mps * dt_s_;
+  const double reach_m = self.max_speed_mps * mission_.timing.dt_s;
   const double far_m = near_m + kept_m + reach_m / (gain_ * share);
   const double square_m2 = y_m.squaredNorm();
   if (square_m2 >= far_m * far_m) return true;
   const double rho_m = std::sqrt(square_m2);
   if (rho_m <= near_m) return false;
   double gap_m = rho_m - near_m - kept_m;
-  if (rule_.disturbance_m == 0 && rule_.response_s == 0) gap_m = std::max(0.0, gap_m);
-  taken_[taken_count_++] = other.id;
-  constraints_.add({y_m / rho_m, near_m / rho_m, gain_ * share * gap_m});
+  if (rule.disturbance_m == 0 && rule.response_s == 0) gap_m = std::max(0.0, gap_m);
+  take(other, {y_m / rho_m, near_m / rho_m, gain_ * share * gap_m});
   return true;
 }
 
-/// Across the wanted step, and a little along it. All on one side would still block each other, so
-/// each draws its side, again and again.
+/// Across the wanted step, and a little along it.
 Eigen::Vector3d SeparationFilter::sideways(const Mover& self,
                                            const Eigen::Vector3d& wanted_m) const {
-  const RandomBits bits = random_words(seed_, Purpose::kSide, static_cast<std::uint32_t>(self.id),
-                                       static_cast<std::uint64_t>(self.tick / kSideTicks));
-  const double side = bits.first >> 63 == 0 ? 1 : -1;
-  return kForwardShare * wanted_m + side * Eigen::Vector3d(-wanted_m.y(), wanted_m.x(), 0);
+  return kForwardShare * wanted_m + side(self) * Eigen::Vector3d(-wanted_m.y(), wanted_m.x(), 0);
 }
 
-SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wanted_mps,
-                                    std::span<const Neighbour> others) {
-  ERGOCAST_REQUIRE(self.max_speed_mps > 0);
-  constraints_.begin(room_of(self));
-  taken_count_ = 0;
+SafeVelocity SeparationFilter::safe_step(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                                         std::span<const Neighbour> others) {
+  const double dt_s = mission_.timing.dt_s;
+  begin(self, self.max_speed_mps * dt_s * kReachShare);
   for (const Neighbour& other : others) {
-    if (other.id == self.id) continue;
-    if (!other.known || !take(self, other)) return {{0, 0, 0}, true, other.id, true};
+    if (other.id != self.id && !take_step(self, other)) return stopped(self, other);
   }
   Eigen::Vector3d possible_mps = wanted_mps;
-  if (domain_.planar()) possible_mps.z() = 0;
-  const Eigen::Vector3d wanted_m = within_speed(possible_mps, self.max_speed_mps) * dt_s_;
+  if (mission_.domain.planar()) possible_mps.z() = 0;
+  const Eigen::Vector3d wanted_m = within_speed(possible_mps, self.max_speed_mps) * dt_s;
   if (constraints_.allow(wanted_m)) return {wanted_mps};
 
   SafeVelocity safe;
-  const int by = constraints_.most_exceeded(wanted_m);
-  if (by >= 0) safe.by = taken_[static_cast<std::size_t>(by)];
+  safe.by = blocker(wanted_m);
   Eigen::Vector3d step_m = constraints_.nearest(wanted_m);
   const double shortest_m = kBlockedShare * length_of(wanted_m);
   if (length_of(step_m) < shortest_m) {
@@ -138,7 +175,7 @@ SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wa
     if (better) step_m = beside_m;
   }
   safe.blocked = length_of(step_m) < shortest_m;
-  safe.velocity_mps = step_m / dt_s_;
+  safe.velocity_mps = step_m / dt_s;
   return safe;
 }
 
@@ -155,12 +192,13 @@ double closed_m(const Mission& mission, Tick ticks) {
 
 double start_distance_m(const Mission& mission) {
   const Separation& rule = mission.separation;
-  return rule.distance_m +
+  return rule.distance_m + 2 * bulge_m(mission) +
          2 * (2 * rule.position_error_m + closed_m(mission, unguarded_hold_ticks(mission)));
 }
 
 double join_distance_m(const Mission& mission) {
-  return start_distance_m(mission) + closed_m(mission, unguarded_hold_ticks(mission) + 1);
+  return start_distance_m(mission) + closed_m(mission, unguarded_hold_ticks(mission) + 1) +
+         longest_braking_path_m(mission);
 }
 
 double least_distance_m(std::span<const Eigen::Vector3d> places_m) {
@@ -203,6 +241,12 @@ Tick command_hold_ticks(const Timing& timing) {
 bool world_guards(const Mission& mission) {
   return mission.separation.distance_m > 0 && mission.separation.guard &&
          mission.timing.pace == Pace::kRealtime;
+}
+
+bool sure_of_bodies(const Mission& mission) {
+  const Separation& rule = mission.separation;
+  return rule.position_error_m == 0 && rule.disturbance_m == 0 && rule.response_s == 0 &&
+         (rule.guard || mission.timing.pace == Pace::kLockstep);
 }
 
 Tick unguarded_hold_ticks(const Mission& mission) {

@@ -32,9 +32,10 @@ namespace ergocast {
 struct Neighbour {
   AgentId id = kUnassigned;
   Eigen::Vector3d position_m{0, 0, 0};
-  double max_speed_mps = 0;  ///< above 0; its hard limit
-  Tick age_ticks = 0;        ///< of the position; never less than it is
-  bool known = true;         ///< false: it exists, and nobody has said where
+  double max_speed_mps = 0;               ///< above 0; its hard limit
+  Tick age_ticks = 0;                     ///< of the position; never less than it is
+  bool known = true;                      ///< false: it exists, and nobody has said where
+  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< at the tick
 };
 
 /// The body whose command is filtered.
@@ -43,11 +44,13 @@ struct Mover {
   Tick tick = 0;
   Eigen::Vector3d position_m{0, 0, 0};
   double max_speed_mps = 0;
+  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< at the tick
 };
 
 struct SafeVelocity {
   Eigen::Vector3d velocity_mps{0, 0, 0};
-  /// Whether it is shorter than a tenth of what was wanted.
+  /// Whether a body or an edge leaves next to nothing of it: less than a tenth of what was wanted,
+  /// or of a vehicle with inertia, that it brakes.
   bool blocked = false;
   /// The neighbour that the wanted step would come too close to; kUnassigned: none, or an edge of
   /// the domain.
@@ -58,10 +61,12 @@ struct SafeVelocity {
 
 class SeparationFilter {
  public:
+  /// Where the mission keeps no distance, only edges and the vehicle's own limits count.
   /// @param hold_ticks  for how many ticks after its own one a command may still be executed
   SeparationFilter(const Mission& mission, Tick hold_ticks);
 
-  /// What `self` may execute of `wanted_mps`: all of it, bit for bit, if that is allowed.
+  /// What `self` may execute of `wanted_mps`: all of it, bit for bit, if that is allowed. With
+  /// inertia, the velocity at the tick's end, which the vehicle can reach.
   /// A pure function. In a lockstep mission all positions are those of `self.tick`. No call
   /// allocates memory.
   /// @param others  in ascending order of their numbers; an entry of `self` is passed over
@@ -74,14 +79,22 @@ class SeparationFilter {
  private:
   double margin_m(double fastest_mps) const;
   double uncertainty_m(const Mover& self, const Neighbour& other) const;
-  StepConstraints::Room room_of(const Mover& self) const;
-  bool take(const Mover& self, const Neighbour& other);
+  void begin(const Mover& self, double reach_m);
+  void take(const Neighbour& other, const StepConstraints::Set& set);
+  AgentId blocker(const Eigen::Vector3d& wanted_m) const;
+  double side(const Mover& self) const;
+  SafeVelocity stopped(const Mover& self, const Neighbour& other) const;
+  SafeVelocity safe_step(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                         std::span<const Neighbour> others);
+  bool take_step(const Mover& self, const Neighbour& other);
   Eigen::Vector3d sideways(const Mover& self, const Eigen::Vector3d& wanted_m) const;
+  SafeVelocity safe_change(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                           std::span<const Neighbour> others);
+  bool take_way(const Mover& self, const Neighbour& other, double reach_m);
+  bool allows(const Mover& self, const Eigen::Vector3d& v_mps) const;
 
-  Box domain_;
-  Separation rule_;
-  std::uint64_t seed_;
-  double dt_s_, hold_ticks_, gain_, rounding_m_;
+  Mission mission_;
+  double hold_ticks_, gain_, rounding_m_;
   StepConstraints constraints_;
   std::array<AgentId, kMaxAgents> taken_{};  // whose constraint has which number
   std::size_t taken_count_ = 0;
@@ -118,5 +131,14 @@ Tick unguarded_hold_ticks(const Mission& mission);
 
 /// Whether the world filters commands again, with true positions.
 bool world_guards(const Mission& mission);
+
+/// Whether all that bodies know of each other is exact: what vehicles with inertia require.
+bool sure_of_bodies(const Mission& mission);
+
+/// Whether a command passes through a SeparationFilter at all: where a distance is kept, and for
+/// vehicles with inertia, which need their way to brake inside the domain.
+inline bool filters_commands(const Mission& mission) {
+  return mission.separation.distance_m > 0 || mission.vehicle.kind != VehicleKind::kPoint;
+}
 
 }  // namespace ergocast

@@ -8,6 +8,7 @@
 
 #include "core/noise.h"
 #include "core/perturbation.h"
+#include "core/separation.h"
 #include "sim/world.h"
 
 namespace ergocast::lab {
@@ -127,8 +128,7 @@ void Invariants::check(double t_s, const Command& command) {
                    .norm();
   }
   const Eigen::Vector3d v_mps = command.velocity_mps;
-  const bool kept_apart = mission_.separation.distance_m > 0;
-  if (kept_apart && v_mps.norm() <= mission_.speed_limit_mps * (1 + 1e-12)) return;
+  if (filters_commands(mission_) && v_mps.norm() <= mission_.speed_limit_mps * (1 + 1e-12)) return;
   const double u_mps = (v_mps + contraction_mps - noise_mps).norm();
   // Each of the three was rounded when v was put together.
   const double margin_mps =

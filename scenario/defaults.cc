@@ -41,10 +41,11 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
 }
 
 /// Without a covariance a Gaussian is round; without an origin places are metres alone; without a
-/// separation bodies keep no distance.
+/// vehicle all are points; without a separation bodies keep no distance.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
          field.message_type() == proto::Origin::descriptor() ||
+         field.message_type() == proto::Vehicle::descriptor() ||
          field.message_type() == proto::Separation::descriptor();
 }
 

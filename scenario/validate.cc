@@ -13,6 +13,7 @@
 #include "scenario/utf8.h"
 #include "scenario/validate_separation.h"
 #include "scenario/validate_target.h"
+#include "scenario/validate_vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -40,6 +41,7 @@ class Validator {
     time();
     agents();
     disturbance();
+    if (scenario_.has_vehicle()) validate_vehicle(scenario_, checks_);
     if (scenario_.has_separation()) validate_separation(scenario_, checks_);
   }
 

@@ -21,7 +21,6 @@ bool World::knows_bodies() const {
 /// agents have left are in no other message. In lockstep they go on by the answers to that tick. In
 /// real time all stand: held commands were for other places.
 void World::settle() {
-  if (world_guards(mission())) guard_.emplace(mission(), 0);
   const bool realtime = mission().timing.pace == Pace::kRealtime;
   for (auto& [id, slot] : vehicles_) {
     slot.placed = false;
@@ -88,16 +87,19 @@ void World::on(const WorldState& before, const Arrival&) {
   if (before.header.tick <= mission().timing.tick_count) question_.before.see(before);
 }
 
-/// All vehicles by where all of them are, so that their order does not count. Who is not driven
-/// stands.
-void World::hold_apart() {
+/// All vehicles by where all of them are, so that their order does not count. In lockstep only by
+/// edges and their own limits: agents know all that they need. Who is not driven stands, or brakes.
+void World::filter_commands() {
   const double limit_mps = mission().speed_limit_mps;
   bodies_.clear();
-  for (const auto& [id, slot] : vehicles_) bodies_.push_back({id, slot.x_m, limit_mps});
+  for (const auto& [id, slot] : vehicles_) {
+    if (world_guards(mission()))
+      bodies_.push_back({id, slot.x_m, limit_mps, 0, true, slot.applied_mps});
+  }
   for (auto& [id, slot] : vehicles_) {
     if (!driven(slot, tick_, true)) continue;
-    slot.applied_mps =
-        guard_->safe({id, tick_, slot.x_m, limit_mps}, slot.applied_mps, bodies_).velocity_mps;
+    const Mover self{id, tick_, slot.x_m, limit_mps, slot.applied_mps};
+    slot.next_mps = filter_->safe(self, slot.next_mps, bodies_).velocity_mps;
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/geometry.h"
 #include "core/noise.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -123,6 +124,8 @@ void World::begin(Instant now) {
   if (keeps_distance()) tick_ = std::max(tick_, question_.before.newest());
   tick_ = std::min(tick_, mission().timing.tick_count);  // whatever the roster says
   begun_at_ = tick_;
+  if (world_guards(mission()) || mission().vehicle.kind != VehicleKind::kPoint)
+    filter_.emplace(mission(), 0);
   if (keeps_distance()) return settle();
   for (auto& [id, slot] : vehicles_) recall(id, slot);
 }
@@ -299,20 +302,23 @@ Eigen::Vector3d World::command_of(const VehicleSlot& slot, Tick tick,
 void World::step(bool hold_old_commands) {
   for (auto& [id, slot] : vehicles_) {
     drive(slot, tick_, hold_old_commands);
-    if (slot.applied_mps != command_of(slot, tick_, hold_old_commands)) ++counted_.clamped_commands;
+    if (driven(slot, tick_, hold_old_commands) && slot.next_mps != slot.command->velocity_mps)
+      ++counted_.clamped_commands;
   }
-  if (guard_) hold_apart();
+  if (filter_) filter_commands();
   for (auto& [id, slot] : vehicles_) move(id, slot, tick_);
   ++tick_;
 }
 
 void World::drive(VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
-  slot.applied_mps = within_speed_limit(mission(), command_of(slot, tick, hold_old_commands));
+  slot.next_mps = executed(mission(), slot.applied_mps, command_of(slot, tick, hold_old_commands));
 }
 
 void World::move(AgentId id, VehicleSlot& slot, Tick tick) const {
   const Mission& mission = me_.mission();
-  slot.x_m = reflect(moved(mission, id, tick, slot.x_m, slot.applied_mps), mission.domain);
+  const Eigen::Vector3d mean_mps = mean_velocity(mission, slot.applied_mps, slot.next_mps);
+  slot.x_m = reflect(moved(mission, id, tick, slot.x_m, mean_mps), mission.domain);
+  slot.applied_mps = slot.next_mps;
 }
 
 std::vector<WorldState> World::snapshot() const {

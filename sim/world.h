@@ -62,7 +62,8 @@ class World {
   struct VehicleSlot {
     Author author;
     Eigen::Vector3d x_m{0, 0, 0};
-    Eigen::Vector3d applied_mps{0, 0, 0};
+    Eigen::Vector3d applied_mps{0, 0, 0};  // in the step that led here; with inertia at its end
+    Eigen::Vector3d next_mps{0, 0, 0};     // in the step that follows
     std::optional<Command> command, command_before;
     bool placed = true;  // false: x_m says nothing yet
     Tick answered() const { return command ? command->header.tick : -1; }
@@ -107,7 +108,7 @@ class World {
   bool keeps_distance() const { return mission().separation.distance_m > 0; }
   void drive(VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   void move(AgentId id, VehicleSlot& slot, Tick tick) const;
-  void hold_apart();
+  void filter_commands();
   bool everyone_answered() const;
   bool record_is_close(Instant now);
   void advance_lockstep(Instant now, Outbox& out);
@@ -136,8 +137,8 @@ class World {
   std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
   RecordWindow record_;
   Counted counted_;
-  std::optional<SeparationFilter> guard_;  // of all commands, in real time
-  std::vector<Neighbour> bodies_;          // of the tick, for the guard
+  std::optional<SeparationFilter> filter_;  // of commands, if it guards or vehicles have inertia
+  std::vector<Neighbour> bodies_;           // of the tick, for the guard
 };
 
 }  // namespace ergocast

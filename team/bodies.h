@@ -44,7 +44,8 @@ class Bodies {
     for (const WorldState& state : whole_) {
       for (int i = 0; i < state.vehicle_count; ++i) {
         const Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
-        neighbours_.push_back({vehicle.id, vehicle.position_m, max_speed_mps});
+        neighbours_.push_back(
+            {vehicle.id, vehicle.position_m, max_speed_mps, 0, true, vehicle.velocity_mps});
       }
     }
     std::sort(neighbours_.begin(), neighbours_.end(),

@@ -182,7 +182,7 @@ class PlanFields : public FieldVisitor {
     wire_.value(field, value);
   }
   void flag(int field, const char*, auto& value) { wire_.value(field, value); }
-  void choice(int field, const char*, auto& value, Words) { wire_.value(field, value); }
+  void choice(int field, const char*, auto& value, Words, bool = true) { wire_.value(field, value); }
   void seed(int field, const char*, auto& value) { wire_.value(field, value); }
   void name(int field, const char*, auto& value) { wire_.value(field, value); }
   void part(int field, const char*, auto& part) {

@@ -40,6 +40,8 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
     return stop(follower().plan_problem().value_or(
         "the mission is in lockstep, which robots cannot be: give it pace: REALTIME"));
   }
+  failed_ = me_.mission().vehicle.kind != VehicleKind::kPoint;
+  if (failed_) return stop("the mission is for other vehicles: give it vehicle { kind: POINT }");
   take_roster();
   if (running_ || follower().state() != MissionState::kRunning) return;
   running_ = true;

@@ -121,6 +121,9 @@ std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
     told = old_news(self, mover, others);
     for (Neighbour& other : told) other.age_ticks = kOld / 2;
   }
+  if (bug("a body needs no way to brake")) {
+    for (Neighbour& other : told) other.velocity_mps.setZero();
+  }
   if (bug("uncertainty narrows no direction")) told = old_news(self, mover, others);
   if (bug("a body that is not heard does not exist")) {
     std::erase_if(told, [&](const Neighbour& other) { return draw_of(mover, other) % 3 == 0; });

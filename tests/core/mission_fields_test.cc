@@ -35,7 +35,7 @@ class Count : public FieldVisitor {
 
   void number(auto&&...) { ++fields; }
   void flag(auto&&...) { ++fields; }
-  void choice(int, const char*, auto&, Words) { ++fields; }
+  void choice(int, const char*, auto&, Words, bool = true) { ++fields; }
   void seed(auto&&...) { ++fields; }
   void name(auto&&...) { ++fields; }
   void part(auto&&...) { ++fields; }
@@ -61,6 +61,7 @@ TEST(MissionFields, AreAllMembers) {
   // Two for each corner; no z yet.
   EXPECT_EQ(listed<Box>(), 2 * members<Box>());
   EXPECT_EQ(listed<Basis>(), members<Basis>() - 1);
+  EXPECT_EQ(listed<VehicleLimits>(), members<VehicleLimits>());
   EXPECT_EQ(listed<Separation>(), members<Separation>() - 1) << "guard means nothing without it";
 }
 

@@ -65,9 +65,10 @@ TEST(MissionText, IsThatOfItsScenarioWithoutDescriptionAndTarget) {
 }
 
 TEST(MissionText, ReadsBackToEveryFieldOfAMission) {
-  const Mission mission = rich_mission();
-  const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
-  EXPECT_EQ(plan_of(good(text)), encode_plan(as_scenarios_know_it(mission))) << text;
+  for (const Mission& mission : {rich_mission(), with_inertia(rich_mission())}) {
+    const std::string text = mission_text(mission) + "target { uniform_weight: 1 }";
+    EXPECT_EQ(plan_of(good(text)), encode_plan(as_scenarios_know_it(mission))) << text;
+  }
 }
 
 /// The names in the list of a mission's fields.
@@ -79,7 +80,7 @@ class Names : public FieldVisitor {
 
   void number(int, const char* name, auto&, const Limits&, bool = true) { add(name); }
   void flag(int, const char* name, auto&) { add(name); }
-  void choice(int, const char* name, auto&, Words) { add(name); }
+  void choice(int, const char* name, auto&, Words, bool = true) { add(name); }
   void part(int, const char* name, auto& part) {
     part_ = std::string(name) + '.';
     list_fields(*this, part);

@@ -124,7 +124,8 @@ TEST(RestartedWorld, GoesOnFromTheNewestStateThatAnyAgentKnows) {
   const WorldState state = state_after(world, at(2ms));
   EXPECT_EQ(state.header.tick, 10);
   for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(place(state, i), state_before(10, 4).vehicles[static_cast<std::size_t>(i)].position_m);
+    EXPECT_EQ(place(state, i),
+              state_before(10, 4).vehicles[static_cast<std::size_t>(i)].position_m);
 }
 
 /// The answers of two ticks are of two times, at which other distances held.

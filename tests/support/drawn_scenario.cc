@@ -117,6 +117,7 @@ const std::map<std::string, Rule>& rules() {
       {"Scenario.time", must(draw_block)},
       {"Scenario.agents", must(draw_block)},
       {"Scenario.world", may(draw_block)},
+      {"Scenario.vehicle", may(draw_block)},
       {"Scenario.separation", may(draw_block)},
       {"Scenario.goal_ergodic_metric", may(spread(1e-9, 1))},
       {"Scenario.origin", may(draw_block)},
@@ -187,6 +188,9 @@ const std::map<std::string, Rule>& rules() {
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
       {"Start.x_m", must(kPlace)},
       {"Start.y_m", must(kPlace)},
+
+      {"Vehicle.kind", may(word(0.3))},
+      {"Vehicle.max_acceleration_mps2", must(spread(20, 200))},  // of inertia: see agree()
 
       {"Separation.distance_m", must(number(0.5, 8))},
       {"Separation.position_error_m", may(either(0, number(0.01, 0.2)))},
@@ -287,6 +291,18 @@ void agree_on_distance(proto::Scenario& scenario) {
   for (int i = 0; i < agents.starts_size(); ++i) agents.mutable_starts(i)->set_x_m(5 + 20 * i);
 }
 
+/// Inertia needs a speed limit and bodies that know each other.
+void agree_on_vehicle(proto::Scenario& scenario) {
+  if (scenario.vehicle().kind() == proto::Vehicle::POINT)
+    return scenario.mutable_vehicle()->clear_max_acceleration_mps2();
+  scenario.mutable_world()->set_speed_limit_mps(20);
+  if (!scenario.has_separation()) return;
+  const double distance_m = scenario.separation().distance_m();
+  scenario.mutable_separation()->Clear();
+  scenario.mutable_separation()->set_distance_m(distance_m);
+  scenario.mutable_world()->clear_disturbance_intensity();
+}
+
 void agree(proto::Scenario& scenario) {
   agree(*scenario.mutable_target());
   if (fields_of(scenario).contains("Polygon.file") && !scenario.has_origin()) {
@@ -306,6 +322,7 @@ void agree(proto::Scenario& scenario) {
   proto::Agents& agents = *scenario.mutable_agents();
   const int team = agents.starts_size() + agents.random_count();
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));
+  if (scenario.has_vehicle()) agree_on_vehicle(scenario);
   if (scenario.has_separation()) agree_on_distance(scenario);
 }
 

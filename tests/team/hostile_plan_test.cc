@@ -203,6 +203,14 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m.starts_m.clear(); },
       [](Mission& m) { m.speed_limit_mps = 0; },  // and a distance
       [](Mission& m) { m.separation.distance_m = -1; },
+      [](Mission& m) { m.vehicle.max_acceleration_mps2 = 1; },  // of a point
+      [](Mission& m) {
+        m.vehicle = {VehicleKind::kAcceleration, 1000};
+      },  // and errors of places
+      [](Mission& m) { m.separation = {}, m.vehicle.kind = VehicleKind::kAcceleration; },
+      [](Mission& m) {
+        m.separation = {}, m.vehicle = {VehicleKind::kAcceleration, 1e-3};
+      },
       [](Mission& m) { m.separation.distance_m = 13.1, m.starts_m.resize(1), m.quorum = 1; },
       [](Mission& m) { m.separation.distance_m = 0.9; },  // starts are 1.41 m apart, and 0.6 m off
       [](Mission& m) { m.separation.distance_m = 0; },    // and an error

@@ -28,7 +28,7 @@ class Fields : public FieldVisitor {
     texts.push_back(text_of(value));
   }
   void flag(int, const char*, bool value) { texts.push_back(std::to_string(value)); }
-  void choice(int, const char*, auto value, Words) {
+  void choice(int, const char*, auto value, Words, bool = true) {
     texts.push_back(std::to_string(static_cast<int>(value)));
   }
   void seed(int, const char*, std::uint64_t value) { texts.push_back(std::to_string(value)); }
@@ -67,7 +67,7 @@ class Switch : public FieldVisitor {
     if (left_-- == 0) value = !value;
   }
   template <class Enum>
-  void choice(int, const char*, Enum& value, Words words) {
+  void choice(int, const char*, Enum& value, Words words, bool = true) {
     if (left_-- == 0)
       value = static_cast<Enum>((static_cast<std::size_t>(value) + 1) % words.size());
   }
@@ -90,11 +90,13 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   const Mission mission = rich_mission();
   Mission plain_mission;
   plain_mission.separation.distance_m = 1;  // so that all its fields are listed
-  const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts;
+  const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts,
+             moving = Fields(with_inertia(mission)).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
-    EXPECT_NE(rich[i], plain[i]) << "default: field " << i;
+    EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i]) << "default: field " << i;
   expect_travels(mission);
+  expect_travels(with_inertia(mission));
 }
 
 // Two swapped switches would not show if both are true.
@@ -107,6 +109,7 @@ TEST(Plan, CarriesEachSwitchByItself) {
     list_fields(one, mission);
     if (!one.turned()) break;
     if (mission.law.perturbation == Perturbation::kConstant) mission.law.noise_ceiling = 0;
+    if (mission.vehicle.kind != VehicleKind::kPoint) mission = with_inertia(mission);
     if (!mission.separation.guard) mission.timing.command_hold_s = 0;
     expect_travels(mission);
   }
