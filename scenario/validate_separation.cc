@@ -97,7 +97,8 @@ class SeparationRules {
 
 void validate_separation(const proto::Scenario& scenario, Checks& checks) {
   // Each of them is part of the rules, which need all of them to be sound.
-  const std::array parts = {"domain", "basis", "law", "time", "agents", "world", "separation"};
+  const std::array parts = {"domain", "basis", "law",     "time",
+                            "agents", "world", "vehicle", "separation"};
   if (!std::ranges::all_of(parts, [&](const char* part) { return checks.sound(part); })) return;
   if (!scenario.world().has_speed_limit_mps()) {
     checks.missing("world.speed_limit_mps", "is missing, and separation relies on it",

@@ -72,7 +72,8 @@ class VehicleRules {
 }  // namespace
 
 void validate_vehicle(const proto::Scenario& scenario, Checks& checks) {
-  const std::array parts = {"domain", "basis", "law", "time", "agents", "world", "separation"};
+  const std::array parts = {"domain", "basis", "law",     "time",
+                            "agents", "world", "vehicle", "separation"};
   if (!std::ranges::all_of(parts, [&](const char* part) { return checks.sound(part); })) return;
   VehicleRules(scenario, checks).run();
 }

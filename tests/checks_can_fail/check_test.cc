@@ -368,7 +368,8 @@ time {
 }
 agents { starts { x_m: 10 y_m: 20 } random_count: 1 quorum: 1 }
 world { speed_limit_mps: 100 }
-separation { distance_m: 2 position_error_m: 0.1 disturbance_m: 0.1 response_s: 0.1 }
+vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
+separation { distance_m: 2 }
 )";
 
 /// Calls `visit` for each field that takes a number or a word, with its block.
