@@ -12,8 +12,6 @@
 // there is a gap does not matter to safety; the nearest points of the ways give the widest.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 
 #include "core/geometry.h"
 #include "core/separation.h"
@@ -43,14 +41,23 @@ Eigen::Vector3d shortest_between_m(const Way& a, const Way& b) {
   return b.from_m + on_b * b.along_m - a.from_m - on_a * a.along_m;
 }
 
-/// Ways around, by the angle to the wanted velocity: the smallest first. Each at full and at half
-/// speed.
-constexpr std::array kTurns_deg = {0, 30, 60, 90, 120, 150, 180};
+/// A turn in the plane x, y: cosine and sine of its angle.
+struct Turn {
+  double cosine, sine;
+};
+constexpr double kRootThreeHalves = 0.86602540378443865;
+/// Ways around, each at full and at half speed: 0°, 30° … 180° off the wanted velocity.
+constexpr std::array<Turn, 7> kTurns = {{{1, 0},
+                                         {kRootThreeHalves, 0.5},
+                                         {0.5, kRootThreeHalves},
+                                         {0, 1},
+                                         {-0.5, kRootThreeHalves},
+                                         {-kRootThreeHalves, 0.5},
+                                         {-1, 0}}};
 
-Eigen::Vector3d turned(const Eigen::Vector3d& v, double angle_deg) {
-  const double angle = angle_deg * std::numbers::pi / 180;
-  const double cosine = std::cos(angle), sine = std::sin(angle);
-  return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y(), v.z()};
+Eigen::Vector3d turned(const Eigen::Vector3d& v, const Turn& turn, double hand) {
+  const double sine = hand * turn.sine;
+  return {turn.cosine * v.x() - sine * v.y(), sine * v.x() + turn.cosine * v.y(), v.z()};
 }
 
 }  // namespace
@@ -98,10 +105,10 @@ SafeVelocity SeparationFilter::safe_change(const Mover& self, const Eigen::Vecto
                              braking_path_m(mission_, direct_mps));
   const Eigen::Vector3d aim_mps = within_speed_limit(mission_, wanted_mps);
   for (const double share : {1.0, 0.5}) {
-    for (const int turn_deg : kTurns_deg) {
+    for (const Turn& turn : kTurns) {
       for (const double hand : {side(self), -side(self)}) {
         const Eigen::Vector3d v_mps =
-            executed(mission_, self.velocity_mps, share * turned(aim_mps, hand * turn_deg));
+            executed(mission_, self.velocity_mps, share * turned(aim_mps, turn, hand));
         if (allows(self, v_mps)) return {v_mps, false, by};
       }
     }

@@ -51,6 +51,34 @@ void KeepApart(benchmark::State& state) {
 }
 BENCHMARK(KeepApart)->ArgNames({"near", "error_m"})->ArgsProduct({{0, 6, 63}, {0, 2}});
 
+/// Vehicles of 5 m/s² at up to 20 m/s, whose ways to brake, up to 40 m, are near each other.
+void KeepWaysApart(benchmark::State& state) {
+  Mission mission = mission_with(0);
+  mission.speed_limit_mps = 20;
+  mission.vehicle = {VehicleKind::kAcceleration, 5};
+  SeparationFilter filter(mission, 0);
+  std::mt19937 draw(1);
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::vector<Neighbour> others;
+  for (AgentId id = 1; id <= state.range(0); ++id) {
+    const double angle = M_PI * share(draw);
+    const Eigen::Vector3d away(std::cos(angle), std::sin(angle), 0);
+    others.push_back({id,
+                      Eigen::Vector3d(1000, 1000, 0) + (70 + 20 * share(draw)) * away,
+                      20,
+                      0,
+                      true,
+                      {14 * share(draw), 14 * share(draw), 0}});
+  }
+  Mover self{0, 0, {1000, 1000, 0}, 20, {10, 0, 0}};
+  for (auto _ : state) {
+    const auto angle = static_cast<double>(++self.tick);
+    benchmark::DoNotOptimize(
+        filter.safe(self, {20 * std::cos(angle), 20 * std::sin(angle), 0}, others));
+  }
+}
+BENCHMARK(KeepWaysApart)->ArgName("near")->Arg(6)->Arg(63);
+
 /// Teammates that are all far away.
 void NobodyNear(benchmark::State& state) {
   SeparationFilter filter(mission_with(0), 0);
