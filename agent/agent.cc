@@ -44,6 +44,7 @@ Agent::InMission::InMission(const Mission& mission, const Author& self, Tick joi
   } else {
     table.forgo_gains();
   }
+  if (filters_commands(mission)) separation.emplace(mission, unguarded_hold_ticks(mission));
   table.add_row(self);  // before any other incarnation could take its place
   published.resize(static_cast<std::size_t>(table.block_count()));
   last_command.header.tick = command_before.header.tick = -1;
@@ -189,12 +190,13 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
   Step& step = flight->step;
   radio_.on(world);
   if (flight->forecast && world.header.tick >= flight->active_from) note_places(*flight, world);
+  if (flight->separation) flight->bodies.see(world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (vehicle.id != me_.id()) continue;
     // From before we were admitted, repeated for the logger: our predecessor drove then.
     if (world.header.tick < flight->active_from && vehicle.answered_tick > step.answered) return;
-    if (!mission().domain.contains(vehicle.position_m)) {
+    if (!flight->separation && !mission().domain.contains(vehicle.position_m)) {
       return count_refused(Refusal::kRange);
     }
     const Tick newest = flight->pending ? flight->pending->tick : step.tick;
@@ -203,7 +205,8 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
       step.repeat_wanted = step.repeat_wanted || arrival.fresh;
       return;
     }
-    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.position_m};
+    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.position_m,
+                                vehicle.velocity_mps};
   }
 }
 

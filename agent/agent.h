@@ -20,7 +20,9 @@
 #include "core/coverage_table.h"
 #include "core/forecast.h"
 #include "core/ids.h"
+#include "core/separation.h"
 #include "team/author_map.h"
+#include "team/bodies.h"
 #include "team/deadline.h"
 #include "team/messages.h"
 #include "team/participant.h"
@@ -101,7 +103,9 @@ class Agent {
   struct Step {
     Tick tick = -1, answered = -1;
     std::int64_t roster_revision = 0;  // of the world, at `tick`
-    Eigen::Vector3d x_m{0, 0, 0};
+    Eigen::Vector3d x_m{0, 0, 0};      // in the domain
+    Eigen::Vector3d body_m{0, 0, 0};   // a robot may be beside it
+    Eigen::Vector3d body_mps{0, 0, 0};
     std::optional<BasisAt> basis_at;
     Instant begun{};
     bool repeat_wanted = false;
@@ -110,7 +114,7 @@ class Agent {
   struct WorldView {
     Tick tick;
     std::int64_t roster_revision;
-    Eigen::Vector3d position_m;
+    Eigen::Vector3d position_m, velocity_mps;
   };
   /// From its admission on. While the mission waits for its quorum, no tick comes.
   struct InMission {
@@ -122,6 +126,8 @@ class Agent {
     std::optional<Forecast> forecast;  // if the law looks ahead
     AntiEntropy anti_entropy;
     StateParts state_parts;
+    std::optional<SeparationFilter> separation;  // if bodies keep a distance
+    Bodies bodies;                               // then, of the newest tick
     Coefficients foreseen;
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
@@ -176,6 +182,7 @@ class Agent {
   void repeat(InMission& flight, Outbox& out);
   bool may_answer(InMission& flight) const;
   void answer(InMission& flight, Outbox& out);
+  Eigen::Vector3d kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps);
   void answer_digests(InMission& flight, Instant now, Outbox& out);
   void report_position(InMission& flight, Outbox& out);
 

@@ -85,7 +85,9 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   step.tick = view.tick;
   step.begun = now;
   step.roster_revision = view.roster_revision;
-  step.x_m = view.position_m;
+  step.body_m = view.position_m;
+  step.body_mps = view.velocity_mps;
+  step.x_m = mission.domain.nearest(view.position_m);
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
   if (step.tick < flight.active_from) return true;
@@ -128,6 +130,11 @@ void Agent::repeat(InMission& flight, Outbox& out) {
 bool Agent::may_answer(InMission& flight) const {
   Step& step = flight.step;
   step.waiting_for = kUnassigned;
+  // Who does not know where all bodies are does not move.
+  if (flight.separation && !flight.bodies.complete(step.tick)) {
+    step.waiting_for = kWorld;
+    return false;
+  }
   if (mission().timing.pace == Pace::kRealtime) return true;
   // A command must not depend on the order in which the parts of the state arrive.
   const bool reckons =
@@ -170,9 +177,23 @@ void Agent::answer(InMission& flight, Outbox& out) {
   flight.last_command.header.tick = step.tick;
   flight.last_command.position_m = step.x_m;
   flight.last_command.velocity_mps =
-      flight.controller.command(me_.id(), step.tick, step.x_m, *step.basis_at);
+      kept_apart(flight, flight.controller.command(me_.id(), step.tick, step.x_m, *step.basis_at));
   step.answered = step.tick;
   me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
+}
+
+/// The last step of a command.
+Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps) {
+  if (!flight.separation) return wanted_mps;
+  const double limit_mps = mission().speed_limit_mps;
+  const SafeVelocity safe = flight.separation->safe(
+      {me_.id(), flight.step.tick, flight.step.body_m, limit_mps, flight.step.body_mps}, wanted_mps,
+      flight.bodies.neighbours(limit_mps));
+  status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
+  status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
+  status_.blocked_ticks += safe.blocked ? 1 : 0;
+  status_.longest_block_ticks = std::max(status_.longest_block_ticks, status_.blocked_now_ticks);
+  return safe.velocity_mps;
 }
 
 void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {
@@ -189,6 +210,8 @@ void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {
 }
 
 void Agent::report_position(InMission& flight, Outbox& out) {
+  // Only we still know where those stand whose agents have left.
+  for (const WorldState& state : flight.bodies.states()) out.push_back({Bus::kCommand, state});
   for (Command command : {flight.command_before, flight.last_command}) {
     command.asked_by = *flight.world_asks;
     me_.publish(Bus::kCommand, command, command.header.tick, out);

@@ -96,10 +96,17 @@ FileComparison compare_plan(const fs::path& run_dir, const Mission& mission,
 /// Values that depend on the wall clock and the machine.
 constexpr std::array kOfTheMachine{"/started", "/build", "/cpu_fma", "/wall_time_s",
                                    "/ticks_per_s"};
-/// Values that depend on the network and its faults.
-constexpr std::array kOfTheNetwork{"/reason",    "/interruptions", "/events_removed",
-                                   "/restarts",  "/messages",      "/record_complete",
-                                   "/processes", "/authenticated"};
+/// Values that depend on the network and its faults, or come from agents' last statuses.
+constexpr std::array kOfTheNetwork{"/reason",
+                                   "/interruptions",
+                                   "/events_removed",
+                                   "/restarts",
+                                   "/messages",
+                                   "/record_complete",
+                                   "/processes",
+                                   "/authenticated",
+                                   "/separation/blocked_share",
+                                   "/separation/longest_block_s"};
 /// An agent's values that roster and plan determine; its other values come from its last status.
 constexpr std::array kOfTheRoster{"/id", "/active_from", "/active_until"};
 

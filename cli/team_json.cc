@@ -27,6 +27,8 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
   json["ergodic_metric"] = or_null(status.answered_tick >= 0, status.ergodic_metric);
   json["max_staleness_s"] = status.max_staleness_s;
   json["loop_lag_s"] = status.loop_lag_s;
+  json["blocked_s"] = row.blocked_s;
+  json["blocked_by"] = or_null(status.blocked_by != kUnassigned, status.blocked_by);
   json["messages_sent"] = status.messages_sent;
   json["contributions_received"] = status.contributions_received;
   json["contributions_lost"] = status.contributions_lost;

@@ -11,6 +11,9 @@
 namespace ergocast {
 namespace {
 
+/// A shorter block is not worth a word: bodies that pass each other have some.
+constexpr double kBlocked_s = 1;
+
 enum class Tint { kPlain, kFaint, kGood, kLook, kBad };
 
 std::string tinted(const std::string& text, Tint tint, bool colour) {
@@ -200,6 +203,11 @@ std::string condition_text(const AgentRow& row) {
       return "gone";
     case Condition::kOk:
       break;
+  }
+  if (row.blocked_s >= kBlocked_s) {
+    const AgentId by = row.status->blocked_by;
+    return "blocked by " + (by < 0 ? "an edge" : "agent " + std::to_string(by)) +
+           number(" for %.0f s", row.blocked_s);
   }
   return row.status && row.status->phase == AgentPhase::kWaiting ? "ready" : "ok";
 }

@@ -122,6 +122,8 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
     row.status = seen->second.status;
     row.silent_s = to_s(now - last_sign(author));
     row.condition = condition_of(author, seen->second, now);
+    const double dt_s = follower().mission() ? follower().mission()->timing.dt_s : 0;
+    row.blocked_s = static_cast<double>(row.status->blocked_now_ticks) * dt_s;
   }
   if (!member && row.condition != Condition::kFinished) row.condition = Condition::kGone;
   const auto& roster = follower().roster();

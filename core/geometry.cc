@@ -30,6 +30,11 @@ bool Box::contains(const Eigen::Vector3d& x_m) const {
   return within(0) && within(1) && (planar() || within(2));
 }
 
+Eigen::Vector3d Box::nearest(const Eigen::Vector3d& x_m) const {
+  if (contains(x_m)) return x_m;
+  return x_m.cwiseMax(origin_m).cwiseMin(origin_m + size_m);
+}
+
 double Box::shortest_side_m() const {
   const double in_plane_m = std::min(size_m.x(), size_m.y());
   return planar() ? in_plane_m : std::min(in_plane_m, size_m.z());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 namespace ergocast {
 
@@ -14,6 +15,8 @@ struct Box {
 
   bool planar() const { return size_m.z() == 0; }
   bool contains(const Eigen::Vector3d& x_m) const;
+  /// The place of the box that is nearest to `x_m`; inside, that itself, bit for bit.
+  Eigen::Vector3d nearest(const Eigen::Vector3d& x_m) const;
   Eigen::Vector3d center_m() const { return origin_m + 0.5 * size_m; }
 
   /// The shortest of the sides along which something moves.
@@ -23,6 +26,9 @@ struct Box {
   /// Largest distance from `point_m` to a point of the box: one of the corners.
   double farthest_distance_m(const Eigen::Vector3d& point_m) const;
 };
+
+/// ‖v‖ by + × √ alone: the same bits on every machine, where no square overflows.
+inline double length_of(const Eigen::Vector3d& v) { return std::sqrt(v.squaredNorm()); }
 
 /// (x, y, 0): a place in the plane z = 0.
 inline Eigen::Vector3d on_ground(const Eigen::Vector2d& x_m) { return {x_m.x(), x_m.y(), 0}; }

@@ -8,6 +8,7 @@
 
 #include "core/geometry.h"
 #include "core/vectorized.h"
+#include "core/vehicle.h"
 
 namespace ergocast::lab {
 
@@ -22,9 +23,18 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
   for (const Eigen::Vector3d& start_m : mission_.starts_m) {
     const Author author{static_cast<AgentId>(agents_.size()), 1};
     table_.add_row(author);
-    agents_.push_back(
-        {author, start_m, {0, 0, 0}, {0, 0, 0}, std::nullopt, earlier_, earlier_, earlier_});
+    agents_.push_back({author,
+                       start_m,
+                       {0, 0, 0},
+                       {0, 0, 0},
+                       {0, 0, 0},
+                       std::nullopt,
+                       earlier_,
+                       earlier_,
+                       earlier_});
   }
+  if (filters_commands(mission_)) separation_.emplace(mission_, 0);
+  bodies_.resize(separation_ ? agents_.size() : 0);
 }
 
 bool IdealTeam::stands_for(const Mission& mission) {
@@ -44,17 +54,39 @@ void IdealTeam::step() {
     table_.average(coverage_);
     controller_.set_coverage(coverage_);
   }
+  see_bodies();
   for (Agent& agent : agents_) {
     if (look_ahead_.any()) foresee(agent);
-    agent.v_mps = within_speed_limit(
-        mission_, controller_.command(agent.author.agent, tick_, agent.x_m, *agent.at));
+    const Eigen::Vector3d wanted_mps =
+        controller_.command(agent.author.agent, tick_, agent.x_m, *agent.at);
+    agent.next_mps = executed(mission_, agent.v_mps, kept_apart(agent, wanted_mps));
     agent.b = controller_.spectral_gradient();
   }
   for (Agent& agent : agents_) {
-    agent.x_m = moved(mission_, agent.author.agent, tick_, agent.x_m, agent.v_mps);
+    const Eigen::Vector3d mean_mps = mean_velocity(mission_, agent.v_mps, agent.next_mps);
+    agent.x_m = moved(mission_, agent.author.agent, tick_, agent.x_m, mean_mps);
+    agent.v_mps = agent.next_mps;
     if (edges_ == Edges::kReflect) agent.x_m = reflect(agent.x_m, mission_.domain);
   }
   ++tick_;
+}
+
+void IdealTeam::see_bodies() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    bodies_[i] = {agents_[i].author.agent, agents_[i].x_m, mission_.speed_limit_mps, 0, true,
+                  agents_[i].v_mps};
+}
+
+/// What the team's distance leaves of a command, as an agent's last step of it.
+Eigen::Vector3d IdealTeam::kept_apart(Agent& agent, const Eigen::Vector3d& v_mps) {
+  if (!separation_) return v_mps;
+  const SafeVelocity safe = separation_->safe(
+      {agent.author.agent, tick_, agent.x_m, mission_.speed_limit_mps, agent.v_mps}, v_mps,
+      bodies_);
+  agent.blocked_ticks = safe.blocked ? agent.blocked_ticks + 1 : 0;
+  blocked_steps_ += safe.blocked ? 1 : 0;
+  longest_block_ticks_ = std::max(longest_block_ticks_, agent.blocked_ticks);
+  return safe.velocity_mps;
 }
 
 /// The sums of all agents at this tick, and what they gained since the last.

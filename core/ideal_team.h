@@ -14,6 +14,7 @@
 #include "core/coverage_table.h"
 #include "core/look_ahead.h"
 #include "core/mission.h"
+#include "core/separation.h"
 
 namespace ergocast::lab {
 
@@ -45,27 +46,34 @@ class IdealTeam {
   std::size_t size() const { return agents_.size(); }
   /// Where an agent is now.
   const Eigen::Vector3d& x_m(std::size_t agent) const { return agents_[agent].x_m; }
-  /// Its velocity in the last step: the command, cut to the speed limit.
+  /// Its velocity in the last step, or with inertia at its end.
   const Eigen::Vector3d& v_mps(std::size_t agent) const { return agents_[agent].v_mps; }
   /// B of (6) in the last step.
   const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }
   /// c_k of the last step, and its φ².
   Coefficients coverage() const;
   double metric() const { return controller_.metric(coverage()); }
+  /// Steps of single agents that a teammate or an edge has blocked, and the longest row of one
+  /// agent.
+  std::int64_t blocked_steps() const { return blocked_steps_; }
+  std::int64_t longest_block_ticks() const { return longest_block_ticks_; }
 
  private:
   struct Agent {
     Author author;
-    Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, b{0, 0, 0};
-    std::optional<BasisAt> at;  // x_m
-    std::vector<double> said;   // its sums a tick ago
-    std::vector<double> gain;   // since then
-    std::vector<double> later;  // what all later agents will have covered
+    Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
+    std::optional<BasisAt> at;       // x_m
+    std::vector<double> said;        // its sums a tick ago
+    std::vector<double> gain;        // since then
+    std::vector<double> later;       // what all later agents will have covered
+    std::int64_t blocked_ticks = 0;  // without a break
   };
 
   void sample();
   void look_ahead();
   void foresee(const Agent& agent);
+  void see_bodies();
+  Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);
 
   Mission mission_;
   Edges edges_;
@@ -77,6 +85,9 @@ class IdealTeam {
   double share_ = 0, per_second_ = 0;  // of gains, and of all
   Controller controller_;
   std::vector<Agent> agents_;
+  std::optional<SeparationFilter> separation_;
+  std::vector<Neighbour> bodies_;
+  std::int64_t blocked_steps_ = 0, longest_block_ticks_ = 0;
 };
 
 }  // namespace ergocast::lab

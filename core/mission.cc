@@ -9,27 +9,35 @@
 
 namespace ergocast {
 
+Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps) {
+  // Divided first, so that no length overflows.
+  const double greatest_mps = v_mps.cwiseAbs().maxCoeff();
+  if (greatest_mps == 0) return v_mps;
+  const Eigen::Vector3d share = v_mps / greatest_mps;
+  const double length = std::hypot(std::hypot(share.x(), share.y()), share.z());
+  if (length * greatest_mps <= limit_mps) return v_mps;
+  return share / length * limit_mps;
+}
+
 Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d& v_mps) {
   Eigen::Vector3d possible_mps = v_mps;
   if (mission.domain.planar()) possible_mps.z() = 0;
   if (mission.speed_limit_mps <= 0) return possible_mps;
-  // Divided first, so that no length overflows.
-  const double greatest_mps = possible_mps.cwiseAbs().maxCoeff();
-  if (greatest_mps == 0) return possible_mps;
-  const Eigen::Vector3d share = possible_mps / greatest_mps;
-  const double length = std::hypot(std::hypot(share.x(), share.y()), share.z());
-  if (length * greatest_mps <= mission.speed_limit_mps) return possible_mps;
-  return share / length * mission.speed_limit_mps;
+  return within_speed(possible_mps, mission.speed_limit_mps);
 }
 
 Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
                       const Eigen::Vector3d& v_mps) {
   const double dt_s = mission.timing.dt_s;
+  const Separation& separation = mission.separation;
   Eigen::Vector3d next_m = x_m + v_mps * dt_s;
   if (mission.disturbance_intensity > 0) {
-    next_m += mission.disturbance_intensity * std::sqrt(dt_s) *
-              normal_in(mission.domain, mission.seed, Purpose::kDisturbance,
-                        static_cast<std::uint32_t>(id), static_cast<std::uint64_t>(tick));
+    const Eigen::Vector3d pushed_m =
+        mission.disturbance_intensity * std::sqrt(dt_s) *
+        normal_in(mission.domain, mission.seed, Purpose::kDisturbance,
+                  static_cast<std::uint32_t>(id), static_cast<std::uint64_t>(tick));
+    next_m +=
+        separation.distance_m > 0 ? within_speed(pushed_m, separation.disturbance_m) : pushed_m;
   }
   return next_m;
 }
@@ -47,8 +55,9 @@ Eigen::Vector3d start_of(const Mission& mission, AgentId id) {
                                       : random_start(mission.domain, mission.seed, id);
 }
 
-Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id) {
-  return uniform_in(domain, seed, Purpose::kStart, static_cast<std::uint32_t>(id), 0);
+Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id, int attempt) {
+  return uniform_in(domain, seed, Purpose::kStart, static_cast<std::uint32_t>(id),
+                    static_cast<std::uint64_t>(attempt));
 }
 
 }  // namespace ergocast

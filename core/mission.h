@@ -60,6 +60,26 @@ struct Timing {
   ContributionEncoding contribution_encoding = ContributionEncoding::kDouble;
 };
 
+/// How far bodies keep from each other, and what is known of their motion; core/separation.h.
+struct Separation {
+  double distance_m = 0;        ///< D, between the places of two bodies; 0: none is kept
+  double position_error_m = 0;  ///< how far a body may be from where it is said to be
+  double disturbance_m = 0;     ///< what the world may add to a body's step; it cuts the rest
+  double response_s = 0;        ///< how long a body takes to follow a command, T
+  bool guard = false;           ///< real time: the world filters the commands again
+};
+
+enum class VehicleKind {
+  kPoint,         ///< takes every velocity at once
+  kAcceleration,  ///< changes its velocity by at most max_acceleration_mps2 · dt in a tick
+};
+
+/// What the vehicles can do within the speed limit; core/vehicle.h. One kind for the whole team.
+struct VehicleLimits {
+  VehicleKind kind = VehicleKind::kPoint;
+  double max_acceleration_mps2 = 0;  ///< A; 0: of a point
+};
+
 struct Mission {
   std::string name;
   std::uint64_t seed = 0;
@@ -75,18 +95,24 @@ struct Mission {
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;          ///< how far agents hear each other; 0: everywhere
   double speed_limit_mps = 0;        ///< the limit of every vehicle; 0: none
-  bool dead_reckoning = false;       ///< whether forecasts use teammates' places, core/forecast.h
+  VehicleLimits vehicle;
+  Separation separation;
+  bool dead_reckoning = false;  ///< whether forecasts use teammates' places, core/forecast.h
   bool wait_for_logger =
       true;  ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
+
+/// `v_mps` bit for bit, or a vector of length `limit_mps` in its direction. @pre limit_mps > 0
+Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps);
 
 /// The velocity that a vehicle executes for the command `v_mps`: the command, bit for bit, or the
 /// speed limit in its direction. In a plane nothing is executed of v_z.
 /// @pre v_mps is finite.
 Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d& v_mps);
 
-/// Where a vehicle at `x_m` with velocity `v_mps` is one step of `tick` later, edges not yet
-/// considered: x + v dt + disturbance_intensity √dt ξ.
+/// Where a vehicle at `x_m` with mean velocity `v_mps` is one step of `tick` later, edges not yet
+/// considered: x + v dt + disturbance_intensity √dt ξ. Where a distance is kept, the last term is
+/// cut to separation.disturbance_m.
 Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
                       const Eigen::Vector3d& v_mps);
 
@@ -96,7 +122,7 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick);
 
 /// The start of agent `id`: as planned, or beyond the plan drawn from the seed.
 Eigen::Vector3d start_of(const Mission& mission, AgentId id);
-/// The draw itself: uniform in the domain.
-Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id);
+/// A draw: uniform in the domain.
+Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id, int attempt = 0);
 
 }  // namespace ergocast

@@ -30,7 +30,8 @@ struct FieldVisitor {
   /// A number along z; in a plane it is the last argument and in no scenario.
   void height(int, const char*, auto&, const Limits&, double) {}
   void flag(int, const char*, auto&) {}
-  void choice(int, const char*, auto&, Words) {}
+  /// Unless the last argument holds, it is its first word, and a text does not say it.
+  void choice(int, const char*, auto&, Words, bool = true) {}
   void seed(int, const char*, auto&) {}
   void name(int, const char*, auto&) {}
   void part(int, const char*, auto&) {}
@@ -91,6 +92,23 @@ void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
   io.choice(11, "contribution_encoding", timing.contribution_encoding, {"DOUBLE", "FIXED16"});
 }
 
+void list_fields(auto& io, MaybeConst<VehicleLimits> auto& vehicle) {
+  const bool moves_at_once = vehicle.kind == VehicleKind::kPoint;
+  io.choice(1, "kind", vehicle.kind, {"POINT", "ACCELERATION"}, !moves_at_once);
+  io.number(2, "max_acceleration_mps2", vehicle.max_acceleration_mps2, limits::above(0, 1e6),
+            vehicle.max_acceleration_mps2 != 0);
+}
+
+/// All are 0 where no distance is kept.
+void list_fields(auto& io, MaybeConst<Separation> auto& separation) {
+  const bool kept = separation.distance_m != 0;
+  io.number(1, "distance_m", separation.distance_m, limits::above(0, 1e7), kept);
+  io.number(2, "position_error_m", separation.position_error_m, limits::between(0, 1e7), kept);
+  io.number(3, "disturbance_m", separation.disturbance_m, limits::between(0, 1e7), kept);
+  io.number(4, "response_s", separation.response_s, limits::between(0, 1e4), kept);
+  if (separation.distance_m != 0) io.flag(5, "guard", separation.guard);
+}
+
 /// Number 1 of the plan is the version of the program that wrote it.
 void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.name(2, "name", m.name);
@@ -109,6 +127,8 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.number(13, "world.radio_range_m", m.radio_range_m, limits::between(0, 1e13));
   io.number(14, "world.speed_limit_mps", m.speed_limit_mps, limits::above(0, 1e9),
             m.speed_limit_mps != 0);
+  io.part(18, "vehicle", m.vehicle);
+  io.part(19, "separation", m.separation);
   io.number(11, "goal_ergodic_metric", m.goal_ergodic_metric, limits::above(0, 1e9),
             m.goal_ergodic_metric != 0);
   io.hidden_flag(16, m.wait_for_logger);

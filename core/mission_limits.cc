@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/mission_fields.h"
+#include "core/separation.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -32,7 +34,7 @@ class EachWithinLimits : public FieldVisitor {
   void height(int, const char*, double value, const Limits& limits, double in_plane) {
     ok = ok && (value == in_plane || limits.contain(value));
   }
-  void choice(int, const char*, auto value, Words words) {
+  void choice(int, const char*, auto value, Words words, bool = true) {
     ok = ok && static_cast<std::size_t>(value) < words.size();
   }
   void name(int, const char*, const std::string& name) { ok = ok && is_name(name); }
@@ -95,6 +97,27 @@ bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box
          law.u_max_mps >= law.contraction_gain_per_s * reach_m;
 }
 
+/// A vehicle with inertia needs a limit of its speed, and room to brake.
+bool fits(const VehicleLimits& vehicle, const Mission& mission) {
+  if (vehicle.kind == VehicleKind::kPoint) return vehicle.max_acceleration_mps2 == 0;
+  return vehicle.max_acceleration_mps2 > 0 && mission.speed_limit_mps > 0 &&
+         longest_braking_path_m(mission) <= mission.domain.shortest_side_m() / 4;
+}
+
+/// Everything that keeps bodies apart relies on their speed limit, and on room.
+bool fits(const Separation& separation, const Mission& mission) {
+  if (separation.distance_m == 0) return !separation.guard;
+  if (mission.vehicle.kind != VehicleKind::kPoint && !sure_of_bodies(mission)) return false;
+  const double step_m = mission.speed_limit_mps * mission.timing.dt_s;
+  const auto held = static_cast<double>(unguarded_hold_ticks(mission));
+  return mission.speed_limit_mps > 0 &&
+         separation.distance_m <= mission.domain.shortest_side_m() / 4 &&
+         separation.disturbance_m < step_m / 4 &&
+         2 * held * step_m <= separation.distance_m / 2 * (1 + 1e-9) &&
+         packing(mission, mission.starts_m.size()) <= kHopelessPacking &&
+         least_distance_m(mission.starts_m) >= start_distance_m(mission);
+}
+
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
@@ -122,7 +145,7 @@ bool within_limits(const Mission& mission) {
          fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
-         is_team(mission);
+         is_team(mission) && fits(mission.vehicle, mission) && fits(mission.separation, mission);
 }
 
 }  // namespace ergocast

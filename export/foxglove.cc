@@ -120,7 +120,8 @@ const Schema& metrics_schema() {
                                                               {"metric_spread", kNumber},
                                                               {"max_staleness_s", kNumber},
                                                               {"contributions_received", kNumber},
-                                                              {"contributions_lost", kNumber}});
+                                                              {"contributions_lost", kNumber},
+                                                              {"blocked_share", kNumber}});
   return schema;
 }
 
@@ -177,7 +178,8 @@ std::string metrics(std::uint64_t time_ns, const MetricsRow& row) {
                   {"metric_spread", row.spread},
                   {"max_staleness_s", row.max_staleness_s},
                   {"contributions_received", row.received},
-                  {"contributions_lost", row.lost}});
+                  {"contributions_lost", row.lost},
+                  {"blocked_share", row.blocked_share}});
 }
 
 }  // namespace ergocast::foxglove

@@ -8,6 +8,7 @@
 
 #include "core/noise.h"
 #include "core/perturbation.h"
+#include "core/separation.h"
 #include "sim/world.h"
 
 namespace ergocast::lab {
@@ -69,11 +70,28 @@ void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* spe
 void Invariants::check(double t_s, const WorldState& world) {
   if (mission_.radio_range_m > 0 && world.header.tick >= last_tick_) note_positions(t_s, world);
   last_tick_ = std::max(last_tick_, world.header.tick);
+  if (mission_.separation.distance_m > 0) check_distances(t_s, world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (mission_.domain.contains(vehicle.position_m)) continue;
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
+  }
+}
+
+/// By the true places, once all of a tick's are known. Starts may be just so far apart.
+void Invariants::check_distances(double t_s, const WorldState& world) {
+  bodies_.see(world);
+  if (!bodies_.complete(world.header.tick)) return;
+  const auto bodies = bodies_.neighbours(mission_.speed_limit_mps);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double apart_m = (bodies[i].position_m - bodies[j].position_m).norm();
+      if (apart_m >= mission_.separation.distance_m * (1 - 1e-9)) continue;
+      violate(t_s, Invariant::kDistanceKept,
+              "vehicles " + std::to_string(bodies[j].id) + " and " + std::to_string(bodies[i].id),
+              text(apart_m, " m apart at tick ", world.header.tick));
+    }
   }
 }
 
@@ -111,6 +129,7 @@ void Invariants::check(double t_s, const Command& command) {
                    .norm();
   }
   const Eigen::Vector3d v_mps = command.velocity_mps;
+  if (filters_commands(mission_) && v_mps.norm() <= mission_.speed_limit_mps * (1 + 1e-12)) return;
   const double u_mps = (v_mps + contraction_mps - noise_mps).norm();
   // Each of the three was rounded when v was put together.
   const double margin_mps =

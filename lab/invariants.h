@@ -24,6 +24,7 @@
 #include "lab/shadow.h"
 #include "lab/table_view.h"
 #include "logger/recorder.h"
+#include "team/bodies.h"
 #include "team/mission_follower.h"
 
 namespace ergocast::lab {
@@ -32,6 +33,7 @@ enum class Invariant : std::uint8_t {
   // Safety.
   kPositionsInTheDomain,
   kInputsBounded,
+  kDistanceKept,
   kSumsBounded,
   kRelaysAnswerDigests,
   kDigestsSayWhatIsHeld,
@@ -66,6 +68,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
     kInvariants{{
         {Invariant::kPositionsInTheDomain, "positions are in the domain"},
         {Invariant::kInputsBounded, "|u| <= u_max"},
+        {Invariant::kDistanceKept, "bodies keep their distance"},
         {Invariant::kSumsBounded, "|S_mn| <= S_00 = steps dt"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest says what is held"},
@@ -134,8 +137,9 @@ class Invariants {
 
   // ---- safety ----
 
-  /// A process sends: positions in the domain; |u| ≤ u_max; |S| ≤ S_00 = steps · dt; a digest that
-  /// says what its sender holds; at most one answer for each entry of a digest heard.
+  /// A process sends: positions in the domain; bodies as far apart as the mission says, in each
+  /// tick; |u| ≤ u_max, or |v| ≤ the speed limit where a distance is kept; |S| ≤ S_00 = steps · dt;
+  /// a digest that says what its sender holds; at most one answer for each entry of a digest heard.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has heard a digest.
@@ -207,6 +211,7 @@ class Invariants {
                   const std::map<Author, std::vector<Best>>& best, const Coefficients& c_true);
   void check_quiet(double t_s);
   void note_positions(double t_s, const WorldState& world);
+  void check_distances(double t_s, const WorldState& world);
   void check_counted(double t_s, const TableView& holder, const std::vector<TableView>& living);
   void check_neighbours(double t_s, const std::vector<TableView>& living);
   std::set<Author> within(int hops, const Author& self, double heard_for_s, double t_s,
@@ -223,6 +228,7 @@ class Invariants {
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
   std::map<Author, Shadow> shadows_;                       // of each life of an agent
   std::map<Author, std::int64_t> relays_allowed_;
+  Bodies bodies_;                                   // where a distance is kept
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // with a radio range only, as what follows
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first
   struct Memory {

@@ -120,6 +120,10 @@ struct Fields<AgentStatus> {
     io.within(m.rate_offender, kUnassigned, kMaxAgents - 1);
     io.count(m.kernel_drops);
     io.quantity(m.loop_lag_s);
+    io.within(m.blocked_by, kUnassigned, kMaxAgents - 1);
+    io.count(m.blocked_now_ticks);
+    io.count(m.blocked_ticks);
+    io.count(m.longest_block_ticks);
     io.text(m.host, kMaxHostLength);
   }
 };

@@ -25,8 +25,8 @@ class TextWriter : public FieldVisitor {
     if (!mission_.domain.planar()) put(name, shortest(value));
   }
   void flag(int, const char* name, bool value) { put(name, value ? "true" : "false"); }
-  void choice(int, const char* name, auto value, Words words) {
-    put(name, std::data(words)[static_cast<std::size_t>(value)]);
+  void choice(int, const char* name, auto value, Words words, bool given = true) {
+    if (given) put(name, std::data(words)[static_cast<std::size_t>(value)]);
   }
   void seed(int, const char* name, std::uint64_t value) { put(name, std::to_string(value)); }
   void name(int, const char* name, const std::string& value) {

@@ -69,6 +69,8 @@ void Recorder::go_on(Instant now) {
 
 void Recorder::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (ending_.finished) return;
+  // An agent tells a restarted world what its predecessor has said.
+  if (bus == Bus::kCommand && std::holds_alternative<WorldState>(message)) return;
   const auto arrival = me_.accept(message, bus, transmitter, now);
   if (!arrival) return;
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
@@ -370,6 +372,20 @@ void Recorder::write_due_metrics() {
   write_metrics(observer_.metric(mission));
 }
 
+Blocks Recorder::blocks() const {
+  std::int64_t blocked = 0, answered = 0;
+  Blocks blocks;
+  for (const auto& [author, status] : statuses_) {
+    const RosterEntry* entry = follower().entry_of(author.incarnation);
+    const Tick from = entry == nullptr ? 0 : entry->active_from;
+    answered += std::max<std::int64_t>(0, status.answered_tick + 1 - from);
+    blocked += status.blocked_ticks;
+    blocks.longest_ticks = std::max(blocks.longest_ticks, status.longest_block_ticks);
+  }
+  if (answered > 0) blocks.share = static_cast<double>(blocked) / static_cast<double>(answered);
+  return blocks;
+}
+
 void Recorder::write_metrics(double metric) {
   const double t_s = static_cast<double>(next_row_) * mission().timing.dt_s;
   double low = 0, high = 0, staleness_s = 0;
@@ -394,7 +410,9 @@ void Recorder::write_metrics(double metric) {
     line += ',';
     append_number(line, value);
   }
-  metrics_ << line << ',' << received << ',' << lost << '\n';
+  line += ',' + std::to_string(received) + ',' + std::to_string(lost) + ',';
+  append_number(line, blocks().share);
+  metrics_ << line << '\n';
   if (facts_.t_s.empty()) facts_.ergodic_metric_first = metric;
   facts_.ergodic_metric_last = metric;
   facts_.t_s.push_back(t_s);

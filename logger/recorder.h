@@ -40,6 +40,12 @@ struct RunFacts {
   std::int64_t clamped_commands = 0;                     ///< by the speed limit, likewise
 };
 
+/// What the distance that bodies keep has cost, by the newest status of each incarnation.
+struct Blocks {
+  double share = 0;  ///< of all agents' answered ticks, those that a body or an edge has blocked
+  Tick longest_ticks = 0;  ///< in a row
+};
+
 class Recorder {
  public:
   static constexpr Role kRole = Role::kLogger;
@@ -78,6 +84,7 @@ class Recorder {
   const RunFacts& facts() const { return facts_; }
   /// The newest of each incarnation that Liveness holds, but with the worst loop lag of all.
   const std::map<Author, AgentStatus>& statuses() const { return statuses_; }
+  Blocks blocks() const;
   Tick next_row() const { return next_row_; }
   /// The newest tick with a received state.
   Tick newest() const { return heard_.newest; }
@@ -167,6 +174,6 @@ inline constexpr const char* kTrajectoryHeaderInSpace =
     "tick,t_s,agent,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps";
 inline constexpr const char* kMetricsHeader =
     "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
-    "contributions_lost";
+    "contributions_lost,blocked_share";
 
 }  // namespace ergocast

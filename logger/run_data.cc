@@ -24,7 +24,7 @@
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kMostColumns = 9;
+constexpr std::size_t kMostColumns = 9;  // of either table
 /// The numbers of a row, as many as its header has names.
 struct Fields {
   std::array<double, kMostColumns> at;
@@ -126,7 +126,8 @@ std::optional<std::string> add_metrics(RunData& run, const Fields& f) {
   if (!is_count(f[5], kMostSaid) || !is_count(f[6], kMostSaid)) {
     return "the contributions received and lost are not whole numbers ≥ 0";
   }
-  const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6]};
+  if (f[7] < 0 || f[7] > 1) return "the blocked share is not between 0 and 1";
+  const MetricsRow row{static_cast<Tick>(f[0]), f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
   if (!run.metrics.empty() &&
       (row.tick <= run.metrics.back().tick || row.t_s <= run.metrics.back().t_s)) {
     return "the tick or its time does not follow the previous row";

@@ -35,6 +35,7 @@ struct MetricsRow {
   double spread = 0;  ///< largest minus smallest φ² among the agents' own views
   double max_staleness_s = 0;
   double received = 0, lost = 0;  ///< contributions, since the start
+  double blocked_share = 0;       ///< of agents' ticks, since the start
 };
 
 struct RunData {

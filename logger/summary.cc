@@ -44,6 +44,10 @@ Json agents(const Recorder& recorder) {
       agent["contributions_lost"] = status.contributions_lost;
       agent["contributions_relayed"] = status.contributions_relayed;
       agent["missed_ticks"] = status.missed_ticks;
+      if (recorder.follower().mission()->separation.distance_m > 0) {
+        agent["blocked_ticks"] = status.blocked_ticks;
+        agent["longest_block_ticks"] = status.longest_block_ticks;
+      }
       agent["kernel_drops"] = status.kernel_drops;
       agent["loop_lag_max_s"] = number(status.loop_lag_s);
     }
@@ -79,6 +83,14 @@ Json conventions(const Basis& basis) {
   const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
   return {{"h_k", basis.normalized ? "f_k divided by h_k = sqrt(prod L_i (1/2)^[k_i > 0])" : "1"},
           {"lambda", (squared ? "(1 + |k|^2)^-" : "(1 + |k|)^-") + s}};
+}
+
+/// How much the distance has cost.
+Json separation(const Recorder& recorder, const Mission& mission) {
+  const Blocks blocks = recorder.blocks();
+  return {{"distance_m", mission.separation.distance_m},
+          {"blocked_share", blocks.share},
+          {"longest_block_s", static_cast<double>(blocks.longest_ticks) * mission.timing.dt_s}};
 }
 
 void add_mission(const Mission& mission, const RunContext& context, Json& summary) {
@@ -146,6 +158,8 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
     summary["speed_limit"] = {{"mps", mission->speed_limit_mps},
                               {"clamped_commands", facts.clamped_commands}};
   }
+  if (mission && mission->separation.distance_m > 0)
+    summary["separation"] = separation(recorder, *mission);
   return summary;
 }
 

@@ -107,7 +107,8 @@ py::dict metrics(const Record& record) {
                   "metric_spread"_a = numbers(&MetricsRow::spread),
                   "max_staleness_s"_a = numbers(&MetricsRow::max_staleness_s),
                   "contributions_received"_a = counts(&MetricsRow::received),
-                  "contributions_lost"_a = counts(&MetricsRow::lost));
+                  "contributions_lost"_a = counts(&MetricsRow::lost),
+                  "blocked_share"_a = numbers(&MetricsRow::blocked_share));
 }
 
 /// c after each of `ticks`, as the recorder's φ² sees it: in the order of the file, members only.

@@ -77,6 +77,9 @@ Json conventions(const Mission& mission) {
   if (mission.speed_limit_mps > 0) {
     add("speed limit", readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
   }
+  if (mission.separation.distance_m > 0) {
+    add("distance", readable(mission.separation.distance_m) + " m between any two bodies");
+  }
   add("time step", readable(mission.timing.dt_s) + " s");
   add("maps", "Σ cₖ fₖ with f of unit norm, in multiples of the uniform density");
   return list;

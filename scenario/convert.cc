@@ -62,7 +62,7 @@ class BlockReader : public FieldVisitor {
     value = block.GetReflection()->GetBool(block, &field);
   }
   template <class Enum>
-  void choice(int, const char* name, Enum& value, Words words) {
+  void choice(int, const char* name, Enum& value, Words words, bool = true) {
     const auto [block, field] = find_field(block_, name);
     const auto* word =
         std::ranges::find(words, block.GetReflection()->GetEnum(block, &field)->name());

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/noise.h"
+#include "core/separation.h"
 #include "scenario/assign.h"
 #include "scenario/convert.h"
 #include "scenario/fields.h"
@@ -40,6 +40,15 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
   }
 }
 
+/// Without a covariance a Gaussian is round; without an origin places are metres alone; without a
+/// vehicle all are points; without a separation bodies keep no distance.
+bool means_something_absent(const FieldDescriptor& field) {
+  return field.message_type() == proto::Covariance::descriptor() ||
+         field.message_type() == proto::Origin::descriptor() ||
+         field.message_type() == proto::Vehicle::descriptor() ||
+         field.message_type() == proto::Separation::descriptor();
+}
+
 /// Constant defaults of `message` and of every block below it; in a plane none along z.
 void fill_constants(Message& message, bool planar) {
   const auto* reflection = message.GetReflection();
@@ -51,10 +60,7 @@ void fill_constants(Message& message, bool planar) {
       for (int j = 0; j < reflection->FieldSize(message, &field); ++j) {
         fill_constants(*reflection->MutableRepeatedMessage(&message, &field, j), planar);
       }
-    } else if ((field.message_type() != proto::Covariance::descriptor() &&
-                field.message_type() != proto::Origin::descriptor()) ||
-               reflection->HasField(message, &field)) {
-      // An absent covariance has a meaning, the Gaussian is round; and so has an absent origin.
+    } else if (reflection->HasField(message, &field) || !means_something_absent(field)) {
       fill_constants(*reflection->MutableMessage(&message, &field), planar);
     }
   }
@@ -100,6 +106,8 @@ constexpr double kPushShare = 0.01;
 constexpr double kContractionShare = 0.01;
 constexpr double kFloorOfCeiling = 0.05;
 constexpr double kMostIntensity = 1e6;
+/// A normal vector in the plane is longer than this many deviations once in 65 million steps.
+constexpr double kDisturbanceDeviations = 6;
 
 constexpr double kAnticipation = 2;
 constexpr double kEpsilon = 0.05;
@@ -140,6 +148,14 @@ void fill_law(const Box& domain, proto::Law& law) {
   if (law.has_contraction_gain_per_s()) return;
   const double reach_m = domain.farthest_distance_m(contraction_center_of(law, domain));
   law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
+}
+
+/// @pre the constants are filled in
+void fill_separation(proto::Scenario& scenario) {
+  if (!scenario.has_separation() || scenario.separation().has_disturbance_m()) return;
+  scenario.mutable_separation()->set_disturbance_m(
+      kDisturbanceDeviations * scenario.world().disturbance_intensity() *
+      std::sqrt(std::max(0.0, scenario.time().dt_s())));
 }
 
 /// The name of a map or GeoJSON file is relative to the scenario's folder, not to the working
@@ -225,7 +241,10 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
       limits::kCoordinate_m.contain(domain.origin_m.z()))
     fill_heights(domain, *scenario.mutable_target());
   if (!planar && !scenario.domain().has_origin_z_m()) scenario.mutable_domain()->set_origin_z_m(0);
+  if (scenario.has_separation() && !scenario.separation().has_guard())
+    scenario.mutable_separation()->set_guard(true);
   fill_constants(scenario, planar);
+  fill_separation(scenario);
   make_absolute(file, *scenario.mutable_target());
   fill_law(domain, *scenario.mutable_law());
   proto::Agents& agents = *scenario.mutable_agents();
@@ -237,10 +256,12 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
 }
 
 void draw_starts(proto::Scenario& scenario) {
-  const Box domain = domain_of(scenario.domain());
   proto::Agents& agents = *scenario.mutable_agents();
+  Mission mission = mission_of(scenario);  // starts_m: those that there are already
   for (; agents.random_count() > 0; agents.set_random_count(agents.random_count() - 1)) {
-    const Eigen::Vector3d x_m = random_start(domain, scenario.seed(), agents.starts_size());
+    const Eigen::Vector3d x_m =
+        start_beside(mission, agents.starts_size(), mission.starts_m, start_distance_m(mission));
+    mission.starts_m.push_back(x_m);
     proto::Start& start = *agents.add_starts();
     start.set_x_m(x_m.x());
     start.set_y_m(x_m.y());

@@ -88,6 +88,10 @@ constexpr Row kRows[] = {
     {"Time", "duration_s", limits::kDuration_s, kRefused},
     {"Time", "broadcast_period_ticks", kMissions, kLeft},
 
+    {"Separation", "distance_m", kMissions, kRefused},
+    {"Separation", "position_error_m", kMissions, kDefaulted, 0},
+    {"Separation", "response_s", kMissions, kDefaulted, 0},
+
     {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
     {"Agents", "quorum", kMissions, kLeft},
     {"Start", "x_m", kCoordinate, kRefused},

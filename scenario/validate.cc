@@ -11,7 +11,9 @@
 #include "scenario/explain.h"
 #include "scenario/fields.h"
 #include "scenario/utf8.h"
+#include "scenario/validate_separation.h"
 #include "scenario/validate_target.h"
+#include "scenario/validate_vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -39,6 +41,8 @@ class Validator {
     time();
     agents();
     disturbance();
+    if (scenario_.has_vehicle()) validate_vehicle(scenario_, checks_);
+    if (scenario_.has_separation()) validate_separation(scenario_, checks_);
   }
 
  private:

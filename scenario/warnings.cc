@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/perturbation.h"
+#include "core/separation.h"
 #include "scenario/checks.h"
 
 namespace ergocast {
@@ -63,11 +64,26 @@ void warn_of_coarse_steps(const Mission& mission, Findings& findings) {
       "write at most " + shortest(rounded_down(longest_s)) + ", or law.anticipation: 0");
 }
 
+/// Agents find their way around each other only where there is room.
+void warn_of_packing(const Mission& mission, Findings& findings) {
+  if (mission.separation.distance_m == 0) return;
+  const double share = packing(mission, mission.starts_m.size());
+  if (share <= kTightPacking) return;
+  findings.add("separation.distance_m",
+               std::to_string(mission.starts_m.size()) + " agents " +
+                   shortest(start_distance_m(mission)) + " m apart take up " +
+                   shortest(rounded_up(100 * share)) +
+                   " % of the domain: above 10 % they often block each other",
+               "write a smaller distance or fewer agents, or accept it: status and summary say how "
+               "long agents are blocked");
+}
+
 }  // namespace
 
 void warn(const Mission& mission, Findings& findings) {
   warn_of_speed_limit(mission, findings);
   warn_of_coarse_steps(mission, findings);
+  warn_of_packing(mission, findings);
 }
 
 }  // namespace ergocast

@@ -10,6 +10,7 @@
 
 #include "core/geometry.h"
 #include "core/noise.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -69,7 +70,7 @@ void World::on(const Stop& stop, const Arrival&) {
 
 void World::start(Instant now) {
   started_ = true;
-  question_ = {now, now};
+  question_ = {now, now, {}};
   take_roster();
 }
 
@@ -96,18 +97,16 @@ void World::ask_team(Instant now, Outbox& out) {
   const bool may_begin_without =
       mission().timing.pace == Pace::kRealtime && now - *question_.since >= kQuestionPatience;
   const AgentId unheard = first_unheard();
-  if (unheard == kUnassigned || may_begin_without) return begin(now);
+  if (knows_bodies() && (unheard == kUnassigned || may_begin_without)) return begin(now);
   if (now < question_.next) return;
   question_.next = now + kQuestionPeriod;
   ask(0, unheard, out);
 }
 
-/// The first member that has not answered with its last two commands, or with one that says that
-/// there is none; kUnassigned: all have.
+/// The first member that has not answered with its last two commands; kUnassigned: all have.
 AgentId World::first_unheard() const {
   for (const auto& [id, slot] : vehicles_) {
-    const bool heard = slot.command_before || (slot.command && slot.answered() < 0);
-    if (slot.author.incarnation != 0 && !heard) return id;
+    if (slot.author.incarnation != 0 && !slot.command_before) return id;
   }
   return kUnassigned;
 }
@@ -122,22 +121,13 @@ void World::begin(Instant now) {
   for (const RosterEntry& entry : follower().roster()) {
     tick_ = std::max({tick_, entry.active_from, entry.active_until});
   }
+  if (keeps_distance()) tick_ = std::max(tick_, question_.before.newest());
   tick_ = std::min(tick_, mission().timing.tick_count);  // whatever the roster says
   begun_at_ = tick_;
+  if (world_guards(mission()) || mission().vehicle.kind != VehicleKind::kPoint)
+    filter_.emplace(mission(), 0);
+  if (keeps_distance()) return settle();
   for (auto& [id, slot] : vehicles_) recall(id, slot);
-}
-
-/// Puts a slot where it was at tick_, by its agent's last two commands.
-void World::recall(AgentId id, VehicleSlot& slot) {
-  if (slot.answered() < 0) return;
-  const bool hold = mission().timing.pace == Pace::kRealtime;
-  slot.x_m = slot.command->position_m;
-  const bool in_a_row =
-      slot.command_before && slot.command_before->header.tick + 1 == slot.answered();
-  if (in_a_row) {
-    slot.applied_mps = within_speed_limit(mission(), slot.command_before->velocity_mps);
-  }
-  for (Tick tick = slot.answered(); tick < tick_; ++tick) move(id, slot, tick, hold);
 }
 
 void World::take_roster() {
@@ -153,7 +143,11 @@ void World::take_roster() {
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.active_until >= 0) continue;
     auto [at, is_new] = vehicles_.try_emplace(entry.author.agent);
-    if (is_new) at->second.x_m = start_of(mission, entry.author.agent);
+    if (is_new && begun_at_) {
+      at->second.x_m = place_for(entry.author.agent);
+    } else if (is_new) {
+      at->second.x_m = start_of(mission, entry.author.agent);
+    }
     if (at->second.author != entry.author) {
       at->second.command.reset();
       at->second.command_before.reset();
@@ -183,7 +177,12 @@ void World::on(const Command& command, const Arrival&) {
     return !known || command.header.tick > known->header.tick;
   };
   const bool again = slot.command && command.header.tick == slot.answered();
-  if (again && command.velocity_mps.isZero(0)) {
+  if (again && slot.answered() < 0) {
+    // One of the two may come before the answer to tick 0. Only both say that there is none.
+    const auto apart = std::abs(command.header.sequence - slot.command->header.sequence);
+    if (apart == 1) slot.command_before = slot.command;
+    slot.command = command;
+  } else if (again && command.velocity_mps.isZero(0)) {
     slot.command->velocity_mps.setZero();  // the one second thought that an agent may have
   } else if (newer_than(slot.command)) {
     slot.command_before = std::exchange(slot.command, command);
@@ -287,27 +286,39 @@ std::string World::why_over() const {
   return follower().over() ? follower().reason() : "mission complete";
 }
 
-Eigen::Vector3d World::command_of(const VehicleSlot& slot, Tick tick,
-                                  bool hold_old_commands) const {
-  if (slot.answered() < 0 || slot.author.incarnation == 0) return {0, 0, 0};
+bool World::driven(const VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
+  if (slot.answered() < 0 || slot.author.incarnation == 0) return false;
   const Timing& timing = mission().timing;
   const double age_s = static_cast<double>(tick - slot.answered()) * timing.dt_s;
-  if (age_s > (hold_old_commands ? timing.command_hold_s : 0)) return {0, 0, 0};
-  return slot.command->velocity_mps;
+  return age_s <= (hold_old_commands ? timing.command_hold_s : 0);
+}
+
+Eigen::Vector3d World::command_of(const VehicleSlot& slot, Tick tick,
+                                  bool hold_old_commands) const {
+  return driven(slot, tick, hold_old_commands) ? slot.command->velocity_mps
+                                               : Eigen::Vector3d(0, 0, 0);
 }
 
 void World::step(bool hold_old_commands) {
   for (auto& [id, slot] : vehicles_) {
-    move(id, slot, tick_, hold_old_commands);
-    if (slot.applied_mps != command_of(slot, tick_, hold_old_commands)) ++counted_.clamped_commands;
+    drive(slot, tick_, hold_old_commands);
+    if (driven(slot, tick_, hold_old_commands) && slot.next_mps != slot.command->velocity_mps)
+      ++counted_.clamped_commands;
   }
+  if (filter_) filter_commands();
+  for (auto& [id, slot] : vehicles_) move(id, slot, tick_);
   ++tick_;
 }
 
-void World::move(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
+void World::drive(VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
+  slot.next_mps = executed(mission(), slot.applied_mps, command_of(slot, tick, hold_old_commands));
+}
+
+void World::move(AgentId id, VehicleSlot& slot, Tick tick) const {
   const Mission& mission = me_.mission();
-  slot.applied_mps = within_speed_limit(mission, command_of(slot, tick, hold_old_commands));
-  slot.x_m = reflect(moved(mission, id, tick, slot.x_m, slot.applied_mps), mission.domain);
+  const Eigen::Vector3d mean_mps = mean_velocity(mission, slot.applied_mps, slot.next_mps);
+  slot.x_m = reflect(moved(mission, id, tick, slot.x_m, mean_mps), mission.domain);
+  slot.applied_mps = slot.next_mps;
 }
 
 std::vector<WorldState> World::snapshot() const {

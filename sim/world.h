@@ -2,7 +2,9 @@
 // The simulated world: integrates commands, reflects at the edge, publishes states, keeps the tick.
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
-//   v_n is the command, cut to the scenario's speed limit.
+//   v_n is the command, cut to the scenario's speed limit. Where bodies keep a distance, a world in
+//   real time then filters all commands together, core/separation.h: held and late ones do not know
+//   where the others have gone.
 //
 // In lockstep a tick is repeated until every member of the roster has answered it, and the world
 // runs a bounded number of ticks ahead of the record. In real time it follows the clock.
@@ -14,7 +16,9 @@
 #include <vector>
 
 #include "core/ids.h"
+#include "core/separation.h"
 #include "sim/record_window.h"
+#include "team/bodies.h"
 #include "team/messages.h"
 #include "team/participant.h"
 
@@ -58,8 +62,10 @@ class World {
   struct VehicleSlot {
     Author author;
     Eigen::Vector3d x_m{0, 0, 0};
-    Eigen::Vector3d applied_mps{0, 0, 0};
+    Eigen::Vector3d applied_mps{0, 0, 0};  // in the step that led here; with inertia at its end
+    Eigen::Vector3d next_mps{0, 0, 0};     // in the step that follows
     std::optional<Command> command, command_before;
+    bool placed = true;  // false: x_m says nothing yet
     Tick answered() const { return command ? command->header.tick : -1; }
   };
 
@@ -67,6 +73,7 @@ class World {
   struct Question {
     std::optional<Instant> since;  // while it asks
     Instant next{};
+    Bodies before;  // what a world before us said last
   };
   /// When something is to be said or done next.
   struct Schedule {
@@ -82,6 +89,7 @@ class World {
   template <class M>
   void on(const M&, const Arrival&) {}  // nothing follows from the other types
   void on(const Command& command, const Arrival& arrival);
+  void on(const WorldState& before, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const RecordAck& ack, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
@@ -94,12 +102,19 @@ class World {
   AgentId first_unheard() const;
   void begin(Instant now);
   void recall(AgentId id, VehicleSlot& slot);
-  void move(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
+  bool knows_bodies() const;
+  void settle();
+  Eigen::Vector3d place_for(AgentId id) const;
+  bool keeps_distance() const { return mission().separation.distance_m > 0; }
+  void drive(VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
+  void move(AgentId id, VehicleSlot& slot, Tick tick) const;
+  void filter_commands();
   bool everyone_answered() const;
   bool record_is_close(Instant now);
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
   void step(bool hold_old_commands);
+  bool driven(const VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   Eigen::Vector3d command_of(const VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   std::vector<WorldState> snapshot() const;
   void publish(const std::vector<WorldState>& states, Outbox& out);
@@ -122,6 +137,8 @@ class World {
   std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
   RecordWindow record_;
   Counted counted_;
+  std::optional<SeparationFilter> filter_;  // of commands, if it guards or vehicles have inertia
+  std::vector<Neighbour> bodies_;           // of the tick, for the guard
 };
 
 }  // namespace ergocast

@@ -110,6 +110,10 @@ struct AgentStatus {
   AgentId rate_offender = kUnassigned;  ///< the last agent whose messages were refused as kRate
   std::int64_t kernel_drops = 0;
   double loop_lag_s = 0;  ///< the longest delay or busy time of its process since its last status
+  /// Where a distance is kept: who it is too close to, for how many ticks without a break;
+  /// kUnassigned: nobody, or an edge of the domain. In all, and at most in a row.
+  AgentId blocked_by = kUnassigned;
+  std::int64_t blocked_now_ticks = 0, blocked_ticks = 0, longest_block_ticks = 0;
   std::string host;
 };
 
@@ -138,7 +142,7 @@ struct Vehicle {
   AgentId id = 0;
   std::int64_t answered_tick = -1;  ///< newest tick its commands have answered
   Eigen::Vector3d position_m{0, 0, 0};
-  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< applied in the step that led here
+  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< applied in the step that led here; with inertia, at its end
 };
 
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.

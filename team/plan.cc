@@ -83,7 +83,9 @@ class PlanWriter {
     if (value != in_plane || in_plane == 0) this->value(field, value);
   }
   PlanWriter open(int) const { return {}; }
-  void close(int field, const PlanWriter& block) { value(field, block.bytes()); }
+  void close(int field, const PlanWriter& block) {
+    if (const std::string bytes = block.bytes(); !bytes.empty()) value(field, bytes);
+  }
 
   std::string bytes() const {
     std::string all;
@@ -198,7 +200,7 @@ class PlanFields : public FieldVisitor {
     wire_.height(field, value, in_plane);
   }
   void flag(int field, const char*, auto& value) { wire_.value(field, value); }
-  void choice(int field, const char*, auto& value, Words) { wire_.value(field, value); }
+  void choice(int field, const char*, auto& value, Words, bool = true) { wire_.value(field, value); }
   void seed(int field, const char*, auto& value) { wire_.value(field, value); }
   void name(int field, const char*, auto& value) { wire_.value(field, value); }
   void part(int field, const char*, auto& part) {

@@ -61,7 +61,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   hears(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
   hears(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
   hears(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);
-  hears(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, Command, RecordAck, Stop>);
+  hears(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, WorldState, Command, RecordAck, Stop>);
   hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);
   hears(Role::kLauncher,    Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, Stop>);

@@ -7,6 +7,14 @@
 #include <utility>
 
 namespace ergocast::example {
+namespace {
+
+void halt_robot(auto& slot) {
+  slot.commanded_mps.setZero();
+  slot.robot.drive({0, 0, 0});
+}
+
+}  // namespace
 
 Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps)
     : me_(kRole, {run, kWorld, incarnation}), speed_limit_mps_(speed_limit_mps) {}
@@ -32,9 +40,12 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
     return stop(follower().plan_problem().value_or(
         "the mission is in lockstep, which robots cannot be: give it pace: REALTIME"));
   }
+  failed_ = me_.mission().vehicle.kind != VehicleKind::kPoint;
+  if (failed_) return stop("the mission is for other vehicles: give it vehicle { kind: POINT }");
   take_roster();
   if (running_ || follower().state() != MissionState::kRunning) return;
   running_ = true;
+  if (world_guards(me_.mission())) guard_.emplace(me_.mission(), 0);
   tick_ = part.header.tick;
   next_tick_ = arrival.now;
 }
@@ -63,12 +74,28 @@ void Driver::on(const Command& command, const Arrival&) {
   VehicleSlot& drive = at->second;
   // Standing still is the one second thought that an agent may have of a tick.
   const bool halt = command.header.tick == drive.answered && command.velocity_mps.isZero(0);
-  if (halt) drive.robot.drive({0, 0, 0});
+  if (halt) halt_robot(drive);
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
   drive.answered = command.header.tick;
   const Eigen::Vector3d allowed_mps = within_speed_limit(me_.mission(), command.velocity_mps);
   if (allowed_mps != command.velocity_mps) ++clamped_commands_;
-  drive.robot.drive(allowed_mps);
+  drive.commanded_mps = allowed_mps;
+  if (!guard_) drive.robot.drive(allowed_mps);
+}
+
+/// With all places known, once a tick: what one robot may do depends on where the others are.
+void Driver::hold_apart() {
+  const double limit_mps = me_.mission().speed_limit_mps;
+  std::vector<Neighbour> bodies;
+  for (const auto& [id, drive] : drives_)
+    bodies.push_back({id, drive.robot.position_m(), limit_mps});
+  for (auto& [id, drive] : drives_) {
+    const Mover self{id, tick_, drive.robot.position_m(), limit_mps};
+    const bool stands = drive.commanded_mps.isZero(0);
+    drive.robot.drive(
+        stands ? drive.commanded_mps : guard_->safe(self, drive.commanded_mps, bodies).velocity_mps,
+        true);
+  }
 }
 
 void Driver::advance(Instant now, Outbox& out) {
@@ -94,14 +121,16 @@ void Driver::pass_tick() {
     const bool driven = drive.author.incarnation != 0;
     const double age_s = static_cast<double>(tick_ - drive.answered) * timing.dt_s;
     if (driven && drive.answered < tick_) ++missed_deadlines_;
-    if (finished_ || !driven || age_s > timing.command_hold_s) drive.robot.drive({0, 0, 0});
-    drive.robot.move(timing.dt_s);
+    if (finished_ || !driven || age_s > timing.command_hold_s) halt_robot(drive);
   }
+  if (guard_) hold_apart();
+  for (auto& [id, drive] : drives_) drive.robot.move(timing.dt_s);
   ++tick_;
 }
 
 void Driver::say_where(Outbox& out) {
   const Box& domain = me_.mission().domain;
+  const bool apart = me_.mission().separation.distance_m > 0;
   const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
   auto drive = drives_.begin();
   for (std::size_t part = 0; part < parts; ++part) {
@@ -116,10 +145,9 @@ void Driver::say_where(Outbox& out) {
       const auto& [id, one] = *drive;
       vehicle.id = id;
       vehicle.answered_tick = one.answered;
-      // Agents refuse a place outside of the domain; a robot that overshoots is at the edge.
-      vehicle.position_m = one.robot.position_m()
-                               .cwiseMax(domain.origin_m)
-                               .cwiseMin(domain.origin_m + domain.size_m);
+      // Agents refuse a place outside of the domain, unless they keep a distance: then they need
+      // the true one.
+      vehicle.position_m = apart ? one.robot.position_m() : domain.nearest(one.robot.position_m());
       vehicle.velocity_mps = one.robot.velocity_mps();
     }
     me_.publish(Bus::kWorld, state, tick_, out);
@@ -129,7 +157,7 @@ void Driver::say_where(Outbox& out) {
 void Driver::stop(std::string reason) {
   finished_ = true;
   reason_ = std::move(reason);
-  for (auto& [id, drive] : drives_) drive.robot.drive({0, 0, 0});
+  for (auto& [id, drive] : drives_) halt_robot(drive);
 }
 
 }  // namespace ergocast::example

@@ -11,9 +11,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/ids.h"
+#include "core/separation.h"
 #include "examples/driver/robot.h"
 #include "team/messages.h"
 #include "team/participant.h"
@@ -52,6 +54,7 @@ class Driver {
     Author author;  ///< the agent that may command this robot; incarnation 0: none
     Robot robot;
     Tick answered = -1;  ///< newest tick that a command was for
+    Eigen::Vector3d commanded_mps{0, 0, 0};
   };
 
   template <class M>
@@ -61,11 +64,13 @@ class Driver {
   void on(const Stop& over, const Arrival& arrival);
   void take_roster();
   void pass_tick();
+  void hold_apart();
   void say_where(Outbox& out);
 
   Participant me_;
   double speed_limit_mps_;
   std::map<AgentId, VehicleSlot> drives_;
+  std::optional<SeparationFilter> guard_;
   bool running_ = false, said_ = false, finished_ = false, failed_ = false;
   bool emergency_stopped_ = false;  // by a STOP at once: the last state is still to be said
   std::string reason_;

@@ -22,8 +22,9 @@ void Robot::move(double dt_s) {
   const double turn_limit_rad = kTurnLimit_radps * dt_s;
   heading_rad_ += std::clamp(error_rad, -turn_limit_rad, turn_limit_rad);
   // Forwards only as far as it already looks where it is to go.
-  const double speed_mps =
-      std::min(wanted_mps_.norm(), speed_limit_mps_) * std::max(0.0, std::cos(error_rad));
+  const bool looks_there = std::abs(error_rad) <= turn_limit_rad;
+  const double share = exactly_ ? (looks_there ? 1 : 0) : std::max(0.0, std::cos(error_rad));
+  const double speed_mps = std::min(wanted_mps_.norm(), speed_limit_mps_) * share;
   velocity_mps_ = speed_mps * Eigen::Vector3d(std::cos(heading_rad_), std::sin(heading_rad_), 0);
   position_m_ += velocity_mps_ * dt_s;
 }

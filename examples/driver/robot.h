@@ -15,7 +15,11 @@ class Robot {
       : position_m_(position_m), speed_limit_mps_(speed_limit_mps) {}
 
   /// The velocity to drive at from now on; zero: stop.
-  void drive(const Eigen::Vector3d& velocity_mps) { wanted_mps_ = velocity_mps; }
+  /// @param exactly  it turns on the spot until it looks there: no other way is safe
+  void drive(const Eigen::Vector3d& velocity_mps, bool exactly = false) {
+    wanted_mps_ = velocity_mps;
+    exactly_ = exactly;
+  }
 
   Eigen::Vector3d position_m() const { return position_m_; }
   Eigen::Vector3d velocity_mps() const { return velocity_mps_; }
@@ -27,6 +31,7 @@ class Robot {
   Eigen::Vector3d position_m_;
   Eigen::Vector3d velocity_mps_{0, 0, 0}, wanted_mps_{0, 0, 0};
   double heading_rad_ = 0;
+  bool exactly_ = false;
   double speed_limit_mps_;
 };
 

@@ -70,7 +70,7 @@ class Run:
         """metrics.csv with all its segments: a row for each mission second.
 
         Columns: tick, t_s [s], ergodic_metric (φ²), metric_spread, max_staleness_s [s],
-        contributions_received, contributions_lost.
+        contributions_received, contributions_lost, blocked_share.
         """
         return pd.DataFrame(self._record.metrics())
 

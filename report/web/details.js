@@ -37,6 +37,7 @@ export function showFacts(live) {
     ['result', said(summary, 'result') ?? 'no summary'], ['φ² first', readable(phi[0])], ['φ² last', readable(phi[phi.length - 1])],
     ['slope, last decade', slopeText(run)], ['ticks', `${grouped(run.ticks)}${run.ticks < mission.tick_count ? ` of ${grouped(mission.tick_count)}` : ''} × ${mission.dt_s} s`],
     ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['mode', said(summary, 'mode') ?? '–'],
+    ...present([['blocked share', said(summary, 'separation.blocked_share')], ['longest block [s]', said(summary, 'separation.longest_block_s')]]),
     ['messages', said(summary, 'messages.sent') ?? '–'], ['lost', said(summary, 'messages.lost') ?? '–'],
     ['ticks missing', said(summary, 'gaps') ?? '–'], ['run', (said(summary, 'run_id') ?? '–').slice(0, 8)],
   ];
@@ -46,7 +47,7 @@ export function showFacts(live) {
 const AGENT_COLUMNS = [
   ['agent', 'id'], ['host', 'host'], ['incarnation', 'incarnation'], ['from tick', 'active_from'], ['until', 'active_until'],
   ['messages sent', 'messages_sent'], ['received', 'messages_received'], ['contributions', 'contributions_received'],
-  ['lost', 'contributions_lost'], ['missed ticks', 'missed_ticks'], ['oldest knowledge [s]', 'max_staleness_s'],
+  ['lost', 'contributions_lost'], ['missed ticks', 'missed_ticks'], ['blocked ticks', 'blocked_ticks'], ['longest block', 'longest_block_ticks'], ['oldest knowledge [s]', 'max_staleness_s'],
   ['kernel drops', 'kernel_drops'], ['own φ²', 'ergodic_metric'],
 ];
 

@@ -4,9 +4,12 @@
 // WRAPPED lines are the linker's, and CMake reads them here). ERGOCAST_BUG selects the bug; without
 // it, every call passes through.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
@@ -14,6 +17,7 @@
 #include "core/coverage_table.h"
 #include "core/forecast.h"
 #include "core/geometry.h"
+#include "core/separation.h"
 #include "lcmtypes/codec.h"
 #include "sim/world.h"
 
@@ -57,6 +61,8 @@ WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantI
 WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
+WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
+WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
 // clang-format on
 
 // ---- control and world
@@ -72,6 +78,88 @@ Eigen::Vector3d bug_reflect(const Eigen::Vector3d& x_m, const Box& domain) {
   const Eigen::Vector3d back_m = real_reflect(x_m, domain);
   if (!bug("the edges push outwards")) return back_m;
   return back_m + (back_m - domain.center_m());
+}
+
+namespace {
+
+/// What a filter was made for, and what it was told before.
+struct Filtered {
+  double dt_s;
+  double error_m;                                                  ///< of positions
+  std::map<AgentId, std::map<Tick, std::vector<Neighbour>>> told;  // of each body
+};
+std::map<const SeparationFilter*, Filtered> filtered;
+
+/// Old enough that a body may have gone a small distance.
+constexpr Tick kOld = 8;
+
+/// What a body was told kOld ticks ago.
+std::vector<Neighbour> old_news(SeparationFilter* self, const Mover& mover,
+                                std::span<const Neighbour> others) {
+  auto& told = filtered.at(self).told[mover.id];
+  told[mover.tick] = {others.begin(), others.end()};
+  while (told.begin()->first < mover.tick - kOld) told.erase(told.begin());
+  return told.begin()->second;
+}
+
+/// A number of a pair of bodies that holds for a second.
+Tick draw_of(const Mover& mover, const Neighbour& other) {
+  return mover.tick / 10 * 7 + mover.id * 5 + other.id * 3;
+}
+
+/// What the filter is told of the others instead.
+std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
+                                 std::span<const Neighbour> others) {
+  const Filtered& made = filtered.at(self);
+  std::vector<Neighbour> told(others.begin(), others.end());
+  if (bug("only two bodies count")) told.resize(std::min<std::size_t>(2, told.size()));
+  if (bug("a body takes the whole gap")) {
+    for (Neighbour& other : told) other.max_speed_mps *= 1e-9;
+  }
+  if (bug("old places count as new")) told = old_news(self, mover, others);
+  if (bug("places count as half as old")) {
+    told = old_news(self, mover, others);
+    for (Neighbour& other : told) other.age_ticks = kOld / 2;
+  }
+  if (bug("a body needs no way to brake")) {
+    for (Neighbour& other : told) other.velocity_mps.setZero();
+  }
+  if (bug("uncertainty narrows no direction")) told = old_news(self, mover, others);
+  if (bug("a body that is not heard does not exist")) {
+    std::erase_if(told, [&](const Neighbour& other) { return draw_of(mover, other) % 3 == 0; });
+  }
+  for (Neighbour& other : told) {
+    const Eigen::Vector3d y_m = other.position_m - mover.position_m;
+    if (bug("uncertainty narrows no direction") && y_m.norm() > 0) {
+      const double near_m = other.max_speed_mps * made.dt_s * kOld;
+      other.position_m -= y_m * std::min(1.0, near_m / y_m.norm());
+    }
+    if (bug("nobody knows of position errors")) {
+      const double angle = static_cast<double>(draw_of(mover, other));
+      other.position_m += made.error_m * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+    }
+  }
+  return told;
+}
+
+}  // namespace
+
+void bug_make_filter(SeparationFilter* self, const Mission& mission, Tick hold_ticks) {
+  Mission changed = mission;
+  filtered[self] = {mission.timing.dt_s, mission.separation.position_error_m, {}};
+  if (bug("no command is held")) hold_ticks = 0;
+  if (bug("nobody knows of position errors")) changed.separation.position_error_m = 0;
+  if (bug("edges count afterwards")) {
+    changed.domain.origin_m.head<2>().array() -= 1000;
+    changed.domain.size_m.head<2>().array() += 2000;
+  }
+  real_make_filter(self, changed, hold_ticks);
+}
+
+SafeVelocity bug_safe(SeparationFilter* self, const Mover& mover, const Eigen::Vector3d& wanted_mps,
+                      std::span<const Neighbour> others) {
+  if (bug("bodies are no bodies")) return {wanted_mps};
+  return real_safe(self, mover, wanted_mps, misjudged(self, mover, others));
 }
 
 // ---- coverage

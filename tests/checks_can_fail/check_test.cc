@@ -91,6 +91,12 @@ std::vector<Mistake> mistakes_of_the_text() {
   };
 }
 
+/// A distance among vehicles of 20 m/s; then, unless it says otherwise, the law.
+std::string keeping(const std::string& separation, const std::string& world,
+                    const std::string& then = kLaw) {
+  return "separation { " + separation + " } world { speed_limit_mps: 20 " + world + " } " + then;
+}
+
 std::vector<Mistake> mistakes_between_fields() {
   return {
       {"size_x_m: 100", "size_x_m: 100 origin_x_m: 10000001", "domain.origin_x_m: "},
@@ -120,6 +126,31 @@ std::vector<Mistake> mistakes_between_fields() {
       {"y_m: 20", "y_m: -1", "agents.starts[0].y_m: -1 is outside"},
       {"agents {", "world { disturbance_intensity: 1000 } agents {",
        "world.disturbance_intensity: 1000"},
+      {kLaw, "separation { distance_m: 5 } law {",
+       "world.speed_limit_mps: is missing, and separation relies on it", false},
+      {kLaw, keeping("distance_m: 26", ""), "separation.distance_m: 26 is above a quarter"},
+      {kLaw, "vehicle { kind: ACCELERATION } law {", "vehicle.max_acceleration_mps2: is missing",
+       false},
+      {kLaw, "vehicle { max_acceleration_mps2: 5 } law {",
+       "vehicle.max_acceleration_mps2: has no effect"},
+      {kLaw, "vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } law {",
+       "world.speed_limit_mps: is missing, and a way to brake depends on it", false},
+      {kLaw,
+       "world { speed_limit_mps: 20 } vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } "
+       "law {",
+       "vehicle.max_acceleration_mps2: 5 stops a vehicle after"},
+      {kLaw,
+       keeping("distance_m: 5 position_error_m: 0.1",
+               "} vehicle { kind: ACCELERATION max_acceleration_mps2: 50"),
+       "separation: allows errors, disturbances"},
+      {kLaw, keeping("distance_m: 5", "disturbance_intensity: 1"),
+       "separation.disturbance_m: 1.898 is not below a quarter of a step"},
+      {"time {", keeping("distance_m: 5 guard: false", "", "time { pace: REALTIME "),
+       "time.command_hold_s: 0.5 is too long without separation.guard"},
+      {"agents {", keeping("distance_m: 12", "", "agents { random_count: 22 "),
+       "separation.distance_m: 23 agents 12 m apart take up"},
+      {"agents {", keeping("distance_m: 12", "", "agents { starts { x_m: 19 y_m: 20 } "),
+       "agents.starts[1]: is 9 m from starts[0]"},
   };
 }
 
@@ -456,6 +487,8 @@ time {
 }
 agents { starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1 }
 world { speed_limit_mps: 100 }
+vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
+separation { distance_m: 2 }
 )";
 
 /// Calls `visit` for each field that takes a number or a word, with its block.
@@ -629,11 +662,24 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find("time.dt_s: 0.6 is coarse"), std::string::npos) << output();
   }
 
+  void expect_warning_of_packing() {
+    std::string text = kGood;
+    text.insert(text.find("agents {"),
+                "world { speed_limit_mps: 1000 }\nseparation { distance_m: 10 }\n");
+    text.replace(text.find("} }\n", text.find("agents {")), 4, "} random_count: 9 }\n");
+    write("s.textproto", text);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_TRUE(output().starts_with("warning: " + file_.string() + ":6:")) << output();
+    EXPECT_NE(output().find("10 agents 10 m apart take up 15.71 %"), std::string::npos) << output();
+  }
+
   void plant_warnings() {
     expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");
     expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
     expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");
     expect_warning_of_coarse_steps();
+    expect_warning_of_packing();
   }
 };
 

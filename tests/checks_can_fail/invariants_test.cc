@@ -30,9 +30,38 @@ const char* const kLateBlocks =
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
 
+const char* const kCrowd =
+    "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1";
+/// Bodies as fast as their limit, so that nothing spare hides what they do not know.
+const char* const kFastCrowd =
+    "separation { distance_m: 20 }\nworld { speed_limit_mps: 10 }\ngoal_ergodic_metric: 1";
+const char* const kCrowdInACorner =
+    "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
+    "target { gaussians { mean_x_m: 0 mean_y_m: 0 sigma_m: 3 weight: 20 } }";
+const char* const kUnguardedCrowd =
+    "separation { distance_m: 12 guard: false }\nworld { speed_limit_mps: 10 }\n"
+    "goal_ergodic_metric: 1\ntime { command_hold_s: 0.3 }\n"
+    "target { gaussians { mean_x_m: 0 mean_y_m: 0 sigma_m: 3 weight: 20 } }";
+const char* const kCrowdWithInertia =
+    "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
+    "vehicle { kind: ACCELERATION max_acceleration_mps2: 10 }";
+const char* const kUnsureCrowd =
+    "separation { distance_m: 20 position_error_m: 1 }\nworld { speed_limit_mps: 20 }\n"
+    "goal_ergodic_metric: 1";
+
 const Plant kPlants[] = {
     {Invariant::kPositionsInTheDomain, "the edges push outwards"},
     {Invariant::kInputsBounded, "the input is not cut"},
+    {Invariant::kDistanceKept, "bodies are no bodies", "", kCrowd},
+    {Invariant::kDistanceKept, "only two bodies count", "", kCrowd},
+    {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowd},
+    {Invariant::kDistanceKept, "old places count as new", "", kCrowd},
+    {Invariant::kDistanceKept, "places count as half as old", "", kFastCrowd},
+    {Invariant::kDistanceKept, "a body that is not heard does not exist", "", kCrowd},
+    {Invariant::kDistanceKept, "edges count afterwards", "", kCrowdInACorner},
+    {Invariant::kDistanceKept, "no command is held", "loss = 0.3", kUnguardedCrowd},
+    {Invariant::kDistanceKept, "a body needs no way to brake", "", kCrowdWithInertia},
+    {Invariant::kDistanceKept, "nobody knows of position errors", "", kUnsureCrowd},
     {Invariant::kSumsBounded, "a sum runs away"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},

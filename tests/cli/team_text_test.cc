@@ -57,6 +57,19 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+TEST(TeamTable, SaysWhoBlocksAnAgentOnceItLasts) {
+  AgentRow row = row_of(0, Condition::kOk);
+  row.status->blocked_by = 3;
+  row.blocked_s = 0.9;
+  EXPECT_EQ(condition_text(row), "ok");
+  row.blocked_s = 4;
+  EXPECT_EQ(condition_text(row), "blocked by agent 3 for 4 s");
+  row.status->blocked_by = kUnassigned;
+  EXPECT_EQ(condition_text(row), "blocked by an edge for 4 s");
+  row.condition = Condition::kSilent;
+  EXPECT_EQ(condition_text(row), "silent 0 s");
+}
+
 TEST(TeamTable, SaysEverythingInLinesThatFit) {
   EXPECT_EQ(
       team_table(flying_team(), false),

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <new>
@@ -15,6 +16,7 @@
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/forecast.h"
+#include "core/separation.h"
 #include "tests/support/team.h"
 
 namespace {
@@ -150,6 +152,18 @@ TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
       EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
     }
   }
+}
+
+TEST(Allocations, KeepingADistanceMakesNone) {
+  Mission mission = full_mission(Regularization::kAbsolute, Perturbation::kConstant, 1);
+  mission.speed_limit_mps = 40;
+  mission.separation.distance_m = 30;
+  SeparationFilter filter(mission, 0);
+  std::vector<Neighbour> others;
+  for (AgentId id = 1; id < kMaxAgents; ++id)
+    others.push_back({id, {500 + 30 * std::cos(id), 500 + 30 * std::sin(id), 0}, 40});
+  const Mover self{0, 0, {500, 500, 0}, 40};
+  EXPECT_EQ(allocations_in([&] { filter.safe(self, {30, 20, 0}, others); }), 0u);
 }
 
 TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {

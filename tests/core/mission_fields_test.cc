@@ -36,7 +36,7 @@ class Count : public FieldVisitor {
   void number(auto&&...) { ++fields; }
   void height(auto&&...) { ++fields; }
   void flag(auto&&...) { ++fields; }
-  void choice(int, const char*, auto&, Words) { ++fields; }
+  void choice(int, const char*, auto&, Words, bool = true) { ++fields; }
   void seed(auto&&...) { ++fields; }
   void name(auto&&...) { ++fields; }
   void part(auto&&...) { ++fields; }
@@ -61,6 +61,8 @@ TEST(MissionFields, AreAllMembers) {
   EXPECT_EQ(listed<Mission>(), members<Mission>());
   EXPECT_EQ(listed<Box>(), 3 * members<Box>());  // a vector each
   EXPECT_EQ(listed<Basis>(), members<Basis>());
+  EXPECT_EQ(listed<VehicleLimits>(), members<VehicleLimits>());
+  EXPECT_EQ(listed<Separation>(), members<Separation>() - 1) << "guard means nothing without it";
 }
 
 }  // namespace

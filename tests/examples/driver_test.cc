@@ -89,6 +89,39 @@ TEST(ExampleDriver, ARobotThatOvershootsIsSaidToBeAtTheEdge) {
   EXPECT_EQ(state.vehicles[0].position_m.x(), 0);
 }
 
+Mission apart() {
+  Mission mission = mission_of(Pace::kRealtime);
+  mission.timing.tick_count = 400;
+  mission.speed_limit_mps = kSpeedLimit_mps;
+  mission.separation.distance_m = 30;
+  mission.separation.guard = true;
+  return mission;
+}
+
+/// By the true places of all, whatever the agents command and however long that is held.
+TEST(ExampleDriver, HoldsRobotsApart) {
+  Driver driver = running_driver(apart());
+  advance(driver, at(0s));
+  for (int tick = 1; tick <= 200; ++tick) {
+    give(driver, command_of(0, tick - 1, {5, 0, 0}), at(tick * 100ms));
+    const WorldState state = state_at(driver, at(tick * 100ms));
+    const double apart_m = (state.vehicles[0].position_m - state.vehicles[1].position_m).norm();
+    ASSERT_GE(apart_m, 30) << tick;
+  }
+  EXPECT_GT(driver.robot(0).position_m().x(), 169) << "it comes near, and looks for a way around";
+}
+
+TEST(ExampleDriver, WhereADistanceIsKeptSaysWhereARobotThatOvershootsIs) {
+  Driver driver = running_driver(apart());
+  WorldState state = state_at(driver, at(0s));
+  for (int tick = 1; tick <= 300; ++tick) {
+    give(driver, command_of(0, tick - 1, {-5, -1, 0}), at(tick * 100ms));
+    state = state_at(driver, at(tick * 100ms));
+  }
+  EXPECT_EQ(state.vehicles[0].position_m, driver.robot(0).position_m());
+  EXPECT_GE(state.vehicles[0].position_m.x(), -1) << "the filter holds it at the edge";
+}
+
 TEST(ExampleDriver, GoesOnAtTheTickThatTheCoordinatorNames) {
   announce(mission_of(Pace::kRealtime));
   Driver driver(kRun, kWorldLife, kSpeedLimit_mps);

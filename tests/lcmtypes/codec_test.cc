@@ -89,6 +89,10 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(status_wire.babbler, 22);
   EXPECT_EQ(status_wire.kernel_drops, 17);
   EXPECT_EQ(status_wire.loop_lag_s, 0.25);
+  EXPECT_EQ(status_wire.blocked_by, 6);
+  EXPECT_EQ(status_wire.blocked_now_ticks, 23);
+  EXPECT_EQ(status_wire.blocked_ticks, 25);
+  EXPECT_EQ(status_wire.longest_block_ticks, 24);
   EXPECT_EQ(status_wire.status_host, "host.example");
 
   const auto digest_wire = read_by_lcm<digest_t>(encoded(digest()));

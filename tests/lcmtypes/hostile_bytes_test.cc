@@ -321,7 +321,9 @@ TEST(Codec, CountsThatOnlyOverflowAreRefused) {
   }
   for (std::int64_t AgentStatus::*count :
        {&AgentStatus::contributions_received, &AgentStatus::messages_sent,
-        &AgentStatus::messages_received, &AgentStatus::missed_ticks, &AgentStatus::kernel_drops}) {
+        &AgentStatus::messages_received, &AgentStatus::missed_ticks, &AgentStatus::kernel_drops,
+        &AgentStatus::blocked_now_ticks, &AgentStatus::blocked_ticks,
+        &AgentStatus::longest_block_ticks}) {
     for (const std::int64_t bad : {kHuge, std::int64_t{-1}}) {
       AgentStatus status = agent_status();
       status.*count = bad;

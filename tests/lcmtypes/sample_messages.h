@@ -101,6 +101,10 @@ inline AgentStatus agent_status() {
   m.rate_offender = 22;
   m.kernel_drops = 17;
   m.loop_lag_s = 0.25;
+  m.blocked_by = 6;
+  m.blocked_now_ticks = 23;
+  m.blocked_ticks = 25;
+  m.longest_block_ticks = 24;
   m.host = "host.example";
   return m;
 }

@@ -251,7 +251,7 @@ TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   }
   EXPECT_EQ(record.metrics.str().substr(0, record.metrics.str().find('\n')),
             "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
-            "contributions_lost");
+            "contributions_lost,blocked_share");
   const auto rows = record.metrics_rows();
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(columns(rows[1])[0], "10");
@@ -276,6 +276,7 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
     status.max_staleness_s = staleness;
     status.contributions_received = received;
     status.contributions_lost = lost;
+    status.blocked_ticks = id == 0 ? 1 : 0;
     return status;
   };
   record.tell(report(0, 7, 0.5, 1.5, 100, 3));
@@ -299,6 +300,7 @@ TEST(Metrics, CountWhatTheNewestStatusOfEachAgentSays) {
   EXPECT_EQ(number(rows[0], 4), 2.5) << "the worst-informed agent's";
   EXPECT_EQ(columns(rows[0])[5], "600");
   EXPECT_EQ(columns(rows[0])[6], "12");
+  EXPECT_EQ(number(rows[0], 7), 0.5) << "one of two ticks";
 }
 
 TEST(Metrics, AnAgentThatHasLeftCountsInTheTotalsButNotInTheSpread) {

@@ -43,6 +43,37 @@ TEST(Summary, SaysWhetherTheGoalIsReachedIfThereIsOne) {
   EXPECT_EQ(goal_after_a_tick(1e-6)["ergodic_metric"], 1e-6);
 }
 
+/// Of two agents, the second of which answers from tick 10 on.
+TEST(Summary, SaysHowMuchADistanceHasCost) {
+  Mission mission = small_mission(2);
+  mission.speed_limit_mps = 40;
+  mission.separation.distance_m = 30;
+  for (const bool apart : {true, false}) {
+    if (!apart) mission.separation = {};
+    std::ostringstream trajectory, metrics;
+    announce(mission);
+    Recorder recorder(kRun, kLoggerLife, trajectory, metrics);
+    std::vector<RosterEntry> roster = roster_of(2);
+    roster[1].active_from = 10;
+    give(recorder, mission_part(1, MissionState::kRunning, roster), at(0s));
+    for (const AgentId id : {0, 1}) {
+      AgentStatus status = status_of(id, 1, 29);
+      status.blocked_ticks = 5 * (id + 1);
+      status.longest_block_ticks = 4 - id;
+      give(recorder, status, at(0s));
+    }
+    const auto summary = summarize(recorder, {});
+    ASSERT_EQ(summary.contains("separation"), apart);
+    ASSERT_EQ(summary["agents"][1].contains("blocked_ticks"), apart);
+    if (!apart) continue;
+    EXPECT_EQ(summary["separation"]["distance_m"], 30);
+    EXPECT_EQ(summary["separation"]["blocked_share"], 15.0 / 50);
+    EXPECT_EQ(summary["separation"]["longest_block_s"], 4 * mission.timing.dt_s);
+    EXPECT_EQ(summary["agents"][1]["blocked_ticks"], 10);
+    EXPECT_EQ(summary["agents"][1]["longest_block_ticks"], 3);
+  }
+}
+
 TEST(Summary, SaysNothingOfWhatIsNotKnown) {
   std::ostringstream trajectory, metrics;
   announce(small_mission(1));

@@ -74,12 +74,13 @@ constexpr const char* kMetricsColumns[] = {"tick",
                                            "metric_spread",
                                            "max_staleness_s",
                                            "contributions_received",
-                                           "contributions_lost"};
+                                           "contributions_lost",
+                                           "blocked_share"};
 
 TEST_F(Falsified, SimulationIsFoundInEveryColumnAndValue) {
   record("simulate");
   const std::string metrics = text_of(out() / "metrics.csv");
-  for (int column = 0; column < 7; ++column) {
+  for (int column = 0; column < 8; ++column) {
     expect_found("metrics.csv", with_another_digit(metrics, 4, column),
                  std::string("metrics.csv:4, column ") + kMetricsColumns[column]);
   }

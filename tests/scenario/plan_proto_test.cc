@@ -38,7 +38,7 @@ class PlanNames : public FieldVisitor {
   }
   void height(int number, const char* name, auto&, const Limits&, double) { expect(number, name); }
   void flag(int number, const char* name, auto&) { expect(number, name); }
-  void choice(int number, const char* name, auto&, Words words) {
+  void choice(int number, const char* name, auto&, Words words, bool = true) {
     const pb::FieldDescriptor* field = expect(number, name);
     if (field == nullptr) return;
     const pb::EnumDescriptor* values = field->enum_type();
@@ -77,14 +77,18 @@ TEST(PlanProto, HasTheFieldsOfAMission) {
 }
 
 TEST(PlanProto, IsWhatAPlansBytesAre) {
-  Mission mission = test::rich_mission_in_space();
-  mission.wait_for_logger = true;
-  const std::vector<std::byte> bytes = encode_plan(mission);
-  proto::Plan plan;
-  ASSERT_TRUE(plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
-  expect_all_said(plan);
-  const std::string again = plan.SerializeAsString();
-  EXPECT_TRUE(std::ranges::equal(std::as_bytes(std::span(again)), bytes));
+  Mission rich = test::rich_mission_in_space();
+  rich.wait_for_logger = true;
+  proto::Plan all;
+  for (const Mission& mission : {rich, test::with_inertia(rich)}) {
+    const std::vector<std::byte> bytes = encode_plan(mission);
+    proto::Plan plan;
+    ASSERT_TRUE(plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
+    const std::string again = plan.SerializeAsString();
+    EXPECT_TRUE(std::ranges::equal(std::as_bytes(std::span(again)), bytes));
+    all.MergeFrom(plan);
+  }
+  expect_all_said(all);
 }
 
 }  // namespace

@@ -16,12 +16,15 @@ inline World world_of(const Mission& mission) {
   return {kRun, kWorldLife};
 }
 
-/// Every agent's answer to the question of this incarnation of the world for its place.
+/// Every agent's two answers to the question of this incarnation of the world for its place.
 inline void nobody_has_moved(World& world, int agents, Instant now, Incarnation life = kWorldLife) {
   for (AgentId id = 0; id < agents; ++id) {
-    Command answer = command_of(id, -1, {0, 0, 0});
-    answer.asked_by = life;
-    give(world, answer, now);
+    for (int command = 0; command < 2; ++command) {
+      Command answer = command_of(id, -1, {0, 0, 0});
+      answer.header.sequence += command - 1;
+      answer.asked_by = life;
+      give(world, answer, now);
+    }
   }
 }
 

@@ -118,6 +118,8 @@ const std::map<std::string, Rule>& rules() {
       {"Scenario.time", must(draw_block)},
       {"Scenario.agents", must(draw_block)},
       {"Scenario.world", may(draw_block)},
+      {"Scenario.vehicle", may(draw_block)},
+      {"Scenario.separation", may(draw_block)},
       {"Scenario.goal_ergodic_metric", may(spread(1e-9, 1))},
       {"Scenario.origin", may(draw_block)},
       {"Origin.latitude_deg", must(number(54, 54))},  // where the GeoJSON files lie
@@ -208,6 +210,14 @@ const std::map<std::string, Rule>& rules() {
       {"Start.x_m", must(kPlace)},
       {"Start.y_m", must(kPlace)},
       {"Start.z_m", must(kPlace)},
+
+      {"Vehicle.kind", may(word(0.3))},
+      {"Vehicle.max_acceleration_mps2", must(spread(20, 200))},  // of inertia: see agree()
+
+      {"Separation.distance_m", must(number(0.5, 8))},
+      {"Separation.position_error_m", may(either(0, number(0.01, 0.2)))},
+      {"Separation.disturbance_m", may(spread(1e-4, 1e-2))},
+      {"Separation.response_s", may(either(0, spread(0.01, 1)))},
 
       {"World.disturbance_intensity", may(spread(0.01, 5))},
       {"World.radio_range_m", may(either(0, spread(5, 500)))},
@@ -311,6 +321,32 @@ void agree(proto::Target& target) {
   for (auto& keep_out : *target.mutable_keep_outs()) make_round(keep_out, 10);
 }
 
+/// A distance needs a speed limit, starts that are apart, and little that is unknown.
+void agree_on_distance(proto::Scenario& scenario) {
+  proto::World& world = *scenario.mutable_world();
+  if (!world.has_speed_limit_mps()) world.set_speed_limit_mps(20);
+  if (!scenario.separation().has_disturbance_m()) world.clear_disturbance_intensity();
+  const double step_m =
+      world.speed_limit_mps() * (scenario.time().has_dt_s() ? scenario.time().dt_s() : 0.1);
+  if (scenario.separation().disturbance_m() >= step_m / 4)
+    scenario.mutable_separation()->clear_disturbance_m();
+  if (!scenario.separation().guard()) scenario.mutable_time()->clear_pace();
+  proto::Agents& agents = *scenario.mutable_agents();
+  for (int i = 0; i < agents.starts_size(); ++i) agents.mutable_starts(i)->set_x_m(5 + 20 * i);
+}
+
+/// Inertia needs a speed limit and bodies that know each other.
+void agree_on_vehicle(proto::Scenario& scenario) {
+  if (scenario.vehicle().kind() == proto::Vehicle::POINT)
+    return scenario.mutable_vehicle()->clear_max_acceleration_mps2();
+  scenario.mutable_world()->set_speed_limit_mps(20);
+  if (!scenario.has_separation()) return;
+  const double distance_m = scenario.separation().distance_m();
+  scenario.mutable_separation()->Clear();
+  scenario.mutable_separation()->set_distance_m(distance_m);
+  scenario.mutable_world()->clear_disturbance_intensity();
+}
+
 void agree(proto::Scenario& scenario) {
   agree(*scenario.mutable_target());
   const bool planar = !scenario.domain().has_size_z_m();
@@ -339,6 +375,8 @@ void agree(proto::Scenario& scenario) {
   proto::Agents& agents = *scenario.mutable_agents();
   const int team = agents.starts_size() + agents.random_count();
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));
+  if (scenario.has_vehicle()) agree_on_vehicle(scenario);
+  if (scenario.has_separation()) agree_on_distance(scenario);
 }
 
 void add_fields(const Descriptor& type, std::set<std::string>& names) {

@@ -230,6 +230,21 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m.timing.catch_up_limit_ticks = 1001; },
       [](Mission& m) { m.starts_m[1].x() = 98.1; },  // outside
       [](Mission& m) { m.starts_m.clear(); },
+      [](Mission& m) { m.speed_limit_mps = 0; },  // and a distance
+      [](Mission& m) { m.separation.distance_m = -1; },
+      [](Mission& m) { m.vehicle.max_acceleration_mps2 = 1; },  // of a point
+      [](Mission& m) {
+        m.vehicle = {VehicleKind::kAcceleration, 1000};
+      },  // and errors of places
+      [](Mission& m) { m.separation = {}, m.vehicle.kind = VehicleKind::kAcceleration; },
+      [](Mission& m) {
+        m.separation = {}, m.vehicle = {VehicleKind::kAcceleration, 1e-3};
+      },
+      [](Mission& m) { m.separation.distance_m = 13.1, m.starts_m.resize(1), m.quorum = 1; },
+      [](Mission& m) { m.separation.distance_m = 0.9; },  // starts are 1.41 m apart, and 0.6 m off
+      [](Mission& m) { m.separation.distance_m = 0; },    // and an error
+      [](Mission& m) { m.separation.disturbance_m = 0.26; },  // of steps of 1 m
+      [](Mission& m) { m.separation.guard = false; },         // and commands are held for 0.8 s
       [](Mission& m) {
         m.starts_m.assign(kMaxAgents + 1, {17, 20, 0});
       },

@@ -31,7 +31,7 @@ class Fields : public FieldVisitor {
     texts.push_back(text_of(value));
   }
   void flag(int, const char*, bool value) { texts.push_back(std::to_string(value)); }
-  void choice(int, const char*, auto value, Words) {
+  void choice(int, const char*, auto value, Words, bool = true) {
     texts.push_back(std::to_string(static_cast<int>(value)));
   }
   void seed(int, const char*, std::uint64_t value) { texts.push_back(std::to_string(value)); }
@@ -70,7 +70,7 @@ class Switch : public FieldVisitor {
     if (left_-- == 0) value = !value;
   }
   template <class Enum>
-  void choice(int, const char*, Enum& value, Words words) {
+  void choice(int, const char*, Enum& value, Words words, bool = true) {
     if (left_-- == 0)
       value = static_cast<Enum>((static_cast<std::size_t>(value) + 1) % words.size());
   }
@@ -90,13 +90,17 @@ void expect_travels(const Mission& mission) {
 }
 
 TEST(Plan, CarriesEveryFieldOfAMission) {
-  const Mission mission = test::rich_mission_in_space();
-  const auto rich = Fields(mission).texts, plain = Fields(Mission()).texts;
+  const Mission mission = rich_mission_in_space();
+  Mission plain_mission;
+  plain_mission.separation.distance_m = 1;  // so that all its fields are listed
+  const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts,
+             moving = Fields(with_inertia(mission)).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
-    EXPECT_NE(rich[i], plain[i]) << "default: field " << i;
+    EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i]) << "default: field " << i;
   expect_travels(mission);
   expect_travels(rich_mission());
+  expect_travels(with_inertia(mission));
 }
 
 // Two swapped switches would not show if both are true.
@@ -109,6 +113,8 @@ TEST(Plan, CarriesEachSwitchByItself) {
     list_fields(one, mission);
     if (!one.turned()) break;
     if (mission.law.perturbation == Perturbation::kConstant) mission.law.noise_ceiling = 0;
+    if (mission.vehicle.kind != VehicleKind::kPoint) mission = with_inertia(mission);
+    if (!mission.separation.guard) mission.timing.command_hold_s = 0;
     expect_travels(mission);
   }
   EXPECT_GE(count, 10);
@@ -118,6 +124,7 @@ TEST(Plan, CarriesEachSwitchByItself) {
 TEST(Plan, KeepsTheBytesOfItsFields) {
   Mission mission = rich_mission();
   mission.wait_for_logger = true;
+  mission.separation = {};
   std::string plan;
   for (const std::byte byte : encode_plan(mission)) {
     plan += "0123456789abcdef"[static_cast<unsigned>(byte) >> 4];
@@ -159,6 +166,7 @@ TEST(Plan, CarriesZerosOfEitherSign) {
   mission.domain.origin_m = {0, -0.0, 0};
   mission.starts_m[0] = {-0.0, 0, 0};
   mission.radio_range_m = mission.speed_limit_mps = mission.goal_ergodic_metric = 0;
+  mission.separation = {};
   mission.target_coefficients[3] = -0.0;
   expect_travels(mission);
 }
@@ -178,7 +186,9 @@ TEST(Plan, OfTheLargestMissionFitsItsMessages) {
   mission.basis.modes_x = mission.basis.modes_y = kMaxModesPerAxis;
   mission.target_coefficients = Coefficients::Constant(kMaxModesPerAxis * kMaxModesPerAxis, 0.7);
   mission.target_coefficients[0] = 1;
-  mission.starts_m.assign(kMaxAgents, {17.5, 20.5, 0});
+  mission.starts_m.clear();
+  for (int i = 0; i < kMaxAgents; ++i)
+    mission.starts_m.emplace_back(17.5 + 2 * (i % 16), 20.5 + 2 * (i / 16), 0);
   mission.quorum = kMaxAgents;
   mission.timing.tick_count = 80'000'000;
   mission.timing.broadcast_period_ticks = mission.timing.catch_up_limit_ticks = 1000;

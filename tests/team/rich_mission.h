@@ -19,7 +19,7 @@ class Enricher : public FieldVisitor {
   }
   void flag(int, const char*, bool& value) { value = !value; }
   template <class Enum>
-  void choice(int, const char*, Enum& value, Words words) {
+  void choice(int, const char*, Enum& value, Words words, bool = true) {
     value = static_cast<Enum>((static_cast<std::size_t>(value) + 1) % words.size());
   }
   void part(int, const char*, auto& part) { list_fields(*this, part); }
@@ -66,6 +66,11 @@ inline Mission rich_mission() {
   mission.disturbance_intensity = 0.6;
   mission.radio_range_m = 60;
   mission.speed_limit_mps = 8;
+  mission.separation.distance_m = 0.65;
+  mission.separation.position_error_m = 0.15;
+  mission.separation.disturbance_m = 0.22;
+  mission.separation.response_s = 1.1;
+  mission.vehicle = {};  // inertia allows none of these: with_inertia()
   mission.wait_for_logger = false;
   return mission;
 }
@@ -81,6 +86,15 @@ inline Mission rich_mission_in_space() {
   mission.law.contraction_center_m.z() = 9;
   mission.starts_m[0].z() = -6;
   mission.starts_m[1].z() = 41;
+  return mission;
+}
+
+/// Of vehicles that are no points, which know where all others are.
+inline Mission with_inertia(Mission mission) {
+  mission.vehicle = {VehicleKind::kAcceleration, 11};
+  mission.separation = {};
+  mission.separation.distance_m = 0.65;
+  mission.separation.guard = true;
   return mission;
 }
 

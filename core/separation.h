@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies that keep a distance: the last step of a command, whose result is feasible and safe.
+//
+// Body i holds the place y of every other body j relative to its own, ρ = ‖y‖, at most R from the
+// true one at each tick at which its command may be executed:
+//
+//   R = V_j dt a + H dt (V_i + V_j) + e_i + e_j + w a + 2 H w
+//
+// a: age of y in ticks; H: ticks for which a command may be held; e: position error; w: what the
+// world may add to a step. It takes the step d nearest to what it wants of those with ‖d‖ ≤ V_i dt,
+// x_i + d in the domain, and for each j
+//
+//   u·d ≤ κ s (ρ − R − D')  for every unit vector u within asin(R/ρ) of y,  s = V_i / (V_i + V_j).
+//
+// The bound is at least 0 unless disturbance or response time ask for more. κ = 1 and D' = D but
+// for both, and for rounding. Two bodies that both do so, and are D' apart, stay D' apart: the true
+// unit vector n between them is such a u for both, so together they use at most the gap.
+// docs/safety.md has the conditions and the proof.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+
+#include "core/ids.h"
+#include "core/mission.h"
+#include "core/step_constraints.h"
+
+namespace ergocast {
+
+/// A body, as another one knows it.
+struct Neighbour {
+  AgentId id = kUnassigned;
+  Eigen::Vector3d position_m{0, 0, 0};
+  double max_speed_mps = 0;               ///< above 0; its hard limit
+  Tick age_ticks = 0;                     ///< of the position; never less than it is
+  bool known = true;                      ///< false: it exists, and nobody has said where
+  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< at the tick
+};
+
+/// The body whose command is filtered.
+struct Mover {
+  AgentId id = kUnassigned;
+  Tick tick = 0;
+  Eigen::Vector3d position_m{0, 0, 0};
+  double max_speed_mps = 0;
+  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< at the tick
+};
+
+struct SafeVelocity {
+  Eigen::Vector3d velocity_mps{0, 0, 0};
+  /// Whether a body or an edge leaves next to nothing of it: less than a tenth of what was wanted,
+  /// or of a vehicle with inertia, that it brakes.
+  bool blocked = false;
+  /// The neighbour that the wanted step would come too close to; kUnassigned: none, or an edge of
+  /// the domain.
+  AgentId by = kUnassigned;
+  /// Whether it stands because a neighbour is unknown, or may be anywhere around.
+  bool blind = false;
+};
+
+class SeparationFilter {
+ public:
+  /// Where the mission keeps no distance, only edges and the vehicle's own limits count.
+  /// @param hold_ticks  for how many ticks after its own one a command may still be executed
+  SeparationFilter(const Mission& mission, Tick hold_ticks);
+
+  /// What `self` may execute of `wanted_mps`: all of it, bit for bit, if that is allowed. With
+  /// inertia, the velocity at the tick's end, which the vehicle can reach.
+  /// A pure function. In a lockstep mission all positions are those of `self.tick`. No call
+  /// allocates memory.
+  /// @param others  in ascending order of their numbers; an entry of `self` is passed over
+  SafeVelocity safe(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                    std::span<const Neighbour> others);
+
+  /// How near a neighbour counts as in contact: D' of two bodies with limit `max_speed_mps` [m].
+  double contact_m(double max_speed_mps) const;
+
+ private:
+  double margin_m(double fastest_mps) const;
+  double uncertainty_m(const Mover& self, const Neighbour& other) const;
+  void begin(const Mover& self, double reach_m);
+  void take(const Neighbour& other, const StepConstraints::Set& set);
+  AgentId blocker(const Eigen::Vector3d& wanted_m) const;
+  double side(const Mover& self) const;
+  SafeVelocity stopped(const Mover& self, const Neighbour& other) const;
+  SafeVelocity safe_step(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                         std::span<const Neighbour> others);
+  bool take_step(const Mover& self, const Neighbour& other);
+  Eigen::Vector3d sideways(const Mover& self, const Eigen::Vector3d& wanted_m) const;
+  SafeVelocity safe_change(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                           std::span<const Neighbour> others);
+  bool take_way(const Mover& self, const Neighbour& other, double reach_m);
+  bool allows(const Mover& self, const Eigen::Vector3d& v_mps) const;
+
+  Mission mission_;
+  double hold_ticks_, gain_, rounding_m_;
+  StepConstraints constraints_;
+  std::array<AgentId, kMaxAgents> taken_{};  // whose constraint has which number
+  std::size_t taken_count_ = 0;
+};
+
+/// How far apart two bodies must begin, D + 2 R: nearer ones might never move [m].
+double start_distance_m(const Mission& mission);
+
+/// Of any two of `places_m`; the greatest number if there is only one [m].
+double least_distance_m(std::span<const Eigen::Vector3d> places_m);
+
+/// The share of the domain that `bodies` discs of this diameter take up.
+double packing(const Mission& mission, std::size_t bodies);
+/// Above the first, a team blocks itself often, and above the second most of the time.
+inline constexpr double kTightPacking = 0.1, kHopelessPacking = 0.3;
+
+/// How far from all others a body must appear among bodies that move: none of them knows of it
+/// until it has executed the commands that it holds [m].
+double join_distance_m(const Mission& mission);
+
+/// Where agent `id` begins if the plan does not say it: drawn from the seed, as often as needed to
+/// be `distance_m` away from all `others_m`; after kMostDraws, the place that is farthest from
+/// them.
+Eigen::Vector3d start_beside(const Mission& mission, AgentId id,
+                             std::span<const Eigen::Vector3d> others_m, double distance_m);
+inline constexpr int kMostDraws = 1000;
+
+/// For how many ticks after its own one the world may execute a command.
+Tick command_hold_ticks(const Timing& timing);
+
+/// H of an agent's own filter: 0 in lockstep, and where the world holds all commands to the
+/// distance again; else command_hold_ticks().
+Tick unguarded_hold_ticks(const Mission& mission);
+
+/// Whether the world filters commands again, with true positions.
+bool world_guards(const Mission& mission);
+
+/// Whether all that bodies know of each other is exact: what vehicles with inertia require.
+bool sure_of_bodies(const Mission& mission);
+
+/// Whether a command passes through a SeparationFilter at all: where a distance is kept, and for
+/// vehicles with inertia, which need their way to brake inside the domain.
+inline bool filters_commands(const Mission& mission) {
+  return mission.separation.distance_m > 0 || mission.vehicle.kind != VehicleKind::kPoint;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks whether a team can keep the distance that its scenario asks for.
+#pragma once
+
+#include "scenario/checks.h"
+#include "scenario/scenario.pb.h"
+
+namespace ergocast {
+
+/// Reports what docs/safety.md says to be impossible: its conditions on speed, holding,
+/// disturbance, room and starts.
+/// @pre the defaults are filled in, and `scenario` has a separation
+void validate_separation(const proto::Scenario& scenario, Checks& checks);
+
+}  // namespace ergocast

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where bodies begin, where a restarted world finds them, and what keeps them apart in real time.
+#include <algorithm>
+
+#include "core/geometry.h"
+#include "sim/world.h"
+
+namespace ergocast {
+
+/// Whether it has been told of a state in which all bodies were. Who has answered a tick knows its
+/// whole state, and says it before the answer.
+bool World::knows_bodies() const {
+  Tick newest = -1;
+  for (const auto& [id, slot] : vehicles_) {
+    if (slot.author.incarnation != 0) newest = std::max(newest, slot.answered());
+  }
+  return !keeps_distance() || question_.before.newest() >= newest;
+}
+
+/// Puts all bodies where they were in one state, so that they keep their distance; vehicles whose
+/// agents have left are in no other message. In lockstep they go on by the answers to that tick. In
+/// real time all stand: held commands were for other places.
+void World::settle() {
+  const bool realtime = mission().timing.pace == Pace::kRealtime;
+  for (auto& [id, slot] : vehicles_) {
+    slot.placed = false;
+    if (realtime && slot.command) slot.command->velocity_mps.setZero();
+  }
+  for (const WorldState& state : question_.before.states()) {
+    for (int i = 0; i < state.vehicle_count; ++i) {
+      const Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
+      VehicleSlot& slot = vehicles_[vehicle.id];
+      slot.x_m = vehicle.position_m;
+      slot.applied_mps = vehicle.velocity_mps;
+      slot.placed = true;
+    }
+  }
+  for (Tick tick = question_.before.newest(); tick >= 0 && tick < tick_ && !realtime; ++tick) {
+    for (auto& [id, slot] : vehicles_) {
+      drive(slot, tick, false);
+      move(id, slot, tick);
+    }
+  }
+  for (auto& [id, slot] : vehicles_) {
+    if (slot.placed) continue;
+    slot.x_m = place_for(id);
+    slot.placed = true;
+  }
+}
+
+/// Where a new body appears: at its start if that is far enough from all others, else where the
+/// seed finds room. At the beginning nobody moves yet.
+Eigen::Vector3d World::place_for(AgentId id) const {
+  const Mission& mission = me_.mission();
+  if (!keeps_distance()) return start_of(mission, id);
+  const bool begins = tick_ == 0 && !schedule_.published;
+  const double distance_m = begins ? start_distance_m(mission) : join_distance_m(mission);
+  std::vector<Eigen::Vector3d> others_m;
+  for (const auto& [other, slot] : vehicles_) {
+    if (other != id && slot.placed) others_m.push_back(slot.x_m);
+  }
+  const bool planned = static_cast<std::size_t>(id) < mission.starts_m.size();
+  const bool free = std::ranges::all_of(others_m, [&](const Eigen::Vector3d& other_m) {
+    return (other_m - start_of(mission, id)).norm() >= distance_m;
+  });
+  return planned && free ? start_of(mission, id) : start_beside(mission, id, others_m, distance_m);
+}
+
+/// Puts a slot where it was at tick_, by its agent's last two commands.
+void World::recall(AgentId id, VehicleSlot& slot) {
+  if (slot.answered() < 0) return;
+  const bool realtime = mission().timing.pace == Pace::kRealtime;
+  slot.x_m = slot.command->position_m;
+  const bool in_a_row =
+      slot.command_before && slot.command_before->header.tick + 1 == slot.answered();
+  if (in_a_row) {
+    slot.applied_mps = within_speed_limit(mission(), slot.command_before->velocity_mps);
+  }
+  for (Tick tick = slot.answered(); tick < tick_; ++tick) {
+    drive(slot, tick, realtime);
+    move(id, slot, tick);
+  }
+}
+
+void World::on(const WorldState& before, const Arrival&) {
+  if (!question_.since || !keeps_distance()) return;
+  if (before.header.tick <= mission().timing.tick_count) question_.before.see(before);
+}
+
+/// All vehicles by where all of them are, so that their order does not count. In lockstep only by
+/// edges and their own limits: agents know all that they need. Who is not driven stands, or brakes.
+void World::filter_commands() {
+  const double limit_mps = mission().speed_limit_mps;
+  bodies_.clear();
+  for (const auto& [id, slot] : vehicles_) {
+    if (world_guards(mission()))
+      bodies_.push_back({id, slot.x_m, limit_mps, 0, true, slot.applied_mps});
+  }
+  for (auto& [id, slot] : vehicles_) {
+    if (!driven(slot, tick_, true)) continue;
+    const Mover self{id, tick_, slot.x_m, limit_mps, slot.applied_mps};
+    slot.next_mps = filter_->safe(self, slot.next_mps, bodies_).velocity_mps;
+  }
+}
+
+}  // namespace ergocast

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Times the last step of a command where bodies keep a distance, beside the control step of
+// control_step.cc: with so many teammates, all or none of them so near that they count.
+#include "core/separation.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace ergocast::bench {
+namespace {
+
+constexpr double kSpeed_mps = 40;
+
+Mission mission_with(double error_m) {
+  Mission mission;
+  mission.domain.size_m = {2000, 2000, 0};
+  mission.speed_limit_mps = kSpeed_mps;
+  mission.separation.distance_m = 30;
+  mission.separation.position_error_m = error_m;
+  return mission;
+}
+
+/// Each within the 8 m in which two bodies have to slow down; many such situations, because their
+/// costs differ.
+void KeepApart(benchmark::State& state) {
+  constexpr std::size_t kSituations = 997;
+  const auto teammates = static_cast<int>(state.range(0));
+  const auto error_m = static_cast<double>(state.range(1));
+  SeparationFilter filter(mission_with(error_m), 0);
+  std::mt19937 draw(1);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<std::vector<Neighbour>> situations(kSituations);
+  for (auto& others : situations) {
+    for (AgentId id = 1; id <= teammates; ++id) {
+      const double angle = 2 * M_PI * share(draw);
+      const double rho_m = filter.contact_m(kSpeed_mps) + 2 * error_m + 8 * share(draw);
+      const Eigen::Vector3d away(std::cos(angle), std::sin(angle), 0);
+      others.push_back({id, Eigen::Vector3d(1000, 1000, 0) + rho_m * away, kSpeed_mps});
+    }
+  }
+  Mover self{0, 0, {1000, 1000, 0}, kSpeed_mps};
+  for (auto _ : state) {
+    const auto angle = static_cast<double>(++self.tick);
+    const auto& others = situations[static_cast<std::size_t>(self.tick) % kSituations];
+    benchmark::DoNotOptimize(
+        filter.safe(self, {30 * std::cos(angle), 30 * std::sin(angle), 0}, others));
+  }
+}
+BENCHMARK(KeepApart)->ArgNames({"near", "error_m"})->ArgsProduct({{0, 6, 63}, {0, 2}});
+
+/// Vehicles of 5 m/s² at up to 20 m/s, whose ways to brake, up to 40 m, are near each other.
+void KeepWaysApart(benchmark::State& state) {
+  Mission mission = mission_with(0);
+  mission.speed_limit_mps = 20;
+  mission.vehicle = {VehicleKind::kAcceleration, 5};
+  SeparationFilter filter(mission, 0);
+  std::mt19937 draw(1);
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::vector<Neighbour> others;
+  for (AgentId id = 1; id <= state.range(0); ++id) {
+    const double angle = M_PI * share(draw);
+    const Eigen::Vector3d away(std::cos(angle), std::sin(angle), 0);
+    others.push_back({id,
+                      Eigen::Vector3d(1000, 1000, 0) + (70 + 20 * share(draw)) * away,
+                      20,
+                      0,
+                      true,
+                      {14 * share(draw), 14 * share(draw), 0}});
+  }
+  Mover self{0, 0, {1000, 1000, 0}, 20, {10, 0, 0}};
+  for (auto _ : state) {
+    const auto angle = static_cast<double>(++self.tick);
+    benchmark::DoNotOptimize(
+        filter.safe(self, {20 * std::cos(angle), 20 * std::sin(angle), 0}, others));
+  }
+}
+BENCHMARK(KeepWaysApart)->ArgName("near")->Arg(6)->Arg(63);
+
+/// Teammates that are all far away.
+void NobodyNear(benchmark::State& state) {
+  SeparationFilter filter(mission_with(0), 0);
+  std::vector<Neighbour> others;
+  for (AgentId id = 1; id < 64; ++id) others.push_back({id, {20.0 * id, 100, 0}, kSpeed_mps});
+  const Mover self{0, 0, {1000, 1000, 0}, kSpeed_mps};
+  for (auto _ : state) benchmark::DoNotOptimize(filter.safe(self, {30, 20, 0}, others));
+}
+BENCHMARK(NobodyNear);
+
+}  // namespace
+}  // namespace ergocast::bench
+
+BENCHMARK_MAIN();

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies that keep a distance: attacks on the filter, each with the flaws that it would show.
+#include "core/separation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/core/crowd.h"
+
+namespace ergocast {
+namespace {
+
+using test::Attack;
+using test::Crowd;
+using test::Flaw;
+
+double spare_m(Attack attack, Flaw flaw = Flaw::kNone) {
+  attack.flaw = flaw;
+  return Crowd(attack).least_spare_m();
+}
+
+Mission team_mission() {
+  Mission mission;
+  mission.seed = 7;
+  mission.domain.size_m = {2000, 2000, 0};
+  mission.speed_limit_mps = 40;
+  mission.separation.distance_m = 30;
+  return mission;
+}
+
+TEST(Separation, HoldsInACrowd) {
+  const Attack attack;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kWholeGap), -1);
+  EXPECT_LT(spare_m(attack, Flaw::kFirstTwo), -10);
+}
+
+TEST(Separation, HoldsAtTheEdges) {
+  Attack attack;
+  attack.beyond_edges = true;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kEdgesAfterwards), -1);
+}
+
+TEST(Separation, HoldsInSpace) {
+  Attack attack;
+  attack.in_space = true;
+  attack.bodies = 30;
+  attack.ticks = 600;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kWholeGap), -1);
+}
+
+TEST(Separation, HoldsWherePositionsAreLost) {
+  Attack attack;
+  attack.loss = 0.5;
+  attack.compute_each = 1;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kNoAge), -1);
+  EXPECT_LT(spare_m(attack, Flaw::kHalfAge), -0.5);
+  attack.loss = 0.9;
+  EXPECT_GE(spare_m(attack), 0);
+}
+
+TEST(Separation, HoldsWhileCommandsAreHeldOrLate) {
+  Attack attack;
+  attack.max_speed_mps = 15;
+  attack.hold_ticks = 3;
+  attack.compute_each = 3;
+  attack.side_m = 300;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kNoHold), -1);
+  attack.compute_each = 1;
+  attack.late = 0.3;
+  attack.loss = 0.3;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kNoHold), -0.3);
+}
+
+TEST(Separation, HoldsWithPositionErrors) {
+  Attack attack;
+  attack.error_m = 1;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kNoError), -0.5);
+}
+
+TEST(Separation, HoldsForBodiesOfDifferentSpeeds) {
+  Attack attack;
+  attack.slowest_mps = 4;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kWholeGap), -0.5);
+}
+
+TEST(Separation, HoldsWhereBodiesForgetEachOther) {
+  Attack attack;
+  attack.forget = 0.05;
+  attack.loss = 0.3;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kUnknownIgnored), -1);
+}
+
+TEST(Separation, HoldsWhereAllWantOnePlace) {
+  Attack attack;
+  attack.bodies = 40;
+  attack.side_m = 600;
+  attack.ticks = 600;
+  attack.all_to_one = true;
+  EXPECT_GE(spare_m(attack), 0);
+}
+
+TEST(Separation, HoldsUnderRandomDisturbances) {
+  Attack attack;
+  attack.disturbance_m = 0.5;
+  EXPECT_GE(spare_m(attack), 0);
+  EXPECT_LT(spare_m(attack, Flaw::kNoMargin), -0.5);
+}
+
+// ---- the function itself
+
+const std::vector<Neighbour> kFar = {{1, {900, 500, 0}, 40}, {2, {500, 900, 0}, 40}};
+
+TEST(Separation, ChangesNoBitOfACommandWithNobodyNear) {
+  SeparationFilter filter(team_mission(), 0);
+  const Mover self{0, 3, {500, 500, 0}, 40};
+  for (const Eigen::Vector3d& v : {Eigen::Vector3d(0.1, 0.7, 0), {-40, 0, 0}, {300, -200, 0}}) {
+    const SafeVelocity safe = filter.safe(self, v, kFar);
+    EXPECT_EQ(safe.velocity_mps, v) << "the world cuts it, as it does without a distance";
+    EXPECT_FALSE(safe.blocked);
+  }
+}
+
+TEST(Separation, StandsIfANeighbourIsUnknownOrMayBeAnywhereAround) {
+  SeparationFilter filter(team_mission(), 0);
+  const Mover self{0, 3, {500, 500, 0}, 40};
+  std::vector<Neighbour> others = kFar;
+  others[1].known = false;
+  SafeVelocity safe = filter.safe(self, {10, 0, 0}, others);
+  EXPECT_TRUE(safe.velocity_mps.isZero(0));
+  EXPECT_TRUE(safe.blind && safe.blocked);
+  EXPECT_EQ(safe.by, 2);
+  others[1].known = true;
+  others[1].age_ticks = 101;  // 404 m; it was 400 m away
+  safe = filter.safe(self, {10, 0, 0}, others);
+  EXPECT_TRUE(safe.velocity_mps.isZero(0));
+  EXPECT_EQ(safe.by, 2);
+}
+
+TEST(Separation, SaysWhoBlocks) {
+  SeparationFilter filter(team_mission(), 0);
+  const Mover self{0, 3, {500, 500, 0}, 40};
+  std::vector<Neighbour> others;  // all around
+  for (AgentId id = 4; id < 10; ++id) {
+    const double angle = (id - 7) * std::numbers::pi / 3;
+    others.push_back({id, {500 + 30 * std::cos(angle), 500 + 30 * std::sin(angle), 0}, 40});
+  }
+  const SafeVelocity safe = filter.safe(self, {20, 0, 0}, others);
+  EXPECT_EQ(safe.by, 7);
+  EXPECT_TRUE(safe.blocked);
+  EXPECT_FALSE(safe.blind);
+}
+
+TEST(Separation, NeverLeavesTheDomain) {
+  SeparationFilter filter(team_mission(), 0);
+  const SafeVelocity safe = filter.safe({0, 3, {1999, 500, 0}, 40}, {30, 20, 0}, kFar);
+  EXPECT_NEAR(safe.velocity_mps.x(), 10, 1e-9);
+  EXPECT_NEAR(safe.velocity_mps.y(), 20, 1e-9);
+  EXPECT_EQ(safe.by, kUnassigned);
+}
+
+/// The world executes the result as it is: no cut may follow that would be counted.
+TEST(Separation, ResultsAreWithinTheSpeedLimit) {
+  const Mission mission = team_mission();
+  SeparationFilter filter(mission, 0);
+  for (int i = 0; i < 360; ++i) {
+    const double angle = i / 57.3;
+    const Eigen::Vector3d wanted(60 * std::cos(angle), 60 * std::sin(angle), 0);
+    const SafeVelocity safe =
+        filter.safe({0, i, {500, 500, 0}, 40}, wanted, {{{1, {531, 502, 0}, 40}}});
+    if (safe.velocity_mps == wanted) continue;
+    EXPECT_EQ(within_speed_limit(mission, safe.velocity_mps), safe.velocity_mps);
+  }
+}
+
+/// Two that want to pass each other on one line do, and a crowd of goal seekers is not blocked for
+/// long. Without a step sideways the first stands for ever.
+TEST(Separation, BodiesPassEachOther) {
+  SeparationFilter filter(team_mission(), 0);
+  Eigen::Vector3d x_m[2] = {{500, 500, 0}, {700, 500, 0}};
+  const Eigen::Vector3d goals_m[2] = {x_m[1], x_m[0]};
+  Tick tick = 0;
+  for (; tick < 600 && (x_m[0] - goals_m[0]).norm() > 4; ++tick) {
+    Eigen::Vector3d v_mps[2];
+    const std::vector<Neighbour> all = {{0, x_m[0], 40}, {1, x_m[1], 40}};
+    for (AgentId i = 0; i < 2; ++i) {
+      const Eigen::Vector3d wanted = (goals_m[i] - x_m[i]).normalized() * 20;
+      v_mps[i] = filter.safe({i, tick, x_m[i], 40}, wanted, all).velocity_mps;
+    }
+    for (AgentId i = 0; i < 2; ++i) x_m[i] += v_mps[i] * 0.1;
+    ASSERT_GE((x_m[0] - x_m[1]).norm(), 30);
+  }
+  EXPECT_LT(tick, 600);
+
+  Attack attack;
+  attack.side_m = 300;
+  Crowd crowd(attack);
+  EXPECT_GE(crowd.least_spare_m(), 0);
+  EXPECT_LT(crowd.blocked_share(), 0.15);
+  EXPECT_GT(crowd.arrivals(), 12 * 5);
+  EXPECT_GT(crowd.contacts(), 1000) << "a crowd that never touches proves nothing";
+}
+
+TEST(Separation, HoldTicksAreThoseOfTheWorld) {
+  Mission mission = team_mission();
+  mission.separation.guard = true;
+  EXPECT_EQ(command_hold_ticks(mission.timing), 5);
+  mission.timing.command_hold_s = 0.3;
+  EXPECT_EQ(command_hold_ticks(mission.timing), 3) << "0.3 / 0.1 < 3";
+  mission.timing.pace = Pace::kLockstep;
+  EXPECT_EQ(unguarded_hold_ticks(mission), 0);
+  mission.timing.pace = Pace::kRealtime;
+  EXPECT_EQ(unguarded_hold_ticks(mission), 0) << "the world guards";
+  mission.separation.guard = false;
+  EXPECT_EQ(unguarded_hold_ticks(mission), 3);
+  EXPECT_FALSE(world_guards(mission));
+}
+
+}  // namespace
+}  // namespace ergocast
