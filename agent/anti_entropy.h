@@ -34,7 +34,8 @@ class AntiEntropy {
   /// How long it takes at most until digests, one a second, have named every entry of a roster.
   static constexpr double round_s(std::size_t entries) {
     if (entries <= kMaxDigestEntriesPerMessage) return 1;
-    return static_cast<double>((entries + kInTurn - 1) / kInTurn);
+    const std::size_t rounds = (entries + kInTurn - 1) / kInTurn;
+    return static_cast<double>(rounds);
   }
 
   /// What `table` holds of the entries of `roster`, without header: of all, or of a roster that is

@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -22,7 +20,6 @@
 #include "scenario/scenario.h"
 #include "tests/bench/ping_pong.h"
 #include "tests/bench/temporary_folder.h"
-#include "tests/support/own_host.h"
 
 namespace ergocast::bench {
 namespace {
@@ -96,14 +93,3 @@ BENCHMARK(Lockstep)
 
 }  // namespace
 }  // namespace ergocast::bench
-
-int main(int argc, char** argv) {
-  try {
-    ergocast::test::enter_own_host();
-  } catch (const std::exception& why) {
-    std::fprintf(stderr, "%s: using the network of this machine\n", why.what());
-  }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-}

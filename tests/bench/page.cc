@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -19,7 +18,6 @@
 
 #include "runtime/child.h"
 #include "tests/support/browser.h"
-#include "tests/support/own_host.h"
 
 namespace ergocast::bench {
 namespace {
@@ -148,13 +146,3 @@ BENCHMARK(LiveFrame)->ArgName("agents")->Arg(4)->Arg(64)->Iterations(1)->UseManu
 
 }  // namespace
 }  // namespace ergocast::bench
-
-int main(int argc, char** argv) {
-  try {
-    ergocast::test::enter_own_host();
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench-page: %s; measuring in the network of the machine\n", error.what());
-  }
-  benchmark::Initialize(&argc, argv);
-  benchmark::RunSpecifiedBenchmarks();
-}

@@ -11,8 +11,6 @@
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
-#include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -21,7 +19,6 @@
 
 #include "runtime/child.h"
 #include "tests/bench/temporary_folder.h"
-#include "tests/support/own_host.h"
 
 namespace ergocast::bench {
 namespace {
@@ -116,14 +113,3 @@ BENCHMARK(RealTime)
 
 }  // namespace
 }  // namespace ergocast::bench
-
-int main(int argc, char** argv) {
-  try {
-    ergocast::test::enter_own_host();
-  } catch (const std::exception& why) {
-    std::fprintf(stderr, "%s: using the network of this machine\n", why.what());
-  }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-}

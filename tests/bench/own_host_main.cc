@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs the benchmarks of a program in a network of its own, where the system allows one.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "tests/support/own_host.h"
+
+int main(int argc, char** argv) {
+  try {
+    ergocast::test::enter_own_host();
+  } catch (const std::exception& why) {
+    std::fprintf(stderr, "%s: using the network of this machine\n", why.what());
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}
