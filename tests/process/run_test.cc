@@ -192,5 +192,15 @@ TEST_F(MissionRun, AnAgentNeedsNoMoreThanThirtyMegabytes) {
   EXPECT_EQ(wait_for(mission), 0) << output();
 }
 
+TEST_F(MissionRun, CompressesFinishedSegmentsWhereItIsAskedTo) {
+  // Every tick writes about 45 kB, so the first 64 MiB take some 1500 ticks.
+  ASSERT_EQ(ergocast({"run", scenario_file("paper_fig1a"), "--agents", "16", "--duration", "200",
+                      "--event-log-zstd", "--out", out()}),
+            0)
+      << output();
+  EXPECT_FALSE(std::filesystem::exists(out() / "events-000.lcm"));
+  EXPECT_TRUE(std::filesystem::exists(out() / "events-001.lcm")) << "not finished before the end";
+}
+
 }  // namespace
 }  // namespace ergocast::test
