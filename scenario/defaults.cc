@@ -265,7 +265,7 @@ void draw_starts(proto::Scenario& scenario) {
     proto::Start& start = *agents.add_starts();
     start.set_x_m(x_m.x());
     start.set_y_m(x_m.y());
-    if (!domain.planar()) start.set_z_m(x_m.z());
+    if (!mission.domain.planar()) start.set_z_m(x_m.z());
   }
 }
 
