@@ -127,10 +127,10 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.number(13, "world.radio_range_m", m.radio_range_m, limits::between(0, 1e13));
   io.number(14, "world.speed_limit_mps", m.speed_limit_mps, limits::above(0, 1e9),
             m.speed_limit_mps != 0);
-  io.part(18, "vehicle", m.vehicle);
-  io.part(19, "separation", m.separation);
   io.number(11, "goal_ergodic_metric", m.goal_ergodic_metric, limits::above(0, 1e9),
             m.goal_ergodic_metric != 0);
+  io.part(18, "vehicle", m.vehicle);
+  io.part(19, "separation", m.separation);
   io.hidden_flag(16, m.wait_for_logger);
 }
 

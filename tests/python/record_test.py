@@ -185,7 +185,7 @@ class Refused(WithRecord):
     def test_too_few_columns(self):
         change = lambda file: file.write_text(file.read_text().rsplit(",", 2)[0] + "\n")
         said = self.damaged("metrics.csv", change)
-        self.assertRegex(said, r"^RUN/metrics.csv:\d+: .*whose contributions_received is no number: copy the")
+        self.assertRegex(said, r"^RUN/metrics.csv:\d+: .*whose contributions_lost is no number: copy the")
 
     def test_a_foreign_header(self):
         said = self.damaged("trajectory.csv", self.replaced("x_m", "east"))
