@@ -142,7 +142,8 @@ struct Vehicle {
   AgentId id = 0;
   std::int64_t answered_tick = -1;  ///< newest tick its commands have answered
   Eigen::Vector3d position_m{0, 0, 0};
-  Eigen::Vector3d velocity_mps{0, 0, 0};  ///< applied in the step that led here; with inertia, at its end
+  Eigen::Vector3d velocity_mps{0, 0,
+                               0};  ///< applied in the step that led here; with inertia, at its end
 };
 
 /// The world at one tick, in parts of at most kMaxVehiclesPerState vehicles.

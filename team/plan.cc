@@ -200,7 +200,9 @@ class PlanFields : public FieldVisitor {
     wire_.height(field, value, in_plane);
   }
   void flag(int field, const char*, auto& value) { wire_.value(field, value); }
-  void choice(int field, const char*, auto& value, Words, bool = true) { wire_.value(field, value); }
+  void choice(int field, const char*, auto& value, Words, bool = true) {
+    wire_.value(field, value);
+  }
   void seed(int field, const char*, auto& value) { wire_.value(field, value); }
   void name(int field, const char*, auto& value) { wire_.value(field, value); }
   void part(int field, const char*, auto& part) {
