@@ -43,18 +43,18 @@ std::string text_at(const Json& summary, const char* pointer) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-std::string number_at(const Json& summary, const char* pointer, const char* format) {
+std::string number_at(const Json& summary, const char* pointer, const char* format, double factor) {
   const Json value = summary.value(Json::json_pointer(pointer), Json(nullptr));
   if (!value.is_number()) return "unknown";
   char text[32];
-  std::snprintf(text, sizeof text, format, value.get<double>());
+  std::snprintf(text, sizeof text, format, factor * value.get<double>());
   return text;
 }
 
 void print_summary(const Json& summary) {
   const auto text = [&](const char* pointer) { return text_at(summary, pointer); };
-  const auto number = [&](const char* pointer, const char* format) {
-    return number_at(summary, pointer, format);
+  const auto number = [&](const char* pointer, const char* format, double factor = 1) {
+    return number_at(summary, pointer, format, factor);
   };
   std::printf("\n%s: %s\n", text("/result").c_str(), text("/reason").c_str());
   std::printf("  ticks     %s of %s in %s s, %s ticks/s\n", text("/ticks").c_str(),
@@ -83,6 +83,14 @@ void print_summary(const Json& summary) {
     std::printf("  speed     limited to %s m/s, %s commands cut to it\n",
                 number("/speed_limit/mps", "%g").c_str(),
                 text("/speed_limit/clamped_commands").c_str());
+  }
+  if (summary.contains("separation")) {
+    std::printf(
+        "  distance  %s m kept, nearest %s m; blocked in %s %% of the ticks, at most %s s\n",
+        number("/separation/distance_m", "%g").c_str(),
+        number("/separation/nearest_m", "%.2f").c_str(),
+        number("/separation/blocked_share", "%.1f", 100).c_str(),
+        number("/separation/longest_block_s", "%.1f").c_str());
   }
 }
 

@@ -212,8 +212,11 @@ double least_distance_m(std::span<const Eigen::Vector3d> places_m) {
 
 double packing(const Mission& mission, std::size_t bodies) {
   const double diameter_m = start_distance_m(mission);
-  return static_cast<double>(bodies) * std::numbers::pi / 4 * diameter_m * diameter_m /
-         (mission.domain.size_m.x() * mission.domain.size_m.y());
+  const Eigen::Vector3d& size_m = mission.domain.size_m;
+  const double disc = std::numbers::pi / 4 * diameter_m * diameter_m / (size_m.x() * size_m.y());
+  // A ball is two thirds of a disc as thick as the ball is wide.
+  const double share = mission.domain.planar() ? disc : disc * 2 / 3 * diameter_m / size_m.z();
+  return static_cast<double>(bodies) * share;
 }
 
 Eigen::Vector3d start_beside(const Mission& mission, AgentId id,

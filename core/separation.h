@@ -106,7 +106,7 @@ double start_distance_m(const Mission& mission);
 /// Of any two of `places_m`; the greatest number if there is only one [m].
 double least_distance_m(std::span<const Eigen::Vector3d> places_m);
 
-/// The share of the domain that `bodies` discs of this diameter take up.
+/// The share of the domain that `bodies` discs of start_distance_m(), in space balls, take up.
 double packing(const Mission& mission, std::size_t bodies);
 /// Above the first, a team blocks itself often, and above the second most of the time.
 inline constexpr double kTightPacking = 0.1, kHopelessPacking = 0.3;

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/require.h"
+#include "core/separation.h"
 
 namespace ergocast {
 namespace {
@@ -123,7 +124,7 @@ void Recorder::replay(const RunData& past) {
   std::size_t vehicles = 0, expected = mission().starts_m.size();
   for_each_row(past, [&](AgentId id, const TrackPoint& row) {
     if (row.tick > former_.end.first) {
-      if (vehicles > 0) write_due_metrics();
+      if (vehicles > 0) end_row();
       expected = std::max(expected, vehicles);
       next_row_ = row.tick;
       vehicles = 0;
@@ -137,7 +138,7 @@ void Recorder::replay(const RunData& past) {
   facts_.gaps = former_.end.first + 1 - facts_.ticks;
   // With fewer rows, the last tick may be incomplete, and is recorded to its end.
   if (vehicles == 0 || vehicles < expected) return;
-  write_due_metrics();
+  end_row();
   ++next_row_;
 }
 
@@ -286,7 +287,7 @@ bool Recorder::write_next_row() {
   if (!writing() || next_row_ >= mission().timing.tick_count) return false;
   if (!holds(next_row_) || !holds(next_row_ + 1)) return false;
   write_trajectory(states_.at(next_row_), states_.at(next_row_ + 1));
-  write_due_metrics();
+  end_row();
   states_.erase(next_row_);
   if (next_row_ > former_.end.first) ++facts_.ticks;
   ++next_row_;
@@ -361,6 +362,13 @@ bool Recorder::is_member(AgentId id) const {
 
 void Recorder::observe(AgentId id, const Eigen::Vector3d& x_m) {
   if (is_member(id)) observer_.see(mission(), x_m);
+  if (mission().separation.distance_m > 0) row_places_m_.push_back(x_m);
+}
+
+void Recorder::end_row() {
+  facts_.nearest_m = std::min(facts_.nearest_m, least_distance_m(row_places_m_));
+  row_places_m_.clear();
+  write_due_metrics();
 }
 
 void Recorder::write_due_metrics() {

@@ -13,6 +13,7 @@
 // recorder.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <ostream>
@@ -38,6 +39,9 @@ struct RunFacts {
   bool halted = false;                      ///< by an emergency stop: the last row stands still
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
   std::int64_t clamped_commands = 0;                     ///< by the speed limit, likewise
+  /// Where a distance is kept: the least of any two bodies at any recorded tick; none: the greatest
+  /// number [m].
+  double nearest_m = std::numeric_limits<double>::max();
 };
 
 /// What the distance that bodies keep has cost, by the newest status of each incarnation.
@@ -150,6 +154,7 @@ class Recorder {
   /// Whether a member drives that vehicle at the row's tick: others stand still and cover nothing.
   bool is_member(AgentId id) const;
   void observe(AgentId id, const Eigen::Vector3d& x_m);
+  void end_row();
   void write_due_metrics();
   void write_metrics(double metric);
 
@@ -166,6 +171,7 @@ class Recorder {
   Observer observer_;
   std::map<Author, AgentStatus> statuses_;
   RunFacts facts_;
+  std::vector<Eigen::Vector3d> row_places_m_;  // of all bodies, where a distance is kept
 };
 
 /// The header lines of the two files.

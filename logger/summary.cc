@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 #include "logger/run_record.h"
 #include "logger/slope.h"
@@ -85,10 +86,13 @@ Json conventions(const Basis& basis) {
           {"lambda", (squared ? "(1 + |k|^2)^-" : "(1 + |k|)^-") + s}};
 }
 
-/// How much the distance has cost.
+/// What became of the distance, and how much it has cost.
 Json separation(const Recorder& recorder, const Mission& mission) {
   const Blocks blocks = recorder.blocks();
+  const double nearest_m = recorder.facts().nearest_m;
+  const bool measured = nearest_m < std::numeric_limits<double>::max();
   return {{"distance_m", mission.separation.distance_m},
+          {"nearest_m", measured ? number(nearest_m) : Json(nullptr)},
           {"blocked_share", blocks.share},
           {"longest_block_s", static_cast<double>(blocks.longest_ticks) * mission.timing.dt_s}};
 }

@@ -212,6 +212,17 @@ TEST(Separation, BodiesPassEachOther) {
   EXPECT_GT(crowd.contacts(), 1000) << "a crowd that never touches proves nothing";
 }
 
+TEST(Separation, PackingCountsDiscsInAPlaneAndBallsInABox) {
+  Mission mission = team_mission();
+  mission.separation = {};
+  mission.separation.distance_m = 10;
+  mission.timing.pace = Pace::kLockstep;
+  mission.domain.size_m = {100, 200, 0};
+  EXPECT_NEAR(packing(mission, 8), 8 * 78.54 / 2e4, 1e-4);
+  mission.domain.size_m.z() = 50;
+  EXPECT_NEAR(packing(mission, 8), 8 * 523.6 / 1e6, 1e-5);
+}
+
 TEST(Separation, HoldTicksAreThoseOfTheWorld) {
   Mission mission = team_mission();
   mission.separation.guard = true;

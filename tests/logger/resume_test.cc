@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr Incarnation kNextWorldLife = kWorldLife + 1;
 
-/// Three agents that jump between places, each with digits to the last place.
+/// Three agents that jump between places, each with digits to the last place. Two come near each
+/// other at tick 7.
 WorldState team_at(Tick tick) {
   WorldState state = world_state(tick, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
   for (AgentId id = 0; id < 3; ++id) {
@@ -30,6 +31,10 @@ WorldState team_at(Tick tick) {
         on_ground(2000 * uniform_pair(1, Purpose::kStart, static_cast<std::uint32_t>(id), step));
     vehicle.velocity_mps =
         on_ground(normal_pair(2, Purpose::kStart, static_cast<std::uint32_t>(id), step));
+  }
+  if (tick == 7) {
+    const Eigen::Vector3d& x_m = state.vehicles[0].position_m;
+    state.vehicles[1].position_m = x_m + 1e-3 * (on_ground({1000, 1000}) - x_m);
   }
   return state;
 }
@@ -85,11 +90,14 @@ class Resume : public testing::Test {
 // -----------------------------------------------------------
 
 TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
-  const Mission mission = small_mission(3);
+  Mission mission = small_mission(3);
+  mission.separation.distance_m = 1;
+  mission.speed_limit_mps = 20;
   Record lived(mission), killed(mission);
   for (Tick tick = 0; tick <= 100; ++tick) lived.tell(team_at(tick));
   for (Tick tick = 0; tick <= 60; ++tick) killed.tell(team_at(tick));
   ASSERT_EQ(lived.trajectory_rows().size(), 300u);
+  EXPECT_LT(lived.recorder.facts().nearest_m, 2) << "at tick 7";
   const std::string trajectory = killed.trajectory.str(), metrics = killed.metrics.str();
   for (std::size_t cut = 0; cut < trajectory.size(); cut += 71) {
     // One table may be longer than the other.
@@ -108,6 +116,7 @@ TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
     EXPECT_EQ(facts.ergodic_metric, all.ergodic_metric);
     EXPECT_EQ(facts.ergodic_metric_first, all.ergodic_metric_first);
     EXPECT_EQ(facts.ergodic_metric_last, all.ergodic_metric_last);
+    EXPECT_EQ(facts.nearest_m, all.nearest_m);
   }
 }
 

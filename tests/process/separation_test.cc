@@ -48,6 +48,7 @@ TEST_P(CrowdRun, KeepsItsDistanceAndSaysWhatThatCost) {
                       out()}),
             0)
       << output();
+  EXPECT_NE(output().find("distance  8 m kept, nearest 8."), std::string::npos) << output();
   const double least_m = least_recorded_distance_m(text_of(out() / "trajectory.csv"));
   EXPECT_GE(least_m, 8);
   EXPECT_LT(least_m, 9) << "no crowd";
@@ -56,6 +57,7 @@ TEST_P(CrowdRun, KeepsItsDistanceAndSaysWhatThatCost) {
 
   const auto kept = summary()["separation"];
   EXPECT_EQ(kept["distance_m"], 8);
+  EXPECT_DOUBLE_EQ(kept["nearest_m"], least_m);
   EXPECT_GT(kept["blocked_share"], 0);
   EXPECT_GE(kept["longest_block_s"], 0.1);
   const std::string metrics = text_of(out() / "metrics.csv");
