@@ -97,6 +97,10 @@ std::string keeping(const std::string& separation, const std::string& world,
   return "separation { " + separation + " } world { speed_limit_mps: 20 " + world + " } " + then;
 }
 
+std::string wings(const std::string& limits) {
+  return "vehicle { kind: FIXED_WING " + limits + " } world { speed_limit_mps: 20 } " + kLaw;
+}
+
 std::vector<Mistake> mistakes_between_fields() {
   return {
       {"size_x_m: 100", "size_x_m: 100 origin_x_m: 10000001", "domain.origin_x_m: "},
@@ -134,11 +138,24 @@ std::vector<Mistake> mistakes_between_fields() {
       {kLaw, "vehicle { max_acceleration_mps2: 5 } law {",
        "vehicle.max_acceleration_mps2: has no effect"},
       {kLaw, "vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } law {",
-       "world.speed_limit_mps: is missing, and a way to brake depends on it", false},
+       "world.speed_limit_mps: is missing, and all kinds but POINT rely on it", false},
       {kLaw,
        "world { speed_limit_mps: 20 } vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } "
        "law {",
        "vehicle.max_acceleration_mps2: 5 stops a vehicle after"},
+      {"size_y_m: 50",
+       "size_y_m: 50 size_z_m: 40 } world { speed_limit_mps: 20 } vehicle { kind: UNICYCLE "
+       "max_turn_radps: 1",
+       "vehicle.kind: UNICYCLE belongs to a plane"},
+      {kLaw, wings("max_turn_radps: 1"), "vehicle.min_speed_mps: is missing", false},
+      {kLaw, wings("min_speed_mps: 2"), "vehicle.max_turn_radps: is missing", false},
+      {kLaw, wings("min_speed_mps: 5 max_turn_radps: 1"), "vehicle.min_speed_mps: 5 is not below"},
+      {kLaw, wings("min_speed_mps: 2 max_turn_radps: 0.1"),
+       "vehicle.max_turn_radps: 0.1 turns a vehicle on a circle"},
+      {kLaw, wings("min_speed_mps: 2 max_turn_radps: 0.16"),
+       "agents.starts[0]: is nearer to an edge than"},
+      {kLaw, wings("min_speed_mps: 2 max_turn_radps: 1 max_acceleration_mps2: 1"),
+       "vehicle.max_acceleration_mps2: has no effect with kind: FIXED_WING"},
       {kLaw,
        keeping("distance_m: 5 position_error_m: 0.1",
                "} vehicle { kind: ACCELERATION max_acceleration_mps2: 50"),
