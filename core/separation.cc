@@ -143,8 +143,7 @@ bool SeparationFilter::take_step(const Mover& self, const Neighbour& other) {
   const double share = self.max_speed_mps / (self.max_speed_mps + other.max_speed_mps);
   const double near_m = uncertainty_m(self, other);
   const double kept_m = contact_m(std::max(self.max_speed_mps, other.max_speed_mps));
-  const double far_m =
-      near_m + kept_m + reach_m(mission_, self.max_speed_mps) / (gain_ * share);
+  const double far_m = near_m + kept_m + reach_m(mission_, self.max_speed_mps) / (gain_ * share);
   const double square_m2 = y_m.squaredNorm();
   if (square_m2 >= far_m * far_m) return true;
   const double rho_m = std::sqrt(square_m2);

@@ -30,8 +30,8 @@ SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d
   const Eigen::Vector3d step_m =
       mean_velocity(mission_, self.velocity_mps, turned_mps) * mission_.timing.dt_s;
   const double share = std::max(kLeastShare, constraints_.allowed_share(step_m));
-  safe.velocity_mps = share < 1 ? executed(mission_, self.velocity_mps, share * turned_mps)
-                                : turned_mps;
+  safe.velocity_mps =
+      share < 1 ? executed(mission_, self.velocity_mps, share * turned_mps) : turned_mps;
   return safe;
 }
 
@@ -61,8 +61,8 @@ SafeVelocity SeparationFilter::safe_circle(const Mover& self, const Eigen::Vecto
   const Eigen::Vector3d tightest_mps = executed(mission_, self.velocity_mps, {0, 0, 0});
   for (int i = 1; i < kTighterTurns; ++i) {
     const double share = static_cast<double>(i) / kTighterTurns;
-    const Eigen::Vector3d v_mps = executed(mission_, self.velocity_mps,
-                                           direct_mps + share * (tightest_mps - direct_mps));
+    const Eigen::Vector3d v_mps =
+        executed(mission_, self.velocity_mps, direct_mps + share * (tightest_mps - direct_mps));
     if (constraints_.allow(center_step_m(self, v_mps))) return {v_mps, false, by};
   }
   return {tightest_mps, true, by};

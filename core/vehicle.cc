@@ -130,8 +130,7 @@ double loiter_radius_m(const Mission& mission) {
 Eigen::Vector3d anchor_m(const Mission& mission, const Eigen::Vector3d& x_m,
                          const Eigen::Vector3d& v_mps) {
   const double radius_m = loiter_radius_m(mission);
-  return radius_m == 0 ? x_m
-                       : Eigen::Vector3d(x_m + radius_m * to_the_left(heading_of(v_mps)));
+  return radius_m == 0 ? x_m : Eigen::Vector3d(x_m + radius_m * to_the_left(heading_of(v_mps)));
 }
 
 double reach_m(const Mission& mission, double max_speed_mps) {

@@ -11,7 +11,8 @@
 //   speed s = ‖v'‖ may change at once. Within the tick it flies an arc, so that with t, the tangent
 //   of half the angle from h to h', |t| ≤ ω dt/2:
 //
-//     h' = ((1 − t²) h + 2t J h)/(1 + t²),  x' = x + s dt (h + h')/2,  J: a quarter turn to the left
+//     h' = ((1 − t²) h + 2t J h)/(1 + t²),  x' = x + s dt (h + h')/2,  J: a quarter turn to the
+//     left
 //
 //   Only + − × ÷ √: the same bits on every machine. The radius s dt/2|t| is at least s/ω, the rate
 //   of turn at most ω, and the speed s·arctan(t)/t at most s.

@@ -82,13 +82,12 @@ class VehicleRules {
     const double radius_m = loiter_radius_m(mission);
     const double most_m = mission.domain.shortest_side_m() / 4;
     if (radius_m > most_m) {
-      checks_.problem("vehicle.max_turn_radps",
-                      shortest(mission.vehicle.max_turn_radps) +
-                          " turns a vehicle on a circle with a radius of " +
-                          shortest(rounded_up(radius_m)) +
-                          " m, above the limit, a quarter of the domain's shorter side, " +
-                          shortest(most_m),
-                      "write more, or a smaller vehicle.min_speed_mps");
+      checks_.problem(
+          "vehicle.max_turn_radps",
+          shortest(mission.vehicle.max_turn_radps) +
+              " turns a vehicle on a circle with a radius of " + shortest(rounded_up(radius_m)) +
+              " m, above the limit, a quarter of the domain's shorter side, " + shortest(most_m),
+          "write more, or a smaller vehicle.min_speed_mps");
       return;
     }
     const Box room = room_to_begin(mission);

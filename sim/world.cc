@@ -144,8 +144,8 @@ void World::take_roster() {
     if (entry.active_until >= 0) continue;
     auto [at, is_new] = vehicles_.try_emplace(entry.author.agent);
     if (is_new) {
-      place(at->second, begun_at_ ? place_for(entry.author.agent)
-                                  : start_of(mission, entry.author.agent));
+      place(at->second,
+            begun_at_ ? place_for(entry.author.agent) : start_of(mission, entry.author.agent));
     }
     if (at->second.author != entry.author) {
       at->second.command.reset();

@@ -213,9 +213,9 @@ TEST(ExampleDriver, MovesUnicyclesAsTheirAgentsExpectIt) {
 }
 
 TEST(ExampleDriver, RefusesVehiclesThatItsRobotsAreNot) {
-  for (const VehicleLimits& vehicle : {VehicleLimits{VehicleKind::kUnicycle, 0, 2.1},
-                                       VehicleLimits{VehicleKind::kAcceleration, 9},
-                                       VehicleLimits{VehicleKind::kFixedWing, 0, 1, 3}}) {
+  for (const VehicleLimits& vehicle :
+       {VehicleLimits{VehicleKind::kUnicycle, 0, 2.1}, VehicleLimits{VehicleKind::kAcceleration, 9},
+        VehicleLimits{VehicleKind::kFixedWing, 0, 1, 3}}) {
     const Driver driver = running_driver(mission_of(vehicle));
     EXPECT_TRUE(driver.failed());
     EXPECT_NE(driver.reason().find("POINT"), std::string::npos);

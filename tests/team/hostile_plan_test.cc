@@ -245,10 +245,8 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m = with_wings(m), m.vehicle.min_speed_mps = 5.6; },  // above the input
       [](Mission& m) { m = with_wings(m), m.vehicle.kind = VehicleKind::kUnicycle; },
       [](Mission& m) { m = with_wings(m), m.vehicle.max_turn_radps = 0.7; },  // circles of 0.7 m
-      [](Mission& m) { m = with_wings(m), m.starts_m[0].x() = -2.99; },  // too near an edge
-      [](Mission& m) {
-        m = with_wings(rich_mission_in_space());
-      },
+      [](Mission& m) { m = with_wings(m), m.starts_m[0].x() = -2.99; },       // too near an edge
+      [](Mission& m) { m = with_wings(rich_mission_in_space()); },
       [](Mission& m) {
         m.separation = {}, m.vehicle = {VehicleKind::kAcceleration, 1e-3};
       },
