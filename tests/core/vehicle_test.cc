@@ -164,8 +164,10 @@ TEST(Vehicle, LoitersAboutACentreThatStays) {
 
 TEST(Vehicle, WithWingsBeginsWithItsLoiterCircleInTheDomain) {
   const Mission mission = mission_of(wings(0.35));
-  const double radius_m = loiter_radius_m(mission);
+  const double radius_m = 8 / 0.35;
   const Box room = room_to_begin(mission);
+  EXPECT_NEAR(room.origin_m.x(), radius_m, 1e-9);
+  EXPECT_NEAR(room.size_m.y(), 2000 - 2 * radius_m, 1e-9);
   Drawn draw;
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector3d x_m =
@@ -191,6 +193,27 @@ Eigen::Vector3d place_within_m(const Mission& mission, const Mover& before,
   const Eigen::Vector3d part_m = std::sin(share * turn / 2) / std::sin(turn / 2) * whole_m;
   const double back = (share - 1) * turn / 2;
   return before.position_m + Eigen::AngleAxisd(back, Eigen::Vector3d::UnitZ()) * part_m;
+}
+
+TEST(Vehicle, LeavesTheStraightWayOfItsAnchorByNoMoreThanItSays) {
+  for (const VehicleLimits& kind : {unicycle(1), unicycle(5), wings(1), wings(5, 15)}) {
+    const Mission mission = mission_of(kind);
+    Drawn draw;
+    double most_m = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Mover before{0, 0, {0, 0, 0}, 20, executed(mission, {8, 0, 0}, draw.vector(30))};
+      const Eigen::Vector3d next_mps = executed(mission, before.velocity_mps, draw.vector(60));
+      const double turn = angle_between(before.velocity_mps, next_mps);
+      const Eigen::AngleAxisd half(turn / 2, Eigen::Vector3d::UnitZ());
+      const auto anchor = [&](double share, const Eigen::Vector3d& v_mps) {
+        return anchor_m(mission, place_within_m(mission, before, next_mps, share), v_mps);
+      };
+      const Eigen::Vector3d middle_m = (anchor(0, before.velocity_mps) + anchor(1, next_mps)) / 2;
+      most_m = std::max(most_m, (anchor(0.5, half * before.velocity_mps) - middle_m).norm());
+    }
+    EXPECT_LE(most_m, bulge_m(mission) * (1 + 1e-9));
+    EXPECT_GE(most_m, bulge_m(mission) * 0.9) << "and it says no more than needed";
+  }
 }
 
 /// Neither at a tick nor between two.
