@@ -92,7 +92,7 @@ Json conventions(const Mission& mission) {
   if (mission.speed_limit_mps > 0) {
     add("speed limit", readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
   }
-  if (mission.vehicle.kind != VehicleKind::kPoint) add("vehicles", vehicle_text(mission.vehicle));
+  add("vehicles", vehicle_text(mission.vehicle));
   if (mission.separation.distance_m > 0) {
     add("distance", readable(mission.separation.distance_m) + " m between any two bodies");
   }
