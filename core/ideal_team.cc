@@ -25,7 +25,7 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
     table_.add_row(author);
     agents_.push_back({author,
                        start_m,
-                       {0, 0, 0},
+                       first_velocity(mission_, start_m),
                        {0, 0, 0},
                        {0, 0, 0},
                        std::nullopt,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/noise.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 
@@ -52,7 +53,7 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick) {
 Eigen::Vector3d start_of(const Mission& mission, AgentId id) {
   const auto at = static_cast<std::size_t>(id);
   return at < mission.starts_m.size() ? mission.starts_m[at]
-                                      : random_start(mission.domain, mission.seed, id);
+                                      : random_start(room_to_begin(mission), mission.seed, id);
 }
 
 Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id, int attempt) {

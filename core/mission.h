@@ -72,12 +72,16 @@ struct Separation {
 enum class VehicleKind {
   kPoint,         ///< takes every velocity at once
   kAcceleration,  ///< changes its velocity by at most max_acceleration_mps2 · dt in a tick
+  kUnicycle,      ///< moves where it looks, and turns, also on the spot, by at most ω dt in a tick
+  kFixedWing,     ///< never slower than min_speed_mps, and turns by at most ω dt in a tick
 };
 
 /// What the vehicles can do within the speed limit; core/vehicle.h. One kind for the whole team.
 struct VehicleLimits {
   VehicleKind kind = VehicleKind::kPoint;
-  double max_acceleration_mps2 = 0;  ///< A; 0: of a point
+  double max_acceleration_mps2 = 0;  ///< A of kAcceleration, else 0
+  double max_turn_radps = 0;         ///< ω of kUnicycle and kFixedWing, else 0
+  double min_speed_mps = 0;          ///< of kFixedWing, else 0
 };
 
 struct Mission {

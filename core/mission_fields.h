@@ -94,9 +94,14 @@ void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
 
 void list_fields(auto& io, MaybeConst<VehicleLimits> auto& vehicle) {
   const bool moves_at_once = vehicle.kind == VehicleKind::kPoint;
-  io.choice(1, "kind", vehicle.kind, {"POINT", "ACCELERATION"}, !moves_at_once);
+  io.choice(1, "kind", vehicle.kind, {"POINT", "ACCELERATION", "UNICYCLE", "FIXED_WING"},
+            !moves_at_once);
   io.number(2, "max_acceleration_mps2", vehicle.max_acceleration_mps2, limits::above(0, 1e6),
             vehicle.max_acceleration_mps2 != 0);
+  io.number(3, "max_turn_radps", vehicle.max_turn_radps, limits::above(0, 1e6),
+            vehicle.max_turn_radps != 0);
+  io.number(4, "min_speed_mps", vehicle.min_speed_mps, limits::above(0, 1e6),
+            vehicle.min_speed_mps != 0);
 }
 
 /// All are 0 where no distance is kept.

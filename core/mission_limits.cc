@@ -97,11 +97,22 @@ bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box
          law.u_max_mps >= law.contraction_gain_per_s * reach_m;
 }
 
-/// A vehicle with inertia needs a limit of its speed, and room to brake.
+/// A kind has its own limits and no others, and room: to brake, or to loiter.
 bool fits(const VehicleLimits& vehicle, const Mission& mission) {
-  if (vehicle.kind == VehicleKind::kPoint) return vehicle.max_acceleration_mps2 == 0;
-  return vehicle.max_acceleration_mps2 > 0 && mission.speed_limit_mps > 0 &&
-         longest_braking_path_m(mission) <= mission.domain.shortest_side_m() / 4;
+  const bool has_inertia = vehicle.kind == VehicleKind::kAcceleration;
+  const bool has_wings = vehicle.kind == VehicleKind::kFixedWing;
+  const bool turns = has_wings || vehicle.kind == VehicleKind::kUnicycle;
+  if ((vehicle.max_acceleration_mps2 > 0) != has_inertia || (vehicle.max_turn_radps > 0) != turns ||
+      (vehicle.min_speed_mps > 0) != has_wings)
+    return false;
+  if (vehicle.kind == VehicleKind::kPoint) return true;
+  const double room_m = mission.domain.shortest_side_m() / 4;
+  const Box begin = room_to_begin(mission);
+  return mission.speed_limit_mps > 0 && (mission.domain.planar() || !turns) &&
+         vehicle.min_speed_mps < std::min(mission.speed_limit_mps, mission.law.u_max_mps) &&
+         longest_braking_path_m(mission) <= room_m && loiter_radius_m(mission) <= room_m &&
+         std::ranges::all_of(mission.starts_m,
+                             [&](const Eigen::Vector3d& x_m) { return begin.contains(x_m); });
 }
 
 /// Everything that keeps bodies apart relies on their speed limit, and on room.

@@ -49,10 +49,9 @@ SeparationFilter::SeparationFilter(const Mission& mission, Tick hold_ticks)
 }
 
 double SeparationFilter::contact_m(double max_speed_mps) const {
-  const double reach_m = max_speed_mps * mission_.timing.dt_s + longest_braking_path_m(mission_);
-  const double tolerance_m = 2 * StepConstraints::kTolerance * reach_m;
-  return mission_.separation.distance_m + margin_m(max_speed_mps) + 2 * bulge_m(mission_) +
-         rounding_m_ + kContactTicks * tolerance_m;
+  const double tolerance_m = 2 * StepConstraints::kTolerance * reach_m(mission_, max_speed_mps);
+  return mission_.separation.distance_m + margin_m(max_speed_mps) + 2 * loiter_radius_m(mission_) +
+         2 * bulge_m(mission_) + rounding_m_ + kContactTicks * tolerance_m;
 }
 
 /// What disturbance and response time add to D. A disturbance closes 2 w in a tick, and where one
@@ -77,10 +76,10 @@ double SeparationFilter::uncertainty_m(const Mover& self, const Neighbour& other
 void SeparationFilter::begin(const Mover& self, double reach_m) {
   const Separation& rule = mission_.separation;
   const Box& domain = mission_.domain;
-  const double unsure_m =
+  const double edge_m =
       hold_ticks_ * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m) +
-      rule.position_error_m;
-  const Eigen::Vector3d inset_m = Eigen::Vector3d::Constant(unsure_m);
+      rule.position_error_m + loiter_radius_m(mission_);
+  const Eigen::Vector3d inset_m = Eigen::Vector3d::Constant(edge_m);
   const Eigen::Vector3d low_m = domain.origin_m - self.position_m + inset_m;
   const Eigen::Vector3d high_m = domain.origin_m + domain.size_m - self.position_m - inset_m;
   StepConstraints::Room room{reach_m, low_m.cwiseMin(0.0), high_m.cwiseMax(0.0)};
@@ -115,11 +114,20 @@ SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wa
   for (const Neighbour& other : others) {
     if (other.id != self.id && !other.known) return stopped(self, other);
   }
-  return mission_.vehicle.kind == VehicleKind::kPoint ? safe_step(self, wanted_mps, others)
-                                                      : safe_change(self, wanted_mps, others);
+  switch (mission_.vehicle.kind) {
+    case VehicleKind::kAcceleration:
+      return safe_change(self, wanted_mps, others);
+    case VehicleKind::kUnicycle:
+      return safe_arc(self, wanted_mps, others);
+    case VehicleKind::kFixedWing:
+      return safe_circle(self, wanted_mps, others);
+    case VehicleKind::kPoint:
+      break;
+  }
+  return safe_step(self, wanted_mps, others);
 }
 
-/// It stands, or brakes as hard as it can, since `other` may be anywhere around.
+/// It stands, brakes as hard as it can or loiters, since `other` may be anywhere around.
 SafeVelocity SeparationFilter::stopped(const Mover& self, const Neighbour& other) const {
   return {executed(mission_, self.velocity_mps, {0, 0, 0}), true, other.id, true};
 }
@@ -135,8 +143,7 @@ bool SeparationFilter::take_step(const Mover& self, const Neighbour& other) {
   const double share = self.max_speed_mps / (self.max_speed_mps + other.max_speed_mps);
   const double near_m = uncertainty_m(self, other);
   const double kept_m = contact_m(std::max(self.max_speed_mps, other.max_speed_mps));
-  const double reach_m = self.max_speed_mps * mission_.timing.dt_s;
-  const double far_m = near_m + kept_m + reach_m / (gain_ * share);
+  const double far_m = near_m + kept_m + reach_m(mission_, self.max_speed_mps) / (gain_ * share);
   const double square_m2 = y_m.squaredNorm();
   if (square_m2 >= far_m * far_m) return true;
   const double rho_m = std::sqrt(square_m2);
@@ -184,7 +191,8 @@ namespace {
 /// By how much the distance of two bodies can change in so many ticks.
 double closed_m(const Mission& mission, Tick ticks) {
   const double step_m =
-      mission.speed_limit_mps * mission.timing.dt_s + mission.separation.disturbance_m;
+      (mission.speed_limit_mps + mission.vehicle.min_speed_mps) * mission.timing.dt_s +
+      mission.separation.disturbance_m;
   return 2 * static_cast<double>(ticks) * step_m;
 }
 
@@ -192,7 +200,9 @@ double closed_m(const Mission& mission, Tick ticks) {
 
 double start_distance_m(const Mission& mission) {
   const Separation& rule = mission.separation;
-  return rule.distance_m + 2 * bulge_m(mission) +
+  if (rule.distance_m == 0) return 0;
+  // Loiter centres may lie between their vehicles.
+  return rule.distance_m + 2 * bulge_m(mission) + 4 * loiter_radius_m(mission) +
          2 * (2 * rule.position_error_m + closed_m(mission, unguarded_hold_ticks(mission)));
 }
 
@@ -221,10 +231,11 @@ double packing(const Mission& mission, std::size_t bodies) {
 
 Eigen::Vector3d start_beside(const Mission& mission, AgentId id,
                              std::span<const Eigen::Vector3d> others_m, double distance_m) {
+  const Box room = room_to_begin(mission);
   Eigen::Vector3d best_m{0, 0, 0};
   double best_distance_m = -1;
   for (int attempt = 0; attempt < kMostDraws; ++attempt) {
-    const Eigen::Vector3d x_m = random_start(mission.domain, mission.seed, id, attempt);
+    const Eigen::Vector3d x_m = random_start(room, mission.seed, id, attempt);
     double nearest_m = std::numeric_limits<double>::max();
     for (const Eigen::Vector3d& other_m : others_m)
       nearest_m = std::min(nearest_m, length_of(other_m - x_m));

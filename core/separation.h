@@ -50,7 +50,7 @@ struct Mover {
 struct SafeVelocity {
   Eigen::Vector3d velocity_mps{0, 0, 0};
   /// Whether a body or an edge leaves next to nothing of it: less than a tenth of what was wanted,
-  /// or of a vehicle with inertia, that it brakes.
+  /// or of a vehicle with inertia, that it brakes, and of a fixed wing, that it loiters.
   bool blocked = false;
   /// The neighbour that the wanted step would come too close to; kUnassigned: none, or an edge of
   /// the domain.
@@ -65,8 +65,8 @@ class SeparationFilter {
   /// @param hold_ticks  for how many ticks after its own one a command may still be executed
   SeparationFilter(const Mission& mission, Tick hold_ticks);
 
-  /// What `self` may execute of `wanted_mps`: all of it, bit for bit, if that is allowed. With
-  /// inertia, the velocity at the tick's end, which the vehicle can reach.
+  /// What `self` may execute of `wanted_mps`: all of it, bit for bit, if that is allowed. Of
+  /// vehicles that are no points, the velocity at the tick's end, which the vehicle can reach.
   /// A pure function. In a lockstep mission all positions are those of `self.tick`. No call
   /// allocates memory.
   /// @param others  in ascending order of their numbers; an entry of `self` is passed over
@@ -74,6 +74,7 @@ class SeparationFilter {
                     std::span<const Neighbour> others);
 
   /// How near a neighbour counts as in contact: D' of two bodies with limit `max_speed_mps` [m].
+  /// Of fixed wings, how near their loiter centres.
   double contact_m(double max_speed_mps) const;
 
  private:
@@ -90,6 +91,11 @@ class SeparationFilter {
   Eigen::Vector3d sideways(const Mover& self, const Eigen::Vector3d& wanted_m) const;
   SafeVelocity safe_change(const Mover& self, const Eigen::Vector3d& wanted_mps,
                            std::span<const Neighbour> others);
+  SafeVelocity safe_arc(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                        std::span<const Neighbour> others);
+  SafeVelocity safe_circle(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                           std::span<const Neighbour> others);
+  Eigen::Vector3d center_step_m(const Mover& self, const Eigen::Vector3d& v_mps) const;
   bool take_way(const Mover& self, const Neighbour& other, double reach_m);
   bool allows(const Mover& self, const Eigen::Vector3d& v_mps) const;
 
@@ -100,7 +106,8 @@ class SeparationFilter {
   std::size_t taken_count_ = 0;
 };
 
-/// How far apart two bodies must begin, D + 2 R: nearer ones might never move [m].
+/// How far apart two bodies must begin, D + 2 R: nearer ones might never move [m]. 0 where no
+/// distance is kept.
 double start_distance_m(const Mission& mission);
 
 /// Of any two of `places_m`; the greatest number if there is only one [m].
@@ -132,11 +139,11 @@ Tick unguarded_hold_ticks(const Mission& mission);
 /// Whether the world filters commands again, with true positions.
 bool world_guards(const Mission& mission);
 
-/// Whether all that bodies know of each other is exact: what vehicles with inertia require.
+/// Whether all that bodies know of each other is exact: what vehicles that are no points require.
 bool sure_of_bodies(const Mission& mission);
 
 /// Whether a command passes through a SeparationFilter at all: where a distance is kept, and for
-/// vehicles with inertia, which need their way to brake inside the domain.
+/// vehicles that are no points: no edge can turn them round.
 inline bool filters_commands(const Mission& mission) {
   return mission.separation.distance_m > 0 || mission.vehicle.kind != VehicleKind::kPoint;
 }

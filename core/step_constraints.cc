@@ -117,7 +117,10 @@ int StepConstraints::most_exceeded(const Eigen::Vector3d& step_m) const {
 Eigen::Vector3d StepConstraints::nearest(const Eigen::Vector3d& wanted_m) {
   if (allow(wanted_m)) return wanted_m;
   const Eigen::Vector3d step_m = alternate(wanted_m);
-  if (zero_allowed_) return shortened(step_m);
+  if (zero_allowed_) {
+    const double share = allowed_share(step_m);
+    return share < 1 ? Eigen::Vector3d(share * step_m) : step_m;
+  }
   return worst_excess(step_m) <= kNoCommonStep * room_.reach_m ? step_m : least_excess(step_m);
 }
 
@@ -144,15 +147,20 @@ Eigen::Vector3d StepConstraints::alternate(const Eigen::Vector3d& wanted_m) {
   return within_reach(in_box(step_m));
 }
 
-/// The longest part of `step_m` that every set allows. Each contains 0 and is convex.
-Eigen::Vector3d StepConstraints::shortened(const Eigen::Vector3d& step_m) const {
+/// Each set contains 0 and is convex, and so is the box.
+double StepConstraints::allowed_share(const Eigen::Vector3d& step_m) const {
   double share = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double along_m = step_m[axis];
+    if (along_m > room_.high_m[axis]) share = std::min(share, room_.high_m[axis] / along_m);
+    if (along_m < room_.low_m[axis]) share = std::min(share, room_.low_m[axis] / along_m);
+  }
   for (const Kept& kept : sets_) {
     const double excess_m = excess_of(kept, step_m).length_m;
     if (excess_m <= kTolerance * room_.reach_m) continue;
     share = std::min(share, kept.set.bound_m / (excess_m + kept.set.bound_m));
   }
-  return share < 1 ? Eigen::Vector3d(share * step_m) : step_m;
+  return share;
 }
 
 /// Gradient steps on ½ Σ excess², each as long as the mean of the single projections.

@@ -41,6 +41,9 @@ class StepConstraints {
 
   /// Whether `step_m` is within reach, in the box and in every set, up to the tolerance.
   bool allow(const Eigen::Vector3d& step_m) const;
+  /// The greatest share of `step_m`, at most all of it, that is in the box and in every set.
+  /// @pre every bound is ≥ 0
+  double allowed_share(const Eigen::Vector3d& step_m) const;
   /// The number of the set that `step_m` exceeds most, counted from 0 in the order of add();
   /// −1: it exceeds none.
   int most_exceeded(const Eigen::Vector3d& step_m) const;
@@ -73,7 +76,6 @@ class StepConstraints {
   Eigen::Vector3d within_reach(const Eigen::Vector3d& step_m) const;
   double worst_excess(const Eigen::Vector3d& step_m) const;
   Eigen::Vector3d alternate(const Eigen::Vector3d& wanted_m);
-  Eigen::Vector3d shortened(const Eigen::Vector3d& step_m) const;
   Eigen::Vector3d least_excess(const Eigen::Vector3d& step_m) const;
 
   std::vector<Kept> sets_;

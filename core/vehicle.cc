@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points take every velocity up to their limit at once; others change it by A dt a tick.
+// Points take every velocity up to their limit at once; others change it by A dt a tick, or turn by
+// at most ω dt.
 #include "core/vehicle.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometry.h"
@@ -13,6 +15,8 @@ namespace {
 constexpr double kCutShare = 1 - 5e-13;
 /// Changes of velocity, and whole ticks of braking, count as what they are but for rounding.
 constexpr double kRounding = 1e-9;
+/// The speed of a unicycle that stands, as a share of its limit.
+constexpr double kStandingShare = 1e-9;
 
 /// The greatest change of velocity in a tick [m/s].
 double most_change_mps(const Mission& mission) {
@@ -26,25 +30,116 @@ Eigen::Vector3d within_limit(const Mission& mission, const Eigen::Vector3d& v_mp
   return within_speed(possible_mps, kCutShare * mission.speed_limit_mps);
 }
 
+Eigen::Vector3d accelerated(const Mission& mission, const Eigen::Vector3d& now_mps,
+                            const Eigen::Vector3d& aim_mps) {
+  const Eigen::Vector3d change_mps = aim_mps - now_mps;
+  const double most_mps = most_change_mps(mission);
+  if (length_of(change_mps) <= most_mps * (1 + kRounding)) return aim_mps;
+  return now_mps + within_speed(change_mps, most_mps);
+}
+
+Eigen::Vector3d heading_of(const Eigen::Vector3d& v_mps) {
+  const double speed_mps = length_of(v_mps);
+  return speed_mps > 0 ? Eigen::Vector3d(v_mps / speed_mps) : Eigen::Vector3d(1, 0, 0);
+}
+
+/// J of a vector in the plane.
+Eigen::Vector3d to_the_left(const Eigen::Vector3d& v) { return {-v.y(), v.x(), 0}; }
+
+double least_speed_mps(const Mission& mission) {
+  return mission.vehicle.kind == VehicleKind::kUnicycle ? kStandingShare * mission.speed_limit_mps
+                                                        : mission.vehicle.min_speed_mps;
+}
+
+/// As fast as the aim is along the new heading.
+Eigen::Vector3d turned(const Mission& mission, const Eigen::Vector3d& now_mps,
+                       const Eigen::Vector3d& aim_mps) {
+  const double most = mission.vehicle.max_turn_radps * mission.timing.dt_s / 2;
+  const double least_mps = least_speed_mps(mission), aim_speed_mps = length_of(aim_mps);
+  const Eigen::Vector3d h = heading_of(now_mps);
+  // Of the whole angle to the aim: sin / (1 + cos) is the tangent of its half.
+  const double aside_mps = to_the_left(h).dot(aim_mps), ahead_mps = aim_speed_mps + h.dot(aim_mps);
+  const bool in_reach = ahead_mps > 0 && std::abs(aside_mps) <= most * ahead_mps * (1 + kRounding);
+  if (in_reach && aim_speed_mps >= least_mps * (1 - kRounding)) return aim_mps;
+  const bool stops = aim_speed_mps == 0 && mission.vehicle.kind == VehicleKind::kUnicycle;
+  if (stops) return least_mps * h;
+  const double t = in_reach ? aside_mps / ahead_mps : std::copysign(most, aside_mps);
+  const Eigen::Vector3d next = ((1 - t * t) * h + 2 * t * to_the_left(h)) / (1 + t * t);
+  return std::max(least_mps, next.dot(aim_mps)) * next;
+}
+
+/// A unicycle that stands says only where it looks.
+Eigen::Vector3d mean_of_turn(const Mission& mission, const Eigen::Vector3d& now_mps,
+                             const Eigen::Vector3d& then_mps) {
+  const double speed_mps = length_of(then_mps);
+  if (speed_mps <= 2 * kStandingShare * mission.speed_limit_mps) return {0, 0, 0};
+  return speed_mps / 2 * (heading_of(now_mps) + heading_of(then_mps));
+}
+
 }  // namespace
 
 Eigen::Vector3d executed(const Mission& mission, const Eigen::Vector3d& now_mps,
                          const Eigen::Vector3d& wanted_mps) {
-  if (mission.vehicle.kind == VehicleKind::kPoint) return within_speed_limit(mission, wanted_mps);
-  const Eigen::Vector3d aim_mps = within_limit(mission, wanted_mps), change = aim_mps - now_mps;
-  const double most_mps = most_change_mps(mission);
-  if (length_of(change) <= most_mps * (1 + kRounding)) return aim_mps;
-  return now_mps + within_speed(change, most_mps);
+  switch (mission.vehicle.kind) {
+    case VehicleKind::kAcceleration:
+      return accelerated(mission, now_mps, within_limit(mission, wanted_mps));
+    case VehicleKind::kUnicycle:
+    case VehicleKind::kFixedWing:
+      return turned(mission, now_mps, within_limit(mission, wanted_mps));
+    case VehicleKind::kPoint:
+      break;
+  }
+  return within_speed_limit(mission, wanted_mps);
 }
 
 Eigen::Vector3d mean_velocity(const Mission& mission, const Eigen::Vector3d& now_mps,
                               const Eigen::Vector3d& then_mps) {
-  if (mission.vehicle.kind == VehicleKind::kPoint) return then_mps;
-  return 0.5 * (now_mps + then_mps);
+  switch (mission.vehicle.kind) {
+    case VehicleKind::kAcceleration:
+      return 0.5 * (now_mps + then_mps);
+    case VehicleKind::kUnicycle:
+    case VehicleKind::kFixedWing:
+      return mean_of_turn(mission, now_mps, then_mps);
+    case VehicleKind::kPoint:
+      break;
+  }
+  return then_mps;
+}
+
+Eigen::Vector3d first_velocity(const Mission& mission, const Eigen::Vector3d& x_m) {
+  if (mission.vehicle.kind != VehicleKind::kFixedWing) return {0, 0, 0};
+  const bool center_is_left = x_m.x() > mission.domain.center_m().x();
+  return {0, center_is_left ? mission.vehicle.min_speed_mps : -mission.vehicle.min_speed_mps, 0};
+}
+
+Box room_to_begin(const Mission& mission) {
+  const double radius_m = loiter_radius_m(mission);
+  if (radius_m == 0) return mission.domain;
+  Box room = mission.domain;
+  room.origin_m.head<2>().array() += radius_m;
+  room.size_m.head<2>().array() -= 2 * radius_m;
+  return room;
+}
+
+double loiter_radius_m(const Mission& mission) {
+  const VehicleLimits& vehicle = mission.vehicle;
+  return vehicle.kind == VehicleKind::kFixedWing ? vehicle.min_speed_mps / vehicle.max_turn_radps
+                                                 : 0;
+}
+
+Eigen::Vector3d anchor_m(const Mission& mission, const Eigen::Vector3d& x_m,
+                         const Eigen::Vector3d& v_mps) {
+  const double radius_m = loiter_radius_m(mission);
+  return radius_m == 0 ? x_m : Eigen::Vector3d(x_m + radius_m * to_the_left(heading_of(v_mps)));
+}
+
+double reach_m(const Mission& mission, double max_speed_mps) {
+  return (max_speed_mps + mission.vehicle.min_speed_mps) * mission.timing.dt_s +
+         longest_braking_path_m(mission);
 }
 
 Eigen::Vector3d braking_path_m(const Mission& mission, const Eigen::Vector3d& v_mps) {
-  if (mission.vehicle.kind == VehicleKind::kPoint) return {0, 0, 0};
+  if (mission.vehicle.kind != VehicleKind::kAcceleration) return {0, 0, 0};
   const double ticks = length_of(v_mps) / most_change_mps(mission);
   return 0.5 * mission.timing.dt_s * std::ceil(ticks * (1 - kRounding)) * v_mps;
 }
@@ -54,8 +149,12 @@ double longest_braking_path_m(const Mission& mission) {
 }
 
 double bulge_m(const Mission& mission) {
-  if (mission.vehicle.kind == VehicleKind::kPoint) return 0;
-  return mission.vehicle.max_acceleration_mps2 * mission.timing.dt_s * mission.timing.dt_s / 8;
+  const VehicleLimits& vehicle = mission.vehicle;
+  // The anchor's acceleration: of a turn, its speed times the rate.
+  const double most_mps2 =
+      vehicle.max_acceleration_mps2 +
+      (mission.speed_limit_mps + vehicle.min_speed_mps) * vehicle.max_turn_radps;
+  return most_mps2 * mission.timing.dt_s * mission.timing.dt_s / 8;
 }
 
 }  // namespace ergocast

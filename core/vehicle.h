@@ -3,8 +3,23 @@
 // and driver.
 //
 // kPoint: the command is the velocity of the whole tick, x' = x + v dt.
-// kAcceleration: the command is the velocity v' at the tick's end. The acceleration a = (v' − v)/dt
-//   is constant within the tick, ‖a‖ ≤ A, and x' = x + (v + v')/2 dt. Its state is (x, v).
+// For all others the command is the velocity v' at the tick's end, and the state is (x, v).
+//
+// kAcceleration: the acceleration a = (v' − v)/dt is constant within the tick, ‖a‖ ≤ A, and
+//   x' = x + (v + v')/2 dt.
+// kUnicycle, kFixedWing: the vehicle looks along the unit vector h = v/‖v‖ and moves along it. Its
+//   speed s = ‖v'‖ may change at once. Within the tick it flies an arc, so that with t, the tangent
+//   of half the angle from h to h', |t| ≤ ω dt/2:
+//
+//     h' = ((1 − t²) h + 2t J h)/(1 + t²),  x' = x + s dt (h + h')/2,  J: a quarter turn to the
+//     left
+//
+//   Only + − × ÷ √: the same bits on every machine. The radius s dt/2|t| is at least s/ω, the rate
+//   of turn at most ω, and the speed s·arctan(t)/t at most s.
+//   A unicycle turns on the spot. One that stands has the velocity kStandingShare V h, which says
+//   where it looks and moves it nowhere. Without any velocity it looks along x.
+//   A fixed wing flies no slower than s_min. For a command of 0 it loiters: it turns to the left as
+//   tightly as it can, about its loiter centre c = x + r J h, r = s_min/ω, which then stays.
 //
 // ‖v‖ ≤ V, the mission's speed limit, at every moment.
 #pragma once
@@ -26,14 +41,33 @@ Eigen::Vector3d executed(const Mission& mission, const Eigen::Vector3d& now_mps,
 Eigen::Vector3d mean_velocity(const Mission& mission, const Eigen::Vector3d& now_mps,
                               const Eigen::Vector3d& then_mps);
 
-/// From where a vehicle is to where it stands if it brakes as evenly as A allows, in k whole ticks:
-/// ½ v dt k. Commands of 0 bring it to a stop on this way.
+/// The velocity of a vehicle that begins at `x_m`. A fixed wing has its loiter circle in the
+/// domain.
+Eigen::Vector3d first_velocity(const Mission& mission, const Eigen::Vector3d& x_m);
+
+/// Where vehicles may begin: the domain, of fixed wings without its edges, r wide.
+Box room_to_begin(const Mission& mission);
+
+/// Of a fixed wing r, else 0 [m].
+double loiter_radius_m(const Mission& mission);
+
+/// What stays in its place under commands of 0, at once: the loiter centre of a fixed wing, else
+/// the vehicle's own place. @pre the kind is not kAcceleration
+Eigen::Vector3d anchor_m(const Mission& mission, const Eigen::Vector3d& x_m,
+                         const Eigen::Vector3d& v_mps);
+
+/// How far the anchor of a vehicle with speed limit `max_speed_mps` gets in a tick, at most; of one
+/// with inertia the end of its braking path [m].
+double reach_m(const Mission& mission, double max_speed_mps);
+
+/// From where a vehicle with inertia is to where it stands if it brakes as evenly as A allows, in k
+/// whole ticks: ½ v dt k. Commands of 0 bring it to a stop on this way. Of others 0.
 Eigen::Vector3d braking_path_m(const Mission& mission, const Eigen::Vector3d& v_mps);
 
 /// The length of the longest braking path, at the speed limit [m].
 double longest_braking_path_m(const Mission& mission);
 
-/// By how much the path of a vehicle within a tick departs from the straight and even way between
+/// By how much the path of the anchor within a tick departs from the straight and even way between
 /// its ends, at most [m].
 double bulge_m(const Mission& mission);
 

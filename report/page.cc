@@ -53,6 +53,21 @@ std::string weights_text(const Basis& basis) {
          readable(basis.sobolev_exponent) + ", |k|² = m² + n²" + (basis.planar() ? "" : " + l²");
 }
 
+std::string vehicle_text(const VehicleLimits& vehicle) {
+  const std::string turn = "turn by at most " + readable(vehicle.max_turn_radps) + " rad/s";
+  switch (vehicle.kind) {
+    case VehicleKind::kAcceleration:
+      return "accelerate by at most " + readable(vehicle.max_acceleration_mps2) + " m/s²";
+    case VehicleKind::kUnicycle:
+      return turn + ", also on the spot";
+    case VehicleKind::kFixedWing:
+      return turn + ", and fly at " + readable(vehicle.min_speed_mps) + " m/s or faster";
+    case VehicleKind::kPoint:
+      break;
+  }
+  return "take every velocity at once";
+}
+
 /// What a φ² depends on, and what the page draws.
 Json conventions(const Mission& mission) {
   const Basis& basis = mission.basis;
@@ -77,6 +92,7 @@ Json conventions(const Mission& mission) {
   if (mission.speed_limit_mps > 0) {
     add("speed limit", readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
   }
+  add("vehicles", vehicle_text(mission.vehicle));
   if (mission.separation.distance_m > 0) {
     add("distance", readable(mission.separation.distance_m) + " m between any two bodies");
   }

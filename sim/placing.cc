@@ -43,7 +43,7 @@ void World::settle() {
   }
   for (auto& [id, slot] : vehicles_) {
     if (slot.placed) continue;
-    slot.x_m = place_for(id);
+    place(slot, place_for(id));
     slot.placed = true;
   }
 }

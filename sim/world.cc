@@ -143,10 +143,9 @@ void World::take_roster() {
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.active_until >= 0) continue;
     auto [at, is_new] = vehicles_.try_emplace(entry.author.agent);
-    if (is_new && begun_at_) {
-      at->second.x_m = place_for(entry.author.agent);
-    } else if (is_new) {
-      at->second.x_m = start_of(mission, entry.author.agent);
+    if (is_new) {
+      place(at->second,
+            begun_at_ ? place_for(entry.author.agent) : start_of(mission, entry.author.agent));
     }
     if (at->second.author != entry.author) {
       at->second.command.reset();
@@ -154,6 +153,11 @@ void World::take_roster() {
     }
     at->second.author = entry.author;
   }
+}
+
+void World::place(VehicleSlot& slot, const Eigen::Vector3d& x_m) const {
+  slot.x_m = x_m;
+  slot.applied_mps = first_velocity(mission(), x_m);
 }
 
 void World::on(const Command& command, const Arrival&) {

@@ -62,7 +62,7 @@ class World {
   struct VehicleSlot {
     Author author;
     Eigen::Vector3d x_m{0, 0, 0};
-    Eigen::Vector3d applied_mps{0, 0, 0};  // in the step that led here; with inertia at its end
+    Eigen::Vector3d applied_mps{0, 0, 0};  // in the step that led here; of no point at its end
     Eigen::Vector3d next_mps{0, 0, 0};     // in the step that follows
     std::optional<Command> command, command_before;
     bool placed = true;  // false: x_m says nothing yet
@@ -105,6 +105,7 @@ class World {
   bool knows_bodies() const;
   void settle();
   Eigen::Vector3d place_for(AgentId id) const;
+  void place(VehicleSlot& slot, const Eigen::Vector3d& x_m) const;
   bool keeps_distance() const { return mission().separation.distance_m > 0; }
   void drive(VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   void move(AgentId id, VehicleSlot& slot, Tick tick) const;

@@ -40,8 +40,14 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
     return stop(follower().plan_problem().value_or(
         "the mission is in lockstep, which robots cannot be: give it pace: REALTIME"));
   }
-  failed_ = me_.mission().vehicle.kind != VehicleKind::kPoint;
-  if (failed_) return stop("the mission is for other vehicles: give it vehicle { kind: POINT }");
+  const VehicleLimits& vehicle = me_.mission().vehicle;
+  failed_ = vehicle.kind != VehicleKind::kPoint &&
+            (!drives_unicycles() || vehicle.max_turn_radps > Robot::kTurnLimit_radps);
+  if (failed_) {
+    return stop(
+        "the mission is for other vehicles: give it vehicle { kind: POINT }, or UNICYCLE and at "
+        "most the robots' 2 rad/s");
+  }
   take_roster();
   if (running_ || follower().state() != MissionState::kRunning) return;
   running_ = true;
@@ -88,9 +94,10 @@ void Driver::hold_apart() {
   const double limit_mps = me_.mission().speed_limit_mps;
   std::vector<Neighbour> bodies;
   for (const auto& [id, drive] : drives_)
-    bodies.push_back({id, drive.robot.position_m(), limit_mps});
+    bodies.push_back(
+        {id, drive.robot.position_m(), limit_mps, 0, true, drive.robot.velocity_mps()});
   for (auto& [id, drive] : drives_) {
-    const Mover self{id, tick_, drive.robot.position_m(), limit_mps};
+    const Mover self{id, tick_, drive.robot.position_m(), limit_mps, drive.robot.velocity_mps()};
     const bool stands = drive.commanded_mps.isZero(0);
     drive.robot.drive(
         stands ? drive.commanded_mps : guard_->safe(self, drive.commanded_mps, bodies).velocity_mps,
@@ -124,7 +131,13 @@ void Driver::pass_tick() {
     if (finished_ || !driven || age_s > timing.command_hold_s) halt_robot(drive);
   }
   if (guard_) hold_apart();
-  for (auto& [id, drive] : drives_) drive.robot.move(timing.dt_s);
+  for (auto& [id, drive] : drives_) {
+    if (drives_unicycles()) {
+      drive.robot.move_as_unicycle(me_.mission());
+    } else {
+      drive.robot.move(timing.dt_s);
+    }
+  }
   ++tick_;
 }
 

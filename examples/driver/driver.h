@@ -65,6 +65,7 @@ class Driver {
   void take_roster();
   void pass_tick();
   void hold_apart();
+  bool drives_unicycles() const { return me_.mission().vehicle.kind == VehicleKind::kUnicycle; }
   void say_where(Outbox& out);
 
   Participant me_;

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vehicle.h"
+
 namespace ergocast::example {
-namespace {
-
-constexpr double kTurnLimit_radps = 2;
-
-}  // namespace
 
 void Robot::move(double dt_s) {
   if (wanted_mps_.isZero()) {
@@ -27,6 +24,13 @@ void Robot::move(double dt_s) {
   const double speed_mps = std::min(wanted_mps_.norm(), speed_limit_mps_) * share;
   velocity_mps_ = speed_mps * Eigen::Vector3d(std::cos(heading_rad_), std::sin(heading_rad_), 0);
   position_m_ += velocity_mps_ * dt_s;
+}
+
+void Robot::move_as_unicycle(const Mission& mission) {
+  const Eigen::Vector3d next_mps =
+      executed(mission, velocity_mps_, within_speed(wanted_mps_, speed_limit_mps_));
+  position_m_ += mean_velocity(mission, velocity_mps_, next_mps) * mission.timing.dt_s;
+  velocity_mps_ = next_mps;
 }
 
 }  // namespace ergocast::example

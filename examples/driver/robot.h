@@ -5,9 +5,11 @@
 
 #include <Eigen/Core>
 
+#include "core/mission.h"
+
 namespace ergocast::example {
 
-/// Stays on its plane, turns on the spot at most at 2 rad/s and drives forwards at most at
+/// Stays on its plane, turns on the spot at most at kTurnLimit_radps and drives forwards at most at
 /// `speed_limit_mps`. Unlike a vehicle of ergocast-sim it cannot do at once what it is told.
 class Robot {
  public:
@@ -26,6 +28,12 @@ class Robot {
 
   /// Lets `dt_s` pass. A real robot moves by itself.
   void move(double dt_s);
+
+  /// Lets a tick pass as agents of unicycles expect it, core/vehicle.h.
+  /// @pre the mission's unicycles turn no faster than kTurnLimit_radps
+  void move_as_unicycle(const Mission& mission);
+
+  static constexpr double kTurnLimit_radps = 2;
 
  private:
   Eigen::Vector3d position_m_;

@@ -51,20 +51,23 @@ void KeepApart(benchmark::State& state) {
 }
 BENCHMARK(KeepApart)->ArgNames({"near", "error_m"})->ArgsProduct({{0, 6, 63}, {0, 2}});
 
-/// Vehicles of 5 m/s² at up to 20 m/s, whose ways to brake, up to 40 m, are near each other.
-void KeepWaysApart(benchmark::State& state) {
+/// Vehicles of up to 20 m/s whose ways to brake, up to 40 m, are near each other; or which are
+/// within 4 m of contact.
+void KeepWaysApart(benchmark::State& state, const VehicleLimits& vehicle) {
   Mission mission = mission_with(0);
   mission.speed_limit_mps = 20;
-  mission.vehicle = {VehicleKind::kAcceleration, 5};
+  mission.vehicle = vehicle;
   SeparationFilter filter(mission, 0);
   std::mt19937 draw(1);
   std::uniform_real_distribution<double> share(-1, 1);
+  const bool brakes = vehicle.kind == VehicleKind::kAcceleration;
+  const double middle_m = brakes ? 70 : filter.contact_m(20) + 2, spread_m = brakes ? 20 : 2;
   std::vector<Neighbour> others;
   for (AgentId id = 1; id <= state.range(0); ++id) {
     const double angle = M_PI * share(draw);
     const Eigen::Vector3d away(std::cos(angle), std::sin(angle), 0);
     others.push_back({id,
-                      Eigen::Vector3d(1000, 1000, 0) + (70 + 20 * share(draw)) * away,
+                      Eigen::Vector3d(1000, 1000, 0) + (middle_m + spread_m * share(draw)) * away,
                       20,
                       0,
                       true,
@@ -77,7 +80,9 @@ void KeepWaysApart(benchmark::State& state) {
         filter.safe(self, {20 * std::cos(angle), 20 * std::sin(angle), 0}, others));
   }
 }
-BENCHMARK(KeepWaysApart)->ArgName("near")->Arg(6)->Arg(63);
+BENCHMARK_CAPTURE(KeepWaysApart, Inertia, {VehicleKind::kAcceleration, 5})->Arg(6)->Arg(63);
+BENCHMARK_CAPTURE(KeepWaysApart, Unicycles, {VehicleKind::kUnicycle, 0, 1})->Arg(6)->Arg(63);
+BENCHMARK_CAPTURE(KeepWaysApart, Wings, {VehicleKind::kFixedWing, 0, 0.35, 8})->Arg(6)->Arg(63);
 
 /// Teammates that are all far away.
 void NobodyNear(benchmark::State& state) {

@@ -18,6 +18,7 @@
 #include "core/forecast.h"
 #include "core/geometry.h"
 #include "core/separation.h"
+#include "core/vehicle.h"
 #include "lcmtypes/codec.h"
 #include "sim/world.h"
 
@@ -148,6 +149,9 @@ void bug_make_filter(SeparationFilter* self, const Mission& mission, Tick hold_t
   Mission changed = mission;
   filtered[self] = {mission.timing.dt_s, mission.separation.position_error_m, {}};
   if (bug("no command is held")) hold_ticks = 0;
+  if (bug("a body looks everywhere at once")) changed.vehicle = {};
+  if (bug("a loiter circle is a point"))
+    changed.separation.distance_m -= 2 * loiter_radius_m(mission);
   if (bug("nobody knows of position errors")) changed.separation.position_error_m = 0;
   if (bug("edges count afterwards")) {
     changed.domain.origin_m.head<2>().array() -= 1000;

@@ -97,6 +97,10 @@ std::string keeping(const std::string& separation, const std::string& world,
   return "separation { " + separation + " } world { speed_limit_mps: 20 " + world + " } " + then;
 }
 
+std::string wings(const std::string& limits, const std::string& then = kLaw) {
+  return "vehicle { kind: FIXED_WING " + limits + " } world { speed_limit_mps: 20 } " + then;
+}
+
 std::vector<Mistake> mistakes_between_fields() {
   return {
       {"size_x_m: 100", "size_x_m: 100 origin_x_m: 10000001", "domain.origin_x_m: "},
@@ -134,11 +138,20 @@ std::vector<Mistake> mistakes_between_fields() {
       {kLaw, "vehicle { max_acceleration_mps2: 5 } law {",
        "vehicle.max_acceleration_mps2: has no effect"},
       {kLaw, "vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } law {",
-       "world.speed_limit_mps: is missing, and a way to brake depends on it", false},
+       "world.speed_limit_mps: is missing, and all kinds but POINT rely on it", false},
       {kLaw,
        "world { speed_limit_mps: 20 } vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } "
        "law {",
        "vehicle.max_acceleration_mps2: 5 stops a vehicle after"},
+      {kLaw, wings("max_turn_radps: 1"), "vehicle.min_speed_mps: is missing", false},
+      {kLaw, wings("min_speed_mps: 2"), "vehicle.max_turn_radps: is missing", false},
+      {kLaw, wings("min_speed_mps: 5 max_turn_radps: 1"), "vehicle.min_speed_mps: 5 is not below"},
+      {kLaw, wings("min_speed_mps: 2 max_turn_radps: 0.1"),
+       "vehicle.max_turn_radps: 0.1 turns a vehicle on a circle"},
+      {"agents {", wings("min_speed_mps: 2 max_turn_radps: 0.16", "agents {"),
+       "agents.starts[0]: is nearer to an edge than"},
+      {kLaw, wings("min_speed_mps: 2 max_turn_radps: 1 max_acceleration_mps2: 1"),
+       "vehicle.max_acceleration_mps2: has no effect with kind: FIXED_WING"},
       {kLaw,
        keeping("distance_m: 5 position_error_m: 0.1",
                "} vehicle { kind: ACCELERATION max_acceleration_mps2: 50"),
@@ -282,6 +295,9 @@ std::vector<Mistake> mistakes_in_space() {
       {"y_m: 20", "y_m: 20 z_m: 3", "agents.starts[0].z_m: the domain is a plane"},
       in_space(kLaw, "basis { modes_x: 17 modes_y: 17 modes_z: 17 } law {",
                "basis: 4913 modes are above the limit"),
+      in_space(kLaw,
+               "world { speed_limit_mps: 20 } vehicle { kind: UNICYCLE max_turn_radps: 1 } law {",
+               "vehicle.kind: UNICYCLE belongs to a plane"),
       in_space(kUniform, bell + "sigma_z_m: 5 covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 } }",
                "target.gaussians[0].sigma_z_m: has no effect with covariance"),
       in_space(kUniform,
@@ -491,6 +507,17 @@ vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
 separation { distance_m: 2 }
 )";
 
+/// What its kind of vehicles does not have.
+constexpr const char* kWinged = R"(
+domain { size_x_m: 100 size_y_m: 50 }
+target { uniform_weight: 1 }
+law { u_max_mps: 5 }
+time { duration_s: 60 }
+agents { starts { x_m: 10 y_m: 20 } }
+world { speed_limit_mps: 100 }
+vehicle { kind: FIXED_WING max_turn_radps: 1 min_speed_mps: 4 }
+)";
+
 /// Calls `visit` for each field that takes a number or a word, with its block.
 void each_field(
     Block& message, const std::string& path,
@@ -514,10 +541,12 @@ void each_field(
 
 class CheckCanFail : public Scenarios {
  protected:
-  /// kRich with the defaults of what it leaves out.
+  const char* rich_ = kRich;
+
+  /// rich_ with the defaults of what it leaves out.
   proto::Scenario rich_scenario() const {
     proto::Scenario scenario;
-    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(kRich, &scenario));
+    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(rich_, &scenario));
     fill_in(scenario, file_);
     return scenario;
   }
@@ -575,18 +604,11 @@ class CheckCanFail : public Scenarios {
 
   /// Each field at its limits, and missing.
   void plant_in_fields() {
-    write("s.textproto", kRich);
-    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
-    proto::Scenario rich = rich_scenario();
     std::set<std::string> covered;
-    each_field(rich, "", [&](Block&, const FieldDescriptor& field, const std::string& path) {
-      if (!covered.insert(field.full_name()).second) return;
-      if (const FieldRule* rule = rule_of(field)) expect_limits(field, path, *rule);
-      if (field.enum_type() == nullptr) return;
-      expect_said(path, "has no value 99", [](Block& block, const FieldDescriptor& one) {
-        block.GetReflection()->SetEnumValue(&block, &one, 99);
-      });
-    });
+    for (const char* text : {kRich, kWinged}) {
+      rich_ = text;
+      plant_in_fields_of_rich(covered);
+    }
     const auto* file = proto::Scenario::descriptor()->file();
     for (int i = 0; i < file->message_type_count(); ++i) {
       for (int j = 0; j < file->message_type(i)->field_count(); ++j) {
@@ -596,6 +618,20 @@ class CheckCanFail : public Scenarios {
             << field.full_name() << ": add it to kRich";
       }
     }
+  }
+
+  void plant_in_fields_of_rich(std::set<std::string>& covered) {
+    write("s.textproto", rich_);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    proto::Scenario rich = rich_scenario();
+    each_field(rich, "", [&](Block&, const FieldDescriptor& field, const std::string& path) {
+      if (!covered.insert(field.full_name()).second) return;
+      if (const FieldRule* rule = rule_of(field)) expect_limits(field, path, *rule);
+      if (field.enum_type() == nullptr) return;
+      expect_said(path, "has no value 99", [](Block& block, const FieldDescriptor& one) {
+        block.GetReflection()->SetEnumValue(&block, &one, 99);
+      });
+    });
   }
 
   void plant_in_the_text() {

@@ -45,6 +45,13 @@ const char* const kUnguardedCrowd =
 const char* const kCrowdWithInertia =
     "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
     "vehicle { kind: ACCELERATION max_acceleration_mps2: 10 }";
+const char* const kCrowdOfUnicycles =
+    "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
+    "vehicle { kind: UNICYCLE max_turn_radps: 1 }";
+const char* const kCrowdWithWings =
+    "separation { distance_m: 15 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
+    "vehicle { kind: FIXED_WING max_turn_radps: 1.5 min_speed_mps: 5 }\n"
+    "target { gaussians { mean_x_m: 50 mean_y_m: 50 sigma_m: 3 weight: 20 } }";
 const char* const kUnsureCrowd =
     "separation { distance_m: 20 position_error_m: 1 }\nworld { speed_limit_mps: 20 }\n"
     "goal_ergodic_metric: 1";
@@ -61,6 +68,11 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "edges count afterwards", "", kCrowdInACorner},
     {Invariant::kDistanceKept, "no command is held", "loss = 0.3", kUnguardedCrowd},
     {Invariant::kDistanceKept, "a body needs no way to brake", "", kCrowdWithInertia},
+    {Invariant::kDistanceKept, "a body looks everywhere at once", "", kCrowdOfUnicycles},
+    {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowdOfUnicycles},
+    {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowdWithWings},
+    {Invariant::kDistanceKept, "a loiter circle is a point", "", kCrowdWithWings},
+    {Invariant::kDistanceKept, "a body needs no way to brake", "", kCrowdWithWings},
     {Invariant::kDistanceKept, "nobody knows of position errors", "", kUnsureCrowd},
     {Invariant::kSumsBounded, "a sum runs away"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},

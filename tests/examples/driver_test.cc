@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/vehicle.h"
 #include "tests/support/team.h"
 
 namespace ergocast::example {
@@ -184,6 +185,41 @@ TEST(ExampleDriver, RefusesAMissionInLockstep) {
   Driver driver = running_driver(mission_of(Pace::kLockstep));
   EXPECT_TRUE(driver.failed());
   EXPECT_NE(driver.reason().find("REALTIME"), std::string::npos);
+}
+
+Mission mission_of(const VehicleLimits& vehicle) {
+  Mission mission = mission_of(Pace::kRealtime);
+  mission.speed_limit_mps = 20;
+  mission.vehicle = vehicle;
+  return mission;
+}
+
+TEST(ExampleDriver, MovesUnicyclesAsTheirAgentsExpectIt) {
+  const Mission mission = mission_of(VehicleLimits{VehicleKind::kUnicycle, 0, 2});
+  Driver driver = running_driver(mission, 20);
+  state_at(driver, at(0s));
+  Eigen::Vector3d x_m = driver.robot(1).position_m(), v_mps(0, 0, 0);
+  for (int tick = 0; tick < 12; ++tick) {
+    const Eigen::Vector3d wanted_mps(-3, 4, 0);
+    give(driver, command_of(1, tick, wanted_mps), at(100ms * tick + 50ms));
+    const WorldState state = state_at(driver, at(100ms * (tick + 1)));
+    const Eigen::Vector3d next_mps = executed(mission, v_mps, wanted_mps);
+    x_m += mean_velocity(mission, v_mps, next_mps) * 0.1;
+    v_mps = next_mps;
+    EXPECT_EQ(state.vehicles[1].velocity_mps, v_mps);
+    EXPECT_EQ(state.vehicles[1].position_m, x_m);
+  }
+  EXPECT_EQ(v_mps, Eigen::Vector3d(-3, 4, 0)) << "it has turned round";
+}
+
+TEST(ExampleDriver, RefusesVehiclesThatItsRobotsAreNot) {
+  for (const VehicleLimits& vehicle :
+       {VehicleLimits{VehicleKind::kUnicycle, 0, 2.1}, VehicleLimits{VehicleKind::kAcceleration, 9},
+        VehicleLimits{VehicleKind::kFixedWing, 0, 1, 3}}) {
+    const Driver driver = running_driver(mission_of(vehicle));
+    EXPECT_TRUE(driver.failed());
+    EXPECT_NE(driver.reason().find("POINT"), std::string::npos);
+  }
 }
 
 TEST(ExampleRobot, TurnsBeforeItDrivesAndNeverExceedsItsSpeed) {

@@ -80,7 +80,8 @@ TEST(PlanProto, IsWhatAPlansBytesAre) {
   Mission rich = test::rich_mission_in_space();
   rich.wait_for_logger = true;
   proto::Plan all;
-  for (const Mission& mission : {rich, test::with_inertia(rich)}) {
+  for (const Mission& mission :
+       {rich, test::with_inertia(rich), test::with_wings(test::rich_mission())}) {
     const std::vector<std::byte> bytes = encode_plan(mission);
     proto::Plan plan;
     ASSERT_TRUE(plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));

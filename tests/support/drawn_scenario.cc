@@ -212,7 +212,9 @@ const std::map<std::string, Rule>& rules() {
       {"Start.z_m", must(kPlace)},
 
       {"Vehicle.kind", may(word(0.3))},
-      {"Vehicle.max_acceleration_mps2", must(spread(20, 200))},  // of inertia: see agree()
+      {"Vehicle.max_acceleration_mps2", must(spread(20, 200))},  // by kind: see agree()
+      {"Vehicle.max_turn_radps", must(spread(0.5, 10))},
+      {"Vehicle.min_speed_mps", must(spread(0.05, 0.5))},
 
       {"Separation.distance_m", must(number(0.5, 8))},
       {"Separation.position_error_m", may(either(0, number(0.01, 0.2)))},
@@ -335,10 +337,17 @@ void agree_on_distance(proto::Scenario& scenario) {
   for (int i = 0; i < agents.starts_size(); ++i) agents.mutable_starts(i)->set_x_m(5 + 20 * i);
 }
 
-/// Inertia needs a speed limit and bodies that know each other.
+/// Each kind has limits of its own. All but points need a speed limit and bodies that know each
+/// other, and a plane if they turn.
 void agree_on_vehicle(proto::Scenario& scenario) {
-  if (scenario.vehicle().kind() == proto::Vehicle::POINT)
-    return scenario.mutable_vehicle()->clear_max_acceleration_mps2();
+  proto::Vehicle& vehicle = *scenario.mutable_vehicle();
+  const bool turns =
+      vehicle.kind() == proto::Vehicle::UNICYCLE || vehicle.kind() == proto::Vehicle::FIXED_WING;
+  if (turns && scenario.domain().has_size_z_m()) vehicle.set_kind(proto::Vehicle::ACCELERATION);
+  if (vehicle.kind() != proto::Vehicle::ACCELERATION) vehicle.clear_max_acceleration_mps2();
+  if (vehicle.kind() != proto::Vehicle::FIXED_WING) vehicle.clear_min_speed_mps();
+  if (!turns || vehicle.kind() == proto::Vehicle::ACCELERATION) vehicle.clear_max_turn_radps();
+  if (vehicle.kind() == proto::Vehicle::POINT) return;
   scenario.mutable_world()->set_speed_limit_mps(20);
   if (!scenario.has_separation()) return;
   const double distance_m = scenario.separation().distance_m();

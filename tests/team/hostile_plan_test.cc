@@ -16,6 +16,7 @@ namespace {
 
 using test::rich_mission;
 using test::rich_mission_in_space;
+using test::with_wings;
 using Bytes = std::vector<std::byte>;
 
 /// The mission in a plan, if there is one.
@@ -237,6 +238,15 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
         m.vehicle = {VehicleKind::kAcceleration, 1000};
       },  // and errors of places
       [](Mission& m) { m.separation = {}, m.vehicle.kind = VehicleKind::kAcceleration; },
+      [](Mission& m) { m = with_wings(m), m.vehicle.max_acceleration_mps2 = 1; },
+      [](Mission& m) { m = with_wings(m), m.vehicle.max_turn_radps = 0; },
+      [](Mission& m) { m = with_wings(m), m.vehicle.max_turn_radps = 0.01; },
+      [](Mission& m) { m = with_wings(m), m.vehicle.min_speed_mps = 0; },
+      [](Mission& m) { m = with_wings(m), m.vehicle.min_speed_mps = 5.6; },  // above the input
+      [](Mission& m) { m = with_wings(m), m.vehicle.kind = VehicleKind::kUnicycle; },
+      [](Mission& m) { m = with_wings(m), m.vehicle.max_turn_radps = 0.7; },  // circles of 0.7 m
+      [](Mission& m) { m = with_wings(m), m.starts_m[0].x() = -2.99; },       // too near an edge
+      [](Mission& m) { m = with_wings(rich_mission_in_space()); },
       [](Mission& m) {
         m.separation = {}, m.vehicle = {VehicleKind::kAcceleration, 1e-3};
       },

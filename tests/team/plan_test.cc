@@ -94,13 +94,16 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   Mission plain_mission;
   plain_mission.separation.distance_m = 1;  // so that all its fields are listed
   const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts,
-             moving = Fields(with_inertia(mission)).texts;
+             moving = Fields(with_inertia(mission)).texts,
+             flying = Fields(with_wings(mission)).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
-    EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i]) << "default: field " << i;
+    EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i] || flying[i] != plain[i])
+        << "default: field " << i;
   expect_travels(mission);
   expect_travels(rich_mission());
   expect_travels(with_inertia(mission));
+  expect_travels(with_wings(rich_mission()));
 }
 
 // Two swapped switches would not show if both are true.

@@ -98,4 +98,11 @@ inline Mission with_inertia(Mission mission) {
   return mission;
 }
 
+/// Of vehicles that turn slowly and never stand, which belong to a plane.
+inline Mission with_wings(Mission mission) {
+  mission = with_inertia(std::move(mission));
+  mission.vehicle = {VehicleKind::kFixedWing, 0, 13, 0.5};
+  return mission;
+}
+
 }  // namespace ergocast::test

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Vehicles that turn slowly keep their distance by what stays in its place at once.
+//
+// A unicycle is a point that may stand at any moment. It turns to where a point would go, and goes
+// there as far as its arc leads through the allowed steps. These contain 0 and are convex, so that
+// every step can be shortened until it is allowed.
+//
+// A fixed wing never stands, but its loiter centre does if it turns as tightly as it can. The
+// centres keep D + 2 r apart like points, and no vehicle is farther than r from its own centre.
+#include <algorithm>
+
+#include "core/separation.h"
+#include "core/vehicle.h"
+
+namespace ergocast {
+namespace {
+
+/// So many steps lead from the wanted velocity to the tightest turn.
+constexpr int kTighterTurns = 8;
+/// A unicycle whose way is blocked still turns: as the direction of its velocity, however small.
+constexpr double kLeastShare = 1e-9;
+
+}  // namespace
+
+SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                                        std::span<const Neighbour> others) {
+  SafeVelocity safe = safe_step(self, wanted_mps, others);
+  if (safe.blind) return safe;
+  const Eigen::Vector3d turned_mps = executed(mission_, self.velocity_mps, safe.velocity_mps);
+  const Eigen::Vector3d step_m =
+      mean_velocity(mission_, self.velocity_mps, turned_mps) * mission_.timing.dt_s;
+  const double share = std::max(kLeastShare, constraints_.allowed_share(step_m));
+  safe.velocity_mps =
+      share < 1 ? executed(mission_, self.velocity_mps, share * turned_mps) : turned_mps;
+  return safe;
+}
+
+/// How far the loiter centre moves, if the vehicle now goes over to `v_mps`.
+Eigen::Vector3d SeparationFilter::center_step_m(const Mover& self,
+                                                const Eigen::Vector3d& v_mps) const {
+  const Eigen::Vector3d step_m =
+      mean_velocity(mission_, self.velocity_mps, v_mps) * mission_.timing.dt_s;
+  return anchor_m(mission_, step_m, v_mps) - anchor_m(mission_, {0, 0, 0}, self.velocity_mps);
+}
+
+SafeVelocity SeparationFilter::safe_circle(const Mover& self, const Eigen::Vector3d& wanted_mps,
+                                           std::span<const Neighbour> others) {
+  Mover center = self;
+  center.position_m = anchor_m(mission_, self.position_m, self.velocity_mps);
+  begin(center, reach_m(mission_, self.max_speed_mps));
+  for (const Neighbour& other : others) {
+    Neighbour circle = other;
+    circle.position_m = anchor_m(mission_, other.position_m, other.velocity_mps);
+    if (other.id != self.id && !take_step(center, circle)) return stopped(self, other);
+  }
+  const Eigen::Vector3d direct_mps = executed(mission_, self.velocity_mps, wanted_mps);
+  const Eigen::Vector3d direct_m = center_step_m(self, direct_mps);
+  if (constraints_.allow(direct_m)) return {direct_mps};
+
+  const AgentId by = blocker(direct_m);
+  const Eigen::Vector3d tightest_mps = executed(mission_, self.velocity_mps, {0, 0, 0});
+  for (int i = 1; i < kTighterTurns; ++i) {
+    const double share = static_cast<double>(i) / kTighterTurns;
+    const Eigen::Vector3d v_mps =
+        executed(mission_, self.velocity_mps, direct_mps + share * (tightest_mps - direct_mps));
+    if (constraints_.allow(center_step_m(self, v_mps))) return {v_mps, false, by};
+  }
+  return {tightest_mps, true, by};
+}
+
+}  // namespace ergocast
