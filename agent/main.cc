@@ -6,7 +6,6 @@
 #include <string>
 
 #include "agent/agent.h"
-#include "core/mission_limits.h"
 #include "runtime/event_loop.h"
 #include "runtime/logging.h"
 #include "runtime/node.h"
@@ -118,11 +117,6 @@ int main(int argc, char** argv) {
   app.add_option(
          "--kind", kind,
          "Be of this kind of the scenario's agents { kind }; without: as planned for the id")
-      ->check(CLI::Validator(
-          [](const std::string& name) {
-            return is_kind_name(name) ? std::string() : "\"" + name + "\" cannot name a kind";
-          },
-          ""))
       ->type_name("NAME");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   const AgentId requested_id = id == "auto" ? kUnassigned : std::stoi(id, nullptr, 0);

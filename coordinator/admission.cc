@@ -80,9 +80,9 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
       version_mismatches.emplace(hello.host, hello.version);
     return;
   }
-  if (why_not_of_kind(*flown_.mission, hello.kind)) {
+  if (const auto why = why_not_of_kind(*flown_.mission, hello.kind)) {
     auto& unknown_kinds = newcomers_.unknown_kinds;
-    if (unknown_kinds.size() < kMaxUnknownKinds) unknown_kinds.emplace(hello.host, hello.kind);
+    if (unknown_kinds.size() < kMaxUnknownKinds) unknown_kinds.emplace(hello.host, *why);
     return;
   }
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {

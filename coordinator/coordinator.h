@@ -76,7 +76,8 @@ class Coordinator {
   const std::set<std::pair<std::string, std::string>>& version_mismatches() const {
     return newcomers_.version_mismatches;
   }
-  /// Hosts and kinds of agents that were refused because the mission has no such kind.
+  /// Hosts of agents that were refused because the mission does not have their kind, and the
+  /// sentence that says so.
   const std::set<std::pair<std::string, std::string>>& unknown_kinds() const {
     return newcomers_.unknown_kinds;
   }

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "coordinator/coordinator.h"
-#include "core/kinds.h"
 #include "runtime/event_loop.h"
 #include "runtime/logging.h"
 #include "runtime/node.h"
@@ -74,9 +73,8 @@ class UnknownKindLog {
     if (coordinator.unknown_kinds().size() == seen_.size()) return;
     for (const auto& unknown : coordinator.unknown_kinds()) {
       if (!seen_.insert(unknown).second) continue;
-      const auto& [host, kind] = unknown;
-      if (const auto why = why_not_of_kind(*coordinator.mission(), kind))
-        spdlog::warn("an agent on {} is not admitted: {}", host, *why);
+      const auto& [host, why] = unknown;
+      spdlog::warn("an agent on {} is not admitted: {}", host, why);
     }
   }
 

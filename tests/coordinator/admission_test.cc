@@ -305,7 +305,8 @@ TEST(CoordinatorAdmits, NoKindThatTheMissionDoesNotHave) {
   give(coordinator, hello_of_kind(0, 10, "slow"), at(0s));
   EXPECT_TRUE(coordinator.roster().empty());
   EXPECT_EQ(coordinator.unknown_kinds(),
-            (std::set<std::pair<std::string, std::string>>{{"somewhere", "slow"}}));
+            (std::set<std::pair<std::string, std::string>>{
+                {"somewhere", "the mission has no kind \"slow\": its kinds are fast, fine"}}));
   Coordinator of_alike = coordinator_of(small_mission(1));
   give(of_alike, hello_of_kind(0, 10, "slow"), at(0s));
   EXPECT_TRUE(of_alike.roster().empty());
