@@ -80,7 +80,7 @@ class KindRules {
     if (!sound(path) || !sound("law") || !sound("domain") || !sound("time.dt_s")) return;
     const Box domain = domain_of(scenario_.domain());
     const double u_max_mps = kinds_[i].u_max_mps(), side_m = domain.shortest_side_m();
-    step(path, "u_max_mps · dt_s", u_max_mps, scenario_.time().dt_s(), side_m);
+    step(path, "a step of the input", u_max_mps, scenario_.time().dt_s(), side_m);
     const double needed_mps =
         scenario_.law().contraction_gain_per_s() *
         domain.farthest_distance_m(contraction_center_of(scenario_.law(), domain));
@@ -102,25 +102,25 @@ class KindRules {
     const proto::Kind& kind = kinds_[i];
     const double side_m = domain_of(scenario_.domain()).shortest_side_m();
     const double root_dt = std::sqrt(scenario_.time().dt_s());
-    step(path + "intensity", "noise_intensity · sqrt(dt_s)", kind.noise_intensity(), root_dt,
-         side_m);
-    step(path + "ceiling", "noise_ceiling · sqrt(dt_s)", kind.noise_ceiling(), root_dt, side_m);
+    step(path + "intensity", "a step of the least noise", kind.noise_intensity(), root_dt, side_m);
+    step(path + "ceiling", "a step of the greatest noise", kind.noise_ceiling(), root_dt, side_m);
     const bool adaptive = scenario_.law().perturbation() == proto::Law::ADAPTIVE;
     if (!adaptive || kind.noise_ceiling() >= kind.noise_intensity()) return;
     checks_.problem(path + "ceiling",
-                    shortest(kind.noise_ceiling()) + " is below noise_intensity, " +
+                    shortest(kind.noise_ceiling()) + " is less than the kind's least noise, " +
                         shortest(kind.noise_intensity()),
-                    "write at least that");
+                    "write no less than that");
   }
 
-  void step(const std::string& path, const std::string& product, double size, double unit,
+  /// One step of `size` per `unit` must not be longer than the domain.
+  void step(const std::string& path, const std::string& which, double size, double unit,
             double side_m) {
     if (size * unit <= side_m) return;
     checks_.problem(
         path,
-        shortest(size) + " makes " + product + " " + shortest(rounded_up(size * unit)) +
-            " m, above the limit, the domain's shorter side " + shortest(side_m) + " m",
-        "write at most " + shortest(rounded_down(side_m / unit)) + ", or a smaller dt_s");
+        shortest(size) + " makes " + which + " " + shortest(rounded_up(size * unit)) +
+            " m long, and the domain's shorter side is " + shortest(side_m) + " m",
+        "write at most " + shortest(rounded_down(side_m / unit)) + ", or take shorter steps");
   }
 
   void footprint(int i) {

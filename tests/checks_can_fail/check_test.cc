@@ -294,14 +294,14 @@ std::vector<Mistake> mistakes_of_kinds() {
             "agents.kind[0].footprint_sigma_m: -1 is below the limit 0"),
       kinds("footprint_sigma_m: 101", good,
             "agents.kind[0].footprint_sigma_m: 101 is larger than the domain"),
-      kinds("u_max_mps: 501", good, "agents.kind[0].u_max_mps: 501 makes u_max_mps · dt_s"),
+      kinds("u_max_mps: 501", good, "agents.kind[0].u_max_mps: 501 makes a step of the input"),
       kinds("u_max_mps: 0.001", good, "agents.kind[0].u_max_mps: 0.001 is too weak"),
       kinds("noise_intensity: 2 noise_ceiling: 1", good,
-            "agents.kind[0].noise_ceiling: 1 is below noise_intensity"),
+            "agents.kind[0].noise_ceiling: 1 is less than the kind's least noise"),
       kinds("noise_intensity: 200 noise_ceiling: 200", good,
-            "agents.kind[0].noise_intensity: 200 makes noise_intensity · sqrt(dt_s)"),
+            "agents.kind[0].noise_intensity: 200 makes a step of the least noise"),
       kinds("noise_ceiling: 200", good,
-            "agents.kind[0].noise_ceiling: 200 makes noise_ceiling · sqrt(dt_s)"),
+            "agents.kind[0].noise_ceiling: 200 makes a step of the greatest noise"),
       kinds("band { from: 3 to: 2 }", good, "agents.kind[0].band: covers no mode"),
       kinds("band { from: 100 }", good, "agents.kind[0].band: covers no mode"),
       kinds("", good + " } " + repeated(15, "kind { name: \"c\" count: 1 } ") + " kind { " + good,
@@ -719,7 +719,24 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find("10 agents 10 m apart take up 15.71 %"), std::string::npos) << output();
   }
 
+  void expect_warning_of_footprints() {
+    std::string text = kGood;
+    const std::string even = "uniform_weight: 1";
+    text.replace(text.find(even), even.size(),
+                 "gaussians { mean_x_m: 50 mean_y_m: 25 sigma_m: 4 }");
+    text.replace(text.find("} }\n", text.find("agents {")), 4,
+                 "} kind { name: \"a\" count: 1 footprint_sigma_m: 15 } }\n");
+    write("s.textproto", text);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_TRUE(output().starts_with("warning: " + file_.string() + ":5:")) << output();
+    EXPECT_NE(output().find("agents.kind: the target is finer than the sensors see"),
+              std::string::npos)
+        << output();
+  }
+
   void plant_warnings() {
+    expect_warning_of_footprints();
     expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");
     expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
     expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");
