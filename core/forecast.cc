@@ -165,6 +165,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
       sensors_(mission),
+      alike_(sensors_.alike()),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
       nothing_(static_cast<std::size_t>(basis_.mode_count())),
       gains_(nothing_),
@@ -391,7 +392,7 @@ void Forecast::add_unlike(const Term& term, Modes modes, const double* before, d
 /// Adds what a row will have covered to `before`.
 void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) {
   Track* track = term.track;
-  if (term.quality != 1 || (track != nullptr && footprint(*track) != nullptr))
+  if (!alike_ && (term.quality != 1 || (track != nullptr && footprint(*track) != nullptr)))
     return add_unlike(term, modes, before, sum);
   const auto block = modes.first / block_size_;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {

@@ -103,7 +103,9 @@ class Forecast {
   void add(const Term& term, Modes modes, const double* before, double* sum);
   void add_unlike(const Term& term, Modes modes, const double* before, double* sum);
   Modes modes_of(int block) const;
-  const double* footprint(const Track& track) const { return sensors_.of(track.kind).footprint(); }
+  const double* footprint(const Track& track) const {
+    return alike_ ? nullptr : sensors_.of(track.kind).footprint();
+  }
 
   Author self_;
   Box domain_;
@@ -113,6 +115,7 @@ class Forecast {
   LookAhead look_ahead_;
   bool reckons_;
   Sensors sensors_;
+  bool alike_;  // all of them, as most often they are
   std::size_t most_places_;
   std::map<AgentId, Track> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()
