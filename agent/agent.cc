@@ -31,21 +31,24 @@ const Coefficients kNoCoverage;
 
 }  // namespace
 
-Agent::InMission::InMission(const Mission& mission, const Author& self, Tick joined)
-    : active_from(joined),
-      table(mission.basis, mission.timing.dt_s, joined),
-      controller(mission),
-      anti_entropy(self, mission.seed, mission.timing.dt_s),
+Agent::InMission::InMission(const Mission& mission, const RosterEntry& self)
+    : active_from(self.active_from),
+      kind(self.kind),
+      sensors(mission),
+      table(mission.basis, mission.timing.dt_s, self.active_from),
+      controller(mission, self.kind),
+      anti_entropy(self.author, mission.seed, mission.timing.dt_s),
       foreseen(Coefficients::Zero(mission.basis.mode_count())),
       team_coverage(foreseen) {
   table.set_encoding(mission.timing.contribution_encoding);
   if (mission.law.anticipation > 0) {
-    forecast.emplace(mission, self);
+    forecast.emplace(mission, self.author);
   } else {
     table.forgo_gains();
   }
   if (filters_commands(mission)) separation.emplace(mission, unguarded_hold_ticks(mission));
-  table.add_row(self);  // before any other incarnation could take its place
+  table.add_row(self.author);  // before any other incarnation could take its place
+  table.set_quality(self.author, sensors.of(self.kind).quality);
   published.resize(static_cast<std::size_t>(table.block_count()));
   last_command.header.tick = command_before.header.tick = -1;
 }
@@ -54,6 +57,7 @@ Agent::Agent(AgentIdentity identity)
     : me_(kRole, {identity.run, identity.requested_id, identity.incarnation}),
       requested_id_(identity.requested_id),
       version_(std::move(identity.version)),
+      kind_(std::move(identity.kind)),
       mission_repeat_(identity.incarnation) {
   ERGOCAST_REQUIRE(identity.incarnation != 0);
   status_.host = std::move(identity.host);
@@ -86,13 +90,14 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
   if (follower().over()) {
     return finish(follower().state() == MissionState::kFailed, follower().reason());
   }
+  if (auto why = why_not_of_kind(mission(), kind_)) return finish(true, *std::move(why));
   const RosterEntry* own = own_entry();
   if (own == nullptr) return;
   if (const auto why = evicted(std::max<Tick>(tick(), 0))) return finish(true, *why);
   if (std::holds_alternative<Joining>(state_)) {
     me_.set_id(own->author.agent);
     radio_ = RadioRange(mission().radio_range_m);
-    state_.emplace<InMission>(mission(), me_.author(), own->active_from);
+    state_.emplace<InMission>(mission(), *own);
   }
   std::optional<Instant>& running_since = in_mission()->running_since;
   if (!running_since && follower().state() == MissionState::kRunning) running_since = arrival.now;
@@ -170,6 +175,7 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
     case Merge::kRefusedEncoding:
       return count_refused(Refusal::kEncoding);
     case Merge::kNewer:
+      flight->table.set_quality(theirs.author(), flight->sensors.of(entry->kind).quality);
       flight->news[theirs.author()] = flight->step.tick;
       return;
     case Merge::kStale:
@@ -230,7 +236,7 @@ void Agent::advance(Instant now, Outbox& out) {
 void Agent::ask_for_admission(Instant now, Outbox& out) {
   if (!may_ask() || now < hellos_.next) return;
   hellos_ = {now + kHelloPeriod, now, follower().newest_heard()};
-  const Hello hello{{}, me_.id(), status_.host, version_, hellos_.revision};
+  const Hello hello{{}, me_.id(), status_.host, version_, hellos_.revision, kind_};
   me_.publish(Bus::kSwarm, hello, 0, out);
 }
 

@@ -20,6 +20,7 @@
 #include "core/coverage_table.h"
 #include "core/forecast.h"
 #include "core/ids.h"
+#include "core/kinds.h"
 #include "core/separation.h"
 #include "team/author_map.h"
 #include "team/bodies.h"
@@ -36,6 +37,7 @@ struct AgentIdentity {
   Incarnation incarnation = 0;         ///< random, not 0
   std::string host;
   std::string version;
+  std::string kind{};  ///< the name of the kind that it brings; empty: the one planned
 };
 
 class Agent {
@@ -118,9 +120,11 @@ class Agent {
   };
   /// From its admission on. While the mission waits for its quorum, no tick comes.
   struct InMission {
-    InMission(const Mission& mission, const Author& self, Tick active_from);
+    InMission(const Mission& mission, const RosterEntry& self);
 
     Tick active_from;  // as the roster says
+    int kind;          // its own
+    Sensors sensors;
     CoverageTable table;
     Controller controller;
     std::optional<Forecast> forecast;  // if the law looks ahead
@@ -188,7 +192,7 @@ class Agent {
 
   Participant me_;
   AgentId requested_id_;
-  std::string version_;
+  std::string version_, kind_;
   Hellos hellos_;
   MissionRepeat mission_repeat_;
   RadioRange radio_;

@@ -91,7 +91,7 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
   if (step.tick < flight.active_from) return true;
-  flight.table.add_sample(me_.author(), *step.basis_at);
+  flight.table.add_sample(me_.author(), *step.basis_at, flight.sensors.of(flight.kind).footprint());
   if (step.tick >= flight.next_broadcast_tick) broadcast(flight, out);
   return true;
 }

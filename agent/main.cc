@@ -46,9 +46,9 @@ class EncodingLog {
   bool said_ = false;
 };
 
-int run(const NodeOptions& node, AgentId requested_id) {
+int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) {
   StopSignals signals;
-  Agent agent({node.run, requested_id, random_identity(), host_name(), version()});
+  Agent agent({node.run, requested_id, random_identity(), host_name(), version(), kind});
   auto opened =
       Transport::open(node.url, node.run, node.seal, subscriptions_of(Agent::kRole),
                       {.on_message =
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
       "One agent: joins the team on the URL, is given the mission over the wire, and steers.",
       "ergocast-agent");
   NodeOptions node;
-  std::string id = "auto";
+  std::string id = "auto", kind;
   add_node_options(app, node);
   app.add_option(
          "--id", id,
@@ -114,9 +114,13 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check((CLI::Range(0, kMaxAgents - 1) | CLI::IsMember({"auto"})).description(""))
       ->type_name("N");
+  app.add_option(
+         "--kind", kind,
+         "Be of this kind of the scenario's agents { kind }; without: as planned for the id")
+      ->type_name("NAME");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   const AgentId requested_id = id == "auto" ? kUnassigned : std::stoi(id, nullptr, 0);
   set_up_logging(requested_id == kUnassigned ? "agent" : "agent-" + std::to_string(requested_id),
                  node.log_level);
-  return run(node, requested_id);
+  return run(node, requested_id, kind);
 }

@@ -63,6 +63,10 @@ std::optional<std::string> Launcher::start() {
   for (int id = 0; id < setup_.agents; ++id) {
     plan(Role::kAgent, "agent-" + std::to_string(id), "ergocast-agent",
          {"--id", std::to_string(id)});
+    if (setup_.kinds.empty()) continue;
+    for (const std::string& word :
+         {std::string("--kind"), setup_.kinds[static_cast<std::size_t>(id)]})
+      processes_.back().program.command.push_back(word);
   }
   for (const Process& process : processes_) {
     const std::string& program = process.program.command.front();

@@ -33,6 +33,7 @@ class Launcher {
     RunId run = 0;
     std::filesystem::path key_file;  ///< the key file that can sign; empty: no key
     int agents = 0;
+    std::vector<std::string> kinds;  ///< that of each agent; of a team whose agents are alike none
     std::int64_t event_log_mib = kEventLogMib;
     bool event_log_zstd = false;
   };

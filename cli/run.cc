@@ -202,6 +202,8 @@ int run(const MissionOptions& options) {
   Launcher::Setup setup;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
   setup.agents = static_cast<int>(scenario->mission().starts_m.size());
+  for (const AgentKind& kind : scenario->mission().kinds)
+    setup.kinds.insert(setup.kinds.end(), static_cast<std::size_t>(kind.count), kind.name);
   setup.run = random_identity();
   if (!options.key_file.empty()) setup.key_file = fs::absolute(options.key_file);
   setup.event_log_mib = options.event_log_mib;

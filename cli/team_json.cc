@@ -18,6 +18,7 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
                                  {"state", to_string(row.condition)},
                                  {"silent_s", row.silent_s},
                                  {"restarts", row.restarts}};
+  if (!row.kind.empty()) json["kind"] = row.kind;
   if (!row.status) return json;
   const AgentStatus& status = *row.status;
   json["host"] = status.host;

@@ -219,7 +219,13 @@ std::string team_table(const TeamPicture& picture, bool colour) {
   for (const AgentRow& row : picture.agents) rows.push_back(cells_of(row));
   text += '\n';
   for (const ProcessRow& row : picture.processes) text += process_line(row, picture.over, colour);
-  if (!rows.empty()) text += '\n' + aligned(kColumns, rows, colour);
+  std::vector<Column> columns = kColumns;
+  if (std::ranges::any_of(picture.agents, [](const AgentRow& row) { return !row.kind.empty(); })) {
+    columns.insert(columns.begin() + 1, {"kind", false});
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      rows[i].insert(rows[i].begin() + 1, Cell{picture.agents[i].kind});
+  }
+  if (!rows.empty()) text += '\n' + aligned(columns, rows, colour);
   return text;
 }
 

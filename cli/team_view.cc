@@ -7,6 +7,8 @@
 #include <chrono>
 #include <utility>
 
+#include "core/kinds.h"
+
 namespace ergocast {
 namespace {
 
@@ -127,6 +129,9 @@ AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const 
   }
   if (!member && row.condition != Condition::kFinished) row.condition = Condition::kGone;
   const auto& roster = follower().roster();
+  const RosterEntry* const own = follower().entry_of(author.incarnation);
+  if (own != nullptr && follower().mission())
+    row.kind = name_of_kind(*follower().mission(), own->kind);
   row.restarts =
       static_cast<int>(std::count_if(roster.begin(), roster.end(), [&](const auto& entry) {
         return entry.author.agent == author.agent && entry.author != author;

@@ -34,6 +34,7 @@ struct AgentRow {
   double silent_s = 0;  ///< since its last status, or since the listening began
   int restarts = 0;     ///< former incarnations in the roster
   std::optional<AgentStatus> status;
+  std::string kind{};    ///< empty: its team has no kinds
   double blocked_s = 0;  ///< without a break, by a teammate's body or an edge, in mission time
 };
 

@@ -4,11 +4,12 @@
 #include <utility>
 
 #include "coordinator/coordinator.h"
+#include "core/kinds.h"
 
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kMaxVersionMismatches = 64;
+constexpr std::size_t kMaxVersionMismatches = 64, kMaxUnknownKinds = 64;
 
 }  // namespace
 
@@ -27,7 +28,8 @@ bool Coordinator::may_have_stopped(Instant since, Instant now) const {
   });
 }
 
-std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
+std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, const std::string& kind,
+                                            Instant now) {
   // A restarted process may succeed a member that still counts as alive, so it waits while a member
   // is may_have_stopped.
   if (newcomers_.asked.size() >= kMaxRosterEntries) {
@@ -37,9 +39,15 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, Instant now) {
   }
   const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
   if (may_have_stopped(since, now)) return std::nullopt;
+  const auto planned = static_cast<AgentId>(flown_.mission->starts_m.size());
+  // A place that is planned for another kind stays free for that.
+  const auto suits = [&](AgentId id) {
+    return kind.empty() || id >= planned ||
+           name_of_kind(*flown_.mission, planned_kind(*flown_.mission, id)) == kind;
+  };
   for (AgentId id = 0; id < kMaxAgents; ++id) {
     const RosterEntry* holder = active_entry(id);
-    if (holder == nullptr || !alive(*holder, now)) return id;
+    if ((holder == nullptr || !alive(*holder, now)) && suits(id)) return id;
   }
   return std::nullopt;
 }
@@ -72,6 +80,11 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
       version_mismatches.emplace(hello.host, hello.version);
     return;
   }
+  if (const auto why = why_not_of_kind(*flown_.mission, hello.kind)) {
+    auto& unknown_kinds = newcomers_.unknown_kinds;
+    if (unknown_kinds.size() < kMaxUnknownKinds) unknown_kinds.emplace(hello.host, *why);
+    return;
+  }
   const bool known = std::any_of(roster_.begin(), roster_.end(), [nonce](const RosterEntry& entry) {
     return entry.author.incarnation == nonce;
   });
@@ -81,7 +94,7 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
   // recording.
   if (hello.revision < revisions_.admits_from) return repeat_mission_soon();
   std::optional<AgentId> id = hello.requested_id;
-  if (*id == kUnassigned) id = free_id(nonce, now);
+  if (*id == kUnassigned) id = free_id(nonce, hello.kind, now);
   if (!id) return;  // no number is free yet, or the team is full
   if (const RosterEntry* holder = active_entry(*id)) {
     if (alive(*holder, now)) return;  // the holder of the number keeps it
@@ -89,10 +102,11 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
     // members fall silent often, and no other agent's HELLO would ever be new enough.
     if (hello.revision < members_[holder->author].silence_revision) return repeat_mission_soon();
   }
-  admit({*id, nonce}, now);
+  const auto brought = kind_named(*flown_.mission, hello.kind);
+  admit({*id, nonce}, brought.value_or(planned_kind(*flown_.mission, *id)), now);
 }
 
-void Coordinator::admit(const Author& author, Instant now) {
+void Coordinator::admit(const Author& author, int kind, Instant now) {
   const auto lives = std::count_if(roster_.begin(), roster_.end(), [&](const RosterEntry& entry) {
     return entry.author.agent == author.agent;
   });
@@ -102,6 +116,7 @@ void Coordinator::admit(const Author& author, Instant now) {
   if (RosterEntry* former = active_entry(author.agent)) former->active_until = newest;
   const Tick from = state_ == MissionState::kRunning ? newest : 0;
   roster_.push_back({author, from, -1});
+  roster_.back().kind = kind;
   std::sort(roster_.begin(), roster_.end(),
             [](const RosterEntry& a, const RosterEntry& b) { return a.author < b.author; });
   members_[author];

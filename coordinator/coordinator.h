@@ -76,6 +76,11 @@ class Coordinator {
   const std::set<std::pair<std::string, std::string>>& version_mismatches() const {
     return newcomers_.version_mismatches;
   }
+  /// Hosts of agents that were refused because the mission does not have their kind, and the
+  /// sentence that says so.
+  const std::set<std::pair<std::string, std::string>>& unknown_kinds() const {
+    return newcomers_.unknown_kinds;
+  }
   Tick tick() const { return world_.tick; }
 
  private:
@@ -107,7 +112,7 @@ class Coordinator {
   struct Newcomers {
     std::map<Incarnation, Instant> asked;  // without a number: time of the first request
     std::map<Incarnation, Instant> heard;  // last HELLO of each process that is no member
-    std::set<std::pair<std::string, std::string>> version_mismatches;
+    std::set<std::pair<std::string, std::string>> version_mismatches, unknown_kinds;
   };
   /// The newest information about the world.
   struct WorldSeen {
@@ -146,11 +151,11 @@ class Coordinator {
   void on(const Stop& stop, const Arrival& arrival);
   const Timing& timing() const { return flown_.mission->timing; }
   Instant last_sign(const Author& author) const;
-  void admit(const Author& author, Instant now);
+  void admit(const Author& author, int kind, Instant now);
   void note_stranger(Incarnation incarnation, Instant now);
   bool everybody_left(Instant now) const;
   bool may_have_stopped(Instant since, Instant now) const;
-  std::optional<AgentId> free_id(Incarnation newcomer, Instant now);
+  std::optional<AgentId> free_id(Incarnation newcomer, const std::string& kind, Instant now);
   RosterEntry* active_entry(AgentId id);
   bool alive(const RosterEntry& entry, Instant now) const;
   int alive_count(Instant now) const;

@@ -66,6 +66,22 @@ class VersionMismatchLog {
   std::set<std::pair<std::string, std::string>> seen_;
 };
 
+/// The same for kinds that the mission does not have.
+class UnknownKindLog {
+ public:
+  void look(const Coordinator& coordinator) {
+    if (coordinator.unknown_kinds().size() == seen_.size()) return;
+    for (const auto& unknown : coordinator.unknown_kinds()) {
+      if (!seen_.insert(unknown).second) continue;
+      const auto& [host, why] = unknown;
+      spdlog::warn("an agent on {} is not admitted: {}", host, why);
+    }
+  }
+
+ private:
+  std::set<std::pair<std::string, std::string>> seen_;
+};
+
 class MissionLog {
  public:
   void look(const Coordinator& coordinator) {
@@ -108,6 +124,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
 
   RosterLog roster;
   VersionMismatchLog version_mismatches;
+  UnknownKindLog unknown_kinds;
   MissionLog mission;
   const auto stop = [&] { coordinator.end(false, "the coordinator was told to stop", now()); };
   live(coordinator, transport, signals, stop, [&] {
@@ -118,6 +135,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
     watch.look(now());
     roster.look(coordinator, now());
     version_mismatches.look(coordinator);
+    unknown_kinds.look(coordinator);
     mission.look(coordinator);
   });
   return coordinator.state() == MissionState::kFailed ? kExitFailed : kExitDone;

@@ -126,6 +126,13 @@ void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, doub
   for_each_sum(at, basis, dt_s, sums, [](double& sum, double value) { sum += value; });
 }
 
+ERGOCAST_VECTORIZED
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, const double* share,
+                      double* sums) {
+  for_each_sum(at, basis, dt_s, sums,
+               [=](double& sum, double value) { sum += value * share[&sum - sums]; });
+}
+
 // ---- the field: sums over the modes of a plane, which space uses three times --------------------
 
 namespace {

@@ -87,6 +87,10 @@ void set_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sum
 /// sums(l,m,n) += f_lmn · dt_s, for the running sums of (4). `sums` points to mode_count() doubles.
 void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, double* sums);
 
+/// sums(l,m,n) += share(l,m,n) · (f_lmn · dt_s). Both point to mode_count() doubles.
+void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, const double* share,
+                      double* sums);
+
 /// Σ weights(l,m,n) ∇f_lmn: (6) when weights are λ_k (c_k − μ_k) [unit of weights per metre].
 /// `weights` points to mode_count() doubles. The order of the sum is the same on every processor.
 /// In a plane the part along z is 0.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/kinds.h"
 #include "core/noise.h"
 #include "core/perturbation.h"
 #include "core/require.h"
@@ -23,18 +24,19 @@ Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double ep
   return spectral_gradient / length * -u_max_mps;
 }
 
-Controller::Controller(const Mission& mission)
+Controller::Controller(const Mission& mission, int kind)
     : domain_(mission.domain),
       basis_(mission.basis),
-      law_(mission.law),
+      law_(law_of(mission, kind)),
       seed_(mission.seed),
-      scale_(mission.law, mission.timing.dt_s),
-      push_ticks_(push_ticks(mission.law, mission.timing.dt_s)),
+      scale_(law_, mission.timing.dt_s),
+      push_ticks_(push_ticks(law_, mission.timing.dt_s)),
       target_(mission.target_coefficients),
-      weights_(sobolev_weights(mission.basis, mission.domain)),
+      weights_(steering_weights(mission, kind)),
       energies_(gradient_energies(mission.basis, mission.domain)),
       residual_(Coefficients::Zero(mission.basis.mode_count())) {
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
+  if (!mission.kinds.empty()) metric_weights_ = sobolev_weights(mission.basis, mission.domain);
 }
 
 void Controller::set_coverage(const Coefficients& coverage) {
@@ -100,7 +102,7 @@ Eigen::Vector3d Controller::push(AgentId agent, Tick stretch) {
 }
 
 double Controller::metric(const Coefficients& coverage) const {
-  return ergodic_metric(coverage, target_, weights_);
+  return ergodic_metric(coverage, target_, metric_weights_.size() > 0 ? metric_weights_ : weights_);
 }
 
 }  // namespace ergocast

@@ -21,7 +21,8 @@ Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double ep
 /// K-vector of scratch space; no step allocates.
 class Controller {
  public:
-  explicit Controller(const Mission& mission);
+  /// @param kind  of the agents that it steers, core/kinds.h
+  explicit Controller(const Mission& mission, int kind = 0);
 
   /// Takes in the known or forecast c_k of the team, mode_count() entries. All later commands use
   /// it.
@@ -38,7 +39,7 @@ class Controller {
   /// The ε that belongs to the last coverage seen.
   double epsilon() const { return epsilon_; }
 
-  /// φ² of `coverage` against the mission's target.
+  /// φ² of `coverage` against the mission's target, over all modes.
   double metric(const Coefficients& coverage) const;
 
  private:
@@ -50,7 +51,8 @@ class Controller {
   };
 
   Eigen::Vector3d push(AgentId agent, Tick stretch);
-  /// Sets the residual λ (c − μ); returns the RMS over the domain of ‖Σ λ (c − μ) ∇f‖ [1/m].
+  /// Sets the residual λ g (c − μ) in the kind's band; returns the RMS over the domain of ‖Σ λ g (c
+  /// − μ) ∇f‖ [1/m].
   double set_residual(const Coefficients& coverage);
 
   Box domain_;
@@ -60,6 +62,7 @@ class Controller {
   PerturbationScale scale_;
   Tick push_ticks_;
   Coefficients target_, weights_, energies_, residual_;
+  Coefficients metric_weights_;  // if the weights that it steers by are not those of φ²
   Eigen::Vector3d spectral_gradient_{0, 0, 0};
   double epsilon_ = 0;
   std::array<Push, kMaxAgents> pushes_;  // the last of each agent: one is held for many ticks

@@ -46,6 +46,20 @@ void average_rows(std::span<const double* const> rows, int modes, double per_sec
   }
 }
 
+/// out = Σ q rows · per_second.
+ERGOCAST_VECTORIZED
+void average_weighted(std::span<const double* const> rows, const double* qualities, int modes,
+                      double per_second, double* out) {
+  for (int first = 0; first < modes; first += kModesPerStride) {
+    std::array<double, kModesPerStride> team{};
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      for (int k = 0; k < kModesPerStride; ++k) team[k] += qualities[row] * rows[row][first + k];
+    }
+    const int count = std::min(kModesPerStride, modes - first);
+    for (int k = 0; k < count; ++k) out[first + k] = team[k] * per_second;
+  }
+}
+
 /// What has travelled in 16 bits may have been rounded up, but not beyond 1.
 bool gains_in_range(const Contribution& c, double dt_s) {
   const double gained_s = static_cast<double>(c.gained_steps) * dt_s;
@@ -97,14 +111,22 @@ CoverageTable::Row* CoverageTable::find_or_add(const Author& author) {
   if (author.agent < 0 || author.agent >= kMaxAgents) return nullptr;
   const auto blocks = static_cast<std::size_t>(block_count_);
   counted_.resize(rows_.size() + 1);
-  return &*rows_.insert(at, Row{author, true, 0, kNeverSaid, std::vector<Block>(blocks), {}});
+  qualities_.resize(rows_.size() + 1);
+  return &*rows_.insert(at, Row{author, true, 0, kNeverSaid, std::vector<Block>(blocks), {}, 1});
 }
 
 void CoverageTable::add_row(const Author& author) {
   ERGOCAST_REQUIRE(find_or_add(author) != nullptr);
 }
 
-void CoverageTable::add_sample(const Author& author, const BasisAt& at) {
+void CoverageTable::set_quality(const Author& author, double quality) {
+  Row* const row = find(author);
+  if (row == nullptr) return;
+  row->quality = quality;
+  weighted_ = weighted_ || quality != 1;
+}
+
+void CoverageTable::add_sample(const Author& author, const BasisAt& at, const double* footprint) {
   Row* row = find_or_add(author);
   ERGOCAST_REQUIRE(row != nullptr);
   if (row->samples.empty()) {
@@ -115,7 +137,11 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at) {
       row->blocks[b].gained_steps = 0;
     }
   }
-  accumulate_basis(at, basis_, dt_s_, row->samples.data());
+  if (footprint == nullptr) {
+    accumulate_basis(at, basis_, dt_s_, row->samples.data());
+  } else {
+    accumulate_basis(at, basis_, dt_s_, footprint, row->samples.data());
+  }
   for (Block& block : row->blocks) ++block.steps;
   row->sum_up();
 }
@@ -246,17 +272,22 @@ void CoverageTable::remember_all() {
 void CoverageTable::average(Coefficients& coverage) const {
   for (int b = 0; b < block_count_; ++b) {
     const auto number = static_cast<std::size_t>(b);
-    std::int64_t steps = 0;
+    double steps = 0;  // each with its quality
     std::size_t count = 0;
     for (const Row& row : rows_) {
       if (!row.counts) continue;
-      steps += row.blocks[number].steps;
+      steps += row.quality * static_cast<double>(row.blocks[number].steps);
+      qualities_[count] = row.quality;
       counted_[count++] = row.sums(number, block_size_);
     }
-    const double per_second = steps > 0 ? 1 / (static_cast<double>(steps) * dt_s_) : 0;
-    const int first = b * block_size_;
-    average_rows({counted_.data(), count}, std::min(block_size_, basis_.mode_count() - first),
-                 per_second, coverage.data() + first);
+    const double per_second = steps > 0 ? 1 / (steps * dt_s_) : 0;
+    const int first = b * block_size_, modes = std::min(block_size_, basis_.mode_count() - first);
+    const std::span<const double* const> rows(counted_.data(), count);
+    if (weighted_) {
+      average_weighted(rows, qualities_.data(), modes, per_second, coverage.data() + first);
+    } else {
+      average_rows(rows, modes, per_second, coverage.data() + first);
+    }
   }
 }
 
@@ -320,11 +351,11 @@ const double* CoverageTable::sums_of(const Author& author) const {
 }
 
 double CoverageTable::covered_s() const {
-  std::int64_t steps = 0;
+  double steps = 0;
   for (const Row& row : rows_) {
-    if (row.counts) steps += row.blocks.front().steps;
+    if (row.counts) steps += row.quality * static_cast<double>(row.blocks.front().steps);
   }
-  return static_cast<double>(steps) * dt_s_;
+  return steps * dt_s_;
 }
 
 bool CoverageTable::holds_due(const Author& author, Tick tick) const {

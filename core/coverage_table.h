@@ -43,7 +43,11 @@ class CoverageTable {
   void add_row(const Author& author);
 
   /// S += f(x)·dt for the row of `author`, (4)'s integral; creates the row if it is new.
-  void add_sample(const Author& author, const BasisAt& at);
+  /// @param footprint  null, or g of core/kinds.h: S += g f(x)·dt
+  void add_sample(const Author& author, const BasisAt& at, const double* footprint = nullptr);
+
+  /// From now on the row of `author`, if there is one, counts with this quality; at first with 1.
+  void set_quality(const Author& author, double quality);
 
   /// Takes in one block. Refused, without effect: another encoding, another number of modes, a
   /// block that does not exist, an elapsed time that is not steps·dt, an S_00 that is not the
@@ -60,7 +64,8 @@ class CoverageTable {
   /// From now on every row counts, with all blocks that arrived meanwhile.
   void remember_all();
 
-  /// c_k = Σ_j S_j / Σ_j elapsed_j per block, (4) weighted by the time each row covers.
+  /// c_k = Σ_j q_j S_j / Σ_j q_j elapsed_j per block, (4) weighted by quality and by the time that
+  /// each row covers.
   /// Entries of blocks without any samples are 0. Does not allocate.
   void average(Coefficients& coverage) const;
 
@@ -82,6 +87,7 @@ class CoverageTable {
   RowSummary holding(std::size_t i) const;
   const Author& author(std::size_t i) const { return rows_[i].author; }
   bool counts(std::size_t i) const { return rows_[i].counts; }
+  double quality(std::size_t i) const { return rows_[i].quality; }
   std::int64_t min_steps(std::size_t i) const { return rows_[i].fewest_steps; }
   /// The row of `author`; all 0 if it is unknown.
   RowSummary holding(const Author& author) const;
@@ -111,7 +117,8 @@ class CoverageTable {
   /// @pre `author` has samples
   const double* sums_of(const Author& author) const;
 
-  /// Time covered by all rows that count, by their first block: the denominator of c_k [s].
+  /// Time covered by all rows that count, by their first block, each with its quality: the
+  /// denominator of c_k [s].
   double covered_s() const;
 
   /// Whether every block that `author` was due to send by `tick` is held.
@@ -139,6 +146,7 @@ class CoverageTable {
     Tick due_tick = kNeverSaid;     // of the block that is due first
     std::vector<Block> blocks;
     std::vector<double> samples;  // instead of the blocks' sums, once there are samples
+    double quality = 1;
     const double* sums(std::size_t block, int block_size) const;
     /// After a block has changed.
     void sum_up();
@@ -161,8 +169,10 @@ class CoverageTable {
   int block_size_ = kBlockSize;
   int block_count_;
   bool notes_gains_ = true;
+  bool weighted_ = false;                       // whether any row has a quality other than 1
   std::vector<Row> rows_;                       // ascending by author
   mutable std::vector<const double*> counted_;  // of each row that counts, the sums of a block
+  mutable std::vector<double> qualities_;       // and its quality
 };
 
 }  // namespace ergocast

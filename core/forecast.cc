@@ -44,6 +44,33 @@ void add_gain(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes,
   for_gains(at, basis, dt_s, modes, [=](int k, double gain) { sums[k] += gain; });
 }
 
+/// gains = g f dt; g may be null, for 1.
+ERGOCAST_VECTORIZED
+void set_gains(const CosinesAt& at, const Basis& basis, double dt_s, const double* g, Modes modes,
+               double* gains) {
+  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { gains[k] = gain; });
+  if (g == nullptr) return;
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) gains[k] *= g[k];
+}
+
+/// S += g f dt.
+ERGOCAST_VECTORIZED
+void add_seen_gain(const CosinesAt& at, const Basis& basis, double dt_s, const double* g,
+                   Modes modes, double* sums) {
+  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { sums[k] += gain * g[k]; });
+}
+
+/// sum = before + q (S + share · gains).
+ERGOCAST_VECTORIZED
+void add_weighted(const double* sums, const double* gains, double share, double quality,
+                  Modes modes, const double* before, double* sum) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    sum[k] = before[k] + quality * (sums[k] + share * gains[k]);
+  }
+}
+
 /// sum = before + S.
 ERGOCAST_VECTORIZED
 void add_sums(const double* sums, Modes modes, const double* before, double* sum) {
@@ -99,6 +126,16 @@ void average(const double* earlier, const double* later, const double* own, doub
   }
 }
 
+/// coverage = (earlier + (later + q own)) · per_second.
+ERGOCAST_VECTORIZED
+void average_weighted(const double* earlier, const double* later, const double* own, double quality,
+                      double per_second, Modes modes, double* coverage) {
+  ERGOCAST_INDEPENDENT
+  for (int k = modes.first; k < modes.first + modes.count; ++k) {
+    coverage[k] = (earlier[k] + (later[k] + quality * own[k])) * per_second;
+  }
+}
+
 /// Whether `entry` is active at `tick` and no newer entry has its number; the roster ascends by
 /// number.
 bool is_newest(const std::vector<RosterEntry>& roster, std::size_t entry, Tick tick) {
@@ -127,8 +164,11 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       block_size_(block_size_of(mission.timing.contribution_encoding)),
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
+      sensors_(mission),
+      alike_(sensors_.alike()),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
       nothing_(static_cast<std::size_t>(basis_.mode_count())),
+      gains_(nothing_),
       earlier_(nothing_),
       later_(nothing_) {}
 
@@ -162,6 +202,7 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
   if (!goes_on) {
     track.author = entry.author;
     track.active_from = entry.active_from;
+    track.kind = entry.kind;
     track.said_steps.assign(blocks, -1);
     track.steps.assign(blocks, 0);
     track.until.assign(blocks, 0);
@@ -213,8 +254,13 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
 void Forecast::add_what_is_due(Track& track) const {
   for (std::size_t b = 0; b < track.due.size(); ++b) {
     if (!track.due[b]) continue;
-    add_gain(*track.newest, basis_, dt_s_, modes_of(static_cast<int>(b)), track.sums.data());
     track.due[b] = 0;
+    const Modes modes = modes_of(static_cast<int>(b));
+    if (const double* const g = footprint(track)) {
+      add_seen_gain(*track.newest, basis_, dt_s_, g, modes, track.sums.data());
+    } else {
+      add_gain(*track.newest, basis_, dt_s_, modes, track.sums.data());
+    }
   }
 }
 
@@ -253,7 +299,8 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
-  Term term{nullptr, nullptr, nullptr, nullptr, said.steps, 0, said.tick, said.period, 0};
+  Term term{nullptr, nullptr,   nullptr,     nullptr, said.steps,
+            0,       said.tick, said.period, 0,       table.quality(row)};
   if (!flies_[row] || said.steps == 0) return term;
   Track* track = reckoned_[row];
   if (track == nullptr || track->newest_tick < said.tick) {
@@ -295,32 +342,58 @@ void Forecast::point_terms(const CoverageTable& table, int block) {
 double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   terms_.clear();
   before_own_ = 0;
-  std::int64_t steps = 0;
+  own_quality_ = 1;
+  double steps = 0;  // each with its quality
   int n = 1;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (!table.counts(row)) continue;
     const Term term = term_of(table, row, block);
-    steps += term.steps;
+    steps += term.quality * static_cast<double>(term.steps);
     n += term.gained_steps > 0;
-    if (table.author(row) == self_) continue;
+    if (table.author(row) == self_) {
+      own_quality_ = term.quality;
+      continue;
+    }
     before_own_ += table.author(row) < self_;
     terms_.push_back(term);
   }
   const double horizon_s = look_ahead_.horizon_s(n, tick);
-  double covered_s = static_cast<double>(steps) * dt_s_;
+  double covered_s = steps * dt_s_;
   for (Term& term : terms_) {
     if (term.gained_steps == 0) continue;
     const Tick age = std::max<Tick>(0, tick - term.tick);
     const double weight_s = look_ahead_.weight_s(horizon_s, term.gained_steps, age, term.period);
-    covered_s += weight_s;
+    covered_s += term.quality * weight_s;
     term.share = weight_s / (static_cast<double>(term.gained_steps) * dt_s_);
   }
   return steps > 0 ? 1 / covered_s : 0;
 }
 
+/// The same of a row whose quality or footprint is not that of others.
+void Forecast::add_unlike(const Term& term, Modes modes, const double* before, double* sum) {
+  Track* const track = term.track;
+  const auto block = static_cast<std::size_t>(modes.first / block_size_);
+  const double* gains = gains_.data();
+  if (track != nullptr) {
+    set_gains(*track->newest, basis_, dt_s_, footprint(*track), modes, gains_.data());
+    if (track->due[block]) add_sums(gains, modes, track->sums.data(), track->sums.data());
+    track->due[block] = 0;
+  } else if (term.told_gains != nullptr) {
+    gains = term.told_gains;
+  } else if (term.sums_before != nullptr) {
+    for (int k = modes.first; k < modes.first + modes.count; ++k)
+      gains_[static_cast<std::size_t>(k)] = term.sums[k] - term.sums_before[k];
+  } else {
+    gains = nothing_.data();
+  }
+  add_weighted(term.sums, gains, term.share, term.quality, modes, before, sum);
+}
+
 /// Adds what a row will have covered to `before`.
-void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) const {
+void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) {
   Track* track = term.track;
+  if (!alike_ && (term.quality != 1 || (track != nullptr && footprint(*track) != nullptr)))
+    return add_unlike(term, modes, before, sum);
   const auto block = modes.first / block_size_;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
     add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before, sum);
@@ -349,7 +422,8 @@ void Forecast::add_up(Modes modes, double per_second, double* coverage) {
     add(*term, modes, later, later_.data());
     later = later_.data();
   }
-  average(earlier, later, own_sums_, per_second, modes, coverage);
+  if (own_quality_ == 1) return average(earlier, later, own_sums_, per_second, modes, coverage);
+  average_weighted(earlier, later, own_sums_, own_quality_, per_second, modes, coverage);
 }
 
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,

@@ -13,6 +13,9 @@
 // r_j is f at the newest place. The row then equals one that was said there. The table is not
 // changed, the forecast is never sent, and the next block replaces these additions.
 //
+// Where kinds differ (core/kinds.h), each row's part has its quality q_j in both sums, and f at a
+// place of teammate j is g_j f.
+//
 // ĉ is a function of the table, the roster and the known places, and does not depend on the order
 // of their arrival: in lockstep all agents that hear the same compute the same forecast.
 #pragma once
@@ -25,6 +28,7 @@
 #include "core/basis.h"
 #include "core/coverage_table.h"
 #include "core/ids.h"
+#include "core/kinds.h"
 #include "core/look_ahead.h"
 #include "core/mission.h"
 #include "core/roster.h"
@@ -64,7 +68,8 @@ class Forecast {
   struct Track {
     std::vector<Place> places;             // ascending by tick; the last most_places_ count
     Author author;                         // of the row that is extended
-    Tick active_from = 0;                  // of that author, as the roster said
+    Tick active_from = 0;                  // of that author, as the roster said, …
+    int kind = 0;                          // … and its kind
     std::uint64_t look = 0;                // of looks_, when it was last extended
     std::vector<std::int64_t> said_steps;  // per block, of the block that was taken from the row
     std::vector<std::int64_t> steps;       // with the places added since
@@ -82,6 +87,7 @@ class Forecast {
     std::int64_t steps, gained_steps;  // 0: no forecast
     Tick tick, period;
     double share;  // of the gains
+    double quality;
   };
 
   Track* reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
@@ -94,8 +100,12 @@ class Forecast {
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
   void point_terms(const CoverageTable& table, int block);
   void add_up(Modes modes, double per_second, double* coverage);
-  void add(const Term& term, Modes modes, const double* before, double* sum) const;
+  void add(const Term& term, Modes modes, const double* before, double* sum);
+  void add_unlike(const Term& term, Modes modes, const double* before, double* sum);
   Modes modes_of(int block) const;
+  const double* footprint(const Track& track) const {
+    return alike_ ? nullptr : sensors_.of(track.kind).footprint();
+  }
 
   Author self_;
   Box domain_;
@@ -104,6 +114,8 @@ class Forecast {
   int block_size_;
   LookAhead look_ahead_;
   bool reckons_;
+  Sensors sensors_;
+  bool alike_;  // all of them, as most often they are
   std::size_t most_places_;
   std::map<AgentId, Track> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()
@@ -112,7 +124,9 @@ class Forecast {
   std::vector<Term> terms_;        // of the other rows that count, ascending by author
   std::ptrdiff_t before_own_ = 0;  // so many of them come before the own row
   const double* own_sums_ = nullptr;
+  double own_quality_ = 1;
   std::vector<double> nothing_;  // zeros
+  std::vector<double> gains_;    // of a row whose sensor is unlike others
   // What the rows before the own one and those after it will have covered.
   std::vector<double> earlier_, later_;
 };

@@ -19,11 +19,17 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
       look_ahead_(mission_),
       coverage_(Coefficients::Zero(mission_.basis.mode_count())),
       earlier_(static_cast<std::size_t>(mission_.basis.mode_count())),
-      controller_(mission_) {
+      sensors_(mission_) {
+  controllers_.emplace_back(mission_);
+  for (std::size_t kind = 1; kind < mission_.kinds.size(); ++kind)
+    controllers_.emplace_back(mission_, static_cast<int>(kind));
   for (const Eigen::Vector3d& start_m : mission_.starts_m) {
     const Author author{static_cast<AgentId>(agents_.size()), 1};
+    const int kind = planned_kind(mission_, author.agent);
     table_.add_row(author);
+    table_.set_quality(author, sensors_.of(kind).quality);
     agents_.push_back({author,
+                       kind,
                        start_m,
                        first_velocity(mission_, start_m),
                        {0, 0, 0},
@@ -52,15 +58,19 @@ void IdealTeam::step() {
     look_ahead();
   } else {
     table_.average(coverage_);
-    controller_.set_coverage(coverage_);
+    for (Controller& controller : controllers_) controller.set_coverage(coverage_);
   }
   see_bodies();
   for (Agent& agent : agents_) {
-    if (look_ahead_.any()) foresee(agent);
+    Controller& controller = controllers_[static_cast<std::size_t>(agent.kind)];
+    if (look_ahead_.any()) {
+      foresee(agent);
+      controller.set_coverage(coverage_);
+    }
     const Eigen::Vector3d wanted_mps =
-        controller_.command(agent.author.agent, tick_, agent.x_m, *agent.at);
+        controller.command(agent.author.agent, tick_, agent.x_m, *agent.at);
     agent.next_mps = executed(mission_, agent.v_mps, kept_apart(agent, wanted_mps));
-    agent.b = controller_.spectral_gradient();
+    agent.b = controller.spectral_gradient();
   }
   for (Agent& agent : agents_) {
     const Eigen::Vector3d mean_mps = mean_velocity(mission_, agent.v_mps, agent.next_mps);
@@ -93,10 +103,13 @@ Eigen::Vector3d IdealTeam::kept_apart(Agent& agent, const Eigen::Vector3d& v_mps
 void IdealTeam::sample() {
   for (Agent& agent : agents_) {
     agent.at.emplace(agent.x_m, mission_.domain, mission_.basis);
-    table_.add_sample(agent.author, *agent.at);
+    const double* const footprint = sensors_.of(agent.kind).footprint();
+    table_.add_sample(agent.author, *agent.at, footprint);
     if (!look_ahead_.any()) continue;
     if (mission_.dead_reckoning) {
       set_basis(*agent.at, mission_.basis, mission_.timing.dt_s, agent.gain.data());
+      for (std::size_t k = 0; footprint != nullptr && k < agent.gain.size(); ++k)
+        agent.gain[k] *= footprint[k];
       continue;
     }
     const double* sums = table_.sums_of(agent.author);
@@ -111,22 +124,31 @@ void IdealTeam::sample() {
 /// this tick: all agents' sums by as many additions as one agent's take.
 ERGOCAST_VECTORIZED
 void IdealTeam::look_ahead() {
-  const double dt_s = mission_.timing.dt_s;
   const auto n = static_cast<int>(agents_.size());
-  const double weight_s = look_ahead_.weight_s(look_ahead_.horizon_s(n, tick_), 1, 0, 1);
-  double covered_s = static_cast<double>((tick_ + 1) * n) * dt_s;
-  for (int others = n - 1; others > 0; --others) covered_s += weight_s;
-  per_second_ = 1 / covered_s;
-  share_ = weight_s / dt_s;
+  weight_s_ = look_ahead_.weight_s(look_ahead_.horizon_s(n, tick_), 1, 0, 1);
+  share_ = weight_s_ / mission_.timing.dt_s;
+  weigh(agents_.front());
   std::fill(earlier_.begin(), earlier_.end(), 0);
   for (std::size_t i = agents_.size() - 1; i > 0; --i) {
     const double* sums = table_.sums_of(agents_[i].author);
     const double* gain = agents_[i].gain.data();
     const double* later = agents_[i].later.data();  // 0 of the last
     double* all = agents_[i - 1].later.data();
+    const double q = quality(agents_[i]);
     for (std::size_t k = 0; k < earlier_.size(); ++k)
-      all[k] = later[k] + (sums[k] + share_ * gain[k]);
+      all[k] = later[k] + q * (sums[k] + share_ * gain[k]);
   }
+}
+
+/// Sets what the sums of all in the forecast of `agent` are to be multiplied by.
+void IdealTeam::weigh(const Agent& agent) {
+  double steps = 0;
+  for (const Agent& each : agents_) steps += quality(each) * static_cast<double>(tick_ + 1);
+  double covered_s = steps * mission_.timing.dt_s;
+  for (const Agent& other : agents_) {
+    if (other.author != agent.author) covered_s += quality(other) * weight_s_;
+  }
+  per_second_ = 1 / covered_s;
 }
 
 /// Shows ĉ to the next agent in the order of the team.
@@ -137,11 +159,12 @@ void IdealTeam::foresee(const Agent& agent) {
   const double* later = agent.later.data();
   double* earlier = earlier_.data();
   double* foreseen = coverage_.data();
+  const double q = quality(agent);
+  if (!sensors_.alike()) weigh(agent);
   for (std::size_t k = 0; k < earlier_.size(); ++k) {
-    foreseen[k] = (earlier[k] + (later[k] + own[k])) * per_second_;
-    earlier[k] += own[k] + share_ * gain[k];
+    foreseen[k] = (earlier[k] + (later[k] + q * own[k])) * per_second_;
+    earlier[k] += q * (own[k] + share_ * gain[k]);
   }
-  controller_.set_coverage(coverage_);
 }
 
 Coefficients IdealTeam::coverage() const {

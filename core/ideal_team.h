@@ -12,6 +12,7 @@
 
 #include "core/control.h"
 #include "core/coverage_table.h"
+#include "core/kinds.h"
 #include "core/look_ahead.h"
 #include "core/mission.h"
 #include "core/separation.h"
@@ -52,7 +53,7 @@ class IdealTeam {
   const Eigen::Vector3d& b(std::size_t agent) const { return agents_[agent].b; }
   /// c_k of the last step, and its φ².
   Coefficients coverage() const;
-  double metric() const { return controller_.metric(coverage()); }
+  double metric() const { return controllers_.front().metric(coverage()); }
   /// Steps of single agents that a teammate or an edge has blocked, and the longest row of one
   /// agent.
   std::int64_t blocked_steps() const { return blocked_steps_; }
@@ -61,6 +62,7 @@ class IdealTeam {
  private:
   struct Agent {
     Author author;
+    int kind = 0;
     Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
     std::optional<BasisAt> at;       // x_m
     std::vector<double> said;        // its sums a tick ago
@@ -72,6 +74,8 @@ class IdealTeam {
   void sample();
   void look_ahead();
   void foresee(const Agent& agent);
+  void weigh(const Agent& agent);
+  double quality(const Agent& agent) const { return sensors_.of(agent.kind).quality; }
   void see_bodies();
   Eigen::Vector3d kept_apart(Agent& agent, const Eigen::Vector3d& v_mps);
 
@@ -80,10 +84,11 @@ class IdealTeam {
   Tick tick_ = 0;
   CoverageTable table_;
   LookAhead look_ahead_;
-  Coefficients coverage_;              // known or foreseen
-  std::vector<double> earlier_;        // what all earlier agents will have covered
-  double share_ = 0, per_second_ = 0;  // of gains, and of all
-  Controller controller_;
+  Coefficients coverage_;                             // known or foreseen
+  std::vector<double> earlier_;                       // what all earlier agents will have covered
+  double weight_s_ = 0, share_ = 0, per_second_ = 0;  // of gains, of gains, and of all
+  Sensors sensors_;
+  std::vector<Controller> controllers_;  // by kind
   std::vector<Agent> agents_;
   std::optional<SeparationFilter> separation_;
   std::vector<Neighbour> bodies_;

@@ -84,6 +84,17 @@ struct VehicleLimits {
   double min_speed_mps = 0;          ///< of kFixedWing, else 0
 };
 
+/// Agents that move and see alike; core/kinds.h.
+struct AgentKind {
+  std::string name;
+  int count = 1;  ///< so many agents, with the numbers after those of the kinds before
+  double u_max_mps = 1;
+  double noise_intensity = 0, noise_ceiling = 0;  ///< as in ControlLaw [m/√s]
+  double footprint_sigma_m = 0;                   ///< w; 0: its sensor sees a point
+  double quality = 1;                             ///< q
+  double band_from = 0, band_to = 0;  ///< of |k|, by which it steers; to 0: without an end
+};
+
 struct Mission {
   std::string name;
   std::uint64_t seed = 0;
@@ -93,7 +104,8 @@ struct Mission {
   ControlLaw law;
   Timing timing;
   std::vector<Eigen::Vector3d> starts_m;  ///< where agent i begins; one per planned agent
-  int quorum = 1;                         ///< agents that must be admitted before the start
+  std::vector<AgentKind> kinds;  ///< empty: all are alike; else their counts are all planned agents
+  int quorum = 1;                ///< agents that must be admitted before the start
   double forget_silent_after_s = 0;  ///< wall time; 0: a silent agent's coverage counts for ever
   double goal_ergodic_metric = 0;    ///< the goal for φ²; 0: none
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]

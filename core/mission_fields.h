@@ -39,6 +39,8 @@ struct FieldVisitor {
   void duration(int, auto&) {}     ///< Timing::tick_count, which follows from a duration
   void target(int, auto&) {}       ///< μ: agents receive it, so only one processor rounds it
   void starts(int, int, auto&) {}  ///< x and y of each; z
+  void kinds(int, const char*, auto&) {}  ///< each as a part of its own
+  void kind_name(int, const char*, auto&) {}
   void hidden_flag(int, auto&) {}  ///< in no scenario
 };
 
@@ -114,6 +116,19 @@ void list_fields(auto& io, MaybeConst<Separation> auto& separation) {
   if (separation.distance_m != 0) io.flag(5, "guard", separation.guard);
 }
 
+void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
+  io.kind_name(1, "name", kind.name);
+  io.number(2, "count", kind.count, limits::kTeam);
+  io.number(3, "u_max_mps", kind.u_max_mps, limits::above(0, 1e6));
+  io.number(4, "noise_intensity", kind.noise_intensity, limits::kIntensity);
+  io.number(5, "noise_ceiling", kind.noise_ceiling, limits::kIntensity);
+  io.number(6, "footprint_sigma_m", kind.footprint_sigma_m, limits::between(0, 1e7));
+  io.number(7, "quality", kind.quality, limits::above(0, 1e6));
+  const bool banded = kind.band_from != 0 || kind.band_to != 0;
+  io.number(8, "band.from", kind.band_from, limits::kWaveNumber, banded);
+  io.number(9, "band.to", kind.band_to, limits::kWaveNumber, kind.band_to != 0);
+}
+
 /// Number 1 of the plan is the version of the program that wrote it.
 void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.name(2, "name", m.name);
@@ -128,6 +143,7 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.number(100, "agents.quorum", m.quorum, limits::kTeam);
   io.number(10, "agents.forget_silent_after_s", m.forget_silent_after_s, limits::between(0, 1e6));
   io.flag(15, "agents.dead_reckoning", m.dead_reckoning);
+  io.kinds(20, "agents.kind", m.kinds);
   io.number(12, "world.disturbance_intensity", m.disturbance_intensity, limits::kIntensity);
   io.number(13, "world.radio_range_m", m.radio_range_m, limits::between(0, 1e13));
   io.number(14, "world.speed_limit_mps", m.speed_limit_mps, limits::above(0, 1e9),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/kinds.h"
 #include "core/mission_fields.h"
 #include "core/separation.h"
 #include "core/vehicle.h"
@@ -39,6 +40,10 @@ class EachWithinLimits : public FieldVisitor {
   }
   void name(int, const char*, const std::string& name) { ok = ok && is_name(name); }
   void part(int, const char*, const auto& part) { list_fields(*this, part); }
+  void kinds(int, const char*, const auto& kinds) {
+    for (const AgentKind& kind : kinds) list_fields(*this, kind);
+  }
+  void kind_name(int, const char*, const std::string& name) { ok = ok && is_kind_name(name); }
   void contraction_center(int, int, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
 };
 
@@ -129,6 +134,28 @@ bool fits(const Separation& separation, const Mission& mission) {
          least_distance_m(mission.starts_m) >= start_distance_m(mission);
 }
 
+bool fits(const AgentKind& kind, const Mission& mission) {
+  const bool ends_in_order = kind.band_to == 0 || kind.band_from <= kind.band_to;
+  const ControlLaw law = law_of(mission, *kind_named(mission, kind.name));
+  return kind.footprint_sigma_m <= mission.domain.size_m.maxCoeff() && ends_in_order &&
+         covers_any_mode(kind, mission.basis) && fits(law) &&
+         fit_together(law, mission.disturbance_intensity, mission.domain, mission.timing.dt_s);
+}
+
+/// Their names differ, and each planned agent is of one kind.
+bool are_kinds(const Mission& mission) {
+  const std::vector<AgentKind>& kinds = mission.kinds;
+  if (kinds.empty()) return true;
+  if (kinds.size() > static_cast<std::size_t>(kMaxKinds)) return false;
+  std::size_t count = 0;
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    if (kind_named(mission, kinds[kind].name) != static_cast<int>(kind)) return false;
+    count += static_cast<std::size_t>(kinds[kind].count);
+  }
+  return count == mission.starts_m.size() &&
+         std::ranges::all_of(kinds, [&](const AgentKind& kind) { return fits(kind, mission); });
+}
+
 bool is_team(const Mission& mission) {
   const auto size = static_cast<double>(mission.starts_m.size());
   const auto& starts_m = mission.starts_m;
@@ -138,6 +165,10 @@ bool is_team(const Mission& mission) {
 }
 
 }  // namespace
+
+bool is_kind_name(std::string_view name) {
+  return is_name(name) && name.size() <= kMaxKindNameLength;
+}
 
 bool is_name(std::string_view name) {
   return !name.empty() && name.size() <= kMaxNameLength && may_lead(name.front()) &&
@@ -156,7 +187,8 @@ bool within_limits(const Mission& mission) {
          fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
-         is_team(mission) && fits(mission.vehicle, mission) && fits(mission.separation, mission);
+         is_team(mission) && are_kinds(mission) && fits(mission.vehicle, mission) &&
+         fits(mission.separation, mission);
 }
 
 }  // namespace ergocast

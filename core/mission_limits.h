@@ -39,14 +39,20 @@ inline constexpr double kMaxTicks = 1e8;
 /// In real time, the least wall time of a step.
 inline constexpr double kMinWallStep_s = 1e-4;
 inline constexpr Limits kTeam = between(1, kMaxAgents);
+inline constexpr Limits kWaveNumber = between(0, 1000);  ///< |k|, a band's ends
 
 }  // namespace limits
 
 inline constexpr int kMaxNameLength = 64;
+inline constexpr int kMaxKindNameLength = 31;
+inline constexpr int kMaxKinds = 16;
 
 /// Whether `name` is 1 to kMaxNameLength letters, digits, '_', '-' or '.', the first of them not
 /// '-' or '.': missions' names become names of folders.
 bool is_name(std::string_view name);
+
+/// Whether `name` is such a name of at most kMaxKindNameLength characters.
+bool is_kind_name(std::string_view name);
 
 /// How long the mission lasts: tick_count · dt_s, but no more than a scenario may say [s].
 double duration_s(const Timing& timing);

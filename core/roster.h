@@ -15,6 +15,7 @@ struct RosterEntry {
   bool forgotten = false;           ///< whether its coverage stops counting, or counts again, …
   Tick since_tick = 0;              ///< … from this tick on, …
   std::int64_t since_revision = 0;  ///< … once the world flies by this revision or a later one
+  int kind = 0;                     ///< of core/kinds.h
   bool active_at(Tick tick) const {
     return tick >= active_from && (active_until < 0 || tick < active_until);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/kinds.h"
 #include "export/exports.h"
 #include "export/foxglove.h"
 #include "export/mcap_writer.h"
@@ -81,7 +82,8 @@ class McapExport {
     const auto coverage = channel("/coverage", foxglove::grid_schema());
     const auto cells_along = coverage_cells(mission_);
     Coefficients sums = Coefficients::Zero(mission_.basis.mode_count());
-    double samples = 0;
+    const Sensors sensors(mission_);
+    double samples = 0;  // each with its quality
     int shown = 0;
     const double end_s = record_.run.end_s();
     const auto show = [&](double t_s) {
@@ -91,16 +93,16 @@ class McapExport {
       waiting_.push_back({time_ns, coverage, foxglove::grid(time_ns, cells, mission_)});
     };
     double last_s = 0;
-    for_each_row(record_.run, [&](AgentId, const TrackPoint& point) {
+    for_each_row(record_.run, [&](AgentId agent, const TrackPoint& point) {
       if (point.t_s > last_s && samples > 0 && last_s >= end_s * shown / kCoveragePictures) {
         show(last_s);
         shown = 1 + static_cast<int>(std::floor(last_s / end_s * kCoveragePictures));
       }
       last_s = point.t_s;
       if (!mission_.domain.contains(point.x_m)) return;
-      accumulate_basis(BasisAt(point.x_m, mission_.domain, mission_.basis), mission_.basis, 1,
-                       sums.data());
-      ++samples;
+      samples += sensors.of(planned_kind(mission_, agent))
+                     .sample(BasisAt(point.x_m, mission_.domain, mission_.basis), mission_.basis, 1,
+                             sums.data());
     });
     if (samples > 0) show(last_s);
   }

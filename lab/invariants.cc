@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/kinds.h"
 #include "core/noise.h"
 #include "core/perturbation.h"
 #include "core/separation.h"
@@ -110,7 +111,7 @@ void Invariants::note_positions(double t_s, const WorldState& world) {
 
 void Invariants::check(double t_s, const Command& command) {
   if (command.header.tick < 0) return;
-  const ControlLaw& law = mission_.law;
+  const ControlLaw law = law_of(mission_, planned_kind(mission_, command.header.sender));
   const Eigen::Vector3d contraction_mps =
       law.contraction_gain_per_s * (command.position_m - law.contraction_center_m);
   const double root_dt = std::sqrt(mission_.timing.dt_s);

@@ -204,6 +204,7 @@ class Invariants {
   void check_average(double t_s, const TableView& holder);
   void check_forecast(double t_s, const TableView& holder);
   std::map<Author, std::vector<Best>> best_of(const std::vector<TableView>& living) const;
+  double quality_of(const Author& author) const;
   Coefficients average_of(const std::map<Author, std::vector<Best>>& rows) const;
   void check_rows(double t_s, const TableView& holder,
                   const std::map<Author, std::vector<Best>>& best);

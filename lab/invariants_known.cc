@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/kinds.h"
 #include "lab/invariants.h"
 
 namespace ergocast::lab {
@@ -104,19 +105,24 @@ std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(
   return best;
 }
 
-/// (4) from the blocks alone, weighted by the time each covers.
+/// By the plan: in the laboratory nobody brings a kind of his own.
+double Invariants::quality_of(const Author& author) const {
+  if (mission_.kinds.empty()) return 1;
+  return mission_.kinds[static_cast<std::size_t>(planned_kind(mission_, author.agent))].quality;
+}
+
+/// (4) from the blocks alone, weighted by quality and by the time each covers.
 Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& rows) const {
   Coefficients c = Coefficients::Zero(mission_.basis.mode_count());
   const int block_size = block_size_of(mission_.timing.contribution_encoding);
   for (int k = 0; k < mission_.basis.mode_count(); ++k) {
-    double sum_s = 0;
-    std::int64_t steps = 0;
+    double sum_s = 0, steps = 0;
     for (const auto& [author, blocks] : rows) {
       const Best& block = blocks[static_cast<std::size_t>(k / block_size)];
-      sum_s += block.sums[static_cast<std::size_t>(k % block_size)];
-      steps += block.steps;
+      sum_s += quality_of(author) * block.sums[static_cast<std::size_t>(k % block_size)];
+      steps += quality_of(author) * static_cast<double>(block.steps);
     }
-    if (steps > 0) c.data()[k] = sum_s / (static_cast<double>(steps) * mission_.timing.dt_s);
+    if (steps > 0) c.data()[k] = sum_s / (steps * mission_.timing.dt_s);
   }
   return c;
 }
@@ -165,17 +171,18 @@ void Invariants::check_view(double t_s, const TableView& holder,
                             const Coefficients& c_true) {
   double stale_s = 0, covered_s = 0;
   for (const auto& [author, blocks] : best) {
-    covered_s += static_cast<double>(blocks.front().steps) * mission_.timing.dt_s;
+    const double weight_s = quality_of(author) * mission_.timing.dt_s;
+    covered_s += static_cast<double>(blocks.front().steps) * weight_s;
     const RosterEntry* entry = entry_of(*holder.roster, author);
     if (mission_.radio_range_m > 0) {
       const std::int64_t lacks = blocks.front().steps - steps_of(*holder.table, author);
-      stale_s += static_cast<double>(std::max<std::int64_t>(lacks, 0)) * mission_.timing.dt_s;
+      stale_s += static_cast<double>(std::max<std::int64_t>(lacks, 0)) * weight_s;
       continue;
     }
     if (entry == nullptr || entry->active_until >= 0) continue;
     // Two periods until a digest complains, two ticks on the way.
     const Tick period = holder.table->announced_period(author);
-    stale_s += static_cast<double>(2 * period + 2) * mission_.timing.dt_s;
+    stale_s += static_cast<double>(2 * period + 2) * weight_s;
   }
   // Of what it holds now: an agent whose ticks do not come computes no c_k.
   Coefficients c = Coefficients::Zero(mission_.basis.mode_count());

@@ -57,6 +57,15 @@ double weight_s(const Mission& mission, double h_s, Tick span, Tick age, Tick pe
   return h_s + std::min(static_cast<double>(span) * dt_s, cap_s) + age_s;
 }
 
+const AgentKind& kind_in(const Mission& mission, int kind) {
+  return mission.kinds.at(static_cast<std::size_t>(kind));
+}
+
+/// How much what it covers counts.
+double quality_of(const Mission& mission, const RosterEntry* entry) {
+  return mission.kinds.empty() || entry == nullptr ? 1 : kind_in(mission, entry->kind).quality;
+}
+
 /// f(x) dt of every mode, straight from (2).
 Coefficients gain_at(const Mission& mission, const Eigen::Vector3d& x_m) {
   const auto cosines = [&](int axis, int modes) {
@@ -74,6 +83,23 @@ Coefficients gain_at(const Mission& mission, const Eigen::Vector3d& x_m) {
   for (const double z : along_z) {
     for (const double x : along_x) {
       for (const double y : along_y) gain[k++] = mission.timing.dt_s * x * y * z;
+    }
+  }
+  return gain;
+}
+
+/// What the sensor of an author sees of that: a Gaussian blurs each cosine by itself.
+Coefficients seen_at(const Mission& mission, int kind, const Eigen::Vector3d& x_m) {
+  Coefficients gain = gain_at(mission, x_m);
+  const double width_m = mission.kinds.empty() ? 0 : kind_in(mission, kind).footprint_sigma_m;
+  if (width_m == 0) return gain;
+  for (Eigen::Index k = 0; k < gain.size(); ++k) {
+    const auto n = k % mission.basis.modes_y, m = k / mission.basis.modes_y % mission.basis.modes_x;
+    const auto l = k / mission.basis.modes_y / mission.basis.modes_x;
+    for (const auto& [mode, axis] : {std::pair(m, 0), std::pair(n, 1), std::pair(l, 2)}) {
+      if (mode == 0) continue;
+      const double angle = std::numbers::pi * static_cast<double>(mode) * width_m;
+      gain[k] *= std::exp(-std::pow(angle / mission.domain.size_m[axis], 2) / 2);
     }
   }
   return gain;
@@ -230,17 +256,19 @@ Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {
 
 /// What each block of a row adds to ĉ.
 std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& row,
-                                           bool flies) const {
+                                           const RosterEntry* entry, bool flies) const {
   std::map<Tick, Coefficients> gains;
   const auto gain = [&](const Place& place, int b) {
     auto found = gains.find(place.tick);
-    if (found == gains.end()) found = gains.emplace(place.tick, gain_at(mission, place.x_m)).first;
+    if (found == gains.end())
+      found = gains.emplace(place.tick, seen_at(mission, entry->kind, place.x_m)).first;
     return block_of(found->second, b, block_size(mission));
   };
   std::vector<Part> parts;
   for (int b = 0; b < static_cast<int>(row.blocks.size()); ++b) {
     const Block& block = row.blocks[static_cast<std::size_t>(b)];
     Part& part = parts.emplace_back(said(mission, block));
+    part.quality = quality_of(mission, entry);
     if (!flies) part.gained_steps = 0;
     if (part.gained_steps == 0 || !row.newest || row.newest->tick < block.held.tick) continue;
     for (const Place& place : block.since) {
@@ -263,11 +291,12 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
     const int size = block_size(mission);
     const std::vector<double> nothing(static_cast<std::size_t>(size));
     team[0].push_back({vector_of(own.sums, size), nothing, own.steps});
+    team[0].back().quality = quality_of(mission, entry_of(*agent.roster, agent.self));
   }
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
     if (entry != nullptr && is_forgotten(*entry, agent)) continue;
-    team.push_back(parts_of(mission, row, entry != nullptr && flies(agent, *entry)));
+    team.push_back(parts_of(mission, row, entry, entry != nullptr && flies(agent, *entry)));
   }
   return team;
 }
@@ -291,9 +320,9 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
       const double w_s =
           gained_s > 0 ? weight_s(mission, h_s, part.gained_steps, age, part.period) : 0;
       const double share = w_s > 0 ? w_s / gained_s : 0;
-      time_s += static_cast<double>(part.steps) * dt_s + w_s;
+      time_s += part.quality * (static_cast<double>(part.steps) * dt_s + w_s);
       for (std::size_t k = 0; k < sums.size(); ++k) {
-        sums[k] += part.sums[k] + share * part.gains[k];
+        sums[k] += part.quality * (part.sums[k] + share * part.gains[k]);
       }
     }
     const int first = b * size, count = std::min(size, mission.basis.mode_count() - first);

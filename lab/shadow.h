@@ -58,6 +58,7 @@ class Shadow {
     std::vector<double> sums, gains;
     std::int64_t steps = 0, gained_steps = 0;  ///< the latter 0: it has no forecast
     Tick tick = 0, period = 0;
+    double quality = 1;
   };
 
   void take(const TableView& agent, const Contribution& theirs);
@@ -65,7 +66,8 @@ class Shadow {
   bool in_range(const Mission& mission, AgentId one, AgentId other) const;
   void reckon(const RosterEntry& entry, Row& row) const;
   Part said(const Mission& mission, const Block& block) const;
-  std::vector<Part> parts_of(const Mission& mission, const Row& row, bool flies) const;
+  std::vector<Part> parts_of(const Mission& mission, const Row& row, const RosterEntry* entry,
+                             bool flies) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
   std::optional<Tick> active_from_;

@@ -19,6 +19,7 @@
 #include <ergocast/world_state_t.hpp>
 #include <limits>
 
+#include "core/mission_limits.h"
 #include "team/messages.h"
 
 namespace ergocast {
@@ -35,6 +36,7 @@ struct Fields<Hello> {
     io.count_or_none(m.revision);
     io.text(m.host, kMaxHostLength);
     io.text(m.version, kMaxVersionLength);
+    io.text(m.kind, kMaxKindNameLength);
   }
 };
 
@@ -59,6 +61,7 @@ struct Fields<MissionPart> {
       io.flag(entry.forgotten);
       io.count(entry.since_tick);
       io.count(entry.since_revision);
+      io.small(entry.kind, kMaxKinds - 1);
     }
     io.bytes(m.plan);
     io.text(m.reason, kMaxReasonLength);

@@ -68,6 +68,8 @@ class Writer {
   void finite(double value) { number(value); }
   void quantity(double value) { number(value); }
   void within(std::int32_t value, std::int32_t, std::int32_t) { number(value); }
+  /// Between 0 and a limit of at most 127, in one byte.
+  void small(std::int32_t value, std::int32_t) { *room(1) = static_cast<std::byte>(value); }
   void vector(const Eigen::Vector3d& value) { numbers({value.data(), 3}); }
   void flag(bool value) { *room(1) = static_cast<std::byte>(value); }
   template <class Enum>
@@ -140,6 +142,10 @@ class Reader {
   void quantity(double& value) { number(value), holds(std::isfinite(value) && value >= 0); }
   void within(std::int32_t& value, std::int32_t least, std::int32_t most) {
     number(value), holds(value >= least && value <= most);
+  }
+  void small(std::int32_t& value, std::int32_t most) {
+    value = static_cast<std::int8_t>(byte());
+    holds(value >= 0 && value <= most);
   }
   void vector(Eigen::Vector3d& value) {
     numbers({value.data(), 3});

@@ -2,11 +2,42 @@
 // Writes the list of a mission's fields as Protobuf's text format.
 #include "logger/mission_text.h"
 
+#include <string_view>
+
 #include "core/mission_fields.h"
 #include "text/shortest.h"
 
 namespace ergocast {
 namespace {
+
+/// A kind, with a line for each field.
+class KindWriter : public FieldVisitor {
+ public:
+  explicit KindWriter(const AgentKind& kind) { list_fields(*this, kind); }
+
+  std::string text() const {
+    return "  kind {\n" + fields_ + (band_.empty() ? "" : "    band {\n" + band_ + "    }\n") +
+           "  }\n";
+  }
+
+  void kind_name(int, const char*, const std::string& value) {
+    fields_ += "    name: \"" + value + "\"\n";
+  }
+  void number(int, const char* name, double value, const Limits&, bool given = true) {
+    const std::string_view path = name;
+    const std::size_t dot = path.find('.');
+    if (!given) return;
+    const std::string line = std::string(path.substr(dot + 1)) + ": " + shortest(value) + '\n';
+    if (dot == path.npos) {
+      fields_ += "    " + line;
+    } else {
+      band_ += "      " + line;
+    }
+  }
+
+ private:
+  std::string fields_, band_;
+};
 
 class TextWriter : public FieldVisitor {
  public:
@@ -32,6 +63,12 @@ class TextWriter : public FieldVisitor {
   void name(int, const char* name, const std::string& value) {
     put(name, '"' + value + '"');
     put("description", "\"\"");
+  }
+  void kinds(int, const char*, const std::vector<AgentKind>& kinds) {
+    for (const AgentKind& kind : kinds) {
+      enter("agents");
+      text_ += KindWriter(kind).text();
+    }
   }
   void part(int, const char* name, const auto& part) {
     part_ = std::string(name) + '.';

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// φ² of the team for an outside observer, computed from the true positions of the vehicles.
+// φ² of the team for an outside observer, computed from the true positions of the vehicles. Where
+// kinds have footprints or qualities it is of what the team has seen, core/kinds.h.
 #pragma once
 
 #include "core/basis.h"
+#include "core/kinds.h"
 #include "core/mission.h"
 
 namespace ergocast {
@@ -13,15 +15,15 @@ class Observer {
   void begin(const Mission& mission) {
     weights_ = sobolev_weights(mission.basis, mission.domain);
     sums_s_ = Coefficients::Zero(mission.basis.mode_count());
+    sensors_ = Sensors(mission);
   }
   bool begun() const { return weights_.size() > 0; }
 
-  /// A member was at `x_m` for a tick. Places outside of the domain cover nothing.
-  void see(const Mission& mission, const Eigen::Vector3d& x_m) {
+  /// A member of `kind` was at `x_m` for a tick. Places outside of the domain cover nothing.
+  void see(const Mission& mission, int kind, const Eigen::Vector3d& x_m) {
     if (!mission.domain.contains(x_m)) return;
-    accumulate_basis(BasisAt(x_m, mission.domain, mission.basis), mission.basis,
-                     mission.timing.dt_s, sums_s_.data());
-    covered_s_ += mission.timing.dt_s;
+    covered_s_ += sensors_.of(kind).sample(BasisAt(x_m, mission.domain, mission.basis),
+                                           mission.basis, mission.timing.dt_s, sums_s_.data());
   }
   bool has_seen_any() const { return covered_s_ > 0; }
 
@@ -34,6 +36,7 @@ class Observer {
 
  private:
   Coefficients sums_s_, weights_;
+  Sensors sensors_;
   double covered_s_ = 0;
 };
 

@@ -353,15 +353,17 @@ void Recorder::write_trajectory(const State& now, const State& next) {
   trajectory_ << line;
 }
 
-bool Recorder::is_member(AgentId id) const {
+/// Who flies under this number at the next row; null if nobody does.
+const RosterEntry* Recorder::member(AgentId id) const {
   const auto& roster = follower().roster();
-  return std::any_of(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
+  const auto at = std::find_if(roster.begin(), roster.end(), [&](const RosterEntry& entry) {
     return entry.author.agent == id && entry.active_at(next_row_);
   });
+  return at == roster.end() ? nullptr : &*at;
 }
 
 void Recorder::observe(AgentId id, const Eigen::Vector3d& x_m) {
-  if (is_member(id)) observer_.see(mission(), x_m);
+  if (const RosterEntry* entry = member(id)) observer_.see(mission(), entry->kind, x_m);
   if (mission().separation.distance_m > 0) row_places_m_.push_back(x_m);
 }
 

@@ -152,7 +152,7 @@ class Recorder {
   bool is_lockstep() const;
   void write_trajectory(const State& now, const State& next);
   /// Whether a member drives that vehicle at the row's tick: others stand still and cover nothing.
-  bool is_member(AgentId id) const;
+  const RosterEntry* member(AgentId id) const;
   void observe(AgentId id, const Eigen::Vector3d& x_m);
   void end_row();
   void write_due_metrics();

@@ -15,6 +15,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/kinds.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "logger/table_lines.h"
@@ -207,12 +208,13 @@ std::optional<PowerLaw> fit_last_decade(const RunData& run) {
 Coefficients coverage_of(const RunData& run, const Mission& mission) {
   Coefficients sums = Coefficients::Zero(mission.basis.mode_count());
   double samples = 0;
+  const Sensors sensors(mission);
   for (const auto& [agent, track] : run.tracks) {
+    const Sensor& sensor = sensors.of(planned_kind(mission, agent));
     for (const TrackPoint& point : track) {
       if (!mission.domain.contains(point.x_m)) continue;
-      accumulate_basis(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
-                       sums.data());
-      ++samples;
+      samples += sensor.sample(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
+                               sums.data());
     }
   }
   if (samples > 0) sums /= samples;

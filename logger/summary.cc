@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 
+#include "core/kinds.h"
 #include "logger/run_record.h"
 #include "logger/slope.h"
 #include "text/regular_file.h"
@@ -33,6 +34,8 @@ Json agents(const Recorder& recorder) {
         {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)},
         {"forgotten", entry.forgotten},
         {"coverage_switched_at", entry.since_tick > 0 ? Json(entry.since_tick) : Json(nullptr)}};
+    if (const Mission& mission = *recorder.follower().mission(); !mission.kinds.empty())
+      agent["kind"] = name_of_kind(mission, entry.kind);
     const auto known = recorder.statuses().find(entry.author);
     if (known != recorder.statuses().end()) {
       const AgentStatus& status = known->second;

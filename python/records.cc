@@ -10,6 +10,7 @@
 #include "cli/recorded_team.h"
 #include "cli/run_directory.h"
 #include "cli/simulated_record.h"
+#include "core/kinds.h"
 #include "logger/observer.h"
 #include "logger/run_data.h"
 #include "logger/summary.h"
@@ -141,7 +142,9 @@ Numbers coverage(const Record& record, const std::vector<Tick>& ticks,
   for_each_row(record.rows, [&](AgentId agent, const TrackPoint& point) {
     if (next == ticks.end()) return;
     write_before(point.tick);
-    if (is_member(agent, point.tick)) observer.see(mission, point.x_m);
+    if (is_member(agent, point.tick)) {
+      observer.see(mission, planned_kind(mission, agent), point.x_m);
+    }
   });
   write_before(std::numeric_limits<Tick>::max());
   return result;

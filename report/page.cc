@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/kinds.h"
 #include "report/base64.h"
 #include "report/markup.h"
 #include "report/track_grid.h"
@@ -45,6 +46,20 @@ std::string law_text(const ControlLaw& law) {
   text += ", k = " + readable(law.contraction_gain_per_s) + " /s";
   if (law.contraction_gain_per_s == 0) return text;
   return text + " towards " + point_text(law.contraction_center_m.head<2>()) + " m";
+}
+
+std::string kind_text(const AgentKind& kind) {
+  std::string text = kind.name + ": " + std::to_string(kind.count) +
+                     (kind.count == 1 ? " agent" : " agents") +
+                     ", u_max = " + readable(kind.u_max_mps) + " m/s";
+  if (kind.footprint_sigma_m > 0)
+    text += ", sees a Gaussian of " + readable(kind.footprint_sigma_m) + " m";
+  if (kind.quality != 1) text += ", quality " + readable(kind.quality);
+  if (kind.band_from > 0 || kind.band_to > 0) {
+    text += ", steers by |k| from " + readable(kind.band_from);
+    if (kind.band_to > 0) text += " to " + readable(kind.band_to);
+  }
+  return text;
 }
 
 std::string weights_text(const Basis& basis) {
@@ -89,6 +104,9 @@ Json conventions(const Mission& mission) {
                           : "; times cos(lπz/Lz), l = 0 … " + std::to_string(basis.modes_z - 1)));
   add("hₖ", basis.normalized ? "√(Π Lᵢ · (½)^[kᵢ > 0])" : "not used: f is not normalised");
   add("control", law_text(mission.law));
+  for (const AgentKind& kind : mission.kinds) add("kind", kind_text(kind));
+  if (!Sensors(mission).alike())
+    add("seen", "coverage and φ² are of what the agents’ sensors have seen, weighted by quality");
   if (mission.speed_limit_mps > 0) {
     add("speed limit", readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
   }
@@ -144,6 +162,20 @@ Json metrics(const RunData& run) {
           {"age", std::move(age)}, {"received", std::move(received)}, {"lost", std::move(lost)}};
 }
 
+/// What a place of each kind adds to the sums of the modes without z: quality and q g.
+Json seen(const Mission& mission, const Sensors& sensors) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < mission.kinds.size(); ++i) {
+    const Sensor& sensor = sensors.of(static_cast<int>(i));
+    Coefficients share = Coefficients::Constant(mission.basis.mode_count(), sensor.quality);
+    if (sensor.g.size() > 0) share = share.cwiseProduct(sensor.g);
+    list.push_back({{"count", mission.kinds[i].count},
+                    {"quality", sensor.quality},
+                    {"qg", rounded_list(planar(share, mission.basis))}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string title_of(const Mission& mission) {
@@ -153,20 +185,22 @@ std::string title_of(const Mission& mission) {
 Json page_mission(const Mission& mission, const Field& density) {
   const Basis& basis = mission.basis;
   const Rectangle domain = base_of(mission.domain);
-  return {{"name", title_of(mission)},
-          {"seed", std::to_string(mission.seed)},
-          {"origin_m", rounded_list(domain.origin_m, 12)},
-          {"size_m", rounded_list(domain.size_m, 12)},
-          {"modes", {basis.modes_x, basis.modes_y}},
-          {"target", rounded_list(planar(mission.target_coefficients, basis))},
-          {"weights", rounded_list(planar(sobolev_weights(basis, mission.domain), basis))},
-          {"dt_s", mission.timing.dt_s},
-          {"tick_count", mission.timing.tick_count},
-          {"agents", mission.starts_m.size()},
-          {"radio_range_m", mission.radio_range_m},
-          {"goal", mission.goal_ergodic_metric},
-          {"conventions", conventions(mission)},
-          {"density", encoded_density(density)}};
+  Json page = {{"name", title_of(mission)},
+               {"seed", std::to_string(mission.seed)},
+               {"origin_m", rounded_list(domain.origin_m, 12)},
+               {"size_m", rounded_list(domain.size_m, 12)},
+               {"modes", {basis.modes_x, basis.modes_y}},
+               {"target", rounded_list(planar(mission.target_coefficients, basis))},
+               {"weights", rounded_list(planar(sobolev_weights(basis, mission.domain), basis))},
+               {"dt_s", mission.timing.dt_s},
+               {"tick_count", mission.timing.tick_count},
+               {"agents", mission.starts_m.size()},
+               {"radio_range_m", mission.radio_range_m},
+               {"goal", mission.goal_ergodic_metric},
+               {"conventions", conventions(mission)},
+               {"density", encoded_density(density)}};
+  if (const Sensors sensors(mission); !sensors.alike()) page["seen"] = seen(mission, sensors);
+  return page;
 }
 
 Json page_record(const RunData& run, const Mission& mission, const Json& summary,

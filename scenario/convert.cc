@@ -69,6 +69,18 @@ class BlockReader : public FieldVisitor {
     ERGOCAST_REQUIRE(word != words.end());
     value = static_cast<Enum>(word - words.begin());
   }
+  void kinds(int, const char* name, std::vector<AgentKind>& kinds) {
+    const auto [block, field] = find_field(block_, name);
+    const auto* fields = block.GetReflection();
+    for (int i = 0; i < fields->FieldSize(block, &field); ++i) {
+      BlockReader inner(fields->GetRepeatedMessage(block, &field, i));
+      list_fields(inner, kinds.emplace_back());
+    }
+  }
+  void kind_name(int, const char* name, std::string& value) {
+    const auto [block, field] = find_field(block_, name);
+    value = block.GetReflection()->GetString(block, &field);
+  }
   void part(int, const char* name, auto& part) {
     const auto [block, field] = find_field(block_, name);
     BlockReader inner(block.GetReflection()->GetMessage(block, &field));

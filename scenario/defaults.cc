@@ -41,12 +41,14 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
 }
 
 /// Without a covariance a Gaussian is round; without an origin places are metres alone; without a
-/// vehicle all are points; without a separation bodies keep no distance.
+/// vehicle all are points; without a separation bodies keep no distance; without a band all modes
+/// count.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
          field.message_type() == proto::Origin::descriptor() ||
          field.message_type() == proto::Vehicle::descriptor() ||
-         field.message_type() == proto::Separation::descriptor();
+         field.message_type() == proto::Separation::descriptor() ||
+         field.message_type() == proto::Band::descriptor();
 }
 
 /// Constant defaults of `message` and of every block below it; in a plane none along z.
@@ -150,6 +152,26 @@ void fill_law(const Box& domain, proto::Law& law) {
   law.set_contraction_gain_per_s(kContractionShare * law.u_max_mps() / reach_m);
 }
 
+/// A kind's noise diffuses over the same length as the law's, in the time that the kind needs.
+void fill_kinds(const proto::Law& law, proto::Agents& agents) {
+  for (proto::Kind& kind : *agents.mutable_kind()) {
+    if (!kind.has_u_max_mps() && law.has_u_max_mps()) kind.set_u_max_mps(law.u_max_mps());
+    if (!(kind.u_max_mps() > 0) || !(law.u_max_mps() > 0)) continue;
+    const double scale = std::sqrt(kind.u_max_mps() / law.u_max_mps());
+    if (!kind.has_noise_intensity()) kind.set_noise_intensity(scale * law.noise_intensity());
+    if (!kind.has_noise_ceiling()) kind.set_noise_ceiling(scale * law.noise_ceiling());
+  }
+}
+
+/// The starts that the kinds leave open are drawn.
+void fill_team(proto::Agents& agents) {
+  if (agents.kind_size() == 0 || agents.has_random_count()) return;
+  std::int64_t count = 0;
+  for (const proto::Kind& kind : agents.kind()) count += std::max(0, kind.count());
+  agents.set_random_count(static_cast<int>(
+      std::clamp<std::int64_t>(count - agents.starts_size(), 0, std::int64_t{kMaxAgents})));
+}
+
 /// @pre the constants are filled in
 void fill_separation(proto::Scenario& scenario) {
   if (!scenario.has_separation() || scenario.separation().has_disturbance_m()) return;
@@ -243,11 +265,13 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   if (!planar && !scenario.domain().has_origin_z_m()) scenario.mutable_domain()->set_origin_z_m(0);
   if (scenario.has_separation() && !scenario.separation().has_guard())
     scenario.mutable_separation()->set_guard(true);
+  fill_team(*scenario.mutable_agents());
   fill_constants(scenario, planar);
   fill_separation(scenario);
   make_absolute(file, *scenario.mutable_target());
   fill_law(domain, *scenario.mutable_law());
   proto::Agents& agents = *scenario.mutable_agents();
+  fill_kinds(scenario.law(), agents);
   if (!agents.has_quorum()) {
     const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();
     // A team outside its limits is reported for its size, and not for its quorum as well.

@@ -94,6 +94,12 @@ constexpr Row kRows[] = {
 
     {"Agents", "random_count", between(0, kMaxAgents), kDefaulted, 0},
     {"Agents", "quorum", kMissions, kLeft},
+    {"Kind", "count", kMissions, kRefused},
+    {"Kind", "u_max_mps", kMissions, kLeft},
+    {"Kind", "noise_intensity", kMissions, kLeft},
+    {"Kind", "noise_ceiling", kMissions, kLeft},
+    {"Band", "from", kMissions, kDefaulted, 0},
+    {"Band", "to", above(0, 1000), kLeft},
     {"Start", "x_m", kCoordinate, kRefused},
     {"Start", "y_m", kCoordinate, kRefused},
     {"Start", "z_m", kCoordinate, kRefused},
@@ -112,6 +118,12 @@ class RuleCollector : public FieldVisitor {
   }
   void height(int, const char* name, double, const Limits& limits, double) {
     rules_.emplace(&find_field(block_, name).field, FieldRule{limits, kLeft});
+  }
+  void kinds(int, const char*, const auto&) {
+    const proto::Kind block;
+    const AgentKind kind;
+    RuleCollector inner(block, rules_);
+    list_fields(inner, kind);
   }
   void part(int, const char* name, const auto& part) {
     const auto [block, field] = find_field(block_, name);

@@ -11,6 +11,7 @@
 #include "scenario/explain.h"
 #include "scenario/fields.h"
 #include "scenario/utf8.h"
+#include "scenario/validate_kinds.h"
 #include "scenario/validate_separation.h"
 #include "scenario/validate_target.h"
 #include "scenario/validate_vehicle.h"
@@ -41,6 +42,7 @@ class Validator {
     time();
     agents();
     disturbance();
+    validate_kinds(scenario_, checks_);
     if (scenario_.has_vehicle()) validate_vehicle(scenario_, checks_);
     if (scenario_.has_separation()) validate_separation(scenario_, checks_);
   }

@@ -2,11 +2,14 @@
 // Compares the speed limit with the noise of the law, and the step with the size of the domain.
 #include "scenario/warnings.h"
 
+#include <algorithm>
 #include <string>
 
+#include "core/kinds.h"
 #include "core/perturbation.h"
 #include "core/separation.h"
 #include "scenario/checks.h"
+#include "scenario/footprint_reach.h"
 
 namespace ergocast {
 namespace {
@@ -17,6 +20,9 @@ constexpr double kDeviations = 6;
 /// Agents with a forecast need steps of at most this share of the shorter side: docs/law.md.
 constexpr double kLongestStep = 0.05;
 
+/// A least φ² above this share of an even coverage's makes a target finer than the footprints.
+constexpr double kReachable = 0.01;
+
 /// The law's noise as a formula of scenario fields.
 std::string noise_text(const ControlLaw& law, double dt_s) {
   const std::string own = "noise_intensity / sqrt(dt_s)";
@@ -26,9 +32,14 @@ std::string noise_text(const ControlLaw& law, double dt_s) {
          " m/s held for " + std::to_string(held) + (held == 1 ? " step" : " steps");
 }
 
+int fastest_kind(const Mission& mission) {
+  const auto fastest = std::ranges::max_element(mission.kinds, {}, &AgentKind::u_max_mps);
+  return static_cast<int>(fastest - mission.kinds.begin());
+}
+
 /// A limit below the law's commands cuts off the tails of its noise.
 void warn_of_speed_limit(const Mission& mission, Findings& findings) {
-  const ControlLaw& law = mission.law;
+  const ControlLaw law = law_of(mission, fastest_kind(mission));
   const double dt_s = mission.timing.dt_s;
   const double pull_mps =
       law.contraction_gain_per_s * mission.domain.farthest_distance_m(law.contraction_center_m);
@@ -78,12 +89,36 @@ void warn_of_packing(const Mission& mission, Findings& findings) {
                "long agents are blocked");
 }
 
+/// Coarse sensors blur what they see: no paths make up for it.
+void warn_of_footprints(const Mission& mission, Findings& findings) {
+  const bool any = std::ranges::any_of(
+      mission.kinds, [](const AgentKind& kind) { return kind.footprint_sigma_m > 0; });
+  if (!any) return;
+  const Coefficients& mu = mission.target_coefficients;
+  const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
+  Coefficients even = Coefficients::Zero(mu.size());
+  even[0] = 1;
+  double figure = kReachable * ergodic_metric(even, mu, weights);
+  if (mission.goal_ergodic_metric > 0) figure = std::min(figure, mission.goal_ergodic_metric);
+  const FootprintReach reach = footprint_reach(mission, figure);
+  if (reach.low <= figure) return;
+  findings.add("agents.kind",
+               "the target is finer than the sensors see: whatever the agents do, phi^2 of what "
+               "they see stays above about " +
+                   shortest(rounded_down(reach.low)) + ", which is " +
+                   shortest(rounded_down(100 * reach.low / reach.even)) +
+                   " % of an even coverage's",
+               "write smaller footprints, more agents or a higher quality of the finer kind, or a "
+               "smoother target");
+}
+
 }  // namespace
 
 void warn(const Mission& mission, Findings& findings) {
   warn_of_speed_limit(mission, findings);
   warn_of_coarse_steps(mission, findings);
   warn_of_packing(mission, findings);
+  warn_of_footprints(mission, findings);
 }
 
 }  // namespace ergocast

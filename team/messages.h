@@ -22,7 +22,7 @@ inline constexpr int kMaxRosterEntriesPerMessage = 8;
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 512;
-inline constexpr int kMaxReasonLength = 183;
+inline constexpr int kMaxReasonLength = 175;
 /// The period of an agent's status in wall time.
 inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
 
@@ -57,6 +57,7 @@ struct Hello {
   /// The newest revision of MISSION of which the agent has heard any part; −1: none. A HELLO with
   /// an older revision than the newest admits no agent, because it may be a recording.
   std::int64_t revision = -1;
+  std::string kind{};  ///< the name of the kind that an agent brings; empty: as planned
 };
 
 enum class MissionState { kWaiting, kRunning, kEnded, kFailed };

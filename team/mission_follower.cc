@@ -31,6 +31,7 @@ std::uint64_t hash_of(const MissionPart& part) {
     add(entry.author.agent), add(entry.author.incarnation);
     add(entry.active_from), add(entry.active_until);
     add(entry.forgotten), add(entry.since_tick), add(entry.since_revision);
+    add(entry.kind);
   }
   for (const std::byte byte : part.plan) add(byte);
   return hash;

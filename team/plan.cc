@@ -83,6 +83,15 @@ class PlanWriter {
     if (value != in_plane || in_plane == 0) this->value(field, value);
   }
   PlanWriter open(int) const { return {}; }
+  /// Each a block under the same number.
+  void blocks(int field, const std::vector<AgentKind>& kinds, const auto& write) {
+    for (const AgentKind& kind : kinds) {
+      PlanWriter block;
+      write(block, kind);
+      const std::string bytes = block.bytes();
+      fields_[field] += tag(field, kBlock) + varint(bytes.size()) + bytes;
+    }
+  }
   void close(int field, const PlanWriter& block) {
     if (const std::string bytes = block.bytes(); !bytes.empty()) value(field, bytes);
   }
@@ -122,7 +131,7 @@ class PlanReader {
       if (!whole || kind > kBlock) return;
       const std::size_t size = kind == kVarint ? 0 : *whole;
       if (size > bytes.size()) return;
-      fields_[*key >> 3] = {*whole, bytes.substr(0, size)};
+      fields_.emplace(*key >> 3, Value{*whole, bytes.substr(0, size)});
       bytes.remove_prefix(size);
     }
   }
@@ -153,6 +162,13 @@ class PlanReader {
     if (value == 0) value = static_cast<T>(in_plane);
   }
   PlanReader open(int field) const { return PlanReader(at(field).bytes); }
+  void blocks(int field, std::vector<AgentKind>& kinds, const auto& read) const {
+    const auto [first, end] = fields_.equal_range(static_cast<std::uint64_t>(field));
+    for (auto at = first; at != end; ++at) {
+      const PlanReader block(at->second.bytes);
+      read(block, kinds.emplace_back());
+    }
+  }
   void close(int, const PlanReader&) const {}
 
  private:
@@ -184,7 +200,7 @@ class PlanReader {
     return numbers;
   }
 
-  std::map<std::uint64_t, Value> fields_;
+  std::multimap<std::uint64_t, Value> fields_;
 };
 
 /// Passes each field on to `wire`, a PlanWriter or a PlanReader.
@@ -218,6 +234,13 @@ class PlanFields : public FieldVisitor {
   }
   void duration(int field, auto& timing) { wire_.value(field, timing.tick_count); }
   void target(int field, auto& target) { wire_.value(field, target); }
+  void kinds(int field, const char*, auto& kinds) {
+    wire_.blocks(field, kinds, [](auto& block, auto& kind) {
+      PlanFields<std::remove_reference_t<decltype(block)>> inner(block);
+      list_fields(inner, kind);
+    });
+  }
+  void kind_name(int field, const char*, auto& name) { wire_.value(field, name); }
   void starts(int xy, int z, auto& starts_m) { wire_.places(xy, z, starts_m); }
   void hidden_flag(int field, auto& value) { wire_.value(field, value); }
 

@@ -10,6 +10,7 @@
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/ideal_team.h"
+#include "core/kinds.h"
 #include "lab/simulation.h"
 #include "lab/studies/study_measure.h"
 #include "logger/null_buffer.h"
@@ -36,9 +37,13 @@ class Observer : public lab::SimulationObserver {
         measure_(mission),
         controller_(mission),
         table_(mission.basis, mission.timing.dt_s),
+        sensors_(mission),
         coverage_(Coefficients::Zero(mission.basis.mode_count())),
         vehicles_(mission.starts_m.size()) {
-    for (std::size_t i = 0; i < vehicles_.size(); ++i) table_.add_row(author(i));
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      table_.add_row(author(i));
+      table_.set_quality(author(i), sensor(i).quality);
+    }
   }
 
   void received(lab::NodeId node, const Message& message) override {
@@ -55,6 +60,10 @@ class Observer : public lab::SimulationObserver {
 
  private:
   static Author author(std::size_t agent) { return {static_cast<AgentId>(agent), 1}; }
+
+  const Sensor& sensor(std::size_t agent) const {
+    return sensors_.of(planned_kind(mission_, static_cast<AgentId>(agent)));
+  }
 
   void hear(const WorldState& world) {
     if (world.header.tick <= tick_) return;  // said again
@@ -79,7 +88,8 @@ class Observer : public lab::SimulationObserver {
       if (ended) continue;
       const Eigen::Vector3d& x_m = vehicles_[i].position_m;
       measure_.position(i, tick, x_m);
-      table_.add_sample(author(i), BasisAt(x_m, mission_.domain, mission_.basis));
+      table_.add_sample(author(i), BasisAt(x_m, mission_.domain, mission_.basis),
+                        sensor(i).footprint());
     }
     if (ended || !measure_.wants_metric(tick)) return;
     table_.average(coverage_);
@@ -91,6 +101,7 @@ class Observer : public lab::SimulationObserver {
   StudyMeasure measure_;
   Controller controller_;
   CoverageTable table_;
+  Sensors sensors_;
   Coefficients coverage_;
   std::vector<Vehicle> vehicles_;  // at tick gathering_
   Tick tick_ = -1, gathering_ = -1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// c_k from positions, for any row at once: the sums are kept every 128 rows.
+// c_k from positions, for any row at once: the sums are kept every 128 rows. Where kinds of agents
+// see differently, each place counts with its kind's quality and footprint.
 const EVERY = 128;
 
 export class Coverage {
@@ -9,6 +10,11 @@ export class Coverage {
     this.cx = new Float64Array(this.M);
     this.cy = new Float64Array(this.N);
     this.reset(0);
+  }
+  // The planned kind of an agent, or null where all see alike.
+  sensorOf(id) {
+    const { seen } = this.run.mission;
+    return seen ? seen.find(kind => (id -= kind.count) < 0) ?? seen[0] : null;
   }
   // Forgets what rows from `row` on say: they have changed.
   reset(row) {
@@ -25,12 +31,13 @@ export class Coverage {
     let count = 0;
     cx[0] = cy[0] = 1;
     for (const track of run.tracks) {
+      const sensor = this.sensorOf(track.id);
       for (const [begin, until] of track.member) {
         const { p } = track, end = Math.min(to, until, track.last + 1);
         for (let k = Math.max(from, begin, track.first); k < end; k++) {
           const px = p[2 * k], py = p[2 * k + 1];
           if (!(px >= 0 && px <= lx && py >= 0 && py <= ly)) continue;
-          count++;
+          count += sensor ? sensor.quality : 1;
           const x = Math.cos((Math.PI * px) / lx), y = Math.cos((Math.PI * py) / ly);
           if (M > 1) cx[1] = x;
           if (N > 1) cy[1] = y;
@@ -38,7 +45,8 @@ export class Coverage {
           for (let n = 2; n < N; n++) cy[n] = 2 * y * cy[n - 1] - cy[n - 2];
           for (let m = 0, i = 0; m < M; m++) {
             const c = cx[m];
-            for (let n = 0; n < N; n++) sum[i++] += c * cy[n];
+            if (sensor) for (let n = 0; n < N; n++, i++) sum[i] += sensor.qg[i] * c * cy[n];
+            else for (let n = 0; n < N; n++) sum[i++] += c * cy[n];
           }
         }
       }

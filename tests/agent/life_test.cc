@@ -51,6 +51,49 @@ TEST(AgentJoining, TakesTheNumberThatTheRosterGivesItsIncarnation) {
   EXPECT_EQ(agent.id(), 2);
 }
 
+TEST(AgentJoining, NamesItsKindAndEndsWhereThereIsNone) {
+  AgentIdentity slow = identity_of(0);
+  slow.kind = "slow";
+  Mission mission = small_mission(2);
+  announce(mission);
+  Agent agent(slow);
+  const auto hellos = only<Hello>(advance(agent, at(0s)));
+  ASSERT_EQ(hellos.size(), 1u);
+  EXPECT_EQ(hellos[0].kind, "slow");
+  give(agent, mission_part(0, MissionState::kWaiting, {}), at(0s));
+  EXPECT_TRUE(agent.failed());
+  EXPECT_EQ(agent.reason(),
+            "the mission has no kind \"slow\": all its agents are alike, so name none");
+}
+
+TEST(AgentCoverage, OfASuccessorOfAnotherKindLeavesItsPredecessorsRowsAlone) {
+  Mission mission = small_mission(2);
+  const double u_max_mps = mission.law.u_max_mps;
+  mission.kinds = {{"fine", 1, u_max_mps, 0, 0, 0, 3}, {"rough", 1, u_max_mps, 0, 0, 20, 0.5}};
+  announce(mission);
+  Agent agent(identity_of(0));
+  std::vector<RosterEntry> roster = roster_of(2);
+  roster[1].kind = 1;
+  roster[1].active_until = 1;
+  roster.push_back({{1, ~Incarnation{0}}, 1, -1});  // an agent of the first kind in its place
+  give(agent, mission_part(0, MissionState::kRunning, roster), at(0s));
+
+  const Eigen::Vector3d place_m[] = {{100, 500, 0}, {300, 200, 0}, {700, 800, 0}};
+  give(agent, world_state(0, {place_m[0], place_m[0]}), at(0s));
+  Coefficients sums = 3 * basis_values(place_m[0], mission.domain, mission.basis);
+  double weight = 3;
+  advance(agent, at(0s));
+  for (const std::size_t i : {1, 2}) {
+    const Author& author = roster[i].author;
+    for (const Contribution& block : blocks_of(mission, author, {place_m[i]}, 1000))
+      give(agent, block, at(0s));
+    const double quality = i == 1 ? 0.5 : 3;
+    sums += quality * basis_values(place_m[i], mission.domain, mission.basis);
+    weight += quality;
+  }
+  EXPECT_LT((agent.team_coverage() - sums / weight).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(AgentJoining, DoesNothingInTheWorldBeforeTheMissionRuns) {
   const Mission mission = small_mission(1);
   announce(mission);

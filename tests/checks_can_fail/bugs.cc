@@ -46,7 +46,8 @@ constexpr Tick kUnderWay = 100;
 WRAPPED(Eigen::Vector3d, command, "_ZN8ergocast10Controller7commandEilRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_7BasisAtE", Controller*, AgentId, Tick, const Eigen::Vector3d&, const BasisAt&)
 WRAPPED(Eigen::Vector3d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_3BoxE", const Eigen::Vector3d&, const Box&)
 WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
-WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtE", CoverageTable*, const Author&, const BasisAt&)
+WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtEPKd", CoverageTable*, const Author&, const BasisAt&, const double*)
+WRAPPED(void, set_quality, "_ZN8ergocast13CoverageTable11set_qualityERKNS_6AuthorEd", CoverageTable*, const Author&, double)
 WRAPPED(Merge, merge, "_ZN8ergocast13CoverageTable5mergeERKNS_12ContributionEl", CoverageTable*, const Contribution&, std::int64_t)
 WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi", const CoverageTable*, const Author&, int)
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
@@ -169,15 +170,20 @@ SafeVelocity bug_safe(SeparationFilter* self, const Mover& mover, const Eigen::V
 // ---- coverage
 // ------------------------------------------------------------------------------------
 
-void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at) {
+void bug_set_quality(CoverageTable* self, const Author& author, double quality) {
+  real_set_quality(self, author, bug("a quality does not count") ? 1 : quality);
+}
+
+void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at,
+                    const double* footprint) {
   if (bug("a backup is put back")) {
     static std::map<CoverageTable*, CoverageTable> backup;
     const auto steps = self->steps_held(author).value_or(0);
     if (steps == kUnderWay) backup.emplace(self, *self);
     if (steps == 2 * kUnderWay) *self = backup.at(self);
   }
-  real_add_sample(self, author, at);
-  if (bug("a sample counts twice")) real_add_sample(self, author, at);
+  real_add_sample(self, author, at, footprint);
+  if (bug("a sample counts twice")) real_add_sample(self, author, at, footprint);
 }
 
 namespace {
@@ -290,6 +296,9 @@ CoverageTable mistaken(const CoverageTable& table, Tick tick) {
 void bug_make_forecast(Forecast* self, const Mission& mission, const Author& author) {
   Mission changed = mission;
   if (the_dead_are_foreseen()) changed.timing.broadcast_period_ticks = kForEver;
+  if (bug("a footprint is not foreseen")) {
+    for (AgentKind& kind : changed.kinds) kind.footprint_sigma_m = 0;
+  }
   real_make_forecast(self, changed, foresees_itself() ? Author{} : author);
 }
 

@@ -284,6 +284,44 @@ Mistake of_grid(const std::string& file, const std::string& said,
                   "target.voxels[0]: " + said);
 }
 
+/// Mistakes in the kinds of a team of two.
+std::vector<Mistake> mistakes_of_kinds() {
+  const std::string from = "starts { x_m: 10 y_m: 20 }";
+  const auto kinds = [&](const std::string& first, const std::string& second,
+                         const std::string& said) {
+    return Mistake{from,
+                   from + " random_count: 1 kind { name: \"a\" count: 1 " + first + " } kind { " +
+                       second + " }",
+                   said};
+  };
+  const std::string good = "name: \"b\" count: 1";
+  return {
+      kinds("", "name: \"b\" count: 2",
+            "agents.kind: the counts add up to 3 agents, and the team has 2"),
+      kinds("", "name: \"a\" count: 1", "agents.kind[1].name: another kind is called \"a\", too"),
+      kinds("", "count: 1", "agents.kind[1].name: is missing"),
+      kinds("", "name: \"x y\" count: 1", "agents.kind[1].name: cannot name a kind"),
+      kinds("", "name: \"b\"", "agents.kind[1].count: is missing"),
+      kinds("quality: 0", good, "agents.kind[0].quality: 0 is not above 0"),
+      kinds("footprint_sigma_m: -1", good,
+            "agents.kind[0].footprint_sigma_m: -1 is below the limit 0"),
+      kinds("footprint_sigma_m: 101", good,
+            "agents.kind[0].footprint_sigma_m: 101 is larger than the domain"),
+      kinds("u_max_mps: 501", good, "agents.kind[0].u_max_mps: 501 makes a step of the input"),
+      kinds("u_max_mps: 0.001", good, "agents.kind[0].u_max_mps: 0.001 is too weak"),
+      kinds("noise_intensity: 2 noise_ceiling: 1", good,
+            "agents.kind[0].noise_ceiling: 1 is less than the kind's least noise"),
+      kinds("noise_intensity: 200 noise_ceiling: 200", good,
+            "agents.kind[0].noise_intensity: 200 makes a step of the least noise"),
+      kinds("noise_ceiling: 200", good,
+            "agents.kind[0].noise_ceiling: 200 makes a step of the greatest noise"),
+      kinds("band { from: 3 to: 2 }", good, "agents.kind[0].band: covers no mode"),
+      kinds("band { from: 100 }", good, "agents.kind[0].band: covers no mode"),
+      kinds("", good + " } " + repeated(15, "kind { name: \"c\" count: 1 } ") + " kind { " + good,
+            "agents.kind: 18 kinds are above the limit 16"),
+  };
+}
+
 std::vector<Mistake> mistakes_in_space() {
   const std::string bell = "gaussians { mean_x_m: 5 mean_y_m: 5 mean_z_m: -5 ";
   const std::string prism =
@@ -501,7 +539,13 @@ law {
 time {
   dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 contribution_encoding: FIXED16 pace: REALTIME
 }
-agents { starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1 }
+agents {
+  starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1
+  kind {
+    name: "all" count: 2 u_max_mps: 5 noise_intensity: 0.1 noise_ceiling: 2 footprint_sigma_m: 1 quality: 1
+    band { from: 0 to: 9 }
+  }
+}
 world { speed_limit_mps: 100 }
 vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
 separation { distance_m: 2 }
@@ -637,8 +681,9 @@ class CheckCanFail : public Scenarios {
   void plant_in_the_text() {
     write("s.textproto", kGood);
     EXPECT_EQ(ergocast({"check", file_}), 0) << output();
-    for (const auto& mistakes : {mistakes_of_the_text(), mistakes_between_fields(),
-                                 mistakes_of_targets(), mistakes_of_maps(), mistakes_in_space()}) {
+    for (const auto& mistakes :
+         {mistakes_of_the_text(), mistakes_between_fields(), mistakes_of_targets(),
+          mistakes_of_maps(), mistakes_of_kinds(), mistakes_in_space()}) {
       for (const Mistake& mistake : mistakes) expect_mistake(mistake);
     }
   }
@@ -710,7 +755,24 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find("10 agents 10 m apart take up 15.71 %"), std::string::npos) << output();
   }
 
+  void expect_warning_of_footprints() {
+    std::string text = kGood;
+    const std::string even = "uniform_weight: 1";
+    text.replace(text.find(even), even.size(),
+                 "gaussians { mean_x_m: 50 mean_y_m: 25 sigma_m: 4 }");
+    text.replace(text.find("} }\n", text.find("agents {")), 4,
+                 "} kind { name: \"a\" count: 1 footprint_sigma_m: 15 } }\n");
+    write("s.textproto", text);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_TRUE(output().starts_with("warning: " + file_.string() + ":5:")) << output();
+    EXPECT_NE(output().find("agents.kind: the target is finer than the sensors see"),
+              std::string::npos)
+        << output();
+  }
+
   void plant_warnings() {
+    expect_warning_of_footprints();
     expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");
     expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
     expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");

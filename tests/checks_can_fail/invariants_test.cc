@@ -56,6 +56,10 @@ const char* const kUnsureCrowd =
     "separation { distance_m: 20 position_error_m: 1 }\nworld { speed_limit_mps: 20 }\n"
     "goal_ergodic_metric: 1";
 
+const char* const kTwoKinds =
+    "agents { kind { name: \"a\" count: 2 footprint_sigma_m: 20 quality: 0.5 } "
+    "kind { name: \"b\" count: 2 footprint_sigma_m: 5 } }";
+
 const Plant kPlants[] = {
     {Invariant::kPositionsInTheDomain, "the edges push outwards"},
     {Invariant::kInputsBounded, "the input is not cut"},
@@ -94,6 +98,8 @@ const Plant kPlants[] = {
     {Invariant::kForecastOfWhatIsKnown, "a block's age counts from its arrival", kLateBlocks},
     {Invariant::kForecastOfWhatIsKnown, "a block's age counts from its arrival", kLateBlocks,
      kByRowsAlone},
+    {Invariant::kAverageOfWhatIsHeld, "a quality does not count", "", kTwoKinds},
+    {Invariant::kForecastOfWhatIsKnown, "a footprint is not foreseen", "", kTwoKinds},
     {Invariant::kZerothIsOne, "a receiver rounds"},
     {Invariant::kHonestMessagesAccepted, "an honest block is refused"},
     {Invariant::kNoEarlyEnd, "an agent gives up"},

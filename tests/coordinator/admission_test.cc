@@ -265,6 +265,63 @@ TEST(CoordinatorAdmits, OnlyItsOwnVersionAndItKnowsWhomItTurnedAway) {
   EXPECT_EQ(coordinator.roster().size(), 1u);
 }
 
+Mission mission_of_two_kinds() {
+  Mission mission = small_mission(4);
+  const double u_max_mps = mission.law.u_max_mps;
+  mission.kinds = {{"fast", 3, u_max_mps}, {"fine", 1, u_max_mps}};
+  return mission;
+}
+
+Hello hello_of_kind(AgentId id, Incarnation incarnation, const std::string& kind) {
+  Hello hello = hello_of(id, incarnation);
+  hello.kind = kind;
+  return hello;
+}
+
+TEST(CoordinatorAdmits, EachAgentAsTheKindThatItBringsOrThatIsPlanned) {
+  Coordinator coordinator = coordinator_of(mission_of_two_kinds());
+  give(coordinator, hello_of(0, 10), at(0s));
+  give(coordinator, hello_of_kind(1, 11, "fine"), at(0s));
+  give(coordinator, hello_of(3, 13), at(0s));
+  ASSERT_EQ(coordinator.roster().size(), 3u);
+  EXPECT_EQ(coordinator.roster()[0].kind, 0);
+  EXPECT_EQ(coordinator.roster()[1].kind, 1) << "brought";
+  EXPECT_EQ(coordinator.roster()[2].kind, 1) << "planned";
+}
+
+TEST(CoordinatorAdmits, ANewcomerOfAKindOnlyWhereThePlanHasNoOther) {
+  Coordinator coordinator = coordinator_of(mission_of_two_kinds());
+  for (const Incarnation life : {10, 11}) {
+    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(0s));
+    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(1s));
+  }
+  ASSERT_EQ(coordinator.roster().size(), 2u);
+  EXPECT_EQ(coordinator.roster()[0].author, (Author{3, 10}));
+  EXPECT_EQ(coordinator.roster()[1].author, (Author{4, 11})) << "beyond the plan";
+}
+
+TEST(CoordinatorAdmits, NoKindThatTheMissionDoesNotHave) {
+  Coordinator coordinator = coordinator_of(mission_of_two_kinds());
+  give(coordinator, hello_of_kind(0, 10, "slow"), at(0s));
+  EXPECT_TRUE(coordinator.roster().empty());
+  EXPECT_EQ(coordinator.unknown_kinds(),
+            (std::set<std::pair<std::string, std::string>>{
+                {"somewhere", "the mission has no kind \"slow\": its kinds are fast, fine"}}));
+  Coordinator of_alike = coordinator_of(small_mission(1));
+  give(of_alike, hello_of_kind(0, 10, "slow"), at(0s));
+  EXPECT_TRUE(of_alike.roster().empty());
+}
+
+TEST(CoordinatorAdmits, ASuccessorOfAnotherKindBesideItsPredecessorsEntry) {
+  Coordinator coordinator = running_coordinator(mission_of_two_kinds());
+  give(coordinator, hello_of_kind(0, 99, "fine"), at(60s));
+  ASSERT_EQ(coordinator.roster().size(), 5u);
+  for (const RosterEntry& entry : coordinator.roster()) {
+    const bool is_fine = entry.author.incarnation == 99 || entry.author.agent == 3;
+    EXPECT_EQ(entry.kind, is_fine ? 1 : 0) << entry.author.agent;
+  }
+}
+
 TEST(CoordinatorStarts, WhenTheQuorumIsThereAndNotBefore) {
   Mission mission = small_mission(4);
   mission.quorum = 3;

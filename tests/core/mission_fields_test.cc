@@ -44,6 +44,8 @@ class Count : public FieldVisitor {
   void duration(auto&&...) { ++fields; }
   void target(auto&&...) { ++fields; }
   void starts(auto&&...) { ++fields; }
+  void kinds(auto&&...) { ++fields; }
+  void kind_name(auto&&...) { ++fields; }
   void hidden_flag(auto&&...) { ++fields; }
 };
 
@@ -59,6 +61,7 @@ TEST(MissionFields, AreAllMembers) {
   EXPECT_EQ(listed<ControlLaw>(), members<ControlLaw>());
   EXPECT_EQ(listed<Timing>(), members<Timing>());
   EXPECT_EQ(listed<Mission>(), members<Mission>());
+  EXPECT_EQ(listed<AgentKind>(), members<AgentKind>());
   EXPECT_EQ(listed<Box>(), 3 * members<Box>());  // a vector each
   EXPECT_EQ(listed<Basis>(), members<Basis>());
   EXPECT_EQ(listed<VehicleLimits>(), members<VehicleLimits>());

@@ -106,16 +106,16 @@ TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
 }
 
 TEST(Codec, TwoCountsThatLieTogetherAreRefusedToo) {
-  // 45 bytes less of roster and 45 more of plan: the total size is right, only the meaning changes.
+  // 46 bytes less of roster and 46 more of plan: the total size is right, only the meaning changes.
   Bytes shifted = encoded(mission_part());
   put32(shifted, kSignatureEnd + 25, 1);
-  put32(shifted, kSignatureEnd + 29, 345);
+  put32(shifted, kSignatureEnd + 29, 346);
   const auto part = decoded_as<MissionPart>(retagged(shifted));
   EXPECT_EQ(part.roster.size(), 1u);
-  EXPECT_EQ(part.plan.size(), 345u);
+  EXPECT_EQ(part.plan.size(), 346u);
   // Beyond a limit a right total does not help.
   put32(shifted, kSignatureEnd + 25, 9);
-  put32(shifted, kSignatureEnd + 29, 300 - 7 * 45);
+  put32(shifted, kSignatureEnd + 29, 300 - 7 * 46);
   EXPECT_EQ(verdict(retagged(shifted)), "size");
 }
 

@@ -31,7 +31,9 @@ inline Header header_of_sender(AgentId sender) {
   return {kRun, sender, 0x8000000000000123, 4711, 123456789012};
 }
 
-inline Hello hello() { return {header_of_sender(kUnassigned), 7, "host.example", "0.1.0", 19}; }
+inline Hello hello() {
+  return {header_of_sender(kUnassigned), 7, "host.example", "0.1.0", 19, "fine"};
+}
 
 inline Signature a_signature() {
   Signature signature;
@@ -46,7 +48,7 @@ inline MissionPart mission_part() {
   m.state = MissionState::kRunning;
   m.part = 2;
   m.parts = 5;
-  m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, true, 300, 11}};
+  m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, true, 300, 11, 3}};
   for (int i = 0; i < 300; ++i) m.plan.push_back(static_cast<std::byte>(i * 7));
   m.reason = "because";
   m.signature = a_signature();

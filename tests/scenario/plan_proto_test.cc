@@ -23,8 +23,9 @@ void expect_all_said(const pb::Message& message) {
     const bool said =
         field->is_repeated() ? at.FieldSize(message, field) > 0 : at.HasField(message, field);
     EXPECT_TRUE(said) << field->full_name() << " is in no plan";
-    if (said && field->type() == pb::FieldDescriptor::TYPE_MESSAGE)
-      expect_all_said(at.GetMessage(message, field));
+    if (!said || field->type() != pb::FieldDescriptor::TYPE_MESSAGE) continue;
+    expect_all_said(field->is_repeated() ? at.GetRepeatedMessage(message, field, 0)
+                                         : at.GetMessage(message, field));
   }
 }
 

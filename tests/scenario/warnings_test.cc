@@ -3,6 +3,8 @@
 // steps too coarse for agents with a forecast.
 #include <gtest/gtest.h>
 
+#include "core/kinds.h"
+#include "scenario/footprint_reach.h"
 #include "tests/scenario/scenarios.h"
 
 namespace ergocast {
@@ -75,6 +77,45 @@ TEST(Warnings, OfCoarseStepsForAgentsThatLookAhead) {
       "u_max_mps is longer than 5 % of the shorter side, and in the long run a uniform target may "
       "be "
       "covered worse than without looking ahead (write at most 0.5, or law.anticipation: 0)\n");
+}
+
+std::string with_footprint(const std::string& sigma_m, const std::string& target_m) {
+  return "domain { size_x_m: 1000 size_y_m: 1000 } target { gaussians { mean_x_m: 450 mean_y_m: "
+         "550 sigma_m: " +
+         target_m +
+         " } } law { u_max_mps: 5 } time { duration_s: 60 } agents { kind { name: \"a\" "
+         "count: 2 footprint_sigma_m: " +
+         sigma_m + " } }";
+}
+
+TEST(Warnings, OfATargetThatIsFinerThanTheFootprints) {
+  // A Gaussian is reached exactly by every footprint that is narrower.
+  EXPECT_EQ(warnings_of(with_footprint("60", "80")), "");
+  EXPECT_EQ(warnings_of(with_footprint("80", "80")), "");
+  const std::string warning = warnings_of(with_footprint("160", "80"));
+  EXPECT_NE(warning.find("agents.kind: the target is finer than the sensors see"), warning.npos)
+      << warning;
+  EXPECT_NE(warning.find("write smaller footprints"), warning.npos) << warning;
+}
+
+TEST(Warnings, OfFootprintsStateAPhiThatNoCoverageComesMuchBelow) {
+  const Mission mission = good(with_footprint("160", "80")).mission();
+  const FootprintReach reach = footprint_reach(mission, 0);
+  EXPECT_GT(reach.low, 0.01 * reach.even);
+  EXPECT_LT(reach.high, 1.05 * reach.low) << "the bounds are close to each other";
+  const Sensors sensors(mission);
+  const Coefficients weights = sobolev_weights(mission.basis, mission.domain);
+  for (double x_m = 300; x_m <= 600; x_m += 25) {
+    for (double y_m = 400; y_m <= 700; y_m += 25) {
+      const Coefficients seen =
+          basis_values({x_m, y_m, 0}, mission.domain, mission.basis).cwiseProduct(sensors.of(0).g);
+      EXPECT_GE(ergodic_metric(seen, mission.target_coefficients, weights), 0.99 * reach.low);
+    }
+  }
+  // Where everything is in one place, nothing narrower can be seen.
+  const Coefficients there =
+      basis_values({450, 550, 0}, mission.domain, mission.basis).cwiseProduct(sensors.of(0).g);
+  EXPECT_LT(ergodic_metric(there, mission.target_coefficients, weights), 1.1 * reach.high);
 }
 
 TEST(Warnings, AreOfNoWeightForAPlan) {

@@ -207,6 +207,17 @@ const std::map<std::string, Rule>& rules() {
       {"Agents.random_count", may(spread(0.5, 20))},
       {"Agents.quorum", may(either(100, number(1, 24)))},  // of all at most: see agree()
       {"Agents.forget_silent_after_s", may(either(0, spread(1e-3, 10)))},
+      {"Agents.kind", many(0, 3)},
+      {"Kind.name", must(text({"a", "fast-1", "_b.C"}))},  // each once: see agree()
+      {"Kind.count", must(number(1, 3))},                  // of all as many as agents
+      {"Kind.u_max_mps", may(spread(2, 40))},
+      {"Kind.noise_intensity", may(spread(0.01, 2))},
+      {"Kind.noise_ceiling", may(spread(2, 20))},
+      {"Kind.footprint_sigma_m", may(spread(0.5, 40))},
+      {"Kind.quality", may(spread(0.1, 5))},
+      {"Kind.band", may(draw_block)},
+      {"Band.from", may(number(0, 4))},
+      {"Band.to", may(number(5, 20))},
       {"Start.x_m", must(kPlace)},
       {"Start.y_m", must(kPlace)},
       {"Start.z_m", must(kPlace)},
@@ -337,6 +348,18 @@ void agree_on_distance(proto::Scenario& scenario) {
   for (int i = 0; i < agents.starts_size(); ++i) agents.mutable_starts(i)->set_x_m(5 + 20 * i);
 }
 
+/// Names that differ, and counts that are the team: the last kind has whoever is left.
+void agree_on_kinds(int team, proto::Agents& agents) {
+  for (int i = 0; i < agents.kind_size(); ++i) {
+    proto::Kind& kind = *agents.mutable_kind(i);
+    kind.set_name(kind.name() + std::to_string(i));
+    const bool last = i + 1 == agents.kind_size() || team <= kind.count();
+    if (last) agents.mutable_kind()->DeleteSubrange(i + 1, agents.kind_size() - i - 1);
+    kind.set_count(last ? team : kind.count());
+    team -= kind.count();
+  }
+}
+
 /// Each kind has limits of its own. All but points need a speed limit and bodies that know each
 /// other, and a plane if they turn.
 void agree_on_vehicle(proto::Scenario& scenario) {
@@ -384,6 +407,7 @@ void agree(proto::Scenario& scenario) {
   proto::Agents& agents = *scenario.mutable_agents();
   const int team = agents.starts_size() + agents.random_count();
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));
+  agree_on_kinds(team, agents);
   if (scenario.has_vehicle()) agree_on_vehicle(scenario);
   if (scenario.has_separation()) agree_on_distance(scenario);
 }

@@ -192,6 +192,12 @@ TEST(Plan, OfTheLargestMissionFitsItsMessages) {
   mission.starts_m.clear();
   for (int i = 0; i < kMaxAgents; ++i)
     mission.starts_m.emplace_back(-2.5 + 2 * (i % 50), 8.5 + 2 * (i / 50), 0);
+  mission.kinds.resize(kMaxKinds, mission.kinds.front());
+  for (int i = 0; i < kMaxKinds; ++i) {
+    AgentKind& kind = mission.kinds[static_cast<std::size_t>(i)];
+    kind.name = std::string(kMaxKindNameLength - 1, 'x') + static_cast<char>('a' + i);
+    kind.count = kMaxAgents / kMaxKinds;
+  }
   mission.quorum = kMaxAgents;
   mission.timing.tick_count = 80'000'000;
   mission.timing.broadcast_period_ticks = mission.timing.catch_up_limit_ticks = 1000;

@@ -60,6 +60,8 @@ inline Mission rich_mission() {
   timing.catch_up_limit_ticks = 6;
   timing.contribution_encoding = ContributionEncoding::kFixed16;
   mission.starts_m = {{17, 20, 0}, {18, 21, 0}};
+  mission.kinds = {{"first", 1, 5.25, 0.5, 1.25, 2.5, 0.7, 1, 2.25},
+                   {"second-kind", 1, 4.75, 0.625, 1.375, 0, 1.3, 0.5, 0}};
   mission.quorum = 2;
   mission.forget_silent_after_s = 12;
   mission.goal_ergodic_metric = 0.03;

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rules of agents { kind }.
+#pragma once
+
+#include "scenario/checks.h"
+#include "scenario/scenario.pb.h"
+
+namespace ergocast {
+
+/// Reports kinds without a name or with another's, counts that are not the team, speeds and noise
+/// that the law could not have, footprints larger than the domain, bands without a mode.
+/// @pre each number was held against its limits
+void validate_kinds(const proto::Scenario& scenario, Checks& checks);
+
+}  // namespace ergocast
