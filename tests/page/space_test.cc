@@ -95,9 +95,9 @@ TEST_F(BoxInABrowser, ABoxHasItsAgentsTailsAndSlices) {
   js("ergocast.set('layer', 'achieved')");
   EXPECT_GT(distance(pixel("space", "view.project([15, 15, 990])"), wanted), 30);
 
-  // A tail: where agent 5 was five seconds ago.
+  // A tail: where agent 5 was four seconds ago.
   js("ergocast.S.slices[2] = null; ergocast.set('tail', 0)");
-  const std::string tail = "view.project(view.placeAt(S.run.track(5), 96))";
+  const std::string tail = "view.project(view.placeAt(S.run.track(5), 60))";
   const auto without = pixel("space", tail);
   js("ergocast.set('tail', 1)");
   EXPECT_GT(distance(pixel("space", tail), without), 60);
@@ -186,6 +186,33 @@ TEST_F(BoxInABrowser, WithoutWebGlThereAreProjections) {
         << name;
     screenshot(std::string("box_") + name);
   }
+  expect_no_errors();
+}
+
+TEST_F(BoxInABrowser, AFlatBoxIsDrawnHigher) {
+  open_report({"--duration", "60"}, "#view=xz", "water_column");
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
+  EXPECT_EQ(js("return ergocast.shown().stretch"), nlohmann::json::parse("[1, 5]"));
+  EXPECT_NE(js("return ergocast.svgText()").get<std::string>().find("z [m], drawn × 5"),
+            std::string::npos);
+  // There is more of it at the surface than at the bottom, and none at the land in the west.
+  const auto cells =
+      js("const { cells, width, height } = ergocast.shown().density, at = (u, v) => "
+         "cells[Math.floor(v * height) * width + Math.floor(u * width)];"
+         "return [at(0.5, 0.02), at(0.5, 0.9), at(0.03, 0.02)]");
+  EXPECT_GT(cells[0].get<int>(), 2 * cells[1].get<int>());
+  EXPECT_GT(cells[0].get<int>(), 2 * cells[2].get<int>());
+  // Heights of the record, above the box's floor at -60 m.
+  const auto place = recorded_place("100,10,1,");
+  EXPECT_NEAR(js("const t = ergocast.S.run.track(1); return t.z[100]").get<double>(), place[2] + 60,
+              0.01);
+  js("ergocast.draw(10)");
+  const auto drawn =
+      js("const { view, shown } = ergocast, t = shown().tracks.find(t => t.id === 1);"
+         "return view.at(t, 100)[1] - view.py(0)");
+  EXPECT_NEAR(drawn.get<double>(),
+              -js("return ergocast.view.scale").get<double>() * 5 * (place[2] + 60), 1);
+  screenshot("flat_xz");
   expect_no_errors();
 }
 
