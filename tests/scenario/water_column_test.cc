@@ -110,9 +110,9 @@ TEST_F(WaterColumnTest, HasItsAxesByName) {
   EXPECT_NE(said_of_column({}, "time_index: 1 x_axis: \"y\" y_axis: \"y\"")
                 .find("its axis y was named twice"),
             std::string::npos);
-  // What the file calls x is none when the scenario names another.
-  EXPECT_NE(said_of_column({}, "time_index: 1 x_axis: \"y\" y_axis: \"depth\"")
-                .find("has the axis x, which is none of x, y, z and time"),
+  // What the file calls z is none when the scenario names another.
+  EXPECT_NE(said_of_column({}, "time_index: 1 z_axis: \"y\"")
+                .find("has the axis depth, which is none of x, y, z and time"),
             std::string::npos);
 }
 
