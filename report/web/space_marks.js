@@ -26,8 +26,8 @@ function edgeFor(view, axis) {
   return best;
 }
 
-// "x [m]"; of heights that are drawn longer than they are, "z [m], drawn × 10".
-export const axisName = (size, axis) => `${nameOf(axis)} [m]${axis === 2 && stretchOf(size) > 1 ? `, drawn × ${stretchOf(size)}` : ''}`;
+// "x [m]"; of heights that are drawn longer than they are, "z [m] × 10".
+export const axisName = (size, axis) => `${nameOf(axis)} [m]${axis === 2 && stretchOf(size) > 1 ? ` × ${stretchOf(size)}` : ''}`;
 
 function paintAxis(g, run, view, axis, colours) {
   const { size } = view, edge = edgeFor(view, axis), labels = [];

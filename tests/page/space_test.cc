@@ -193,7 +193,7 @@ TEST_F(BoxInABrowser, AFlatBoxIsDrawnHigher) {
   open_report({"--duration", "60"}, "#view=xz", "water_column");
   EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 1e-3);
   EXPECT_EQ(js("return ergocast.shown().stretch"), nlohmann::json::parse("[1, 5]"));
-  EXPECT_NE(js("return ergocast.svgText()").get<std::string>().find("z [m], drawn × 5"),
+  EXPECT_NE(js("return ergocast.svgText()").get<std::string>().find("z [m] × 5"),
             std::string::npos);
   // There is more of it at the surface than at the bottom, and none at the land in the west.
   const auto cells =
