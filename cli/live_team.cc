@@ -8,7 +8,6 @@
 
 #include "cli/team_text.h"
 #include "report/page.h"
-#include "target/rectangle.h"
 
 namespace ergocast {
 namespace {
@@ -34,7 +33,7 @@ LiveTeam::LiveTeam(RunId run, Instant since, bool authenticated, bool replay)
 
 void LiveTeam::begin(const Mission& mission, const Field& density) {
   if (grid_) return;
-  grid_.emplace(base_of(mission.domain), mission.starts_m.size());
+  grid_.emplace(mission.domain, mission.starts_m.size());
   mission_ = page_mission(mission, density);
 }
 
@@ -50,7 +49,7 @@ void LiveTeam::on(const WorldState& world) {
   if (!grid_) return;
   for (std::int32_t i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    grid_->put(vehicle.id, world.header.tick, vehicle.position_m.head<2>());
+    grid_->put(vehicle.id, world.header.tick, vehicle.position_m);
   }
 }
 

@@ -19,19 +19,21 @@ constexpr double kMostCells = 128;                 // along the longer side of a
 constexpr double kFewestCells = kMaxModesPerAxis;  // so that modes do not alias
 
 /// The largest box of the proportions of `size` in kSide × `width`; never thinner than what can
-/// carry labels.
-Area fitted(double top, double width, const Eigen::Vector2d& size) {
+/// carry labels, nor lower than `lowest`.
+Area fitted(double top, double width, const Eigen::Vector2d& size, double lowest = 0) {
   constexpr double kThinnest = 60;
   const double scale = std::min(width / size.x(), kSide / size.y());
   return {kRoomLeft, top, std::max(size.x() * scale, kThinnest),
-          std::max(size.y() * scale, kThinnest)};
+          std::max({size.y() * scale, kThinnest, lowest})};
 }
 
 /// Maps of long domains get a row of their own.
 bool long_domain(const Rectangle& domain) { return domain.size_m.x() > 2 * domain.size_m.y(); }
 
-Area map_area(double top, const Rectangle& domain) {
-  return fitted(top, long_domain(domain) ? kWholeRow : kSide, domain.size_m);
+/// The heights of a flat box fill a quarter of its length.
+Area map_area(double top, const Rectangle& domain, const View& view) {
+  const double width = long_domain(domain) ? kWholeRow : kSide;
+  return fitted(top, width, domain.size_m, view.up == 2 ? width / 4 : 0);
 }
 
 Axis across_axis(const Rectangle& domain, const View& view) {
@@ -198,7 +200,7 @@ Axis difference_axis(const PlaneCoefficients& difference) {
 Figure trajectories_figure(const RunData& run, const Mission& mission, const Field& target,
                            const View& view) {
   const Rectangle domain = base_of(mission.domain);
-  const Area area = map_area(kLegend, domain);
+  const Area area = map_area(kLegend, domain, view);
   Svg svg(area.right() + kBar, area.bottom() + kRoomBelow, "trajectories", "Trajectories");
   Plot plot(svg, area, across_axis(domain, view), up_axis(domain, view));
 
@@ -228,7 +230,7 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission, con
   const double peak = target.maxCoeff();
   const double brightest = std::clamp(achieved.maxCoeff(), peak, 1.5 * peak);
 
-  const Area first = map_area(kTitled, domain);
+  const Area first = map_area(kTitled, domain, view);
   const Area second = long_domain(domain)
                           ? Area{first.left, first.bottom() + kGap, first.width, first.height}
                           : Area{first.right() + kGap, first.top, first.width, first.height};

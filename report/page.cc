@@ -12,7 +12,6 @@
 #include "report/markup.h"
 #include "report/track_grid.h"
 #include "report/web_page.h"
-#include "target/rectangle.h"
 
 namespace ergocast {
 namespace {
@@ -24,11 +23,6 @@ Json rounded_list(const Values& values, int digits = 6) {
   Json list = Json::array();
   for (const double value : values) list.push_back(page_number(value, digits));
   return list;
-}
-
-/// The modes without z, x by x.
-std::vector<double> planar(const Coefficients& coefficients, const Basis& basis) {
-  return {coefficients.data(), coefficients.data() + basis.modes_x * basis.modes_y};
 }
 
 std::string point_text(const Eigen::Vector2d& x_m) {
@@ -92,8 +86,8 @@ Json conventions(const Mission& mission) {
   };
   if (!mission.domain.planar()) {
     add("view",
-        "from above: the maps are averages along z, and the modes those without waves "
-        "along z; figures/ has the other two views");
+        "slices are what the modes say of their plane; xy, xz and yz are averages along the third "
+        "axis");
   }
   add("metric", std::string("φ² = Σ λₖ (cₖ − μₖ)²") + (basis.normalized ? " / hₖ²" : ""));
   add("weights", weights_text(basis));
@@ -162,7 +156,7 @@ Json metrics(const RunData& run) {
           {"age", std::move(age)}, {"received", std::move(received)}, {"lost", std::move(lost)}};
 }
 
-/// What a place of each kind adds to the sums of the modes without z: quality and q g.
+/// What a place of each kind adds to the sums: quality and q g.
 Json seen(const Mission& mission, const Sensors& sensors) {
   Json list = Json::array();
   for (std::size_t i = 0; i < mission.kinds.size(); ++i) {
@@ -171,7 +165,7 @@ Json seen(const Mission& mission, const Sensors& sensors) {
     if (sensor.g.size() > 0) share = share.cwiseProduct(sensor.g);
     list.push_back({{"count", mission.kinds[i].count},
                     {"quality", sensor.quality},
-                    {"qg", rounded_list(planar(share, mission.basis))}});
+                    {"qg", rounded_list(share)}});
   }
   return list;
 }
@@ -184,14 +178,17 @@ std::string title_of(const Mission& mission) {
 
 Json page_mission(const Mission& mission, const Field& density) {
   const Basis& basis = mission.basis;
-  const Rectangle domain = base_of(mission.domain);
+  const Box& domain = mission.domain;
+  const int axes = domain.planar() ? 2 : 3;
+  Json modes = {basis.modes_x, basis.modes_y};
+  if (axes == 3) modes.push_back(basis.modes_z);
   Json page = {{"name", title_of(mission)},
                {"seed", std::to_string(mission.seed)},
-               {"origin_m", rounded_list(domain.origin_m, 12)},
-               {"size_m", rounded_list(domain.size_m, 12)},
-               {"modes", {basis.modes_x, basis.modes_y}},
-               {"target", rounded_list(planar(mission.target_coefficients, basis))},
-               {"weights", rounded_list(planar(sobolev_weights(basis, mission.domain), basis))},
+               {"origin_m", rounded_list(domain.origin_m.head(axes), 12)},
+               {"size_m", rounded_list(domain.size_m.head(axes), 12)},
+               {"modes", std::move(modes)},
+               {"target", rounded_list(mission.target_coefficients)},
+               {"weights", rounded_list(sobolev_weights(basis, domain))},
                {"dt_s", mission.timing.dt_s},
                {"tick_count", mission.timing.tick_count},
                {"agents", mission.starts_m.size()},
@@ -207,9 +204,9 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
                  const Field& density, const Json& team) {
   Tick ticks = 0;
   for (const auto& [agent, track] : run.tracks) ticks = std::max(ticks, track.back().tick + 1);
-  TrackGrid grid(base_of(mission.domain), run.tracks.size());
+  TrackGrid grid(mission.domain, run.tracks.size());
   for (const auto& [agent, track] : run.tracks) {
-    for (const TrackPoint& point : track) grid.put(agent, point.tick, point.x_m.head<2>());
+    for (const TrackPoint& point : track) grid.put(agent, point.tick, point.x_m);
   }
   const auto law = fit_last_decade(run);
   return {{"mission", page_mission(mission, density)},

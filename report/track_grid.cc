@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t kSmallTeam = 12;
 
+int axes_of(const Box& domain) { return domain.planar() ? 2 : 3; }
+
 void append_number(std::string& bytes, std::int64_t value) {
   auto zigzag = static_cast<std::uint64_t>(value) << 1 ^ (value < 0 ? ~std::uint64_t{0} : 0);
   for (; zigzag > 127; zigzag >>= 7) bytes += static_cast<char>(zigzag | 128);
@@ -22,7 +24,7 @@ void append_number(std::string& bytes, std::int64_t value) {
 
 }  // namespace
 
-TrackGrid::TrackGrid(const Rectangle& domain, std::size_t agents)
+TrackGrid::TrackGrid(const Box& domain, std::size_t agents)
     : domain_(domain), bits_(agents > kSmallTeam ? 13 : 14) {}
 
 void TrackGrid::coarsen() {
@@ -34,7 +36,7 @@ void TrackGrid::coarsen() {
   }
 }
 
-void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
+void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   if (tick < 0) return;
   const auto agents = static_cast<std::int64_t>(tracks_.size() + (tracks_.contains(agent) ? 0 : 1));
   // Before the tracks grow: a damaged record may name any tick.
@@ -42,9 +44,9 @@ void TrackGrid::put(AgentId agent, Tick tick, const Eigen::Vector2d& x_m) {
   if (tick % stride_ != 0) return;
   const std::int64_t row = tick / stride_, full = (1 << bits_) - 1;
   std::vector<Cell>& track = tracks_[agent];
-  if (std::ssize(track) <= row) track.resize(static_cast<std::size_t>(row) + 1, {kNothing, 0});
+  if (std::ssize(track) <= row) track.resize(static_cast<std::size_t>(row) + 1, {kNothing, 0, 0});
   Cell& cell = track[static_cast<std::size_t>(row)];
-  for (const int axis : {0, 1}) {
+  for (int axis = 0; axis < axes_of(domain_); ++axis) {
     // A record may say anything; what is far outside is drawn at the edge of twice the domain.
     const double share = (x_m[axis] - domain_.origin_m[axis]) / domain_.size_m[axis];
     cell[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(
@@ -68,10 +70,10 @@ nlohmann::ordered_json TrackGrid::encode(std::int64_t from, std::int64_t to) con
       while (row < end && at(row)[0] != kNothing) ++row;
       runs.push_back(first);
       runs.push_back(row - first);
-      for (const std::size_t axis : {0U, 1U}) {
+      for (int axis = 0; axis < axes_of(domain_); ++axis) {
         std::int64_t before = 0, before_that = 0;
         for (std::int64_t k = first; k < row; ++k) {
-          const std::int64_t value = at(k)[axis];
+          const std::int64_t value = at(k)[static_cast<std::size_t>(axis)];
           append_number(bytes, value - 2 * before + before_that);
           before_that = before;
           before = value;

@@ -9,8 +9,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "core/geometry.h"
 #include "core/ids.h"
-#include "target/rectangle.h"
 
 namespace ergocast {
 
@@ -21,30 +21,30 @@ class TrackGrid {
   static constexpr std::int64_t kMostPositions = 400'000;
 
   /// @param agents  as many as are planned; others may come
-  TrackGrid(const Rectangle& domain, std::size_t agents);
+  TrackGrid(const Box& domain, std::size_t agents);
 
   Tick stride() const { return stride_; }
   /// One more than the last row with a position.
   std::int64_t rows() const { return rows_; }
   /// Ticks between rows are left out. The newest position of a tick counts.
-  void put(AgentId agent, Tick tick, const Eigen::Vector2d& x_m);
+  void put(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
 
   /// The rows [from, to) for the page, which reads them in web/tracks.js:
   ///   {"bits": b, "agents": [{"id": i, "runs": [first row, number of rows, …]}, …], "data":
   ///   base64}
   /// A coordinate is a whole number, from 0 at the domain's origin to 2^b − 1 at its end. `data`
-  /// has for each agent and each of its runs all x, then all y: second differences, the first two
-  /// of them as if zeros preceded, in zigzag order as variable-length bytes, the lowest seven bits
-  /// first.
+  /// has for each agent and each of its runs all x, then all y, in a box then all z: second
+  /// differences, the first two of them as if zeros preceded, in zigzag order as variable-length
+  /// bytes, the lowest seven bits first.
   nlohmann::ordered_json encode(std::int64_t from, std::int64_t to) const;
 
  private:
-  using Cell = std::array<std::int32_t, 2>;
+  using Cell = std::array<std::int32_t, 3>;
   static constexpr std::int32_t kNothing = INT32_MIN;
 
   void coarsen();
 
-  Rectangle domain_;
+  Box domain_;
   Tick stride_ = 1;
   int bits_;
   std::int64_t rows_ = 0;

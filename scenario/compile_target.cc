@@ -114,9 +114,12 @@ class TargetCompiler {
   }
 
   void voxels(const proto::Voxels& written, const std::string& path) {
-    auto opened = NetcdfGrid::open(
-        written.file(), written.variable(),
-        written.has_time_index() ? std::optional<int>(written.time_index()) : std::nullopt);
+    NetcdfChoice choice{
+        written.variable(),
+        std::nullopt,
+        {written.x_axis(), written.y_axis(), written.z_axis(), written.time_axis()}};
+    if (written.has_time_index()) choice.time_index = written.time_index();
+    auto opened = NetcdfGrid::open(written.file(), choice);
     if (const auto* problem = std::get_if<MapProblem>(&opened))
       return checks_.problem(path, problem->what, problem->remedy);
     NetcdfGrid& grid = *std::get<0>(opened);

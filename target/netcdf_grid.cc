@@ -28,7 +28,8 @@ class Grid : public NetcdfGrid {
  public:
   explicit Grid(std::shared_ptr<NetcdfFile> file) : file_(std::move(file)) {}
 
-  std::optional<MapProblem> prepare(const std::string& name, std::optional<int> time_index) {
+  std::optional<MapProblem> prepare(const NetcdfChoice& choice) {
+    const std::string& name = choice.variable;
     place_ = file_->name().string() + ": " + name;
     const auto found = file_->variable(name);
     if (!found) {
@@ -38,7 +39,8 @@ class Grid : public NetcdfGrid {
     variable_ = *found;
     if (!file_->holds_numbers(variable_))
       return MapProblem{place_ + " holds no numbers", "write one of its other variables"};
-    if (auto problem = find_axes(time_index)) return problem;
+    if (auto problem = check_names(choice.dimensions)) return problem;
+    if (auto problem = find_axes(choice)) return problem;
     if (auto problem = check_size()) return problem;
     for (int axis = 0; axis < 2; ++axis) {
       if (auto problem = lay_out(axis)) return problem;
@@ -74,16 +76,44 @@ class Grid : public NetcdfGrid {
   }
 
  private:
-  /// Which dimension is x, y and z; one of time is left at `time_index`.
-  std::optional<MapProblem> find_axes(std::optional<int> time_index) {
+  /// Whether each dimension that was named exists, and once.
+  std::optional<MapProblem> check_names(const std::array<std::string, 4>& names) const {
+    std::vector<std::string> there;
+    for (const auto& dimension : file_->dimensions(variable_)) there.push_back(dimension.name);
+    for (const std::string& name : names) {
+      if (name.empty()) continue;
+      if (std::find(there.begin(), there.end(), name) == there.end())
+        return MapProblem{place_ + " has no axis " + name, "write one of " + listed(there)};
+      if (std::count(names.begin(), names.end(), name) > 1)
+        return MapProblem{place_ + ": its axis " + name + " was named twice",
+                          "name each axis for one of x, y, z and time"};
+    }
+    return std::nullopt;
+  }
+
+  /// By the scenario where it names the dimension or another one of that kind, else by the file.
+  AxisKind kind_by(const NetcdfChoice& choice, const std::string& dimension) const {
+    constexpr std::array kKinds = {AxisKind::kX, AxisKind::kY, AxisKind::kZ, AxisKind::kTime};
+    const auto& names = choice.dimensions;
+    const auto named = std::find(names.begin(), names.end(), dimension);
+    if (named != names.end()) return kKinds[static_cast<std::size_t>(named - names.begin())];
+    const AxisKind kind = kind_of(*file_, dimension);
+    const auto by_file = std::find(kKinds.begin(), kKinds.end(), kind);
+    const bool taken = by_file != kKinds.end() &&
+                       !names[static_cast<std::size_t>(by_file - kKinds.begin())].empty();
+    return taken ? AxisKind::kOther : kind;
+  }
+
+  /// Which dimension is x, y and z; one of time is left at the index of the choice.
+  std::optional<MapProblem> find_axes(const NetcdfChoice& choice) {
     const auto dimensions = file_->dimensions(variable_);
     start_.assign(dimensions.size(), 0);
     count_.assign(dimensions.size(), 1);
     std::array<bool, 3> known{};
     for (std::size_t i = 0; i < dimensions.size(); ++i) {
-      const AxisKind kind = kind_of(*file_, dimensions[i].name);
+      const AxisKind kind = kind_by(choice, dimensions[i].name);
       if (kind == AxisKind::kTime) {
-        if (auto problem = choose_time(i, dimensions[i], time_index)) return problem;
+        if (auto problem = choose_time(i, dimensions[i], choice.time_index)) return problem;
         continue;
       }
       const auto axis = static_cast<std::size_t>(kind);
@@ -91,7 +121,8 @@ class Grid : public NetcdfGrid {
         if (dimensions[i].length == 1) continue;
         return MapProblem{
             place_ + " has the axis " + dimensions[i].name + ", which is none of x, y, z and time",
-            "give its coordinate variable an attribute axis: X, Y, Z or T"};
+            "write its name as x_axis, y_axis, z_axis or time_axis, or give its coordinate "
+            "variable an attribute axis: X, Y, Z or T"};
       }
       if (dimensions[i].length > static_cast<std::size_t>(kMaxMapSide)) {
         return too_many(dimensions[i].length, std::string(" cells along ") + "xyz"[axis],
@@ -106,7 +137,8 @@ class Grid : public NetcdfGrid {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (known[axis]) continue;
       return MapProblem{place_ + " has no axis " + "xyz"[axis],
-                        "give its coordinate variable an attribute axis: X, Y or Z"};
+                        std::string("write the name of its dimension as ") + "xyz"[axis] +
+                            "_axis, or give its coordinate variable an attribute axis"};
     }
     count_[dimension_[0]] = axes_[0].cells.size();
     return std::nullopt;
@@ -183,11 +215,11 @@ class Grid : public NetcdfGrid {
 }  // namespace
 
 std::variant<std::unique_ptr<NetcdfGrid>, MapProblem> NetcdfGrid::open(
-    const std::filesystem::path& file, const std::string& variable, std::optional<int> time_index) {
+    const std::filesystem::path& file, const NetcdfChoice& choice) {
   auto opened = NetcdfFile::open(file);
   if (auto* problem = std::get_if<MapProblem>(&opened)) return std::move(*problem);
   auto grid = std::make_unique<Grid>(std::get<0>(std::move(opened)));
-  if (auto problem = grid->prepare(variable, time_index)) return std::move(*problem);
+  if (auto problem = grid->prepare(choice)) return std::move(*problem);
   return grid;
 }
 

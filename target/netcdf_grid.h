@@ -2,6 +2,7 @@
 // A density on the cells of a grid in space, from a NetCDF file with CF conventions.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -19,15 +20,21 @@ namespace ergocast {
 /// More cells take minutes to read.
 inline constexpr std::size_t kMostVoxels = std::size_t{1} << 28;
 
+/// What to read of a file.
+struct NetcdfChoice {
+  std::string variable;
+  std::optional<int> time_index;            ///< of several times; the first is 0
+  std::array<std::string, 4> dimensions{};  ///< x, y, z and time by name; empty: by CF
+};
+
 /// Reads rows one by one, so that a grid of any size needs the memory of a row and of one of the
 /// file's chunks, at most 64 MiB.
 class NetcdfGrid {
  public:
-  /// The variable of this name: its axes are x, y, z and perhaps time (target/netcdf_axis.h); x and
-  /// y are evenly spaced. `time_index` chooses one of several times, the first is 0.
+  /// The variable's axes are x, y, z and perhaps time (target/netcdf_axis.h); x and y are evenly
+  /// spaced.
   static std::variant<std::unique_ptr<NetcdfGrid>, MapProblem> open(
-      const std::filesystem::path& file, const std::string& variable,
-      std::optional<int> time_index);
+      const std::filesystem::path& file, const NetcdfChoice& choice);
 
   virtual ~NetcdfGrid() = default;
   NetcdfGrid(const NetcdfGrid&) = delete;

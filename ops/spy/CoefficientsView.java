@@ -35,8 +35,10 @@ final class CoefficientsView extends Picture {
 
   @Override
   void draw(Graphics2D g, Team team) {
-    String aboveOnly = team.plan.modesZ == 1 ? "" : " without waves along z";
-    headline(g, "Coefficients of the " + team.plan.modesX + " × " + team.plan.modesY + " modes" + aboveOnly,
+    String aboveOnly = team.plan.inBox() ? " without waves along z" : "";
+    headline(g,
+        "Coefficients of the " + team.plan.modes[0] + " × " + team.plan.modes[1] + " modes"
+            + aboveOnly,
         "m to the right, n upwards; sums divided by the time they cover; grey: not heard", LEFT);
     List<Tile> tiles = tiles(team);
     int width = Math.max(20, getWidth() - LEFT - RIGHT);
@@ -85,13 +87,15 @@ final class CoefficientsView extends Picture {
   }
 
   private static void drawTile(Graphics2D g, Tile tile, Plan plan, Rectangle area) {
-    BufferedImage image = new BufferedImage(plan.modesX, plan.modesY, BufferedImage.TYPE_INT_RGB);
-    for (int m = 0; m < plan.modesX; ++m) {
-      for (int n = 0; n < plan.modesY; ++n) {
-        double c = Math.abs(tile.coefficients[m * plan.modesY + n]);
+    int across = plan.modes[0];
+    int up = plan.modes[1];
+    BufferedImage image = new BufferedImage(across, up, BufferedImage.TYPE_INT_RGB);
+    for (int m = 0; m < across; ++m) {
+      for (int n = 0; n < up; ++n) {
+        double c = Math.abs(tile.coefficients[m * up + n]);
         double level = 1 - Math.log10(Math.max(c, FAINTEST)) / Math.log10(FAINTEST);
         int color = Double.isFinite(c) ? Colors.viridis(level) : Colors.UNKNOWN.getRGB();
-        image.setRGB(m, plan.modesY - 1 - n, color);
+        image.setRGB(m, up - 1 - n, color);
       }
     }
     g.drawImage(image, area.x, area.y, area.width, area.height, null);

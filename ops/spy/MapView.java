@@ -14,25 +14,38 @@ import java.awt.image.BufferedImage;
 import java.util.Arrays;
 import java.util.Map;
 
-/** The target in grey, and on it each agent with its track. */
+/** The target in grey, and on it each agent with its track, seen along one axis. */
 final class MapView extends Picture {
+  private static final String[] AXES = {"x", "y", "z"};
   private static final int CELLS = 200;
   private static final int LEFT = 72, TOP = 58, RIGHT = 84, BOTTOM = 50; // around the map [pixels]
   private static final int MOST_POINTS = 24000; // drawn, of all tracks together
   private static final int RECENT = 200; // last points of a track, drawn strongly
   private static final float RADIUS = 6;
 
+  private final int across, up; // the axes that are seen; x and y in a plane
   private Plan drawnPlan;
   private BufferedImage target;
   private double densest;
 
   MapView(Team team) {
+    this(team, 0, 1);
+  }
+
+  MapView(Team team, int across, int up) {
     super(team);
+    this.across = across;
+    this.up = up;
+  }
+
+  /** Whether a mission in a box was drawn. */
+  boolean inBox() {
+    return drawnPlan != null && drawnPlan.inBox();
   }
 
   /** The width that a map of this height can use. */
   int widthFor(int height) {
-    double aspect = drawnPlan == null ? 1 : drawnPlan.sizeX / drawnPlan.sizeY;
+    double aspect = drawnPlan == null ? 1 : drawnPlan.size[across] / drawnPlan.size[up];
     return LEFT + RIGHT + (int) Math.min(10000, (height - TOP - BOTTOM) * aspect);
   }
 
@@ -41,10 +54,10 @@ final class MapView extends Picture {
     Plan plan = team.plan;
     if (plan != drawnPlan) drawTarget(plan);
     Axes axes = axes(plan);
-    headline(g, "Target and team",
-        "grey: the target of " + plan.modesX + " × " + plan.modesY
-            + " modes, 0 where they make it negative"
-            + (plan.modesZ == 1 ? "" : "; seen from above, averages along z"),
+    String modes = plan.modes[0] + " × " + plan.modes[1] + (plan.inBox() ? " × " + plan.modes[2] : "");
+    headline(g, plan.inBox() ? "Target and team along " + AXES[3 - across - up] : "Target and team",
+        plan.inBox() ? "grey: the average of the target of " + modes + " modes"
+                     : "grey: the target of " + modes + " modes, 0 where they make it negative",
         LEFT);
     g.setRenderingHint(
         RenderingHints.KEY_INTERPOLATION, RenderingHints.VALUE_INTERPOLATION_BILINEAR);
@@ -64,7 +77,8 @@ final class MapView extends Picture {
   }
 
   private void drawTarget(Plan plan) {
-    double[][] density = CosineSeries.density(plan.target, plan.modesX, plan.modesY, CELLS);
+    double[][] density = CosineSeries.density(
+        plan.seen(plan.target, across, up), plan.modes[across], plan.modes[up], CELLS);
     densest = Arrays.stream(density).flatMapToDouble(Arrays::stream).max().orElse(1);
     target = new BufferedImage(CELLS, CELLS, BufferedImage.TYPE_INT_RGB);
     for (int i = 0; i < CELLS; ++i) {
@@ -75,19 +89,25 @@ final class MapView extends Picture {
     drawnPlan = plan;
   }
 
-  /** The largest axes with equal scales; a very narrow domain fills the available area instead. */
+  /** The largest axes with equal scales; but a flat box is drawn at least a quarter as high. */
   private Axes axes(Plan plan) {
     int width = Math.max(20, getWidth() - LEFT - RIGHT);
     int height = Math.max(20, getHeight() - TOP - BOTTOM);
-    double scale = Math.min(width / plan.sizeX, height / plan.sizeY);
-    width = Math.max(20, (int) (scale * plan.sizeX));
-    height = Math.max(20, (int) (scale * plan.sizeY));
-    return new Axes(new Rectangle(LEFT, TOP, width, height),
-        new Axes.Scale("x [m]", plan.originX, plan.originX + plan.sizeX, false),
-        new Axes.Scale("y [m]", plan.originY, plan.originY + plan.sizeY, false));
+    double most = height;
+    double scale = Math.min(width / plan.size[across], height / plan.size[up]);
+    width = Math.max(20, (int) (scale * plan.size[across]));
+    height = Math.max(20, (int) (scale * plan.size[up]));
+    if (up == 2) height = (int) Math.max(height, Math.min(most, width / 4.0));
+    return new Axes(
+        new Rectangle(LEFT, TOP, width, height), scale(plan, across), scale(plan, up));
   }
 
-  private static void drawTrack(Graphics2D g, Axes axes, int id, Team.Agent agent, int points) {
+  private static Axes.Scale scale(Plan plan, int axis) {
+    double low = plan.origin[axis];
+    return new Axes.Scale(AXES[axis] + " [m]", low, low + plan.size[axis], false);
+  }
+
+  private void drawTrack(Graphics2D g, Axes axes, int id, Team.Agent agent, int points) {
     int end = agent.track.size();
     g.setColor(Colors.agent(id));
     g.setComposite(AlphaComposite.getInstance(AlphaComposite.SRC_OVER, 0.5f));
@@ -96,26 +116,26 @@ final class MapView extends Picture {
     g.setComposite(AlphaComposite.SrcOver);
     g.setStroke(new BasicStroke(2));
     Path2D recent = path(axes, agent, Math.max(0, end - RECENT), end);
-    if (end > 0) recent.lineTo(axes.pixelX(agent.x), axes.pixelY(agent.y));
+    if (end > 0) recent.lineTo(axes.pixelX(agent.place[across]), axes.pixelY(agent.place[up]));
     g.draw(recent);
   }
 
   /** Points begin to end of an agent's track, both inclusive if they exist. */
-  private static Path2D path(Axes axes, Team.Agent agent, int begin, int end) {
+  private Path2D path(Axes axes, Team.Agent agent, int begin, int end) {
     Path2D path = new Path2D.Double();
     for (int i = begin; i <= end && i < agent.track.size(); ++i) {
-      double x = axes.pixelX(agent.track.x(i));
-      double y = axes.pixelY(agent.track.y(i));
+      double x = axes.pixelX(agent.track.at(across, i));
+      double y = axes.pixelY(agent.track.at(up, i));
       if (i == begin) path.moveTo(x, y);
       path.lineTo(x, y);
     }
     return path;
   }
 
-  private static void drawAgent(Graphics2D g, Axes axes, int id, Team.Agent agent, int agents) {
+  private void drawAgent(Graphics2D g, Axes axes, int id, Team.Agent agent, int agents) {
     if (agent.tick < 0) return;
-    float x = (float) axes.pixelX(agent.x);
-    float y = (float) axes.pixelY(agent.y);
+    float x = (float) axes.pixelX(agent.place[across]);
+    float y = (float) axes.pixelY(agent.place[up]);
     Shape disc = new Ellipse2D.Float(x - RADIUS, y - RADIUS, 2 * RADIUS, 2 * RADIUS);
     g.setStroke(new BasicStroke(1.5f));
     g.setColor(Colors.agent(id));

@@ -14,12 +14,11 @@ final class Plan {
   static final long MAX_TICKS = 100000000;
 
   final String name;
-  final double originX, originY, sizeX, sizeY; // [m]
+  final double[] origin = new double[3], size = new double[3]; // [m]; a plane has no height
   final double dt, duration; // [s]
   final long lastTick;
-  final int modesX, modesY;
-  final int modesZ; // 1 in a plane
-  final double[] target; // mu, (l * modesX + m) * modesY + n
+  final int[] modes = {1, 1, 1}; // along x, y and z; 1 along z in a plane
+  final double[] target; // mu, (l * modes[0] + m) * modes[1] + n
 
   /**
    * Reads Protobuf's wire format, with the numbers of team/plan.proto. A number that is not there
@@ -33,23 +32,48 @@ final class Plan {
     Map<Integer, ByteBuffer> basis = fields(plan.get(5));
     Map<Integer, ByteBuffer> timing = fields(plan.get(8));
     name = StandardCharsets.UTF_8.decode(plan.get(2)).toString();
-    originX = number(domain, 1, -1e13, 1e13);
-    originY = number(domain, 2, -1e13, 1e13);
-    sizeX = number(domain, 3, 1e-6, 1e9);
-    sizeY = number(domain, 4, 1e-6, 1e9);
-    modesX = modes(basis, 1);
-    modesY = modes(basis, 2);
-    modesZ = basis.containsKey(6) ? modes(basis, 6) : 1;
+    for (int axis = 0; axis < 2; ++axis) {
+      origin[axis] = number(domain, 1 + axis, -1e13, 1e13);
+      size[axis] = number(domain, 3 + axis, 1e-6, 1e9);
+      modes[axis] = modes(basis, 1 + axis);
+    }
+    if (basis.containsKey(6)) {
+      origin[2] = number(domain, 5, -1e13, 1e13);
+      size[2] = number(domain, 6, 1e-6, 1e9);
+      modes[2] = modes(basis, 6);
+    }
+    int count = modes[0] * modes[1] * modes[2];
     dt = number(timing, 1, 1e-9, 1e6);
     lastTick = varint(timing.get(2));
     require(lastTick >= 1 && lastTick <= MAX_TICKS);
     duration = lastTick * dt;
     ByteBuffer coefficients = plan.get(6);
-    require(name.length() <= 64 && modesX * modesY * modesZ <= MAX_MODES_TOGETHER);
-    require(coefficients.remaining() == 8 * modesX * modesY * modesZ);
-    target = new double[modesX * modesY * modesZ];
+    require(name.length() <= 64 && count <= MAX_MODES_TOGETHER);
+    require(coefficients.remaining() == 8 * count);
+    target = new double[count];
     for (int k = 0; k < target.length; ++k)
       target[k] = within(coefficients.getDouble(), -1.001, 1.001);
+  }
+
+  boolean inBox() {
+    return size[2] > 0;
+  }
+
+  /**
+   * The averages of a field with these coefficients along the axis that is not seen, as
+   * coefficients at m * modes[up] + n; m counts waves along the axis across.
+   */
+  double[] seen(double[] coefficients, int across, int up) {
+    double[] seen = new double[modes[across] * modes[up]];
+    int[] wave = new int[3];
+    for (int m = 0; m < modes[across]; ++m) {
+      for (int n = 0; n < modes[up]; ++n) {
+        wave[across] = m;
+        wave[up] = n;
+        seen[m * modes[up] + n] = coefficients[(wave[2] * modes[0] + wave[0]) * modes[1] + wave[1]];
+      }
+    }
+    return seen;
   }
 
   /** The values of a message's fields by number: the last of each, as bytes still to be read. */

@@ -26,7 +26,7 @@ final class Team {
   /** One agent's track and the metric that it reports. */
   static final class Agent {
     final History track = new History();
-    double x, y; // newest [m]
+    final double[] place = new double[3]; // newest [m]
     long tick = -1; // of the newest position
     double metric = Double.NaN;
     long metricTick = -1;
@@ -111,13 +111,11 @@ final class Team {
     if (!isUnderWay(message.header)) return;
     for (ergocast.vehicle_t vehicle : message.vehicles) {
       Agent agent = agent(vehicle.vehicle_id);
-      double x = vehicle.position_m[0];
-      double y = vehicle.position_m[1];
-      if (agent == null || !isInside(x, y) || message.header.tick < agent.tick) continue;
-      agent.x = x;
-      agent.y = y;
+      double[] place = vehicle.position_m;
+      if (agent == null || !isInside(place) || message.header.tick < agent.tick) continue;
+      System.arraycopy(place, 0, agent.place, 0, 3);
       agent.tick = message.header.tick;
-      agent.track.add(agent.tick, x, y);
+      agent.track.add(agent.tick, place);
     }
     tick = Math.max(tick, message.header.tick);
   }
@@ -188,11 +186,14 @@ final class Team {
     return run != 0;
   }
 
-  private boolean isInside(double x, double y) {
-    double slackX = plan.sizeX / 100;
-    double slackY = plan.sizeY / 100;
-    return x >= plan.originX - slackX && x <= plan.originX + plan.sizeX + slackX
-        && y >= plan.originY - slackY && y <= plan.originY + plan.sizeY + slackY;
+  /** A plane's z is not looked at. */
+  private boolean isInside(double[] place) {
+    boolean inside = true;
+    for (int axis = 0; axis < (plan.inBox() ? 3 : 2); ++axis) {
+      double share = (place[axis] - plan.origin[axis]) / plan.size[axis];
+      inside = inside && share >= -0.01 && share <= 1.01;
+    }
+    return inside;
   }
 
   private Agent agent(int id) {

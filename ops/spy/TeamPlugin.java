@@ -28,19 +28,25 @@ public final class TeamPlugin implements SpyPlugin {
     return new Viewer("Team", desktop, channel, TeamPlugin::picture, new Dimension(1040, 560));
   }
 
-  private static JComponent picture(Team team) {
+  /** A map and the metric; of a box from above, from the front and from the side, in quarters. */
+  static JComponent picture(Team team) {
     MapView map = new MapView(team);
+    MapView front = new MapView(team, 0, 2);
+    MapView side = new MapView(team, 1, 2);
     MetricView metric = new MetricView(team);
-    JPanel both = new JPanel(null) {
+    JPanel all = new JPanel(null) {
       @Override
       public void doLayout() {
-        int left = Math.min(getWidth() / 2, map.widthFor(getHeight()));
-        map.setBounds(0, 0, left, getHeight());
-        metric.setBounds(left, 0, getWidth() - left, getHeight());
+        boolean box = map.inBox();
+        int height = box ? getHeight() / 2 : getHeight();
+        int left = box ? getWidth() / 2 : Math.min(getWidth() / 2, map.widthFor(height));
+        map.setBounds(0, 0, left, height);
+        metric.setBounds(left, 0, getWidth() - left, height);
+        front.setBounds(0, height, box ? left : 0, getHeight() - height);
+        side.setBounds(left, height, box ? getWidth() - left : 0, getHeight() - height);
       }
     };
-    both.add(map);
-    both.add(metric);
-    return both;
+    for (JComponent picture : new JComponent[] {map, metric, front, side}) all.add(picture);
+    return all;
   }
 }

@@ -8,7 +8,8 @@ import { pin } from './team.js';
 import { showDetails } from './details.js';
 import { savePng, saveSvg, saveVideo } from './save.js';
 import { set, setTheme } from './legend.js';
-import { fit, zoom } from './map_pointer.js';
+import { fit, turn, zoom } from './map_pointer.js';
+import { nextView, toggleSlice } from './space_controls.js';
 import { view } from './screen.js';
 import { $ } from './text.js';
 
@@ -56,11 +57,14 @@ export function connectChart() {
 }
 
 const next = (list, value) => list[(list.indexOf(value) + 1) % list.length];
+const TURN = Math.PI / 24;
 const KEYS = {
   ' ': () => setPlaying(!S.playing), ArrowLeft: e => step(-1, e.shiftKey), ArrowRight: e => step(1, e.shiftKey), Home: () => seek(0), End: () => seek(S.run.end),
   '<': () => faster(-1), ',': () => faster(-1), '>': () => faster(1), '.': () => faster(1), '[': () => jump(-1), ']': () => jump(1),
   c: () => set('layer', next(LAYERS, S.layer)), t: () => set('tail', (S.tail + 1) % TAILS.length), d: () => $('theme').click(), s: savePng, i: openDetails,
   l: () => S.live && follow(), '+': () => zoom(1.4), '=': () => zoom(1.4), '-': () => zoom(1 / 1.4), 0: fit,
+  v: nextView, q: () => turn(-TURN, 0), e: () => turn(TURN, 0), r: () => turn(0, TURN), f: () => turn(0, -TURN),
+  x: () => toggleSlice(0), y: () => toggleSlice(1), z: () => toggleSlice(2),
   Escape: () => { closeMenu(); pin(-1); }, '?': showKeys,
 };
 
@@ -68,7 +72,7 @@ export function connectKeys() {
   addEventListener('keydown', e => {
     if (!S.run || e.ctrlKey || e.metaKey || e.altKey || document.querySelector('dialog[open]') || e.target.tagName === 'SELECT') return;
     const action = KEYS[e.key.length === 1 ? e.key.toLowerCase() : e.key];
-    const own = (e.key === ' ' && ['BUTTON', 'INPUT'].includes(e.target.tagName) && e.target.type !== 'range') || (e.target.id === 'tail' && e.key.startsWith('Arrow'));
+    const own = (e.key === ' ' && ['BUTTON', 'INPUT'].includes(e.target.tagName) && e.target.type !== 'range') || (e.target.type === 'range' && e.target.id !== 'slider' && e.key.startsWith('Arrow'));
     if (!action || own) return;
     e.preventDefault();
     action(e);

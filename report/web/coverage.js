@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// c_k from positions, for any row at once: the sums are kept every 128 rows. Where kinds of agents
-// see differently, each place counts with its kind's quality and footprint.
+// c_k from positions, for any row at once: the sums are kept every 128 rows. The order is that of
+// the wire: the modes along z count slowest, those along y fastest. Where kinds of agents see
+// differently, each place counts with its kind's quality and footprint.
 const EVERY = 128;
+
+// cos(m π u) of all m, by recurrence.
+function cosines(table, u) {
+  const c = Math.cos(Math.PI * u);
+  table[0] = 1;
+  if (table.length > 1) table[1] = c;
+  for (let m = 2; m < table.length; m++) table[m] = 2 * c * table[m - 1] - table[m - 2];
+}
 
 export class Coverage {
   constructor(run) {
-    [this.M, this.N] = run.mission.modes;
+    [this.M, this.N, this.P = 1] = run.mission.modes;
     this.run = run;
     this.cx = new Float64Array(this.M);
     this.cy = new Float64Array(this.N);
+    this.cz = new Float64Array(this.P);
     this.reset(0);
   }
   // The planned kind of an agent, or null where all see alike.
@@ -20,31 +30,29 @@ export class Coverage {
   reset(row) {
     const keep = Math.floor(row / EVERY) + 1;
     if (!row || !this.sums) {
-      this.sums = [new Float64Array(this.M * this.N)];  // sums[i]: Σ f_k over the rows [0, 128 i)
+      this.sums = [new Float64Array(this.M * this.N * this.P)];  // sums[i]: Σ f_k over the rows [0, 128 i)
       this.counts = [0];                                // how many positions these are
     }
     this.sums.length = this.counts.length = Math.min(this.sums.length, keep);
     if (!this.sum || this.upto > row) { this.sum = this.sums[0].slice(); this.count = 0; this.upto = 0; }
   }
   add(sum, from, to) {
-    const { M, N, cx, cy, run } = this, [lx, ly] = run.size;
+    const { M, N, P, cx, cy, cz, run } = this, [lx, ly, lz] = run.size;
     let count = 0;
-    cx[0] = cy[0] = 1;
+    cz[0] = 1;
     for (const track of run.tracks) {
       const sensor = this.sensorOf(track.id);
       for (const [begin, until] of track.member) {
-        const { p } = track, end = Math.min(to, until, track.last + 1);
+        const { p, z } = track, end = Math.min(to, until, track.last + 1);
         for (let k = Math.max(from, begin, track.first); k < end; k++) {
           const px = p[2 * k], py = p[2 * k + 1];
           if (!(px >= 0 && px <= lx && py >= 0 && py <= ly)) continue;
           count += sensor ? sensor.quality : 1;
-          const x = Math.cos((Math.PI * px) / lx), y = Math.cos((Math.PI * py) / ly);
-          if (M > 1) cx[1] = x;
-          if (N > 1) cy[1] = y;
-          for (let m = 2; m < M; m++) cx[m] = 2 * x * cx[m - 1] - cx[m - 2];
-          for (let n = 2; n < N; n++) cy[n] = 2 * y * cy[n - 1] - cy[n - 2];
-          for (let m = 0, i = 0; m < M; m++) {
-            const c = cx[m];
+          cosines(cx, px / lx);
+          cosines(cy, py / ly);
+          if (z) cosines(cz, z[k] / lz);
+          for (let l = 0, i = 0; l < P; l++) for (let m = 0; m < M; m++) {
+            const c = cz[l] * cx[m];
             if (sensor) for (let n = 0; n < N; n++, i++) sum[i] += sensor.qg[i] * c * cy[n];
             else for (let n = 0; n < N; n++) sum[i++] += c * cy[n];
           }
@@ -82,29 +90,5 @@ export class Coverage {
     let sum = 0;
     for (let k = 0; k < c.length; k++) sum += weights[k] * (c[k] - target[k]) ** 2;
     return this.count ? sum : NaN;
-  }
-  // Σ c_k f_k / mean(f_k²) on a grid, the north-west first.
-  picture(c, width, height) {
-    const { M, N } = this, key = width + 'x' + height;
-    if (this.key !== key) {
-      const table = (modes, size, flip) => Float32Array.from({ length: modes * size }, (_, i) => {
-        const m = Math.floor(i / size), j = i % size, u = ((flip ? size - 1 - j : j) + 0.5) / size;
-        return Math.cos(m * Math.PI * u) * (m ? 2 : 1);
-      });
-      Object.assign(this, { key, tx: table(M, width, false), ty: table(N, height, true),
-        out: new Float32Array(width * height), columns: new Float32Array(M * height) });
-    }
-    const { tx, ty, out, columns } = this;
-    out.fill(0);
-    columns.fill(0);
-    for (let m = 0; m < M; m++) for (let n = 0; n < N; n++) {
-      const v = c[m * N + n];
-      for (let j = 0; j < height; j++) columns[m * height + j] += v * ty[n * height + j];
-    }
-    for (let m = 0; m < M; m++) for (let j = 0; j < height; j++) {
-      const v = columns[m * height + j];
-      for (let i = 0, o = j * width; i < width; i++) out[o++] += v * tx[m * width + i];
-    }
-    return out;
   }
 }

@@ -41,14 +41,13 @@ function nowhereOf({ density, size: [lx, ly] }) {
 
 // The shading as a picture: target, achieved or difference.
 function shading(run, layer, row, colours) {
-  const { density, size, coverage, mission } = run, achieved = layer !== 'target';
+  const { density, size } = run, achieved = layer !== 'target';
   const width = achieved ? Math.max(24, Math.round(size[0] >= size[1] ? 128 : (128 * size[0]) / size[1])) : density.width;
   const height = achieved ? Math.max(24, Math.round(size[0] >= size[1] ? (128 * size[1]) / size[0] : 128)) : density.height;
   const image = new ImageData(width, height), pixels = new Uint32Array(image.data.buffer);
   if (achieved) {
-    const c = coverage.at(row), difference = layer === 'difference';
-    const table = difference ? colours.difference : colours.amount, zero = difference ? 127.5 : 0;
-    const values = coverage.picture(difference ? c.map((v, k) => v - mission.target[k]) : c, width, height);
+    const difference = layer === 'difference', table = difference ? colours.difference : colours.amount, zero = difference ? 127.5 : 0;
+    const values = run.picture(layer, row, width, height);
     for (let i = 0; i < pixels.length; i++) pixels[i] = table[clamp(zero + (255 * values[i]) / density.full, 0, 255) | 0];
   } else {
     for (let i = 0; i < pixels.length; i++) pixels[i] = colours.amount[density.cells[i]];

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which shading, trail, axis, quantity and theme are chosen, and what their colours mean.
 import { themeColours } from './colours.js';
-import { S, ask } from './state.js';
+import { S, ask, inSpace, shown } from './state.js';
 import { TAILS } from './map.js';
 import { colourTeam } from './team.js';
 import { redraw } from './screen.js';
 import { $, put } from './text.js';
 
 export function showLegend() {
-  const difference = S.layer === 'difference', full = S.run?.density.full ?? 2, times = v => `${v.toFixed(v < 10 ? 1 : 0)}×`;
+  const difference = S.layer === 'difference', full = S.run ? (inSpace() ? S.run.range.full : shown().density.full) : 2, times = v => `${v.toFixed(v < 10 ? 1 : 0)}×`;
   put($('scaleLow'), difference ? `too little −${times(full / 2)}` : '0');
   put($('scaleHigh'), difference ? `+${times(full / 2)} too much` : `≥ ${times(full)} uniform`);
   const ramp = $('ramp'), g = ramp.getContext('2d'), image = g.createImageData(ramp.width, 1), pixels = new Uint32Array(image.data.buffer);

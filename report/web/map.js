@@ -4,6 +4,7 @@
 import { inkOn } from './colours.js';
 import { clamp } from './text.js';
 import { stateOf } from './run.js';
+import { axisName, farthestFirst, paintSpaceMarks } from './space_marks.js';
 
 export const TAILS = [0, 10, 30, 60, 120, 300, 600, Infinity];  // s
 const MANY = 12;              // more agents than these are drawn smaller
@@ -91,11 +92,24 @@ function paintScaleBar(g, run, view, colours) {
   g.fillText(metres >= 1000 ? `${metres / 1000} km` : metres >= 1 ? `${metres} m` : `${metres * 100} cm`, x + width / 2, y - 2);
 }
 
+// What a view of a box has to the right and upwards.
+function paintAxisNames(g, run, view, colours) {
+  const [a, b] = run.axes.map(axis => axisName(run.mission.box_m, axis)), right = Math.min(view.width, view.px(run.size[0])) - 8, top = Math.max(0, view.py(run.size[1])) + 16;
+  const left = Math.max(0, view.px(0)) + 8, bottom = Math.min(view.height, view.py(0)) - 10;
+  g.fillStyle = colours.ink;
+  g.font = '600 11px system-ui, sans-serif';
+  g.textBaseline = 'alphabetic';
+  for (const [text, x, y, align] of [[`${a} →`, right, bottom, 'right'], [`↑ ${b}`, left, top, 'left']]) {
+    g.textAlign = align;
+    g.fillText(text, x, y);
+  }
+}
+
 function paintStarts(g, run, view, { colours, focus }) {
   g.lineWidth = 1.6;
   for (const track of run.tracks) {
     if (many(run) && !focus?.(track.id)) continue;
-    const x = view.px(track.p[2 * track.first]), y = view.py(track.p[2 * track.first + 1]);
+    const [x, y] = view.at(track, track.first);
     g.strokeStyle = colours.agent(track.id);
     g.beginPath();
     g.moveTo(x - 4, y - 4); g.lineTo(x + 4, y + 4); g.moveTo(x + 4, y - 4); g.lineTo(x - 4, y + 4);
@@ -115,7 +129,7 @@ function paintRadio(g, run, view, { row, colours, focus }) {
     g.strokeStyle = colours.agent(track.id);
     g.globalAlpha = 0.6;
     g.beginPath();
-    g.arc(view.px(track.p[2 * at]), view.py(track.p[2 * at + 1]), range * view.scale, 0, 2 * Math.PI);
+    g.arc(...view.at(track, at).slice(0, 2), range * view.scaleAt(track, at), 0, 2 * Math.PI);
     g.stroke();
   }
   g.setLineDash([]);
@@ -126,11 +140,10 @@ function paintMarker(g, run, view, track, { row, t, colours, focus }) {
   const at = track.rowAt(row);
   if (at < 0) return;
   const hot = focus?.(track.id), crowd = many(run), small = view.width < 500;
-  const radius = (crowd ? (small ? 6.5 : 8) : 10.5) * (hot ? 1.25 : 1), x = view.px(track.p[2 * at]), y = view.py(track.p[2 * at + 1]);
+  const radius = (crowd ? (small ? 6.5 : 8) : 10.5) * (hot ? 1.25 : 1) * view.nearness(track, at), [x, y] = view.at(track, at);
   const { kind } = stateOf(run, track, t), away = kind === 'silent' || kind === 'gone';
   const back = Math.max(track.first, at - Math.max(1, Math.round(1 / run.step))), ahead = Math.min(track.last, at + 1);
-  const heading = Math.atan2(track.p[2 * back + 1] - track.p[2 * ahead + 1], track.p[2 * ahead] - track.p[2 * back]);
-  const moves = track.p[2 * ahead] !== track.p[2 * back] || track.p[2 * ahead + 1] !== track.p[2 * back + 1];
+  const [x0, y0] = view.at(track, back), [x1, y1] = view.at(track, ahead), heading = Math.atan2(y1 - y0, x1 - x0), moves = x0 !== x1 || y0 !== y1;
   const fill = away ? colours.panel : colours.agent(track.id), rim = kind === 'gone' ? colours.gone : colours.bad;
   g.globalAlpha = focus && !hot ? 0.35 : 1;
   g.fillStyle = fill;
@@ -164,13 +177,15 @@ function paintMarker(g, run, view, track, { row, t, colours, focus }) {
 
 export function paintMarkers(g, run, view, state) {
   const { row, tail, colours, focus, radio } = state;
-  paintScaleBar(g, run, view, colours);
+  if (state.inSpace) paintSpaceMarks(g, run, view, state); else paintScaleBar(g, run, view, colours);
+  if (run.inBox && !state.inSpace) paintAxisNames(g, run, view, colours);
   if (row > 0) paintStarts(g, run, view, state);
-  if (TAILS[tail] === Infinity) {                       // the newest part over the whole
+  if (!state.inSpace && TAILS[tail] === Infinity) {     // the newest part over the whole
     paintTracks(g, run, view, { from: Math.max(0, row - Math.round(30 / run.step)), to: row, bands: many(run) ? 4 : 6, strength: 1, colours, focus });
   }
   if (radio && run.mission.radio_range_m > 0) paintRadio(g, run, view, state);
-  for (const track of run.tracks) if (!focus?.(track.id)) paintMarker(g, run, view, track, state);
-  for (const track of run.tracks) if (focus?.(track.id)) paintMarker(g, run, view, track, state);
+  const tracks = state.inSpace ? farthestFirst(run, view, row) : run.tracks;
+  for (const track of tracks) if (!focus?.(track.id)) paintMarker(g, run, view, track, state);
+  for (const track of tracks) if (focus?.(track.id)) paintMarker(g, run, view, track, state);
   g.globalAlpha = 1;
 }

@@ -1,42 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pointer, wheel and fingers on the map: zoom, move, choose an agent, read a place.
-import { S } from './state.js';
+import { S, inSpace, shown } from './state.js';
+import { coordinate, nameOf } from './places.js';
 import { stateOf } from './run.js';
 import { hover, pin } from './team.js';
 import { redraw, view } from './screen.js';
 import { $, put } from './text.js';
 
+const PER_PIXEL = 0.008;      // radians
+
 export function zoom(factor, px = view.width / 2, py = view.height / 2) {
-  view.zoomAt(factor, px, py, S.run.size);
+  view.zoomAt(factor, px, py, shown().size);
   redraw();
 }
 export function fit() {
-  view.zoom = 1;
-  view.place(S.run.size);
+  view.reset();
+  view.place(shown().size);
+  redraw();
+}
+// Turns the box by so many radians to the right and upwards.
+export function turn(right, up) {
+  if (!inSpace()) return;
+  view.turn(right, up);
   redraw();
 }
 
 function nearest(x, y) {
   const row = S.run.rowAt(S.t);
   let best = -1, least = 18;
-  for (const track of S.run.tracks) {
-    const at = track.rowAt(row), d = at < 0 ? Infinity : Math.hypot(view.px(track.p[2 * at]) - x, view.py(track.p[2 * at + 1]) - y);
+  for (const track of shown().tracks) {
+    const at = track.rowAt(row), [px, py] = at < 0 ? [Infinity, 0] : view.at(track, at), d = Math.hypot(px - x, py - y);
     if (d < least) { least = d; best = track.id; }
   }
   return best;
 }
 
+const placeText = place => `${place.map(v => v.toFixed(0)).join(', ')} m`;
+
+function agentText(run, agent) {
+  const track = run.track(agent), row = run.rowAt(S.t), speed = run.speedAt(track, row), at = track.rowAt(row);
+  const place = run.mission.origin_m.map((origin, axis) => coordinate(track, axis, at) + origin);
+  return `agent ${agent}: ${stateOf(run, track, S.t).text}, at ${placeText(place)}${speed === null ? '' : `, ${speed.toFixed(1)} m/s`}`;
+}
+
+// Of a place of the map; null outside of the domain, and in space, where a pixel is no place.
+function groundText(run, x, y) {
+  if (inSpace()) return null;
+  const [mx, my] = view.metres(x, y), [lx, ly] = run.size, { width, height, cells, full } = run.density;
+  if (!(mx >= 0 && my >= 0 && mx <= lx && my <= ly)) return null;
+  const i = Math.min(width - 1, Math.floor((mx / lx) * width)), j = Math.min(height - 1, Math.floor((1 - my / ly) * height));
+  const place = [mx, my].map((v, k) => v / run.stretch[k] + run.mission.origin_m[k]), names = run.inBox ? `${run.axes.map(nameOf).join(', ')}: ` : '';
+  return `${names}${placeText(place)} · target ${((cells[j * width + i] / 255) * full).toFixed(2)}×`;
+}
+
 function showTip(x, y, agent) {
-  const { run } = S, tip = $('tip'), [mx, my] = view.metres(x, y), [lx, ly] = run.size, inside = mx >= 0 && my >= 0 && mx <= lx && my <= ly;
-  tip.hidden = !inside;
-  if (!inside) return;
-  if (agent >= 0) {
-    const track = run.track(agent), row = run.rowAt(S.t), speed = run.speedAt(track, row), at = track.rowAt(row), [ox, oy] = run.mission.origin_m;
-    put(tip, `agent ${agent}: ${stateOf(run, track, S.t).text}, at ${(track.p[2 * at] + ox).toFixed(0)}, ${(track.p[2 * at + 1] + oy).toFixed(0)} m${speed === null ? '' : `, ${speed.toFixed(1)} m/s`}`);
-  } else {
-    const { width, height, cells, full } = run.density, i = Math.min(width - 1, Math.floor((mx / lx) * width)), j = Math.min(height - 1, Math.floor((1 - my / ly) * height));
-    put(tip, `${(mx + run.mission.origin_m[0]).toFixed(0)}, ${(my + run.mission.origin_m[1]).toFixed(0)} m · target ${((cells[j * width + i] / 255) * full).toFixed(2)}×`);
-  }
+  const tip = $('tip'), text = agent >= 0 ? agentText(S.run, agent) : groundText(shown(), x, y);
+  tip.hidden = text === null;
+  if (tip.hidden) return;
+  put(tip, text);
   tip.style.left = `${Math.min(x + 14, view.width - tip.offsetWidth - 6)}px`;
   tip.style.top = `${y > view.height - 50 ? y - 34 : y + 14}px`;
 }
@@ -60,8 +81,10 @@ export function connectMap() {
       if (other) {
         const distance = p => Math.hypot(p[0] - other[0], p[1] - other[1]);
         zoom(distance([x, y]) / Math.max(1, distance(was)), other[0], other[1]);
-      } else if (view.zoom > 1) {
-        view.pan(x - was[0], y - was[1], S.run.size);
+      } else if (inSpace() && !e.shiftKey) {
+        turn((x - was[0]) * PER_PIXEL, (y - was[1]) * PER_PIXEL);
+      } else if (inSpace() || view.zoom > 1) {
+        view.pan(x - was[0], y - was[1], shown().size);
         redraw();
       }
       moved += Math.abs(x - was[0]) + Math.abs(y - was[1]);

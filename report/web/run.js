@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mission as the page shows it: from a record, or as it grows. No drawing.
+import { picture } from './cosine_sums.js';
 import { Coverage } from './coverage.js';
 import { Track, addTracks, bytesOf } from './tracks.js';
 
@@ -19,6 +20,9 @@ export class Run {
   constructor(mission, stride, capacity) {
     this.mission = mission;
     this.size = mission.size_m;
+    this.inBox = mission.size_m.length > 2;
+    this.axes = [0, 1];                     // of the map, and how many times as long they are drawn
+    this.stretch = [1, 1];
     this.stride = stride;
     this.step = mission.dt_s * stride;      // mission time between rows
     this.capacity = capacity;
@@ -31,14 +35,15 @@ export class Run {
     this.times = [];                        // their t
     this.summary = null;
     this.coverage = new Coverage(this);
-    this.density = decodeDensity(mission.density) ?? this.targetOfModes();
+    // The modes of the wire begin with those without waves along z.
+    this.density = decodeDensity(mission.density) ?? targetOfModes(mission.target, this.coverage.M, this.coverage.N, this.size);
   }
   get end() { return Math.max(0, this.rows - 1) * this.step; }
   rowAt(t) { return Math.max(0, Math.min(this.rows - 1, Math.round(t / this.step))); }
   track(id) {
     let track = this.byId.get(id);
     if (!track) {
-      track = new Track(id);
+      track = new Track(id, this.inBox);
       this.byId.set(id, track);
       this.tracks.push(track);
       this.tracks.sort((a, b) => a.id - b.id);
@@ -49,13 +54,16 @@ export class Run {
     const first = addTracks(this, block);
     if (first < this.coverage.upto || first < (this.coverage.sums.length - 1) * 128) this.coverage.reset(first);
   }
-  // Without a recorded density the picture is what the modes say of the target.
-  targetOfModes() {
-    const [lx, ly] = this.size, most = 160, scale = most / Math.max(lx, ly);
-    const width = Math.max(16, Math.round(lx * scale)), height = Math.max(16, Math.round(ly * scale));
-    const values = this.coverage.picture(this.mission.target, width, height);
-    const sorted = Float32Array.from(values).sort(), full = Math.max(2, sorted[Math.floor(0.998 * (sorted.length - 1))]);
-    return { width, height, full, cells: Uint8Array.from(values, v => Math.max(1, Math.min(255, 255 * v / full))) };
+  // cₖ at a row of a layer of the map: of what was achieved, or what is too much of it.
+  coefficients(layer, row) {
+    const { target } = this.mission;
+    if (layer === 'target') return target;
+    const c = this.coverage.at(row);
+    return layer === 'difference' ? c.map((v, k) => v - target[k]) : c;
+  }
+  // The same on a grid, the north-west first.
+  picture(layer, row, width, height) {
+    return picture(this.coefficients(layer, row), this.coverage.M, this.coverage.N, width, height);
   }
   metricAt(t) {
     const i = indexAt(this.metrics.t, t);
@@ -70,8 +78,7 @@ export class Run {
   speedAt(track, row) {
     const n = Math.min(row - track.first, Math.max(1, Math.round(1 / this.step)));
     if (n < 1 || !track.has(row) || !track.has(row - n)) return null;
-    const { p } = track;
-    return Math.hypot(p[2 * row] - p[2 * (row - n)], p[2 * row + 1] - p[2 * (row - n) + 1]) / (n * this.step);
+    return track.between(row - n, row) / (n * this.step);
   }
   // Agents are members in these ticks: [{id, active_from, active_until, …}], all their incarnations.
   setRoster(entries) {
@@ -93,6 +100,20 @@ export class Run {
     }
     if (changed < this.rows) this.coverage.reset(changed);
   }
+}
+
+// The end of a scale of these values: few are above it.
+export function fullOf(values) {
+  const sorted = Float32Array.from(values).sort();
+  return Math.max(2, sorted[Math.floor(0.998 * (sorted.length - 1))]);
+}
+
+// Without a recorded density the picture is what the modes say of the target.
+export function targetOfModes(target, M, N, [lx, ly]) {
+  const most = 160, scale = most / Math.max(lx, ly);
+  const width = Math.max(16, Math.round(lx * scale)), height = Math.max(16, Math.round(ly * scale));
+  const values = picture(target, M, N, width, height), full = fullOf(values);
+  return { width, height, full, cells: Uint8Array.from(values, v => Math.max(1, Math.min(255, 255 * v / full))) };
 }
 
 function decodeDensity(coded) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page of a run: brings data, drawing and controls together.
-import { S, ask, focusOf, onFrame } from './state.js';
+import { S, ask, focusOf, onFrame, shown } from './state.js';
 import { TAILS } from './map.js';
 import { recordedRun } from './run.js';
 import { advance, seek } from './timeline.js';
@@ -11,6 +11,7 @@ import { set, setTheme } from './legend.js';
 import { livePage, showRecord } from './shown_run.js';
 import { connectButtons, connectChart, connectKeys } from './controls.js';
 import { connectMap } from './map_pointer.js';
+import { connectSpace, showView } from './space_controls.js';
 import { svgText } from './save.js';
 import { addLog, watchLive } from './live.js';
 import { $, clamp, put } from './text.js';
@@ -36,6 +37,7 @@ onFrame(frame);
 connectButtons();
 connectChart();
 connectMap();
+connectSpace();
 connectKeys();
 setTheme(wishes.get('theme') ?? (dark.matches ? 'dark' : 'light'));
 dark.addEventListener('change', e => setTheme(e.matches ? 'dark' : 'light'));
@@ -49,13 +51,15 @@ if (data.live) {
   $('state').className = 'pill idle';
   watchLive(livePage);
 }
+if (S.run?.inBox && wishes.has('view')) showView(wishes.get('view'));
 for (const key of ['layer', 'axis', 'quantity']) if (wishes.has(key)) set(key, wishes.get(key));
 if (wishes.has('tail')) set('tail', clamp(Number(wishes.get('tail')) || 0, 0, TAILS.length - 1));
 if (wishes.has('t') && S.run) seek(Number(wishes.get('t')) || 0);
 
 // What tests ask the page; it changes nothing but what is shown.
 window.ergocast = {
-  S, view, seek, set, pin, hover, setTheme, svgText: () => svgText(view), focus: focusOf,
+  S, seek, set, shown, showView, pin, hover, setTheme, svgText: () => svgText(view), focus: focusOf,
+  get view() { return view; },
   frames: () => frames,
   clearFrames: () => { frames = []; },
   // Draws a tick at once; the time until its pixels can be read [ms].

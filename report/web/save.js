@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures and films of what the page shows.
-import { S, mapState } from './state.js';
+import { S, inSpace, mapState, shown } from './state.js';
 import { paintShading } from './ground.js';
 import { paintMarkers, paintTracks, trailOf, TAILS } from './map.js';
 import { paintChart } from './chart.js';
@@ -31,7 +31,7 @@ function compose(canvas) {
   g.font = `600 ${15 * scale}px system-ui, sans-serif`;
   g.textBaseline = 'middle';
   g.fillText(title(), gap, head / 2);
-  for (const id of ['shading', 'trails', 'markers']) g.drawImage($(id), gap, head);
+  for (const id of inSpace() ? ['space', 'markers'] : ['shading', 'trails', 'markers']) g.drawImage($(id), gap, head);
   g.drawImage(chart, map.width + 2 * gap, head);
   return canvas;
 }
@@ -51,9 +51,13 @@ export function svgText(view) {
   g.textBaseline = 'middle';
   g.fillText(title(), GAP, HEAD / 2);
   g.begin(GAP, HEAD, view.width, view.height);
-  paintShading(g, run, view, state);
-  if (TAILS[S.tail]) paintTracks(g, run, view, trailOf(run, state));
-  paintMarkers(g, run, view, state);
+  if (state.inSpace) {
+    g.drawImage($('space'), 0, 0, view.width, view.height);
+  } else {
+    paintShading(g, shown(), view, state);
+    if (TAILS[S.tail]) paintTracks(g, shown(), view, trailOf(run, state));
+  }
+  paintMarkers(g, shown(), view, state);
   g.end();
   g.begin(view.width + 2 * GAP, HEAD, width, height);
   paintChart(g, run, S, width, height);

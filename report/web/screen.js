@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The canvases of a run's page: each is drawn only when what it shows has changed.
-import { S, ask, mapState } from './state.js';
+import { S, ask, inSpace, mapState, shown } from './state.js';
 import { View } from './view.js';
+import { Space } from './space.js';
+import { SpaceView } from './space_view.js';
 import { TAILS, paintMarkers, paintTracks, rowsPerPiece, trailOf } from './map.js';
 import { paintShading } from './ground.js';
 import { paintChart, readingAt } from './chart.js';
@@ -10,7 +12,9 @@ import { $, clamp, put } from './text.js';
 
 const LAYERS = ['shading', 'trails', 'markers', 'chart'];
 
-export const view = new View();
+const flat = new View(), turning = new SpaceView();
+let space = null;
+export let view = flat;
 let scale = 1, shadingKey = '', trail = { key: '', row: -1, upto: 0 };
 
 function context(id) {
@@ -20,15 +24,15 @@ function context(id) {
 }
 
 function drawShading() {
-  const row = S.run.rowAt(S.t), key = [S.layer, S.layer === 'target' ? '' : row, view.key, S.theme, S.run.id].join();
+  const row = S.run.rowAt(S.t), key = [S.layer, S.layer === 'target' ? '' : row, view.key, S.theme, S.run.id, S.view].join();
   if (key === shadingKey) return;
   shadingKey = key;
-  paintShading(context('shading'), S.run, view, mapState());
+  paintShading(context('shading'), shown(), view, mapState());
 }
 
 // The whole history grows on its canvas; a bounded trail is drawn anew.
 function drawTrails() {
-  const { run } = S, row = run.rowAt(S.t), key = [run.id, S.tail, view.key, S.theme, S.hover, ...S.pins].join();
+  const run = shown(), row = run.rowAt(S.t), key = [run.id, S.view, S.tail, view.key, S.theme, S.hover, ...S.pins].join();
   if (key === trail.key && row === trail.row) return;
   const g = context('trails'), state = mapState(), part = trailOf(run, state), whole = TAILS[S.tail] === Infinity;
   if (!whole || key !== trail.key || row < trail.upto) {
@@ -45,10 +49,16 @@ function drawTrails() {
   trail.row = row;
 }
 
+function drawSpace() {
+  const key = [S.run.id, S.run.rowAt(S.t), S.layer, S.tail, S.slices, view.key, S.theme, S.hover, ...S.pins].join();
+  if (key !== shadingKey) space.paint(S.run, view, mapState(), scale);
+  shadingKey = key;
+}
+
 function drawMarkers() {
   const g = context('markers');
   g.clearRect(0, 0, view.width, view.height);
-  paintMarkers(g, S.run, view, mapState());
+  paintMarkers(g, shown(), view, mapState());
 }
 
 function drawChart() {
@@ -59,8 +69,12 @@ function drawChart() {
 }
 
 export function drawPictures() {
-  drawShading();
-  drawTrails();
+  if (inSpace()) {
+    drawSpace();
+  } else {
+    drawShading();
+    drawTrails();
+  }
   drawMarkers();
   drawChart();
 }
@@ -68,19 +82,27 @@ export function drawPictures() {
 // Waits until the pictures are in the canvases.
 export function readPixels() {
   for (const id of LAYERS) $(id).getContext('2d').getImageData(0, 0, 1, 1);
+  if (inSpace()) space.read();
 }
 
 // Everything anew.
 export function redraw() {
   shadingKey = trail.key = '';
-  $('fit').hidden = view.zoom === 1;
+  $('fit').hidden = view.whole;
   ask();
 }
 
-// The map's column follows the domain's shape.
+// Whether this browser can turn a box.
+export function canTurn() {
+  space ??= new Space($('space'));
+  return space.works;
+}
+
+// The map's column follows the shape of what it shows.
 export function layout() {
   if (!S.run) return;
-  const [lx, ly] = S.run.size, main = document.querySelector('main'), narrow = innerWidth <= 820;
+  view = inSpace() ? turning : flat;
+  const narrow = innerWidth <= 820, [lx, ly] = inSpace() ? [narrow ? 0.95 : 1.15, 1] : shown().size, main = document.querySelector('main');
   document.documentElement.style.setProperty('--aspect', clamp(lx / ly, 0.5, 4));
   main.classList.toggle('wide', lx / ly > 1.2);
   if (!narrow) {
@@ -89,11 +111,11 @@ export function layout() {
   }
   scale = Math.min(devicePixelRatio || 1, 2);
   view.resize($('stage').clientWidth, $('stage').clientHeight);
-  for (const id of LAYERS) {
+  for (const id of [...LAYERS, 'space']) {
     const canvas = $(id), width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
   }
-  view.place(S.run.size);
+  view.place(shown().size);
   redraw();
   buildStrip();
 }

@@ -6,6 +6,7 @@ import { buildTeam } from './team.js';
 import { showFacts } from './details.js';
 import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
+import { beginSpace } from './space_controls.js';
 import { $, put } from './text.js';
 
 const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
@@ -22,6 +23,7 @@ function show(run) {
   $('slider').step = 1;
   $('radioLabel').hidden = !(run.mission.radio_range_m > 0);
   if (first) S.tail = startTail(run);
+  beginSpace(run);
   buildTeam();
   showLegend();
   layout();

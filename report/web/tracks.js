@@ -8,22 +8,28 @@ export function bytesOf(base64) {
 }
 
 // One agent: p[2r], p[2r + 1] is its place at row r in metres from the domain's corner; NaN where
-// nothing is known.
+// nothing is known. In a box z[r] is its height there.
 export class Track {
-  constructor(id) {
+  constructor(id, inBox) {
     this.id = id;
     this.p = new Float32Array(0);
+    this.z = inBox ? new Float32Array(0) : null;
     this.first = Infinity;
     this.last = -1;
     this.member = [[0, Infinity]];  // rows in which its coverage counts, ascending
     this.way = new Float64Array(0); // metres gone up to a row, filled on demand
     this.known = 0;
+    this.version = 0;               // grows when rows have changed that were known
   }
   reserve(rows) {
     if (this.p.length >= 2 * rows) return;
-    const p = new Float32Array(2 * Math.max(rows, this.p.length, 64)).fill(NaN);
+    const most = Math.max(rows, this.p.length, 64), p = new Float32Array(2 * most).fill(NaN);
     p.set(this.p);
     this.p = p;
+    if (!this.z) return;
+    const z = new Float32Array(most).fill(NaN);
+    z.set(this.z);
+    this.z = z;
   }
   has(row) { return row >= 0 && 2 * row < this.p.length && this.p[2 * row] === this.p[2 * row]; }
   // The newest row up to `row` that is known; −1: none.
@@ -31,6 +37,11 @@ export class Track {
     if (row > this.last) row = this.last;
     while (row >= this.first && !this.has(row)) row--;
     return row >= this.first ? row : -1;
+  }
+  // Metres between the places of two rows.
+  between(i, k) {
+    const { p, z } = this;
+    return Math.hypot(p[2 * k] - p[2 * i], p[2 * k + 1] - p[2 * i + 1], z ? z[k] - z[i] : 0);
   }
   isMember(row) { return this.member.some(([from, until]) => row >= from && row < until); }
   // The way up to each row, in metres.
@@ -41,7 +52,7 @@ export class Track {
       this.way = way;
     }
     for (; this.known <= row; this.known++) {
-      const k = this.known, d = k > 0 ? Math.hypot(this.p[2 * k] - this.p[2 * k - 2], this.p[2 * k + 1] - this.p[2 * k - 1]) : 0;
+      const k = this.known, d = k > 0 ? this.between(k - 1, k) : 0;
       this.way[k] = (k > 0 ? this.way[k - 1] : 0) + (d === d ? d : 0);
     }
     return this.way[row];
@@ -57,7 +68,7 @@ export function addTracks(run, block) {
     for (let i = 0; i < runs.length; i += 2) {
       const from = runs[i], count = runs[i + 1];
       track.reserve(from + count > run.capacity ? from + count : Math.min(run.capacity, 2 * (from + count)));
-      for (let axis = 0; axis < 2; axis++) {
+      for (let axis = 0; axis < run.size.length; axis++) {
         const scale = run.size[axis] / full;
         for (let k = from, before = 0, beforeThat = 0; k < from + count; k++) {
           let z = 0, unit = 1, byte;
@@ -65,9 +76,10 @@ export function addTracks(run, block) {
           const v = (z % 2 ? -(z + 1) / 2 : z / 2) + 2 * before - beforeThat;
           beforeThat = before;
           before = v;
-          track.p[2 * k + axis] = v * scale;
+          if (axis < 2) track.p[2 * k + axis] = v * scale; else track.z[k] = v * scale;
         }
       }
+      if (from <= track.last) track.version++;
       track.first = Math.min(track.first, from);
       track.last = Math.max(track.last, from + count - 1);
       track.known = Math.min(track.known, from);

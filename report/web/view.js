@@ -15,6 +15,11 @@ export class View {
   }
   px(x) { return this.left + x * this.scale; }
   py(y) { return this.bottom - y * this.scale; }
+  at(track, k) { return [this.px(track.p[2 * k]), this.py(track.p[2 * k + 1])]; }
+  scaleAt() { return this.scale; }
+  nearness() { return 1; }
+  reset() { this.zoom = 1; }
+  get whole() { return this.zoom === 1; }
   metres(px, py) { return [(px - this.left) / this.scale, (this.bottom - py) / this.scale]; }
   zoomAt(factor, px, py, size) {
     const [x, y] = this.metres(px, py);

@@ -367,6 +367,8 @@ std::vector<Mistake> mistakes_in_space() {
       of_grid("words.nc", ""),
       of_grid("good.nc", "", ""),
       of_grid("good.nc", "", "time_index: 2"),
+      of_grid("good.nc", "", "time_index: 1 x_axis: \"lon\""),
+      of_grid("good.nc", "", "time_index: 1 x_axis: \"y\" y_axis: \"y\""),
       of_grid("member.nc", ""),
       of_grid("flat.nc", ""),
       of_grid("billion.nc", ""),
@@ -528,7 +530,7 @@ target {
   maps { file: "even.csv" weight: 1 origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50 first_row: NORTH }
   regions { weight: 1 polygon { vertices { x_m: 1 y_m: 1 } vertices { x_m: 9 y_m: 1 } vertices { x_m: 9 y_m: 9 } } }
   keep_outs { file: "pier.geojson" }
-  voxels { file: "grid.nc" variable: "v" weight: 1 time_index: 1 }
+  voxels { file: "grid.nc" variable: "v" weight: 1 time_index: 1 x_axis: "x" y_axis: "y" z_axis: "z" time_axis: "time" }
 }
 basis { modes_x: 8 modes_y: 8 modes_z: 8 }
 law {

@@ -363,9 +363,9 @@ TEST_F(Report, OfALongMissionThePageHasEveryFewTicks) {
 // --- tracks ---
 
 TEST(TrackGrid, CodesRunsBetweenGapsAsSecondDifferences) {
-  TrackGrid grid({{100, 0}, {16383, 16383}}, 1);
+  TrackGrid grid({{100, 0, 0}, {16383, 16383, 0}}, 1);
   for (const Tick tick : {0, 1, 2, 5})
-    grid.put(7, tick, {100.0 + 10 * static_cast<double>(tick), 64});
+    grid.put(7, tick, {100.0 + 10 * static_cast<double>(tick), 64, 0});
   EXPECT_EQ(grid.rows(), 6);
   const auto coded = grid.encode(0, grid.rows());
   EXPECT_EQ(coded["agents"].dump(), R"([{"id":7,"runs":[0,3,5,1]}])");
@@ -376,25 +376,32 @@ TEST(TrackGrid, CodesRunsBetweenGapsAsSecondDifferences) {
 }
 
 TEST(TrackGrid, KeepsEveryOtherRowWhenThereAreTooMany) {
-  TrackGrid grid({{0, 0}, {16383, 16383}}, 1);
+  TrackGrid grid({{0, 0, 0}, {16383, 16383, 0}}, 1);
   for (Tick tick = 0; tick < TrackGrid::kMostPositions; ++tick) {
-    grid.put(3, tick, {static_cast<double>(tick % 1000), 0});
+    grid.put(3, tick, {static_cast<double>(tick % 1000), 0, 0});
   }
   EXPECT_EQ(grid.stride(), 1);
-  grid.put(3, TrackGrid::kMostPositions, {0, 0});
+  grid.put(3, TrackGrid::kMostPositions, {0, 0, 0});
   EXPECT_EQ(grid.stride(), 2);
   EXPECT_EQ(grid.rows(), TrackGrid::kMostPositions / 2 + 1);
   // Of the ticks 0, 2, 4 the places 0, 2, 4.
   EXPECT_EQ(grid.encode(0, 3)["data"], base64(std::string("\x00\x04\x00\x00\x00\x00", 6)));
-  grid.put(3, Tick{1} << 52, {1, 1});  // as a damaged record may
+  grid.put(3, Tick{1} << 52, {1, 1, 0});  // as a damaged record may
   EXPECT_LE(grid.rows(), TrackGrid::kMostPositions);
 }
 
 TEST(TrackGrid, TakesPlacesFarOutside) {
-  TrackGrid grid({{0, 0}, {1, 1}}, 1);
-  grid.put(0, 0, {1e100, -1e100});
+  TrackGrid grid({{0, 0, 0}, {1, 1, 0}}, 1);
+  grid.put(0, 0, {1e100, -1e100, 0});
   const auto coded = grid.encode(0, 1);
   EXPECT_EQ(coded["agents"].dump(), R"([{"id":0,"runs":[0,1]}])");
+}
+
+TEST(TrackGrid, CodesHeightsInABox) {
+  TrackGrid grid({{0, 0, -100}, {16383, 16383, 16383}}, 1);
+  for (const Tick tick : {0, 1}) grid.put(2, tick, {1, 2, -100.0 + static_cast<double>(tick)});
+  // x 1 1, y 2 2, z 0 1.
+  EXPECT_EQ(grid.encode(0, 2)["data"], base64(std::string("\x02\x01\x04\x03\x00\x02", 6)));
 }
 
 // --- slope ---

@@ -73,6 +73,49 @@ TEST_F(WaterColumnTest, MayBeWrittenInOtherWays) {
   EXPECT_LE((mu_of(unpacked) - mu).cwiseAbs().maxCoeff(), 1e-15);
 }
 
+// So scenarios/water_column.textproto flies what is tested here.
+TEST_F(WaterColumnTest, IsTheFileThatIsShipped) {
+  WaterColumn().write(folder_.path() / "column.nc");
+  const auto bytes = [](const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto shipped_file = shipped("water_column").parent_path() / "maps/water_column.nc";
+  EXPECT_EQ(bytes(shipped_file), bytes(folder_.path() / "column.nc"));
+  EXPECT_EQ(good(Scenario::load(shipped("water_column"))).mission().target_coefficients, mu_of({}));
+}
+
+// A file of another convention, whose axes the scenario names.
+TEST_F(WaterColumnTest, HasItsAxesByName) {
+  const Coefficients mu = mu_of({});
+  WaterColumn other;
+  for (const auto& [axis, name] :
+       {std::pair{"x", "east"}, {"y", "level"}, {"depth", "member"}, {"time", "x"}}) {
+    const auto attributes = other.at(axis).attributes;
+    other.rename(axis, name);
+    for (const auto& attribute : attributes) {
+      if (attribute.first != "axis" && attribute.first != "standard_name")
+        other.at(name).attributes.push_back(attribute);
+    }
+  }
+  const std::string names =
+      "time_index: 1 x_axis: \"east\" y_axis: \"level\" z_axis: \"member\" time_axis: \"x\"";
+  EXPECT_EQ(good(loaded(other, names)).mission().target_coefficients, mu);
+  // Without names, "x" is taken for x.
+  EXPECT_NE(said_of_column(other).find("x is in hours"), std::string::npos)
+      << said_of_column(other);
+  EXPECT_NE(said_of_column({}, "time_index: 1 y_axis: \"lat\"")
+                .find("has no axis lat (write one of time, depth, y, x)"),
+            std::string::npos);
+  EXPECT_NE(said_of_column({}, "time_index: 1 x_axis: \"y\" y_axis: \"y\"")
+                .find("its axis y was named twice"),
+            std::string::npos);
+  // What the file calls z is none when the scenario names another.
+  EXPECT_NE(said_of_column({}, "time_index: 1 z_axis: \"y\"")
+                .find("has the axis depth, which is none of x, y, z and time"),
+            std::string::npos);
+}
+
 TEST_F(WaterColumnTest, ReadsBackWhatItPrints) {
   const Scenario scenario = good(loaded({}));
   EXPECT_EQ(plan_of(good(Scenario::parse(scenario.print(), "/elsewhere/again"))),

@@ -37,7 +37,7 @@ public final class SpyProbe {
         plan(rest[0]);
         return;
       case "map":
-        map(rest[0]);
+        map(rest[0], rest[1]);
         return;
       case "hostile":
         hostile(rest[0]);
@@ -106,21 +106,24 @@ public final class SpyProbe {
     Plan plan = new Plan(Files.readAllBytes(Paths.get(file)));
     System.out.println(plan.name);
     for (double value :
-        new double[] {plan.originX, plan.originY, plan.sizeX, plan.sizeY, plan.dt, plan.duration}) {
+        new double[] {plan.origin[0], plan.origin[1], plan.origin[2], plan.size[0], plan.size[1],
+            plan.size[2], plan.dt, plan.duration}) {
       System.out.println(Double.toHexString(value));
     }
-    System.out.println(plan.modesX + " " + plan.modesY);
+    System.out.println(plan.modes[0] + " " + plan.modes[1] + " " + plan.modes[2]);
     for (double value : plan.target) System.out.println(Double.toHexString(value));
   }
 
   /**
-   * Where agent 1's colour and the darkest grey are in the drawn map, with (0, 0) below and left.
+   * Where agent 1's colour and the darkest grey are in the map of two axes, "xy", with (0, 0) below
+   * and left.
    */
-  private static void map(String planFile) throws Exception {
+  private static void map(String planFile, String axes) throws Exception {
     Team team = teamWith(Files.readAllBytes(Paths.get(planFile)));
     ergocast.world_state_t world = world(team.plan, 0.75, 0.125);
     team.receive(stream(bytesOf(world)));
-    BufferedImage image = draw(new MapView(team));
+    BufferedImage image = draw(new MapView(team, "xyz".indexOf(axes.charAt(0)),
+        "xyz".indexOf(axes.charAt(1))));
     print("agent", image, Colors.agent(1).getRGB() & 0xffffff);
     print("target", image, Colors.pencil(1));
   }
@@ -231,8 +234,10 @@ public final class SpyProbe {
     message.vehicle_count = 1;
     ergocast.vehicle_t vehicle = new ergocast.vehicle_t();
     vehicle.vehicle_id = 1;
-    vehicle.position_m[0] = plan.originX + shareX * plan.sizeX;
-    vehicle.position_m[1] = plan.originY + shareY * plan.sizeY;
+    double[] shares = {shareX, shareY, 0.625};
+    for (int axis = 0; axis < 3; ++axis) {
+      vehicle.position_m[axis] = plan.origin[axis] + shares[axis] * plan.size[axis];
+    }
     message.vehicles = new ergocast.vehicle_t[] {vehicle};
     return message;
   }

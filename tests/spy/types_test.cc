@@ -26,8 +26,9 @@ class SpyJar : public WithProbe {
     if (!missing.empty()) GTEST_SKIP() << "not installed when this was built:" << missing;
   }
   /// The plan that a scenario's agents receive, and its file.
-  Scenario plan_of(const std::string& name) {
-    auto loaded = Scenario::load(scenario_file(name));
+  Scenario plan_of(const std::string& name) { return plan_of_file(scenario_file(name)); }
+  Scenario plan_of_file(const std::filesystem::path& file) {
+    auto loaded = Scenario::load(file);
     const auto& scenario = std::get<Scenario>(loaded);
     const auto plan = encode_plan(scenario.mission());
     std::ofstream(plan_file(), std::ios::binary)
@@ -35,7 +36,23 @@ class SpyJar : public WithProbe {
                static_cast<std::streamsize>(plan.size()));
     return scenario;
   }
+  /// The same of a shipped scenario with one bell as its target.
+  void plan_of_bell(const std::string& name, const std::string& bell) {
+    std::string text = text_of(scenario_file(name));
+    const auto target = text.find("target {"), end = text.find("\n}", target);
+    text.replace(target, end - target, "target { gaussians { " + bell + " }");
+    std::ofstream(folder_ / "one_bell.textproto") << text;
+    plan_of_file(folder_ / "one_bell.textproto");
+  }
   std::filesystem::path plan_file() const { return folder_ / "plan.binpb"; }
+  /// The places of "agent" and "target" in the map of those axes, as shares of its sides.
+  std::map<std::string, std::pair<double, double>> places(const std::string& axes) {
+    std::istringstream said(ask({"map", plan_file(), axes}));
+    std::map<std::string, std::pair<double, double>> found;
+    for (std::string what; said >> what;) said >> found[what].first >> found[what].second;
+    return found;
+  }
+  static constexpr double kPixels = 0.01;  // four of 400
 };
 
 TEST_F(SpyJar, LcmSpyKnowsEveryTypeByTheFingerprintThatTravels) {
@@ -84,7 +101,8 @@ double next_number(std::istream& in) {
 }
 
 TEST_F(SpyJar, APlanIsReadToTheLastBit) {
-  for (const char* name : {"quadrimodal_corners", "harbour_patrol", "uniform_square"}) {
+  for (const char* name :
+       {"quadrimodal_corners", "harbour_patrol", "uniform_square", "cube_corners"}) {
     SCOPED_TRACE(name);
     const Scenario scenario = plan_of(name);
     const Mission& mission = scenario.mission();
@@ -93,13 +111,15 @@ TEST_F(SpyJar, APlanIsReadToTheLastBit) {
     said >> read_name;
     EXPECT_EQ(read_name, scenario.name());
     for (const double value :
-         {mission.domain.origin_m.x(), mission.domain.origin_m.y(), mission.domain.size_m.x(),
-          mission.domain.size_m.y(), mission.timing.dt_s,
+         {mission.domain.origin_m.x(), mission.domain.origin_m.y(), mission.domain.origin_m.z(),
+          mission.domain.size_m.x(), mission.domain.size_m.y(), mission.domain.size_m.z(),
+          mission.timing.dt_s,
           mission.timing.dt_s * static_cast<double>(mission.timing.tick_count)}) {
       EXPECT_DOUBLE_EQ(next_number(said), value);
     }
     EXPECT_EQ(next_number(said), mission.basis.modes_x);
     EXPECT_EQ(next_number(said), mission.basis.modes_y);
+    EXPECT_EQ(next_number(said), mission.basis.modes_z);
     for (const double value : mission.target_coefficients.reshaped<Eigen::RowMajor>()) {
       ASSERT_EQ(next_number(said), value);
     }
@@ -108,24 +128,25 @@ TEST_F(SpyJar, APlanIsReadToTheLastBit) {
 
 TEST_F(SpyJar, TheMapHasXToTheRightAndYUpwards) {
   // One bell at a place whose four mirror images are other places.
-  std::string text = text_of(scenario_file("quadrimodal_corners"));
-  const auto target = text.find("target {"), end = text.find("\n}", target);
-  text.replace(target, end - target,
-               "target { gaussians { mean_x_m: 600 mean_y_m: 1600 sigma_m: 150 }");
-  std::ofstream(folder_ / "one_bell.textproto") << text;
-  auto loaded = Scenario::load(folder_ / "one_bell.textproto");
-  const auto plan = encode_plan(std::get<Scenario>(loaded).mission());
-  std::ofstream(plan_file(), std::ios::binary)
-      .write(reinterpret_cast<const char*>(plan.data()), static_cast<std::streamsize>(plan.size()));
+  plan_of_bell("quadrimodal_corners", "mean_x_m: 600 mean_y_m: 1600 sigma_m: 150");
+  auto found = places("xy");
+  EXPECT_NEAR(found["target"].first, 0.3, kPixels) << output();
+  EXPECT_NEAR(found["target"].second, 0.8, kPixels);
+  EXPECT_NEAR(found["agent"].first, 0.75, kPixels);  // where SpyProbe puts it
+  EXPECT_NEAR(found["agent"].second, 0.125, kPixels);
+}
 
-  std::istringstream said(ask({"map", plan_file()}));
-  std::map<std::string, std::pair<double, double>> places;
-  for (std::string what; said >> what;) said >> places[what].first >> places[what].second;
-  constexpr double kPixels = 0.01;  // four of 400
-  EXPECT_NEAR(places["target"].first, 0.3, kPixels) << output();
-  EXPECT_NEAR(places["target"].second, 0.8, kPixels);
-  EXPECT_NEAR(places["agent"].first, 0.75, kPixels);  // where SpyProbe puts it
-  EXPECT_NEAR(places["agent"].second, 0.125, kPixels);
+TEST_F(SpyJar, ABoxIsSeenAlongEachAxis) {
+  plan_of_bell("cube_corners", "mean_x_m: 300 mean_y_m: 800 mean_z_m: 400 sigma_m: 100");
+  const std::map<char, std::pair<double, double>> expected = {
+      {'x', {0.3, 0.75}}, {'y', {0.8, 0.125}}, {'z', {0.4, 0.625}}};
+  for (const std::string axes : {"xy", "xz", "yz"}) {
+    auto found = places(axes);
+    EXPECT_NEAR(found["target"].first, expected.at(axes[0]).first, kPixels) << axes << output();
+    EXPECT_NEAR(found["target"].second, expected.at(axes[1]).first, kPixels) << axes;
+    EXPECT_NEAR(found["agent"].first, expected.at(axes[0]).second, kPixels) << axes;
+    EXPECT_NEAR(found["agent"].second, expected.at(axes[1]).second, kPixels) << axes;
+  }
 }
 
 TEST_F(SpyJar, NoBytesHarmIt) {

@@ -46,7 +46,7 @@ std::string bytes_of(const std::string& base64) {
 
 }  // namespace
 
-Browser::Browser(const std::filesystem::path& folder) {
+Browser::Browser(const std::filesystem::path& folder, bool webgl) {
   const std::vector<std::string> command{"/usr/bin/chromedriver",
                                          "--port=" + std::to_string(kPort)};
   driver_ = std::get<Child>(Child::start({command, folder / "chromedriver.log", SIGKILL}));
@@ -56,11 +56,18 @@ Browser::Browser(const std::filesystem::path& folder) {
   json options;
   options["args"] = {"--headless=new",
                      "--no-sandbox",
-                     "--disable-gpu",
                      "--disable-dev-shm-usage",
                      "--hide-scrollbars",
                      "--host-resolver-rules=MAP evil.example 127.0.0.1",
                      "--user-data-dir=" + (folder / "profile").string()};
+  if (webgl) {
+    for (const char* flag :
+         {"--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"}) {
+      options["args"].push_back(flag);
+    }
+  } else {
+    for (const char* flag : {"--disable-gpu", "--disable-webgl"}) options["args"].push_back(flag);
+  }
   const json capabilities = {{"browserName", "chrome"},
                              {"goog:chromeOptions", options},
                              {"goog:loggingPrefs", {{"browser", "ALL"}}},
@@ -120,6 +127,17 @@ void Browser::press(const std::string& key) {
 void Browser::click(const std::string& selector) {
   const json found = ask("POST", "/element", {{"using", "css selector"}, {"value", selector}});
   ask("POST", "/element/" + found.begin()->get<std::string>() + "/click");
+}
+
+void Browser::drag(const std::string& selector, int right, int down) {
+  const json found = ask("POST", "/element", {{"using", "css selector"}, {"value", selector}});
+  json steps = json::array();
+  steps.push_back({{"type", "pointerMove"}, {"origin", found}, {"x", 0}, {"y", 0}});
+  steps.push_back({{"type", "pointerDown"}, {"button", 0}});
+  steps.push_back({{"type", "pointerMove"}, {"origin", "pointer"}, {"x", right}, {"y", down}});
+  steps.push_back({{"type", "pointerUp"}, {"button", 0}});
+  const json mouse = {{"type", "pointer"}, {"id", "mouse"}, {"actions", steps}};
+  ask("POST", "/actions", {{"actions", json::array({mouse})}});
 }
 
 std::vector<std::string> Browser::errors() {

@@ -16,7 +16,8 @@ namespace ergocast::test {
 class Browser {
  public:
   /// @param folder  for its profile and its driver's log
-  explicit Browser(const std::filesystem::path& folder);
+  /// @param webgl  whether it offers WebGL, which it computes without a graphics card
+  explicit Browser(const std::filesystem::path& folder, bool webgl = false);
   ~Browser();
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
@@ -30,6 +31,8 @@ class Browser {
   /// A key as WebDriver names it, on the element that has the focus: "d", "\uE014" (right).
   void press(const std::string& key);
   void click(const std::string& selector);
+  /// Presses the mouse in the middle of an element, moves it by so many pixels, and lets it go.
+  void drag(const std::string& selector, int right, int down);
   /// Errors in its console since the last call, also of the page's policy.
   std::vector<std::string> errors();
   /// Processor time of the page's main thread since the first call [s].

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A page of a run in a real browser.
+//
+// With ERGOCAST_SCREENSHOTS=FOLDER the tests save what they show there.
+#pragma once
+
+#include <cstdlib>
+#include <optional>
+
+#include "tests/process/mission.h"
+#include "tests/support/browser.h"
+
+namespace ergocast::test {
+
+class PageInABrowser : public FlyingMission {
+ protected:
+  /// A finished mission, its report open in the browser.
+  void open_report(std::vector<std::string> mission = {"--duration", "60"},
+                   const std::string& fragment = "", const char* name = "quadrimodal_corners") {
+    mission.insert(mission.begin(), {"simulate", scenario_file(name), "--out", out()});
+    ASSERT_EQ(ergocast(mission), 0) << output();
+    show_report(fragment);
+  }
+  void show_report(const std::string& fragment = "") {
+    browser_->open("file://" + (out() / "report.html").string() + fragment);
+    ASSERT_TRUE(browser_->becomes("return Boolean(window.ergocast && ergocast.S.run.ready)"));
+  }
+  /// The frame after next shows what was asked for.
+  void wait_for_frame() {
+    js("return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+  }
+  void screenshot(const std::string& name) {
+    wait_for_frame();
+    const char* folder = std::getenv("ERGOCAST_SCREENSHOTS");
+    if (folder != nullptr)
+      browser_->save_screenshot(std::filesystem::path(folder) / (name + ".png"));
+  }
+  void expect_no_errors() { EXPECT_EQ(browser_->errors(), std::vector<std::string>()); }
+  nlohmann::json js(const std::string& script) { return browser_->run(script); }
+  std::string text(const std::string& id) {
+    return js("return document.getElementById('" + id + "').textContent");
+  }
+  void TearDown() override {
+    if (HasFailure()) screenshot("failed");
+    browser_.reset();  // its processes are on this host, too
+    FlyingMission::TearDown();
+  }
+
+  std::optional<Browser> browser_{std::in_place, folder_};
+};
+
+}  // namespace ergocast::test
