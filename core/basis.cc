@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "core/require.h"
@@ -218,22 +219,27 @@ double across_columns(const BasisAt::Table& columns, const BasisAt::Table& along
 /// Weights of a plane's modes, which are left of a box's where z is known.
 using Slab = std::array<double, static_cast<std::size_t>(kMaxModesPerAxis) * kMaxModesPerAxis>;
 
-/// Sums over l of kWidth modes of the slab, from mode `first` on, for each table along z.
-template <int kWidth, std::size_t kTables>
+/// Four doubles, added and multiplied one by one. Where tables are many, the compiler finds no such
+/// vectors by itself.
+using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+/// Sums over l of the modes in kCount values, from the slab's mode `first` on, for each table along
+/// z.
+template <class Value, int kCount, std::size_t kTables>
 ERGOCAST_VECTORIZED_PART void contract_some(
     const std::array<const BasisAt::Table*, kTables>& along_z, const Basis& basis,
     const double* weights, int first, std::array<Slab, kTables>& slabs) {
-  std::array<std::array<double, kWidth>, kTables> sums{};
+  constexpr int kWidth = sizeof(Value) / sizeof(double);
+  Value sums[kTables][kCount] = {};
   const double* slab = weights + first;
   for (int l = 0; l < basis.modes_z; ++l, slab += basis.modes_x * basis.modes_y) {
-    for (std::size_t i = 0; i < kTables; ++i) {
-      const double factor = (*along_z[i])[l];
-      for (int k = 0; k < kWidth; ++k) sums[i][k] += factor * slab[k];
+    for (int k = 0; k < kCount; ++k) {
+      Value value;
+      std::memcpy(&value, slab + k * kWidth, sizeof value);
+      for (std::size_t i = 0; i < kTables; ++i) sums[i][k] += (*along_z[i])[l] * value;
     }
   }
-  for (std::size_t i = 0; i < kTables; ++i) {
-    for (int k = 0; k < kWidth; ++k) slabs[i][first + k] = sums[i][k];
-  }
+  for (std::size_t i = 0; i < kTables; ++i) std::memcpy(&slabs[i][first], sums[i], sizeof sums[i]);
 }
 
 /// slabs_i(m,n) = Σ_l along_z_i[l] weights(l,m,n).
@@ -242,11 +248,14 @@ ERGOCAST_VECTORIZED_PART void contract_z(const std::array<const BasisAt::Table*,
                                          const Basis& basis, const double* weights,
                                          std::array<Slab, kTables>& slabs) {
   const int end = basis.modes_x * basis.modes_y;
-  int k = 0;
-  for (; k + kModesPerStride <= end; k += kModesPerStride) {
-    contract_some<kModesPerStride>(along_z, basis, weights, k, slabs);
+  if (end < 8) {
+    for (int k = 0; k < end; ++k) contract_some<double, 1>(along_z, basis, weights, k, slabs);
+    return;
   }
-  for (; k < end; ++k) contract_some<1>(along_z, basis, weights, k, slabs);
+  // The last eight are those at the end, also where they are not the next ones.
+  for (int k = 0; k < end; k += 8) {
+    contract_some<Four, 2>(along_z, basis, weights, std::min(k, end - 8), slabs);
+  }
 }
 
 ERGOCAST_VECTORIZED

@@ -19,6 +19,8 @@ namespace {
 constexpr int kTighterTurns = 8;
 /// A unicycle whose way is blocked still turns: as the direction of its velocity, however small.
 constexpr double kLeastShare = 1e-9;
+/// What is shortened is shortened by so much more that rounding leaves it allowed.
+constexpr double kShortenedShare = 1 - 1e-9;
 
 }  // namespace
 
@@ -26,12 +28,22 @@ SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d
                                         std::span<const Neighbour> others) {
   SafeVelocity safe = safe_step(self, wanted_mps, others);
   if (safe.blind) return safe;
+  // What another filter has allowed stays as it is, also a turn on the spot that a point would not
+  // have made.
+  const bool filtered = executed(mission_, self.velocity_mps, wanted_mps) == wanted_mps &&
+                        constraints_.allow(mean_velocity(mission_, self.velocity_mps, wanted_mps) *
+                                           mission_.timing.dt_s);
+  if (filtered) {
+    safe.velocity_mps = wanted_mps;
+    return safe;
+  }
   const Eigen::Vector3d turned_mps = executed(mission_, self.velocity_mps, safe.velocity_mps);
   const Eigen::Vector3d step_m =
       mean_velocity(mission_, self.velocity_mps, turned_mps) * mission_.timing.dt_s;
   const double share = std::max(kLeastShare, constraints_.allowed_share(step_m));
   safe.velocity_mps =
-      share < 1 ? executed(mission_, self.velocity_mps, share * turned_mps) : turned_mps;
+      share < 1 ? executed(mission_, self.velocity_mps, kShortenedShare * share * turned_mps)
+                : turned_mps;
   return safe;
 }
 

@@ -6,8 +6,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <vector>
 
+#include "core/vehicle.h"
 #include "tests/core/crowd.h"
 
 namespace ergocast {
@@ -181,6 +183,35 @@ TEST(Separation, ResultsAreWithinTheSpeedLimit) {
         filter.safe({0, i, {500, 500, 0}, 40}, wanted, {{{1, {531, 502, 0}, 40}}});
     if (safe.velocity_mps == wanted) continue;
     EXPECT_EQ(within_speed_limit(mission, safe.velocity_mps), safe.velocity_mps);
+  }
+}
+
+/// In a mission in lockstep the agent filters its command, and the world does so once more.
+TEST(Separation, LeavesWhatItHasAllowed) {
+  const VehicleLimits kinds[] = {{},
+                                 {.kind = VehicleKind::kAcceleration, .max_acceleration_mps2 = 20},
+                                 {.kind = VehicleKind::kUnicycle, .max_turn_radps = 2},
+                                 {VehicleKind::kFixedWing, 0, 2, 10}};
+  for (const VehicleLimits& vehicle : kinds) {
+    Mission mission = team_mission();
+    mission.vehicle = vehicle;
+    SeparationFilter filter(mission, 0);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> within(-1, 1);
+    const auto drawn = [&](double most) -> Eigen::Vector3d {
+      return {most * within(random), most * within(random), 0};
+    };
+    for (int i = 0; i < 3000; ++i) {
+      const bool stands = i % 2 == 0;  // at the edge
+      Mover self{0, i, {stands ? 0 : 6 + 4 * within(random), 500, 0}, 40};
+      self.velocity_mps = drawn(stands ? 2e-8 : 4);
+      self.velocity_mps = executed(mission, self.velocity_mps, self.velocity_mps);
+      const Eigen::Vector3d away_m = Eigen::Vector3d(50, 0, 0) + drawn(15);
+      const std::vector<Neighbour> others = {{1, self.position_m + away_m, 40}};
+      const Eigen::Vector3d allowed_mps = filter.safe(self, drawn(60), others).velocity_mps;
+      ASSERT_EQ(filter.safe(self, allowed_mps, others).velocity_mps, allowed_mps)
+          << "vehicle " << static_cast<int>(vehicle.kind) << ", case " << i;
+    }
   }
 }
 
