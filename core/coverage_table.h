@@ -16,6 +16,7 @@
 #include "core/block_sums.h"
 #include "core/contribution.h"
 #include "core/ids.h"
+#include "core/line_aligned.h"
 
 namespace ergocast {
 
@@ -145,7 +146,7 @@ class CoverageTable {
     std::int64_t fewest_steps = 0;  // among the blocks
     Tick due_tick = kNeverSaid;     // of the block that is due first
     std::vector<Block> blocks;
-    std::vector<double> samples;  // instead of the blocks' sums, once there are samples
+    AlignedDoubles samples;  // instead of the blocks' sums, once there are samples
     double quality = 1;
     const double* sums(std::size_t block, int block_size) const;
     /// After a block has changed.

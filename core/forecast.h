@@ -29,6 +29,7 @@
 #include "core/coverage_table.h"
 #include "core/ids.h"
 #include "core/kinds.h"
+#include "core/line_aligned.h"
 #include "core/look_ahead.h"
 #include "core/mission.h"
 #include "core/roster.h"
@@ -75,7 +76,7 @@ class Forecast {
     std::vector<std::int64_t> steps;       // with the places added since
     std::vector<Tick> until;               // the tick of the last step
     std::vector<char> due;                 // whether that one counts, but is not in the sums yet
-    std::vector<double> sums;  // with the places; of blocks to which nothing was added, anything
+    AlignedDoubles sums;  // with the places; of blocks to which nothing was added, anything
     std::optional<CosinesAt> newest;  // at the newest place, and its tick
     Tick newest_tick = -1;
   };
@@ -125,10 +126,10 @@ class Forecast {
   std::ptrdiff_t before_own_ = 0;  // so many of them come before the own row
   const double* own_sums_ = nullptr;
   double own_quality_ = 1;
-  std::vector<double> nothing_;  // zeros
-  std::vector<double> gains_;    // of a row whose sensor is unlike others
+  AlignedDoubles nothing_;  // zeros
+  AlignedDoubles gains_;    // of a row whose sensor is unlike others
   // What the rows before the own one and those after it will have covered.
-  std::vector<double> earlier_, later_;
+  AlignedDoubles earlier_, later_;
 };
 
 }  // namespace ergocast
