@@ -81,6 +81,7 @@ class InvariantsTest : public ::testing::Test {
     TableView one = holder(table, c_one_);
     team.received(one, MissionPart());
     one.roster = &later;
+    team.received(one, MissionPart());
     const auto hear = [&](Tick tick, std::int64_t steps) {
       cover(other, kTwo, 1, static_cast<double>(steps) / 10);
       for (const int b : {1, 0}) {
