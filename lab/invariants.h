@@ -146,7 +146,8 @@ class Invariants {
   void heard(const Author& listener, const Digest& digest);
   /// Bytes were read: whole ones are accepted, damaged ones refused.
   void decoded(double t_s, const std::variant<Message, Refusal>& result, bool damaged);
-  /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for.
+  /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for. To
+  /// be called for each MISSION, as one of them admits the agent and names its first tick.
   void received(const TableView& listener, const Message& message);
   /// An agent has answered a tick: what it holds never shrinks, no author's steps exceed the ticks
   /// there were, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1, and ĉ_k, where its law looks
@@ -227,7 +228,7 @@ class Invariants {
   std::vector<Author> authors_;
   std::map<AgentId, int> lives_;
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
-  std::map<Author, Shadow> shadows_;                       // of each life of an agent
+  std::map<Author, Shadow> shadows_;  // of each life of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
   Bodies bodies_;                                   // where a distance is kept
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // with a radio range only, as what follows

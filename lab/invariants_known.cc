@@ -18,16 +18,22 @@ constexpr Tick kTicksBetweenAverages = 11;
 // -----------------------------------------------------------------------
 
 void Invariants::received(const TableView& listener, const Message& message) {
+  if (listener.table == nullptr) return;
+  if (std::holds_alternative<MissionPart>(message)) {
+    const RosterEntry* own = entry_of(*listener.roster, listener.self);
+    if (own != nullptr) shadows_.try_emplace(listener.self, own->active_from);
+    return;
+  }
   if (mission_.law.anticipation <= 0) return;
   const bool is_block = std::holds_alternative<Contribution>(message);
   if (!is_block && !std::holds_alternative<WorldState>(message)) return;
-  shadows_[listener.self].hear(mission_, listener, message);
+  shadows_.at(listener.self).hear(mission_, listener, message);
 }
 
 void Invariants::answered(double t_s, const TableView& holder) {
   check_steps(t_s, holder);
   const bool looks_ahead = mission_.law.anticipation > 0 && holder.foreseen != nullptr;
-  if (looks_ahead) shadows_[holder.self].answer(mission_, holder);
+  if (looks_ahead) shadows_.at(holder.self).answer(mission_, holder);
   // Costs as much as the control step itself: now and then is enough to find what is wrong for
   // good.
   if (holder.answered % kTicksBetweenAverages != 0) return;
@@ -65,8 +71,8 @@ void Invariants::check_average(double t_s, const TableView& holder) {
             text("differs by ", error, " at tick ", holder.answered));
   }
   // Before its own first tick, where a restarted world may stand, a newcomer covers nothing itself.
-  const RosterEntry* own = entry_of(*holder.roster, holder.self);
-  if (own != nullptr && holder.answered < own->active_from) return;
+  const auto shadow = shadows_.find(holder.self);
+  if (shadow != shadows_.end() && holder.answered < shadow->second.active_from()) return;
   const double c_00 = (*holder.coverage)[0];
   if (std::abs(c_00 - 1) > rounding(last_tick_)) {
     violate(t_s, Invariant::kZerothIsOne, name_of(holder.self), text("c_00 = ", c_00));
@@ -74,7 +80,7 @@ void Invariants::check_average(double t_s, const TableView& holder) {
 }
 
 void Invariants::check_forecast(double t_s, const TableView& holder) {
-  const Coefficients expected = shadows_[holder.self].foreseen(mission_, holder);
+  const Coefficients expected = shadows_.at(holder.self).foreseen(mission_, holder);
   const double error = (*holder.foreseen - expected).cwiseAbs().maxCoeff();
   if (error <= rounding(last_tick_ * static_cast<std::int64_t>(authors_.size()))) return;
   violate(t_s, Invariant::kForecastOfWhatIsKnown, name_of(holder.self),

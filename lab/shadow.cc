@@ -140,11 +140,6 @@ bool flies(const TableView& agent, const RosterEntry& entry) {
 // ---- what was heard -----------------------------------------------------------------------------
 
 void Shadow::hear(const Mission& mission, const TableView& agent, const Message& message) {
-  if (agent.table == nullptr) return;
-  if (!active_from_) {
-    const RosterEntry* own = entry_of(*agent.roster, agent.self);
-    if (own != nullptr) active_from_ = own->active_from;
-  }
   if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
   if (const auto* world = std::get_if<WorldState>(&message)) note_places(mission, agent, *world);
 }
@@ -169,7 +164,7 @@ void Shadow::note_places(const Mission& mission, const TableView& agent, const W
     positions_m_[vehicle.id] = vehicle.position_m;
   }
   positions_tick_ = std::max(positions_tick_, tick);
-  if (!active_from_ || tick < *active_from_) return;
+  if (tick < active_from_) return;
   const Timing& timing = mission.timing;
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
@@ -238,7 +233,7 @@ void Shadow::reckon(const RosterEntry& entry, Row& row) const {
 Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {
   const Said& held = block.held;
   // What was said before an agent's own time may be this or that, whichever way it came to know it.
-  const Said before = block.before.tick >= active_from_.value_or(0) ? block.before : Said{};
+  const Said before = block.before.tick >= active_from_ ? block.before : Said{};
   const int size = block_size(mission);
   Part part{vector_of(held.sums, size),
             vector_of(held.gains, size),

@@ -23,6 +23,11 @@ namespace ergocast::lab {
 
 class Shadow {
  public:
+  /// @param active_from  the agent's first tick, as its first admission said. That one counts: it
+  ///                     may be lost with its coordinator, and a later one may name another tick.
+  explicit Shadow(Tick active_from) : active_from_(active_from) {}
+  Tick active_from() const { return active_from_; }
+
   /// A message has reached the agent, which now is as `agent` says.
   void hear(const Mission& mission, const TableView& agent, const Message& message);
 
@@ -70,7 +75,7 @@ class Shadow {
                              bool flies) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
-  std::optional<Tick> active_from_;
+  Tick active_from_;
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest go
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // for the radio range, of the newest …

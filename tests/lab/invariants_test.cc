@@ -70,7 +70,8 @@ class InvariantsTest : public ::testing::Test {
   std::string violated() const { return violated_by(team_); }
   /// What is violated by a ĉ that is off by so much, after a teammate was heard twice and then
   /// seen.
-  std::string violated_by_forecast(double off) {
+  /// @param later  the roster from the admission on
+  std::string violated_by_forecast(double off, const std::vector<RosterEntry>& later) {
     Invariants team(mission_);
     team.born(kOne);
     team.born(kTwo);
@@ -78,6 +79,9 @@ class InvariantsTest : public ::testing::Test {
     CoverageTable table(mission_.basis, 0.1), other(mission_.basis, 0.1);
     Forecast forecast(mission_, kOne);
     TableView one = holder(table, c_one_);
+    team.received(one, MissionPart());
+    one.roster = &later;
+    team.received(one, MissionPart());
     const auto hear = [&](Tick tick, std::int64_t steps) {
       cover(other, kTwo, 1, static_cast<double>(steps) / 10);
       for (const int b : {1, 0}) {
@@ -99,8 +103,9 @@ class InvariantsTest : public ::testing::Test {
     team.received(one, state);
     forecast.see(kTwo.agent, 88, {7, 3, 0});
     one = holder(table, c_one_);
+    one.roster = &later;
     c_two_ = Coefficients::Zero(144);
-    forecast.look_ahead(table, roster_, one.answered, c_two_);
+    forecast.look_ahead(table, later, one.answered, c_two_);
     c_two_[47] += off;
     one.foreseen = &c_two_;
     team.answered(1, one);
@@ -226,10 +231,39 @@ TEST_F(InvariantsTest, WhatIsForeseenFollowsFromWhatIsKnown) {
   for (const bool reckons : {false, true}) {
     mission_.dead_reckoning = reckons;
     mission_.law.anticipation = 2;
-    EXPECT_EQ(violated_by_forecast(0), "") << reckons;
-    EXPECT_EQ(violated_by_forecast(1e-9), "forecast of what is known") << reckons;
+    EXPECT_EQ(violated_by_forecast(0, roster_), "") << reckons;
+    EXPECT_EQ(violated_by_forecast(1e-9, roster_), "forecast of what is known") << reckons;
     mission_.law.anticipation = 0;
-    EXPECT_EQ(violated_by_forecast(1e-9), "") << reckons << ": this law foresees nothing";
+    EXPECT_EQ(violated_by_forecast(1e-9, roster_), "") << reckons << ": this law foresees nothing";
+  }
+}
+
+TEST_F(InvariantsTest, WhatIsForeseenIsTheSameWhenAnAdmissionIsLostWithItsCoordinator) {
+  mission_.target_coefficients[0] = 1;
+  mission_.law.anticipation = 2;
+  const std::vector<RosterEntry> lost(roster_.begin() + 1, roster_.end());
+  std::vector<RosterEntry> anew = roster_;
+  anew.front().active_from = 89;
+  for (const bool reckons : {false, true}) {
+    mission_.dead_reckoning = reckons;
+    for (const auto& later : {lost, anew}) {
+      EXPECT_EQ(violated_by_forecast(0, later), "") << reckons << ", " << later.size();
+      EXPECT_EQ(violated_by_forecast(1e-9, later), "forecast of what is known")
+          << reckons << ", " << later.size();
+    }
+  }
+}
+
+TEST_F(InvariantsTest, ANewcomerCoversNothingBeforeItsFirstTickEvenIfItsAdmissionIsLost) {
+  const CoverageTable nothing(mission_.basis, 0.1);
+  for (const Tick first : {89, 88}) {
+    Invariants team(mission_);
+    roster_.insert(roster_.begin(), {{0, 12}, first});
+    const TableView newcomer = holder(nothing, c_one_, {0, 12});
+    team.received(newcomer, MissionPart());
+    roster_.erase(roster_.begin());
+    team.answered(1, newcomer);
+    EXPECT_EQ(violated_by(team), newcomer.answered < first ? "" : "c_00 = 1");
   }
 }
 
