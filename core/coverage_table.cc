@@ -82,13 +82,17 @@ CoverageTable::CoverageTable(const Basis& basis, double dt_s, Tick joined)
     : basis_(basis),
       dt_s_(dt_s),
       joined_(joined),
-      block_count_(block_count_of(basis.mode_count(), encoding_)) {}
+      layout_(basis, ContributionEncoding::kDouble),
+      block_count_(layout_.block_count()) {}
 
-void CoverageTable::set_encoding(ContributionEncoding encoding) {
+void CoverageTable::set_layout(const BlockLayout& layout) {
   ERGOCAST_REQUIRE(rows_.empty());
-  encoding_ = encoding;
-  block_size_ = block_size_of(encoding);
-  block_count_ = block_count_of(basis_.mode_count(), encoding);
+  layout_ = layout;
+  block_size_ = layout.block_size();
+  block_count_ = layout.block_count();
+  if (layout.in_basis_order()) return;
+  by_mode_.resize(static_cast<std::size_t>(basis_.mode_count()));
+  by_slot_.resize(static_cast<std::size_t>(layout.slot_count()));
 }
 
 CoverageTable::Row* CoverageTable::find(const Author& author) {
@@ -137,7 +141,9 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
       row->blocks[b].gained_steps = 0;
     }
   }
-  if (footprint == nullptr) {
+  if (!layout_.in_basis_order()) {
+    add_in_slots(at, footprint, row->samples.data());
+  } else if (footprint == nullptr) {
     accumulate_basis(at, basis_, dt_s_, row->samples.data());
   } else {
     accumulate_basis(at, basis_, dt_s_, footprint, row->samples.data());
@@ -146,8 +152,21 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
   row->sum_up();
 }
 
+/// The same additions, each in its slot.
+void CoverageTable::add_in_slots(const BasisAt& at, const double* footprint, double* samples) {
+  set_basis(at, basis_, dt_s_, by_mode_.data());
+  for (std::size_t k = 0; footprint != nullptr && k < by_mode_.size(); ++k)
+    by_mode_[k] *= footprint[k];
+  layout_.to_slots(by_mode_.data(), by_slot_.data());
+  for (int b = 0; b < block_count_; ++b) {
+    const auto [first, count] = layout_.slots_of(b);
+    for (int slot = first; slot < first + count; ++slot)
+      samples[slot] += by_slot_[static_cast<std::size_t>(slot)];
+  }
+}
+
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
-  if (theirs.encoding != encoding_) return Merge::kRefusedEncoding;
+  if (theirs.encoding != layout_.encoding()) return Merge::kRefusedEncoding;
   if (theirs.mode_count != basis_.mode_count() || theirs.block < 0 ||
       theirs.block >= block_count_ || theirs.steps < 1 || theirs.steps > max_steps ||
       theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_) ||
@@ -163,7 +182,7 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
     const auto size = static_cast<std::size_t>(block_size_);
     std::copy_n(theirs.sums.data(), size, row->samples.data() + number * size);
     block.gained_steps = 0;
-  } else if (encoding_ == ContributionEncoding::kFixed16) {
+  } else if (layout_.encoding() == ContributionEncoding::kFixed16) {
     block.sums_before = theirs.gains;
     block.gained_steps = theirs.gained_steps;
   } else if (notes_gains_) {
@@ -210,7 +229,7 @@ std::int64_t CoverageTable::gained_steps(const Block& block) const {
 CoverageTable::Gains CoverageTable::gains(std::size_t row, int block) const {
   const Block& held = rows_[row].blocks[static_cast<std::size_t>(block)];
   const std::int64_t steps = notes_gains_ ? gained_steps(held) : 0;
-  if (encoding_ == ContributionEncoding::kFixed16) return {nullptr, held.sums_before.data(), steps};
+  if (layout_.encoding() == ContributionEncoding::kFixed16) return {nullptr, held.sums_before.data(), steps};
   return {held.sums_before.data(), nullptr, steps};
 }
 
@@ -238,7 +257,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   out.header.incarnation = author.incarnation;
   out.block = block;
   out.mode_count = basis_.mode_count();
-  out.encoding = encoding_;
+  out.encoding = layout_.encoding();
   if (const Row* row = find(author)) {
     const Block& held = row->blocks[static_cast<std::size_t>(block)];
     out.header.sequence = held.sequence;
@@ -253,7 +272,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
       std::copy_n(row->sums(static_cast<std::size_t>(block), block_size_), size,
                   out.sums.set_all(size).begin());
     }
-    if (encoding_ == ContributionEncoding::kFixed16 && row->samples.empty()) {
+    if (layout_.encoding() == ContributionEncoding::kFixed16 && row->samples.empty()) {
       out.gains = held.sums_before;
       out.gained_steps = held.gained_steps;
     }
@@ -270,6 +289,12 @@ void CoverageTable::remember_all() {
 }
 
 void CoverageTable::average(Coefficients& coverage) const {
+  if (layout_.in_basis_order()) return average_slots(coverage.data());
+  average_slots(by_slot_.data());
+  layout_.from_slots(by_slot_.data(), coverage.data());
+}
+
+void CoverageTable::average_slots(double* coverage) const {
   for (int b = 0; b < block_count_; ++b) {
     const auto number = static_cast<std::size_t>(b);
     double steps = 0;  // each with its quality
@@ -281,12 +306,12 @@ void CoverageTable::average(Coefficients& coverage) const {
       counted_[count++] = row.sums(number, block_size_);
     }
     const double per_second = steps > 0 ? 1 / (steps * dt_s_) : 0;
-    const int first = b * block_size_, modes = std::min(block_size_, basis_.mode_count() - first);
+    const auto [first, modes] = layout_.slots_of(b);
     const std::span<const double* const> rows(counted_.data(), count);
     if (weighted_) {
-      average_weighted(rows, qualities_.data(), modes, per_second, coverage.data() + first);
+      average_weighted(rows, qualities_.data(), modes, per_second, coverage + first);
     } else {
-      average_rows(rows, modes, per_second, coverage.data() + first);
+      average_rows(rows, modes, per_second, coverage + first);
     }
   }
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/block_layout.h"
 #include "core/block_sums.h"
 #include "core/contribution.h"
 #include "core/ids.h"
@@ -31,9 +32,10 @@ class CoverageTable {
   /// for who does not look ahead.
   void forgo_gains() { notes_gains_ = false; }
 
-  /// From now on blocks come, and are given out, in this encoding; at first in doubles.
+  /// From now on blocks come, and are given out, in this layout and its encoding; at first in
+  /// doubles, in the order of the basis.
   /// @pre no rows
-  void set_encoding(ContributionEncoding encoding);
+  void set_layout(const BlockLayout& layout);
 
   int block_count() const { return block_count_; }
   int block_size() const { return block_size_; }
@@ -67,6 +69,7 @@ class CoverageTable {
   /// c_k = Σ_j q_j S_j / Σ_j q_j elapsed_j per block, (4) weighted by quality and by the time that
   /// each row covers.
   /// Entries of blocks without any samples are 0. Does not allocate.
+  /// @param coverage  in the order of the basis, whatever the layout is
   void average(Coefficients& coverage) const;
 
   /// The fewest steps among a row's blocks; nothing if the row is unknown.
@@ -113,7 +116,7 @@ class CoverageTable {
   /// Whether all blocks have gained in as many steps.
   bool gains_alike(std::size_t row) const;
 
-  /// The sums of a row that only add_sample() fills [s]: mode_count() of them and then zeros.
+  /// The sums of a row that only add_sample() fills [s]: those of all slots and then zeros.
   /// @pre `author` has samples
   const double* sums_of(const Author& author) const;
 
@@ -161,11 +164,13 @@ class CoverageTable {
   Row* find_or_add(const Author& author);
 
   std::int64_t gained_steps(const Block& block) const;
+  void add_in_slots(const BasisAt& at, const double* footprint, double* samples);
+  void average_slots(double* coverage) const;
 
   Basis basis_;
   double dt_s_;
   Tick joined_;
-  ContributionEncoding encoding_ = ContributionEncoding::kDouble;
+  BlockLayout layout_;
   int block_size_ = kBlockSize;
   int block_count_;
   bool notes_gains_ = true;
@@ -173,6 +178,9 @@ class CoverageTable {
   std::vector<Row> rows_;                       // ascending by author
   mutable std::vector<const double*> counted_;  // of each row that counts, the sums of a block
   mutable std::vector<double> qualities_;       // and its quality
+  // Of another layout than in the order of the basis: numbers by mode, and by slot.
+  std::vector<double> by_mode_;
+  mutable std::vector<double> by_slot_;
 };
 
 }  // namespace ergocast

@@ -47,7 +47,7 @@ LookAhead::LookAhead(const Mission& mission)
                mission.law.u_max_mps),
       end_tick_(mission.law.ends_with_plan ? mission.timing.tick_count
                                            : std::numeric_limits<Tick>::max()),
-      longest_period_(mission.timing.broadcast_period_ticks) {}
+      longest_period_(longest_period_ticks(mission.timing)) {}
 
 double LookAhead::horizon_s(int n, Tick tick) const {
   const double left_s = static_cast<double>(std::max<Tick>(0, end_tick_ - tick)) * dt_s_;

@@ -104,7 +104,7 @@ final class Team {
     ByteArrayOutputStream whole = new ByteArrayOutputStream();
     for (byte[] part : parts) whole.write(part);
     plan = new Plan(whole.toByteArray());
-    coverage = new Coverage(plan.target.length);
+    coverage = new Coverage(plan);
   }
 
   private void on(ergocast.world_state_t message) {

@@ -539,7 +539,7 @@ law {
   anticipation: 2
 }
 time {
-  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 contribution_encoding: FIXED16 pace: REALTIME
+  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 high_mode_period_factor: 4 contribution_encoding: FIXED16 pace: REALTIME
 }
 agents {
   starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1
