@@ -34,7 +34,7 @@ double horizon_s(const Mission& mission, int n, Tick tick) {
   const Coefficients& mu = mission.target_coefficients;
   const auto [modes_x, modes_y, modes_z] =
       std::tuple(mission.basis.modes_x, mission.basis.modes_y, mission.basis.modes_z);
-  // The modes along an axis are so far from each other in the order of the wire.
+  // The modes along an axis are so far from each other in the order of the basis.
   const auto variance_m2 = [&](int axis, int modes, int apart) {
     return marginal_variance(mission.domain.size_m[axis], modes,
                              [&](int mode) { return mu[mode * apart]; });
