@@ -48,7 +48,7 @@ BlockLayout::BlockLayout(const Mission& mission)
 BlockLayout::Slots BlockLayout::slots_of(int block) const {
   const int first = block * block_size();
   if (in_basis_order()) return {first, std::min(block_size(), mode_count_ - first)};
-  if (block == 0) return {0, kLowModes};
+  if (block == 0) return {0, size_of(block)};
   const int before = kLowModes + first - block_size();
   return {first, std::min(block_size(), mode_count_ - before)};
 }

@@ -5,7 +5,8 @@
 // high_mode_period_factor above 1 they travel by ascending |k|, those of one |k| in the order of
 // the basis. The first block then ends after kLowModes, because the others are sent less often.
 //
-// A slot is the place of a mode in the order of the wire: block b begins at slot b · block_size().
+// A slot is the place of a mode in the order of the wire: block b begins at slot b · block_size(),
+// also after a shorter first block.
 // Tables and forecasts add up slots. Only here a slot becomes a mode of the basis, or the reverse.
 #pragma once
 
@@ -17,9 +18,6 @@
 namespace ergocast {
 
 struct Mission;
-
-/// The modes of the first block where the others are sent less often.
-inline constexpr int kLowModes = 64;
 
 /// Whether the modes above the kLowModes lowest ones are sent less often.
 bool separates_low_modes(const Mission& mission);
@@ -46,8 +44,12 @@ class BlockLayout {
   /// Whether mode k of the basis has slot k.
   bool in_basis_order() const { return mode_by_rank_.empty(); }
 
-  /// Those of a block that have a mode. The others of its block_size() are 0.
+  /// Those of a block that have a mode.
   Slots slots_of(int block) const;
+  /// How many numbers a block has on the wire; those without a mode are 0.
+  int size_of(int block) const {
+    return block == 0 && !in_basis_order() ? kLowModes : block_size();
+  }
   /// Up to the last one that has a mode.
   int slot_count() const;
 

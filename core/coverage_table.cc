@@ -22,12 +22,13 @@ double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(s
 
 static_assert(kBlockSize % kModesPerStride == 0 && kMostBlockSize % kModesPerStride == 0,
               "reading so many never leaves a row");
+static_assert(kLowModes % kModesPerStride == 0);
 
 /// Whether no sum of a block has changed by more than `limit`.
 ERGOCAST_VECTORIZED
-bool gains_within(const double* sums, const double* before, double limit) {
+bool gains_within(std::span<const double> sums, const double* before, double limit) {
   std::int64_t beyond = 0;  // counted, because a loop with a way out is not vectorised
-  for (std::size_t k = 0; k < kBlockSize; ++k) {
+  for (std::size_t k = 0; k < sums.size(); ++k) {
     beyond += !(std::abs(sums[k] - before[k]) <= limit);
   }
   return beyond == 0;
@@ -137,7 +138,7 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
     const auto size = static_cast<std::size_t>(block_size_);
     row->samples.resize(row->blocks.size() * size);
     for (std::size_t b = 0; b < row->blocks.size(); ++b) {
-      std::copy_n(row->blocks[b].sums.data(), size, row->samples.data() + b * size);
+      std::ranges::copy(row->blocks[b].sums, row->samples.data() + b * size);
       row->blocks[b].gained_steps = 0;
     }
   }
@@ -165,11 +166,15 @@ void CoverageTable::add_in_slots(const BasisAt& at, const double* footprint, dou
   }
 }
 
+bool CoverageTable::has_size(const Contribution& theirs) const {
+  return theirs.sums.size() == static_cast<std::size_t>(layout_.size_of(theirs.block));
+}
+
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (theirs.encoding != layout_.encoding()) return Merge::kRefusedEncoding;
   if (theirs.mode_count != basis_.mode_count() || theirs.block < 0 ||
       theirs.block >= block_count_ || theirs.steps < 1 || theirs.steps > max_steps ||
-      theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_) ||
+      theirs.next_broadcast_tick < 0 || !has_size(theirs) || !in_range(theirs, dt_s_) ||
       !gains_in_range(theirs, dt_s_)) {
     return Merge::kRefusedRange;
   }
@@ -180,7 +185,7 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (theirs.steps <= block.steps) return Merge::kStale;
   if (!row->samples.empty()) {
     const auto size = static_cast<std::size_t>(block_size_);
-    std::copy_n(theirs.sums.data(), size, row->samples.data() + number * size);
+    std::ranges::copy(theirs.sums, row->samples.data() + number * size);
     block.gained_steps = 0;
   } else if (layout_.encoding() == ContributionEncoding::kFixed16) {
     block.sums_before = theirs.gains;
@@ -222,7 +227,7 @@ std::int64_t CoverageTable::gained_steps(const Block& block) const {
   const std::int64_t steps = block.steps - block.steps_before;
   const double margin_s = static_cast<double>(block.steps) * dt_s_ * rounding_margin(block.steps);
   const double most_s = static_cast<double>(steps) * dt_s_ + 2 * margin_s;
-  const bool possible = gains_within(block.sums.data(), block.sums_before.data(), most_s);
+  const bool possible = gains_within(block.sums, block.sums_before.data(), most_s);
   return block.gained_steps = possible ? steps : 0;
 }
 
@@ -268,7 +273,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
     if (row->samples.empty()) {
       out.sums = held.sums;
     } else {
-      const auto size = static_cast<std::size_t>(block_size_);
+      const auto size = static_cast<std::size_t>(layout_.size_of(block));
       std::copy_n(row->sums(static_cast<std::size_t>(block), block_size_), size,
                   out.sums.set_all(size).begin());
     }

@@ -52,7 +52,7 @@ class CoverageTable {
   void set_quality(const Author& author, double quality);
 
   /// Takes in one block. Refused, without effect: another encoding, another number of modes, a
-  /// block that does not exist, an elapsed time that is not steps·dt, an S_00 that is not the
+  /// block that does not exist or has another length, an elapsed time that is not steps·dt, an S_00 that is not the
   /// elapsed time, |S| > elapsed (both but for rounding, 1e-9 and half an ulp a step), more steps
   /// than `max_steps` (a forged future would win for ever), a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
@@ -97,7 +97,7 @@ class CoverageTable {
 
   /// One block of a row.
   struct BlockView {
-    const double* sums;  ///< block_size() of them [s]
+    const double* sums;  ///< those of the block's slots [s]
     std::int64_t steps;
     Tick tick;    ///< when it was said
     Tick period;  ///< until its author speaks again, as announced
@@ -105,8 +105,8 @@ class CoverageTable {
   BlockView view(std::size_t row, int block) const;
   /// What a block has gained on the one held before.
   struct Gains {
-    const double* before;  ///< block_size() sums of the one held before [s]; null if `told` is set
-    const double* told;    ///< block_size() gains as the author has told them [s], or null
+    const double* before;  ///< the sums of the one held before [s]; null if `told` is set
+    const double* told;    ///< the gains as the author has told them [s], or null
     std::int64_t steps;    ///< less its steps; 0 if the gains are impossible, |gain| > their time,
                            ///< or not noted
   };
@@ -164,6 +164,7 @@ class CoverageTable {
   Row* find_or_add(const Author& author);
 
   std::int64_t gained_steps(const Block& block) const;
+  bool has_size(const Contribution& theirs) const;
   void add_in_slots(const BasisAt& at, const double* footprint, double* samples);
   void average_slots(double* coverage) const;
 

@@ -246,7 +246,8 @@ void Forecast::add_place(const Place& place, const CoverageTable& table, std::si
   for (std::size_t b = 0; b < track.until.size(); ++b) {
     if (track.said_steps[b] == 0 || place.tick <= track.until[b]) continue;
     if (track.steps[b] == track.said_steps[b]) {
-      std::copy_n(table.view(row, static_cast<int>(b)).sums, block_size_,
+      std::copy_n(table.view(row, static_cast<int>(b)).sums,
+                  layout_.slots_of(static_cast<int>(b)).count,
                   track.sums.data() + b * static_cast<std::size_t>(block_size_));
     }
     track.due[b] = 1;

@@ -118,7 +118,9 @@ std::vector<double> block_of(const Coefficients& all, const std::vector<int>& mo
 }
 
 std::vector<double> vector_of(const BlockSums& sums, int size) {
-  return {sums.data(), sums.data() + size};
+  std::vector<double> all(sums.begin(), sums.end());
+  all.resize(static_cast<std::size_t>(size));
+  return all;
 }
 
 /// Whether it takes part in the tick and is the newest life of its number.
@@ -249,8 +251,9 @@ Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {
             held.next_tick - held.tick};
   if (mission.timing.contribution_encoding == ContributionEncoding::kFixed16) return part;
   part.gained_steps = held.steps - before.steps;
+  const std::vector<double> sums_before = vector_of(before.sums, size);
   for (std::size_t k = 0; k < part.gains.size(); ++k) {
-    part.gains[k] = held.sums[k] - before.sums[k];
+    part.gains[k] = part.sums[k] - sums_before[k];
   }
   return part;
 }

@@ -40,12 +40,24 @@ final class Coverage {
   }
 
   void add(ergocast.averages_t heard) {
-    double[] sums = new double[heard.averages.length];
-    for (int k = 0; k < sums.length; ++k) {
-      sums[k] = heard.averages[k] / UNITS * heard.averages_elapsed_s;
-    }
     add(heard.header, heard.averages_steps, heard.averages_elapsed_s, heard.averages_mode_count,
-        heard.averages_block, sums);
+        heard.averages_block, sums(heard.averages, heard.averages_elapsed_s));
+  }
+
+  void add(ergocast.low_sums_t heard) {
+    add(heard.header, heard.low_steps, heard.low_elapsed_s, heard.low_mode_count, heard.low_block,
+        heard.low_sums);
+  }
+
+  void add(ergocast.low_averages_t heard) {
+    add(heard.header, heard.low_steps, heard.low_elapsed_s, heard.low_mode_count, heard.low_block,
+        sums(heard.low_averages, heard.low_elapsed_s));
+  }
+
+  private static double[] sums(short[] averages, double elapsed) {
+    double[] sums = new double[averages.length];
+    for (int k = 0; k < sums.length; ++k) sums[k] = averages[k] / UNITS * elapsed;
+    return sums;
   }
 
   private void add(ergocast.header_t header, long steps, double elapsed, int modeCount, int block,

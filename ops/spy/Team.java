@@ -74,6 +74,14 @@ final class Team {
         ergocast.averages_t heard = new ergocast.averages_t(in);
         if (isOfAnAgent(heard.header)) coverage.add(heard);
       }
+      if (fingerprint == ergocast.low_sums_t.LCM_FINGERPRINT) {
+        ergocast.low_sums_t heard = new ergocast.low_sums_t(in);
+        if (isOfAnAgent(heard.header)) coverage.add(heard);
+      }
+      if (fingerprint == ergocast.low_averages_t.LCM_FINGERPRINT) {
+        ergocast.low_averages_t heard = new ergocast.low_averages_t(in);
+        if (isOfAnAgent(heard.header)) coverage.add(heard);
+      }
     } catch (IOException | RuntimeException notOurs) {
       // Any error of invalid bytes ends here: LCM's thread must continue.
     }

@@ -46,7 +46,7 @@ std::vector<std::vector<int>> modes_by_block(const Mission& mission) {
   for (int b = 0; b < layout.block_count(); ++b) {
     const auto [first, count] = layout.slots_of(b);
     EXPECT_EQ(first, b * layout.block_size());
-    EXPECT_LE(count, layout.block_size());
+    EXPECT_LE(count, layout.size_of(b));
     blocks.emplace_back(slots.begin() + first, slots.begin() + first + count);
   }
   EXPECT_EQ(blocks.size(), static_cast<std::size_t>(block_count_of(mission)));
@@ -163,6 +163,20 @@ TEST(RareModes, ATableKnowsTheSameCoverageWhateverTheLayout) {
   }
 }
 
+TEST(RareModes, ABlockHasTheLengthOfItsModes) {
+  const Mission rare = mission_with(20, 20, 1, 4), usual = mission_with(20, 20, 1, 1);
+  const auto rare_blocks = said_by({1, 5}, rare, 3), usual_blocks = said_by({1, 5}, usual, 3);
+  EXPECT_EQ(rare_blocks[0].sums.size(), std::size_t{kLowModes});
+  EXPECT_EQ(rare_blocks[1].sums.size(), std::size_t{kBlockSize});
+  CoverageTable by_rank = table_of(rare), by_mode = table_of(usual);
+  EXPECT_EQ(by_mode.merge(rare_blocks[0], kManySteps), Merge::kRefusedRange);
+  EXPECT_EQ(by_rank.merge(usual_blocks[0], kManySteps), Merge::kRefusedRange);
+  Contribution moved = rare_blocks[0];
+  moved.block = 1;
+  EXPECT_EQ(by_rank.merge(moved, kManySteps), Merge::kRefusedRange);
+  EXPECT_EQ(by_rank.row_count() + by_mode.row_count(), 0U);
+}
+
 TEST(RareModes, BlocksMergeInAnyOrderAndAnyNumberOfTimes) {
   const Mission mission = mission_with(20, 20, 1, 4);
   std::vector<Contribution> said;
@@ -204,8 +218,9 @@ TEST(RareModes, HighOnesAreWeighedByTheTimeThatTheyCover) {
   }
   const Coefficients c = average_of(table, mission), low = average_of(at_nine, mission);
   const Coefficients high = average_of(at_three, mission);
-  for (std::size_t b = 0; b < 2; ++b) {
-    for (const int mode : modes_by_block(mission)[b])
+  const auto blocks = modes_by_block(mission);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (const int mode : blocks[b])
       ASSERT_EQ(c[mode], b == 0 ? low[mode] : high[mode]) << mode;
   }
 }
