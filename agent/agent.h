@@ -135,7 +135,7 @@ class Agent {
     Coefficients foreseen;
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
-    AuthorMap<Tick> news;  // when a member's coverage last grew for us
+    AuthorMap<Tick> news;                 // when a member's coverage last grew for us
     std::optional<Instant> running_since;
     Instant stalled_said{};
     std::optional<WorldView> pending;

@@ -234,7 +234,8 @@ std::int64_t CoverageTable::gained_steps(const Block& block) const {
 CoverageTable::Gains CoverageTable::gains(std::size_t row, int block) const {
   const Block& held = rows_[row].blocks[static_cast<std::size_t>(block)];
   const std::int64_t steps = notes_gains_ ? gained_steps(held) : 0;
-  if (layout_.encoding() == ContributionEncoding::kFixed16) return {nullptr, held.sums_before.data(), steps};
+  if (layout_.encoding() == ContributionEncoding::kFixed16)
+    return {nullptr, held.sums_before.data(), steps};
   return {held.sums_before.data(), nullptr, steps};
 }
 

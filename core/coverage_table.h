@@ -52,9 +52,9 @@ class CoverageTable {
   void set_quality(const Author& author, double quality);
 
   /// Takes in one block. Refused, without effect: another encoding, another number of modes, a
-  /// block that does not exist or has another length, an elapsed time that is not steps·dt, an S_00 that is not the
-  /// elapsed time, |S| > elapsed (both but for rounding, 1e-9 and half an ulp a step), more steps
-  /// than `max_steps` (a forged future would win for ever), a full table.
+  /// block that does not exist or has another length, an elapsed time that is not steps·dt, an S_00
+  /// that is not the elapsed time, |S| > elapsed (both but for rounding, 1e-9 and half an ulp a
+  /// step), more steps than `max_steps` (a forged future would win for ever), a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
   /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.

@@ -48,8 +48,8 @@ enum class OnTimeout { kEndMission, kEvict };
 
 struct Timing {
   double dt_s = 0.1;
-  Tick tick_count = 0;             ///< the mission has ticks 0 … tick_count − 1
-  int broadcast_period_ticks = 1;  ///< an agent broadcasts its coverage every so many ticks
+  Tick tick_count = 0;              ///< the mission has ticks 0 … tick_count − 1
+  int broadcast_period_ticks = 1;   ///< an agent broadcasts its coverage every so many ticks
   int high_mode_period_factor = 1;  ///< all but the lowest modes every so many periods
   Pace pace = Pace::kLockstep;
   double realtime_factor = 1;       ///< mission seconds per wall second

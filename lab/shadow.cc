@@ -51,7 +51,7 @@ double horizon_s(const Mission& mission, int n, Tick tick) {
 double weight_s(const Mission& mission, double h_s, Tick span, Tick age, Tick period) {
   const Tick cap =
       kPeriodsUntilDead * std::min(period, Tick{mission.timing.broadcast_period_ticks} *
-                           mission.timing.high_mode_period_factor);
+                                               mission.timing.high_mode_period_factor);
   const double dt_s = mission.timing.dt_s, cap_s = static_cast<double>(cap) * dt_s;
   const double age_s = static_cast<double>(age) * dt_s;
   if (age_s > h_s && age_s > cap_s) return 0;
@@ -175,9 +175,9 @@ void Shadow::note_places(const Mission& mission, const TableView& agent, const W
   const Timing& timing = mission.timing;
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
-  const auto most = static_cast<std::size_t>(
-      timing.broadcast_period_ticks * timing.high_mode_period_factor +
-      Forecast::kPlacesBeyondPeriod);
+  const auto most =
+      static_cast<std::size_t>(timing.broadcast_period_ticks * timing.high_mode_period_factor +
+                               Forecast::kPlacesBeyondPeriod);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     const bool driven = timing.pace == Pace::kLockstep || vehicle.answered_tick >= tick - hold;

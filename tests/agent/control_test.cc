@@ -135,8 +135,7 @@ std::map<Tick, std::vector<Said>> said_of(const Mission& mission, AgentId id, Ti
   Agent agent = running_agent(mission, id);
   std::map<Tick, std::vector<Said>> all;
   for (Tick tick = 0; tick < ticks; ++tick) {
-    const Outbox out =
-        tell(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}}));
+    const Outbox out = tell(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}}));
     for (const Contribution& said : only<Contribution>(out)) {
       all[tick].push_back({said.block, said.next_broadcast_tick});
       EXPECT_EQ(said.steps, tick + 1);

@@ -167,8 +167,8 @@ TEST(Allocations, KeepingADistanceMakesNone) {
 }
 
 TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
-  const std::tuple<bool, int, int> missions[] = {
-      {false, 1, 1}, {true, 1, 1}, {false, 3, 1}, {true, 3, 1}, {false, 1, 4}, {true, 1, 4}};
+  const std::tuple<bool, int, int> missions[] = {{false, 1, 1}, {true, 1, 1},  {false, 3, 1},
+                                                 {true, 3, 1},  {false, 1, 4}, {true, 1, 4}};
   for (const auto& [dead_reckoning, modes_z, factor] : missions) {
     Mission mission = full_mission(Regularization::kRelative, Perturbation::kAdaptive, modes_z);
     mission.law.anticipation = 2;

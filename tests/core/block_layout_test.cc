@@ -206,7 +206,8 @@ TEST(RareModes, BlocksMergeInAnyOrderAndAnyNumberOfTimes) {
 TEST(RareModes, HighOnesAreWeighedByTheTimeThatTheyCover) {
   const Mission mission = mission_with(20, 20, 1, 4);
   const Author one{0, 1}, two{1, 1};
-  CoverageTable table = table_of(mission), at_three = table_of(mission), at_nine = table_of(mission);
+  CoverageTable table = table_of(mission), at_three = table_of(mission),
+                at_nine = table_of(mission);
   const auto three = said_by(two, mission, 3), nine = said_by(two, mission, 9);
   for (const Contribution& block : said_by(one, mission, 6)) {
     for (CoverageTable* each : {&table, &at_three, &at_nine}) each->merge(block, kManySteps);
@@ -220,8 +221,7 @@ TEST(RareModes, HighOnesAreWeighedByTheTimeThatTheyCover) {
   const Coefficients high = average_of(at_three, mission);
   const auto blocks = modes_by_block(mission);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    for (const int mode : blocks[b])
-      ASSERT_EQ(c[mode], b == 0 ? low[mode] : high[mode]) << mode;
+    for (const int mode : blocks[b]) ASSERT_EQ(c[mode], b == 0 ? low[mode] : high[mode]) << mode;
   }
 }
 

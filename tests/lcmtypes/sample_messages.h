@@ -171,9 +171,9 @@ inline Digest digest() {
 }
 
 inline std::vector<Message> every_message() {
-  return {hello(),       mission_part(), contribution(), agent_status(), team_status(), stop(),
-          world_state(), command(),      record_ack(),   digest(),       averages(),    low_sums(),
-          low_averages()};
+  return {hello(),    mission_part(), contribution(), agent_status(), team_status(),
+          stop(),     world_state(),  command(),      record_ack(),   digest(),
+          averages(), low_sums(),     low_averages()};
 }
 
 // ---- bytes

@@ -83,8 +83,8 @@ TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
   std::vector<std::string> trajectories;
   for (const std::string telling :
        {"agents { dead_reckoning: true", "agents { dead_reckoning: false"}) {
-    for (const std::string period : {"1", "7", "7 contribution_encoding: FIXED16",
-                                     "7 high_mode_period_factor: 3"}) {
+    for (const std::string period :
+         {"1", "7", "7 contribution_encoding: FIXED16", "7 high_mode_period_factor: 3"}) {
       std::string text = text_of(scenario_file("quadrimodal_corners"));
       text.replace(text.find("time {"), 6, "time { broadcast_period_ticks: " + period);
       text.replace(text.find("agents {"), 8, telling);

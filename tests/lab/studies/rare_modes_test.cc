@@ -56,10 +56,8 @@ TEST(RareModes, CostLittleWhereAgentsKnowOnlyWhatTheyAreTold) {
 }
 
 TEST(RareModes, AnIdealTeamDoesNotStandForThemWhereAllElseIsTold) {
-  EXPECT_TRUE(
-      lab::IdealTeam::stands_for(mission_of("quadrimodal_corners", "1", "1", "false", 1)));
-  EXPECT_FALSE(
-      lab::IdealTeam::stands_for(mission_of("quadrimodal_corners", "2", "1", "false", 1)));
+  EXPECT_TRUE(lab::IdealTeam::stands_for(mission_of("quadrimodal_corners", "1", "1", "false", 1)));
+  EXPECT_FALSE(lab::IdealTeam::stands_for(mission_of("quadrimodal_corners", "2", "1", "false", 1)));
 }
 
 }  // namespace
