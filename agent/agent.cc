@@ -40,7 +40,7 @@ Agent::InMission::InMission(const Mission& mission, const RosterEntry& self)
       anti_entropy(self.author, mission.seed, mission.timing.dt_s),
       foreseen(Coefficients::Zero(mission.basis.mode_count())),
       team_coverage(foreseen) {
-  table.set_encoding(mission.timing.contribution_encoding);
+  table.set_layout(BlockLayout(mission));
   if (mission.law.anticipation > 0) {
     forecast.emplace(mission, self.author);
   } else {

@@ -135,8 +135,7 @@ class Agent {
     Coefficients foreseen;
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
-    Tick next_broadcast_tick = 0;
-    AuthorMap<Tick> news;  // when a member's coverage last grew for us
+    AuthorMap<Tick> news;                 // when a member's coverage last grew for us
     std::optional<Instant> running_since;
     Instant stalled_said{};
     std::optional<WorldView> pending;
@@ -182,7 +181,7 @@ class Agent {
   void note_places(InMission& flight, const WorldState& world);
   bool begin_tick(InMission& flight, Instant now, Outbox& out);
   bool stalled(const InMission& flight, Instant now) const;
-  void broadcast(InMission& flight, Outbox& out);
+  void broadcast(InMission& flight, bool all, Outbox& out);
   void repeat(InMission& flight, Outbox& out);
   bool may_answer(InMission& flight) const;
   void answer(InMission& flight, Outbox& out);

@@ -41,7 +41,7 @@ void Agent::fly(InMission& flight, Instant now, Outbox& out) {
   if (step.answered < step.tick && may_answer(flight)) answer(flight, out);
   if (stalled(flight, now)) {
     flight.stalled_said = now;
-    broadcast(flight, out);
+    broadcast(flight, true, out);
   }
   if (!me_.cut_off(step.tick, now)) return;
   finish(true,
@@ -92,7 +92,7 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
   if (step.tick < flight.active_from) return true;
   flight.table.add_sample(me_.author(), *step.basis_at, flight.sensors.of(flight.kind).footprint());
-  if (step.tick >= flight.next_broadcast_tick) broadcast(flight, out);
+  broadcast(flight, false, out);
   return true;
 }
 
@@ -103,15 +103,16 @@ bool Agent::stalled(const InMission& flight, Instant now) const {
          now - std::max(flight.step.begun, flight.stalled_said) >= kStallPeriod;
 }
 
-void Agent::broadcast(InMission& flight, Outbox& out) {
+/// The blocks that are due, or all.
+void Agent::broadcast(InMission& flight, bool all, Outbox& out) {
   const Tick tick = flight.step.tick;
-  flight.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick);
   for (int b = 0; b < flight.table.block_count(); ++b) {
     Contribution& published = flight.published[static_cast<std::size_t>(b)];
+    if (!all && tick < published.next_broadcast_tick) continue;
     Contribution block = flight.table.block(me_.author(), b);
     if (block.encoding == ContributionEncoding::kFixed16) tell_gains(published, block);
     block.header.tick = tick;  // a repeat says it, too: forecasts count a block's age from it
-    block.next_broadcast_tick = flight.next_broadcast_tick;
+    block.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick, b);
     me_.publish(Bus::kSwarm, block, tick, out);
     published = std::move(block);
   }

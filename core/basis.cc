@@ -330,7 +330,7 @@ FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Box& domain,
 
 namespace {
 
-/// Calls each(l, m, n, number of the mode) for every mode in the order of the wire.
+/// Calls each(l, m, n, number of the mode) for every mode in the order of the basis.
 template <class Each>
 void for_every_mode(const Basis& basis, const Each& each) {
   int k = 0;

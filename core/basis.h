@@ -16,7 +16,7 @@
 
 namespace ergocast {
 
-/// One number per mode in the order of the wire: f_lmn at (l · modes_x + m) · modes_y + n, where l
+/// One number per mode in the order of the basis: f_lmn at (l · modes_x + m) · modes_y + n, where l
 /// counts half waves along z, m along x and n along y.
 using Coefficients = Eigen::VectorXd;
 
@@ -51,8 +51,8 @@ inline Eigen::Map<const PlaneCoefficients> in_plane(const Coefficients& coeffici
 inline Eigen::Map<PlaneCoefficients> in_plane(Coefficients& coefficients, const Basis& basis) {
   return {coefficients.data(), basis.modes_x, basis.modes_y};
 }
-/// A plane's numbers in the order of the wire.
-inline Coefficients in_wire_order(const PlaneCoefficients& coefficients) {
+/// A plane's numbers in the order of the basis.
+inline Coefficients in_basis_order(const PlaneCoefficients& coefficients) {
   return coefficients.reshaped<Eigen::RowMajor>();
 }
 

@@ -28,10 +28,11 @@ struct Spares {
   std::size_t count = 0, room = 64;
   void* pieces[64] = {};
 };
-constinit thread_local Spares spares_of_doubles, spares_of_averages;
+constinit thread_local Spares spares_of_doubles, spares_of_averages, spares_of_low_modes;
 
 Spares* spares_of(std::size_t size) {
   if (size == kBlockSize) return &spares_of_doubles;
+  if (size == kLowModes) return &spares_of_low_modes;
   return size == kMostBlockSize ? &spares_of_averages : nullptr;
 }
 

@@ -13,6 +13,8 @@ namespace ergocast {
 inline constexpr int kBlockSize = 128;
 /// Sums in the longest block.
 inline constexpr int kMostBlockSize = 256;
+/// Sums in the first block where the other modes are sent less often; core/block_layout.h.
+inline constexpr int kLowModes = 64;
 
 /// Some numbers, kBlockSize unless said. A copy shares them with its original until one of the two
 /// is edited. All copies belong to one thread, because the holders are counted without atomic

@@ -22,12 +22,13 @@ double rounding_margin(std::int64_t steps) { return 1e-9 + static_cast<double>(s
 
 static_assert(kBlockSize % kModesPerStride == 0 && kMostBlockSize % kModesPerStride == 0,
               "reading so many never leaves a row");
+static_assert(kLowModes % kModesPerStride == 0);
 
 /// Whether no sum of a block has changed by more than `limit`.
 ERGOCAST_VECTORIZED
-bool gains_within(const double* sums, const double* before, double limit) {
+bool gains_within(std::span<const double> sums, const double* before, double limit) {
   std::int64_t beyond = 0;  // counted, because a loop with a way out is not vectorised
-  for (std::size_t k = 0; k < kBlockSize; ++k) {
+  for (std::size_t k = 0; k < sums.size(); ++k) {
     beyond += !(std::abs(sums[k] - before[k]) <= limit);
   }
   return beyond == 0;
@@ -82,13 +83,17 @@ CoverageTable::CoverageTable(const Basis& basis, double dt_s, Tick joined)
     : basis_(basis),
       dt_s_(dt_s),
       joined_(joined),
-      block_count_(block_count_of(basis.mode_count(), encoding_)) {}
+      layout_(basis, ContributionEncoding::kDouble),
+      block_count_(layout_.block_count()) {}
 
-void CoverageTable::set_encoding(ContributionEncoding encoding) {
+void CoverageTable::set_layout(const BlockLayout& layout) {
   ERGOCAST_REQUIRE(rows_.empty());
-  encoding_ = encoding;
-  block_size_ = block_size_of(encoding);
-  block_count_ = block_count_of(basis_.mode_count(), encoding);
+  layout_ = layout;
+  block_size_ = layout.block_size();
+  block_count_ = layout.block_count();
+  if (layout.in_basis_order()) return;
+  by_mode_.resize(static_cast<std::size_t>(basis_.mode_count()));
+  by_slot_.resize(static_cast<std::size_t>(layout.slot_count()));
 }
 
 CoverageTable::Row* CoverageTable::find(const Author& author) {
@@ -133,11 +138,13 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
     const auto size = static_cast<std::size_t>(block_size_);
     row->samples.resize(row->blocks.size() * size);
     for (std::size_t b = 0; b < row->blocks.size(); ++b) {
-      std::copy_n(row->blocks[b].sums.data(), size, row->samples.data() + b * size);
+      std::ranges::copy(row->blocks[b].sums, row->samples.data() + b * size);
       row->blocks[b].gained_steps = 0;
     }
   }
-  if (footprint == nullptr) {
+  if (!layout_.in_basis_order()) {
+    add_in_slots(at, footprint, row->samples.data());
+  } else if (footprint == nullptr) {
     accumulate_basis(at, basis_, dt_s_, row->samples.data());
   } else {
     accumulate_basis(at, basis_, dt_s_, footprint, row->samples.data());
@@ -146,11 +153,28 @@ void CoverageTable::add_sample(const Author& author, const BasisAt& at, const do
   row->sum_up();
 }
 
+/// The same additions, each in its slot.
+void CoverageTable::add_in_slots(const BasisAt& at, const double* footprint, double* samples) {
+  set_basis(at, basis_, dt_s_, by_mode_.data());
+  for (std::size_t k = 0; footprint != nullptr && k < by_mode_.size(); ++k)
+    by_mode_[k] *= footprint[k];
+  layout_.to_slots(by_mode_.data(), by_slot_.data());
+  for (int b = 0; b < block_count_; ++b) {
+    const auto [first, count] = layout_.slots_of(b);
+    for (int slot = first; slot < first + count; ++slot)
+      samples[slot] += by_slot_[static_cast<std::size_t>(slot)];
+  }
+}
+
+bool CoverageTable::has_size(const Contribution& theirs) const {
+  return theirs.sums.size() == static_cast<std::size_t>(layout_.size_of(theirs.block));
+}
+
 Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
-  if (theirs.encoding != encoding_) return Merge::kRefusedEncoding;
+  if (theirs.encoding != layout_.encoding()) return Merge::kRefusedEncoding;
   if (theirs.mode_count != basis_.mode_count() || theirs.block < 0 ||
       theirs.block >= block_count_ || theirs.steps < 1 || theirs.steps > max_steps ||
-      theirs.next_broadcast_tick < 0 || !in_range(theirs, dt_s_) ||
+      theirs.next_broadcast_tick < 0 || !has_size(theirs) || !in_range(theirs, dt_s_) ||
       !gains_in_range(theirs, dt_s_)) {
     return Merge::kRefusedRange;
   }
@@ -161,9 +185,9 @@ Merge CoverageTable::merge(const Contribution& theirs, std::int64_t max_steps) {
   if (theirs.steps <= block.steps) return Merge::kStale;
   if (!row->samples.empty()) {
     const auto size = static_cast<std::size_t>(block_size_);
-    std::copy_n(theirs.sums.data(), size, row->samples.data() + number * size);
+    std::ranges::copy(theirs.sums, row->samples.data() + number * size);
     block.gained_steps = 0;
-  } else if (encoding_ == ContributionEncoding::kFixed16) {
+  } else if (layout_.encoding() == ContributionEncoding::kFixed16) {
     block.sums_before = theirs.gains;
     block.gained_steps = theirs.gained_steps;
   } else if (notes_gains_) {
@@ -203,14 +227,15 @@ std::int64_t CoverageTable::gained_steps(const Block& block) const {
   const std::int64_t steps = block.steps - block.steps_before;
   const double margin_s = static_cast<double>(block.steps) * dt_s_ * rounding_margin(block.steps);
   const double most_s = static_cast<double>(steps) * dt_s_ + 2 * margin_s;
-  const bool possible = gains_within(block.sums.data(), block.sums_before.data(), most_s);
+  const bool possible = gains_within(block.sums, block.sums_before.data(), most_s);
   return block.gained_steps = possible ? steps : 0;
 }
 
 CoverageTable::Gains CoverageTable::gains(std::size_t row, int block) const {
   const Block& held = rows_[row].blocks[static_cast<std::size_t>(block)];
   const std::int64_t steps = notes_gains_ ? gained_steps(held) : 0;
-  if (encoding_ == ContributionEncoding::kFixed16) return {nullptr, held.sums_before.data(), steps};
+  if (layout_.encoding() == ContributionEncoding::kFixed16)
+    return {nullptr, held.sums_before.data(), steps};
   return {held.sums_before.data(), nullptr, steps};
 }
 
@@ -238,7 +263,7 @@ Contribution CoverageTable::block(const Author& author, int block) const {
   out.header.incarnation = author.incarnation;
   out.block = block;
   out.mode_count = basis_.mode_count();
-  out.encoding = encoding_;
+  out.encoding = layout_.encoding();
   if (const Row* row = find(author)) {
     const Block& held = row->blocks[static_cast<std::size_t>(block)];
     out.header.sequence = held.sequence;
@@ -249,11 +274,11 @@ Contribution CoverageTable::block(const Author& author, int block) const {
     if (row->samples.empty()) {
       out.sums = held.sums;
     } else {
-      const auto size = static_cast<std::size_t>(block_size_);
+      const auto size = static_cast<std::size_t>(layout_.size_of(block));
       std::copy_n(row->sums(static_cast<std::size_t>(block), block_size_), size,
                   out.sums.set_all(size).begin());
     }
-    if (encoding_ == ContributionEncoding::kFixed16 && row->samples.empty()) {
+    if (layout_.encoding() == ContributionEncoding::kFixed16 && row->samples.empty()) {
       out.gains = held.sums_before;
       out.gained_steps = held.gained_steps;
     }
@@ -270,6 +295,12 @@ void CoverageTable::remember_all() {
 }
 
 void CoverageTable::average(Coefficients& coverage) const {
+  if (layout_.in_basis_order()) return average_slots(coverage.data());
+  average_slots(by_slot_.data());
+  layout_.from_slots(by_slot_.data(), coverage.data());
+}
+
+void CoverageTable::average_slots(double* coverage) const {
   for (int b = 0; b < block_count_; ++b) {
     const auto number = static_cast<std::size_t>(b);
     double steps = 0;  // each with its quality
@@ -281,12 +312,12 @@ void CoverageTable::average(Coefficients& coverage) const {
       counted_[count++] = row.sums(number, block_size_);
     }
     const double per_second = steps > 0 ? 1 / (steps * dt_s_) : 0;
-    const int first = b * block_size_, modes = std::min(block_size_, basis_.mode_count() - first);
+    const auto [first, modes] = layout_.slots_of(b);
     const std::span<const double* const> rows(counted_.data(), count);
     if (weighted_) {
-      average_weighted(rows, qualities_.data(), modes, per_second, coverage.data() + first);
+      average_weighted(rows, qualities_.data(), modes, per_second, coverage + first);
     } else {
-      average_rows(rows, modes, per_second, coverage.data() + first);
+      average_rows(rows, modes, per_second, coverage + first);
     }
   }
 }

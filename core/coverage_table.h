@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/block_layout.h"
 #include "core/block_sums.h"
 #include "core/contribution.h"
 #include "core/ids.h"
@@ -32,9 +33,10 @@ class CoverageTable {
   /// for who does not look ahead.
   void forgo_gains() { notes_gains_ = false; }
 
-  /// From now on blocks come, and are given out, in this encoding; at first in doubles.
+  /// From now on blocks come, and are given out, in this layout and its encoding; at first in
+  /// doubles, in the order of the basis.
   /// @pre no rows
-  void set_encoding(ContributionEncoding encoding);
+  void set_layout(const BlockLayout& layout);
 
   int block_count() const { return block_count_; }
   int block_size() const { return block_size_; }
@@ -51,9 +53,9 @@ class CoverageTable {
   void set_quality(const Author& author, double quality);
 
   /// Takes in one block. Refused, without effect: another encoding, another number of modes, a
-  /// block that does not exist, an elapsed time that is not steps·dt, an S_00 that is not the
-  /// elapsed time, |S| > elapsed (both but for rounding, 1e-9 and half an ulp a step), more steps
-  /// than `max_steps` (a forged future would win for ever), a full table.
+  /// block that does not exist or has another length, an elapsed time that is not steps·dt, an S_00
+  /// that is not the elapsed time, |S| > elapsed (both but for rounding, 1e-9 and half an ulp a
+  /// step), more steps than `max_steps` (a forged future would win for ever), a full table.
   Merge merge(const Contribution& theirs, std::int64_t max_steps);
 
   /// One block of a row as its author said it, header and all but the run; steps 0 if unknown.
@@ -68,6 +70,7 @@ class CoverageTable {
   /// c_k = Σ_j q_j S_j / Σ_j q_j elapsed_j per block, (4) weighted by quality and by the time that
   /// each row covers.
   /// Entries of blocks without any samples are 0. Does not allocate.
+  /// @param coverage  in the order of the basis, whatever the layout is
   void average(Coefficients& coverage) const;
 
   /// The fewest steps among a row's blocks; nothing if the row is unknown.
@@ -95,7 +98,7 @@ class CoverageTable {
 
   /// One block of a row.
   struct BlockView {
-    const double* sums;  ///< block_size() of them [s]
+    const double* sums;  ///< those of the block's slots [s]
     std::int64_t steps;
     Tick tick;    ///< when it was said
     Tick period;  ///< until its author speaks again, as announced
@@ -103,8 +106,8 @@ class CoverageTable {
   BlockView view(std::size_t row, int block) const;
   /// What a block has gained on the one held before.
   struct Gains {
-    const double* before;  ///< block_size() sums of the one held before [s]; null if `told` is set
-    const double* told;    ///< block_size() gains as the author has told them [s], or null
+    const double* before;  ///< the sums of the one held before [s]; null if `told` is set
+    const double* told;    ///< the gains as the author has told them [s], or null
     std::int64_t steps;    ///< less its steps; 0 if the gains are impossible, |gain| > their time,
                            ///< or not noted
   };
@@ -114,7 +117,7 @@ class CoverageTable {
   /// Whether all blocks have gained in as many steps.
   bool gains_alike(std::size_t row) const;
 
-  /// The sums of a row that only add_sample() fills [s]: mode_count() of them and then zeros.
+  /// The sums of a row that only add_sample() fills [s]: those of all slots and then zeros.
   /// @pre `author` has samples
   const double* sums_of(const Author& author) const;
 
@@ -162,11 +165,14 @@ class CoverageTable {
   Row* find_or_add(const Author& author);
 
   std::int64_t gained_steps(const Block& block) const;
+  bool has_size(const Contribution& theirs) const;
+  void add_in_slots(const BasisAt& at, const double* footprint, double* samples);
+  void average_slots(double* coverage) const;
 
   Basis basis_;
   double dt_s_;
   Tick joined_;
-  ContributionEncoding encoding_ = ContributionEncoding::kDouble;
+  BlockLayout layout_;
   int block_size_ = kBlockSize;
   int block_count_;
   bool notes_gains_ = true;
@@ -174,6 +180,9 @@ class CoverageTable {
   std::vector<Row> rows_;                       // ascending by author
   mutable std::vector<const double*> counted_;  // of each row that counts, the sums of a block
   mutable std::vector<double> qualities_;       // and its quality
+  // Of another layout than in the order of the basis: numbers by mode, and by slot.
+  std::vector<double> by_mode_;
+  mutable std::vector<double> by_slot_;
 };
 
 }  // namespace ergocast

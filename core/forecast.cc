@@ -161,14 +161,17 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       domain_(mission.domain),
       basis_(mission.basis),
       dt_s_(mission.timing.dt_s),
-      block_size_(block_size_of(mission.timing.contribution_encoding)),
+      layout_(mission),
+      block_size_(layout_.block_size()),
       look_ahead_(mission),
       reckons_(mission.dead_reckoning),
       sensors_(mission),
       alike_(sensors_.alike()),
+      by_tables_(!layout_.in_basis_order()),
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
-      nothing_(static_cast<std::size_t>(basis_.mode_count())),
+      nothing_(static_cast<std::size_t>(layout_.slot_count())),
       gains_(nothing_),
+      by_slot_(by_tables_ ? nothing_ : std::vector<double>()),
       earlier_(nothing_),
       later_(nothing_) {}
 
@@ -233,16 +236,18 @@ Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
 
 /// S += f(x) dt in every block that does not hold it, as its author does: at the next use.
 void Forecast::add_place(const Place& place, const CoverageTable& table, std::size_t row,
-                         Track& track) const {
+                         Track& track) {
   if (place.tick != track.newest_tick) {
     add_what_is_due(track);
     track.newest.emplace(place.x_m, domain_, basis_);
     track.newest_tick = place.tick;
+    if (by_tables_) set_gains_in_slots(track);
   }
   for (std::size_t b = 0; b < track.until.size(); ++b) {
     if (track.said_steps[b] == 0 || place.tick <= track.until[b]) continue;
     if (track.steps[b] == track.said_steps[b]) {
-      std::copy_n(table.view(row, static_cast<int>(b)).sums, block_size_,
+      std::copy_n(table.view(row, static_cast<int>(b)).sums,
+                  layout_.slots_of(static_cast<int>(b)).count,
                   track.sums.data() + b * static_cast<std::size_t>(block_size_));
     }
     track.due[b] = 1;
@@ -255,13 +260,22 @@ void Forecast::add_what_is_due(Track& track) const {
   for (std::size_t b = 0; b < track.due.size(); ++b) {
     if (!track.due[b]) continue;
     track.due[b] = 0;
-    const Modes modes = modes_of(static_cast<int>(b));
-    if (const double* const g = footprint(track)) {
+    const Modes modes = layout_.slots_of(static_cast<int>(b));
+    if (by_tables_) {
+      add_sums(track.gains.data(), modes, track.sums.data(), track.sums.data());
+    } else if (const double* const g = footprint(track)) {
       add_seen_gain(*track.newest, basis_, dt_s_, g, modes, track.sums.data());
     } else {
       add_gain(*track.newest, basis_, dt_s_, modes, track.sums.data());
     }
   }
+}
+
+void Forecast::set_gains_in_slots(Track& track) {
+  const Modes all{0, basis_.mode_count()};
+  set_gains(*track.newest, basis_, dt_s_, footprint(track), all, gains_.data());
+  track.gains.resize(static_cast<std::size_t>(layout_.slot_count()));
+  layout_.to_slots(gains_.data(), track.gains.data());
 }
 
 // ---- the forecast -------------------------------------------------------------------------------
@@ -316,7 +330,7 @@ Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, in
 
 /// Where the terms' sums of this block are.
 void Forecast::point_terms(const CoverageTable& table, int block) {
-  const int first = modes_of(block).first;
+  const int first = layout_.slots_of(block).first;
   own_sums_ = nothing_.data();
   auto term = terms_.begin();
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -369,13 +383,21 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   return steps > 0 ? 1 / covered_s : 0;
 }
 
-/// The same of a row whose quality or footprint is not that of others.
+/// g f dt at the newest place.
+const double* Forecast::gains_of(const Track& track, Modes modes) {
+  if (by_tables_) return track.gains.data();
+  set_gains(*track.newest, basis_, dt_s_, footprint(track), modes, gains_.data());
+  return gains_.data();
+}
+
+/// Adds the same of any row: one whose quality or footprint is not that of others, or all of them
+/// where slots are not modes.
 void Forecast::add_unlike(const Term& term, Modes modes, const double* before, double* sum) {
   Track* const track = term.track;
   const auto block = static_cast<std::size_t>(modes.first / block_size_);
   const double* gains = gains_.data();
   if (track != nullptr) {
-    set_gains(*track->newest, basis_, dt_s_, footprint(*track), modes, gains_.data());
+    gains = gains_of(*track, modes);
     if (track->due[block]) add_sums(gains, modes, track->sums.data(), track->sums.data());
     track->due[block] = 0;
   } else if (term.told_gains != nullptr) {
@@ -392,8 +414,9 @@ void Forecast::add_unlike(const Term& term, Modes modes, const double* before, d
 /// Adds what a row will have covered to `before`.
 void Forecast::add(const Term& term, Modes modes, const double* before, double* sum) {
   Track* track = term.track;
-  if (!alike_ && (term.quality != 1 || (track != nullptr && footprint(*track) != nullptr)))
-    return add_unlike(term, modes, before, sum);
+  const bool unlike =
+      !alike_ && (term.quality != 1 || (track != nullptr && footprint(*track) != nullptr));
+  if (unlike || by_tables_) return add_unlike(term, modes, before, sum);
   const auto block = modes.first / block_size_;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
     add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before, sum);
@@ -431,17 +454,14 @@ void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEn
   ++looks_;
   gather(table, roster, tick);
   const bool alike = blocks_alike(table);
+  double* const out = by_tables_ ? by_slot_.data() : coverage.data();
   double per_second = 0;
   for (int b = 0; b < table.block_count(); ++b) {
     if (b == 0 || !alike) per_second = weigh_terms(table, b, tick);
     point_terms(table, b);
-    add_up(modes_of(b), per_second, coverage.data());
+    add_up(layout_.slots_of(b), per_second, out);
   }
-}
-
-Forecast::Modes Forecast::modes_of(int block) const {
-  const int first = block * block_size_;
-  return {first, std::min(block_size_, basis_.mode_count() - first)};
+  if (by_tables_) layout_.from_slots(out, coverage.data());
 }
 
 }  // namespace ergocast

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "core/basis.h"
+#include "core/block_layout.h"
 #include "core/coverage_table.h"
 #include "core/ids.h"
 #include "core/kinds.h"
@@ -42,10 +43,8 @@ class Forecast {
   /// shorter, so a late block loses none.
   static constexpr Tick kPlacesBeyondPeriod = 64;
 
-  /// Consecutive modes in the order of the wire.
-  struct Modes {
-    int first, count;
-  };
+  /// Consecutive ones in the order of the wire.
+  using Modes = BlockLayout::Slots;
 
   Forecast(const Mission& mission, const Author& self);
 
@@ -79,6 +78,7 @@ class Forecast {
     AlignedDoubles sums;  // with the places; of blocks to which nothing was added, anything
     std::optional<CosinesAt> newest;  // at the newest place, and its tick
     Tick newest_tick = -1;
+    AlignedDoubles gains;  // f dt there, by slot; only where that is not the mode
   };
   /// One row's part in one block.
   struct Term {
@@ -92,9 +92,10 @@ class Forecast {
   };
 
   Track* reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
-  void add_place(const Place& place, const CoverageTable& table, std::size_t row,
-                 Track& track) const;
+  void add_place(const Place& place, const CoverageTable& table, std::size_t row, Track& track);
   void add_what_is_due(Track& track) const;
+  void set_gains_in_slots(Track& track);
+  const double* gains_of(const Track& track, Modes modes);
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
   bool blocks_alike(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
@@ -103,7 +104,6 @@ class Forecast {
   void add_up(Modes modes, double per_second, double* coverage);
   void add(const Term& term, Modes modes, const double* before, double* sum);
   void add_unlike(const Term& term, Modes modes, const double* before, double* sum);
-  Modes modes_of(int block) const;
   const double* footprint(const Track& track) const {
     return alike_ ? nullptr : sensors_.of(track.kind).footprint();
   }
@@ -112,11 +112,13 @@ class Forecast {
   Box domain_;
   Basis basis_;
   double dt_s_;
+  BlockLayout layout_;
   int block_size_;
   LookAhead look_ahead_;
   bool reckons_;
   Sensors sensors_;
-  bool alike_;  // all of them, as most often they are
+  bool alike_;      // all of them, as most often they are
+  bool by_tables_;  // slots are not modes: f is computed as a whole, not mode by mode
   std::size_t most_places_;
   std::map<AgentId, Track> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()
@@ -128,6 +130,7 @@ class Forecast {
   double own_quality_ = 1;
   AlignedDoubles nothing_;  // zeros
   AlignedDoubles gains_;    // of a row whose sensor is unlike others
+  AlignedDoubles by_slot_;  // ĉ, only where a slot is not the mode
   // What the rows before the own one and those after it will have covered.
   AlignedDoubles earlier_, later_;
 };

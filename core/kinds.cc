@@ -9,7 +9,7 @@
 namespace ergocast {
 namespace {
 
-/// Calls each(l, m, n, number of the mode) for every mode in the order of the wire.
+/// Calls each(l, m, n, number of the mode) for every mode in the order of the basis.
 template <class Each>
 void for_modes(const Basis& basis, const Each& each) {
   int k = 0;

@@ -29,7 +29,7 @@ double unit_variance(int modes, const Mu& mu) {
 }  // namespace
 
 double target_spread_m(const Coefficients& target, const Basis& basis, const Box& domain) {
-  // From a mode along one axis to the next, in the order of the wire.
+  // From a mode along one axis to the next, in the order of the basis.
   const int step_x = basis.modes_y, step_z = basis.modes_x * basis.modes_y;
   const auto deviation_m = [&](int axis, int modes, int step) {
     return domain.size_m[axis] *
@@ -47,7 +47,7 @@ LookAhead::LookAhead(const Mission& mission)
                mission.law.u_max_mps),
       end_tick_(mission.law.ends_with_plan ? mission.timing.tick_count
                                            : std::numeric_limits<Tick>::max()),
-      longest_period_(mission.timing.broadcast_period_ticks) {}
+      longest_period_(longest_period_ticks(mission.timing)) {}
 
 double LookAhead::horizon_s(int n, Tick tick) const {
   const double left_s = static_cast<double>(std::max<Tick>(0, end_tick_ - tick)) * dt_s_;

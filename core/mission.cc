@@ -43,11 +43,14 @@ Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen
   return next_m;
 }
 
-Tick next_broadcast(const Mission& mission, AgentId id, Tick tick) {
+Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block) {
   const Tick period = mission.timing.broadcast_period_ticks;
+  const Tick factor = block == 0 ? 1 : mission.timing.high_mode_period_factor;
   const Tick team = std::max<Tick>(1, static_cast<Tick>(mission.starts_m.size()));
-  const Tick turn = id * period / team % period;
-  return tick + period - (tick - turn + period) % period;
+  // High modes go along with low ones.
+  const Tick turn = id * period / team % period + id * factor / team % factor * period;
+  const Tick between = period * factor;
+  return tick + between - (tick - turn + between) % between;
 }
 
 Eigen::Vector3d start_of(const Mission& mission, AgentId id) {

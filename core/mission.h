@@ -48,8 +48,9 @@ enum class OnTimeout { kEndMission, kEvict };
 
 struct Timing {
   double dt_s = 0.1;
-  Tick tick_count = 0;             ///< the mission has ticks 0 … tick_count − 1
-  int broadcast_period_ticks = 1;  ///< an agent broadcasts its coverage every so many ticks
+  Tick tick_count = 0;              ///< the mission has ticks 0 … tick_count − 1
+  int broadcast_period_ticks = 1;   ///< an agent broadcasts its coverage every so many ticks
+  int high_mode_period_factor = 1;  ///< all but the lowest modes every so many periods
   Pace pace = Pace::kLockstep;
   double realtime_factor = 1;       ///< mission seconds per wall second
   double lockstep_timeout_s = 10;   ///< wall time a tick may stay unanswered
@@ -132,9 +133,14 @@ Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d
 Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
                       const Eigen::Vector3d& v_mps);
 
-/// The first tick after `tick` at which agent `id` broadcasts: the planned agents take turns within
-/// the period.
-Tick next_broadcast(const Mission& mission, AgentId id, Tick tick);
+/// The longest time between two broadcasts of a block.
+inline Tick longest_period_ticks(const Timing& timing) {
+  return Tick{timing.broadcast_period_ticks} * timing.high_mode_period_factor;
+}
+
+/// The first tick after `tick` at which agent `id` broadcasts a block: the planned agents take
+/// turns within the period, and with blocks of high modes within its multiple.
+Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block = 0);
 
 /// The start of agent `id`: as planned, or beyond the plan drawn from the seed.
 Eigen::Vector3d start_of(const Mission& mission, AgentId id);

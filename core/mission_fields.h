@@ -27,6 +27,8 @@ using Words = std::initializer_list<const char*>;
 struct FieldVisitor {
   /// Unless the last argument holds, the number is 0 and in no scenario.
   void number(int, const char*, auto&, const Limits&, bool = true) {}
+  /// Where the number is the last argument, plans and texts do not say it.
+  void number_unless(int, const char*, auto&, const Limits&, double) {}
   /// A number along z; in a plane it is the last argument and in no scenario.
   void height(int, const char*, auto&, const Limits&, double) {}
   void flag(int, const char*, auto&) {}
@@ -83,7 +85,7 @@ void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
 void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
   io.number(1, "dt_s", timing.dt_s, limits::between(1e-6, 3600));
   io.duration(2, timing);
-  io.number(3, "broadcast_period_ticks", timing.broadcast_period_ticks, limits::between(1, 1000));
+  io.number(3, "broadcast_period_ticks", timing.broadcast_period_ticks, limits::kPeriod_ticks);
   io.choice(4, "pace", timing.pace, {"LOCKSTEP", "REALTIME"});
   io.number(5, "realtime_factor", timing.realtime_factor, limits::between(0.01, 1000));
   io.number(6, "lockstep_timeout_s", timing.lockstep_timeout_s, limits::kTimeout_s);
@@ -92,6 +94,8 @@ void list_fields(auto& io, MaybeConst<Timing> auto& timing) {
   io.number(8, "admission_timeout_s", timing.admission_timeout_s, limits::kTimeout_s);
   io.number(9, "catch_up_limit_ticks", timing.catch_up_limit_ticks, limits::between(0, 1000));
   io.choice(11, "contribution_encoding", timing.contribution_encoding, {"DOUBLE", "FIXED16"});
+  io.number_unless(12, "high_mode_period_factor", timing.high_mode_period_factor,
+                   limits::kPeriod_ticks, 1);
 }
 
 void list_fields(auto& io, MaybeConst<VehicleLimits> auto& vehicle) {

@@ -32,6 +32,9 @@ class EachWithinLimits : public FieldVisitor {
   void number(int, const char*, double value, const Limits& limits, bool given = true) {
     ok = ok && (given ? limits.contain(value) : value == 0);
   }
+  void number_unless(int, const char*, double value, const Limits& limits, double) {
+    ok = ok && limits.contain(value);
+  }
   void height(int, const char*, double value, const Limits& limits, double in_plane) {
     ok = ok && (value == in_plane || limits.contain(value));
   }
@@ -84,6 +87,7 @@ bool fits(const Timing& timing) {
   const bool realtime = timing.pace == Pace::kRealtime;
   return ticks >= 1 && ticks <= limits::kMaxTicks &&
          std::round(duration_s(timing) / timing.dt_s) == ticks &&
+         limits::kPeriod_ticks.contain(static_cast<double>(longest_period_ticks(timing))) &&
          (!realtime || timing.dt_s / timing.realtime_factor >= limits::kMinWallStep_s);
 }
 

@@ -36,6 +36,8 @@ inline constexpr Limits kIntensity = between(0, 1e6);  ///< of any noise [m/√s
 inline constexpr Limits kTimeout_s = above(0, 86400);
 inline constexpr Limits kDuration_s = above(0, 1e7);
 inline constexpr double kMaxTicks = 1e8;
+/// Between two broadcasts of any block.
+inline constexpr Limits kPeriod_ticks = between(1, 1000);
 /// In real time, the least wall time of a step.
 inline constexpr double kMinWallStep_s = 1e-4;
 inline constexpr Limits kTeam = between(1, kMaxAgents);

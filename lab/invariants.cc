@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/block_layout.h"
 #include "core/kinds.h"
 #include "core/noise.h"
 #include "core/perturbation.h"
@@ -32,7 +33,8 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
   // Who was forgotten, it may be a moment before, is remembered with as much notice in real time.
   const double notices_s = mission.forget_silent_after_s > 0 ? 4 : 0;
   const Timing& timing = mission.timing;
-  const double period_s = timing.broadcast_period_ticks * timing.dt_s / timing.realtime_factor;
+  const double period_s =
+      static_cast<double>(longest_period_ticks(timing)) * timing.dt_s / timing.realtime_factor;
   const std::size_t entries = 2 * mission.starts_m.size();  // every agent was restarted once
   return (kTakeover_s + kAdmission_s + hop_s(entries) + notices_s + 2 * period_s) /
          (1 - faults.clock_rate_error);
@@ -41,8 +43,8 @@ double recovery_bound_s(const Mission& mission, const Faults& faults) {
 Invariants::Invariants(const Mission& mission)
     : mission_(mission),
       weights_(sobolev_weights(mission.basis, mission.domain)),
-      block_count_(
-          block_count_of(mission.basis.mode_count(), mission.timing.contribution_encoding)) {}
+      block_count_(block_count_of(mission)),
+      wire_modes_(modes_on_wire(mission)) {}
 
 void Invariants::violate(double t_s, Invariant invariant, const std::string& who,
                          std::string numbers) {

@@ -23,6 +23,7 @@
 #include "lab/faults.h"
 #include "lab/shadow.h"
 #include "lab/table_view.h"
+#include "lab/wire_modes.h"
 #include "logger/recorder.h"
 #include "team/bodies.h"
 #include "team/mission_follower.h"
@@ -224,6 +225,7 @@ class Invariants {
   Mission mission_;
   Coefficients weights_;
   int block_count_;
+  WireModes wire_modes_;
   std::optional<Violation> violation_;
   std::vector<Author> authors_;
   std::map<AgentId, int> lives_;

@@ -120,15 +120,15 @@ double Invariants::quality_of(const Author& author) const {
 /// (4) from the blocks alone, weighted by quality and by the time each covers.
 Coefficients Invariants::average_of(const std::map<Author, std::vector<Best>>& rows) const {
   Coefficients c = Coefficients::Zero(mission_.basis.mode_count());
-  const int block_size = block_size_of(mission_.timing.contribution_encoding);
-  for (int k = 0; k < mission_.basis.mode_count(); ++k) {
-    double sum_s = 0, steps = 0;
-    for (const auto& [author, blocks] : rows) {
-      const Best& block = blocks[static_cast<std::size_t>(k / block_size)];
-      sum_s += quality_of(author) * block.sums[static_cast<std::size_t>(k % block_size)];
-      steps += quality_of(author) * static_cast<double>(block.steps);
+  for (std::size_t b = 0; b < wire_modes_.size(); ++b) {
+    for (std::size_t i = 0; i < wire_modes_[b].size(); ++i) {
+      double sum_s = 0, steps = 0;
+      for (const auto& [author, blocks] : rows) {
+        sum_s += quality_of(author) * blocks[b].sums[i];
+        steps += quality_of(author) * static_cast<double>(blocks[b].steps);
+      }
+      if (steps > 0) c.data()[wire_modes_[b][i]] = sum_s / (steps * mission_.timing.dt_s);
     }
-    if (steps > 0) c.data()[k] = sum_s / (steps * mission_.timing.dt_s);
   }
   return c;
 }

@@ -34,7 +34,7 @@ double horizon_s(const Mission& mission, int n, Tick tick) {
   const Coefficients& mu = mission.target_coefficients;
   const auto [modes_x, modes_y, modes_z] =
       std::tuple(mission.basis.modes_x, mission.basis.modes_y, mission.basis.modes_z);
-  // The modes along an axis are so far from each other in the order of the wire.
+  // The modes along an axis are so far from each other in the order of the basis.
   const auto variance_m2 = [&](int axis, int modes, int apart) {
     return marginal_variance(mission.domain.size_m[axis], modes,
                              [&](int mode) { return mu[mode * apart]; });
@@ -50,7 +50,8 @@ double horizon_s(const Mission& mission, int n, Tick tick) {
 /// w = h + min(span, cap) + age, or 0 for who has been silent for longer than h and the cap.
 double weight_s(const Mission& mission, double h_s, Tick span, Tick age, Tick period) {
   const Tick cap =
-      kPeriodsUntilDead * std::min<Tick>(period, mission.timing.broadcast_period_ticks);
+      kPeriodsUntilDead * std::min(period, Tick{mission.timing.broadcast_period_ticks} *
+                                               mission.timing.high_mode_period_factor);
   const double dt_s = mission.timing.dt_s, cap_s = static_cast<double>(cap) * dt_s;
   const double age_s = static_cast<double>(age) * dt_s;
   if (age_s > h_s && age_s > cap_s) return 0;
@@ -109,16 +110,17 @@ int block_size(const Mission& mission) {
   return block_size_of(mission.timing.contribution_encoding);
 }
 
-/// One block of `all`, and zeros beyond the last mode.
-std::vector<double> block_of(const Coefficients& all, int block, int size) {
+/// The numbers of a block with these modes, and zeros beyond the last.
+std::vector<double> block_of(const Coefficients& all, const std::vector<int>& modes, int size) {
   std::vector<double> sums(static_cast<std::size_t>(size));
-  const auto first = Eigen::Index{block} * size;
-  std::copy_n(all.data() + first, std::min<Eigen::Index>(size, all.size() - first), sums.begin());
+  std::ranges::transform(modes, sums.begin(), [&](int mode) { return all[mode]; });
   return sums;
 }
 
 std::vector<double> vector_of(const BlockSums& sums, int size) {
-  return {sums.data(), sums.data() + size};
+  std::vector<double> all(sums.begin(), sums.end());
+  all.resize(static_cast<std::size_t>(size));
+  return all;
 }
 
 /// Whether it takes part in the tick and is the newest life of its number.
@@ -169,7 +171,8 @@ void Shadow::note_places(const Mission& mission, const TableView& agent, const W
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
   const auto most =
-      static_cast<std::size_t>(timing.broadcast_period_ticks + Forecast::kPlacesBeyondPeriod);
+      static_cast<std::size_t>(timing.broadcast_period_ticks * timing.high_mode_period_factor +
+                               Forecast::kPlacesBeyondPeriod);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     const bool driven = timing.pace == Pace::kLockstep || vehicle.answered_tick >= tick - hold;
@@ -243,8 +246,9 @@ Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {
             held.next_tick - held.tick};
   if (mission.timing.contribution_encoding == ContributionEncoding::kFixed16) return part;
   part.gained_steps = held.steps - before.steps;
+  const std::vector<double> sums_before = vector_of(before.sums, size);
   for (std::size_t k = 0; k < part.gains.size(); ++k) {
-    part.gains[k] = held.sums[k] - before.sums[k];
+    part.gains[k] = part.sums[k] - sums_before[k];
   }
   return part;
 }
@@ -257,7 +261,8 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     auto found = gains.find(place.tick);
     if (found == gains.end())
       found = gains.emplace(place.tick, seen_at(mission, entry->kind, place.x_m)).first;
-    return block_of(found->second, b, block_size(mission));
+    return block_of(found->second, modes(mission)[static_cast<std::size_t>(b)],
+                    block_size(mission));
   };
   std::vector<Part> parts;
   for (int b = 0; b < static_cast<int>(row.blocks.size()); ++b) {
@@ -320,11 +325,15 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
         sums[k] += part.quality * (part.sums[k] + share * part.gains[k]);
       }
     }
-    const int first = b * size, count = std::min(size, mission.basis.mode_count() - first);
-    for (int k = 0; k < count && time_s > 0; ++k)
-      c[first + k] = sums[static_cast<std::size_t>(k)] / time_s;
+    const std::vector<int>& modes = this->modes(mission)[at];
+    for (std::size_t i = 0; i < modes.size() && time_s > 0; ++i) c[modes[i]] = sums[i] / time_s;
   }
   return c;
+}
+
+const WireModes& Shadow::modes(const Mission& mission) const {
+  if (modes_.empty()) modes_ = modes_on_wire(mission);
+  return modes_;
 }
 
 }  // namespace ergocast::lab

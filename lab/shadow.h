@@ -17,6 +17,7 @@
 #include "core/ids.h"
 #include "core/mission.h"
 #include "lab/table_view.h"
+#include "lab/wire_modes.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
@@ -75,6 +76,10 @@ class Shadow {
                              bool flies) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
+  /// Of the one mission of its life.
+  const WireModes& modes(const Mission& mission) const;
+
+  mutable WireModes modes_;
   Tick active_from_;
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest go

@@ -43,7 +43,8 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
   Reader reader(bytes.subspan(sizeof(std::uint64_t)));
   Fields<Header>::list(reader, plain.header);
   Fields<Form>::list(reader, plain);
-  if constexpr (std::is_same_v<Form, Averages>) plain.encoding = ContributionEncoding::kFixed16;
+  if constexpr (std::is_same_v<Form, Averages> || std::is_same_v<Form, LowAverages>)
+    plain.encoding = ContributionEncoding::kFixed16;
   const bool can_be_true = reader.plausible() && plain.header.sender == speaker_of(plain);
   if (!reader.complete()) {
     result = Refusal::kSize;
@@ -80,7 +81,9 @@ const Decoder* decoder_for(std::uint64_t wanted) {
                                        entry<Hello>(),
                                        entry<Stop>(),
                                        entry<Digest>(),
-                                       entry<Contribution, Averages>()};
+                                       entry<Contribution, Averages>(),
+                                       entry<Contribution, LowSums>(),
+                                       entry<Contribution, LowAverages>()};
   const auto at = std::find_if(kDecoders.begin(), kDecoders.end(), [&](const Decoder& decoder) {
     return decoder.fingerprint == wanted;
   });
@@ -96,6 +99,15 @@ void write(const Plain& plain, std::vector<std::byte>& out) {
   out.resize(writer.size());
 }
 
+void write_block(const Contribution& block, std::vector<std::byte>& out) {
+  const bool rounds = block.encoding == ContributionEncoding::kFixed16;
+  if (block.sums.size() == kLowModes) {
+    rounds ? write<LowAverages>(block, out) : write<LowSums>(block, out);
+  } else {
+    rounds ? write<Averages>(block, out) : write<Contribution>(block, out);
+  }
+}
+
 }  // namespace
 
 void encode(const Message& message, std::vector<std::byte>& out, const MessageAuthenticator& seal,
@@ -104,8 +116,7 @@ void encode(const Message& message, std::vector<std::byte>& out, const MessageAu
       [&](const auto& plain) {
         using Plain = std::decay_t<decltype(plain)>;
         if constexpr (std::is_same_v<Plain, Contribution>) {
-          const bool rounds = plain.encoding == ContributionEncoding::kFixed16;
-          rounds ? write<Averages>(plain, out) : write<Plain>(plain, out);
+          write_block(plain, out);
         } else {
           write<Plain>(plain, out);
         }

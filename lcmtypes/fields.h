@@ -12,6 +12,8 @@
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
 #include <ergocast/hello_t.hpp>
+#include <ergocast/low_averages_t.hpp>
+#include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
@@ -72,15 +74,24 @@ struct Fields<MissionPart> {
 template <>
 struct Fields<Contribution> {
   using Generated = contribution_t;
-  static void list(auto& io, auto& m) {
+  static void list(auto& io, auto& m, std::size_t count = kBlockSize) {
     io.holds(m.header.sender >= 0);
     io.count(m.steps);
     io.count(m.next_broadcast_tick);
     io.finite(m.elapsed_s);
     io.number(m.block);
     io.number(m.mode_count);
-    io.sums(m.sums);
+    io.sums(m.sums, count);
   }
+};
+
+/// One of kLowModes.
+struct LowSums;
+
+template <>
+struct Fields<LowSums> {
+  using Generated = low_sums_t;
+  static void list(auto& io, auto& m) { Fields<Contribution>::list(io, m, kLowModes); }
 };
 
 /// A contribution whose numbers travel in 16 bits.
@@ -89,7 +100,7 @@ struct Averages;
 template <>
 struct Fields<Averages> {
   using Generated = averages_t;
-  static void list(auto& io, auto& m) {
+  static void list(auto& io, auto& m, std::size_t count = kMostBlockSize) {
     io.holds(m.header.sender >= 0);
     io.count(m.steps);
     io.count(m.next_broadcast_tick);
@@ -97,10 +108,19 @@ struct Fields<Averages> {
     io.count(m.gained_steps);
     io.number(m.block);
     io.number(m.mode_count);
-    io.averages(m.sums, m.elapsed_s);
+    io.averages(m.sums, m.elapsed_s, count);
     const double step_s = m.steps > 0 ? m.elapsed_s / static_cast<double>(m.steps) : 0;
-    io.averages(m.gains, static_cast<double>(m.gained_steps) * step_s);
+    io.averages(m.gains, static_cast<double>(m.gained_steps) * step_s, count);
   }
+};
+
+/// One of kLowModes.
+struct LowAverages;
+
+template <>
+struct Fields<LowAverages> {
+  using Generated = low_averages_t;
+  static void list(auto& io, auto& m) { Fields<Averages>::list(io, m, kLowModes); }
 };
 
 template <>

@@ -39,11 +39,11 @@ std::string bounded(const std::string& text, int limit) {
 }
 
 /// A sum over that time that was read before is written as the same bits.
-void Writer::averages(const BlockSums& sums, double time_s) {
-  std::byte* const at = room(kMostBlockSize * sizeof(std::int16_t));
+void Writer::averages(const BlockSums& sums, double time_s, std::size_t count) {
+  std::byte* const at = room(count * sizeof(std::int16_t));
   const double scale = time_s > 0 ? kUnits / time_s : 0;
   const double* const values = sums.data();
-  for (std::size_t k = 0; k < kMostBlockSize; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const double units = k < sums.size() ? std::clamp(values[k] * scale, -kUnits, kUnits) : 0;
     const auto rounded = static_cast<std::int32_t>(units + (units < 0 ? -0.5 : 0.5));
     const auto bits = __builtin_bswap16(static_cast<std::uint16_t>(rounded));
@@ -51,13 +51,13 @@ void Writer::averages(const BlockSums& sums, double time_s) {
   }
 }
 
-void Reader::averages(BlockSums& sums, double time_s) {
-  const std::byte* const at = take(kMostBlockSize * sizeof(std::int16_t));
+void Reader::averages(BlockSums& sums, double time_s, std::size_t count) {
+  const std::byte* const at = take(count * sizeof(std::int16_t));
   if (at == nullptr) return;
   const double unit = time_s / kUnits;
-  double* const values = sums.set_all(kMostBlockSize).data();
+  double* const values = sums.set_all(count).data();
   bool possible = true;
-  for (std::size_t k = 0; k < kMostBlockSize; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     std::uint16_t bits;
     std::memcpy(&bits, at + 2 * k, sizeof bits);
     const auto units = static_cast<std::int16_t>(__builtin_bswap16(bits));

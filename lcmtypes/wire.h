@@ -58,9 +58,13 @@ class Writer {
       std::memcpy(at + 8 * k, &bits, sizeof bits);
     }
   }
-  void sums(const BlockSums& values) { numbers({values.data(), values.size()}); }
-  /// Sums over `time_s` as averages of 16 bits each, kMostBlockSize of them.
-  void averages(const BlockSums& sums, double time_s);
+  /// @pre values.size() == count
+  void sums(const BlockSums& values, std::size_t count) {
+    ERGOCAST_REQUIRE(values.size() == count);
+    numbers({values.data(), count});
+  }
+  /// Sums over `time_s` as averages of 16 bits each.
+  void averages(const BlockSums& sums, double time_s, std::size_t count);
   void count(std::int64_t value) { number(value); }
   /// For counts that other processes can increase: a jump in a sender's numbering counts as losses.
   void capped_count(std::int64_t value) { number(std::min(value, kMostEver)); }
@@ -131,8 +135,8 @@ class Reader {
       values[k] = std::bit_cast<double>(swapped(bits));
     }
   }
-  void sums(BlockSums& values) { numbers(values.set_all()); }
-  void averages(BlockSums& sums, double time_s);
+  void sums(BlockSums& values, std::size_t count) { numbers(values.set_all(count)); }
+  void averages(BlockSums& sums, double time_s, std::size_t count);
   void count(std::int64_t& value) { number(value), holds(value >= 0 && value <= kMostEver); }
   void capped_count(std::int64_t& value) { count(value); }
   void count_or_none(std::int64_t& value) {

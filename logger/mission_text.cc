@@ -52,6 +52,9 @@ class TextWriter : public FieldVisitor {
   void number(int, const char* name, double value, const Limits&, bool given = true) {
     if (given) put(name, shortest(value));
   }
+  void number_unless(int, const char* name, double value, const Limits&, double usual) {
+    if (value != usual) put(name, shortest(value));
+  }
   void height(int, const char* name, double value, const Limits&, double) {
     if (!mission_.domain.planar()) put(name, shortest(value));
   }

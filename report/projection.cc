@@ -33,7 +33,7 @@ Mission projected(const Mission& mission, const View& view) {
 }
 
 Coefficients projected(const Coefficients& coefficients, const Basis& basis, const View& view) {
-  // From a mode along each axis to the next, in the order of the wire.
+  // From a mode along each axis to the next, in the order of the basis.
   const std::array<int, 3> step{basis.modes_y, 1, basis.modes_x * basis.modes_y};
   const auto modes = modes_of(basis);
   const auto across = static_cast<std::size_t>(view.across), up = static_cast<std::size_t>(view.up);

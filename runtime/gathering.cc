@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/block_layout.h"
+
 namespace ergocast {
 namespace {
 
@@ -18,7 +20,7 @@ Gathering gathering_of(const Mission& mission, std::size_t members) {
   const Timing& timing = mission.timing;
   const duration<double> half_a_tick(timing.dt_s / timing.realtime_factor / 2);
   if (timing.pace == Pace::kLockstep || half_a_tick < kLeastGathered) return {};
-  const int blocks = block_count_of(mission.basis.mode_count(), timing.contribution_encoding);
+  const int blocks = block_count_of(mission);
   return {
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::min(half_a_tick, kMostGathered)),
       members * static_cast<std::size_t>(blocks)};

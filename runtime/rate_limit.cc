@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/block_layout.h"
 #include "team/messages.h"
 
 namespace ergocast {
@@ -24,7 +25,7 @@ constexpr double kBacklog_s = 10, kBacklogTicks = 100, kBacklogMessages = 2000;
 
 RateBudget allowance_of(const Mission& mission, std::size_t members) {
   const Timing& timing = mission.timing;
-  const double blocks = block_count_of(mission.basis.mode_count(), timing.contribution_encoding);
+  const double blocks = block_count_of(mission);
   const double repeats =
       timing.pace == Pace::kLockstep ? kLockstepRepeatsPerSecond : kRealtimeRepeatsPerSecond;
   const double relayed = static_cast<double>(members) * blocks;

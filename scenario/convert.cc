@@ -52,10 +52,14 @@ class BlockReader : public FieldVisitor {
     value = static_cast<Number>(number_in(block, field));
   }
   template <class Number>
-  void height(int, const char* name, Number& value, const Limits&, double in_plane) {
+  void number_unless(int, const char* name, Number& value, const Limits&, double usual) {
     const auto [block, field] = find_field(block_, name);
     const bool said = block.GetReflection()->HasField(block, &field);
-    value = static_cast<Number>(said ? number_in(block, field) : in_plane);
+    value = static_cast<Number>(said ? number_in(block, field) : usual);
+  }
+  template <class Number>
+  void height(int number, const char* name, Number& value, const Limits& limits, double in_plane) {
+    number_unless(number, name, value, limits, in_plane);
   }
   void flag(int, const char* name, bool& value) {
     const auto [block, field] = find_field(block_, name);

@@ -116,6 +116,9 @@ class RuleCollector : public FieldVisitor {
     rules_.emplace(&find_field(block_, name).field,
                    FieldRule{limits, given ? kDefaulted : kLeft, value});
   }
+  void number_unless(int, const char* name, double value, const Limits& limits, double) {
+    number(0, name, value, limits, false);
+  }
   void height(int, const char* name, double, const Limits& limits, double) {
     rules_.emplace(&find_field(block_, name).field, FieldRule{limits, kLeft});
   }

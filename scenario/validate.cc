@@ -24,6 +24,7 @@ using google::protobuf::Message;
 using limits::kMaxOriginPerSize;
 using limits::kMaxTicks;
 using limits::kMinWallStep_s;
+using limits::kPeriod_ticks;
 
 constexpr std::size_t kMaxDescriptionBytes = 2000;
 
@@ -246,6 +247,20 @@ class Validator {
   void time() {
     duration();
     wall_time_of_a_step();
+    longest_period();
+  }
+
+  void longest_period() {
+    const proto::Time& time = scenario_.time();
+    if (!sound("time.broadcast_period_ticks") || !sound("time.high_mode_period_factor")) return;
+    const int factor = time.high_mode_period_factor(), period = time.broadcast_period_ticks();
+    const auto most = static_cast<int>(kPeriod_ticks.high);
+    if (factor * period <= most) return;
+    problem("time.high_mode_period_factor",
+            std::to_string(factor) + " makes " + std::to_string(factor * period) +
+                " ticks with broadcast_period_ticks " + std::to_string(period) +
+                ", above the limit " + std::to_string(most),
+            "write at most " + std::to_string(most / period) + ", or a shorter period");
   }
 
   void wall_time_of_a_step() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/block_layout.h"
 #include "core/kinds.h"
 #include "core/perturbation.h"
 #include "core/separation.h"
@@ -112,6 +113,28 @@ void warn_of_footprints(const Mission& mission, Findings& findings) {
                "smoother target");
 }
 
+/// High modes that are rare need high modes, and time.
+void warn_of_rare_modes(const Mission& mission, Findings& findings) {
+  const Timing& timing = mission.timing;
+  if (timing.high_mode_period_factor == 1) return;
+  const std::string factor = std::to_string(timing.high_mode_period_factor);
+  const Tick between = longest_period_ticks(timing);
+  if (!separates_low_modes(mission)) {
+    findings.add("time.high_mode_period_factor",
+                 factor + " has no effect: the basis has " +
+                     std::to_string(mission.basis.mode_count()) + " modes, and the " +
+                     std::to_string(kLowModes) + " lowest are sent every period",
+                 "leave it out, or write more modes");
+  } else if (between >= timing.tick_count) {
+    findings.add("time.high_mode_period_factor",
+                 factor + " makes " + std::to_string(between) +
+                     " ticks between two broadcasts of a high mode, and the mission has " +
+                     std::to_string(timing.tick_count) +
+                     ": agents send those once or twice and then know little of them",
+                 "write a smaller factor or a shorter broadcast_period_ticks");
+  }
+}
+
 }  // namespace
 
 void warn(const Mission& mission, Findings& findings) {
@@ -119,6 +142,7 @@ void warn(const Mission& mission, Findings& findings) {
   warn_of_coarse_steps(mission, findings);
   warn_of_packing(mission, findings);
   warn_of_footprints(mission, findings);
+  warn_of_rare_modes(mission, findings);
 }
 
 }  // namespace ergocast

@@ -79,8 +79,8 @@ class PlanWriter {
     value(xy, bytes);
     if (heights.find_first_not_of('\0') != std::string::npos) value(z, heights);
   }
-  void height(int field, auto value, double in_plane) {
-    if (value != in_plane || in_plane == 0) this->value(field, value);
+  void unless(int field, auto value, double usual) {
+    if (value != usual || usual == 0) this->value(field, value);
   }
   PlanWriter open(int) const { return {}; }
   /// Each a block under the same number.
@@ -157,9 +157,9 @@ class PlanReader {
     }
   }
   template <class T>
-  void height(int field, T& value, double in_plane) const {
+  void unless(int field, T& value, double usual) const {
     this->value(field, value);
-    if (value == 0) value = static_cast<T>(in_plane);
+    if (value == 0) value = static_cast<T>(usual);
   }
   PlanReader open(int field) const { return PlanReader(at(field).bytes); }
   void blocks(int field, std::vector<AgentKind>& kinds, const auto& read) const {
@@ -212,8 +212,11 @@ class PlanFields : public FieldVisitor {
   void number(int field, const char*, auto& value, const Limits&, bool = true) {
     wire_.value(field, value);
   }
+  void number_unless(int field, const char*, auto& value, const Limits&, double usual) {
+    wire_.unless(field, value, usual);
+  }
   void height(int field, const char*, auto& value, const Limits&, double in_plane) {
-    wire_.height(field, value, in_plane);
+    wire_.unless(field, value, in_plane);
   }
   void flag(int field, const char*, auto& value) { wire_.value(field, value); }
   void choice(int field, const char*, auto& value, Words, bool = true) {

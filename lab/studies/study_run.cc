@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/block_layout.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/ideal_team.h"
@@ -20,11 +21,18 @@ namespace ergocast::studies {
 namespace {
 
 /// Of the whole team: each agent tells what it covered at its first tick, and in its turns.
-std::int64_t broadcasts_of(const Mission& mission) {
+std::int64_t broadcasts_of(const Mission& mission, int block) {
   std::int64_t count = 0;
   for (AgentId id = 0; id < static_cast<AgentId>(mission.starts_m.size()); ++id) {
-    for (Tick at = 0; at < mission.timing.tick_count; at = next_broadcast(mission, id, at)) ++count;
+    for (Tick at = 0; at < mission.timing.tick_count; at = next_broadcast(mission, id, at, block))
+      ++count;
   }
+  return count;
+}
+
+std::int64_t blocks_sent(const Mission& mission) {
+  std::int64_t count = 0;
+  for (int b = 0; b < block_count_of(mission); ++b) count += broadcasts_of(mission, b);
   return count;
 }
 
@@ -121,8 +129,7 @@ StudyFigures fly_without_messages(const Mission& mission) {
     if (measure.wants_metric(tick)) measure.metric(tick, team.metric());
   }
   StudyFigures figures = measure.figures();
-  figures.messages = broadcasts_of(mission) * block_count_of(mission.basis.mode_count(),
-                                                             mission.timing.contribution_encoding);
+  figures.messages = blocks_sent(mission);
   return figures;
 }
 

@@ -12,7 +12,9 @@ public final class CoefficientsPlugin implements SpyPlugin {
   @Override
   public boolean canHandle(long fingerprint) {
     return fingerprint == ergocast.contribution_t.LCM_FINGERPRINT
-        || fingerprint == ergocast.averages_t.LCM_FINGERPRINT;
+        || fingerprint == ergocast.averages_t.LCM_FINGERPRINT
+        || fingerprint == ergocast.low_sums_t.LCM_FINGERPRINT
+        || fingerprint == ergocast.low_averages_t.LCM_FINGERPRINT;
   }
 
   @Override

@@ -26,11 +26,13 @@ final class Coverage {
     }
   }
 
+  private final Plan plan;
   private final int modes;
   private final Map<Long, Row> rows = new TreeMap<>(); // by incarnation
 
-  Coverage(int modes) {
-    this.modes = modes;
+  Coverage(Plan plan) {
+    this.plan = plan;
+    modes = plan.target.length;
   }
 
   void add(ergocast.contribution_t heard) {
@@ -38,30 +40,41 @@ final class Coverage {
   }
 
   void add(ergocast.averages_t heard) {
-    double[] sums = new double[heard.averages.length];
-    for (int k = 0; k < sums.length; ++k) {
-      sums[k] = heard.averages[k] / UNITS * heard.averages_elapsed_s;
-    }
     add(heard.header, heard.averages_steps, heard.averages_elapsed_s, heard.averages_mode_count,
-        heard.averages_block, sums);
+        heard.averages_block, sums(heard.averages, heard.averages_elapsed_s));
+  }
+
+  void add(ergocast.low_sums_t heard) {
+    add(heard.header, heard.low_steps, heard.low_elapsed_s, heard.low_mode_count, heard.low_block,
+        heard.low_sums);
+  }
+
+  void add(ergocast.low_averages_t heard) {
+    add(heard.header, heard.low_steps, heard.low_elapsed_s, heard.low_mode_count, heard.low_block,
+        sums(heard.low_averages, heard.low_elapsed_s));
+  }
+
+  private static double[] sums(short[] averages, double elapsed) {
+    double[] sums = new double[averages.length];
+    for (int k = 0; k < sums.length; ++k) sums[k] = averages[k] / UNITS * elapsed;
+    return sums;
   }
 
   private void add(ergocast.header_t header, long steps, double elapsed, int modeCount, int block,
       double[] sums) {
-    long first = block * (long) sums.length;
-    boolean sane =
-        modeCount == modes && block >= 0 && first < modes && elapsed > 0 && elapsed < 1e12;
+    int[] said = plan.modesOf(block, sums.length);
+    boolean sane = modeCount == modes && said.length > 0 && elapsed > 0 && elapsed < 1e12;
     if (!sane || !Arrays.stream(sums).allMatch(sum -> Math.abs(sum) <= 1.001 * elapsed)) return;
     Row row = rows.get(header.incarnation);
     if (row == null && rows.size() < MAX_AUTHORS) {
       row = new Row(header.sender, modes);
       rows.put(header.incarnation, row);
     }
-    if (row == null || row.agent != header.sender || row.steps[(int) first] >= steps) return;
-    for (int k = (int) first; k < Math.min(modes, first + sums.length); ++k) {
-      row.steps[k] = steps;
-      row.elapsed[k] = elapsed;
-      row.sums[k] = sums[k - (int) first];
+    if (row == null || row.agent != header.sender || row.steps[said[0]] >= steps) return;
+    for (int i = 0; i < said.length; ++i) {
+      row.steps[said[i]] = steps;
+      row.elapsed[said[i]] = elapsed;
+      row.sums[said[i]] = sums[i];
     }
   }
 

@@ -4,14 +4,18 @@ package ergocast.spy;
 import java.nio.ByteBuffer;
 import java.nio.ByteOrder;
 import java.nio.charset.StandardCharsets;
+import java.util.Arrays;
+import java.util.Comparator;
 import java.util.HashMap;
 import java.util.Map;
+import java.util.stream.IntStream;
 
 /** The fields of a compiled plan, listed in team/plan.proto, that the pictures need. */
 final class Plan {
   static final int MAX_MODES = 64; // along an axis
   static final int MAX_MODES_TOGETHER = 4096;
   static final long MAX_TICKS = 100000000;
+  static final int LOW_MODES = 64; // in the first block where the others are sent less often
 
   final String name;
   final double[] origin = new double[3], size = new double[3]; // [m]; a plane has no height
@@ -19,6 +23,8 @@ final class Plan {
   final long lastTick;
   final int[] modes = {1, 1, 1}; // along x, y and z; 1 along z in a plane
   final double[] target; // mu, (l * modes[0] + m) * modes[1] + n
+  private final boolean separated; // low modes from others: they travel by ascending |k|
+  private final int[] wire; // the modes in the order in which they travel
 
   /**
    * Reads Protobuf's wire format, with the numbers of team/plan.proto. A number that is not there
@@ -53,6 +59,33 @@ final class Plan {
     target = new double[count];
     for (int k = 0; k < target.length; ++k)
       target[k] = within(coefficients.getDouble(), -1.001, 1.001);
+    separated = timing.containsKey(12) && count > LOW_MODES;
+    wire = inOrder();
+  }
+
+  /** The modes whose numbers a block of this room has, in their order; none if there is no such. */
+  int[] modesOf(int block, int room) {
+    int first = separated && block > 0 ? LOW_MODES : 0;
+    long begin = first + (block - (first > 0 ? 1L : 0L)) * room;
+    if (block < 0 || begin >= wire.length) return new int[0];
+    int most = separated && block == 0 ? LOW_MODES : room;
+    return Arrays.copyOfRange(wire, (int) begin, (int) Math.min(wire.length, begin + most));
+  }
+
+  private int[] inOrder() {
+    return IntStream.range(0, target.length)
+        .boxed()
+        .sorted(Comparator.comparingInt(this::squaredWaveNumber)) // keeps the order of equal ones
+        .mapToInt(k -> k)
+        .toArray();
+  }
+
+  /** 0 for all where they travel in the order of the basis. */
+  private int squaredWaveNumber(int k) {
+    int n = k % modes[1];
+    int m = k / modes[1] % modes[0];
+    int l = k / modes[1] / modes[0];
+    return separated ? l * l + m * m + n * n : 0;
   }
 
   boolean inBox() {

@@ -74,6 +74,14 @@ final class Team {
         ergocast.averages_t heard = new ergocast.averages_t(in);
         if (isOfAnAgent(heard.header)) coverage.add(heard);
       }
+      if (fingerprint == ergocast.low_sums_t.LCM_FINGERPRINT) {
+        ergocast.low_sums_t heard = new ergocast.low_sums_t(in);
+        if (isOfAnAgent(heard.header)) coverage.add(heard);
+      }
+      if (fingerprint == ergocast.low_averages_t.LCM_FINGERPRINT) {
+        ergocast.low_averages_t heard = new ergocast.low_averages_t(in);
+        if (isOfAnAgent(heard.header)) coverage.add(heard);
+      }
     } catch (IOException | RuntimeException notOurs) {
       // Any error of invalid bytes ends here: LCM's thread must continue.
     }
@@ -104,7 +112,7 @@ final class Team {
     ByteArrayOutputStream whole = new ByteArrayOutputStream();
     for (byte[] part : parts) whole.write(part);
     plan = new Plan(whole.toByteArray());
-    coverage = new Coverage(plan.target.length);
+    coverage = new Coverage(plan);
   }
 
   private void on(ergocast.world_state_t message) {

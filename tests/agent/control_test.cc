@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "tests/agent/driven_agent.h"
 
@@ -124,6 +125,73 @@ TEST(AgentTick, BroadcastsOncePerPeriodAndNamesTheNextTimeTruthfully) {
   EXPECT_EQ(second_broadcast, (std::vector<Tick>{1, 2, 3, 4})) << "spread over the period";
 }
 
+/// The blocks that an agent says at each tick, and when it says them again.
+struct Said {
+  int block;
+  Tick next;
+  bool operator==(const Said&) const = default;
+};
+std::map<Tick, std::vector<Said>> said_of(const Mission& mission, AgentId id, Tick ticks) {
+  Agent agent = running_agent(mission, id);
+  std::map<Tick, std::vector<Said>> all;
+  for (Tick tick = 0; tick < ticks; ++tick) {
+    const Outbox out = tell(agent, world_state(tick, {{1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {4, 4, 0}}));
+    for (const Contribution& said : only<Contribution>(out)) {
+      all[tick].push_back({said.block, said.next_broadcast_tick});
+      EXPECT_EQ(said.steps, tick + 1);
+    }
+  }
+  return all;
+}
+
+TEST(AgentTick, SaysHighModesEverySoManyPeriodsAndNamesTheirNextTimeTruthfully) {
+  Mission mission = two_block_mission(4);
+  mission.timing.broadcast_period_ticks = 4;
+  mission.timing.high_mode_period_factor = 3;
+  mission.timing.pace = Pace::kRealtime;
+  std::vector<Tick> second_broadcast;
+  for (AgentId id = 0; id < 4; ++id) {
+    std::map<int, Tick> announced;
+    for (const auto& [tick, blocks] : said_of(mission, id, 60)) {
+      ASSERT_EQ(blocks.front().block, 0) << "high modes go along with low ones";
+      for (const auto& [block, next] : blocks) {
+        EXPECT_EQ(announced[block], tick);
+        EXPECT_LE(next, tick + (block == 0 ? 4 : 12));
+        if (tick > 0) {
+          EXPECT_EQ(next, tick + (block == 0 ? 4 : 12));
+        }
+        if (tick == 0 && block == 1) second_broadcast.push_back(next);
+        announced[block] = next;
+      }
+    }
+    EXPECT_GE(announced[0], 60);
+    EXPECT_GE(announced[1], 60);
+  }
+  EXPECT_EQ(second_broadcast, (std::vector<Tick>{12, 1, 6, 11})) << "spread over three periods";
+}
+
+TEST(AgentTick, SaysAllModesAsOftenWhereThereAreOnlyLowOnes) {
+  Mission rare = small_mission(4);
+  rare.timing.broadcast_period_ticks = 4;
+  Mission usual = rare;
+  rare.timing.high_mode_period_factor = 3;
+  EXPECT_EQ(said_of(rare, 2, 40), said_of(usual, 2, 40));
+}
+
+TEST(AgentInRealTime, WithoutNewTicksSaysAllModes) {
+  Mission mission = two_block_mission(1);
+  mission.timing.broadcast_period_ticks = 4;
+  mission.timing.high_mode_period_factor = 3;
+  mission.timing.pace = Pace::kRealtime;
+  Agent agent = running_agent(mission);
+  for (Tick tick = 0; tick < 6; ++tick) tell(agent, world_state(tick, {{1, 1, 0}}));
+  const auto said = only<Contribution>(advance(agent, at(2s)));
+  ASSERT_EQ(said.size(), 2u);
+  for (const Contribution& block : said) EXPECT_EQ(block.steps, 6);
+  EXPECT_EQ(said[0].next_broadcast_tick, 8);
+  EXPECT_EQ(said[1].next_broadcast_tick, 12);
+}
+
 TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
@@ -137,6 +205,26 @@ TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
 
 // ---- lockstep
 // ------------------------------------------------------------------------------------
+
+TEST(AgentInLockstep, WaitsForHighModesOnlyWhenTheyAreDue) {
+  Mission mission = two_block_mission(2);
+  mission.timing.high_mode_period_factor = 3;
+  Agent agent = running_agent(mission), other = running_agent(mission, 1);
+  for (Tick tick = 0; tick < 9; ++tick) {
+    const WorldState world = world_state(tick, {{100, 500, 0}, {200, 500, 0}});
+    const auto said = only<Contribution>(tell(other, world));
+    bool answered = !only<Command>(tell(agent, world)).empty();
+    ASSERT_FALSE(answered) << "low ones are due at " << tick;
+    ASSERT_EQ(said.size(), tick == 0 || tick % 3 == 1 ? 2u : 1u) << tick;
+    for (const Contribution& block : said) {
+      EXPECT_FALSE(answered) << tick;
+      answered = !only<Command>(tell(agent, block)).empty();
+      tell(other, world);  // it answers, too
+    }
+    EXPECT_TRUE(answered) << tick;
+    for (const Contribution& block : only<Contribution>(tell(agent, world))) tell(other, block);
+  }
+}
 
 TEST(AgentInLockstep, AnswersOnlyWhenEveryDueBlockOfEveryTeammateIsThere) {
   const Mission mission = two_block_mission(3);

@@ -123,6 +123,8 @@ std::vector<Mistake> mistakes_between_fields() {
       {kTime, "duration_s: 1001 dt_s: 1e-5", "time.duration_s: 100100000 steps"},
       {kTime, "duration_s: 60 dt_s: 0.001 pace: REALTIME realtime_factor: 20",
        "time.realtime_factor: 20 makes a step last"},
+      {kTime, "duration_s: 60 broadcast_period_ticks: 30 high_mode_period_factor: 34",
+       "time.high_mode_period_factor: 34 makes 1020 ticks"},
       {"starts { x_m: 10 y_m: 20 }", "", "agents: the team is empty"},
       {"agents {", "agents { random_count: 1024", "agents: a team of 1025"},
       {"agents {", "agents { quorum: 2", "agents.quorum: 2 is above"},
@@ -539,7 +541,7 @@ law {
   anticipation: 2
 }
 time {
-  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 contribution_encoding: FIXED16 pace: REALTIME
+  dt_s: 0.1 duration_s: 60 broadcast_period_ticks: 1 high_mode_period_factor: 4 contribution_encoding: FIXED16 pace: REALTIME
 }
 agents {
   starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1
@@ -745,6 +747,16 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find("time.dt_s: 0.6 is coarse"), std::string::npos) << output();
   }
 
+  void expect_warning_of_rare_modes(const std::string& basis, const std::string& what) {
+    std::string text = kGood + "basis { " + basis + " }\n";
+    write("s.textproto", text.insert(text.find(kTime), "high_mode_period_factor: 60 "));
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_TRUE(output().starts_with("warning: " + file_.string() + ":4:")) << output();
+    EXPECT_NE(output().find("time.high_mode_period_factor: 60 " + what), std::string::npos)
+        << output();
+  }
+
   void expect_warning_of_packing() {
     std::string text = kGood;
     text.insert(text.find("agents {"),
@@ -779,6 +791,8 @@ class CheckCanFail : public Scenarios {
     expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
     expect_warning("noise_ceiling: 0.5", "6", "m/s held for 1 step)");
     expect_warning_of_coarse_steps();
+    expect_warning_of_rare_modes("modes_x: 8 modes_y: 8", "has no effect: the basis has 64 modes");
+    expect_warning_of_rare_modes("modes_x: 9", "makes 600 ticks between two broadcasts");
     expect_warning_of_packing();
   }
 };

@@ -167,17 +167,20 @@ TEST(Allocations, KeepingADistanceMakesNone) {
 }
 
 TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
-  const std::pair<bool, int> missions[] = {{false, 1}, {true, 1}, {false, 3}, {true, 3}};
-  for (const auto& [dead_reckoning, modes_z] : missions) {
+  const std::tuple<bool, int, int> missions[] = {{false, 1, 1}, {true, 1, 1},  {false, 3, 1},
+                                                 {true, 3, 1},  {false, 1, 4}, {true, 1, 4}};
+  for (const auto& [dead_reckoning, modes_z, factor] : missions) {
     Mission mission = full_mission(Regularization::kRelative, Perturbation::kAdaptive, modes_z);
     mission.law.anticipation = 2;
     mission.dead_reckoning = dead_reckoning;
     mission.timing.broadcast_period_ticks = 5;
+    mission.timing.high_mode_period_factor = factor;
     const std::vector<RosterEntry> roster = test::roster_of(4);
     Forecast forecast(mission, test::author_of(0));
     CoverageTable own(mission.basis, mission.timing.dt_s);
+    own.set_layout(BlockLayout(mission));
     Coefficients foreseen = Coefficients::Zero(mission.basis.mode_count());
-    std::vector<CoverageTable> teammates(3, CoverageTable(mission.basis, mission.timing.dt_s));
+    std::vector<CoverageTable> teammates(3, own);
     const auto step = [&](Tick tick) {
       for (AgentId id = 0; id < 4; ++id) {
         const Eigen::Vector3d x_m(100 + 30 * id + static_cast<double>(tick), 500,
@@ -189,6 +192,7 @@ TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
         // One of them is not heard at every broadcast, and one each tick.
         if (id == 0 || (tick % 5 != 0 && id != 3) || (tick % 10 == 5 && id == 1)) continue;
         for (int b = 0; b < own.block_count(); ++b) {
+          if (b > 0 && factor > 1 && tick % 4 == 2) continue;
           Contribution said = theirs.block(test::author_of(id), b);
           said.header.tick = tick;
           said.next_broadcast_tick = tick + 5;

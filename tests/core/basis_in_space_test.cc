@@ -37,7 +37,7 @@ Eigen::Vector3d place(std::uint64_t i, const Box& domain = kBox) {
   return uniform_in(domain, 8, Purpose::kStart, 0, i);
 }
 
-/// Calls each(l, m, n, k) in the order of the wire.
+/// Calls each(l, m, n, k) in the order of the basis.
 template <class Each>
 void for_modes(const Basis& basis, const Each& each) {
   for (int l = 0; l < basis.modes_z; ++l) {
@@ -205,7 +205,7 @@ TEST(BasisInAPlane, HasTheBitsOfTheTwoDimensionalSums) {
         const BasisAt at(x_m, kFlat, basis);
         Coefficients sums = a;
         accumulate_basis(at, basis, 0.1, sums.data());
-        ASSERT_EQ(sums, in_wire_order(expected.sums));
+        ASSERT_EQ(sums, in_basis_order(expected.sums));
         const FieldAt field = weighted_field(at, basis, kFlat, a.data());
         ASSERT_EQ(field.gradient, on_ground(expected.gradient));
         ASSERT_EQ(weighted_gradient(at, basis, a.data()), field.gradient);

@@ -45,7 +45,7 @@ Coefficients uneven_weights(int modes_x, int modes_y) {
   for (int m = 0; m < modes_x; ++m) {
     for (int n = 0; n < modes_y; ++n) weights(m, n) = std::sin(1.0 + 3.7 * m + 1.3 * n * n);
   }
-  return in_wire_order(weights);
+  return in_basis_order(weights);
 }
 
 TEST(Basis, ValuesAreProductsOfCosinesUpToTheErrorOfTheRecurrence) {

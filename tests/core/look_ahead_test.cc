@@ -205,6 +205,17 @@ TEST(Weight, CountsOfTheSpanNoMoreThanEightPeriods) {
       << "who speaks more often than it must";
 }
 
+TEST(Weight, BelievesARarerPeriodOfHighModesIfThePlanHasIt) {
+  Mission mission = uniform();
+  mission.timing.broadcast_period_ticks = kPeriod;
+  mission.timing.high_mode_period_factor = 3;
+  const LookAhead look_ahead(mission);
+  EXPECT_EQ(look_ahead.longest_period(), 3 * kPeriod);
+  EXPECT_NEAR(look_ahead.weight_s(1, 15, 120, 3 * kPeriod), 14.5, 1e-12);
+  EXPECT_EQ(look_ahead.weight_s(1, 15, 121, 3 * kPeriod), 0);
+  EXPECT_EQ(look_ahead.weight_s(1, 5, 41, kPeriod), 0) << "of the first block";
+}
+
 TEST(Weight, OfWhoHasBeenSilentForLongIsNone) {
   const LookAhead look_ahead = telling_each(kPeriod);
   // The horizon is the longer: 30 s.

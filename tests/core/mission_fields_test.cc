@@ -34,6 +34,7 @@ class Count : public FieldVisitor {
   std::size_t fields = 0;
 
   void number(auto&&...) { ++fields; }
+  void number_unless(auto&&...) { ++fields; }
   void height(auto&&...) { ++fields; }
   void flag(auto&&...) { ++fields; }
   void choice(int, const char*, auto&, Words, bool = true) { ++fields; }

@@ -12,6 +12,8 @@
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
 #include <ergocast/hello_t.hpp>
+#include <ergocast/low_averages_t.hpp>
+#include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
@@ -70,6 +72,28 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(averages_wire.averages[0], 32767);
   EXPECT_EQ(averages_wire.averages[3], -32439) << "cos 3 in 1/32767";
   EXPECT_EQ(averages_wire.rates[1], -32439) << "likewise";
+
+  const auto low_wire = read_by_lcm<low_sums_t>(encoded(low_sums()));
+  expect_header(low_wire.header, 3);
+  EXPECT_EQ(low_wire.low_steps, 1000);
+  EXPECT_EQ(low_wire.low_next_broadcast_tick, 1001);
+  EXPECT_EQ(low_wire.low_elapsed_s, 100);
+  EXPECT_EQ(low_wire.low_block, 0);
+  EXPECT_EQ(low_wire.low_mode_count, 225);
+  EXPECT_EQ(std::memcmp(low_wire.low_sums, sums.sums.data(), sizeof low_wire.low_sums), 0);
+
+  const auto rounded_wire = read_by_lcm<low_averages_t>(encoded(low_averages()));
+  expect_header(rounded_wire.header, 3);
+  EXPECT_EQ(rounded_wire.low_steps, 1000);
+  EXPECT_EQ(rounded_wire.low_next_broadcast_tick, 1001);
+  EXPECT_EQ(rounded_wire.low_elapsed_s, 100);
+  EXPECT_EQ(rounded_wire.low_gained_steps, 10);
+  EXPECT_EQ(rounded_wire.low_block, 0);
+  EXPECT_EQ(rounded_wire.low_mode_count, 225);
+  for (std::size_t k = 0; k < kLowModes; ++k) {
+    EXPECT_EQ(rounded_wire.low_averages[k], averages_wire.averages[k]);
+    EXPECT_EQ(rounded_wire.low_rates[k], averages_wire.rates[k]);
+  }
 
   const auto status_wire = read_by_lcm<agent_status_t>(encoded(agent_status()));
   expect_header(status_wire.header, 3);
@@ -236,6 +260,8 @@ TEST(Codec, TheFullestMessagesFitOneDatagram) {
   }
   EXPECT_LE(encoded(contribution()).size(), kMaxDatagramBytes);
   EXPECT_LE(encoded(averages()).size(), kMaxDatagramBytes);
+  EXPECT_EQ(encoded(contribution()).size() - encoded(low_sums()).size(), 64 * sizeof(double));
+  EXPECT_EQ(encoded(averages()).size() - encoded(low_averages()).size(), 2 * 192 * 2);
 }
 
 TEST(Codec, StringsAreCutAtTheirLimitsAndAtANul) {

@@ -30,7 +30,7 @@ Basis modes() {
 
 CoverageTable table_in(ContributionEncoding encoding) {
   CoverageTable table(modes(), kTick_s);
-  table.set_encoding(encoding);
+  table.set_layout(BlockLayout(modes(), encoding));
   return table;
 }
 CoverageTable rounded_table() { return table_in(ContributionEncoding::kFixed16); }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -85,6 +86,20 @@ inline Contribution averages() {
   return m;
 }
 
+/// The first block where the other modes are sent less often.
+inline Contribution low_modes(Contribution m) {
+  const auto shorten = [](BlockSums& sums) {
+    const std::vector<double> low(sums.begin(), sums.begin() + kLowModes);
+    std::ranges::copy(low, sums.set_all(kLowModes).begin());
+  };
+  m.block = 0;
+  shorten(m.sums);
+  if (m.encoding == ContributionEncoding::kFixed16) shorten(m.gains);
+  return m;
+}
+inline Contribution low_sums() { return low_modes(contribution()); }
+inline Contribution low_averages() { return low_modes(averages()); }
+
 inline AgentStatus agent_status() {
   AgentStatus m;
   m.header = header_of_sender(3);
@@ -156,8 +171,9 @@ inline Digest digest() {
 }
 
 inline std::vector<Message> every_message() {
-  return {hello(),       mission_part(), contribution(), agent_status(), team_status(), stop(),
-          world_state(), command(),      record_ack(),   digest(),       averages()};
+  return {hello(),    mission_part(), contribution(), agent_status(), team_status(),
+          stop(),     world_state(),  command(),      record_ack(),   digest(),
+          averages(), low_sums(),     low_averages()};
 }
 
 // ---- bytes

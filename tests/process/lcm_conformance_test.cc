@@ -135,10 +135,10 @@ TEST_F(Conformance, EachHearsWhatItSubscribesToAndNothingElseCounts) {
   ours_->publish(outbox);
   EXPECT_TRUE(eventually([&] {
     some->deliver_until(now(), -1);
-    return heard[Bus::kSwarm].size() >= 4 && heard[Bus::kCommand].size() >= 2;
+    return heard[Bus::kSwarm].size() >= 6 && heard[Bus::kCommand].size() >= 2;
   }));
-  EXPECT_EQ(heard[Bus::kSwarm],
-            (Heard{said(hello()), said(contribution()), said(averages()), said(hello())}));
+  EXPECT_EQ(heard[Bus::kSwarm], (Heard{said(hello()), said(contribution()), said(averages()),
+                                       said(low_sums()), said(low_averages()), said(hello())}));
   EXPECT_EQ(heard[Bus::kWorld], Heard{});
   EXPECT_EQ(heard[Bus::kCommand], (Heard{said(command()), said(command())}));
   EXPECT_EQ(some->refused(), RefusalCounts{});

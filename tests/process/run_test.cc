@@ -77,13 +77,14 @@ TEST_F(MissionRun, SeventeenAgentsFillTwoWorldStatesATick) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
-// With frequent or rare broadcasts, with or without dead reckoning, in doubles or in 16 bits:
-// eighteen agents, whose places come in two parts.
+// With frequent or rare broadcasts, rarer ones of high modes, with or without dead reckoning, in
+// doubles or in 16 bits: eighteen agents, whose places come in two parts.
 TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
   std::vector<std::string> trajectories;
   for (const std::string telling :
        {"agents { dead_reckoning: true", "agents { dead_reckoning: false"}) {
-    for (const std::string period : {"1", "7", "7 contribution_encoding: FIXED16"}) {
+    for (const std::string period :
+         {"1", "7", "7 contribution_encoding: FIXED16", "7 high_mode_period_factor: 3"}) {
       std::string text = text_of(scenario_file("quadrimodal_corners"));
       text.replace(text.find("time {"), 6, "time { broadcast_period_ticks: " + period);
       text.replace(text.find("agents {"), 8, telling);
@@ -101,8 +102,10 @@ TEST_F(MissionRun, IsItsSimulationHoweverItsAgentsKnowOfEachOther) {
     }
   }
   EXPECT_TRUE(trajectories[0] == trajectories[1]) << "what is reckoned needs no telling";
-  EXPECT_FALSE(trajectories[3] == trajectories[4]);
-  for (const std::size_t exact : {1, 4}) {
+  EXPECT_TRUE(trajectories[0] == trajectories[3]) << "nor do high modes";
+  EXPECT_FALSE(trajectories[4] == trajectories[5]);
+  EXPECT_FALSE(trajectories[5] == trajectories[7]) << "high modes are late";
+  for (const std::size_t exact : {1, 5}) {
     EXPECT_FALSE(trajectories[exact] == trajectories[exact + 1]) << "16 bits are rounded";
   }
 }

@@ -37,6 +37,9 @@ class PlanNames : public FieldVisitor {
   void number(int number, const char* name, auto&, const Limits&, bool = true) {
     expect(number, name);
   }
+  void number_unless(int number, const char* name, auto&, const Limits&, double) {
+    expect(number, name);
+  }
   void height(int number, const char* name, auto&, const Limits&, double) { expect(number, name); }
   void flag(int number, const char* name, auto&) { expect(number, name); }
   void choice(int number, const char* name, auto&, Words words, bool = true) {

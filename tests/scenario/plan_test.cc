@@ -81,6 +81,7 @@ class Names : public FieldVisitor {
   std::set<std::string> all;
 
   void number(int, const char* name, auto&, const Limits&, bool = true) { add(name); }
+  void number_unless(int, const char* name, auto&, const Limits&, double) { add(name); }
   void height(int, const char* name, auto&, const Limits&, double) { add(name); }
   void flag(int, const char* name, auto&) { add(name); }
   void choice(int, const char* name, auto&, Words, bool = true) { add(name); }

@@ -79,6 +79,24 @@ TEST(Warnings, OfCoarseStepsForAgentsThatLookAhead) {
       "covered worse than without looking ahead (write at most 0.5, or law.anticipation: 0)\n");
 }
 
+TEST(Warnings, OfRareHighModesWithoutModesOrTime) {
+  const auto rare = [](const std::string& modes, const std::string& time) {
+    std::string text = small_with("law {", "basis { modes_x: " + modes + " } law {");
+    return warnings_of(text.replace(text.find("duration_s"), 0, time + " "));
+  };
+  EXPECT_EQ(rare("16", "broadcast_period_ticks: 10 high_mode_period_factor: 4"), "");
+  EXPECT_EQ(rare("5 modes_y: 13", "high_mode_period_factor: 59"), "") << "65 modes, 590 ticks";
+  EXPECT_EQ(rare("8 modes_y: 8", "high_mode_period_factor: 1"), "");
+  EXPECT_TRUE(
+      has(rare("8 modes_y: 8", "high_mode_period_factor: 4"),
+          "time.high_mode_period_factor: 4 has no effect: the basis has 64 modes, and the 64 "
+          "lowest are sent every period (leave it out, or write more modes)"));
+  EXPECT_TRUE(has(rare("16", "high_mode_period_factor: 60"),
+                  "time.high_mode_period_factor: 60 makes 600 ticks between two broadcasts of a "
+                  "high mode, and the mission has 600: agents send those once or twice"));
+  EXPECT_EQ(rare("16", "broadcast_period_ticks: 600 high_mode_period_factor: 1"), "");
+}
+
 std::string with_footprint(const std::string& sigma_m, const std::string& target_m) {
   return "domain { size_x_m: 1000 size_y_m: 1000 } target { gaussians { mean_x_m: 450 mean_y_m: "
          "550 sigma_m: " +

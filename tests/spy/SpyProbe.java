@@ -36,6 +36,9 @@ public final class SpyProbe {
       case "plan":
         plan(rest[0]);
         return;
+      case "modes":
+        modes(rest[0], Integer.parseInt(rest[1]));
+        return;
       case "map":
         map(rest[0], rest[1]);
         return;
@@ -112,6 +115,16 @@ public final class SpyProbe {
     }
     System.out.println(plan.modes[0] + " " + plan.modes[1] + " " + plan.modes[2]);
     for (double value : plan.target) System.out.println(Double.toHexString(value));
+  }
+
+  /** The modes of each block with so much room. */
+  private static void modes(String file, int room) throws Exception {
+    Plan plan = new Plan(Files.readAllBytes(Paths.get(file)));
+    for (int block = 0; plan.modesOf(block, room).length > 0; ++block) {
+      StringBuilder line = new StringBuilder("block " + block);
+      for (int mode : plan.modesOf(block, room)) line.append(' ').append(mode);
+      System.out.println(line);
+    }
   }
 
   /**

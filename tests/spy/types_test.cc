@@ -3,7 +3,9 @@
 // what we send, and the reverse.
 #include <cmath>
 #include <map>
+#include <numeric>
 
+#include "core/block_layout.h"
 #include "lcm_types.h"
 #include "lcmtypes/channels.h"
 #include "runtime/clock.h"
@@ -122,6 +124,44 @@ TEST_F(SpyJar, APlanIsReadToTheLastBit) {
     EXPECT_EQ(next_number(said), mission.basis.modes_z);
     for (const double value : mission.target_coefficients.reshaped<Eigen::RowMajor>()) {
       ASSERT_EQ(next_number(said), value);
+    }
+  }
+}
+
+/// The modes of all blocks as they travel, each after its block's number.
+std::string modes_by_block(const Mission& mission) {
+  const BlockLayout layout(mission);
+  const auto count = static_cast<std::size_t>(mission.basis.mode_count());
+  std::vector<double> modes(count);
+  std::iota(modes.begin(), modes.end(), 0);
+  std::vector<double> slots = modes;
+  if (!layout.in_basis_order()) {
+    slots.resize(static_cast<std::size_t>(layout.slot_count()));
+    layout.to_slots(modes.data(), slots.data());
+  }
+  std::string text;
+  for (int b = 0; b < layout.block_count(); ++b) {
+    text += "block " + std::to_string(b);
+    const auto [first, slot_count] = layout.slots_of(b);
+    for (int slot = first; slot < first + slot_count; ++slot)
+      text += ' ' + std::to_string(std::lround(slots[static_cast<std::size_t>(slot)]));
+    text += '\n';
+  }
+  return text;
+}
+
+TEST_F(SpyJar, KnowsWhichModesABlockHas) {
+  for (const char* name : {"quadrimodal_corners", "cube_corners"}) {
+    for (const std::string time : {"", " high_mode_period_factor: 4",
+                                   " high_mode_period_factor: 4 contribution_encoding: FIXED16"}) {
+      std::string text = text_of(scenario_file(name));
+      text.replace(text.find("time {"), 6, "time {" + time);
+      std::ofstream(folder_ / "rare.textproto") << text;
+      const Mission mission = plan_of_file(folder_ / "rare.textproto").mission();
+      const int room = BlockLayout(mission).block_size();
+      EXPECT_NE(ask({"modes", plan_file(), std::to_string(room)}).find(modes_by_block(mission)),
+                std::string::npos)
+          << name << time << output();
     }
   }
 }

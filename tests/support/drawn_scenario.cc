@@ -198,6 +198,7 @@ const std::map<std::string, Rule>& rules() {
       {"Time.dt_s", may(spread(0.02, 1))},
       {"Time.duration_s", must(number(0.5, 60))},  // in ticks: see agree()
       {"Time.broadcast_period_ticks", may(either(1, number(1, 10)))},
+      {"Time.high_mode_period_factor", may(either(1, number(2, 10)))},
       {"Time.contribution_encoding", may(word(0.8))},
       {"Time.pace", may(word(0.8))},
       {"Time.realtime_factor", may(spread(0.1, 10))},

@@ -222,6 +222,8 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m.timing.tick_count = std::numeric_limits<Tick>::max(); },
       [](Mission& m) { m.timing.broadcast_period_ticks = 0; },
       [](Mission& m) { m.timing.broadcast_period_ticks = 1001; },
+      [](Mission& m) { m.timing.high_mode_period_factor = -3; },
+      [](Mission& m) { m.timing.high_mode_period_factor = 143; },  // of 7 ticks
       [](Mission& m) { m.timing.realtime_factor = 0.009; },
       [](Mission& m) { m.timing.dt_s = 1e-3, m.timing.realtime_factor = 11; },  // 0.09 ms a step
       [](Mission& m) { m.timing.lockstep_timeout_s = 0; },

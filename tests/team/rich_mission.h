@@ -17,6 +17,9 @@ class Enricher : public FieldVisitor {
     const double width = std::min(limits.high - limits.low, 10.0);
     value = static_cast<Number>(limits.low + width * count_ / (count_ + 1));
   }
+  void number_unless(int, const char*, auto& value, const Limits& limits, double) {
+    number(0, "", value, limits);
+  }
   void flag(int, const char*, bool& value) { value = !value; }
   template <class Enum>
   void choice(int, const char*, Enum& value, Words words, bool = true) {
@@ -59,6 +62,7 @@ inline Mission rich_mission() {
   timing.admission_timeout_s = 31;
   timing.catch_up_limit_ticks = 6;
   timing.contribution_encoding = ContributionEncoding::kFixed16;
+  timing.high_mode_period_factor = 13;
   mission.starts_m = {{17, 20, 0}, {18, 21, 0}};
   mission.kinds = {{"first", 1, 5.25, 0.5, 1.25, 2.5, 0.7, 1, 2.25},
                    {"second-kind", 1, 4.75, 0.625, 1.375, 0, 1.3, 0.5, 0}};
