@@ -171,7 +171,7 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       most_places_(static_cast<std::size_t>(look_ahead_.longest_period() + kPlacesBeyondPeriod)),
       nothing_(static_cast<std::size_t>(layout_.slot_count())),
       gains_(nothing_),
-      by_slot_(by_tables_ ? nothing_ : std::vector<double>()),
+      by_slot_(by_tables_ ? nothing_.size() : 0),
       earlier_(nothing_),
       later_(nothing_) {}
 
