@@ -54,19 +54,33 @@ SeparationFilter::SeparationFilter(const Mission& mission, Tick hold_ticks)
                   (greatest_coordinate_m(mission.domain) + mission.separation.distance_m)),
       constraints_(kMaxAgents) {
   ERGOCAST_REQUIRE(mission.separation.distance_m > 0 || any_but_points(mission));
+  for (const Motion& one : motions_) {
+    for (const Motion& other : motions_) pairs_.push_back(pair_between(one, other));
+  }
 }
 
 const Motion& SeparationFilter::motion_of(AgentId id) const {
   return motions_[static_cast<std::size_t>(planned_kind(mission_, id))];
 }
 
+const SeparationFilter::Pair& SeparationFilter::pair_of(AgentId one, AgentId other) const {
+  const auto row = static_cast<std::size_t>(planned_kind(mission_, one));
+  return pairs_[row * motions_.size() + static_cast<std::size_t>(planned_kind(mission_, other))];
+}
+
+SeparationFilter::Pair SeparationFilter::pair_between(const Motion& one,
+                                                      const Motion& other) const {
+  const double limit_mps = one.speed_limit_mps, its_mps = other.speed_limit_mps;
+  const double reach = reach_m(one, limit_mps), tolerance = StepConstraints::kTolerance;
+  const double circles_m = loiter_radius_m(one) + loiter_radius_m(other);
+  const double kept_m = mission_.separation.distance_m + margin_m(std::max(limit_mps, its_mps)) +
+                        circles_m + (bulge_m(one) + bulge_m(other)) + rounding_m_ +
+                        kContactTicks * (tolerance * (reach + reach_m(other, its_mps)));
+  return {kept_m, circles_m + longest_braking_path_m(one) + longest_braking_path_m(other), reach};
+}
+
 double SeparationFilter::contact_m(AgentId one, AgentId other) const {
-  const Motion &a = motion_of(one), &b = motion_of(other);
-  const double tolerance_m =
-      StepConstraints::kTolerance * (reach_m(a, a.speed_limit_mps) + reach_m(b, b.speed_limit_mps));
-  return mission_.separation.distance_m + margin_m(std::max(a.speed_limit_mps, b.speed_limit_mps)) +
-         (loiter_radius_m(a) + loiter_radius_m(b)) + (bulge_m(a) + bulge_m(b)) + rounding_m_ +
-         kContactTicks * tolerance_m;
+  return pair_of(one, other).kept_m;
 }
 
 /// What disturbance and response time add to D. A disturbance closes 2 w in a tick, and where one

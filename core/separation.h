@@ -91,7 +91,16 @@ class SeparationFilter {
     Eigen::Vector3d from_m, along_m;
   };
 
+  /// What one body needs to know of another one for their kinds alone.
+  struct Pair {
+    double kept_m;    ///< D'
+    double around_m;  ///< how far what stays of them may be from both their places, added up
+    double reach_m;   ///< of the one in a tick
+  };
+
   const Motion& motion_of(AgentId id) const;
+  const Pair& pair_of(AgentId one, AgentId other) const;
+  Pair pair_between(const Motion& one, const Motion& other) const;
   double margin_m(double fastest_mps) const;
   double uncertainty_m(const Mover& self, const Neighbour& other) const;
   void begin(const Mover& self, double reach_m);
@@ -111,7 +120,9 @@ class SeparationFilter {
   Eigen::Vector3d center_step_m(const Mover& self, const Eigen::Vector3d& v_mps) const;
   bool allows(const Mover& self, const Eigen::Vector3d& v_mps) const;
   const Neighbour* keep_from_all(const Mover& self, std::span<const Neighbour> others);
-  bool keep_from(const Mover& self, const Neighbour& other);
+  bool keep_from(const Mover& self, const Stay& own, const Neighbour& other);
+  static Stay stay_of(const Motion& motion, const Eigen::Vector3d& x_m,
+                      const Eigen::Vector3d& v_mps);
   bool keep_places_apart(const Mover& self, const Neighbour& other, const Eigen::Vector3d& y_m);
   bool keep_ways_apart(const Mover& self, const Neighbour& other, const Stay& own,
                        const Stay& theirs);
@@ -119,6 +130,7 @@ class SeparationFilter {
   Mission mission_;
   std::vector<Motion> motions_;  // of each kind of agents; at least one
   double hold_ticks_, gain_, rounding_m_;
+  std::vector<Pair> pairs_;  // of each kind with each
   StepConstraints constraints_;
   std::array<AgentId, kMaxAgents> taken_{};  // whose constraint has which number
   std::size_t taken_count_ = 0;

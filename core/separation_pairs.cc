@@ -44,65 +44,63 @@ Eigen::Vector3d shortest_between_m(const auto& a, const auto& b) {
 
 }  // namespace
 
+SeparationFilter::Stay SeparationFilter::stay_of(const Motion& motion, const Eigen::Vector3d& x_m,
+                                                 const Eigen::Vector3d& v_mps) {
+  return {anchor_m(motion, x_m, v_mps), braking_path_m(motion, v_mps)};
+}
+
 /// The first neighbour that may be anywhere around; null if there is none, and the constraints of
 /// all are set.
 const Neighbour* SeparationFilter::keep_from_all(const Mover& self,
                                                  std::span<const Neighbour> others) {
+  const Stay own = stay_of(motion_of(self.id), self.position_m, self.velocity_mps);
   for (const Neighbour& other : others) {
-    if (other.id != self.id && !keep_from(self, other)) return &other;
+    if (other.id != self.id && !keep_from(self, own, other)) return &other;
   }
   return nullptr;
 }
 
 /// False if the neighbour may be anywhere around.
-bool SeparationFilter::keep_from(const Mover& self, const Neighbour& other) {
+bool SeparationFilter::keep_from(const Mover& self, const Stay& own, const Neighbour& other) {
+  const Pair& pair = pair_of(self.id, other.id);
+  const double share = share_of(self, other);
+  const double far_m =
+      uncertainty_m(self, other) + pair.kept_m + pair.around_m + pair.reach_m / (gain_ * share);
+  Eigen::Vector3d y_m = other.position_m - self.position_m;
+  if (mission_.domain.planar()) y_m.z() = 0;
+  if (y_m.squaredNorm() >= far_m * far_m) return true;
   const Motion &mine = motion_of(self.id), &its = motion_of(other.id);
-  const Stay own = {anchor_m(mine, self.position_m, self.velocity_mps),
-                    braking_path_m(mine, self.velocity_mps)};
-  const Stay theirs = {anchor_m(its, other.position_m, other.velocity_mps),
-                       braking_path_m(its, other.velocity_mps)};
+  if (mine.is_point() && its.is_point()) return keep_places_apart(self, other, y_m);
+  const Stay theirs = stay_of(its, other.position_m, other.velocity_mps);
   if (mine.has_inertia() || its.has_inertia()) return keep_ways_apart(self, other, own, theirs);
   return keep_places_apart(self, other, theirs.from_m - own.from_m);
 }
 
 /// Of two bodies that can stay in one place, the other's at `y_m` but for what is not known.
 bool SeparationFilter::keep_places_apart(const Mover& self, const Neighbour& other,
-                                         const Eigen::Vector3d& relative_m) {
+                                         const Eigen::Vector3d& y_m) {
   const Separation& rule = mission_.separation;
-  Eigen::Vector3d y_m = relative_m;
-  if (mission_.domain.planar()) y_m.z() = 0;
-  const double share = share_of(self, other), near_m = uncertainty_m(self, other);
-  const double kept_m = contact_m(self.id, other.id);
-  const double own_reach_m = reach_m(motion_of(self.id), self.max_speed_mps);
-  const double far_m = near_m + kept_m + own_reach_m / (gain_ * share);
-  const double square_m2 = y_m.squaredNorm();
-  if (square_m2 >= far_m * far_m) return true;
-  const double rho_m = std::sqrt(square_m2);
+  const double near_m = uncertainty_m(self, other), rho_m = std::sqrt(y_m.squaredNorm());
   if (rho_m <= near_m) return false;
-  double gap_m = rho_m - near_m - kept_m;
+  double gap_m = rho_m - near_m - contact_m(self.id, other.id);
   if (rule.disturbance_m == 0 && rule.response_s == 0) gap_m = std::max(0.0, gap_m);
-  take(other, {y_m / rho_m, near_m / rho_m, gain_ * share * gap_m});
+  take(other, {y_m / rho_m, near_m / rho_m, gain_ * share_of(self, other) * gap_m});
   return true;
 }
 
 /// Of two bodies one of which has to brake. All is known of both: sure_of_bodies().
 bool SeparationFilter::keep_ways_apart(const Mover& self, const Neighbour& other, const Stay& own,
                                        const Stay& theirs) {
-  const Motion &mine = motion_of(self.id), &its = motion_of(other.id);
-  const double share = share_of(self, other), kept_m = contact_m(self.id, other.id);
-  const Eigen::Vector3d y_m = theirs.from_m - own.from_m;
-  const double far_m = kept_m + longest_braking_path_m(mine) + longest_braking_path_m(its) +
-                       reach_m(mine, self.max_speed_mps) / share;
-  if (y_m.squaredNorm() >= far_m * far_m) return true;
   const bool first = self.id < other.id;
   Eigen::Vector3d n = first ? shortest_between_m(own, theirs) : shortest_between_m(theirs, own);
   const double length_m = length_of(n);
   if (length_m == 0) return false;
   n /= first ? length_m : -length_m;
   const double own_end_m = std::max(0.0, n.dot(own.along_m));
-  const double their_end_m = n.dot(y_m) + std::min(0.0, n.dot(theirs.along_m));
-  const double gap_m = std::max(0.0, their_end_m - own_end_m - kept_m);
-  take(other, {n, 0, own_end_m + share * gap_m});
+  const double their_end_m =
+      n.dot(theirs.from_m - own.from_m) + std::min(0.0, n.dot(theirs.along_m));
+  const double gap_m = std::max(0.0, their_end_m - own_end_m - contact_m(self.id, other.id));
+  take(other, {n, 0, own_end_m + share_of(self, other) * gap_m});
   return true;
 }
 
