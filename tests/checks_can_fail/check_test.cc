@@ -288,11 +288,11 @@ Mistake of_grid(const std::string& file, const std::string& said,
 std::vector<Mistake> mistakes_of_kinds() {
   const std::string from = "starts { x_m: 10 y_m: 20 }";
   const auto kinds = [&](const std::string& first, const std::string& second,
-                         const std::string& said) {
+                         const std::string& said, bool has_line = true) {
     return Mistake{from,
                    from + " random_count: 1 kind { name: \"a\" count: 1 " + first + " } kind { " +
                        second + " }",
-                   said};
+                   said, has_line};
   };
   const std::string good = "name: \"b\" count: 1";
   return {
@@ -322,7 +322,7 @@ std::vector<Mistake> mistakes_of_kinds() {
       kinds("vehicle { min_speed_mps: 1 }", good,
             "agents.kind[0].vehicle.min_speed_mps: has no effect with kind: POINT"),
       kinds("vehicle { kind: UNICYCLE max_turn_radps: 1 }", good,
-            "world.speed_limit_mps: is missing, and all kinds but POINT rely on it"),
+            "world.speed_limit_mps: is missing, and all kinds but POINT rely on it", false),
       kinds("speed_limit_mps: 20 vehicle { kind: ACCELERATION max_acceleration_mps2: 5 }", good,
             "agents.kind[0].vehicle.max_acceleration_mps2: 5 stops a vehicle after"),
       kinds("speed_limit_mps: 3 vehicle { kind: FIXED_WING max_turn_radps: 1 min_speed_mps: 4 }",

@@ -29,7 +29,7 @@ TEST_F(MixedRun, OfUnlikeVehiclesThatKeepADistanceIsItsSimulation) {
   const std::string team = "agents {";
   text.replace(text.find(team), team.size(), team + R"(
   kind { name: "wing" count: 2 vehicle { kind: FIXED_WING max_turn_radps: 3 min_speed_mps: 5 } }
-  kind { name: "copter" count: 2 vehicle { kind: ACCELERATION max_acceleration_mps2: 12 } }
+  kind { name: "copter" count: 2 vehicle { kind: ACCELERATION max_acceleration_mps2: 20 } }
   kind { name: "rover" count: 1 speed_limit_mps: 9 vehicle { kind: UNICYCLE max_turn_radps: 2 } }
   kind { name: "float" count: 1 })");
   const auto scenario = folder_ / "unlike.textproto";
