@@ -2,7 +2,7 @@
 // The simulated world: integrates commands, reflects at the edge, publishes states, keeps the tick.
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
-//   v_n is the command, cut to the scenario's speed limit. Where bodies keep a distance, a world in
+//   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
 //   real time then filters all commands together, core/separation.h: held and late ones do not know
 //   where the others have gone.
 //
