@@ -46,7 +46,8 @@ Agent::InMission::InMission(const Mission& mission, const RosterEntry& self)
   } else {
     table.forgo_gains();
   }
-  if (filters_commands(mission)) separation.emplace(mission, unguarded_hold_ticks(mission));
+  if (filters_commands(mission, self.author.agent))
+    separation.emplace(mission, unguarded_hold_ticks(mission));
   table.add_row(self.author);  // before any other incarnation could take its place
   table.set_quality(self.author, sensors.of(self.kind).quality);
   published.resize(static_cast<std::size_t>(table.block_count()));
@@ -90,7 +91,8 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
   if (follower().over()) {
     return finish(follower().state() == MissionState::kFailed, follower().reason());
   }
-  if (auto why = why_not_of_kind(mission(), kind_)) return finish(true, *std::move(why));
+  if (auto why = why_not_of_kind(mission(), kind_, requested_id_))
+    return finish(true, *std::move(why));
   const RosterEntry* own = own_entry();
   if (own == nullptr) return;
   if (const auto why = evicted(std::max<Tick>(tick(), 0))) return finish(true, *why);

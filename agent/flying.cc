@@ -186,10 +186,10 @@ void Agent::answer(InMission& flight, Outbox& out) {
 /// The last step of a command.
 Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps) {
   if (!flight.separation) return wanted_mps;
-  const double limit_mps = mission().speed_limit_mps;
+  const double limit_mps = motion_of(mission(), me_.id()).speed_limit_mps;
   const SafeVelocity safe = flight.separation->safe(
       {me_.id(), flight.step.tick, flight.step.body_m, limit_mps, flight.step.body_mps}, wanted_mps,
-      flight.bodies.neighbours(limit_mps));
+      flight.bodies.neighbours(mission()));
   status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
   status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
   status_.blocked_ticks += safe.blocked ? 1 : 0;

@@ -5,6 +5,7 @@
 
 #include "coordinator/coordinator.h"
 #include "core/kinds.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -39,11 +40,14 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, const std::str
   }
   const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
   if (may_have_stopped(since, now)) return std::nullopt;
-  const auto planned = static_cast<AgentId>(flown_.mission->starts_m.size());
-  // A place that is planned for another kind stays free for that.
+  const Mission& mission = *flown_.mission;
+  const auto planned = static_cast<AgentId>(mission.starts_m.size());
+  const std::optional<int> brought = kind_named(mission, kind);
+  // A place that is planned for another kind stays free for that. Beyond the plan all bodies are
+  // vehicles of the first kind.
   const auto suits = [&](AgentId id) {
-    return kind.empty() || id >= planned ||
-           name_of_kind(*flown_.mission, planned_kind(*flown_.mission, id)) == kind;
+    if (!brought) return true;
+    return id < planned ? planned_kind(mission, id) == *brought : can_drive(mission, *brought, id);
   };
   for (AgentId id = 0; id < kMaxAgents; ++id) {
     const RosterEntry* holder = active_entry(id);
@@ -80,7 +84,7 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
       version_mismatches.emplace(hello.host, hello.version);
     return;
   }
-  if (const auto why = why_not_of_kind(*flown_.mission, hello.kind)) {
+  if (const auto why = why_not_of_kind(*flown_.mission, hello.kind, hello.requested_id)) {
     auto& unknown_kinds = newcomers_.unknown_kinds;
     if (unknown_kinds.size() < kMaxUnknownKinds) unknown_kinds.emplace(hello.host, *why);
     return;

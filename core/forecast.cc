@@ -1,140 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Extrapolates each teammate's row by its last rate or by its reported places, and adds the rows
-// from both ends of the team.
+// Says what each teammate's row will have covered, by its last rate or by its reported places, and
+// adds the rows from both ends of the team.
 #include "core/forecast.h"
 
 #include <algorithm>
 #include <tuple>
 
-#include "core/vectorized.h"
+#include "core/forecast_sums.h"
 
 namespace ergocast {
 namespace {
-
-using Modes = Forecast::Modes;
-
-// What these functions call sum is a running sum over rows, `before` what it was before this row:
-// it may be the same table. All tables begin with the first mode.
-
-/// Calls each(k, f dt) for every k of the modes, at the place of these cosines.
-template <class Each>
-ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, const Basis& basis, double dt_s,
-                                        Modes modes, const Each& each) {
-  const int modes_y = basis.modes_y, end = modes.first + modes.count;
-  int l = 0, m = modes.first / modes_y;
-  int row = m * modes_y;
-  for (; m >= basis.modes_x; m -= basis.modes_x) ++l;
-  double along_z = at.cos_z[l] * dt_s;
-  for (int k = modes.first; k < end; ++m, row += modes_y) {
-    if (m == basis.modes_x) {  // the next slab
-      m = 0;
-      along_z = at.cos_z[++l] * dt_s;
-    }
-    const int row_end = std::min(row + modes_y, end);
-    const double along_x = at.cos_x[m] * along_z;
-    ERGOCAST_INDEPENDENT
-    for (int n = k - row; n < row_end - row; ++n) each(row + n, along_x * at.cos_y[n]);
-    k = row_end;
-  }
-}
-
-/// S += f dt.
-ERGOCAST_VECTORIZED
-void add_gain(const CosinesAt& at, const Basis& basis, double dt_s, Modes modes, double* sums) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { sums[k] += gain; });
-}
-
-/// gains = g f dt; g may be null, for 1.
-ERGOCAST_VECTORIZED
-void set_gains(const CosinesAt& at, const Basis& basis, double dt_s, const double* g, Modes modes,
-               double* gains) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { gains[k] = gain; });
-  if (g == nullptr) return;
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) gains[k] *= g[k];
-}
-
-/// S += g f dt.
-ERGOCAST_VECTORIZED
-void add_seen_gain(const CosinesAt& at, const Basis& basis, double dt_s, const double* g,
-                   Modes modes, double* sums) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) { sums[k] += gain * g[k]; });
-}
-
-/// sum = before + q (S + share · gains).
-ERGOCAST_VECTORIZED
-void add_weighted(const double* sums, const double* gains, double share, double quality,
-                  Modes modes, const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    sum[k] = before[k] + quality * (sums[k] + share * gains[k]);
-  }
-}
-
-/// sum = before + S.
-ERGOCAST_VECTORIZED
-void add_sums(const double* sums, Modes modes, const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) sum[k] = before[k] + sums[k];
-}
-
-/// sum = before + S + share · (S − S').
-ERGOCAST_VECTORIZED
-void add_gaining(const double* sums, const double* sums_before, double share, Modes modes,
-                 const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    sum[k] = before[k] + (sums[k] + share * (sums[k] - sums_before[k]));
-  }
-}
-
-/// sum = before + S + share · gains.
-ERGOCAST_VECTORIZED
-void add_told(const double* sums, const double* gains, double share, Modes modes,
-              const double* before, double* sum) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    sum[k] = before[k] + (sums[k] + share * gains[k]);
-  }
-}
-
-/// sum = before + S + share · f dt.
-ERGOCAST_VECTORIZED
-void add_staying(const CosinesAt& at, const Basis& basis, double dt_s, const double* sums,
-                 double share, Modes modes, const double* before, double* sum) {
-  for_gains(at, basis, dt_s, modes,
-            [=](int k, double gain) { sum[k] = before[k] + (sums[k] + share * gain); });
-}
-
-/// S += f dt, and then sum = before + S + share · f dt.
-ERGOCAST_VECTORIZED
-void add_arriving(const CosinesAt& at, const Basis& basis, double dt_s, double* sums, double share,
-                  Modes modes, const double* before, double* sum) {
-  for_gains(at, basis, dt_s, modes, [=](int k, double gain) {
-    sums[k] += gain;
-    sum[k] = before[k] + (sums[k] + share * gain);
-  });
-}
-
-/// coverage = (earlier + (later + own)) · per_second.
-ERGOCAST_VECTORIZED
-void average(const double* earlier, const double* later, const double* own, double per_second,
-             Modes modes, double* coverage) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    coverage[k] = (earlier[k] + (later[k] + own[k])) * per_second;
-  }
-}
-
-/// coverage = (earlier + (later + q own)) · per_second.
-ERGOCAST_VECTORIZED
-void average_weighted(const double* earlier, const double* later, const double* own, double quality,
-                      double per_second, Modes modes, double* coverage) {
-  ERGOCAST_INDEPENDENT
-  for (int k = modes.first; k < modes.first + modes.count; ++k) {
-    coverage[k] = (earlier[k] + (later[k] + quality * own[k])) * per_second;
-  }
-}
 
 /// Whether `entry` is active at `tick` and no newer entry has its number; the roster ascends by
 /// number.
@@ -262,18 +137,18 @@ void Forecast::add_what_is_due(Track& track) const {
     track.due[b] = 0;
     const Modes modes = layout_.slots_of(static_cast<int>(b));
     if (by_tables_) {
-      add_sums(track.gains.data(), modes, track.sums.data(), track.sums.data());
+      sums::add_sums(track.gains.data(), modes, track.sums.data(), track.sums.data());
     } else if (const double* const g = footprint(track)) {
-      add_seen_gain(*track.newest, basis_, dt_s_, g, modes, track.sums.data());
+      sums::add_seen_gain(*track.newest, basis_, dt_s_, g, modes, track.sums.data());
     } else {
-      add_gain(*track.newest, basis_, dt_s_, modes, track.sums.data());
+      sums::add_gain(*track.newest, basis_, dt_s_, modes, track.sums.data());
     }
   }
 }
 
 void Forecast::set_gains_in_slots(Track& track) {
   const Modes all{0, basis_.mode_count()};
-  set_gains(*track.newest, basis_, dt_s_, footprint(track), all, gains_.data());
+  sums::set_gains(*track.newest, basis_, dt_s_, footprint(track), all, gains_.data());
   track.gains.resize(static_cast<std::size_t>(layout_.slot_count()));
   layout_.to_slots(gains_.data(), track.gains.data());
 }
@@ -386,7 +261,7 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
 /// g f dt at the newest place.
 const double* Forecast::gains_of(const Track& track, Modes modes) {
   if (by_tables_) return track.gains.data();
-  set_gains(*track.newest, basis_, dt_s_, footprint(track), modes, gains_.data());
+  sums::set_gains(*track.newest, basis_, dt_s_, footprint(track), modes, gains_.data());
   return gains_.data();
 }
 
@@ -398,7 +273,7 @@ void Forecast::add_unlike(const Term& term, Modes modes, const double* before, d
   const double* gains = gains_.data();
   if (track != nullptr) {
     gains = gains_of(*track, modes);
-    if (track->due[block]) add_sums(gains, modes, track->sums.data(), track->sums.data());
+    if (track->due[block]) sums::add_sums(gains, modes, track->sums.data(), track->sums.data());
     track->due[block] = 0;
   } else if (term.told_gains != nullptr) {
     gains = term.told_gains;
@@ -408,7 +283,7 @@ void Forecast::add_unlike(const Term& term, Modes modes, const double* before, d
   } else {
     gains = nothing_.data();
   }
-  add_weighted(term.sums, gains, term.share, term.quality, modes, before, sum);
+  sums::add_weighted(term.sums, gains, term.share, term.quality, modes, before, sum);
 }
 
 /// Adds what a row will have covered to `before`.
@@ -419,16 +294,17 @@ void Forecast::add(const Term& term, Modes modes, const double* before, double* 
   if (unlike || by_tables_) return add_unlike(term, modes, before, sum);
   const auto block = modes.first / block_size_;
   if (track != nullptr && track->due[static_cast<std::size_t>(block)]) {
-    add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before, sum);
+    sums::add_arriving(*track->newest, basis_, dt_s_, track->sums.data(), term.share, modes, before,
+                       sum);
     track->due[static_cast<std::size_t>(block)] = 0;
   } else if (term.share == 0) {
-    add_sums(term.sums, modes, before, sum);
+    sums::add_sums(term.sums, modes, before, sum);
   } else if (track != nullptr) {
-    add_staying(*track->newest, basis_, dt_s_, term.sums, term.share, modes, before, sum);
+    sums::add_staying(*track->newest, basis_, dt_s_, term.sums, term.share, modes, before, sum);
   } else if (term.told_gains != nullptr) {
-    add_told(term.sums, term.told_gains, term.share, modes, before, sum);
+    sums::add_told(term.sums, term.told_gains, term.share, modes, before, sum);
   } else {
-    add_gaining(term.sums, term.sums_before, term.share, modes, before, sum);
+    sums::add_gaining(term.sums, term.sums_before, term.share, modes, before, sum);
   }
 }
 
@@ -445,8 +321,9 @@ void Forecast::add_up(Modes modes, double per_second, double* coverage) {
     add(*term, modes, later, later_.data());
     later = later_.data();
   }
-  if (own_quality_ == 1) return average(earlier, later, own_sums_, per_second, modes, coverage);
-  average_weighted(earlier, later, own_sums_, own_quality_, per_second, modes, coverage);
+  if (own_quality_ == 1)
+    return sums::average(earlier, later, own_sums_, per_second, modes, coverage);
+  sums::average_weighted(earlier, later, own_sums_, own_quality_, per_second, modes, coverage);
 }
 
 void Forecast::look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster,

@@ -28,10 +28,13 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
     const int kind = planned_kind(mission_, author.agent);
     table_.add_row(author);
     table_.set_quality(author, sensors_.of(kind).quality);
+    const Motion motion = motion_of(mission_, author.agent);
     agents_.push_back({author,
                        kind,
+                       motion,
+                       filters_commands(mission_, author.agent),
                        start_m,
-                       first_velocity(mission_, start_m),
+                       first_velocity(motion, start_m),
                        {0, 0, 0},
                        {0, 0, 0},
                        std::nullopt,
@@ -39,7 +42,8 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
                        earlier_,
                        earlier_});
   }
-  if (filters_commands(mission_)) separation_.emplace(mission_, 0);
+  if (mission_.separation.distance_m > 0 || any_but_points(mission_))
+    separation_.emplace(mission_, 0);
   bodies_.resize(separation_ ? agents_.size() : 0);
 }
 
@@ -69,11 +73,11 @@ void IdealTeam::step() {
     }
     const Eigen::Vector3d wanted_mps =
         controller.command(agent.author.agent, tick_, agent.x_m, *agent.at);
-    agent.next_mps = executed(mission_, agent.v_mps, kept_apart(agent, wanted_mps));
+    agent.next_mps = executed(agent.motion, agent.v_mps, kept_apart(agent, wanted_mps));
     agent.b = controller.spectral_gradient();
   }
   for (Agent& agent : agents_) {
-    const Eigen::Vector3d mean_mps = mean_velocity(mission_, agent.v_mps, agent.next_mps);
+    const Eigen::Vector3d mean_mps = mean_velocity(agent.motion, agent.v_mps, agent.next_mps);
     agent.x_m = moved(mission_, agent.author.agent, tick_, agent.x_m, mean_mps);
     agent.v_mps = agent.next_mps;
     if (edges_ == Edges::kReflect) agent.x_m = reflect(agent.x_m, mission_.domain);
@@ -83,15 +87,16 @@ void IdealTeam::step() {
 
 void IdealTeam::see_bodies() {
   for (std::size_t i = 0; i < bodies_.size(); ++i)
-    bodies_[i] = {agents_[i].author.agent, agents_[i].x_m, mission_.speed_limit_mps, 0, true,
-                  agents_[i].v_mps};
+    bodies_[i] = {
+        agents_[i].author.agent, agents_[i].x_m, agents_[i].motion.speed_limit_mps, 0, true,
+        agents_[i].v_mps};
 }
 
 /// What the team's distance leaves of a command, as an agent's last step of it.
 Eigen::Vector3d IdealTeam::kept_apart(Agent& agent, const Eigen::Vector3d& v_mps) {
-  if (!separation_) return v_mps;
+  if (!agent.filtered) return v_mps;
   const SafeVelocity safe = separation_->safe(
-      {agent.author.agent, tick_, agent.x_m, mission_.speed_limit_mps, agent.v_mps}, v_mps,
+      {agent.author.agent, tick_, agent.x_m, agent.motion.speed_limit_mps, agent.v_mps}, v_mps,
       bodies_);
   agent.blocked_ticks = safe.blocked ? agent.blocked_ticks + 1 : 0;
   blocked_steps_ += safe.blocked ? 1 : 0;

@@ -16,6 +16,7 @@
 #include "core/look_ahead.h"
 #include "core/mission.h"
 #include "core/separation.h"
+#include "core/vehicle.h"
 
 namespace ergocast::lab {
 
@@ -63,6 +64,8 @@ class IdealTeam {
   struct Agent {
     Author author;
     int kind = 0;
+    Motion motion;
+    bool filtered = false;  // its commands
     Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
     std::optional<BasisAt> at;       // x_m
     std::vector<double> said;        // its sums a tick ago

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/vehicle.h"
+
 namespace ergocast {
 namespace {
 
@@ -91,8 +93,15 @@ std::optional<int> kind_named(const Mission& mission, const std::string& name) {
   return static_cast<int>(at - mission.kinds.begin());
 }
 
-std::optional<std::string> why_not_of_kind(const Mission& mission, const std::string& name) {
-  if (name.empty() || kind_named(mission, name)) return std::nullopt;
+std::optional<std::string> why_not_of_kind(const Mission& mission, const std::string& name,
+                                           AgentId id) {
+  const std::optional<int> known = kind_named(mission, name);
+  if (name.empty() || (known && (id == kUnassigned || can_drive(mission, *known, id))))
+    return std::nullopt;
+  if (known) {
+    return "an agent of the kind \"" + name + "\" cannot drive number " + std::to_string(id) +
+           ": that is a vehicle of the kind " + name_of_kind(mission, planned_kind(mission, id));
+  }
   const std::string unknown = "the mission has no kind \"" + name + "\"";
   if (mission.kinds.empty()) return unknown + ": all its agents are alike, so name none";
   std::string names;

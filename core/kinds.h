@@ -59,9 +59,11 @@ int planned_kind(const Mission& mission, AgentId id);
 /// The number of the kind `name`; nothing if the mission has none of this name.
 std::optional<int> kind_named(const Mission& mission, const std::string& name);
 
-/// Why no agent of the kind `name` can take part, as a sentence that says which kinds there are;
-/// nothing if it can, or if `name` is empty.
-std::optional<std::string> why_not_of_kind(const Mission& mission, const std::string& name);
+/// Why no agent of the kind `name` can take part, or not under the number `id`, whose body may be
+/// another vehicle, as a sentence; nothing if it can, or if `name` is empty.
+/// @param id  kUnassigned: any number
+std::optional<std::string> why_not_of_kind(const Mission& mission, const std::string& name,
+                                           AgentId id);
 
 /// Its name; empty if the mission has no kind `kind`.
 const std::string& name_of_kind(const Mission& mission, int kind);

@@ -20,13 +20,6 @@ Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps) {
   return share / length * limit_mps;
 }
 
-Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d& v_mps) {
-  Eigen::Vector3d possible_mps = v_mps;
-  if (mission.domain.planar()) possible_mps.z() = 0;
-  if (mission.speed_limit_mps <= 0) return possible_mps;
-  return within_speed(possible_mps, mission.speed_limit_mps);
-}
-
 Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
                       const Eigen::Vector3d& v_mps) {
   const double dt_s = mission.timing.dt_s;
@@ -55,8 +48,9 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block) {
 
 Eigen::Vector3d start_of(const Mission& mission, AgentId id) {
   const auto at = static_cast<std::size_t>(id);
-  return at < mission.starts_m.size() ? mission.starts_m[at]
-                                      : random_start(room_to_begin(mission), mission.seed, id);
+  return at < mission.starts_m.size()
+             ? mission.starts_m[at]
+             : random_start(room_to_begin(motion_of(mission, id)), mission.seed, id);
 }
 
 Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id, int attempt) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,12 +78,14 @@ enum class VehicleKind {
   kFixedWing,     ///< never slower than min_speed_mps, and turns by at most ω dt in a tick
 };
 
-/// What the vehicles can do within the speed limit; core/vehicle.h. One kind for the whole team.
+/// What a vehicle can do within its speed limit; core/vehicle.h.
 struct VehicleLimits {
   VehicleKind kind = VehicleKind::kPoint;
   double max_acceleration_mps2 = 0;  ///< A of kAcceleration, else 0
   double max_turn_radps = 0;         ///< ω of kUnicycle and kFixedWing, else 0
   double min_speed_mps = 0;          ///< of kFixedWing, else 0
+
+  bool operator==(const VehicleLimits&) const = default;
 };
 
 /// Agents that move and see alike; core/kinds.h.
@@ -94,6 +97,8 @@ struct AgentKind {
   double footprint_sigma_m = 0;                   ///< w; 0: its sensor sees a point
   double quality = 1;                             ///< q
   double band_from = 0, band_to = 0;  ///< of |k|, by which it steers; to 0: without an end
+  std::optional<VehicleLimits> vehicle = std::nullopt;  ///< nothing: the mission's
+  double speed_limit_mps = 0;                           ///< 0: the mission's
 };
 
 struct Mission {
@@ -111,8 +116,8 @@ struct Mission {
   double goal_ergodic_metric = 0;    ///< the goal for φ²; 0: none
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;          ///< how far agents hear each other; 0: everywhere
-  double speed_limit_mps = 0;        ///< the limit of every vehicle; 0: none
-  VehicleLimits vehicle;
+  double speed_limit_mps = 0;        ///< of vehicles whose kind has none of its own; 0: none
+  VehicleLimits vehicle;             ///< of those whose kind has none of its own
   Separation separation;
   bool dead_reckoning = false;  ///< whether forecasts use teammates' places, core/forecast.h
   bool wait_for_logger =
@@ -121,11 +126,6 @@ struct Mission {
 
 /// `v_mps` bit for bit, or a vector of length `limit_mps` in its direction. @pre limit_mps > 0
 Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps);
-
-/// The velocity that a vehicle executes for the command `v_mps`: the command, bit for bit, or the
-/// speed limit in its direction. In a plane nothing is executed of v_z.
-/// @pre v_mps is finite.
-Eigen::Vector3d within_speed_limit(const Mission& mission, const Eigen::Vector3d& v_mps);
 
 /// Where a vehicle at `x_m` with mean velocity `v_mps` is one step of `tick` later, edges not yet
 /// considered: x + v dt + disturbance_intensity √dt ξ. Where a distance is kept, the last term is

@@ -43,7 +43,8 @@ struct FieldVisitor {
   void starts(int, int, auto&) {}  ///< x and y of each; z
   void kinds(int, const char*, auto&) {}  ///< each as a part of its own
   void kind_name(int, const char*, auto&) {}
-  void hidden_flag(int, auto&) {}  ///< in no scenario
+  void own_vehicle(int, const char*, auto&) {}  ///< a part that may be absent
+  void hidden_flag(int, auto&) {}               ///< in no scenario
 };
 
 template <class T, class Part>
@@ -131,6 +132,9 @@ void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
   const bool banded = kind.band_from != 0 || kind.band_to != 0;
   io.number(8, "band.from", kind.band_from, limits::kWaveNumber, banded);
   io.number(9, "band.to", kind.band_to, limits::kWaveNumber, kind.band_to != 0);
+  io.own_vehicle(10, "vehicle", kind.vehicle);
+  io.number(11, "speed_limit_mps", kind.speed_limit_mps, limits::above(0, 1e9),
+            kind.speed_limit_mps != 0);
 }
 
 /// Number 1 of the plan is the version of the program that wrote it.

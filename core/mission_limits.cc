@@ -47,6 +47,9 @@ class EachWithinLimits : public FieldVisitor {
     for (const AgentKind& kind : kinds) list_fields(*this, kind);
   }
   void kind_name(int, const char*, const std::string& name) { ok = ok && is_kind_name(name); }
+  void own_vehicle(int, const char*, const std::optional<VehicleLimits>& vehicle) {
+    if (vehicle) list_fields(*this, *vehicle);
+  }
   void contraction_center(int, int, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
 };
 
@@ -106,36 +109,53 @@ bool fit_together(const ControlLaw& law, double disturbance_intensity, const Box
          law.u_max_mps >= law.contraction_gain_per_s * reach_m;
 }
 
-/// A kind has its own limits and no others, and room: to brake, or to loiter.
-bool fits(const VehicleLimits& vehicle, const Mission& mission) {
+/// A kind has its own limits and no others.
+bool fits(const VehicleLimits& vehicle) {
   const bool has_inertia = vehicle.kind == VehicleKind::kAcceleration;
   const bool has_wings = vehicle.kind == VehicleKind::kFixedWing;
   const bool turns = has_wings || vehicle.kind == VehicleKind::kUnicycle;
-  if ((vehicle.max_acceleration_mps2 > 0) != has_inertia || (vehicle.max_turn_radps > 0) != turns ||
-      (vehicle.min_speed_mps > 0) != has_wings)
-    return false;
-  if (vehicle.kind == VehicleKind::kPoint) return true;
-  const double room_m = mission.domain.shortest_side_m() / 4;
-  const Box begin = room_to_begin(mission);
-  return mission.speed_limit_mps > 0 && (mission.domain.planar() || !turns) &&
-         vehicle.min_speed_mps < std::min(mission.speed_limit_mps, mission.law.u_max_mps) &&
-         longest_braking_path_m(mission) <= room_m && loiter_radius_m(mission) <= room_m &&
-         std::ranges::all_of(mission.starts_m,
-                             [&](const Eigen::Vector3d& x_m) { return begin.contains(x_m); });
+  return (vehicle.max_acceleration_mps2 > 0) == has_inertia &&
+         (vehicle.max_turn_radps > 0) == turns && (vehicle.min_speed_mps > 0) == has_wings;
 }
 
-/// Everything that keeps bodies apart relies on their speed limit, and on room.
+/// A speed limit if it or the mission relies on one, and room: to brake, or to loiter.
+bool fits(const Motion& motion, double u_max_mps, const Separation& separation) {
+  const VehicleLimits& vehicle = motion.vehicle;
+  const double step_m = motion.speed_limit_mps * motion.dt_s;
+  const bool limited = motion.speed_limit_mps > 0 && separation.disturbance_m < step_m / 4;
+  if (separation.distance_m > 0 && !limited) return false;
+  if (motion.is_point()) return true;
+  const bool turns = !motion.has_inertia();
+  const double room_m = motion.domain.shortest_side_m() / 4;
+  return motion.speed_limit_mps > 0 && (motion.domain.planar() || !turns) &&
+         vehicle.min_speed_mps < std::min(motion.speed_limit_mps, u_max_mps) &&
+         longest_braking_path_m(motion) <= room_m && loiter_radius_m(motion) <= room_m;
+}
+
+/// Each body can move in the domain as the mission says.
+bool bodies_fit(const Mission& mission) {
+  if (!fits(mission.vehicle)) return false;
+  for (int kind = 0; kind < std::max<int>(1, static_cast<int>(mission.kinds.size())); ++kind) {
+    const Motion motion = motion_of_kind(mission, kind);
+    if (!fits(motion.vehicle) || !fits(motion, law_of(mission, kind).u_max_mps, mission.separation))
+      return false;
+  }
+  for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id) {
+    const Eigen::Vector3d& start_m = mission.starts_m[static_cast<std::size_t>(id)];
+    if (!room_to_begin(motion_of(mission, id)).contains(start_m)) return false;
+  }
+  return true;
+}
+
+/// Everything that keeps bodies apart relies on room.
 bool fits(const Separation& separation, const Mission& mission) {
   if (separation.distance_m == 0) return !separation.guard;
-  if (mission.vehicle.kind != VehicleKind::kPoint && !sure_of_bodies(mission)) return false;
-  const double step_m = mission.speed_limit_mps * mission.timing.dt_s;
-  const auto held = static_cast<double>(unguarded_hold_ticks(mission));
-  return mission.speed_limit_mps > 0 &&
-         separation.distance_m <= mission.domain.shortest_side_m() / 4 &&
-         separation.disturbance_m < step_m / 4 &&
-         2 * held * step_m <= separation.distance_m / 2 * (1 + 1e-9) &&
+  if (any_but_points(mission) && !sure_of_bodies(mission)) return false;
+  const double held_s = static_cast<double>(unguarded_hold_ticks(mission)) * mission.timing.dt_s;
+  return separation.distance_m <= mission.domain.shortest_side_m() / 4 &&
+         2 * held_s * fastest_mps(mission) <= separation.distance_m / 2 * (1 + 1e-9) &&
          packing(mission, mission.starts_m.size()) <= kHopelessPacking &&
-         least_distance_m(mission.starts_m) >= start_distance_m(mission);
+         !too_near_at_start(mission);
 }
 
 bool fits(const AgentKind& kind, const Mission& mission) {
@@ -191,7 +211,7 @@ bool within_limits(const Mission& mission) {
          fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
-         is_team(mission) && are_kinds(mission) && fits(mission.vehicle, mission) &&
+         is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&
          fits(mission.separation, mission);
 }
 

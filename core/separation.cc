@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Turns what is known of other bodies into constraints, and takes the nearest step; or one
-// sideways, where that is next to none.
+// Takes the step of a point that is nearest to the wanted one; or one sideways, where that is next
+// to none. Says how far apart bodies begin.
 #include "core/separation.h"
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <numbers>
 
+#include "core/kinds.h"
 #include "core/noise.h"
 #include "core/require.h"
-#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -31,6 +31,13 @@ double greatest_coordinate_m(const Box& domain) {
   return domain.origin_m.cwiseAbs().maxCoeff() + domain.size_m.maxCoeff();
 }
 
+std::vector<Motion> motions_in(const Mission& mission) {
+  std::vector<Motion> motions = {motion_of_kind(mission, 0)};
+  for (int kind = 1; kind < std::ssize(mission.kinds); ++kind)
+    motions.push_back(motion_of_kind(mission, kind));
+  return motions;
+}
+
 /// κ: a body that follows late closes less than the whole gap in a tick.
 double gain_of(double response_s, double dt_s) {
   return response_s > 0 ? std::min(1.0, dt_s / (4 * response_s)) : 1;
@@ -40,18 +47,40 @@ double gain_of(double response_s, double dt_s) {
 
 SeparationFilter::SeparationFilter(const Mission& mission, Tick hold_ticks)
     : mission_(mission),
+      motions_(motions_in(mission)),
       hold_ticks_(static_cast<double>(hold_ticks)),
       gain_(gain_of(mission.separation.response_s, mission.timing.dt_s)),
       rounding_m_(kContactTicks * 4 * std::numeric_limits<double>::epsilon() *
                   (greatest_coordinate_m(mission.domain) + mission.separation.distance_m)),
       constraints_(kMaxAgents) {
-  ERGOCAST_REQUIRE(filters_commands(mission));
+  ERGOCAST_REQUIRE(mission.separation.distance_m > 0 || any_but_points(mission));
+  for (const Motion& one : motions_) {
+    for (const Motion& other : motions_) pairs_.push_back(pair_between(one, other));
+  }
 }
 
-double SeparationFilter::contact_m(double max_speed_mps) const {
-  const double tolerance_m = 2 * StepConstraints::kTolerance * reach_m(mission_, max_speed_mps);
-  return mission_.separation.distance_m + margin_m(max_speed_mps) + 2 * loiter_radius_m(mission_) +
-         2 * bulge_m(mission_) + rounding_m_ + kContactTicks * tolerance_m;
+const Motion& SeparationFilter::motion_of(AgentId id) const {
+  return motions_[static_cast<std::size_t>(planned_kind(mission_, id))];
+}
+
+const SeparationFilter::Pair& SeparationFilter::pair_of(AgentId one, AgentId other) const {
+  const auto row = static_cast<std::size_t>(planned_kind(mission_, one));
+  return pairs_[row * motions_.size() + static_cast<std::size_t>(planned_kind(mission_, other))];
+}
+
+SeparationFilter::Pair SeparationFilter::pair_between(const Motion& one,
+                                                      const Motion& other) const {
+  const double limit_mps = one.speed_limit_mps, its_mps = other.speed_limit_mps;
+  const double reach = reach_m(one, limit_mps), tolerance = StepConstraints::kTolerance;
+  const double circles_m = loiter_radius_m(one) + loiter_radius_m(other);
+  const double kept_m = mission_.separation.distance_m + margin_m(std::max(limit_mps, its_mps)) +
+                        circles_m + (bulge_m(one) + bulge_m(other)) + rounding_m_ +
+                        kContactTicks * (tolerance * (reach + reach_m(other, its_mps)));
+  return {kept_m, circles_m + longest_braking_path_m(one) + longest_braking_path_m(other), reach};
+}
+
+double SeparationFilter::contact_m(AgentId one, AgentId other) const {
+  return pair_of(one, other).kept_m;
 }
 
 /// What disturbance and response time add to D. A disturbance closes 2 w in a tick, and where one
@@ -78,7 +107,7 @@ void SeparationFilter::begin(const Mover& self, double reach_m) {
   const Box& domain = mission_.domain;
   const double edge_m =
       hold_ticks_ * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m) +
-      rule.position_error_m + loiter_radius_m(mission_);
+      rule.position_error_m + loiter_radius_m(motion_of(self.id));
   const Eigen::Vector3d inset_m = Eigen::Vector3d::Constant(edge_m);
   const Eigen::Vector3d low_m = domain.origin_m - self.position_m + inset_m;
   const Eigen::Vector3d high_m = domain.origin_m + domain.size_m - self.position_m - inset_m;
@@ -114,7 +143,7 @@ SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wa
   for (const Neighbour& other : others) {
     if (other.id != self.id && !other.known) return stopped(self, other);
   }
-  switch (mission_.vehicle.kind) {
+  switch (motion_of(self.id).vehicle.kind) {
     case VehicleKind::kAcceleration:
       return safe_change(self, wanted_mps, others);
     case VehicleKind::kUnicycle:
@@ -129,30 +158,11 @@ SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wa
 
 /// It stands, brakes as hard as it can or loiters, since `other` may be anywhere around.
 SafeVelocity SeparationFilter::stopped(const Mover& self, const Neighbour& other) const {
-  return {executed(mission_, self.velocity_mps, {0, 0, 0}), true, other.id, true};
+  return {executed(motion_of(self.id), self.velocity_mps, {0, 0, 0}), true, other.id, true};
 }
 
 // ---- points
 // ----------------------------------------------------------------------------------------
-
-/// False if the neighbour may be anywhere around.
-bool SeparationFilter::take_step(const Mover& self, const Neighbour& other) {
-  const Separation& rule = mission_.separation;
-  Eigen::Vector3d y_m = other.position_m - self.position_m;
-  if (mission_.domain.planar()) y_m.z() = 0;
-  const double share = self.max_speed_mps / (self.max_speed_mps + other.max_speed_mps);
-  const double near_m = uncertainty_m(self, other);
-  const double kept_m = contact_m(std::max(self.max_speed_mps, other.max_speed_mps));
-  const double far_m = near_m + kept_m + reach_m(mission_, self.max_speed_mps) / (gain_ * share);
-  const double square_m2 = y_m.squaredNorm();
-  if (square_m2 >= far_m * far_m) return true;
-  const double rho_m = std::sqrt(square_m2);
-  if (rho_m <= near_m) return false;
-  double gap_m = rho_m - near_m - kept_m;
-  if (rule.disturbance_m == 0 && rule.response_s == 0) gap_m = std::max(0.0, gap_m);
-  take(other, {y_m / rho_m, near_m / rho_m, gain_ * share * gap_m});
-  return true;
-}
 
 /// Across the wanted step, and a little along it.
 Eigen::Vector3d SeparationFilter::sideways(const Mover& self,
@@ -164,9 +174,7 @@ SafeVelocity SeparationFilter::safe_step(const Mover& self, const Eigen::Vector3
                                          std::span<const Neighbour> others) {
   const double dt_s = mission_.timing.dt_s;
   begin(self, self.max_speed_mps * dt_s * kReachShare);
-  for (const Neighbour& other : others) {
-    if (other.id != self.id && !take_step(self, other)) return stopped(self, other);
-  }
+  if (const Neighbour* blind = keep_from_all(self, others)) return stopped(self, *blind);
   Eigen::Vector3d possible_mps = wanted_mps;
   if (mission_.domain.planar()) possible_mps.z() = 0;
   const Eigen::Vector3d wanted_m = within_speed(possible_mps, self.max_speed_mps) * dt_s;
@@ -188,27 +196,50 @@ SafeVelocity SeparationFilter::safe_step(const Mover& self, const Eigen::Vector3
 
 namespace {
 
-/// By how much the distance of two bodies can change in so many ticks.
-double closed_m(const Mission& mission, Tick ticks) {
-  const double step_m =
-      (mission.speed_limit_mps + mission.vehicle.min_speed_mps) * mission.timing.dt_s +
-      mission.separation.disturbance_m;
-  return 2 * static_cast<double>(ticks) * step_m;
+/// How far a body gets in so many ticks.
+double moved_m(const Mission& mission, const Motion& motion, Tick ticks) {
+  const double step_m = (motion.speed_limit_mps + motion.vehicle.min_speed_mps) * motion.dt_s +
+                        mission.separation.disturbance_m;
+  return static_cast<double>(ticks) * step_m;
+}
+
+/// What a body adds to D where it begins. The loiter centres of two wings may lie between them.
+double start_margin_m(const Mission& mission, AgentId id) {
+  const Motion motion = motion_of(mission, id);
+  return bulge_m(motion) + 2 * loiter_radius_m(motion) +
+         (2 * mission.separation.position_error_m +
+          2 * moved_m(mission, motion, unguarded_hold_ticks(mission)));
 }
 
 }  // namespace
 
-double start_distance_m(const Mission& mission) {
-  const Separation& rule = mission.separation;
-  if (rule.distance_m == 0) return 0;
-  // Loiter centres may lie between their vehicles.
-  return rule.distance_m + 2 * bulge_m(mission) + 4 * loiter_radius_m(mission) +
-         2 * (2 * rule.position_error_m + closed_m(mission, unguarded_hold_ticks(mission)));
+double start_distance_m(const Mission& mission, AgentId one, AgentId other) {
+  if (mission.separation.distance_m == 0) return 0;
+  return mission.separation.distance_m +
+         (start_margin_m(mission, one) + start_margin_m(mission, other));
 }
 
-double join_distance_m(const Mission& mission) {
-  return start_distance_m(mission) + closed_m(mission, unguarded_hold_ticks(mission) + 1) +
-         longest_braking_path_m(mission);
+double join_distance_m(const Mission& mission, AgentId newcomer, AgentId other) {
+  const Motion appears = motion_of(mission, newcomer), moves = motion_of(mission, other);
+  const Tick ticks = unguarded_hold_ticks(mission) + 1;
+  return start_distance_m(mission, newcomer, other) +
+         (moved_m(mission, appears, ticks) + moved_m(mission, moves, ticks)) +
+         longest_braking_path_m(moves);
+}
+
+std::optional<std::pair<AgentId, AgentId>> too_near_at_start(const Mission& mission, AgentId from) {
+  const auto& starts_m = mission.starts_m;
+  std::vector<double> margins_m;
+  for (AgentId id = 0; id < std::ssize(starts_m); ++id)
+    margins_m.push_back(start_margin_m(mission, id));
+  for (auto i = static_cast<std::size_t>(from); i < starts_m.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double least_m = mission.separation.distance_m + (margins_m[i] + margins_m[j]);
+      if (length_of(starts_m[i] - starts_m[j]) < least_m)
+        return std::pair(static_cast<AgentId>(i), static_cast<AgentId>(j));
+    }
+  }
+  return std::nullopt;
 }
 
 double least_distance_m(std::span<const Eigen::Vector3d> places_m) {
@@ -221,28 +252,32 @@ double least_distance_m(std::span<const Eigen::Vector3d> places_m) {
 }
 
 double packing(const Mission& mission, std::size_t bodies) {
-  const double diameter_m = start_distance_m(mission);
   const Eigen::Vector3d& size_m = mission.domain.size_m;
-  const double disc = std::numbers::pi / 4 * diameter_m * diameter_m / (size_m.x() * size_m.y());
-  // A ball is two thirds of a disc as thick as the ball is wide.
-  const double share = mission.domain.planar() ? disc : disc * 2 / 3 * diameter_m / size_m.z();
-  return static_cast<double>(bodies) * share;
+  double sum = 0;
+  for (AgentId id = 0; id < static_cast<AgentId>(bodies); ++id) {
+    const double diameter_m = start_distance_m(mission, id, id);
+    const double disc = std::numbers::pi / 4 * diameter_m * diameter_m / (size_m.x() * size_m.y());
+    // A ball is two thirds of a disc as thick as the ball is wide.
+    sum += mission.domain.planar() ? disc : disc * 2 / 3 * diameter_m / size_m.z();
+  }
+  return sum;
 }
 
-Eigen::Vector3d start_beside(const Mission& mission, AgentId id,
-                             std::span<const Eigen::Vector3d> others_m, double distance_m) {
-  const Box room = room_to_begin(mission);
+Eigen::Vector3d start_beside(const Mission& mission, AgentId id, std::span<const Placed> others,
+                             double (*distance_m)(const Mission&, AgentId, AgentId)) {
+  const Box room = room_to_begin(motion_of(mission, id));
+  std::vector<double> least_m;
+  for (const Placed& other : others) least_m.push_back(distance_m(mission, id, other.id));
   Eigen::Vector3d best_m{0, 0, 0};
-  double best_distance_m = -1;
-  for (int attempt = 0; attempt < kMostDraws; ++attempt) {
+  double best_spare_m = -std::numeric_limits<double>::max();
+  for (int attempt = 0; attempt < kMostDraws && best_spare_m < 0; ++attempt) {
     const Eigen::Vector3d x_m = random_start(room, mission.seed, id, attempt);
-    double nearest_m = std::numeric_limits<double>::max();
-    for (const Eigen::Vector3d& other_m : others_m)
-      nearest_m = std::min(nearest_m, length_of(other_m - x_m));
-    if (nearest_m <= best_distance_m) continue;
+    double spare_m = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < others.size(); ++i)
+      spare_m = std::min(spare_m, length_of(others[i].position_m - x_m) - least_m[i]);
+    if (spare_m <= best_spare_m) continue;
     best_m = x_m;
-    best_distance_m = nearest_m;
-    if (nearest_m >= distance_m) break;
+    best_spare_m = spare_m;
   }
   return best_m;
 }
@@ -266,6 +301,10 @@ bool sure_of_bodies(const Mission& mission) {
 Tick unguarded_hold_ticks(const Mission& mission) {
   const bool held = mission.timing.pace == Pace::kRealtime && !world_guards(mission);
   return held ? command_hold_ticks(mission.timing) : 0;
+}
+
+bool filters_commands(const Mission& mission, AgentId id) {
+  return mission.separation.distance_m > 0 || !motion_of(mission, id).is_point();
 }
 
 }  // namespace ergocast

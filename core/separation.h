@@ -15,20 +15,28 @@
 // The bound is at least 0 unless disturbance or response time ask for more. κ = 1 and D' = D but
 // for both, and for rounding. Two bodies that both do so, and are D' apart, stay D' apart: the true
 // unit vector n between them is such a u for both, so together they use at most the gap.
+//
+// Bodies that are no points cannot stand at once. What they keep apart is what stays of them under
+// commands of 0, core/separation_pairs.cc; D' grows by what their bodies depart from that. So each
+// of a pair may have another kind of vehicle.
 // docs/safety.md has the conditions and the proof.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/ids.h"
 #include "core/mission.h"
 #include "core/step_constraints.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 
-/// A body, as another one knows it.
+/// A body, as another one knows it. Its number says what its vehicle can do, core/vehicle.h.
 struct Neighbour {
   AgentId id = kUnassigned;
   Eigen::Vector3d position_m{0, 0, 0};
@@ -73,11 +81,26 @@ class SeparationFilter {
   SafeVelocity safe(const Mover& self, const Eigen::Vector3d& wanted_mps,
                     std::span<const Neighbour> others);
 
-  /// How near a neighbour counts as in contact: D' of two bodies with limit `max_speed_mps` [m].
-  /// Of fixed wings, how near their loiter centres.
-  double contact_m(double max_speed_mps) const;
+  /// How near two bodies count as in contact: their D' [m]. Of fixed wings, how near their loiter
+  /// centres.
+  double contact_m(AgentId one, AgentId other) const;
 
  private:
+  /// What stays of a body under commands of 0: the places [from, from + along].
+  struct Stay {
+    Eigen::Vector3d from_m, along_m;
+  };
+
+  /// What one body needs to know of another one for their kinds alone.
+  struct Pair {
+    double kept_m;    ///< D'
+    double around_m;  ///< how far what stays of them may be from both their places, added up
+    double reach_m;   ///< of the one in a tick
+  };
+
+  const Motion& motion_of(AgentId id) const;
+  const Pair& pair_of(AgentId one, AgentId other) const;
+  Pair pair_between(const Motion& one, const Motion& other) const;
   double margin_m(double fastest_mps) const;
   double uncertainty_m(const Mover& self, const Neighbour& other) const;
   void begin(const Mover& self, double reach_m);
@@ -87,7 +110,6 @@ class SeparationFilter {
   SafeVelocity stopped(const Mover& self, const Neighbour& other) const;
   SafeVelocity safe_step(const Mover& self, const Eigen::Vector3d& wanted_mps,
                          std::span<const Neighbour> others);
-  bool take_step(const Mover& self, const Neighbour& other);
   Eigen::Vector3d sideways(const Mover& self, const Eigen::Vector3d& wanted_m) const;
   SafeVelocity safe_change(const Mover& self, const Eigen::Vector3d& wanted_mps,
                            std::span<const Neighbour> others);
@@ -96,37 +118,57 @@ class SeparationFilter {
   SafeVelocity safe_circle(const Mover& self, const Eigen::Vector3d& wanted_mps,
                            std::span<const Neighbour> others);
   Eigen::Vector3d center_step_m(const Mover& self, const Eigen::Vector3d& v_mps) const;
-  bool take_way(const Mover& self, const Neighbour& other, double reach_m);
   bool allows(const Mover& self, const Eigen::Vector3d& v_mps) const;
+  const Neighbour* keep_from_all(const Mover& self, std::span<const Neighbour> others);
+  bool keep_from(const Mover& self, const Stay& own, const Neighbour& other);
+  static Stay stay_of(const Motion& motion, const Eigen::Vector3d& x_m,
+                      const Eigen::Vector3d& v_mps);
+  bool keep_places_apart(const Mover& self, const Neighbour& other, const Eigen::Vector3d& y_m);
+  bool keep_ways_apart(const Mover& self, const Neighbour& other, const Stay& own,
+                       const Stay& theirs);
 
   Mission mission_;
+  std::vector<Motion> motions_;  // of each kind of agents; at least one
   double hold_ticks_, gain_, rounding_m_;
+  std::vector<Pair> pairs_;  // of each kind with each
   StepConstraints constraints_;
   std::array<AgentId, kMaxAgents> taken_{};  // whose constraint has which number
   std::size_t taken_count_ = 0;
 };
 
-/// How far apart two bodies must begin, D + 2 R: nearer ones might never move [m]. 0 where no
-/// distance is kept.
-double start_distance_m(const Mission& mission);
+/// Where a body is.
+struct Placed {
+  AgentId id = kUnassigned;
+  Eigen::Vector3d position_m{0, 0, 0};
+};
+
+/// How far apart two bodies must begin, D + 2 R and what their vehicles need: nearer ones might
+/// never move [m]. 0 where no distance is kept.
+double start_distance_m(const Mission& mission, AgentId one, AgentId other);
+
+/// The first planned body that begins too near to one before it, and the first of those; nothing if
+/// all begin start_distance_m() apart.
+std::optional<std::pair<AgentId, AgentId>> too_near_at_start(const Mission& mission,
+                                                             AgentId from = 0);
 
 /// Of any two of `places_m`; the greatest number if there is only one [m].
 double least_distance_m(std::span<const Eigen::Vector3d> places_m);
 
-/// The share of the domain that `bodies` discs of start_distance_m(), in space balls, take up.
+/// The share of the domain that discs, in space balls, around the first `bodies` take up, each as
+/// wide as the start_distance_m() of two of its kind.
 double packing(const Mission& mission, std::size_t bodies);
 /// Above the first, a team blocks itself often, and above the second most of the time.
 inline constexpr double kTightPacking = 0.1, kHopelessPacking = 0.3;
 
-/// How far from all others a body must appear among bodies that move: none of them knows of it
-/// until it has executed the commands that it holds [m].
-double join_distance_m(const Mission& mission);
+/// How far from body `other` the body `newcomer` must appear among bodies that move: none of them
+/// knows of it until it has executed the commands that it holds [m].
+double join_distance_m(const Mission& mission, AgentId newcomer, AgentId other);
 
 /// Where agent `id` begins if the plan does not say it: drawn from the seed, as often as needed to
-/// be `distance_m` away from all `others_m`; after kMostDraws, the place that is farthest from
-/// them.
-Eigen::Vector3d start_beside(const Mission& mission, AgentId id,
-                             std::span<const Eigen::Vector3d> others_m, double distance_m);
+/// be distance_m(mission, id, other) away from each of `others`; after kMostDraws, the place that
+/// lacks least.
+Eigen::Vector3d start_beside(const Mission& mission, AgentId id, std::span<const Placed> others,
+                             double (*distance_m)(const Mission&, AgentId, AgentId));
 inline constexpr int kMostDraws = 1000;
 
 /// For how many ticks after its own one the world may execute a command.
@@ -142,10 +184,8 @@ bool world_guards(const Mission& mission);
 /// Whether all that bodies know of each other is exact: what vehicles that are no points require.
 bool sure_of_bodies(const Mission& mission);
 
-/// Whether a command passes through a SeparationFilter at all: where a distance is kept, and for
-/// vehicles that are no points: no edge can turn them round.
-inline bool filters_commands(const Mission& mission) {
-  return mission.separation.distance_m > 0 || mission.vehicle.kind != VehicleKind::kPoint;
-}
+/// Whether commands of body `id` pass through a SeparationFilter at all: where a distance is kept,
+/// and of vehicles that are no points: no edge can turn them round.
+bool filters_commands(const Mission& mission, AgentId id);
 
 }  // namespace ergocast

@@ -6,7 +6,7 @@
 // every step can be shortened until it is allowed.
 //
 // A fixed wing never stands, but its loiter centre does if it turns as tightly as it can. The
-// centres keep D + 2 r apart like points, and no vehicle is farther than r from its own centre.
+// centre keeps its distance like a point, and r more, since the vehicle is never farther from it.
 #include <algorithm>
 
 #include "core/separation.h"
@@ -28,21 +28,21 @@ SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d
                                         std::span<const Neighbour> others) {
   SafeVelocity safe = safe_step(self, wanted_mps, others);
   if (safe.blind) return safe;
+  const Motion& motion = motion_of(self.id);
   // What another filter has allowed stays as it is, also a turn on the spot that a point would not
   // have made.
-  const bool filtered = executed(mission_, self.velocity_mps, wanted_mps) == wanted_mps &&
-                        constraints_.allow(mean_velocity(mission_, self.velocity_mps, wanted_mps) *
-                                           mission_.timing.dt_s);
+  const bool filtered =
+      executed(motion, self.velocity_mps, wanted_mps) == wanted_mps &&
+      constraints_.allow(mean_velocity(motion, self.velocity_mps, wanted_mps) * motion.dt_s);
   if (filtered) {
     safe.velocity_mps = wanted_mps;
     return safe;
   }
-  const Eigen::Vector3d turned_mps = executed(mission_, self.velocity_mps, safe.velocity_mps);
-  const Eigen::Vector3d step_m =
-      mean_velocity(mission_, self.velocity_mps, turned_mps) * mission_.timing.dt_s;
+  const Eigen::Vector3d turned_mps = executed(motion, self.velocity_mps, safe.velocity_mps);
+  const Eigen::Vector3d step_m = mean_velocity(motion, self.velocity_mps, turned_mps) * motion.dt_s;
   const double share = std::max(kLeastShare, constraints_.allowed_share(step_m));
   safe.velocity_mps =
-      share < 1 ? executed(mission_, self.velocity_mps, kShortenedShare * share * turned_mps)
+      share < 1 ? executed(motion, self.velocity_mps, kShortenedShare * share * turned_mps)
                 : turned_mps;
   return safe;
 }
@@ -50,31 +50,28 @@ SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d
 /// How far the loiter centre moves, if the vehicle now goes over to `v_mps`.
 Eigen::Vector3d SeparationFilter::center_step_m(const Mover& self,
                                                 const Eigen::Vector3d& v_mps) const {
-  const Eigen::Vector3d step_m =
-      mean_velocity(mission_, self.velocity_mps, v_mps) * mission_.timing.dt_s;
-  return anchor_m(mission_, step_m, v_mps) - anchor_m(mission_, {0, 0, 0}, self.velocity_mps);
+  const Motion& motion = motion_of(self.id);
+  const Eigen::Vector3d step_m = mean_velocity(motion, self.velocity_mps, v_mps) * motion.dt_s;
+  return anchor_m(motion, step_m, v_mps) - anchor_m(motion, {0, 0, 0}, self.velocity_mps);
 }
 
 SafeVelocity SeparationFilter::safe_circle(const Mover& self, const Eigen::Vector3d& wanted_mps,
                                            std::span<const Neighbour> others) {
+  const Motion& motion = motion_of(self.id);
   Mover center = self;
-  center.position_m = anchor_m(mission_, self.position_m, self.velocity_mps);
-  begin(center, reach_m(mission_, self.max_speed_mps));
-  for (const Neighbour& other : others) {
-    Neighbour circle = other;
-    circle.position_m = anchor_m(mission_, other.position_m, other.velocity_mps);
-    if (other.id != self.id && !take_step(center, circle)) return stopped(self, other);
-  }
-  const Eigen::Vector3d direct_mps = executed(mission_, self.velocity_mps, wanted_mps);
+  center.position_m = anchor_m(motion, self.position_m, self.velocity_mps);
+  begin(center, reach_m(motion, self.max_speed_mps));
+  if (const Neighbour* blind = keep_from_all(self, others)) return stopped(self, *blind);
+  const Eigen::Vector3d direct_mps = executed(motion, self.velocity_mps, wanted_mps);
   const Eigen::Vector3d direct_m = center_step_m(self, direct_mps);
   if (constraints_.allow(direct_m)) return {direct_mps};
 
   const AgentId by = blocker(direct_m);
-  const Eigen::Vector3d tightest_mps = executed(mission_, self.velocity_mps, {0, 0, 0});
+  const Eigen::Vector3d tightest_mps = executed(motion, self.velocity_mps, {0, 0, 0});
   for (int i = 1; i < kTighterTurns; ++i) {
     const double share = static_cast<double>(i) / kTighterTurns;
     const Eigen::Vector3d v_mps =
-        executed(mission_, self.velocity_mps, direct_mps + share * (tightest_mps - direct_mps));
+        executed(motion, self.velocity_mps, direct_mps + share * (tightest_mps - direct_mps));
     if (constraints_.allow(center_step_m(self, v_mps))) return {v_mps, false, by};
   }
   return {tightest_mps, true, by};

@@ -21,7 +21,10 @@
 //   A fixed wing flies no slower than s_min. For a command of 0 it loiters: it turns to the left as
 //   tightly as it can, about its loiter centre c = x + r J h, r = s_min/ω, which then stays.
 //
-// ‖v‖ ≤ V, the mission's speed limit, at every moment.
+// ‖v‖ ≤ V, the vehicle's speed limit, at every moment.
+//
+// The vehicle belongs to a body, so to its number: motion_of() is the one place that says which one
+// it is. Whoever drives the body, and whatever came before, it stays the same.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,45 +33,78 @@
 
 namespace ergocast {
 
+/// What a vehicle can do, in the ticks and the domain of its mission.
+struct Motion {
+  VehicleLimits vehicle;
+  double speed_limit_mps = 0;  ///< V; 0: none
+  double dt_s = 0.1;
+  Box domain;
+
+  bool is_point() const { return vehicle.kind == VehicleKind::kPoint; }
+  bool has_inertia() const { return vehicle.kind == VehicleKind::kAcceleration; }
+};
+
+/// Of the agents of `kind`: their own vehicle and limit, or where they have none, the scenario's.
+/// Of a kind that the mission does not have the scenario's.
+Motion motion_of_kind(const Mission& mission, int kind);
+
+/// Of the body with the number `id`: that of the kind which the plan gives to it. Beyond the plan,
+/// of the first kind.
+Motion motion_of(const Mission& mission, AgentId id);
+
+/// Whether an agent of `kind` can drive the body `id`: of its kind, or of one that moves alike.
+bool can_drive(const Mission& mission, int kind, AgentId id);
+
+/// Whether any body of the mission is no point.
+bool any_but_points(const Mission& mission);
+
+/// The highest speed limit of all bodies of the mission; 0 if none has one.
+double fastest_mps(const Mission& mission);
+
+/// The velocity that a point executes for the command `v_mps`: the command, bit for bit, or the
+/// speed limit in its direction. In a plane nothing is executed of v_z.
+/// @pre v_mps is finite.
+Eigen::Vector3d within_speed_limit(const Motion& motion, const Eigen::Vector3d& v_mps);
+
 /// The velocity at the tick's end that comes nearest to the command `wanted_mps`, for a vehicle
 /// that now has `now_mps`. A velocity that it can reach is returned bit for bit. In a plane nothing
 /// is executed of v_z.
 /// @pre both are finite
-Eigen::Vector3d executed(const Mission& mission, const Eigen::Vector3d& now_mps,
+Eigen::Vector3d executed(const Motion& motion, const Eigen::Vector3d& now_mps,
                          const Eigen::Vector3d& wanted_mps);
 
 /// (x' − x)/dt of a step whose velocity changes from `now_mps` to `then_mps`.
-Eigen::Vector3d mean_velocity(const Mission& mission, const Eigen::Vector3d& now_mps,
+Eigen::Vector3d mean_velocity(const Motion& motion, const Eigen::Vector3d& now_mps,
                               const Eigen::Vector3d& then_mps);
 
 /// The velocity of a vehicle that begins at `x_m`. A fixed wing has its loiter circle in the
 /// domain.
-Eigen::Vector3d first_velocity(const Mission& mission, const Eigen::Vector3d& x_m);
+Eigen::Vector3d first_velocity(const Motion& motion, const Eigen::Vector3d& x_m);
 
 /// Where vehicles may begin: the domain, of fixed wings without its edges, r wide.
-Box room_to_begin(const Mission& mission);
+Box room_to_begin(const Motion& motion);
 
 /// Of a fixed wing r, else 0 [m].
-double loiter_radius_m(const Mission& mission);
+double loiter_radius_m(const Motion& motion);
 
 /// What stays in its place under commands of 0, at once: the loiter centre of a fixed wing, else
-/// the vehicle's own place. @pre the kind is not kAcceleration
-Eigen::Vector3d anchor_m(const Mission& mission, const Eigen::Vector3d& x_m,
+/// the vehicle's own place. One with inertia needs its braking path more.
+Eigen::Vector3d anchor_m(const Motion& motion, const Eigen::Vector3d& x_m,
                          const Eigen::Vector3d& v_mps);
 
 /// How far the anchor of a vehicle with speed limit `max_speed_mps` gets in a tick, at most; of one
 /// with inertia the end of its braking path [m].
-double reach_m(const Mission& mission, double max_speed_mps);
+double reach_m(const Motion& motion, double max_speed_mps);
 
 /// From where a vehicle with inertia is to where it stands if it brakes as evenly as A allows, in k
 /// whole ticks: ½ v dt k. Commands of 0 bring it to a stop on this way. Of others 0.
-Eigen::Vector3d braking_path_m(const Mission& mission, const Eigen::Vector3d& v_mps);
+Eigen::Vector3d braking_path_m(const Motion& motion, const Eigen::Vector3d& v_mps);
 
 /// The length of the longest braking path, at the speed limit [m].
-double longest_braking_path_m(const Mission& mission);
+double longest_braking_path_m(const Motion& motion);
 
 /// By how much the path of the anchor within a tick departs from the straight and even way between
 /// its ends, at most [m].
-double bulge_m(const Mission& mission);
+double bulge_m(const Motion& motion);
 
 }  // namespace ergocast

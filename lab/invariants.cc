@@ -86,7 +86,7 @@ void Invariants::check(double t_s, const WorldState& world) {
 void Invariants::check_distances(double t_s, const WorldState& world) {
   bodies_.see(world);
   if (!bodies_.complete(world.header.tick)) return;
-  const auto bodies = bodies_.neighbours(mission_.speed_limit_mps);
+  const auto bodies = bodies_.neighbours(mission_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double apart_m = (bodies[i].position_m - bodies[j].position_m).norm();
@@ -132,7 +132,9 @@ void Invariants::check(double t_s, const Command& command) {
                    .norm();
   }
   const Eigen::Vector3d v_mps = command.velocity_mps;
-  if (filters_commands(mission_) && v_mps.norm() <= mission_.speed_limit_mps * (1 + 1e-12)) return;
+  const double limit_mps = motion_of(mission_, command.header.sender).speed_limit_mps;
+  const bool filtered = filters_commands(mission_, command.header.sender);
+  if (filtered && v_mps.norm() <= limit_mps * (1 + 1e-12)) return;
   const double u_mps = (v_mps + contraction_mps - noise_mps).norm();
   // Each of the three was rounded when v was put together.
   const double margin_mps =

@@ -2,8 +2,6 @@
 // Writes the list of a mission's fields as Protobuf's text format.
 #include "logger/mission_text.h"
 
-#include <string_view>
-
 #include "core/mission_fields.h"
 #include "text/shortest.h"
 
@@ -15,28 +13,42 @@ class KindWriter : public FieldVisitor {
  public:
   explicit KindWriter(const AgentKind& kind) { list_fields(*this, kind); }
 
-  std::string text() const {
-    return "  kind {\n" + fields_ + (band_.empty() ? "" : "    band {\n" + band_ + "    }\n") +
-           "  }\n";
+  std::string text() {
+    enter("");
+    return "  kind {\n" + fields_ + "  }\n";
   }
 
-  void kind_name(int, const char*, const std::string& value) {
-    fields_ += "    name: \"" + value + "\"\n";
-  }
+  void kind_name(int, const char* name, const std::string& value) { put(name, '"' + value + '"'); }
   void number(int, const char* name, double value, const Limits&, bool given = true) {
-    const std::string_view path = name;
-    const std::size_t dot = path.find('.');
-    if (!given) return;
-    const std::string line = std::string(path.substr(dot + 1)) + ": " + shortest(value) + '\n';
-    if (dot == path.npos) {
-      fields_ += "    " + line;
-    } else {
-      band_ += "      " + line;
-    }
+    if (given) put(name, shortest(value));
+  }
+  void choice(int, const char* name, auto value, Words words, bool = true) {
+    put(name, std::data(words)[static_cast<std::size_t>(value)]);
+  }
+  void own_vehicle(int, const char* name, const std::optional<VehicleLimits>& vehicle) {
+    if (!vehicle) return;
+    part_ = std::string(name) + '.';
+    list_fields(*this, *vehicle);
+    part_.clear();
   }
 
  private:
-  std::string fields_, band_;
+  /// Closes the block that is open, and opens `block`, unless that is empty or open already.
+  void enter(const std::string& block) {
+    if (block == block_) return;
+    if (!block_.empty()) fields_ += "    }\n";
+    if (!block.empty()) fields_ += "    " + block + " {\n";
+    block_ = block;
+  }
+  void put(const char* name, const std::string& value) {
+    const std::string path = part_ + name;
+    const std::size_t dot = path.find('.');
+    enter(dot == std::string::npos ? "" : path.substr(0, dot));
+    fields_ += (block_.empty() ? "    " : "      ") +
+               (dot == std::string::npos ? path : path.substr(dot + 1)) + ": " + value + '\n';
+  }
+
+  std::string fields_, part_, block_;
 };
 
 class TextWriter : public FieldVisitor {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/kinds.h"
+#include "core/vehicle.h"
 #include "logger/run_record.h"
 #include "logger/slope.h"
 #include "text/regular_file.h"
@@ -89,6 +90,15 @@ Json conventions(const Basis& basis) {
           {"lambda", (squared ? "(1 + |k|^2)^-" : "(1 + |k|)^-") + s}};
 }
 
+/// The highest limit, those that kinds have of their own, and how often one was exceeded.
+Json speed_limit(const Mission& mission, std::int64_t clamped_commands) {
+  Json limits{{"mps", fastest_mps(mission)}, {"clamped_commands", clamped_commands}};
+  for (const AgentKind& kind : mission.kinds) {
+    if (kind.speed_limit_mps > 0) limits["kinds"][kind.name] = kind.speed_limit_mps;
+  }
+  return limits;
+}
+
 /// What became of the distance, and how much it has cost.
 Json separation(const Recorder& recorder, const Mission& mission) {
   const Blocks blocks = recorder.blocks();
@@ -161,10 +171,8 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   summary["events_removed"] = context.events_removed;
   summary["missed_deadlines"] = facts.missed_deadlines;
   summary["skipped_ticks"] = facts.skipped_ticks;
-  if (mission && mission->speed_limit_mps > 0) {
-    summary["speed_limit"] = {{"mps", mission->speed_limit_mps},
-                              {"clamped_commands", facts.clamped_commands}};
-  }
+  if (mission && fastest_mps(*mission) > 0)
+    summary["speed_limit"] = speed_limit(*mission, facts.clamped_commands);
   if (mission && mission->separation.distance_m > 0)
     summary["separation"] = separation(recorder, *mission);
   return summary;

@@ -171,7 +171,7 @@ compile_mission() makes it from a scenario; a record has its own.)")
           "tick_count", [](const Mission& m) { return m.timing.tick_count; },
           "The mission has the ticks 0 … tick_count − 1.")
       .def_readonly("speed_limit_mps", &Mission::speed_limit_mps,
-                    "Limit of every vehicle [m/s]; 0: none.");
+                    "Limit of vehicles whose kind has none of its own [m/s]; 0: none.");
 }
 
 }  // namespace

@@ -42,26 +42,6 @@ std::string law_text(const ControlLaw& law) {
   return text + " towards " + point_text(law.contraction_center_m.head<2>()) + " m";
 }
 
-std::string kind_text(const AgentKind& kind) {
-  std::string text = kind.name + ": " + std::to_string(kind.count) +
-                     (kind.count == 1 ? " agent" : " agents") +
-                     ", u_max = " + readable(kind.u_max_mps) + " m/s";
-  if (kind.footprint_sigma_m > 0)
-    text += ", sees a Gaussian of " + readable(kind.footprint_sigma_m) + " m";
-  if (kind.quality != 1) text += ", quality " + readable(kind.quality);
-  if (kind.band_from > 0 || kind.band_to > 0) {
-    text += ", steers by |k| from " + readable(kind.band_from);
-    if (kind.band_to > 0) text += " to " + readable(kind.band_to);
-  }
-  return text;
-}
-
-std::string weights_text(const Basis& basis) {
-  const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
-  return std::string("λₖ = (1 + |k|") + (squared ? "²" : "") + ")^−" +
-         readable(basis.sobolev_exponent) + ", |k|² = m² + n²" + (basis.planar() ? "" : " + l²");
-}
-
 std::string vehicle_text(const VehicleLimits& vehicle) {
   const std::string turn = "turn by at most " + readable(vehicle.max_turn_radps) + " rad/s";
   switch (vehicle.kind) {
@@ -75,6 +55,28 @@ std::string vehicle_text(const VehicleLimits& vehicle) {
       break;
   }
   return "take every velocity at once";
+}
+
+std::string kind_text(const AgentKind& kind) {
+  std::string text = kind.name + ": " + std::to_string(kind.count) +
+                     (kind.count == 1 ? " agent" : " agents") +
+                     ", u_max = " + readable(kind.u_max_mps) + " m/s";
+  if (kind.footprint_sigma_m > 0)
+    text += ", sees a Gaussian of " + readable(kind.footprint_sigma_m) + " m";
+  if (kind.quality != 1) text += ", quality " + readable(kind.quality);
+  if (kind.band_from > 0 || kind.band_to > 0) {
+    text += ", steers by |k| from " + readable(kind.band_from);
+    if (kind.band_to > 0) text += " to " + readable(kind.band_to);
+  }
+  if (kind.speed_limit_mps > 0) text += ", limited to " + readable(kind.speed_limit_mps) + " m/s";
+  if (kind.vehicle) text += ", vehicles that " + vehicle_text(*kind.vehicle);
+  return text;
+}
+
+std::string weights_text(const Basis& basis) {
+  const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
+  return std::string("λₖ = (1 + |k|") + (squared ? "²" : "") + ")^−" +
+         readable(basis.sobolev_exponent) + ", |k|² = m² + n²" + (basis.planar() ? "" : " + l²");
 }
 
 /// What a φ² depends on, and what the page draws.
@@ -104,7 +106,9 @@ Json conventions(const Mission& mission) {
   if (mission.speed_limit_mps > 0) {
     add("speed limit", readable(mission.speed_limit_mps) + " m/s; faster commands are cut to it");
   }
-  add("vehicles", vehicle_text(mission.vehicle));
+  const bool all_have_own = std::ranges::all_of(
+      mission.kinds, [](const AgentKind& kind) { return kind.vehicle.has_value(); });
+  if (mission.kinds.empty() || !all_have_own) add("vehicles", vehicle_text(mission.vehicle));
   if (mission.separation.distance_m > 0) {
     add("distance", readable(mission.separation.distance_m) + " m between any two bodies");
   }

@@ -85,6 +85,10 @@ class BlockReader : public FieldVisitor {
     const auto [block, field] = find_field(block_, name);
     value = block.GetReflection()->GetString(block, &field);
   }
+  void own_vehicle(int, const char* name, std::optional<VehicleLimits>& vehicle) {
+    const auto [block, field] = find_field(block_, name);
+    if (block.GetReflection()->HasField(block, &field)) part(0, name, vehicle.emplace());
+  }
   void part(int, const char* name, auto& part) {
     const auto [block, field] = find_field(block_, name);
     BlockReader inner(block.GetReflection()->GetMessage(block, &field));

@@ -41,8 +41,8 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
 }
 
 /// Without a covariance a Gaussian is round; without an origin places are metres alone; without a
-/// vehicle all are points; without a separation bodies keep no distance; without a band all modes
-/// count.
+/// vehicle all are points, or a kind's are the scenario's; without a separation bodies keep no
+/// distance; without a band all modes count.
 bool means_something_absent(const FieldDescriptor& field) {
   return field.message_type() == proto::Covariance::descriptor() ||
          field.message_type() == proto::Origin::descriptor() ||
@@ -281,11 +281,14 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
 
 void draw_starts(proto::Scenario& scenario) {
   proto::Agents& agents = *scenario.mutable_agents();
-  Mission mission = mission_of(scenario);  // starts_m: those that there are already
+  const Mission mission = mission_of(scenario);  // starts_m: those that there are already
+  std::vector<Placed> bodies;
+  for (const Eigen::Vector3d& x_m : mission.starts_m)
+    bodies.push_back({static_cast<AgentId>(bodies.size()), x_m});
   for (; agents.random_count() > 0; agents.set_random_count(agents.random_count() - 1)) {
-    const Eigen::Vector3d x_m =
-        start_beside(mission, agents.starts_size(), mission.starts_m, start_distance_m(mission));
-    mission.starts_m.push_back(x_m);
+    const AgentId id = agents.starts_size();
+    const Eigen::Vector3d x_m = start_beside(mission, id, bodies, start_distance_m);
+    bodies.push_back({id, x_m});
     proto::Start& start = *agents.add_starts();
     start.set_x_m(x_m.x());
     start.set_y_m(x_m.y());

@@ -44,7 +44,7 @@ class Validator {
     agents();
     disturbance();
     validate_kinds(scenario_, checks_);
-    if (scenario_.has_vehicle()) validate_vehicle(scenario_, checks_);
+    validate_vehicle(scenario_, checks_);
     if (scenario_.has_separation()) validate_separation(scenario_, checks_);
   }
 

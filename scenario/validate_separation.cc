@@ -19,15 +19,14 @@ class SeparationRules {
   void run() {
     const int team = scenario_.agents().starts_size() + scenario_.agents().random_count();
     distance();
-    disturbance();
+    for (int kind = 0; kind < std::max(1, scenario_.agents().kind_size()); ++kind)
+      disturbance(motion_of_kind(mission_, kind).speed_limit_mps * mission_.timing.dt_s);
     hold();
     room(static_cast<std::size_t>(team));
     starts();
   }
 
  private:
-  double step_m() const { return mission_.speed_limit_mps * mission_.timing.dt_s; }
-
   void distance() {
     const double most_m = mission_.domain.shortest_side_m() / 4;
     if (mission_.separation.distance_m <= most_m) return;
@@ -37,9 +36,10 @@ class SeparationRules {
                     "write at most " + shortest(rounded_down(most_m)));
   }
 
-  void disturbance() {
-    const double limit_m = step_m() / 4;
-    if (mission_.separation.disturbance_m < limit_m) return;
+  void disturbance(double step_m) {
+    const double limit_m = step_m / 4;
+    if (mission_.separation.disturbance_m < limit_m || !checks_.sound("separation.disturbance_m"))
+      return;
     checks_.problem("separation.disturbance_m",
                     shortest(rounded_up(mission_.separation.disturbance_m)) +
                         " is not below a quarter of a step, speed_limit_mps · dt_s / 4 = " +
@@ -50,7 +50,7 @@ class SeparationRules {
   void hold() {
     const double held_s =
         static_cast<double>(unguarded_hold_ticks(mission_)) * mission_.timing.dt_s;
-    const double most_s = mission_.separation.distance_m / (4 * mission_.speed_limit_mps);
+    const double most_s = mission_.separation.distance_m / (4 * fastest_mps(mission_));
     if (held_s <= most_s * (1 + 1e-9)) return;
     checks_.problem("time.command_hold_s",
                     shortest(mission_.timing.command_hold_s) +
@@ -64,27 +64,24 @@ class SeparationRules {
     const double share = packing(mission_, team);
     if (share <= kHopelessPacking) return;
     checks_.problem("separation.distance_m",
-                    std::to_string(team) + " agents " + shortest(start_distance_m(mission_)) +
+                    std::to_string(team) + " agents " + spacing_text(mission_, team) +
                         " m apart take up " + shortest(rounded_up(100 * share)) +
                         " % of the domain, above the limit 30 %: they would block each other",
                     "write a smaller distance, fewer agents or a larger domain");
   }
 
   void starts() {
-    const double least_m = start_distance_m(mission_);
-    const auto& starts_m = mission_.starts_m;
-    for (std::size_t i = 0; i < starts_m.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const std::array pair = {starts_m[i], starts_m[j]};
-        const double apart_m = least_distance_m(pair);
-        if (apart_m >= least_m) continue;
-        checks_.problem(indexed("agents.starts", static_cast<int>(i)),
-                        "is " + shortest(rounded_down(apart_m)) + " m from starts[" +
-                            std::to_string(j) + "], nearer than the distance at the start, " +
-                            shortest(rounded_up(least_m)),
-                        "move it away");
-        break;
-      }
+    for (auto pair = too_near_at_start(mission_); pair;
+         pair = too_near_at_start(mission_, pair->first + 1)) {
+      const auto [id, other] = *pair;
+      const std::array places_m = {mission_.starts_m[static_cast<std::size_t>(id)],
+                                   mission_.starts_m[static_cast<std::size_t>(other)]};
+      checks_.problem(indexed("agents.starts", id),
+                      "is " + shortest(rounded_down(least_distance_m(places_m))) +
+                          " m from starts[" + std::to_string(other) +
+                          "], nearer than the distance at the start, " +
+                          shortest(rounded_up(start_distance_m(mission_, id, other))),
+                      "move it away");
     }
   }
 
@@ -95,12 +92,25 @@ class SeparationRules {
 
 }  // namespace
 
+std::string spacing_text(const Mission& mission, std::size_t bodies) {
+  double least_m = start_distance_m(mission, 0, 0), most_m = least_m;
+  for (AgentId id = 1; id < static_cast<AgentId>(bodies); ++id) {
+    least_m = std::min(least_m, start_distance_m(mission, id, id));
+    most_m = std::max(most_m, start_distance_m(mission, id, id));
+  }
+  return shortest(least_m) + (most_m > least_m ? " to " + shortest(most_m) : "");
+}
+
 void validate_separation(const proto::Scenario& scenario, Checks& checks) {
   // Each of them is part of the rules, which need all of them to be sound.
   const std::array parts = {"domain", "basis", "law",     "time",
                             "agents", "world", "vehicle", "separation"};
   if (!std::ranges::all_of(parts, [&](const char* part) { return checks.sound(part); })) return;
-  if (!scenario.world().has_speed_limit_mps()) {
+  const auto& kinds = scenario.agents().kind();
+  const bool limited =
+      scenario.world().has_speed_limit_mps() ||
+      (!kinds.empty() && std::ranges::all_of(kinds, &proto::Kind::has_speed_limit_mps));
+  if (!limited) {
     checks.missing("world.speed_limit_mps", "is missing, and separation relies on it",
                    "add the hard limit of the vehicles, or remove separation");
     return;

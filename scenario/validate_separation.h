@@ -2,6 +2,10 @@
 // Checks whether a team can keep the distance that its scenario asks for.
 #pragma once
 
+#include <cstddef>
+#include <string>
+
+#include "core/mission.h"
 #include "scenario/checks.h"
 #include "scenario/scenario.pb.h"
 
@@ -11,5 +15,9 @@ namespace ergocast {
 /// disturbance, room and starts.
 /// @pre the defaults are filled in, and `scenario` has a separation
 void validate_separation(const proto::Scenario& scenario, Checks& checks);
+
+/// How far apart two alike of the first `bodies` begin [m]; "10 to 20" if that depends on their
+/// kind.
+std::string spacing_text(const Mission& mission, std::size_t bodies);
 
 }  // namespace ergocast

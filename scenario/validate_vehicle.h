@@ -8,8 +8,8 @@
 namespace ergocast {
 
 /// Reports limits that are missing or have no effect, ways to brake that are too long for the
-/// domain, and what no separation of such vehicles is proven for.
-/// @pre the defaults are filled in, and `scenario` has a vehicle
+/// domain, and what no separation of such vehicles is proven for; of each kind of agents.
+/// @pre the defaults are filled in
 void validate_vehicle(const proto::Scenario& scenario, Checks& checks);
 
 }  // namespace ergocast

@@ -3,6 +3,7 @@
 #include "scenario/warnings.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "core/block_layout.h"
@@ -11,6 +12,7 @@
 #include "core/separation.h"
 #include "scenario/checks.h"
 #include "scenario/footprint_reach.h"
+#include "scenario/validate_separation.h"
 
 namespace ergocast {
 namespace {
@@ -33,33 +35,52 @@ std::string noise_text(const ControlLaw& law, double dt_s) {
          " m/s held for " + std::to_string(held) + (held == 1 ? " step" : " steps");
 }
 
-int fastest_kind(const Mission& mission) {
-  const auto fastest = std::ranges::max_element(mission.kinds, {}, &AgentKind::u_max_mps);
-  return static_cast<int>(fastest - mission.kinds.begin());
+/// The fastest kind of those without a speed limit of their own; nothing if all have one.
+std::optional<int> fastest_kind(const Mission& mission) {
+  if (mission.kinds.empty()) return 0;
+  std::optional<int> fastest;
+  for (int kind = 0; kind < std::ssize(mission.kinds); ++kind) {
+    const AgentKind& one = mission.kinds[static_cast<std::size_t>(kind)];
+    const bool faster = !fastest || one.u_max_mps > law_of(mission, *fastest).u_max_mps;
+    if (one.speed_limit_mps == 0 && faster) fastest = kind;
+  }
+  return fastest;
 }
 
 /// A limit below the law's commands cuts off the tails of its noise.
-void warn_of_speed_limit(const Mission& mission, Findings& findings) {
-  const ControlLaw law = law_of(mission, fastest_kind(mission));
+void warn_of_speed_limit(const Mission& mission, int kind, const std::string& field,
+                         Findings& findings) {
+  const ControlLaw law = law_of(mission, kind);
+  const double limit_mps = motion_of_kind(mission, kind).speed_limit_mps;
   const double dt_s = mission.timing.dt_s;
   const double pull_mps =
       law.contraction_gain_per_s * mission.domain.farthest_distance_m(law.contraction_center_m);
   const double noise_mps = kDeviations * greatest_deviation_mps(law, dt_s);
   const double needed_mps = law.u_max_mps + pull_mps + noise_mps;
-  if (mission.speed_limit_mps <= 0 || mission.speed_limit_mps >= needed_mps) return;
+  if (limit_mps <= 0 || limit_mps >= needed_mps) return;
   const std::string needed = shortest(rounded_up(needed_mps));
-  findings.add("world.speed_limit_mps",
-               shortest(mission.speed_limit_mps) +
-                   " cuts the method's noise short: the law commands up to " + needed +
-                   " m/s = u_max_mps " + shortest(law.u_max_mps) +
-                   " + contraction at the farthest corner " + shortest(rounded_up(pull_mps)) +
-                   " + 6 deviations of its noise " + shortest(rounded_up(noise_mps)) + " (" +
-                   noise_text(law, dt_s) + ")",
-               mission.speed_limit_mps < law.u_max_mps
-                   ? "give vehicles that are no faster a law.u_max_mps of at most " +
-                         shortest(mission.speed_limit_mps) + ": even without noise it is cut"
-                   : "write at least " + needed +
-                         ", less noise or a greater dt_s, or accept it: the cuts are counted");
+  findings.add(
+      field,
+      shortest(limit_mps) + " cuts the method's noise short: the law commands up to " + needed +
+          " m/s = u_max_mps " + shortest(law.u_max_mps) + " + contraction at the farthest corner " +
+          shortest(rounded_up(pull_mps)) + " + 6 deviations of its noise " +
+          shortest(rounded_up(noise_mps)) + " (" + noise_text(law, dt_s) + ")",
+      limit_mps < law.u_max_mps
+          ? std::string("give vehicles that are no faster a ") +
+                (field == "world.speed_limit_mps" ? "law." : "") + "u_max_mps of at most " +
+                shortest(limit_mps) + ": even without noise it is cut"
+          : "write at least " + needed +
+                ", less noise or a greater dt_s, or accept it: the cuts are counted");
+}
+
+void warn_of_speed_limits(const Mission& mission, Findings& findings) {
+  if (const auto kind = fastest_kind(mission))
+    warn_of_speed_limit(mission, *kind, "world.speed_limit_mps", findings);
+  for (int kind = 0; kind < std::ssize(mission.kinds); ++kind) {
+    if (mission.kinds[static_cast<std::size_t>(kind)].speed_limit_mps > 0)
+      warn_of_speed_limit(mission, kind, indexed("agents.kind", kind) + ".speed_limit_mps",
+                          findings);
+  }
 }
 
 /// A teammate's last step does not predict its next one if it crosses the domain in a few steps.
@@ -83,7 +104,7 @@ void warn_of_packing(const Mission& mission, Findings& findings) {
   if (share <= kTightPacking) return;
   findings.add("separation.distance_m",
                std::to_string(mission.starts_m.size()) + " agents " +
-                   shortest(start_distance_m(mission)) + " m apart take up " +
+                   spacing_text(mission, mission.starts_m.size()) + " m apart take up " +
                    shortest(rounded_up(100 * share)) +
                    " % of the domain: above 10 % they often block each other",
                "write a smaller distance or fewer agents, or accept it: status and summary say how "
@@ -138,7 +159,7 @@ void warn_of_rare_modes(const Mission& mission, Findings& findings) {
 }  // namespace
 
 void warn(const Mission& mission, Findings& findings) {
-  warn_of_speed_limit(mission, findings);
+  warn_of_speed_limits(mission, findings);
   warn_of_coarse_steps(mission, findings);
   warn_of_packing(mission, findings);
   warn_of_footprints(mission, findings);

@@ -37,13 +37,13 @@ void World::settle() {
   }
   for (Tick tick = question_.before.newest(); tick >= 0 && tick < tick_ && !realtime; ++tick) {
     for (auto& [id, slot] : vehicles_) {
-      drive(slot, tick, false);
+      drive(id, slot, tick, false);
       move(id, slot, tick);
     }
   }
   for (auto& [id, slot] : vehicles_) {
     if (slot.placed) continue;
-    place(slot, place_for(id));
+    place(id, slot, place_for(id));
     slot.placed = true;
   }
 }
@@ -54,16 +54,17 @@ Eigen::Vector3d World::place_for(AgentId id) const {
   const Mission& mission = me_.mission();
   if (!keeps_distance()) return start_of(mission, id);
   const bool begins = tick_ == 0 && !schedule_.published;
-  const double distance_m = begins ? start_distance_m(mission) : join_distance_m(mission);
-  std::vector<Eigen::Vector3d> others_m;
+  const auto distance_m = begins ? start_distance_m : join_distance_m;
+  std::vector<Placed> others;
   for (const auto& [other, slot] : vehicles_) {
-    if (other != id && slot.placed) others_m.push_back(slot.x_m);
+    if (other != id && slot.placed) others.push_back({other, slot.x_m});
   }
   const bool planned = static_cast<std::size_t>(id) < mission.starts_m.size();
-  const bool free = std::ranges::all_of(others_m, [&](const Eigen::Vector3d& other_m) {
-    return (other_m - start_of(mission, id)).norm() >= distance_m;
+  const bool free = std::ranges::all_of(others, [&](const Placed& other) {
+    const double apart_m = (other.position_m - start_of(mission, id)).norm();
+    return apart_m >= distance_m(mission, id, other.id);
   });
-  return planned && free ? start_of(mission, id) : start_beside(mission, id, others_m, distance_m);
+  return planned && free ? start_of(mission, id) : start_beside(mission, id, others, distance_m);
 }
 
 /// Puts a slot where it was at tick_, by its agent's last two commands.
@@ -74,10 +75,11 @@ void World::recall(AgentId id, VehicleSlot& slot) {
   const bool in_a_row =
       slot.command_before && slot.command_before->header.tick + 1 == slot.answered();
   if (in_a_row) {
-    slot.applied_mps = within_speed_limit(mission(), slot.command_before->velocity_mps);
+    slot.applied_mps =
+        within_speed_limit(motion_of(mission(), id), slot.command_before->velocity_mps);
   }
   for (Tick tick = slot.answered(); tick < tick_; ++tick) {
-    drive(slot, tick, realtime);
+    drive(id, slot, tick, realtime);
     move(id, slot, tick);
   }
 }
@@ -88,17 +90,19 @@ void World::on(const WorldState& before, const Arrival&) {
 }
 
 /// All vehicles by where all of them are, so that their order does not count. In lockstep only by
-/// edges and their own limits: agents know all that they need. Who is not driven stands, or brakes.
+/// edges and their own limits, which points do not need: agents know the rest. Who is not driven
+/// stands, or brakes.
 void World::filter_commands() {
-  const double limit_mps = mission().speed_limit_mps;
+  const bool guards = world_guards(mission());
   bodies_.clear();
   for (const auto& [id, slot] : vehicles_) {
-    if (world_guards(mission()))
-      bodies_.push_back({id, slot.x_m, limit_mps, 0, true, slot.applied_mps});
+    const double limit_mps = motion_of(mission(), id).speed_limit_mps;
+    if (guards) bodies_.push_back({id, slot.x_m, limit_mps, 0, true, slot.applied_mps});
   }
   for (auto& [id, slot] : vehicles_) {
-    if (!driven(slot, tick_, true)) continue;
-    const Mover self{id, tick_, slot.x_m, limit_mps, slot.applied_mps};
+    const Motion motion = motion_of(mission(), id);
+    if (!driven(slot, tick_, true) || (motion.is_point() && !guards)) continue;
+    const Mover self{id, tick_, slot.x_m, motion.speed_limit_mps, slot.applied_mps};
     slot.next_mps = filter_->safe(self, slot.next_mps, bodies_).velocity_mps;
   }
 }

@@ -124,8 +124,7 @@ void World::begin(Instant now) {
   if (keeps_distance()) tick_ = std::max(tick_, question_.before.newest());
   tick_ = std::min(tick_, mission().timing.tick_count);  // whatever the roster says
   begun_at_ = tick_;
-  if (world_guards(mission()) || mission().vehicle.kind != VehicleKind::kPoint)
-    filter_.emplace(mission(), 0);
+  if (world_guards(mission()) || any_but_points(mission())) filter_.emplace(mission(), 0);
   if (keeps_distance()) return settle();
   for (auto& [id, slot] : vehicles_) recall(id, slot);
 }
@@ -144,8 +143,8 @@ void World::take_roster() {
     if (entry.active_until >= 0) continue;
     auto [at, is_new] = vehicles_.try_emplace(entry.author.agent);
     if (is_new) {
-      place(at->second,
-            begun_at_ ? place_for(entry.author.agent) : start_of(mission, entry.author.agent));
+      const AgentId id = entry.author.agent;
+      place(id, at->second, begun_at_ ? place_for(id) : start_of(mission, id));
     }
     if (at->second.author != entry.author) {
       at->second.command.reset();
@@ -155,9 +154,9 @@ void World::take_roster() {
   }
 }
 
-void World::place(VehicleSlot& slot, const Eigen::Vector3d& x_m) const {
+void World::place(AgentId id, VehicleSlot& slot, const Eigen::Vector3d& x_m) const {
   slot.x_m = x_m;
-  slot.applied_mps = first_velocity(mission(), x_m);
+  slot.applied_mps = first_velocity(motion_of(mission(), id), x_m);
 }
 
 void World::on(const Command& command, const Arrival&) {
@@ -305,7 +304,7 @@ Eigen::Vector3d World::command_of(const VehicleSlot& slot, Tick tick,
 
 void World::step(bool hold_old_commands) {
   for (auto& [id, slot] : vehicles_) {
-    drive(slot, tick_, hold_old_commands);
+    drive(id, slot, tick_, hold_old_commands);
     if (driven(slot, tick_, hold_old_commands) && slot.next_mps != slot.command->velocity_mps)
       ++counted_.clamped_commands;
   }
@@ -314,13 +313,15 @@ void World::step(bool hold_old_commands) {
   ++tick_;
 }
 
-void World::drive(VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
-  slot.next_mps = executed(mission(), slot.applied_mps, command_of(slot, tick, hold_old_commands));
+void World::drive(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const {
+  slot.next_mps = executed(motion_of(mission(), id), slot.applied_mps,
+                           command_of(slot, tick, hold_old_commands));
 }
 
 void World::move(AgentId id, VehicleSlot& slot, Tick tick) const {
   const Mission& mission = me_.mission();
-  const Eigen::Vector3d mean_mps = mean_velocity(mission, slot.applied_mps, slot.next_mps);
+  const Eigen::Vector3d mean_mps =
+      mean_velocity(motion_of(mission, id), slot.applied_mps, slot.next_mps);
   slot.x_m = reflect(moved(mission, id, tick, slot.x_m, mean_mps), mission.domain);
   slot.applied_mps = slot.next_mps;
 }

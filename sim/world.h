@@ -2,7 +2,7 @@
 // The simulated world: integrates commands, reflects at the edge, publishes states, keeps the tick.
 //
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
-//   v_n is the command, cut to the scenario's speed limit. Where bodies keep a distance, a world in
+//   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
 //   real time then filters all commands together, core/separation.h: held and late ones do not know
 //   where the others have gone.
 //
@@ -105,9 +105,9 @@ class World {
   bool knows_bodies() const;
   void settle();
   Eigen::Vector3d place_for(AgentId id) const;
-  void place(VehicleSlot& slot, const Eigen::Vector3d& x_m) const;
+  void place(AgentId id, VehicleSlot& slot, const Eigen::Vector3d& x_m) const;
   bool keeps_distance() const { return mission().separation.distance_m > 0; }
-  void drive(VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
+  void drive(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   void move(AgentId id, VehicleSlot& slot, Tick tick) const;
   void filter_commands();
   bool everyone_answered() const;
@@ -138,7 +138,7 @@ class World {
   std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
   RecordWindow record_;
   Counted counted_;
-  std::optional<SeparationFilter> filter_;  // of commands, if it guards or vehicles have inertia
+  std::optional<SeparationFilter> filter_;  // of commands, if it guards or some are no points
   std::vector<Neighbour> bodies_;           // of the tick, for the guard
 };
 

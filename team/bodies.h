@@ -38,14 +38,15 @@ class Bodies {
   /// Its parts, in order.
   const std::vector<WorldState>& states() const { return whole_; }
 
-  /// Its vehicles in ascending order of their numbers, each with this speed limit.
-  std::span<const Neighbour> neighbours(double max_speed_mps) {
+  /// Its vehicles in ascending order of their numbers, each with its speed limit in `mission`.
+  std::span<const Neighbour> neighbours(const Mission& mission) {
     neighbours_.clear();
     for (const WorldState& state : whole_) {
       for (int i = 0; i < state.vehicle_count; ++i) {
         const Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(i)];
-        neighbours_.push_back(
-            {vehicle.id, vehicle.position_m, max_speed_mps, 0, true, vehicle.velocity_mps});
+        neighbours_.push_back({vehicle.id, vehicle.position_m,
+                               motion_of(mission, vehicle.id).speed_limit_mps, 0, true,
+                               vehicle.velocity_mps});
       }
     }
     std::sort(neighbours_.begin(), neighbours_.end(),

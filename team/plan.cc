@@ -92,6 +92,13 @@ class PlanWriter {
       fields_[field] += tag(field, kBlock) + varint(bytes.size()) + bytes;
     }
   }
+  /// A block that says nothing is not the same as none.
+  void optional(int field, const std::optional<VehicleLimits>& part, const auto& write) {
+    if (!part) return;
+    PlanWriter block;
+    write(block, *part);
+    value(field, block.bytes());
+  }
   void close(int field, const PlanWriter& block) {
     if (const std::string bytes = block.bytes(); !bytes.empty()) value(field, bytes);
   }
@@ -169,6 +176,11 @@ class PlanReader {
       read(block, kinds.emplace_back());
     }
   }
+  void optional(int field, std::optional<VehicleLimits>& part, const auto& read) const {
+    if (!fields_.contains(static_cast<std::uint64_t>(field))) return;
+    const PlanReader block = open(field);
+    read(block, part.emplace());
+  }
   void close(int, const PlanReader&) const {}
 
  private:
@@ -244,6 +256,12 @@ class PlanFields : public FieldVisitor {
     });
   }
   void kind_name(int field, const char*, auto& name) { wire_.value(field, name); }
+  void own_vehicle(int field, const char*, auto& vehicle) {
+    wire_.optional(field, vehicle, [](auto& block, auto& present) {
+      PlanFields<std::remove_reference_t<decltype(block)>> inner(block);
+      list_fields(inner, present);
+    });
+  }
   void starts(int xy, int z, auto& starts_m) { wire_.places(xy, z, starts_m); }
   void hidden_flag(int field, auto& value) { wire_.value(field, value); }
 

@@ -40,9 +40,7 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
     return stop(follower().plan_problem().value_or(
         "the mission is in lockstep, which robots cannot be: give it pace: REALTIME"));
   }
-  const VehicleLimits& vehicle = me_.mission().vehicle;
-  failed_ = vehicle.kind != VehicleKind::kPoint &&
-            (!drives_unicycles() || vehicle.max_turn_radps > Robot::kTurnLimit_radps);
+  failed_ = !has_vehicles_for(me_.mission());
   if (failed_) {
     return stop(
         "the mission is for other vehicles: give it vehicle { kind: POINT }, or UNICYCLE and at "
@@ -54,6 +52,17 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
   if (world_guards(me_.mission())) guard_.emplace(me_.mission(), 0);
   tick_ = part.header.tick;
   next_tick_ = arrival.now;
+}
+
+/// Whether the robots can move as all kinds of agents expect it.
+bool Driver::has_vehicles_for(const Mission& mission) {
+  bool all = true;
+  for (int kind = 0; kind < std::max<int>(1, static_cast<int>(mission.kinds.size())); ++kind) {
+    const Motion motion = motion_of_kind(mission, kind);
+    all = all && (motion.is_point() || (drives_unicycle(motion) &&
+                                        motion.vehicle.max_turn_radps <= Robot::kTurnLimit_radps));
+  }
+  return all;
 }
 
 /// Every member gets a robot. Here they are made where the plan says that they begin; yours stand
@@ -83,7 +92,8 @@ void Driver::on(const Command& command, const Arrival&) {
   if (halt) halt_robot(drive);
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
   drive.answered = command.header.tick;
-  const Eigen::Vector3d allowed_mps = within_speed_limit(me_.mission(), command.velocity_mps);
+  const Eigen::Vector3d allowed_mps =
+      within_speed_limit(motion_of(me_.mission(), command.header.sender), command.velocity_mps);
   if (allowed_mps != command.velocity_mps) ++clamped_commands_;
   drive.commanded_mps = allowed_mps;
   if (!guard_) drive.robot.drive(allowed_mps);
@@ -91,12 +101,13 @@ void Driver::on(const Command& command, const Arrival&) {
 
 /// With all places known, once a tick: what one robot may do depends on where the others are.
 void Driver::hold_apart() {
-  const double limit_mps = me_.mission().speed_limit_mps;
+  const auto limit_of = [&](AgentId id) { return motion_of(me_.mission(), id).speed_limit_mps; };
   std::vector<Neighbour> bodies;
   for (const auto& [id, drive] : drives_)
     bodies.push_back(
-        {id, drive.robot.position_m(), limit_mps, 0, true, drive.robot.velocity_mps()});
+        {id, drive.robot.position_m(), limit_of(id), 0, true, drive.robot.velocity_mps()});
   for (auto& [id, drive] : drives_) {
+    const double limit_mps = limit_of(id);
     const Mover self{id, tick_, drive.robot.position_m(), limit_mps, drive.robot.velocity_mps()};
     const bool stands = drive.commanded_mps.isZero(0);
     drive.robot.drive(
@@ -132,8 +143,8 @@ void Driver::pass_tick() {
   }
   if (guard_) hold_apart();
   for (auto& [id, drive] : drives_) {
-    if (drives_unicycles()) {
-      drive.robot.move_as_unicycle(me_.mission());
+    if (const Motion motion = motion_of(me_.mission(), id); drives_unicycle(motion)) {
+      drive.robot.move_as_unicycle(motion);
     } else {
       drive.robot.move(timing.dt_s);
     }

@@ -65,7 +65,10 @@ class Driver {
   void take_roster();
   void pass_tick();
   void hold_apart();
-  bool drives_unicycles() const { return me_.mission().vehicle.kind == VehicleKind::kUnicycle; }
+  static bool has_vehicles_for(const Mission& mission);
+  static bool drives_unicycle(const Motion& motion) {
+    return motion.vehicle.kind == VehicleKind::kUnicycle;
+  }
   void say_where(Outbox& out);
 
   Participant me_;

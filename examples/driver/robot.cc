@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vehicle.h"
-
 namespace ergocast::example {
 
 void Robot::move(double dt_s) {
@@ -26,10 +24,10 @@ void Robot::move(double dt_s) {
   position_m_ += velocity_mps_ * dt_s;
 }
 
-void Robot::move_as_unicycle(const Mission& mission) {
+void Robot::move_as_unicycle(const Motion& motion) {
   const Eigen::Vector3d next_mps =
-      executed(mission, velocity_mps_, within_speed(wanted_mps_, speed_limit_mps_));
-  position_m_ += mean_velocity(mission, velocity_mps_, next_mps) * mission.timing.dt_s;
+      executed(motion, velocity_mps_, within_speed(wanted_mps_, speed_limit_mps_));
+  position_m_ += mean_velocity(motion, velocity_mps_, next_mps) * motion.dt_s;
   velocity_mps_ = next_mps;
 }
 

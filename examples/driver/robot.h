@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "core/mission.h"
+#include "core/vehicle.h"
 
 namespace ergocast::example {
 
@@ -31,7 +31,7 @@ class Robot {
 
   /// Lets a tick pass as agents of unicycles expect it, core/vehicle.h.
   /// @pre the mission's unicycles turn no faster than kTurnLimit_radps
-  void move_as_unicycle(const Mission& mission);
+  void move_as_unicycle(const Motion& motion);
 
   static constexpr double kTurnLimit_radps = 2;
 

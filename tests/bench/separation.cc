@@ -36,7 +36,7 @@ void KeepApart(benchmark::State& state) {
   for (auto& others : situations) {
     for (AgentId id = 1; id <= teammates; ++id) {
       const double angle = 2 * M_PI * share(draw);
-      const double rho_m = filter.contact_m(kSpeed_mps) + 2 * error_m + 8 * share(draw);
+      const double rho_m = filter.contact_m(0, id) + 2 * error_m + 8 * share(draw);
       const Eigen::Vector3d away(std::cos(angle), std::sin(angle), 0);
       others.push_back({id, Eigen::Vector3d(1000, 1000, 0) + rho_m * away, kSpeed_mps});
     }
@@ -61,7 +61,7 @@ void KeepWaysApart(benchmark::State& state, const VehicleLimits& vehicle) {
   std::mt19937 draw(1);
   std::uniform_real_distribution<double> share(-1, 1);
   const bool brakes = vehicle.kind == VehicleKind::kAcceleration;
-  const double middle_m = brakes ? 70 : filter.contact_m(20) + 2, spread_m = brakes ? 20 : 2;
+  const double middle_m = brakes ? 70 : filter.contact_m(0, 1) + 2, spread_m = brakes ? 20 : 2;
   std::vector<Neighbour> others;
   for (AgentId id = 1; id <= state.range(0); ++id) {
     const double angle = M_PI * share(draw);

@@ -86,8 +86,7 @@ namespace {
 
 /// What a filter was made for, and what it was told before.
 struct Filtered {
-  double dt_s;
-  double error_m;                                                  ///< of positions
+  Mission mission;
   std::map<AgentId, std::map<Tick, std::vector<Neighbour>>> told;  // of each body
 };
 std::map<const SeparationFilter*, Filtered> filtered;
@@ -107,6 +106,23 @@ std::vector<Neighbour> old_news(SeparationFilter* self, const Mover& mover,
 /// A number of a pair of bodies that holds for a second.
 Tick draw_of(const Mover& mover, const Neighbour& other) {
   return mover.tick / 10 * 7 + mover.id * 5 + other.id * 3;
+}
+
+/// What the filter is told of another kind of body than its own.
+Neighbour misjudged_kind(const Mission& mission, const Mover& mover, const Neighbour& other) {
+  const Motion motion = motion_of(mission, other.id);
+  Neighbour told = other;
+  if (bug("a neighbour needs no way to brake") && motion.has_inertia()) told.velocity_mps.setZero();
+  if (bug("a neighbour's loiter circle is a point")) {
+    const Eigen::Vector3d center_m = anchor_m(motion, other.position_m, other.velocity_mps);
+    told.position_m += loiter_radius_m(motion) * (center_m - mover.position_m).normalized();
+  }
+  if (bug("a neighbour is taken for another vehicle")) {
+    const auto team = static_cast<AgentId>(mission.starts_m.size());
+    do told.id = (told.id + 1) % team;
+    while (told.id == mover.id);
+  }
+  return told;
 }
 
 /// What the filter is told of the others instead.
@@ -131,14 +147,16 @@ std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
     std::erase_if(told, [&](const Neighbour& other) { return draw_of(mover, other) % 3 == 0; });
   }
   for (Neighbour& other : told) {
+    if (other.id != mover.id) other = misjudged_kind(made.mission, mover, other);
     const Eigen::Vector3d y_m = other.position_m - mover.position_m;
     if (bug("uncertainty narrows no direction") && y_m.norm() > 0) {
-      const double near_m = other.max_speed_mps * made.dt_s * kOld;
+      const double near_m = other.max_speed_mps * made.mission.timing.dt_s * kOld;
       other.position_m -= y_m * std::min(1.0, near_m / y_m.norm());
     }
     if (bug("nobody knows of position errors")) {
       const double angle = static_cast<double>(draw_of(mover, other));
-      other.position_m += made.error_m * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+      other.position_m += made.mission.separation.position_error_m *
+                          Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
     }
   }
   return told;
@@ -148,11 +166,11 @@ std::vector<Neighbour> misjudged(SeparationFilter* self, const Mover& mover,
 
 void bug_make_filter(SeparationFilter* self, const Mission& mission, Tick hold_ticks) {
   Mission changed = mission;
-  filtered[self] = {mission.timing.dt_s, mission.separation.position_error_m, {}};
+  filtered[self] = {mission, {}};
   if (bug("no command is held")) hold_ticks = 0;
   if (bug("a body looks everywhere at once")) changed.vehicle = {};
   if (bug("a loiter circle is a point"))
-    changed.separation.distance_m -= 2 * loiter_radius_m(mission);
+    changed.separation.distance_m -= 2 * loiter_radius_m(motion_of(mission, 0));
   if (bug("nobody knows of position errors")) changed.separation.position_error_m = 0;
   if (bug("edges count afterwards")) {
     changed.domain.origin_m.head<2>().array() -= 1000;

@@ -290,11 +290,11 @@ Mistake of_grid(const std::string& file, const std::string& said,
 std::vector<Mistake> mistakes_of_kinds() {
   const std::string from = "starts { x_m: 10 y_m: 20 }";
   const auto kinds = [&](const std::string& first, const std::string& second,
-                         const std::string& said) {
+                         const std::string& said, bool has_line = true) {
     return Mistake{from,
                    from + " random_count: 1 kind { name: \"a\" count: 1 " + first + " } kind { " +
                        second + " }",
-                   said};
+                   said, has_line};
   };
   const std::string good = "name: \"b\" count: 1";
   return {
@@ -319,6 +319,19 @@ std::vector<Mistake> mistakes_of_kinds() {
             "agents.kind[0].noise_ceiling: 200 makes a step of the greatest noise"),
       kinds("band { from: 3 to: 2 }", good, "agents.kind[0].band: covers no mode"),
       kinds("band { from: 100 }", good, "agents.kind[0].band: covers no mode"),
+      kinds("vehicle { kind: UNICYCLE }", good,
+            "agents.kind[0].vehicle.max_turn_radps: is missing"),
+      kinds("vehicle { min_speed_mps: 1 }", good,
+            "agents.kind[0].vehicle.min_speed_mps: has no effect with kind: POINT"),
+      kinds("vehicle { kind: UNICYCLE max_turn_radps: 1 }", good,
+            "world.speed_limit_mps: is missing, and all kinds but POINT rely on it", false),
+      kinds("speed_limit_mps: 20 vehicle { kind: ACCELERATION max_acceleration_mps2: 5 }", good,
+            "agents.kind[0].vehicle.max_acceleration_mps2: 5 stops a vehicle after"),
+      kinds("speed_limit_mps: 3 vehicle { kind: FIXED_WING max_turn_radps: 1 min_speed_mps: 4 }",
+            good, "agents.kind[0].vehicle.min_speed_mps: 4 is not below law.u_max_mps and agents"),
+      kinds(
+          "speed_limit_mps: 20 vehicle { kind: FIXED_WING max_turn_radps: 0.16 min_speed_mps: 2 }",
+          good, "agents.starts[0]: is nearer to an edge than"),
       kinds("", good + " } " + repeated(15, "kind { name: \"c\" count: 1 } ") + " kind { " + good,
             "agents.kind: 18 kinds are above the limit 16"),
   };
@@ -547,7 +560,8 @@ agents {
   starts { x_m: 10 y_m: 20 z_m: 20 } random_count: 1 quorum: 1
   kind {
     name: "all" count: 2 u_max_mps: 5 noise_intensity: 0.1 noise_ceiling: 2 footprint_sigma_m: 1 quality: 1
-    band { from: 0 to: 9 }
+    band { from: 0 to: 9 } vehicle { kind: ACCELERATION max_acceleration_mps2: 900 }
+    speed_limit_mps: 90
   }
 }
 world { speed_limit_mps: 100 }

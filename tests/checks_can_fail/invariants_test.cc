@@ -56,6 +56,17 @@ const char* const kUnsureCrowd =
     "separation { distance_m: 20 position_error_m: 1 }\nworld { speed_limit_mps: 20 }\n"
     "goal_ergodic_metric: 1";
 
+/// Every kind of vehicle, each as fast as it likes.
+const char* const kMixedCrowd =
+    "separation { distance_m: 12 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
+    "agents { kind { name: \"a\" count: 1 vehicle { kind: FIXED_WING max_turn_radps: 1 "
+    "min_speed_mps: 5 } } "
+    "kind { name: \"b\" count: 1 vehicle { kind: ACCELERATION max_acceleration_mps2: 8 } } "
+    "kind { name: \"c\" count: 1 vehicle { kind: UNICYCLE max_turn_radps: 1 } speed_limit_mps: 12 "
+    "} "
+    "kind { name: \"d\" count: 1 } }\n"
+    "target { gaussians { mean_x_m: 50 mean_y_m: 50 sigma_m: 3 weight: 20 } }";
+
 const char* const kTwoKinds =
     "agents { kind { name: \"a\" count: 2 footprint_sigma_m: 20 quality: 0.5 } "
     "kind { name: \"b\" count: 2 footprint_sigma_m: 5 } }";
@@ -78,6 +89,10 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "a loiter circle is a point", "", kCrowdWithWings},
     {Invariant::kDistanceKept, "a body needs no way to brake", "", kCrowdWithWings},
     {Invariant::kDistanceKept, "nobody knows of position errors", "", kUnsureCrowd},
+    {Invariant::kDistanceKept, "a body takes the whole gap", "", kMixedCrowd},
+    {Invariant::kDistanceKept, "a neighbour needs no way to brake", "", kMixedCrowd},
+    {Invariant::kDistanceKept, "a neighbour's loiter circle is a point", "", kMixedCrowd},
+    {Invariant::kDistanceKept, "a neighbour is taken for another vehicle", "", kMixedCrowd},
     {Invariant::kSumsBounded, "a sum runs away"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},

@@ -312,6 +312,24 @@ TEST(CoordinatorAdmits, NoKindThatTheMissionDoesNotHave) {
   EXPECT_TRUE(of_alike.roster().empty());
 }
 
+TEST(CoordinatorAdmits, NobodyToABodyThatIsAnotherVehicleThanItsKinds) {
+  Mission mission = mission_of_two_kinds();
+  mission.speed_limit_mps = 20;
+  mission.kinds[1].speed_limit_mps = 10;
+  Coordinator coordinator = coordinator_of(mission);
+  give(coordinator, hello_of_kind(1, 11, "fine"), at(0s));
+  EXPECT_TRUE(coordinator.roster().empty());
+  ASSERT_EQ(coordinator.unknown_kinds().size(), 1u);
+  EXPECT_NE(coordinator.unknown_kinds().begin()->second.find("cannot drive number 1"),
+            std::string::npos);
+  for (const Incarnation life : {12, 13}) {
+    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(0s));
+    give(coordinator, hello_of_kind(kUnassigned, life, "fine"), at(1s));
+  }
+  ASSERT_EQ(coordinator.roster().size(), 1u) << "beyond the plan are vehicles of the first kind";
+  EXPECT_EQ(coordinator.roster()[0].author, (Author{3, 12}));
+}
+
 TEST(CoordinatorAdmits, ASuccessorOfAnotherKindBesideItsPredecessorsEntry) {
   Coordinator coordinator = running_coordinator(mission_of_two_kinds());
   give(coordinator, hello_of_kind(0, 99, "fine"), at(60s));

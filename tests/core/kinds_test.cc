@@ -10,6 +10,7 @@
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/mission_limits.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
@@ -150,12 +151,37 @@ TEST(Kinds, ThePlanGivesNumbersInTheOrderOfTheKinds) {
   EXPECT_EQ(planned_kind(mission, 2), 1);
   EXPECT_EQ(planned_kind(mission, 3), 0) << "beyond the plan";
   EXPECT_EQ(kind_named(mission, "fine"), 1);
-  EXPECT_EQ(why_not_of_kind(mission, "fine"), std::nullopt);
-  EXPECT_EQ(why_not_of_kind(mission, ""), std::nullopt);
-  EXPECT_EQ(why_not_of_kind(mission, "slow"),
+  EXPECT_EQ(why_not_of_kind(mission, "fine", 0), std::nullopt);
+  EXPECT_EQ(why_not_of_kind(mission, "", kUnassigned), std::nullopt);
+  EXPECT_EQ(why_not_of_kind(mission, "slow", kUnassigned),
             "the mission has no kind \"slow\": its kinds are fast, fine");
-  EXPECT_EQ(why_not_of_kind(Mission(), "slow"),
+  EXPECT_EQ(why_not_of_kind(Mission(), "slow", 0),
             "the mission has no kind \"slow\": all its agents are alike, so name none");
+}
+
+TEST(Kinds, DriveOnlyBodiesThatMoveAsTheirs) {
+  Mission mission = mission_of(true);
+  mission.speed_limit_mps = 20;
+  EXPECT_TRUE(can_drive(mission, 1, 0)) << "both move alike";
+  mission.kinds[1].speed_limit_mps = 10;
+  EXPECT_EQ(motion_of(mission, 0).speed_limit_mps, 20);
+  EXPECT_EQ(motion_of(mission, 2).speed_limit_mps, 10);
+  EXPECT_EQ(motion_of(mission, 3).speed_limit_mps, 20) << "beyond the plan";
+  EXPECT_EQ(fastest_mps(mission), 20);
+  EXPECT_FALSE(can_drive(mission, 1, 0));
+  EXPECT_FALSE(can_drive(mission, 1, 3));
+  EXPECT_EQ(why_not_of_kind(mission, "fine", 2), std::nullopt);
+  EXPECT_EQ(why_not_of_kind(mission, "fine", kUnassigned), std::nullopt);
+  EXPECT_EQ(
+      why_not_of_kind(mission, "fine", 0),
+      "an agent of the kind \"fine\" cannot drive number 0: that is a vehicle of the kind fast");
+  mission.kinds[1] = {"fine", 1, mission.kinds[1].u_max_mps};
+  mission.kinds[1].vehicle = {VehicleKind::kAcceleration, 5};
+  EXPECT_TRUE(any_but_points(mission));
+  EXPECT_TRUE(motion_of(mission, 0).is_point());
+  EXPECT_TRUE(motion_of(mission, 2).has_inertia());
+  EXPECT_EQ(motion_of(mission, 2).speed_limit_mps, 20);
+  EXPECT_FALSE(can_drive(mission, 0, 2));
 }
 
 TEST(Kinds, AMissionSaysNoImpossibleOnes) {

@@ -47,6 +47,7 @@ class Count : public FieldVisitor {
   void starts(auto&&...) { ++fields; }
   void kinds(auto&&...) { ++fields; }
   void kind_name(auto&&...) { ++fields; }
+  void own_vehicle(auto&&...) { ++fields; }
   void hidden_flag(auto&&...) { ++fields; }
 };
 

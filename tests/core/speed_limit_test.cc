@@ -6,15 +6,15 @@
 #include <cmath>
 #include <limits>
 
-#include "core/mission.h"
+#include "core/vehicle.h"
 
 namespace ergocast {
 namespace {
 
-Mission limited(double speed_limit_mps) {
-  Mission mission;
-  mission.speed_limit_mps = speed_limit_mps;
-  return mission;
+Motion limited(double speed_limit_mps) {
+  Motion motion;
+  motion.speed_limit_mps = speed_limit_mps;
+  return motion;
 }
 
 bool same_bits(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -41,11 +41,11 @@ TEST(SpeedLimit, CutsTheRestAndKeepsTheDirection) {
 }
 
 TEST(SpeedLimit, InSpaceCountsAllThreeAxes) {
-  Mission mission = limited(7);
-  mission.domain.size_m.z() = 1;
+  Motion motion = limited(7);
+  motion.domain.size_m.z() = 1;
   const Eigen::Vector3d allowed(2, 3, 6), fast(4, 6, 12);
-  EXPECT_EQ(within_speed_limit(mission, allowed), allowed);
-  EXPECT_LT((within_speed_limit(mission, fast) - allowed).norm(), 1e-14);
+  EXPECT_EQ(within_speed_limit(motion, allowed), allowed);
+  EXPECT_LT((within_speed_limit(motion, fast) - allowed).norm(), 1e-14);
 }
 
 TEST(SpeedLimit, InAPlaneNothingMovesAlongZ) {

@@ -196,6 +196,7 @@ Mission mission_of(const VehicleLimits& vehicle) {
 
 TEST(ExampleDriver, MovesUnicyclesAsTheirAgentsExpectIt) {
   const Mission mission = mission_of(VehicleLimits{VehicleKind::kUnicycle, 0, 2});
+  const Motion motion = motion_of(mission, 1);
   Driver driver = running_driver(mission, 20);
   state_at(driver, at(0s));
   Eigen::Vector3d x_m = driver.robot(1).position_m(), v_mps(0, 0, 0);
@@ -203,8 +204,8 @@ TEST(ExampleDriver, MovesUnicyclesAsTheirAgentsExpectIt) {
     const Eigen::Vector3d wanted_mps(-3, 4, 0);
     give(driver, command_of(1, tick, wanted_mps), at(100ms * tick + 50ms));
     const WorldState state = state_at(driver, at(100ms * (tick + 1)));
-    const Eigen::Vector3d next_mps = executed(mission, v_mps, wanted_mps);
-    x_m += mean_velocity(mission, v_mps, next_mps) * 0.1;
+    const Eigen::Vector3d next_mps = executed(motion, v_mps, wanted_mps);
+    x_m += mean_velocity(motion, v_mps, next_mps) * 0.1;
     v_mps = next_mps;
     EXPECT_EQ(state.vehicles[1].velocity_mps, v_mps);
     EXPECT_EQ(state.vehicles[1].position_m, x_m);

@@ -69,7 +69,7 @@ TEST(WorldKeepsBodiesApart, ANewcomerAppearsWhereThereIsRoom) {
   give(world, mission_part(1, MissionState::kRunning, roster_of(2)), at(3ms));
   const WorldState state = state_after(world, at(1s));
   ASSERT_EQ(state.vehicle_count, 2);
-  EXPECT_GE(nearest_m(state), join_distance_m(mission));
+  EXPECT_GE(nearest_m(state), join_distance_m(mission, 1, 0));
   EXPECT_NE(place(state, 1), mission.starts_m[1]);
 }
 

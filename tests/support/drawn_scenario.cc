@@ -221,6 +221,8 @@ const std::map<std::string, Rule>& rules() {
       {"Kind.footprint_sigma_m", may(spread(0.5, 40))},
       {"Kind.quality", may(spread(0.1, 5))},
       {"Kind.band", may(draw_block)},
+      {"Kind.vehicle", may(draw_block)},
+      {"Kind.speed_limit_mps", may(spread(5, 20))},
       {"Band.from", may(number(0, 4))},
       {"Band.to", may(number(5, 20))},
       {"Start.x_m", must(kPlace)},
@@ -365,17 +367,29 @@ void agree_on_kinds(int team, proto::Agents& agents) {
   }
 }
 
-/// Each kind has limits of its own. All but points need a speed limit and bodies that know each
-/// other, and a plane if they turn.
-void agree_on_vehicle(proto::Scenario& scenario) {
-  proto::Vehicle& vehicle = *scenario.mutable_vehicle();
+/// Each kind has limits of its own, and belongs to a plane if it turns.
+void agree(bool planar, proto::Vehicle& vehicle) {
   const bool turns =
       vehicle.kind() == proto::Vehicle::UNICYCLE || vehicle.kind() == proto::Vehicle::FIXED_WING;
-  if (turns && scenario.domain().has_size_z_m()) vehicle.set_kind(proto::Vehicle::ACCELERATION);
+  if (turns && !planar) vehicle.set_kind(proto::Vehicle::ACCELERATION);
   if (vehicle.kind() != proto::Vehicle::ACCELERATION) vehicle.clear_max_acceleration_mps2();
   if (vehicle.kind() != proto::Vehicle::FIXED_WING) vehicle.clear_min_speed_mps();
   if (!turns || vehicle.kind() == proto::Vehicle::ACCELERATION) vehicle.clear_max_turn_radps();
-  if (vehicle.kind() == proto::Vehicle::POINT) return;
+}
+
+/// All but points need a speed limit and bodies that know each other.
+void agree_on_vehicles(proto::Scenario& scenario) {
+  const bool planar = !scenario.domain().has_size_z_m();
+  bool points = true;
+  const auto take = [&](proto::Vehicle& vehicle) {
+    agree(planar, vehicle);
+    points = points && vehicle.kind() == proto::Vehicle::POINT;
+  };
+  if (scenario.has_vehicle()) take(*scenario.mutable_vehicle());
+  for (proto::Kind& kind : *scenario.mutable_agents()->mutable_kind()) {
+    if (kind.has_vehicle()) take(*kind.mutable_vehicle());
+  }
+  if (points) return;
   scenario.mutable_world()->set_speed_limit_mps(20);
   if (!scenario.has_separation()) return;
   const double distance_m = scenario.separation().distance_m();
@@ -413,7 +427,7 @@ void agree(proto::Scenario& scenario) {
   const int team = agents.starts_size() + agents.random_count();
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));
   agree_on_kinds(team, agents);
-  if (scenario.has_vehicle()) agree_on_vehicle(scenario);
+  agree_on_vehicles(scenario);
   if (scenario.has_separation()) agree_on_distance(scenario);
 }
 

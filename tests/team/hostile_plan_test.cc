@@ -249,6 +249,16 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m = with_wings(m), m.vehicle.max_turn_radps = 0.7; },  // circles of 0.7 m
       [](Mission& m) { m = with_wings(m), m.starts_m[0].x() = -2.99; },       // too near an edge
       [](Mission& m) { m = with_wings(rich_mission_in_space()); },
+      [](Mission& m) { m.kinds[1].vehicle->max_turn_radps = 1; },  // of a point
+      [](Mission& m) { m.kinds[1].vehicle->kind = VehicleKind::kAcceleration; },
+      [](Mission& m) {
+        m.kinds[1].vehicle = {VehicleKind::kAcceleration, 1000};
+      },  // and errors of places
+      [](Mission& m) { m = with_wings(m), m.kinds[1].vehicle->min_speed_mps = 0; },
+      [](Mission& m) { m = with_wings(m), m.kinds[0].speed_limit_mps = 0.5; },  // as slow as it is
+      [](Mission& m) { m.kinds[0].speed_limit_mps = -1; },
+      [](Mission& m) { m.kinds[0].speed_limit_mps = 7; },  // too slow for the disturbance
+      [](Mission& m) { m.speed_limit_mps = 0; },           // which the second kind relies on
       [](Mission& m) {
         m.separation = {}, m.vehicle = {VehicleKind::kAcceleration, 1e-3};
       },

@@ -66,6 +66,8 @@ inline Mission rich_mission() {
   mission.starts_m = {{17, 20, 0}, {18, 21, 0}};
   mission.kinds = {{"first", 1, 5.25, 0.5, 1.25, 2.5, 0.7, 1, 2.25},
                    {"second-kind", 1, 4.75, 0.625, 1.375, 0, 1.3, 0.5, 0}};
+  mission.kinds[0].speed_limit_mps = 7.5;
+  mission.kinds[1].vehicle = VehicleLimits();  // a point: not the same as none
   mission.quorum = 2;
   mission.forget_silent_after_s = 12;
   mission.goal_ergodic_metric = 0.03;
@@ -98,6 +100,7 @@ inline Mission rich_mission_in_space() {
 /// Of vehicles that are no points, which know where all others are.
 inline Mission with_inertia(Mission mission) {
   mission.vehicle = {VehicleKind::kAcceleration, 11};
+  mission.kinds[1].vehicle = {VehicleKind::kAcceleration, 12.5};
   mission.separation = {};
   mission.separation.distance_m = 0.65;
   mission.separation.guard = true;
@@ -108,6 +111,7 @@ inline Mission with_inertia(Mission mission) {
 inline Mission with_wings(Mission mission) {
   mission = with_inertia(std::move(mission));
   mission.vehicle = {VehicleKind::kFixedWing, 0, 13, 0.5};
+  mission.kinds[1].vehicle = {VehicleKind::kFixedWing, 0, 14, 0.25};
   return mission;
 }
 

@@ -9,6 +9,7 @@
 #include "core/geometry.h"
 #include "core/noise.h"
 #include "core/vectorized.h"
+#include "core/vehicle.h"
 
 namespace ergocast::studies {
 namespace {
@@ -143,7 +144,8 @@ void PlanTeam::command(Agent& agent) {
   if (agent.outlook.durations_s.front() > 0) {
     agent.planner.improve(agent.outlook, agent.x_m, tick_ > 1 && tick_ >= trusted_from_);
   }
-  agent.v_mps = within_speed_limit(mission_, law_mps - u_mps + agent.planner.nodes().col(0));
+  agent.v_mps = within_speed_limit(motion_of(mission_, agent.id),
+                                   law_mps - u_mps + agent.planner.nodes().col(0));
 }
 
 void PlanTeam::move(Agent& agent) {
