@@ -205,7 +205,8 @@ TEST(Separation, LeavesWhatItHasAllowed) {
       const bool stands = i % 2 == 0;  // at the edge
       Mover self{0, i, {stands ? 0 : 6 + 4 * within(random), 500, 0}, 40};
       self.velocity_mps = drawn(stands ? 2e-8 : 4);
-      self.velocity_mps = executed(mission, self.velocity_mps, self.velocity_mps);
+      self.velocity_mps =
+          executed(motion_of(mission, self.id), self.velocity_mps, self.velocity_mps);
       const Eigen::Vector3d away_m = Eigen::Vector3d(50, 0, 0) + drawn(15);
       const std::vector<Neighbour> others = {{1, self.position_m + away_m, 40}};
       const Eigen::Vector3d allowed_mps = filter.safe(self, drawn(60), others).velocity_mps;
