@@ -192,7 +192,7 @@ TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
         // One of them is not heard at every broadcast, and one each tick.
         if (id == 0 || (tick % 5 != 0 && id != 3) || (tick % 10 == 5 && id == 1)) continue;
         for (int b = 0; b < own.block_count(); ++b) {
-          if (b > 0 && factor > 1 && tick % 4 == 2) continue;
+          if (b > 0 && mission.timing.high_mode_period_factor > 1 && tick % 4 == 2) continue;
           Contribution said = theirs.block(test::author_of(id), b);
           said.header.tick = tick;
           said.next_broadcast_tick = tick + 5;
