@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "core/mission.h"
 #include "core/require.h"
@@ -41,8 +42,9 @@ BlockLayout::BlockLayout(const Mission& mission)
   block_count_ = block_count_of(mission);
   mode_by_rank_.resize(static_cast<std::size_t>(mode_count_));
   std::iota(mode_by_rank_.begin(), mode_by_rank_.end(), 0);
-  std::ranges::stable_sort(mode_by_rank_, {},
-                           [&](int mode) { return squared_wave_number(mission.basis, mode); });
+  std::ranges::sort(mode_by_rank_, {}, [&](int mode) {
+    return std::pair(squared_wave_number(mission.basis, mode), mode);
+  });
 }
 
 BlockLayout::Slots BlockLayout::slots_of(int block) const {
