@@ -31,11 +31,11 @@ const Coefficients kNoCoverage;
 
 }  // namespace
 
-Agent::InMission::InMission(const Mission& mission, const RosterEntry& self)
+Agent::InMission::InMission(const Mission& mission, const RosterEntry& self, Tick joined)
     : active_from(self.active_from),
       kind(self.kind),
       sensors(mission),
-      table(mission.basis, mission.timing.dt_s, self.active_from),
+      table(mission.basis, mission.timing.dt_s, joined),
       controller(mission, self.kind),
       anti_entropy(self.author, mission.seed, mission.timing.dt_s),
       foreseen(Coefficients::Zero(mission.basis.mode_count())),
@@ -48,6 +48,7 @@ Agent::InMission::InMission(const Mission& mission, const RosterEntry& self)
   }
   if (filters_commands(mission, self.author.agent))
     separation.emplace(mission, unguarded_hold_ticks(mission));
+  if (follows_walls(mission)) follower.emplace(mission, self.author.agent);
   table.add_row(self.author);  // before any other incarnation could take its place
   table.set_quality(self.author, sensors.of(self.kind).quality);
   published.resize(static_cast<std::size_t>(table.block_count()));
@@ -93,16 +94,25 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
   }
   if (auto why = why_not_of_kind(mission(), kind_, requested_id_))
     return finish(true, *std::move(why));
+  note_roster();
   const RosterEntry* own = own_entry();
   if (own == nullptr) return;
   if (const auto why = evicted(std::max<Tick>(tick(), 0))) return finish(true, *why);
   if (std::holds_alternative<Joining>(state_)) {
     me_.set_id(own->author.agent);
     radio_ = RadioRange(mission().radio_range_m);
-    state_.emplace<InMission>(mission(), *own);
+    state_.emplace<InMission>(mission(), *own, me_.counted(own->active_from));
+    note_roster();
   }
   std::optional<Instant>& running_since = in_mission()->running_since;
   if (!running_since && follower().state() == MissionState::kRunning) running_since = arrival.now;
+}
+
+/// A control step allocates nothing.
+void Agent::note_roster() {
+  InMission* const flight = in_mission();
+  if (flight == nullptr || follower().holds().empty()) return;
+  flight->held_roster = in_counted_ticks(follower().roster(), follower().holds());
 }
 
 /// Why it is no member at `tick` any more, if so.
@@ -153,8 +163,9 @@ std::int64_t Agent::max_steps(const InMission& flight, const RosterEntry& author
     const double unheard_s = std::chrono::duration<double>(now - heard).count();
     lead += static_cast<Tick>(2 * unheard_s * timing.realtime_factor / timing.dt_s);
   }
-  const Tick current = tick + 1;
-  return lead + (author.active_until < 0 ? current : std::min(current, author.active_until + 1));
+  const Tick current = me_.counted(tick) + 1;
+  return lead + (author.active_until < 0 ? current
+                                         : std::min(current, me_.counted(author.active_until) + 1));
 }
 
 void Agent::on(const Contribution& theirs, const Arrival& arrival) {
@@ -178,7 +189,7 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
       return count_refused(Refusal::kEncoding);
     case Merge::kNewer:
       flight->table.set_quality(theirs.author(), flight->sensors.of(entry->kind).quality);
-      flight->news[theirs.author()] = flight->step.tick;
+      flight->news[theirs.author()] = flight->step.counted;
       return;
     case Merge::kStale:
       return;
@@ -189,7 +200,7 @@ void Agent::on(const Digest& theirs, const Arrival& arrival) {
   InMission* const flight = in_mission();
   if (flight == nullptr || !arrival.fresh || me_.member(theirs.header) == nullptr) return;
   flight->anti_entropy.on(theirs, flight->table, follower().roster(), arrival.now,
-                          flight->step.tick);
+                          flight->step.counted);
 }
 
 void Agent::on(const WorldState& world, const Arrival& arrival) {
@@ -317,14 +328,15 @@ std::int64_t Agent::lost() const {
   return lost;
 }
 
-/// Ticks since the last news of the teammate that we know least of.
+/// Ticks that count since the last news of the teammate that we know least of.
 Tick Agent::oldest_news(const InMission& flight) const {
   Tick oldest = 0;
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(flight.step.tick)) continue;
     const Tick* const news = flight.news.find(entry.author);
     const Tick last = news == nullptr ? -1 : *news;
-    oldest = std::max(oldest, flight.step.tick - std::max(last, entry.active_from - 1));
+    const Tick joined = me_.counted(entry.active_from);
+    oldest = std::max(oldest, flight.step.counted - std::max(last, joined - 1));
   }
   return oldest;
 }

@@ -22,6 +22,7 @@
 #include "core/ids.h"
 #include "core/kinds.h"
 #include "core/separation.h"
+#include "core/wall_following.h"
 #include "team/author_map.h"
 #include "team/bodies.h"
 #include "team/deadline.h"
@@ -72,6 +73,15 @@ class Agent {
   Author author() const { return me_.author(); }
   AgentPhase phase() const;
   Tick tick() const { return flight() ? flight()->step.tick : -1; }
+  /// Whether the mission was paused at tick(), as far as this agent knew when it began that.
+  bool held() const { return flight() != nullptr && flight()->step.held; }
+  /// The number of tick() among those that count.
+  Tick counted_tick() const { return flight() ? flight()->step.counted : -1; }
+  /// The roster in ticks that count.
+  const std::vector<RosterEntry>& counted_roster() const {
+    const bool same = follower().holds().empty() || flight() == nullptr;
+    return same ? follower().roster() : flight()->held_roster;
+  }
   /// Null before it is admitted.
   const CoverageTable* coverage() const { return flight() ? &flight()->table : nullptr; }
   /// c_k of the rows that it holds, added up when it is asked for: a law that looks ahead needs
@@ -104,6 +114,8 @@ class Agent {
   /// A tick of the world.
   struct Step {
     Tick tick = -1, answered = -1;
+    Tick counted = -1;                 // its number among those that count
+    bool held = false;                 // the mission is paused: it does not count
     std::int64_t roster_revision = 0;  // of the world, at `tick`
     Eigen::Vector3d x_m{0, 0, 0};      // in the domain
     Eigen::Vector3d body_m{0, 0, 0};   // a robot may be beside it
@@ -120,7 +132,8 @@ class Agent {
   };
   /// From its admission on. While the mission waits for its quorum, no tick comes.
   struct InMission {
-    InMission(const Mission& mission, const RosterEntry& self);
+    /// @param joined  its first tick, counted
+    InMission(const Mission& mission, const RosterEntry& self, Tick joined);
 
     Tick active_from;  // as the roster says
     int kind;          // its own
@@ -130,12 +143,14 @@ class Agent {
     std::optional<Forecast> forecast;  // if the law looks ahead
     AntiEntropy anti_entropy;
     StateParts state_parts;
-    std::optional<SeparationFilter> separation;  // if bodies keep a distance
+    std::optional<SeparationFilter> separation;  // if commands are filtered
     Bodies bodies;                               // then, of the newest tick
+    std::optional<WallFollower> follower;        // where there are walls
+    std::vector<RosterEntry> held_roster;        // as counted_roster() says, once there are holds
     Coefficients foreseen;
     mutable Coefficients team_coverage;   // of when it was asked for last
     std::vector<Contribution> published;  // own blocks as last broadcast: what a repeat repeats
-    AuthorMap<Tick> news;                 // when a member's coverage last grew for us
+    AuthorMap<Tick> news;  // when a member's coverage last grew for us, in ticks that count
     std::optional<Instant> running_since;
     Instant stalled_said{};
     std::optional<WorldView> pending;
@@ -170,6 +185,7 @@ class Agent {
   std::optional<std::string> evicted(Tick tick) const;
   void ask_for_admission(Instant now, Outbox& out);
   void repeat_mission(Instant now, Outbox& out);
+  void note_roster();
   std::int64_t max_steps(const InMission& flight, const RosterEntry& author, Instant now) const;
   std::int64_t lost() const;
   Tick oldest_news(const InMission& flight) const;
@@ -185,6 +201,8 @@ class Agent {
   void repeat(InMission& flight, Outbox& out);
   bool may_answer(InMission& flight) const;
   void answer(InMission& flight, Outbox& out);
+  void forget_silent(InMission& flight) const;
+  Eigen::Vector3d wanted(InMission& flight);
   Eigen::Vector3d kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps);
   void answer_digests(InMission& flight, Instant now, Outbox& out);
   void report_position(InMission& flight, Outbox& out);

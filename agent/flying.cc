@@ -53,15 +53,17 @@ void Agent::fly(InMission& flight, Instant now, Outbox& out) {
 /// stopped for as long as the world holds an old one; in lockstep the world waits for them.
 void Agent::note_places(InMission& flight, const WorldState& world) {
   const Timing& timing = mission().timing;
-  const Tick tick = world.header.tick;
   flight.state_parts.see(world);
+  // Nothing is covered there, and nobody goes on from there before the mission does.
+  if (me_.is_held(world.header.tick)) return;
+  const Tick tick = world.header.tick;
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (!radio_.hears(me_.id(), vehicle.id)) continue;
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
-    flight.forecast->see(vehicle.id, tick, vehicle.position_m);
+    flight.forecast->see(vehicle.id, me_.counted(tick), vehicle.position_m);
   }
 }
 
@@ -72,7 +74,7 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   Step& step = flight.step;
   flight.pending.reset();
   step.repeat_wanted = false;
-  if (view.tick >= mission.timing.tick_count) {
+  if (me_.is_over(view.tick)) {
     step.tick = view.tick;
     finish(false, "mission complete");
     return false;
@@ -83,6 +85,8 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   }
   if (step.tick >= 0) status_.missed_ticks += view.tick - step.tick - 1;
   step.tick = view.tick;
+  step.counted = me_.counted(view.tick);
+  step.held = me_.is_held(view.tick);
   step.begun = now;
   step.roster_revision = view.roster_revision;
   step.body_m = view.position_m;
@@ -90,7 +94,7 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   step.x_m = mission.domain.nearest(view.position_m);
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
-  if (step.tick < flight.active_from) return true;
+  if (step.tick < flight.active_from || step.held) return true;
   flight.table.add_sample(me_.author(), *step.basis_at, flight.sensors.of(flight.kind).footprint());
   broadcast(flight, false, out);
   return true;
@@ -105,7 +109,7 @@ bool Agent::stalled(const InMission& flight, Instant now) const {
 
 /// The blocks that are due, or all.
 void Agent::broadcast(InMission& flight, bool all, Outbox& out) {
-  const Tick tick = flight.step.tick;
+  const Tick tick = flight.step.counted;
   for (int b = 0; b < flight.table.block_count(); ++b) {
     Contribution& published = flight.published[static_cast<std::size_t>(b)];
     if (!all && tick < published.next_broadcast_tick) continue;
@@ -139,17 +143,18 @@ bool Agent::may_answer(InMission& flight) const {
   if (mission().timing.pace == Pace::kRealtime) return true;
   // A command must not depend on the order in which the parts of the state arrive.
   const bool reckons =
-      flight.forecast && mission().dead_reckoning && step.tick >= flight.active_from;
+      flight.forecast && mission().dead_reckoning && step.tick >= flight.active_from && !step.held;
   if (reckons && !flight.state_parts.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;
   }
   // The roster that the world names decides which agents take part in a tick.
   if (follower().revision() < step.roster_revision) return false;
+  if (step.held) return true;  // nobody broadcasts
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;
     if (!radio_.hears(me_.id(), entry.author.agent)) continue;
-    if (!flight.table.holds_due(entry.author, step.tick)) {
+    if (!flight.table.holds_due(entry.author, step.counted)) {
       step.waiting_for = entry.author.agent;
       return false;
     }
@@ -159,37 +164,55 @@ bool Agent::may_answer(InMission& flight) const {
 
 void Agent::answer(InMission& flight, Outbox& out) {
   Step& step = flight.step;
-  CoverageTable& table = flight.table;
-  // By the roster that the tick may have waited for, and by nothing older: the admission of a
-  // forgotten agent may have died with its coordinator.
-  table.remember_all();
+  flight.command_before = flight.last_command;
+  flight.last_command.header.tick = step.tick;
+  flight.last_command.position_m = step.x_m;
+  forget_silent(flight);
+  flight.last_command.velocity_mps = kept_apart(flight, wanted(flight));
+  step.answered = step.tick;
+  me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
+}
+
+/// By the roster that the tick may have waited for, and by nothing older: the admission of a
+/// forgotten agent may have died with its coordinator. Also while the mission is paused: forgetting
+/// goes by the world's ticks, and what the agent says of c_k then is what counts then.
+void Agent::forget_silent(InMission& flight) const {
+  const Step& step = flight.step;
+  flight.table.remember_all();
   for (const RosterEntry& entry : follower().roster()) {
     // What we cover ourselves counts: we live, whatever the coordinator has heard.
     if (entry.author == me_.author()) continue;
-    if (entry.forgotten_at(step.tick, step.roster_revision)) table.forget(entry.author);
+    if (entry.forgotten_at(step.tick, step.roster_revision)) flight.table.forget(entry.author);
   }
+}
+
+/// What the law says; nothing while the mission is paused, so that the vehicle brakes, then stands
+/// or loiters.
+Eigen::Vector3d Agent::wanted(InMission& flight) {
+  const Step& step = flight.step;
+  if (step.held) return {0, 0, 0};
+  const CoverageTable& table = flight.table;
   if (flight.forecast) {
-    flight.forecast->look_ahead(table, follower().roster(), step.tick, flight.foreseen);
+    flight.forecast->look_ahead(table, counted_roster(), step.counted, flight.foreseen);
   } else {
     table.average(flight.foreseen);
   }
   flight.controller.set_coverage(flight.foreseen);
-  flight.command_before = flight.last_command;
-  flight.last_command.header.tick = step.tick;
-  flight.last_command.position_m = step.x_m;
-  flight.last_command.velocity_mps =
-      kept_apart(flight, flight.controller.command(me_.id(), step.tick, step.x_m, *step.basis_at));
-  step.answered = step.tick;
-  me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
+  return flight.controller.command(me_.id(), step.counted, step.x_m, *step.basis_at);
 }
 
 /// The last step of a command.
 Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps) {
   if (!flight.separation) return wanted_mps;
   const double limit_mps = motion_of(mission(), me_.id()).speed_limit_mps;
-  const SafeVelocity safe = flight.separation->safe(
-      {me_.id(), flight.step.tick, flight.step.body_m, limit_mps, flight.step.body_mps}, wanted_mps,
-      flight.bodies.neighbours(mission()));
+  const Tick tick = flight.step.tick;
+  const Eigen::Vector3d& x_m = flight.step.body_m;
+  const Eigen::Vector3d aim_mps =
+      flight.follower ? flight.follower->aim(tick, x_m, wanted_mps) : wanted_mps;
+  const SafeVelocity safe =
+      flight.separation->safe({me_.id(), tick, x_m, limit_mps, flight.step.body_mps}, aim_mps,
+                              flight.bodies.neighbours(mission()));
+  if (flight.follower) flight.follower->note(safe.wall);
   status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
   status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
   status_.blocked_ticks += safe.blocked ? 1 : 0;
@@ -198,7 +221,7 @@ Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& want
 }
 
 void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {
-  const Tick tick = flight.step.tick;
+  const Tick tick = flight.step.counted;
   if (flight.world_asks) report_position(flight, out);
   for (const Contribution& block : flight.anti_entropy.answers_due(flight.table, now, tick)) {
     me_.relay(Bus::kSwarm, block, out);
@@ -206,8 +229,8 @@ void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {
   if (!flight.next_digest.due(now, tick)) return;
   flight.next_digest =
       Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, mission().timing.dt_s, tick);
-  const Digest digest = flight.anti_entropy.digest(flight.table, follower().roster(), tick);
-  me_.publish(Bus::kSwarm, digest, std::max<Tick>(tick, 0), out);
+  const Digest digest = flight.anti_entropy.digest(flight.table, counted_roster(), tick);
+  me_.publish(Bus::kSwarm, digest, std::max<Tick>(flight.step.tick, 0), out);
 }
 
 void Agent::report_position(InMission& flight, Outbox& out) {

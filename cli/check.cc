@@ -6,10 +6,28 @@
 #include "cli/commands.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
+#include "core/separation.h"
+#include "core/vehicle.h"
 #include "runtime/node.h"
 #include "team/plan.h"
 
 namespace ergocast::cli {
+
+namespace {
+
+/// What bodies that follow late keep, in the scenario's numbers.
+void tell_margins(const Mission& mission) {
+  const Separation& rule = mission.separation;
+  if (rule.distance_m == 0 || rule.response_s == 0) return;
+  const double margin_m = rule.response_s * fastest_mps(mission);
+  std::printf(
+      "bodies follow %g s late: they close %.3g %% of a gap in a tick, and keep %g m more, in all "
+      "%g m from each other and %g m from the edges\n",
+      rule.response_s, 100 * closing_gain(mission), margin_m,
+      SeparationFilter(mission, 0).contact_m(0, 0), margin_m + 2 * rule.position_error_m);
+}
+
+}  // namespace
 
 int check(const std::filesystem::path& file, const Overrides& overrides, bool print) {
   const auto scenario = load_or_complain(file, overrides);
@@ -25,11 +43,12 @@ int check(const std::filesystem::path& file, const Overrides& overrides, bool pr
   const std::vector<std::byte> plan = encode_plan(mission);
   const Basis& basis = mission.basis;
   const std::string along_z = mission.domain.planar() ? "" : " x " + std::to_string(basis.modes_z);
-  std::printf(
-      "%s: no problems. %zu agents, %d x %d%s modes, %lld ticks of %g s, plan %s (%zu bytes)\n",
-      file.c_str(), mission.starts_m.size(), basis.modes_x, basis.modes_y, along_z.c_str(),
-      static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
-      plan_hash(plan).c_str(), plan.size());
+  const char* const kind = basis.free_domain ? " modes of the free domain" : " modes";
+  std::printf("%s: no problems. %zu agents, %d x %d%s%s, %lld ticks of %g s, plan %s (%zu bytes)\n",
+              file.c_str(), mission.starts_m.size(), basis.modes_x, basis.modes_y, along_z.c_str(),
+              kind, static_cast<long long>(mission.timing.tick_count), mission.timing.dt_s,
+              plan_hash(plan).c_str(), plan.size());
+  tell_margins(mission);
   return kExitDone;
 }
 

@@ -36,6 +36,7 @@ struct MissionOptions {
   std::int64_t event_log_mib = kEventLogMib;  ///< `run` only
   bool event_log = false;                     ///< `simulate` only; `run` always writes one
   bool event_log_zstd = false;                ///< `run` only
+  std::filesystem::path world;                ///< `run` only; empty: ergocast-sim
   bool watch = false;                         ///< `run` only: serves a page
   PageServer::Options page;
 };
@@ -113,6 +114,9 @@ void add_replay(CLI::App& app, Action& action);
 
 /// `stop`: ends a mission that another command started, in order or at once.
 void add_stop(CLI::App& app, Action& action);
+
+/// `pause` and `resume`: a mission stands still for a while.
+void add_pause(CLI::App& app, Action& action);
 
 /// Reports every problem of a scenario. With `print`, prints the scenario with all defaults.
 int check(const std::filesystem::path& scenario, const Overrides& overrides, bool print);

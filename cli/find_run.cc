@@ -89,7 +89,8 @@ void add_list(CLI::App& app, Action& action) {
   command->add_flag("--json", *json, "One JSON array");
   command->footer(
       "The runs of `ergocast run`; teams that were started by hand or on other hosts are not "
-      "listed.\nstatus, watch, spy and stop take the only one, or the one that --run-id names.");
+      "listed.\nstatus, watch, spy, stop, pause and resume take the only one, or the one that "
+      "--run-id names.");
   command->callback([&action, json] {
     action = [json] {
       const std::vector<LiveRun> runs = runs_here();

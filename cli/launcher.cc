@@ -34,7 +34,7 @@ std::chrono::nanoseconds back_off(int failures) {
 
 }  // namespace
 
-void Launcher::plan(Role role, std::string name, const std::string& program,
+void Launcher::plan(Role role, std::string name, const std::filesystem::path& program,
                     std::vector<std::string> arguments) {
   Process process;
   process.role = role;
@@ -44,6 +44,9 @@ void Launcher::plan(Role role, std::string name, const std::string& program,
   if (!setup_.key_file.empty()) {
     command.insert(command.end(), {"--key-file", setup_.key_file.string()});
   }
+  // A world computes no mode.
+  if (!setup_.modes.empty() && role != Role::kWorld)
+    command.insert(command.end(), {"--modes", setup_.modes.string()});
   command.insert(command.end(), arguments.begin(), arguments.end());
   process.program.log = setup_.run_dir / "log" / (name + ".log");
   // The logger still closes its files if the launcher dies; the others have nothing to save.
@@ -57,7 +60,8 @@ std::optional<std::string> Launcher::start() {
        {"--out", setup_.run_dir.string(), "--event-log-limit",
         std::to_string(setup_.event_log_mib)});
   if (setup_.event_log_zstd) processes_.back().program.command.push_back("--event-log-zstd");
-  plan(Role::kWorld, "sim", "ergocast-sim", {});
+  const bool simulated = setup_.world.filename() == "ergocast-sim";
+  plan(Role::kWorld, simulated ? "sim" : "world", setup_.world, {});
   plan(Role::kCoordinator, "coordinator", "ergocast-coordinator",
        {(setup_.run_dir / "scenario.textproto").string()});
   for (int id = 0; id < setup_.agents; ++id) {

@@ -28,10 +28,12 @@ class Launcher {
  public:
   struct Setup {
     std::filesystem::path programs;  ///< folder of the ergocast-* executables
+    std::filesystem::path world;     ///< the simulated world, or who takes its place
     std::filesystem::path run_dir;
     LcmUrl url;
     RunId run = 0;
     std::filesystem::path key_file;  ///< the key file that can sign; empty: no key
+    std::filesystem::path modes;     ///< the file of the mission's table of modes; empty: none
     int agents = 0;
     std::vector<std::string> kinds;  ///< that of each agent; of a team whose agents are alike none
     std::int64_t event_log_mib = kEventLogMib;
@@ -85,7 +87,7 @@ class Launcher {
     std::optional<Instant> without_program_since;
   };
 
-  void plan(Role role, std::string name, const std::string& program,
+  void plan(Role role, std::string name, const std::filesystem::path& program,
             std::vector<std::string> arguments);
   std::optional<std::string> launch(Process& process, bool resume = false);
   bool runs(Role role);

@@ -63,6 +63,7 @@ TeamPicture LiveTeam::notice(Instant now) {
   TeamPicture picture = view_.picture(now);
   if (!grid_ || picture.over) return picture;
   const double t_s = static_cast<double>(picture.tick) * picture.dt_s;
+  note_holds(picture.tick, picture.dt_s);
   for (const AgentRow& row : picture.agents) compare(row, t_s, picture.dt_s);
   for (const ProcessRow& row : picture.processes) compare(row, t_s);
   return picture;
@@ -118,6 +119,25 @@ void LiveTeam::compare(const AgentRow& row, double t_s, double dt_s) {
   }
   const double heard_s = row.status ? static_cast<double>(row.status->header.tick) * dt_s : 0;
   last = {row.condition, row.author.incarnation, heard_s};
+}
+
+/// By the ticks that MISSION names, whenever they are noticed.
+void LiveTeam::note_holds(Tick tick, double dt_s) {
+  const auto holds = me_.follower().holds();
+  const auto named = static_cast<std::size_t>(named_changes(holds));
+  for (; changes_noted_ < named; ++changes_noted_) {
+    const Hold& hold = holds[changes_noted_ / 2];
+    const bool begins = changes_noted_ % 2 == 0;
+    if (tick < (begins ? hold.from : hold.until)) return;
+    const double from_s = static_cast<double>(hold.from) * dt_s;
+    if (begins) {
+      outages_["paused"] = from_s;
+      add_incident({from_s, "paused", "‖", "paused by an operator", {}, {}});
+    } else {
+      close_outage("paused", static_cast<double>(hold.until) * dt_s);
+      ++incident_changes_;
+    }
+  }
 }
 
 void LiveTeam::compare(const ProcessRow& row, double t_s) {

@@ -80,6 +80,7 @@ class LiveTeam {
   void on(const M&) {}  // the other types need no more action
   void on(const WorldState& world);
   bool joined_late(const Author& author) const;
+  void note_holds(Tick tick, double dt_s);
   void compare(const AgentRow& row, double t_s, double dt_s);
   void compare(const ProcessRow& row, double t_s);
   void add_incident(Incident incident);
@@ -95,6 +96,7 @@ class LiveTeam {
   std::map<std::string, bool> trouble_;  // of the processes, by name
   std::deque<Incident> incidents_;
   std::map<std::string, double> outages_;  // that go on: since when
+  std::size_t changes_noted_ = 0;          // of holds: their begins and ends
   std::deque<std::string> lines_;
   std::uint64_t statuses_ = 0, incident_changes_ = 0, rosters_ = 0, line_count_ = 0;
   std::int64_t roster_revision_ = -1;

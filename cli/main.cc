@@ -21,7 +21,7 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 verify, status or doctor found something; 2 bad scenario, arguments or\n"
     "run directory; 3 LCM cannot be used on this machine; 4 the mission failed or its record "
     "broke\n"
-    "off, some of many missions failed, or stop did not see the team end.";
+    "off, some of many missions failed, or stop, pause or resume did not see the team obey.";
 
 void add_mission_options(CLI::App& command, MissionOptions& options) {
   command.add_option("SCENARIO", options.scenario, "Scenario file, or the name of a shipped one")
@@ -189,6 +189,11 @@ int parse_and_do(int argc, char** argv) {
   add_url_option(*run_command, mission);
   add_key_option(*run_command, mission.seal, &mission.key_file);
   add_event_log_options(*run_command, mission.event_log_mib, mission.event_log_zstd);
+  run_command
+      ->add_option("--world", mission.world,
+                   "Start this program in the place of ergocast-sim: a driver of robots or another "
+                   "simulation; a name without '/' is one beside ergocast")
+      ->type_name("PROGRAM");
   run_command->add_flag("--watch", mission.watch,
                         "Show it in a browser, and the record afterwards, until Ctrl-C");
   add_page_options(*run_command, mission.page);
@@ -255,6 +260,7 @@ int parse_and_do(int argc, char** argv) {
   add_watch(app, action);
   add_export(app, action);
   add_replay(app, action);
+  add_pause(app, action);
   add_stop(app, action);
   add_spy(app, action);
   add_doctor(app, action);

@@ -3,6 +3,7 @@
 // overdue.
 #include "cli/mission_watch.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -29,6 +30,7 @@ void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
   if (!arrival.fresh) return;
   const Instant now = arrival.now;
   reach(team.header.tick, now);
+  progress_.paused = team.paused;
   // A restarted coordinator does not know the metric yet.
   if (team.ergodic_metric > 0) progress_.ergodic_metric = team.ergodic_metric;
   progress_.agents_alive = team.agents_alive;
@@ -43,7 +45,7 @@ void MissionWatch::on(const AgentStatus& agent, const Arrival& arrival) {
   reach(agent.phase == AgentPhase::kRunning ? Stage::kFlying : Stage::kReady, now);
   if (agent.phase == AgentPhase::kRunning) progress_.world_silent = agent.waiting_for == kWorld;
   if (progress_.coordinator_silent) progress_.ergodic_metric = agent.ergodic_metric;
-  const bool at_the_end = agent.header.tick >= timing_.tick_count;
+  const bool at_the_end = me_.counted(agent.header.tick) >= timing_.tick_count;
   if (agent.phase == AgentPhase::kFinished && at_the_end) reach(Stage::kOver, now);
 }
 
@@ -70,15 +72,16 @@ void MissionWatch::reach(Stage stage, Instant now) {
 }
 
 void MissionWatch::reach(Tick tick, Instant now) {
-  if (tick <= progress_.tick) return;
-  progress_.tick = tick;
+  if (tick <= tick_) return;
+  tick_ = tick;
+  progress_.tick = me_.counted(tick);
   tick_since_ = now;
 }
 
 std::optional<std::string> MissionWatch::overdue(Instant now) const {
   const bool waiting = timing_.pace == Pace::kLockstep && stage_ == Stage::kFlying;
   if (!waiting || now - tick_since_ < seconds(timing_.lockstep_timeout_s)) return std::nullopt;
-  return "tick " + std::to_string(progress_.tick) + " was not answered in time";
+  return "tick " + std::to_string(tick_) + " was not answered in time";
 }
 
 void MissionWatch::stop(bool failed, std::string reason) {

@@ -29,10 +29,11 @@ class MissionWatch {
  public:
   static constexpr Role kRole = Role::kLauncher;
 
-  MissionWatch(RunId run, const Timing& timing, ProgressDisplay& display)
+  MissionWatch(RunId run, const Timing& timing, ProgressDisplay& display, bool free_domain = false)
       : me_(kRole, {run, kUnassigned, 0}), timing_(timing), display_(display) {
     progress_.tick_count = timing.tick_count;
     progress_.dt_s = timing.dt_s;
+    progress_.free_domain = free_domain;
   }
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
@@ -41,7 +42,9 @@ class MissionWatch {
   /// Whether the coordinator reported that the mission failed. reason() tells why it ended.
   bool failed() const { return failed_; }
   /// Whether the mission is over because it reached its last tick.
-  bool complete() const { return stage_ == Stage::kOver && progress_.tick >= timing_.tick_count; }
+  bool complete() const {
+    return stage_ == Stage::kOver && me_.counted(tick_) >= timing_.tick_count;
+  }
   const std::string& reason() const { return reason_; }
 
   /// Lockstep: the error text of a tick that has not been answered in time.
@@ -70,6 +73,7 @@ class MissionWatch {
   Stage stage_ = Stage::kGathering;
   bool failed_ = false;
   std::string reason_;
+  Tick tick_ = 0;         // the newest, whether it counts or not
   Instant tick_since_{};  // when the last tick or stage was reached
 
   std::optional<StopRequest> stop_;

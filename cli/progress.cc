@@ -13,14 +13,19 @@ namespace {
 std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
   std::vector<std::string> said{text_of("t = %.0f of ", static_cast<double>(at.tick) * at.dt_s) +
                                 text_of("%.0f s", static_cast<double>(at.tick_count) * at.dt_s)};
-  const bool under_way = at.tick < at.tick_count && ticks_per_s > 0 && !at.world_silent;
+  const bool under_way =
+      at.tick < at.tick_count && ticks_per_s > 0 && !at.world_silent && !at.paused;
+  if (at.paused) said.push_back("paused");
   if (at.world_silent) said.push_back("waiting for the world");
   if (at.coordinator_silent) said.push_back("no coordinator");
   if (under_way) {
     said.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) +
                    " left");
   }
-  if (at.ergodic_metric > 0) said.push_back(text_of("phi^2 = %.3g", at.ergodic_metric));
+  if (at.ergodic_metric > 0) {
+    said.push_back(text_of("phi^2 = %.3g", at.ergodic_metric) +
+                   (at.free_domain ? " (free domain)" : ""));
+  }
   if (at.silent_agent != kUnassigned && !at.coordinator_silent) {
     said.push_back("agent " + std::to_string(at.silent_agent) + " silent");
   }

@@ -12,13 +12,14 @@
 namespace ergocast::cli {
 
 struct MissionProgress {
-  Tick tick = 0, tick_count = 0;
+  Tick tick = 0, tick_count = 0;  ///< of ticks that count
   double dt_s = 0;
   double ergodic_metric = 0;
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0;
   AgentId silent_agent = kUnassigned;
-  bool world_silent = false, coordinator_silent = false;
+  bool world_silent = false, coordinator_silent = false, paused = false;
+  bool free_domain = false;  ///< the metric is in its modes, not in cosines
 };
 
 class ProgressDisplay {

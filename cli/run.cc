@@ -16,6 +16,7 @@
 #include "cli/run_registry.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "modes/table_file.h"
 #include "runtime/clock.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
@@ -146,12 +147,23 @@ std::variant<std::unique_ptr<LiveWatch>, std::string> begin_watch(const MissionO
   return started;
 }
 
+/// The program in the world's place; an error if there is none.
+std::variant<fs::path, std::string> world_program(const fs::path& wanted,
+                                                  const fs::path& programs) {
+  if (wanted.empty()) return programs / "ergocast-sim";
+  const fs::path program = wanted.has_parent_path() ? fs::absolute(wanted) : programs / wanted;
+  if (access(program.c_str(), X_OK) == 0 && fs::is_regular_file(program)) return program;
+  return "--world " + wanted.string() + ": there is no program " + program.string() +
+         " (name one that takes --lcm-url and --run-id, with its folder)";
+}
+
 /// Runs the mission. LCM works and the run directory is ready.
 int fly(const MissionOptions& options, const Scenario& scenario, const Launcher::Setup& setup,
         StopSignals& signals) {
   const MessageAuthenticator& seal = options.seal;
   ProgressDisplay display;
-  MissionWatch mission(setup.run, scenario.mission().timing, display);
+  MissionWatch mission(setup.run, scenario.mission().timing, display,
+                       scenario.mission().basis.free_domain);
   auto opened = Transport::open(
       setup.url, setup.run, seal, subscriptions_of(MissionWatch::kRole),
       {.on_message = [&mission](const Message& message, Bus bus, AgentId transmitter) {
@@ -201,6 +213,10 @@ int run(const MissionOptions& options) {
   StopSignals signals;
   Launcher::Setup setup;
   setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
+  const auto world = world_program(options.world, setup.programs);
+  if (const auto* problem = std::get_if<std::string>(&world))
+    return report_error(kExitBadInput, *problem);
+  setup.world = std::get<fs::path>(world);
   setup.agents = static_cast<int>(scenario->mission().starts_m.size());
   for (const AgentKind& kind : scenario->mission().kinds)
     setup.kinds.insert(setup.kinds.end(), static_cast<std::size_t>(kind.count), kind.name);
@@ -222,6 +238,8 @@ int run(const MissionOptions& options) {
     return report_error(kExitBadInput, *problem);
   }
   setup.run_dir = std::get<fs::path>(prepared);
+  const Basis& basis = scenario->mission().basis;
+  if (basis.free_domain) setup.modes = setup.run_dir / table_file_name(basis.table_hash);
   return fly(options, *scenario, setup, signals);
 }
 

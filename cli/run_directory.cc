@@ -11,6 +11,7 @@
 #include "cli/report_error.h"
 #include "logger/run_data.h"
 #include "logger/run_record.h"
+#include "modes/table_file.h"
 #include "report/report.h"
 #include "report/target_density.h"
 #include "runtime/node.h"
@@ -60,10 +61,16 @@ void print_summary(const Json& summary) {
   std::printf("  ticks     %s of %s in %s s, %s ticks/s\n", text("/ticks").c_str(),
               text("/tick_count").c_str(), number("/wall_time_s", "%.1f").c_str(),
               number("/ticks_per_s", "%.0f").c_str());
-  std::printf("  phi^2     %s -> %s, slope %s over the last decade\n",
+  const bool free_domain = summary.contains("ergodic_metric_in_cosines");
+  std::printf("  phi^2     %s -> %s, slope %s over the last decade%s\n",
               number("/ergodic_metric/first", "%.4g").c_str(),
               number("/ergodic_metric/last", "%.4g").c_str(),
-              number("/log_log_slope", "%.2f").c_str());
+              number("/log_log_slope", "%.2f").c_str(),
+              free_domain ? ", in the modes of the free domain" : "");
+  if (free_domain) {
+    std::printf("            %s in cosines\n",
+                number("/ergodic_metric_in_cosines/last", "%.4g").c_str());
+  }
   if (summary.contains("goal")) {
     const bool reached = summary["goal"].value("reached", false);
     std::printf("  goal      %s, %s\n", number("/goal/ergodic_metric", "%.4g").c_str(),
@@ -131,6 +138,9 @@ std::variant<fs::path, std::string> prepare_run_directory(const fs::path& wanted
   if (auto problem = write_file(folder / kPlanFile, plan)) return *problem;
   if (auto problem = write_target_density(folder / kTargetDensityFile, scenario.target_density())) {
     return *problem;
+  }
+  if (const auto& table = scenario.mission().basis.table) {
+    if (auto problem = save_table(*table, folder)) return *problem;
   }
   return folder;
 }

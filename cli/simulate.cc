@@ -14,8 +14,14 @@ namespace {
 void show(const lab::Simulation& simulation, const Mission& mission, ProgressDisplay& display) {
   const int agents = static_cast<int>(mission.starts_m.size());
   const Recorder& recorder = simulation.recorder();
-  display.show({recorder.next_row(), mission.timing.tick_count, mission.timing.dt_s,
-                recorder.facts().ergodic_metric_last, agents, agents});
+  MissionProgress at{recorder.next_row(),
+                     mission.timing.tick_count,
+                     mission.timing.dt_s,
+                     recorder.facts().ergodic_metric_last,
+                     agents,
+                     agents};
+  at.free_domain = mission.basis.free_domain;
+  display.show(at);
 }
 
 /// With the progress on the terminal, until a signal arrives.

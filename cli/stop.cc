@@ -208,14 +208,7 @@ class Stopping {
     return report_error(kExitFailed, why_nobody(options_, *transport_));
   }
 
-  int choose() const {
-    std::string text = "several runs are heard on this URL; choose one with --run-id:";
-    for (const auto& [run, team] : runs_) {
-      text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) +
-              " agents, tick " + std::to_string(team.tick());
-    }
-    return report_error(kExitBadInput, text);
-  }
+  int choose() const { return report_error(kExitBadInput, choice_of(runs_)); }
 
   const StopOptions& options_;
   StopSignals& signals_;

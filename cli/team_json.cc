@@ -52,16 +52,22 @@ std::string team_json(const TeamPicture& at) {
       {"state", at.state ? nlohmann::ordered_json(to_string(*at.state)) : nlohmann::ordered_json()},
       {"reason", at.reason},
       {"trouble", at.trouble},
+      {"paused", at.paused},
       {"tick", at.tick},
+      {"counted_ticks", at.counted},
       {"tick_count", or_null(at.tick_count > 0, at.tick_count)},
       {"t_s", or_null(at.dt_s > 0, static_cast<double>(at.tick) * at.dt_s)},
       {"ergodic_metric", or_null(at.ergodic_metric.has_value(), at.ergodic_metric.value_or(0))},
+      {"free_domain", at.free_domain},
       {"agents_alive", at.agents_alive},
       {"agents_expected", at.agents_expected},
       {"missed_deadlines", at.missed_deadlines},
       {"skipped_ticks", at.skipped_ticks},
       {"clamped_commands", at.clamped_commands},
       {"forgotten", at.forgotten}};
+  json["holds"] = nlohmann::ordered_json::array();
+  for (const Hold& hold : at.holds)
+    json["holds"].push_back({hold.from, or_null(!hold.open(), hold.until)});
   json["agents"] = nlohmann::ordered_json::array();
   for (const AgentRow& row : at.agents) json["agents"].push_back(json_of(row));
   for (const ProcessRow& row : at.processes) {

@@ -97,6 +97,15 @@ std::vector<std::string> MonitoredRun::lost(Instant now) const {
   return names;
 }
 
+std::string choice_of(const std::map<RunId, MonitoredRun>& runs) {
+  std::string text = "several runs are heard on this URL; choose one with --run-id:";
+  for (const auto& [run, team] : runs) {
+    text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) +
+            " agents, tick " + std::to_string(team.tick());
+  }
+  return text;
+}
+
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -43,6 +44,14 @@ class MonitoredRun {
   bool over() const { return over_; }
   const std::string& reason() const { return reason_; }
   Tick tick() const { return tick_; }
+  RunId run() const { return me_.run(); }
+  bool knows_mission() const { return me_.knows_mission(); }
+  /// Whether the mission has begun, is known as a whole, and is not over.
+  bool flies() const {
+    return knows_mission() && me_.follower().state() == MissionState::kRunning && !over_;
+  }
+  /// See core/hold.h. @pre knows_mission()
+  std::span<const Hold> holds() const { return me_.follower().holds(); }
   bool unheard() const;
   bool coordinator_heard() const { return heard(kCoordinator); }
   bool world_heard() const { return world_tick_ >= 0; }
@@ -72,6 +81,9 @@ class MonitoredRun {
   bool over_ = false;  // the coordinator reported it
   std::string reason_;
 };
+
+/// Asks to choose one of several runs, and lists them.
+std::string choice_of(const std::map<RunId, MonitoredRun>& runs);
 
 /// "a, b and c".
 std::string listed(const std::vector<std::string>& names);

@@ -136,14 +136,14 @@ std::string headline(const TeamPicture& at) {
   std::string text = at.replay ? "replay of " : "";
   text += at.scenario.empty() ? "a mission not heard yet" : at.scenario;
   text += ", run " + to_hex(at.run) + ", ";
-  text += at.state ? to_string(*at.state) : "no coordinator heard";
-  text += ", tick " + std::to_string(at.tick);
+  text += at.paused ? "paused" : at.state ? to_string(*at.state) : "no coordinator heard";
+  text += ", tick " + std::to_string(at.counted);
   if (at.tick_count > 0) {
     text += " of " + std::to_string(at.tick_count) +
             number(" (%.0f %%)",
-                   100.0 * static_cast<double>(at.tick) / static_cast<double>(at.tick_count));
+                   100.0 * static_cast<double>(at.counted) / static_cast<double>(at.tick_count));
   }
-  if (at.dt_s > 0) text += number(", t = %.1f s", static_cast<double>(at.tick) * at.dt_s);
+  if (at.dt_s > 0) text += number(", t = %.1f s", static_cast<double>(at.counted) * at.dt_s);
   return text;
 }
 
@@ -151,7 +151,10 @@ std::string second_line(const TeamPicture& at) {
   std::string text = at.over ? "the mission is over"
                              : std::to_string(at.agents_alive) + " of " +
                                    std::to_string(at.agents_expected) + " agents alive";
-  if (at.ergodic_metric) text += number(", phi^2 %.4g (median)", *at.ergodic_metric);
+  if (at.ergodic_metric) {
+    text += number(", phi^2 %.4g", *at.ergodic_metric);
+    text += at.free_domain ? " in modes of the free domain (median)" : " (median)";
+  }
   if (at.missed_deadlines > 0)
     text += ", " + std::to_string(at.missed_deadlines) + " commands late";
   if (at.skipped_ticks > 0) text += ", " + std::to_string(at.skipped_ticks) + " ticks skipped";

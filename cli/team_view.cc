@@ -68,6 +68,7 @@ void TeamView::on(const TeamStatus& team, const Arrival&) {
   coordinator_host_ = team.host;
   tick_count_ = team.tick_count;
   team_state_ = team.state;
+  team_paused_ = team.paused;
 }
 
 void TeamView::on(const WorldState& world, const Arrival& arrival) {
@@ -179,6 +180,7 @@ void TeamView::add_agents(TeamPicture& picture, Instant now) const {
   const auto& mission = follower().mission();
   const int planned = mission ? static_cast<int>(mission->starts_m.size()) : 0;
   picture.agents_expected = std::max(members, planned);
+  picture.free_domain = mission && mission->basis.free_domain;
   std::stable_sort(picture.agents.begin(), picture.agents.end(),
                    [](const AgentRow& a, const AgentRow& b) { return a.condition < b.condition; });
   picture.ergodic_metric = median_metric(picture.agents);
@@ -234,7 +236,12 @@ TeamPicture TeamView::picture(Instant now) const {
     picture.tick_count = mission->timing.tick_count;
     picture.dt_s = mission->timing.dt_s;
   }
-  picture.tick = picture.tick_count > 0 ? std::min(tick_, picture.tick_count) : tick_;
+  const Tick end = tick_after(follower().holds(), picture.tick_count);
+  picture.tick = picture.tick_count > 0 ? std::min(tick_, end) : tick_;
+  picture.holds.assign(follower().holds().begin(), follower().holds().end());
+  picture.counted = counted_ticks(follower().holds(), picture.tick);
+  picture.paused =
+      !over() && (follower().mission() ? is_held(follower().holds(), picture.tick) : team_paused_);
   picture.state = follower().revision() < 0 ? team_state_ : std::optional(follower().state());
   picture.reason = follower().plan_problem().value_or(follower().reason());
   picture.missed_deadlines = missed_deadlines_;

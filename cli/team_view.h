@@ -57,8 +57,12 @@ struct TeamPicture {
   std::optional<MissionState> state;  ///< nothing: not received
   std::string reason;                 ///< why it ended, or why its plan cannot be read
   Tick tick = 0, tick_count = 0;      ///< tick_count 0: not known
+  Tick counted = 0;                   ///< the number of `tick` among those that count
+  bool paused = false;                ///< `tick` does not count
+  std::vector<Hold> holds;            ///< all that MISSION names
   double dt_s = 0;
-  std::optional<double> ergodic_metric;  ///< median of the agents' values
+  std::optional<double> ergodic_metric;  ///< median of the agents' values, in cosines or …
+  bool free_domain = false;              ///< … in the modes of the free domain
   int agents_alive = 0, agents_expected = 0;
   std::int64_t missed_deadlines = 0, skipped_ticks = 0, clamped_commands = 0;
   std::vector<AgentRow> agents;  ///< worst first, then by number
@@ -121,6 +125,7 @@ class TeamView {
   std::string coordinator_host_;
   std::optional<MissionState> team_state_;  // from TEAM_STATUS, which comes more often
   std::int64_t missed_deadlines_ = 0, skipped_ticks_ = 0, clamped_commands_ = 0, tick_count_ = 0;
+  bool team_paused_ = false;  // from TEAM_STATUS
 };
 
 }  // namespace ergocast

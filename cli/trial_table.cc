@@ -45,6 +45,8 @@ constexpr Count kCounts[] = {
      [](TrialFigures& f) -> std::int64_t& { return f.coordinator_crashes; }},
     {"world_crashes", "worlds crashed",
      [](TrialFigures& f) -> std::int64_t& { return f.world_crashes; }},
+    {"pauses", "pauses", [](TrialFigures& f) -> std::int64_t& { return f.pauses; }},
+    {"held_ticks", "ticks held", [](TrialFigures& f) -> std::int64_t& { return f.held_ticks; }},
     {"skewed_clocks", "clocks skewed",
      [](TrialFigures& f) -> std::int64_t& { return f.skewed_clocks; }},
     {"recoveries", nullptr, [](TrialFigures& f) -> std::int64_t& { return f.recoveries; }},

@@ -29,8 +29,9 @@ constexpr int kTurnsBetweenComparisons = 256;
 
 /// The simulation of a plan, as the recorder in it writes it.
 struct Repetition {
-  explicit Repetition(const Mission& mission)
-      : simulation({.plan = encode_plan(mission), .version = version()}, trajectory, metrics) {}
+  Repetition(const Mission& mission, std::vector<Hold> holds)
+      : simulation({.plan = encode_plan(mission), .version = version(), .holds = std::move(holds)},
+                   trajectory, metrics) {}
 
   /// Runs until the first difference or the end of either trajectory.
   void run(TrajectoryComparison& comparison) {
@@ -216,7 +217,7 @@ int verify(const fs::path& run_dir) {
   if (const auto* problem = std::get_if<std::string>(&read))
     return report_error(kExitBadInput, *problem);
   Json& summary = std::get<Json>(read);
-  Repetition repetition(*mission);
+  Repetition repetition(*mission, holds_in(summary));
   if (!summary.is_object()) {
     tell(run_dir.string() + ": no " + kSummaryFile +
          ", so nothing is known of restarts; comparing all the same");

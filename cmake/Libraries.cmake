@@ -10,7 +10,7 @@ set(ERGOCAST_CMAKEDIR ${ERGOCAST_LIBDIR}/cmake/Ergocast)
 # Who has ergocast_agent also wants messages as bytes.
 add_library(ergocast_agent_and_codec INTERFACE)
 target_link_libraries(ergocast_agent_and_codec INTERFACE ergocast_agent ergocast_codec)
-set(INSTALLED ergocast_text ergocast_core ergocast_target ergocast_team ergocast_codec ergocast_agent)
+set(INSTALLED ergocast_text ergocast_core ergocast_modes ergocast_target ergocast_team ergocast_codec ergocast_agent)
 
 # They may become part of a shared library, as of a robot's plug-in or of a Python module.
 set(SHAREABLE ${INSTALLED} ergocast_coordinator ergocast_event_log ergocast_geo ergocast_lab ergocast_logger
@@ -46,7 +46,7 @@ install(FILES ${CMAKE_SOURCE_DIR}/cmake/ErgocastConfig.cmake
 file(GLOB HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
   ${CMAKE_SOURCE_DIR}/core/*.h ${CMAKE_SOURCE_DIR}/target/*.h ${CMAKE_SOURCE_DIR}/team/*.h
   ${CMAKE_SOURCE_DIR}/agent/*.h)
-list(REMOVE_ITEM HEADERS core/vectorized.h)
+list(REMOVE_ITEM HEADERS core/vectorized.h core/free_gains.h)
 list(APPEND HEADERS lcmtypes/channels.h lcmtypes/codec.h lcmtypes/message_authenticator.h)
 set(INSTALLED_HEADERS ${HEADERS})
 configure_file(${CMAKE_SOURCE_DIR}/cmake/install_headers.cmake.in

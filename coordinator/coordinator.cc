@@ -25,8 +25,6 @@ constexpr auto kTeamStatusPeriod = 250ms;
 constexpr auto kOverdue = kAgentStatusPeriod * 3 / 2;
 /// How long the end is repeated.
 constexpr auto kLinger = 1s;
-/// Real time: the notice that the team gets before a change takes effect.
-constexpr double kNotice_s = 2;
 
 }  // namespace
 
@@ -77,10 +75,10 @@ void Coordinator::on(const AgentStatus& status, const Arrival& arrival) {
   const auto at = members_.find({status.header.sender, status.header.incarnation});
   if (at == members_.end() || !arrival.fresh) return;
   at->second.status = status;
-  team_tick_ = std::max(team_tick_, std::min(status.header.tick, timing().tick_count));
+  team_tick_ = std::max(team_tick_, std::min(status.header.tick, end_tick()));
   RosterEntry* entry = active_entry(status.header.sender);
   const bool leaves = status.phase == AgentPhase::kFinished && state_ == MissionState::kRunning &&
-                      status.header.tick < timing().tick_count;
+                      status.header.tick < end_tick();
   if (!leaves || entry == nullptr || entry->author != at->first) return;
   entry->active_until = std::max(world_.tick, status.header.tick);
   change();
@@ -111,13 +109,16 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   if (world.header.tick > world_.tick) world_.tick_since = now;
   world_.tick = world.header.tick;
   world_.revision = world.roster_revision;
+  const bool stands = stand_by_revision_ >= 0 && world_.revision >= stand_by_revision_;
+  // It goes on once it knows the tick named here. No agent answers the next one before it does.
+  if (stands) name_tick(world_.tick + 2);
   world_.missed_deadlines = std::max(world_.missed_deadlines, world.missed_deadlines);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     Tick& answered = world_.answered.try_emplace(vehicle.id, -1).first->second;
     answered = std::max(answered, vehicle.answered_tick);
   }
-  if (world_.tick >= timing().tick_count) end(false, "mission complete", now);
+  if (world_.tick >= end_tick()) end(false, "mission complete", now);
 }
 
 void Coordinator::on(const RecordAck& ack, const Arrival& arrival) {
@@ -260,13 +261,18 @@ bool Coordinator::may_switch(const RosterEntry& entry) const {
   return world_.tick >= entry.since_tick && world_.revision >= entry.since_revision;
 }
 
+/// Real time: the notice that the team gets before a change takes effect.
+Tick notice_ticks(const Timing& timing) {
+  constexpr double kNotice_s = 2;
+  if (timing.pace == Pace::kLockstep) return 0;
+  return static_cast<Tick>(kNotice_s * timing.realtime_factor / timing.dt_s);
+}
+
 void Coordinator::switch_coverage(RosterEntry& entry, bool forgotten) {
   const Timing& timing = flown_.mission->timing;
-  const double notice_s = timing.pace == Pace::kLockstep ? 0 : kNotice_s;
   change();
   entry.forgotten = forgotten;
-  entry.since_tick =
-      world_.tick + 1 + static_cast<Tick>(notice_s * timing.realtime_factor / timing.dt_s);
+  entry.since_tick = world_.tick + 1 + notice_ticks(timing);
   entry.since_revision = revisions_.current;
 }
 
@@ -332,7 +338,8 @@ std::vector<MissionPart> Coordinator::mission_parts() const {
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
   const std::size_t parts =
       std::max({std::size_t{1}, ceil_div(flown_.plan.size(), kMaxPlanBytesPerMessage),
-                ceil_div(roster_.size(), kMaxRosterEntriesPerMessage)});
+                ceil_div(roster_.size(), kMaxRosterEntriesPerMessage),
+                ceil_div(holds_.size(), kMaxHoldsPerMessage)});
   std::vector<MissionPart> whole(parts);
   for (std::size_t p = 0; p < parts; ++p) {
     MissionPart& part = whole[p];
@@ -341,6 +348,8 @@ std::vector<MissionPart> Coordinator::mission_parts() const {
     part.part = static_cast<std::int32_t>(p);
     part.parts = static_cast<std::int32_t>(parts);
     part.reason = ending_.reason;
+    part.stand_by_revision = stand_by_revision_;
+    if (p < holds_.size()) part.holds = {holds_[p]};
     const std::size_t first = std::min(p * kMaxPlanBytesPerMessage, flown_.plan.size());
     const std::size_t last = std::min(first + kMaxPlanBytesPerMessage, flown_.plan.size());
     part.plan.assign(flown_.plan.begin() + static_cast<std::ptrdiff_t>(first),
@@ -372,6 +381,7 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
   team.state = state_;
   team.tick_count = timing().tick_count;
   team.missed_deadlines = world_.missed_deadlines;
+  team.paused = paused();
   team.agents_alive = alive_count(now);
   const auto members = std::count_if(roster_.begin(), roster_.end(), [](const RosterEntry& entry) {
     return entry.active_until < 0;

@@ -4,7 +4,7 @@
 // It repeats its whole state once a second, that of a large team in turn, so that none of its
 // messages needs an acknowledgement.
 // A restarted coordinator takes the mission over from the agents, which repeat it on request
-// (takeover.cc). Who may join is in admission.cc.
+// (takeover.cc). Who may join is in admission.cc, how it pauses in pausing.cc.
 #pragma once
 
 #include <map>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "coordinator/mission_pages.h"
+#include "core/hold.h"
 #include "core/ids.h"
 #include "core/mission.h"
 #include "team/messages.h"
@@ -33,6 +34,10 @@ enum class Takeover {
 /// The state of a present or former member of the roster.
 enum class MemberState { kAlive, kSilent, kGone };
 const char* to_string(MemberState member_state);
+
+/// How many ticks before a change takes effect the team hears of it: in lockstep nobody answers a
+/// tick before it knows what holds there.
+Tick notice_ticks(const Timing& timing);
 
 struct CoordinatorIdentity {
   RunId run = 0;  ///< of its mission; 0, unless kNever: the run that is found, else `incarnation`
@@ -55,6 +60,13 @@ class Coordinator {
 
   /// Ends the mission in order; `failed` makes it a failure with that reason.
   void end(bool failed, std::string reason, Instant now);
+
+  /// The mission is paused in these ticks from its beginning on, as a simulation repeats them.
+  /// @pre are_holds(holds), and it has not advanced
+  void plan_holds(std::vector<Hold> holds) { holds_ = std::move(holds); }
+  const std::vector<Hold>& holds() const { return holds_; }
+  /// Whether the newest tick that it has heard of is held.
+  bool paused() const { return is_held(holds_, world_.tick); }
 
   /// True once all others have said that they leave, or the end has been repeated for 1 s.
   bool finished() const { return ending_.finished; }
@@ -149,7 +161,12 @@ class Coordinator {
   void on(const RecordAck& ack, const Arrival& arrival);
   void on(const TeamStatus& theirs, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
+  void on(const Pause& pause, const Arrival& arrival);
   const Timing& timing() const { return flown_.mission->timing; }
+  Tick end_tick() const { return tick_after(holds_, timing().tick_count); }
+  bool may_change_holds() const;
+  void name_tick(Tick tick);
+  void name_tick_with_notice(Instant now);
   Instant last_sign(const Author& author) const;
   void admit(const Author& author, int kind, Instant now);
   void note_stranger(Incarnation incarnation, Instant now);
@@ -195,6 +212,8 @@ class Coordinator {
   std::optional<TeamStatus> rival_;  // another coordinator's
   MissionState state_ = MissionState::kWaiting;
   std::vector<RosterEntry> roster_;
+  std::vector<Hold> holds_;
+  std::int64_t stand_by_revision_ = -1;       // lockstep: the next tick of holds_ is to be named
   std::map<Author, std::size_t> admissions_;  // the place of each entry in MISSION
   MissionPages pages_;
   Revisions revisions_;

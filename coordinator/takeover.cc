@@ -35,7 +35,10 @@ void Coordinator::on(const MissionPart& part, const Arrival& arrival) {
     return leave("another coordinator has taken the mission over", arrival.now);
   }
   // An agent repeated a revision of a coordinator that is gone. The team must accept our revisions
-  // again.
+  // again. What it paused stays paused: agents may have gone by it.
+  const auto known = me_.follower().holds();
+  if (arrival.mission_changed && named_changes(known) > named_changes(holds_))
+    holds_.assign(known.begin(), known.end());
   revisions_.current = part.revision;
   change();
 }
@@ -138,13 +141,16 @@ void Coordinator::take_over(Instant now) {
   // world may have died, too.
   for (const MissionPart& part : me_.follower().parts())
     world_.tick = std::max(world_.tick, part.header.tick);
-  team_tick_ = std::min(team_tick_, timing().tick_count);
-  world_.tick = std::max(std::min(world_.tick, timing().tick_count), team_tick_);
+  holds_.assign(me_.follower().holds().begin(), me_.follower().holds().end());
+  team_tick_ = std::min(team_tick_, end_tick());
+  world_.tick = std::max(std::min(world_.tick, end_tick()), team_tick_);
   // Our revision must exceed those of former successors, also those that only unreachable agents
   // know. So a later takeover gets higher revisions.
   revisions_.current =
       std::max(me_.follower().revision() + kRevisionLead, (world_.tick + 1) * kRevisionLead);
   revisions_.who_may_join = revisions_.current;
+  // The world's next tick, flown by our revision, is the one at which it stands by for us.
+  if (me_.follower().stand_by_revision() >= 0) stand_by_revision_ = revisions_.current;
   if (me_.follower().over()) ending_.since = now;
   world_.tick_since = now;
   for (const RosterEntry& entry : roster_) {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "core/free_gains.h"
 #include "core/require.h"
 #include "core/vectorized.h"
 
@@ -65,7 +66,16 @@ void for_each_mode_along_z(double z_m, const Box& domain, const Basis& basis, co
 
 }  // namespace
 
+const FreeModes* Basis::free_modes() const {
+  ERGOCAST_REQUIRE(!free_domain || table != nullptr);
+  return free_domain ? table.get() : nullptr;
+}
+
 CosinesAt::CosinesAt(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis) {
+  if (const FreeModes* const modes = basis.free_modes()) {
+    free = FreePlace(x_m.head<2>(), *modes);
+    return;
+  }
   for_each_mode(x_m, domain, basis, [this](int m, const Wave& x, const Wave& y) {
     cos_x[m] = x.cosine;
     cos_y[m] = y.cosine;
@@ -77,6 +87,10 @@ CosinesAt::CosinesAt(const Eigen::Vector3d& x_m, const Box& domain, const Basis&
 }
 
 BasisAt::BasisAt(const Eigen::Vector3d& x_m, const Box& domain, const Basis& basis) {
+  if (const FreeModes* const modes = basis.free_modes()) {
+    free = FreePlace(x_m.head<2>(), *modes);
+    return;
+  }
   const Eigen::Vector2d wave_numbers = wave_numbers_of(domain);
   for_each_mode(x_m, domain, basis, [&](int m, const Wave& x, const Wave& y) {
     cos_x[m] = x.cosine;
@@ -105,6 +119,10 @@ namespace {
 template <class Each>
 ERGOCAST_VECTORIZED_PART void for_each_sum(const CosinesAt& at, const Basis& basis, double dt_s,
                                            double* sums, const Each& each) {
+  if (at.free.modes != nullptr) {
+    return for_free_gains(at.free, dt_s, 0, at.free.modes->mode_count,
+                          [&](int k, double value) { each(sums[k], value); });
+  }
   double* row = sums;
   for (int l = 0; l < basis.modes_z; ++l) {
     const double along_z = at.cos_z[l] * dt_s;
@@ -311,6 +329,10 @@ FieldAt field_in_space(const BasisAt& at, const BasisAt::Table& bend, const Basi
 
 ERGOCAST_VECTORIZED
 Eigen::Vector3d weighted_gradient(const BasisAt& at, const Basis& basis, const double* weights) {
+  if (at.free.modes != nullptr) {
+    const Eigen::Vector2d gradient = free_field(at.free, weights).gradient;
+    return {gradient.x(), gradient.y(), 0};
+  }
   if (!basis.planar()) return gradient_in_space(at, basis, weights);
   BasisAt::Table over_cos;
   const Eigen::Vector2d gradient = plane_gradient(at, basis, weights, over_cos);
@@ -320,6 +342,13 @@ Eigen::Vector3d weighted_gradient(const BasisAt& at, const Basis& basis, const d
 ERGOCAST_VECTORIZED
 FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Box& domain,
                        const double* weights) {
+  if (at.free.modes != nullptr) {
+    const FreeField flat = free_field(at.free, weights);
+    FieldAt field;
+    field.gradient.head<2>() = flat.gradient;
+    field.hessian.topLeftCorner<2, 2>() = flat.hessian;
+    return field;
+  }
   BasisAt::Table bend;
   set_bends(at.cos_x, domain.size_m.x(), basis.modes_x, bend);
   if (!basis.planar()) return field_in_space(at, bend, basis, domain, weights);
@@ -349,6 +378,10 @@ double wave_number(int mode, double length_m) {
 }  // namespace
 
 Coefficients sobolev_weights(const Basis& basis, const Box& domain) {
+  if (const FreeModes* const modes = basis.free_modes()) {
+    return free_weights(*modes, basis.sobolev_form == SobolevForm::kSquaredNorm,
+                        basis.sobolev_exponent, basis.normalized);
+  }
   Coefficients weights(basis.mode_count());
   for_every_mode(basis, [&](int l, int m, int n, int k) {
     const double squared =
@@ -365,6 +398,13 @@ Coefficients sobolev_weights(const Basis& basis, const Box& domain) {
 
 Coefficients gradient_energies(const Basis& basis, const Box& domain) {
   Coefficients energies(basis.mode_count());
+  if (const FreeModes* const modes = basis.free_modes()) {
+    for (int k = 0; k < modes->mode_count; ++k) {
+      const auto mode = static_cast<std::size_t>(k);
+      energies[k] = modes->eigenvalues_per_m2[mode] * modes->mean_squares[mode];
+    }
+    return energies;
+  }
   for_every_mode(basis, [&](int l, int m, int n, int k) {
     const double kx = wave_number(m, domain.size_m.x());
     const double ky = wave_number(n, domain.size_m.y());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cosine basis (2) on a box, its gradient, and the weights that compare coefficients.
+// The cosine basis (2) on a box, its gradient, and the weights that compare coefficients. Or, in a
+// plane with walls, the modes of the free domain (core/free_modes.h) in the cosines' place: f is
+// then e_k of that table, which has the cosines' bounds, and `domain` is not read.
 //
 // Places have three coordinates. A plane has one mode along z, f_lmn = f_mn for l = 0, and its
 // numbers are bit for bit those of the two-dimensional sums.
@@ -10,7 +12,10 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
+#include <memory>
 
+#include "core/free_modes.h"
 #include "core/geometry.h"
 #include "core/ids.h"
 
@@ -38,9 +43,16 @@ struct Basis {
   /// Whether f is divided by h_k = sqrt(Π L_i · (1/2)^[k_i > 0]) where coefficients are compared;
   /// the product is over x and y in a plane.
   bool normalized = false;
+  /// Whether the modes_x · modes_y lowest modes of the free domain are used, by ascending ν.
+  bool free_domain = false;
+  std::uint64_t table_hash = 0;  ///< of their table, else 0
+  /// The table of that hash. Not in a plan: null where nobody has provided it.
+  std::shared_ptr<const FreeModes> table = nullptr;
 
   int mode_count() const { return modes_x * modes_y * modes_z; }
   bool planar() const { return modes_z == 1; }
+  /// The table; null for cosines. @pre a free domain's table has been provided
+  const FreeModes* free_modes() const;
 };
 
 /// The numbers of the modes l = 0 as a matrix: in a plane all of them.
@@ -56,9 +68,10 @@ inline Coefficients in_basis_order(const PlaneCoefficients& coefficients) {
   return coefficients.reshaped<Eigen::RowMajor>();
 }
 
-/// Cosines of every mode along each axis at one point: all that f needs.
+/// Cosines of every mode along each axis at one point, or the place in the table: all that f needs.
 struct CosinesAt {
   using Table = std::array<double, kMaxModesPerAxis>;
+  FreePlace free;             ///< if it has modes, the cosines are not set
   Table cos_x, cos_y, cos_z;  ///< cos(mπx/Lx), cos(nπy/Ly), cos(lπz/Lz); of one mode {1}
 
   /// @pre x_m is finite; up to kMaxModesPerAxis modes an axis, one along z if the domain is a
@@ -104,11 +117,13 @@ struct FieldAt {
 FieldAt weighted_field(const BasisAt& at, const Basis& basis, const Box& domain,
                        const double* weights);
 
-/// λ_k, divided by h_k² where the basis is normalised: the one weight of both φ² and (6).
+/// λ_k, divided by h_k² where the basis is normalised: the one weight of both φ² and (6). In a free
+/// domain free_weights().
 Coefficients sobolev_weights(const Basis& basis, const Box& domain);
 
 /// g_k with  mean over the domain of ‖Σ a_k ∇f_k‖² = Σ a_k² g_k  (Parseval) [1/m²]:
-/// [(mπ/Lx)² η_n η_l + (nπ/Ly)² η_m η_l + (lπ/Lz)² η_m η_n] / 2, η_0 = 1, else ½.
+/// [(mπ/Lx)² η_n η_l + (nπ/Ly)² η_m η_l + (lπ/Lz)² η_m η_n] / 2, η_0 = 1, else ½. In a free domain
+/// ν_k times the mean square of e_k, over the free cells.
 Coefficients gradient_energies(const Basis& basis, const Box& domain);
 
 /// φ² = Σ λ_k (c_k − μ_k)² / h_k², `weights` as sobolev_weights() gives them.

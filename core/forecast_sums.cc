@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/free_gains.h"
 #include "core/vectorized.h"
 
 namespace ergocast::sums {
@@ -13,6 +14,8 @@ namespace {
 template <class Each>
 ERGOCAST_VECTORIZED_PART void for_gains(const CosinesAt& at, const Basis& basis, double dt_s,
                                         Modes modes, const Each& each) {
+  if (at.free.modes != nullptr)
+    return for_free_gains(at.free, dt_s, modes.first, modes.first + modes.count, each);
   const int modes_y = basis.modes_y, end = modes.first + modes.count;
   int l = 0, m = modes.first / modes_y;
   int row = m * modes_y;

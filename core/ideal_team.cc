@@ -41,9 +41,9 @@ IdealTeam::IdealTeam(Mission mission, Edges edges)
                        earlier_,
                        earlier_,
                        earlier_});
+    if (follows_walls(mission_)) agents_.back().follower.emplace(mission_, author.agent);
   }
-  if (mission_.separation.distance_m > 0 || any_but_points(mission_))
-    separation_.emplace(mission_, 0);
+  if (any_filtered(mission_)) separation_.emplace(mission_, 0);
   bodies_.resize(separation_ ? agents_.size() : 0);
 }
 
@@ -96,8 +96,9 @@ void IdealTeam::see_bodies() {
 Eigen::Vector3d IdealTeam::kept_apart(Agent& agent, const Eigen::Vector3d& v_mps) {
   if (!agent.filtered) return v_mps;
   const SafeVelocity safe = separation_->safe(
-      {agent.author.agent, tick_, agent.x_m, agent.motion.speed_limit_mps, agent.v_mps}, v_mps,
-      bodies_);
+      {agent.author.agent, tick_, agent.x_m, agent.motion.speed_limit_mps, agent.v_mps},
+      agent.follower ? agent.follower->aim(tick_, agent.x_m, v_mps) : v_mps, bodies_);
+  if (agent.follower) agent.follower->note(safe.wall);
   agent.blocked_ticks = safe.blocked ? agent.blocked_ticks + 1 : 0;
   blocked_steps_ += safe.blocked ? 1 : 0;
   longest_block_ticks_ = std::max(longest_block_ticks_, agent.blocked_ticks);

@@ -17,6 +17,7 @@
 #include "core/mission.h"
 #include "core/separation.h"
 #include "core/vehicle.h"
+#include "core/wall_following.h"
 
 namespace ergocast::lab {
 
@@ -67,11 +68,12 @@ class IdealTeam {
     Motion motion;
     bool filtered = false;  // its commands
     Eigen::Vector3d x_m{0, 0, 0}, v_mps{0, 0, 0}, next_mps{0, 0, 0}, b{0, 0, 0};
-    std::optional<BasisAt> at;       // x_m
-    std::vector<double> said;        // its sums a tick ago
-    std::vector<double> gain;        // since then
-    std::vector<double> later;       // what all later agents will have covered
-    std::int64_t blocked_ticks = 0;  // without a break
+    std::optional<BasisAt> at;                            // x_m
+    std::vector<double> said;                             // its sums a tick ago
+    std::vector<double> gain;                             // since then
+    std::vector<double> later;                            // what all later agents will have covered
+    std::int64_t blocked_ticks = 0;                       // without a break
+    std::optional<WallFollower> follower = std::nullopt;  // where there are walls
   };
 
   void sample();

@@ -28,6 +28,8 @@ inline constexpr int kMaxIncarnationsPerAgent = 16;
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 inline constexpr int kMaxModesPerAxis = 64;
 inline constexpr int kMaxModes = 4096;  ///< of all axes together
+/// Of a free domain: the time that they take to compute grows with the square.
+inline constexpr int kMostFreeModes = 400;
 inline constexpr int kMaxHostLength = 63;
 inline constexpr int kMaxVersionLength = 31;
 

@@ -29,6 +29,7 @@ double unit_variance(int modes, const Mu& mu) {
 }  // namespace
 
 double target_spread_m(const Coefficients& target, const Basis& basis, const Box& domain) {
+  if (const FreeModes* const modes = basis.free_modes()) return free_spread_m(*modes, target);
   // From a mode along one axis to the next, in the order of the basis.
   const int step_x = basis.modes_y, step_z = basis.modes_x * basis.modes_y;
   const auto deviation_m = [&](int axis, int modes, int step) {

@@ -11,7 +11,8 @@ namespace ergocast {
 /// The RMS distance of the target's mass from its mean, s = √(Var x + Var y + Var z) [m], from μ
 /// alone, with L the domain's size along an axis and μ_m the coefficients along it:
 ///   E[x]/L = ½ − Σ_{m odd} 4 μ_m / (π² m²),   E[x²]/L² = ⅓ + Σ_{m ≥ 1} (−1)^m 4 μ_m / (π² m²)
-/// The sums end with the last mode; the rest of each is at most 4 / (π² (modes − ½)).
+/// The sums end with the last mode; the rest of each is at most 4 / (π² (modes − ½)). In a free
+/// domain free_spread_m().
 double target_spread_m(const Coefficients& target, const Basis& basis, const Box& domain);
 
 /// h and the weights of a teammate's gains, for one mission.

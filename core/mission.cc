@@ -4,11 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/noise.h"
-#include "core/vehicle.h"
+#include "core/separation.h"
+#include "core/walls.h"
 
 namespace ergocast {
+
+Mission in_cosines(Mission mission) {
+  if (!mission.basis.free_domain) return mission;
+  mission.basis.free_domain = false;
+  mission.basis.table_hash = 0;
+  mission.basis.table = nullptr;
+  mission.target_coefficients = std::move(mission.cosine_target);
+  mission.cosine_target = {};
+  return mission;
+}
 
 Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps) {
   // Divided first, so that no length overflows.
@@ -30,8 +42,9 @@ Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen
         mission.disturbance_intensity * std::sqrt(dt_s) *
         normal_in(mission.domain, mission.seed, Purpose::kDisturbance,
                   static_cast<std::uint32_t>(id), static_cast<std::uint64_t>(tick));
-    next_m +=
-        separation.distance_m > 0 ? within_speed(pushed_m, separation.disturbance_m) : pushed_m;
+    next_m += stopped_by_walls(
+        mission, id, next_m,
+        separation.distance_m > 0 ? within_speed(pushed_m, separation.disturbance_m) : pushed_m);
   }
   return next_m;
 }
@@ -48,9 +61,8 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block) {
 
 Eigen::Vector3d start_of(const Mission& mission, AgentId id) {
   const auto at = static_cast<std::size_t>(id);
-  return at < mission.starts_m.size()
-             ? mission.starts_m[at]
-             : random_start(room_to_begin(motion_of(mission, id)), mission.seed, id);
+  return at < mission.starts_m.size() ? mission.starts_m[at]
+                                      : start_beside(mission, id, {}, start_distance_m);
 }
 
 Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id, int attempt) {

@@ -11,6 +11,7 @@
 #include "core/contribution.h"
 #include "core/geometry.h"
 #include "core/ids.h"
+#include "core/rings.h"
 
 namespace ergocast {
 
@@ -107,6 +108,7 @@ struct Mission {
   Box domain;
   Basis basis;
   Coefficients target_coefficients;  ///< μ
+  Coefficients cosine_target;        ///< with basis.free_domain: μ in the basis (2), else empty
   ControlLaw law;
   Timing timing;
   std::vector<Eigen::Vector3d> starts_m;  ///< where agent i begins; one per planned agent
@@ -117,6 +119,8 @@ struct Mission {
   double disturbance_intensity = 0;  ///< actuation noise in the world [m/√s]
   double radio_range_m = 0;          ///< how far agents hear each other; 0: everywhere
   double speed_limit_mps = 0;        ///< of vehicles whose kind has none of its own; 0: none
+  Rings walls;                       ///< solid: where an odd number of rings is around
+  double wall_clearance_m = 0;       ///< how far bodies keep from them
   VehicleLimits vehicle;             ///< of those whose kind has none of its own
   Separation separation;
   bool dead_reckoning = false;  ///< whether forecasts use teammates' places, core/forecast.h
@@ -124,12 +128,15 @@ struct Mission {
       true;  ///< lockstep: the world runs a bounded number of ticks ahead of the record
 };
 
+/// The same mission with the cosines (2) as its basis, to judge by them what flies by other modes.
+Mission in_cosines(Mission mission);
+
 /// `v_mps` bit for bit, or a vector of length `limit_mps` in its direction. @pre limit_mps > 0
 Eigen::Vector3d within_speed(const Eigen::Vector3d& v_mps, double limit_mps);
 
 /// Where a vehicle at `x_m` with mean velocity `v_mps` is one step of `tick` later, edges not yet
 /// considered: x + v dt + disturbance_intensity √dt ξ. Where a distance is kept, the last term is
-/// cut to separation.disturbance_m.
+/// cut to separation.disturbance_m; where there are walls, they and the edges stop it.
 Eigen::Vector3d moved(const Mission& mission, AgentId id, Tick tick, const Eigen::Vector3d& x_m,
                       const Eigen::Vector3d& v_mps);
 
@@ -142,7 +149,7 @@ inline Tick longest_period_ticks(const Timing& timing) {
 /// turns within the period, and with blocks of high modes within its multiple.
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block = 0);
 
-/// The start of agent `id`: as planned, or beyond the plan drawn from the seed.
+/// The start of agent `id`: as planned, or beyond the plan drawn from the seed, outside all walls.
 Eigen::Vector3d start_of(const Mission& mission, AgentId id);
 /// A draw: uniform in the domain.
 Eigen::Vector3d random_start(const Box& domain, std::uint64_t seed, AgentId id, int attempt = 0);

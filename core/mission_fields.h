@@ -44,7 +44,10 @@ struct FieldVisitor {
   void kinds(int, const char*, auto&) {}  ///< each as a part of its own
   void kind_name(int, const char*, auto&) {}
   void own_vehicle(int, const char*, auto&) {}  ///< a part that may be absent
+  void walls(int, const char*, auto&) {}        ///< rings
   void hidden_flag(int, auto&) {}               ///< in no scenario
+  void hash(int, auto&) {}                      ///< of a file; in no scenario
+  void other_target(int, auto&) {}              ///< μ in cosines; empty where target() is that
 };
 
 template <class T, class Part>
@@ -66,6 +69,8 @@ void list_fields(auto& io, MaybeConst<Basis> auto& basis) {
   io.choice(4, "sobolev_form", basis.sobolev_form, {"SQUARED_NORM", "NORM"});
   io.number(5, "sobolev_exponent", basis.sobolev_exponent, limits::above(0, 10));
   io.height(6, "modes_z", basis.modes_z, limits::kModes, 1);
+  io.flag(7, "free_domain", basis.free_domain);
+  io.hash(8, basis.table_hash);
 }
 
 void list_fields(auto& io, MaybeConst<ControlLaw> auto& law) {
@@ -156,10 +161,14 @@ void list_fields(auto& io, MaybeConst<Mission> auto& m) {
   io.number(13, "world.radio_range_m", m.radio_range_m, limits::between(0, 1e13));
   io.number(14, "world.speed_limit_mps", m.speed_limit_mps, limits::above(0, 1e9),
             m.speed_limit_mps != 0);
+  io.walls(21, "world.walls", m.walls);
+  io.number(22, "world.wall_clearance_m", m.wall_clearance_m, limits::between(0, 1e7),
+            !m.walls.empty());
   io.number(11, "goal_ergodic_metric", m.goal_ergodic_metric, limits::above(0, 1e9),
             m.goal_ergodic_metric != 0);
   io.part(18, "vehicle", m.vehicle);
   io.part(19, "separation", m.separation);
+  io.other_target(24, m.cosine_target);
   io.hidden_flag(16, m.wait_for_logger);
 }
 

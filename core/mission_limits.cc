@@ -9,6 +9,7 @@
 #include "core/mission_fields.h"
 #include "core/separation.h"
 #include "core/vehicle.h"
+#include "core/walls.h"
 
 namespace ergocast {
 namespace {
@@ -78,6 +79,16 @@ bool is_coefficient(double value) { return std::abs(value) <= 1 + 1e-9; }
 bool is_target(const Coefficients& target, const Basis& basis) {
   if (target.size() != basis.mode_count()) return false;
   return target[0] == 1 && std::all_of(target.begin(), target.end(), is_coefficient);
+}
+
+/// A plan names the table, and with it has μ of the cosines, too. A blur and a band are cosines'.
+bool fits(const Basis& basis, const Mission& mission) {
+  if (!basis.free_domain) return basis.table_hash == 0 && mission.cosine_target.size() == 0;
+  const auto sees_points = [](const AgentKind& kind) {
+    return kind.footprint_sigma_m == 0 && kind.band_from == 0 && kind.band_to == 0;
+  };
+  return basis.table_hash != 0 && basis.mode_count() <= kMostFreeModes && mission.domain.planar() &&
+         is_target(mission.cosine_target, basis) && std::ranges::all_of(mission.kinds, sees_points);
 }
 
 /// Adaptive noise is between its floor and its ceiling.
@@ -207,12 +218,12 @@ bool within_limits(const Mission& mission) {
   EachWithinLimits each;
   list_fields(each, mission);
   return each.ok && fits(mission.domain) && fit_together(mission.basis, mission.domain) &&
-         is_target(mission.target_coefficients, mission.basis) && fits(mission.law) &&
-         fits(mission.timing) &&
+         is_target(mission.target_coefficients, mission.basis) && fits(mission.basis, mission) &&
+         fits(mission.law) && fits(mission.timing) &&
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
          is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&
-         fits(mission.separation, mission);
+         fits(mission.separation, mission) && walls_fit(mission);
 }
 
 }  // namespace ergocast

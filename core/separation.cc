@@ -11,6 +11,7 @@
 #include "core/kinds.h"
 #include "core/noise.h"
 #include "core/require.h"
+#include "core/walls.h"
 
 namespace ergocast {
 namespace {
@@ -38,22 +39,43 @@ std::vector<Motion> motions_in(const Mission& mission) {
   return motions;
 }
 
-/// κ: a body that follows late closes less than the whole gap in a tick.
-double gain_of(double response_s, double dt_s) {
-  return response_s > 0 ? std::min(1.0, dt_s / (4 * response_s)) : 1;
+}  // namespace
+
+double closing_gain(const Mission& mission) {
+  const double response_s = mission.separation.response_s;
+  return response_s > 0 ? std::min(1.0, mission.timing.dt_s / (4 * response_s)) : 1;
 }
 
-}  // namespace
+double late_edge_margin_m(const Mission& mission, AgentId id) {
+  const Separation& rule = mission.separation;
+  if (rule.response_s == 0) return 0;
+  return rule.response_s * motion_of(mission, id).speed_limit_mps + 2 * rule.position_error_m;
+}
+
+Box room_to_begin(const Mission& mission, AgentId id) {
+  Box room = room_to_begin(motion_of(mission, id));
+  if (mission.separation.response_s == 0) return room;
+  const double edge_m =
+      std::min(late_edge_margin_m(mission, id), mission.domain.shortest_side_m() / 4);
+  const int axes = mission.domain.planar() ? 2 : 3;
+  room.origin_m.head(axes).array() += edge_m;
+  room.size_m.head(axes).array() -= 2 * edge_m;
+  return room;
+}
 
 SeparationFilter::SeparationFilter(const Mission& mission, Tick hold_ticks)
     : mission_(mission),
       motions_(motions_in(mission)),
       hold_ticks_(static_cast<double>(hold_ticks)),
-      gain_(gain_of(mission.separation.response_s, mission.timing.dt_s)),
+      gain_(closing_gain(mission)),
       rounding_m_(kContactTicks * 4 * std::numeric_limits<double>::epsilon() *
                   (greatest_coordinate_m(mission.domain) + mission.separation.distance_m)),
-      constraints_(kMaxAgents) {
-  ERGOCAST_REQUIRE(mission.separation.distance_m > 0 || any_but_points(mission));
+      // A wall that touches a body may need four sets.
+      constraints_(kMaxAgents + 4 * vertex_count(mission.walls)) {
+  ERGOCAST_REQUIRE(any_filtered(mission));
+  taken_.reserve(kMaxAgents + 4 * vertex_count(mission.walls));
+  for (const Motion& motion : motions_)
+    kept_from_walls_m_.push_back(kept_from_walls_m(mission, motion));
   for (const Motion& one : motions_) {
     for (const Motion& other : motions_) pairs_.push_back(pair_between(one, other));
   }
@@ -105,27 +127,30 @@ double SeparationFilter::uncertainty_m(const Mover& self, const Neighbour& other
 void SeparationFilter::begin(const Mover& self, double reach_m) {
   const Separation& rule = mission_.separation;
   const Box& domain = mission_.domain;
+  const double error_m =
+      rule.response_s > 0 ? late_edge_margin_m(mission_, self.id) : rule.position_error_m;
   const double edge_m =
-      hold_ticks_ * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m) +
-      rule.position_error_m + loiter_radius_m(motion_of(self.id));
+      hold_ticks_ * (self.max_speed_mps * mission_.timing.dt_s + rule.disturbance_m) + error_m +
+      loiter_radius_m(motion_of(self.id));
   const Eigen::Vector3d inset_m = Eigen::Vector3d::Constant(edge_m);
   const Eigen::Vector3d low_m = domain.origin_m - self.position_m + inset_m;
   const Eigen::Vector3d high_m = domain.origin_m + domain.size_m - self.position_m - inset_m;
-  StepConstraints::Room room{reach_m, low_m.cwiseMin(0.0), high_m.cwiseMax(0.0)};
+  StepConstraints::Room room{reach_m, gain_ * low_m.cwiseMin(0.0), gain_ * high_m.cwiseMax(0.0)};
   if (domain.planar()) room.low_m.z() = room.high_m.z() = 0;
   constraints_.begin(room);
-  taken_count_ = 0;
+  taken_.clear();
 }
 
-void SeparationFilter::take(const Neighbour& other, const StepConstraints::Set& set) {
-  taken_[taken_count_++] = other.id;
+void SeparationFilter::take(AgentId whose, const StepConstraints::Set& set) {
+  taken_.push_back(whose);
   constraints_.add(set);
 }
 
-/// Whose set the step exceeds most; kUnassigned: none, or an edge.
-AgentId SeparationFilter::blocker(const Eigen::Vector3d& wanted_m) const {
-  const int by = constraints_.most_exceeded(wanted_m);
-  return by < 0 ? kUnassigned : taken_[static_cast<std::size_t>(by)];
+/// Whose set the step exceeds most: a neighbour's, a wall's, or none.
+SafeVelocity SeparationFilter::blocked_by(const Eigen::Vector3d& wanted_m) const {
+  const int most = constraints_.most_exceeded(wanted_m);
+  const AgentId by = most < 0 ? kUnassigned : taken_[static_cast<std::size_t>(most)];
+  return {{0, 0, 0}, true, by, most >= 0 && by == kUnassigned};
 }
 
 /// ±1: all on one side would still block each other, so each draws its side, again and again.
@@ -158,7 +183,7 @@ SafeVelocity SeparationFilter::safe(const Mover& self, const Eigen::Vector3d& wa
 
 /// It stands, brakes as hard as it can or loiters, since `other` may be anywhere around.
 SafeVelocity SeparationFilter::stopped(const Mover& self, const Neighbour& other) const {
-  return {executed(motion_of(self.id), self.velocity_mps, {0, 0, 0}), true, other.id, true};
+  return {executed(motion_of(self.id), self.velocity_mps, {0, 0, 0}), true, other.id, false, true};
 }
 
 // ---- points
@@ -180,11 +205,11 @@ SafeVelocity SeparationFilter::safe_step(const Mover& self, const Eigen::Vector3
   const Eigen::Vector3d wanted_m = within_speed(possible_mps, self.max_speed_mps) * dt_s;
   if (constraints_.allow(wanted_m)) return {wanted_mps};
 
-  SafeVelocity safe;
-  safe.by = blocker(wanted_m);
+  SafeVelocity safe = blocked_by(wanted_m);
   Eigen::Vector3d step_m = constraints_.nearest(wanted_m);
   const double shortest_m = kBlockedShare * length_of(wanted_m);
-  if (length_of(step_m) < shortest_m) {
+  // Who faces a wall goes along it for longer, core/wall_following.h.
+  if (length_of(step_m) < shortest_m && !safe.wall) {
     const Eigen::Vector3d beside_m = constraints_.nearest(sideways(self, wanted_m));
     const bool better = constraints_.allow(beside_m) && length_of(beside_m) > length_of(step_m);
     if (better) step_m = beside_m;
@@ -265,14 +290,14 @@ double packing(const Mission& mission, std::size_t bodies) {
 
 Eigen::Vector3d start_beside(const Mission& mission, AgentId id, std::span<const Placed> others,
                              double (*distance_m)(const Mission&, AgentId, AgentId)) {
-  const Box room = room_to_begin(motion_of(mission, id));
+  const Box room = room_to_begin(mission, id);
   std::vector<double> least_m;
   for (const Placed& other : others) least_m.push_back(distance_m(mission, id, other.id));
   Eigen::Vector3d best_m{0, 0, 0};
   double best_spare_m = -std::numeric_limits<double>::max();
   for (int attempt = 0; attempt < kMostDraws && best_spare_m < 0; ++attempt) {
     const Eigen::Vector3d x_m = random_start(room, mission.seed, id, attempt);
-    double spare_m = std::numeric_limits<double>::max();
+    double spare_m = spare_at_start_m(mission, id, x_m) - late_edge_margin_m(mission, id);
     for (std::size_t i = 0; i < others.size(); ++i)
       spare_m = std::min(spare_m, length_of(others[i].position_m - x_m) - least_m[i]);
     if (spare_m <= best_spare_m) continue;
@@ -303,8 +328,17 @@ Tick unguarded_hold_ticks(const Mission& mission) {
   return held ? command_hold_ticks(mission.timing) : 0;
 }
 
+bool filters_again(const Mission& mission) {
+  return world_guards(mission) || !mission.walls.empty();
+}
+
+bool any_filtered(const Mission& mission) {
+  return mission.separation.distance_m > 0 || !mission.walls.empty() || any_but_points(mission);
+}
+
 bool filters_commands(const Mission& mission, AgentId id) {
-  return mission.separation.distance_m > 0 || !motion_of(mission, id).is_point();
+  return mission.separation.distance_m > 0 || !mission.walls.empty() ||
+         !motion_of(mission, id).is_point();
 }
 
 }  // namespace ergocast

@@ -16,6 +16,9 @@
 // for both, and for rounding. Two bodies that both do so, and are D' apart, stay D' apart: the true
 // unit vector n between them is such a u for both, so together they use at most the gap.
 //
+// Walls bound steps in the same way. They take no share, so a body may use the whole gap; the
+// nearest point of each of their edges says u. core/separation_walls.cc has the sets.
+//
 // Bodies that are no points cannot stand at once. What they keep apart is what stays of them under
 // commands of 0, core/separation_pairs.cc; D' grows by what their bodies depart from that. So each
 // of a pair may have another kind of vehicle.
@@ -23,7 +26,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -60,16 +62,18 @@ struct SafeVelocity {
   /// Whether a body or an edge leaves next to nothing of it: less than a tenth of what was wanted,
   /// or of a vehicle with inertia, that it brakes, and of a fixed wing, that it loiters.
   bool blocked = false;
-  /// The neighbour that the wanted step would come too close to; kUnassigned: none, or an edge of
-  /// the domain.
+  /// The neighbour that the wanted step would come too close to; kUnassigned: none, or a wall or an
+  /// edge of the domain.
   AgentId by = kUnassigned;
+  /// Whether it is a wall that the wanted step would come too close to.
+  bool wall = false;
   /// Whether it stands because a neighbour is unknown, or may be anywhere around.
   bool blind = false;
 };
 
 class SeparationFilter {
  public:
-  /// Where the mission keeps no distance, only edges and the vehicle's own limits count.
+  /// Where the mission keeps no distance, only walls, edges and the vehicle's own limits count.
   /// @param hold_ticks  for how many ticks after its own one a command may still be executed
   SeparationFilter(const Mission& mission, Tick hold_ticks);
 
@@ -104,8 +108,10 @@ class SeparationFilter {
   double margin_m(double fastest_mps) const;
   double uncertainty_m(const Mover& self, const Neighbour& other) const;
   void begin(const Mover& self, double reach_m);
-  void take(const Neighbour& other, const StepConstraints::Set& set);
-  AgentId blocker(const Eigen::Vector3d& wanted_m) const;
+  void take(AgentId whose, const StepConstraints::Set& set);
+  void keep_from_walls(const Mover& self, const Stay& own);
+  void keep_from_wall(const Mover& self, const Stay& own, const Segment& edge);
+  SafeVelocity blocked_by(const Eigen::Vector3d& wanted_m) const;
   double side(const Mover& self) const;
   SafeVelocity stopped(const Mover& self, const Neighbour& other) const;
   SafeVelocity safe_step(const Mover& self, const Eigen::Vector3d& wanted_mps,
@@ -132,8 +138,8 @@ class SeparationFilter {
   double hold_ticks_, gain_, rounding_m_;
   std::vector<Pair> pairs_;  // of each kind with each
   StepConstraints constraints_;
-  std::array<AgentId, kMaxAgents> taken_{};  // whose constraint has which number
-  std::size_t taken_count_ = 0;
+  std::vector<AgentId> taken_;  // whose constraint has which number; kUnassigned: a wall's
+  std::vector<double> kept_from_walls_m_;  // by each kind of agents
 };
 
 /// Where a body is.
@@ -141,6 +147,17 @@ struct Placed {
   AgentId id = kUnassigned;
   Eigen::Vector3d position_m{0, 0, 0};
 };
+
+/// κ, the share of a gap that the two bodies beside it may close in a tick: 1, unless they follow
+/// their commands late; then min(1, dt/4T). A greater share would have them overshoot.
+double closing_gain(const Mission& mission);
+
+/// What body `id` keeps from edges and walls if it follows late: V T + 2 e; else 0 [m].
+double late_edge_margin_m(const Mission& mission, AgentId id);
+
+/// Where body `id` may begin if the plan does not say it: room_to_begin() of its vehicle without
+/// late_edge_margin_m(), of which a quarter of the shorter side counts at most.
+Box room_to_begin(const Mission& mission, AgentId id);
 
 /// How far apart two bodies must begin, D + 2 R and what their vehicles need: nearer ones might
 /// never move [m]. 0 where no distance is kept.
@@ -181,11 +198,18 @@ Tick unguarded_hold_ticks(const Mission& mission);
 /// Whether the world filters commands again, with true positions.
 bool world_guards(const Mission& mission);
 
+/// Whether the world, or who drives the whole team, has a reason to filter the commands of points
+/// again: it guards, or there are walls, which a held command does not know.
+bool filters_again(const Mission& mission);
+
+/// Whether anybody's commands pass through a SeparationFilter.
+bool any_filtered(const Mission& mission);
+
 /// Whether all that bodies know of each other is exact: what vehicles that are no points require.
 bool sure_of_bodies(const Mission& mission);
 
 /// Whether commands of body `id` pass through a SeparationFilter at all: where a distance is kept,
-/// and of vehicles that are no points: no edge can turn them round.
+/// where there are walls, and of vehicles that are no points: no edge can turn them round.
 bool filters_commands(const Mission& mission, AgentId id);
 
 }  // namespace ergocast

@@ -46,19 +46,22 @@ SafeVelocity SeparationFilter::safe_change(const Mover& self, const Eigen::Vecto
   const Eigen::Vector3d direct_mps = executed(motion, self.velocity_mps, wanted_mps);
   if (allows(self, direct_mps)) return {direct_mps};
 
-  const AgentId by = blocker(mean_velocity(motion, self.velocity_mps, direct_mps) * motion.dt_s +
-                             braking_path_m(motion, direct_mps));
+  SafeVelocity safe =
+      blocked_by(mean_velocity(motion, self.velocity_mps, direct_mps) * motion.dt_s +
+                 braking_path_m(motion, direct_mps));
   const Eigen::Vector3d aim_mps = within_speed_limit(motion, wanted_mps);
   for (const double share : {1.0, 0.5}) {
     for (const Turn& turn : kTurns) {
       for (const double hand : {side(self), -side(self)}) {
-        const Eigen::Vector3d v_mps =
+        safe.velocity_mps =
             executed(motion, self.velocity_mps, share * turned(aim_mps, turn, hand));
-        if (allows(self, v_mps)) return {v_mps, false, by};
+        safe.blocked = !allows(self, safe.velocity_mps);
+        if (!safe.blocked) return safe;
       }
     }
   }
-  return {executed(motion, self.velocity_mps, {0, 0, 0}), true, by};
+  safe.velocity_mps = executed(motion, self.velocity_mps, {0, 0, 0});
+  return safe;
 }
 
 }  // namespace ergocast

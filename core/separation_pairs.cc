@@ -54,6 +54,7 @@ SeparationFilter::Stay SeparationFilter::stay_of(const Motion& motion, const Eig
 const Neighbour* SeparationFilter::keep_from_all(const Mover& self,
                                                  std::span<const Neighbour> others) {
   const Stay own = stay_of(motion_of(self.id), self.position_m, self.velocity_mps);
+  keep_from_walls(self, own);
   for (const Neighbour& other : others) {
     if (other.id != self.id && !keep_from(self, own, other)) return &other;
   }
@@ -84,7 +85,7 @@ bool SeparationFilter::keep_places_apart(const Mover& self, const Neighbour& oth
   if (rho_m <= near_m) return false;
   double gap_m = rho_m - near_m - contact_m(self.id, other.id);
   if (rule.disturbance_m == 0 && rule.response_s == 0) gap_m = std::max(0.0, gap_m);
-  take(other, {y_m / rho_m, near_m / rho_m, gain_ * share_of(self, other) * gap_m});
+  take(other.id, {y_m / rho_m, near_m / rho_m, gain_ * share_of(self, other) * gap_m});
   return true;
 }
 
@@ -100,7 +101,7 @@ bool SeparationFilter::keep_ways_apart(const Mover& self, const Neighbour& other
   const double their_end_m =
       n.dot(theirs.from_m - own.from_m) + std::min(0.0, n.dot(theirs.along_m));
   const double gap_m = std::max(0.0, their_end_m - own_end_m - contact_m(self.id, other.id));
-  take(other, {n, 0, own_end_m + share_of(self, other) * gap_m});
+  take(other.id, {n, 0, own_end_m + share_of(self, other) * gap_m});
   return true;
 }
 

@@ -34,10 +34,7 @@ SafeVelocity SeparationFilter::safe_arc(const Mover& self, const Eigen::Vector3d
   const bool filtered =
       executed(motion, self.velocity_mps, wanted_mps) == wanted_mps &&
       constraints_.allow(mean_velocity(motion, self.velocity_mps, wanted_mps) * motion.dt_s);
-  if (filtered) {
-    safe.velocity_mps = wanted_mps;
-    return safe;
-  }
+  if (filtered) return {wanted_mps};
   const Eigen::Vector3d turned_mps = executed(motion, self.velocity_mps, safe.velocity_mps);
   const Eigen::Vector3d step_m = mean_velocity(motion, self.velocity_mps, turned_mps) * motion.dt_s;
   const double share = std::max(kLeastShare, constraints_.allowed_share(step_m));
@@ -66,15 +63,17 @@ SafeVelocity SeparationFilter::safe_circle(const Mover& self, const Eigen::Vecto
   const Eigen::Vector3d direct_m = center_step_m(self, direct_mps);
   if (constraints_.allow(direct_m)) return {direct_mps};
 
-  const AgentId by = blocker(direct_m);
+  SafeVelocity safe = blocked_by(direct_m);
   const Eigen::Vector3d tightest_mps = executed(motion, self.velocity_mps, {0, 0, 0});
   for (int i = 1; i < kTighterTurns; ++i) {
     const double share = static_cast<double>(i) / kTighterTurns;
-    const Eigen::Vector3d v_mps =
+    safe.velocity_mps =
         executed(motion, self.velocity_mps, direct_mps + share * (tightest_mps - direct_mps));
-    if (constraints_.allow(center_step_m(self, v_mps))) return {v_mps, false, by};
+    safe.blocked = !constraints_.allow(center_step_m(self, safe.velocity_mps));
+    if (!safe.blocked) return safe;
   }
-  return {tightest_mps, true, by};
+  safe.velocity_mps = tightest_mps;
+  return safe;
 }
 
 }  // namespace ergocast

@@ -59,7 +59,7 @@ void StepConstraints::add(const Set& set) {
 
 StepConstraints::Excess StepConstraints::excess_of(const Kept& kept,
                                                    const Eigen::Vector3d& step_m) {
-  const auto& [axis, sine, bound_m] = kept.set;
+  const auto& [axis, sine, bound_m, hard_m] = kept.set;
   if (bound_m >= 0) {
     const Support most = support(axis, sine, kept.cosine, step_m);
     return {most.height - bound_m, most.u};
@@ -70,7 +70,7 @@ StepConstraints::Excess StepConstraints::excess_of(const Kept& kept,
 
 /// A quick look without a root: most sets of a crowd are far from the step.
 bool StepConstraints::surely_holds(const Kept& kept, const Eigen::Vector3d& step_m) {
-  const auto& [axis, sine, bound_m] = kept.set;
+  const auto& [axis, sine, bound_m, hard_m] = kept.set;
   if (bound_m < 0) return false;
   const double along = axis.dot(step_m);
   const double square = step_m.squaredNorm(), across = square - along * along;
@@ -121,7 +121,19 @@ Eigen::Vector3d StepConstraints::nearest(const Eigen::Vector3d& wanted_m) {
     const double share = allowed_share(step_m);
     return share < 1 ? Eigen::Vector3d(share * step_m) : step_m;
   }
-  return worst_excess(step_m) <= kNoCommonStep * room_.reach_m ? step_m : least_excess(step_m);
+  return within_hard_bounds(
+      worst_excess(step_m) <= kNoCommonStep * room_.reach_m ? step_m : least_excess(step_m));
+}
+
+/// As they are at least 0, each of them allows a share of every step.
+Eigen::Vector3d StepConstraints::within_hard_bounds(const Eigen::Vector3d& step_m) const {
+  double share = 1;
+  for (const Kept& kept : sets_) {
+    const auto& [axis, sine, bound_m, hard_m] = kept.set;
+    const double height_m = support(axis, sine, kept.cosine, step_m).height;
+    if (height_m > hard_m) share = std::min(share, hard_m / height_m);
+  }
+  return share < 1 ? Eigen::Vector3d(share * step_m) : step_m;
 }
 
 /// Dykstra's iteration. Box and ball are the last sets of each sweep; the ball shortens towards 0,

@@ -10,17 +10,22 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace ergocast {
 
 class StepConstraints {
  public:
+  static constexpr double kNoHardBound = std::numeric_limits<double>::max();
+
   /// One set S.
   struct Set {
     Eigen::Vector3d toward{1, 0, 0};  ///< a, a unit vector
     double sine = 0;                  ///< of α; 0 ≤ sine < 1
     double bound_m = 0;               ///< b; below 0 the step 0 is not allowed either
+    /// Of a wall: the b, at least 0, that holds even where the sets have no step in common.
+    double hard_bound_m = kNoHardBound;
   };
   /// What begin() takes: the length of the longest step, and the box.
   struct Room {
@@ -39,6 +44,8 @@ class StepConstraints {
   /// Adds a set. One that contains every step within reach costs nothing later.
   void add(const Set& set);
 
+  double reach_m() const { return room_.reach_m; }
+
   /// Whether `step_m` is within reach, in the box and in every set, up to the tolerance.
   bool allow(const Eigen::Vector3d& step_m) const;
   /// The greatest share of `step_m`, at most all of it, that is in the box and in every set.
@@ -53,7 +60,7 @@ class StepConstraints {
   /// Where every bound is ≥ 0, allow() holds for the result, whether or not the iteration has
   /// converged: every set contains 0, so a step that is too long is shortened. If a bound is
   /// negative and the sets have no step in common, the sum of the squared excesses of the result is
-  /// small. The result is within reach and in the box in each case.
+  /// small. The result is within reach, in the box and within every hard bound in each case.
   /// Only + − × ÷ √: the same bits on every machine.
   Eigen::Vector3d nearest(const Eigen::Vector3d& wanted_m);
 
@@ -76,6 +83,7 @@ class StepConstraints {
   Eigen::Vector3d within_reach(const Eigen::Vector3d& step_m) const;
   double worst_excess(const Eigen::Vector3d& step_m) const;
   Eigen::Vector3d alternate(const Eigen::Vector3d& wanted_m);
+  Eigen::Vector3d within_hard_bounds(const Eigen::Vector3d& step_m) const;
   Eigen::Vector3d least_excess(const Eigen::Vector3d& step_m) const;
 
   std::vector<Kept> sets_;

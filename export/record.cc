@@ -92,7 +92,7 @@ std::variant<ExportRecord, std::string> read_export_record(const fs::path& run_d
                                                            const Mission& mission,
                                                            const std::optional<GeoPlace>& origin) {
   ExportRecord record;
-  record.mission = mission;
+  record.mission = in_cosines(mission);  // its maps; φ² over time is as it was recorded
   record.origin = origin;
   auto run = read_run(run_dir);
   if (auto* problem = std::get_if<std::string>(&run)) return std::move(*problem);

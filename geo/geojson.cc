@@ -2,10 +2,8 @@
 // Walks the members of a parsed file with their names; the first problem ends the walk.
 #include "geo/geojson.h"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "text/regular_file.h"
 #include "text/shortest.h"
 
 namespace ergocast {
@@ -14,7 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 struct Failure {
-  GeoJsonProblem problem;
+  PolygonFileProblem problem;
 };
 
 [[noreturn]] void fail(const std::string& member, std::string what, std::string remedy) {
@@ -138,7 +136,7 @@ class Walk {
 
 }  // namespace
 
-std::variant<std::vector<GeoPolygon>, GeoJsonProblem> parse_geojson(std::string_view text) {
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
   try {
     Walk walk;
     walk.file(Json::parse(text));
@@ -146,25 +144,16 @@ std::variant<std::vector<GeoPolygon>, GeoJsonProblem> parse_geojson(std::string_
   } catch (const Failure& failure) {
     return failure.problem;
   } catch (const Json::exception& error) {
-    return GeoJsonProblem{"", "is no JSON: " + std::string(error.what()), "repair it there"};
+    return PolygonFileProblem{"", "is no JSON: " + std::string(error.what()), "repair it there"};
   }
 }
 
-std::variant<std::vector<GeoPolygon>, GeoJsonProblem> read_geojson(
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
     const std::filesystem::path& file) {
-  if (const auto why = why_not_regular(file))
-    return GeoJsonProblem{"", *why, "name a file ending in .geojson"};
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open())
-    return GeoJsonProblem{"", "cannot be read", "check the name and its permissions"};
-  std::string text(kMaxGeoJsonBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > kMaxGeoJsonBytes) {
-    return GeoJsonProblem{"", "has more than 16 MiB",
-                          "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson"};
-  }
-  return parse_geojson(text);
+  const auto text = text_of_polygon_file(
+      file, ".geojson", "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson");
+  if (const auto* problem = std::get_if<PolygonFileProblem>(&text)) return *problem;
+  return parse_geojson(std::get<std::string>(text));
 }
 
 }  // namespace ergocast

@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "geo/local_plane.h"
+#include "geo/polygon_file.h"
 
 namespace ergocast {
-
-inline constexpr std::size_t kMaxGeoJsonBytes = std::size_t{16} << 20;
 
 /// The outline, then the holes; without the repeated last position.
 struct GeoPolygon {
@@ -20,16 +19,11 @@ struct GeoPolygon {
   std::vector<std::vector<GeoPlace>> rings;
 };
 
-struct GeoJsonProblem {
-  std::string member;  ///< the place in the file, or empty for the whole file
-  std::string what, remedy;
-};
-
 /// All Polygons and MultiPolygons of a FeatureCollection, a Feature or a geometry, at least one.
 /// Heights are not used. Anything else is a problem: other geometries, another reference system,
 /// rings that are not closed or have fewer than four positions, places that do not exist.
-std::variant<std::vector<GeoPolygon>, GeoJsonProblem> read_geojson(
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
     const std::filesystem::path& file);
-std::variant<std::vector<GeoPolygon>, GeoJsonProblem> parse_geojson(std::string_view text);
+std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text);
 
 }  // namespace ergocast

@@ -29,6 +29,8 @@ constexpr FaultField kFields[] = {
     {"agent_crashes_per_s", &Faults::agent_crashes_per_s, 1},
     {"coordinator_crashes_per_s", &Faults::coordinator_crashes_per_s, 1},
     {"world_crashes_per_s", &Faults::world_crashes_per_s, 1},
+    {"pauses_per_s", &Faults::pauses_per_s, 1},
+    {"pause_max_s", &Faults::pause_max_s, 60},
     {"downtime_max_s", &Faults::downtime_max_s, 60},
     {"clock_rate_error", &Faults::clock_rate_error, 0.2},
     {"clock_offset_max_s", &Faults::clock_offset_max_s, 1e8},
@@ -37,7 +39,14 @@ constexpr FaultField kFields[] = {
 };
 
 /// Random streams, so that one kind of fault does not change what another draws.
-enum Stream : std::uint32_t { kSwarm = 1, kPartitions, kAgents, kCoordinator, kWorldProcess };
+enum Stream : std::uint32_t {
+  kSwarm = 1,
+  kPartitions,
+  kAgents,
+  kCoordinator,
+  kWorldProcess,
+  kOperator
+};
 
 }  // namespace
 
@@ -124,6 +133,7 @@ std::vector<FaultEvent> fault_events(const Faults& faults, std::uint64_t seed, i
   draw(kCoordinator, faults.coordinator_crashes_per_s, faults.downtime_max_s,
        one_of_one(kCoordinatorCrash));
   draw(kWorldProcess, faults.world_crashes_per_s, faults.downtime_max_s, one_of_one(kWorldCrash));
+  draw(kOperator, faults.pauses_per_s, faults.pause_max_s, one_of_one(kPause));
   std::stable_sort(all.begin(), all.end(),
                    [](const FaultEvent& a, const FaultEvent& b) { return a.at_s < b.at_s; });
   return all;

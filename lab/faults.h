@@ -30,6 +30,8 @@ struct Faults {
   double agent_crashes_per_s = 0;  ///< of the whole team
   double coordinator_crashes_per_s = 0;
   double world_crashes_per_s = 0;
+  double pauses_per_s = 0;        ///< an operator pauses the mission, …
+  double pause_max_s = 0;         ///< … and lets it go on after up to so long, uniform
   double downtime_max_s = 0;      ///< until a crashed process is started again, uniform
   double clock_rate_error = 0;    ///< a process's clock goes by 1 ± so much, uniform
   double clock_offset_max_s = 0;  ///< and began up to so long before, uniform
@@ -58,7 +60,7 @@ Faults drawn(std::uint64_t seed);
 
 /// Something that happens at a moment, whatever messages are sent.
 struct FaultEvent {
-  enum class Kind { kSplit, kOneWayCut, kAgentCrash, kCoordinatorCrash, kWorldCrash };
+  enum class Kind { kSplit, kOneWayCut, kAgentCrash, kCoordinatorCrash, kWorldCrash, kPause };
   Kind kind;
   double at_s;  ///< after the mission's begin
   double lasts_s;

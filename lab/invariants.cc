@@ -62,7 +62,13 @@ void Invariants::born(const Author& author) {
 
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
-  if (const auto* command = std::get_if<Command>(&outgoing.message)) return check(t_s, *command);
+  if (const auto* part = std::get_if<MissionPart>(&outgoing.message))
+    return void(truth_.receive(*part));
+  if (const auto* command = std::get_if<Command>(&outgoing.message)) {
+    // What is said again was judged before.
+    const bool answers = speaker != nullptr && command->header.tick == speaker->answered;
+    return answers ? check(t_s, *command, *speaker) : void();
+  }
   if (const auto* block = std::get_if<Contribution>(&outgoing.message)) {
     return check(t_s, *block, outgoing.relayer, speaker);
   }
@@ -74,8 +80,10 @@ void Invariants::check(double t_s, const WorldState& world) {
   if (mission_.radio_range_m > 0 && world.header.tick >= last_tick_) note_positions(t_s, world);
   last_tick_ = std::max(last_tick_, world.header.tick);
   if (mission_.separation.distance_m > 0) check_distances(t_s, world);
+  check_paused(t_s, world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+    if (!mission_.walls.empty()) check_wall(t_s, vehicle);
     if (mission_.domain.contains(vehicle.position_m)) continue;
     violate(t_s, Invariant::kPositionsInTheDomain, "vehicle " + std::to_string(vehicle.id),
             text("x = (", vehicle.position_m.x(), ", ", vehicle.position_m.y(), ") m"));
@@ -111,15 +119,16 @@ void Invariants::note_positions(double t_s, const WorldState& world) {
   }
 }
 
-void Invariants::check(double t_s, const Command& command) {
+void Invariants::check(double t_s, const Command& command, const TableView& speaker) {
   if (command.header.tick < 0) return;
+  if (speaker.held) return check_paused(t_s, command);
   const ControlLaw law = law_of(mission_, planned_kind(mission_, command.header.sender));
   const Eigen::Vector3d contraction_mps =
       law.contraction_gain_per_s * (command.position_m - law.contraction_center_m);
   const double root_dt = std::sqrt(mission_.timing.dt_s);
   const auto sender = static_cast<std::uint32_t>(command.header.sender);
   const Eigen::Vector3d xi = normal_in(mission_.domain, mission_.seed, Purpose::kPerturbation,
-                                       sender, static_cast<std::uint64_t>(command.header.tick));
+                                       sender, static_cast<std::uint64_t>(speaker.counted));
   const Eigen::Vector3d noise_mps = law.noise_intensity / root_dt * xi;
   // What an adaptive law may add to that, in a direction that only the agent knows.
   double push_mps = 0;
@@ -128,7 +137,7 @@ void Invariants::check(double t_s, const Command& command) {
     push_mps = greatest_push_mps(law, dt_s) *
                normal_in(mission_.domain, mission_.seed, Purpose::kPush,
                          law.paired_pushes ? sender & ~1U : sender,
-                         static_cast<std::uint64_t>(command.header.tick / push_ticks(law, dt_s)))
+                         static_cast<std::uint64_t>(speaker.counted / push_ticks(law, dt_s)))
                    .norm();
   }
   const Eigen::Vector3d v_mps = command.velocity_mps;
@@ -244,13 +253,14 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
     violate(t_s, Invariant::kEverybodyEnds, still_running, text("at tick ", last_tick_));
   }
   if (!failure.empty()) violate(t_s, Invariant::kMissionDoesNotFail, "the coordinator", failure);
-  if (last_tick_ < mission_.timing.tick_count) {
+  if (counted_ticks(truth_.holds(), last_tick_) < mission_.timing.tick_count) {
     violate(t_s, Invariant::kLastTickReached, "the world",
             text("tick ", last_tick_, " of ", mission_.timing.tick_count));
   }
-  if (facts.ticks + excused < mission_.timing.tick_count) {
+  const Tick counted = facts.ticks - facts.held_ticks;
+  if (counted + excused < mission_.timing.tick_count) {
     violate(t_s, Invariant::kRecordIsWhole, "the logger",
-            text(facts.ticks, " of ", mission_.timing.tick_count, " ticks, and only ", excused,
+            text(counted, " of ", mission_.timing.tick_count, " ticks, and only ", excused,
                  " may be missing"));
   }
   const double goal = mission_.goal_ergodic_metric;

@@ -35,6 +35,7 @@ enum class Invariant : std::uint8_t {
   kPositionsInTheDomain,
   kInputsBounded,
   kDistanceKept,
+  kWallsKept,
   kSumsBounded,
   kRelaysAnswerDigests,
   kDigestsSayWhatIsHeld,
@@ -42,6 +43,8 @@ enum class Invariant : std::uint8_t {
   kDamagedMessagesRefused,
   kHeldNeverShrinks,
   kNoStepCountsTwice,
+  kNothingCountsWhilePaused,
+  kNobodyMovesWhilePaused,
   kAverageOfWhatIsHeld,
   kForecastOfWhatIsKnown,
   kZerothIsOne,
@@ -70,6 +73,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kPositionsInTheDomain, "positions are in the domain"},
         {Invariant::kInputsBounded, "|u| <= u_max"},
         {Invariant::kDistanceKept, "bodies keep their distance"},
+        {Invariant::kWallsKept, "bodies keep out of walls"},
         {Invariant::kSumsBounded, "|S_mn| <= S_00 = steps dt"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest says what is held"},
@@ -77,6 +81,8 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kDamagedMessagesRefused, "no damaged message is accepted"},
         {Invariant::kHeldNeverShrinks, "what is held never shrinks"},
         {Invariant::kNoStepCountsTwice, "no step counts twice"},
+        {Invariant::kNothingCountsWhilePaused, "nothing counts while the mission is paused"},
+        {Invariant::kNobodyMovesWhilePaused, "nobody moves while the mission is paused"},
         {Invariant::kAverageOfWhatIsHeld, "c_k = sum S / sum elapsed of what is held"},
         {Invariant::kForecastOfWhatIsKnown, "forecast of what is known"},
         {Invariant::kZerothIsOne, "c_00 = 1"},
@@ -138,9 +144,11 @@ class Invariants {
 
   // ---- safety ----
 
-  /// A process sends: positions in the domain; bodies as far apart as the mission says, in each
-  /// tick; |u| ≤ u_max, or |v| ≤ the speed limit where a distance is kept; |S| ≤ S_00 = steps · dt;
-  /// a digest that says what its sender holds; at most one answer for each entry of a digest heard.
+  /// A process sends: positions in the domain, in no wall, and as far from each as the mission
+  /// says; bodies as far apart as it says, in each tick; |u| ≤ u_max, or |v| ≤ the speed limit
+  /// where a distance is kept; |S| ≤ S_00 = steps · dt; while the mission is paused nobody moves
+  /// once he has braked; a digest that says what its sender holds; at most one answer for each
+  /// entry of a digest heard.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has heard a digest.
@@ -151,8 +159,9 @@ class Invariants {
   /// be called for each MISSION, as one of them admits the agent and names its first tick.
   void received(const TableView& listener, const Message& message);
   /// An agent has answered a tick: what it holds never shrinks, no author's steps exceed the ticks
-  /// there were, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1, and ĉ_k, where its law looks
-  /// ahead, follows by the equation of core/forecast.h from what has reached it (lab/shadow.h).
+  /// there were that count, none of its own is of a tick that does not, c_k is Σ S / Σ elapsed of
+  /// what it holds, c_00 = 1, and ĉ_k, where its law looks ahead, follows by the equation of
+  /// core/forecast.h from what has reached it (lab/shadow.h).
   void answered(double t_s, const TableView& holder);
   /// An agent's core has refused so many messages, of which none was damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);
@@ -199,7 +208,10 @@ class Invariants {
   };
   void violate(double t_s, Invariant invariant, const std::string& who, std::string numbers);
   void check(double t_s, const WorldState& world);
-  void check(double t_s, const Command& command);
+  void check(double t_s, const Command& command, const TableView& speaker);
+  void check_paused(double t_s, const Command& command);
+  void check_paused(double t_s, const WorldState& world);
+  void check_paused(double t_s, const TableView& holder);
   void check(double t_s, const Contribution& block, AgentId relayer, const TableView* speaker);
   void check(double t_s, const Digest& digest, const TableView& speaker);
   void check_steps(double t_s, const TableView& holder);
@@ -214,6 +226,7 @@ class Invariants {
                   const std::map<Author, std::vector<Best>>& best, const Coefficients& c_true);
   void check_quiet(double t_s);
   void note_positions(double t_s, const WorldState& world);
+  void check_wall(double t_s, const Vehicle& vehicle);
   void check_distances(double t_s, const WorldState& world);
   void check_counted(double t_s, const TableView& holder, const std::vector<TableView>& living);
   void check_neighbours(double t_s, const std::vector<TableView>& living);
@@ -229,7 +242,9 @@ class Invariants {
   std::optional<Violation> violation_;
   std::vector<Author> authors_;
   std::map<AgentId, int> lives_;
+  MissionFollower truth_;                                  // of all that was said of the mission
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
+  std::map<Author, std::int64_t> own_steps_;               // after the tick answered last
   std::map<Author, Shadow> shadows_;  // of each life of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
   Bodies bodies_;                                   // where a distance is kept

@@ -32,7 +32,9 @@ void Invariants::received(const TableView& listener, const Message& message) {
 
 void Invariants::answered(double t_s, const TableView& holder) {
   check_steps(t_s, holder);
-  const bool looks_ahead = mission_.law.anticipation > 0 && holder.foreseen != nullptr;
+  check_paused(t_s, holder);
+  const bool looks_ahead =
+      mission_.law.anticipation > 0 && holder.foreseen != nullptr && !holder.held;
   if (looks_ahead) shadows_.at(holder.self).answer(mission_, holder);
   // Costs as much as the control step itself: now and then is enough to find what is wrong for
   // good.
@@ -56,7 +58,9 @@ void Invariants::check_steps(double t_s, const TableView& holder) {
   }
   for (const auto& [id, steps] : steps_of_id) {
     // A process that is replaced within a tick may have sampled it, too.
-    const std::int64_t most = last_tick_ + 1 + lives_[id] - 1;
+    const bool exact = mission_.timing.pace == Pace::kLockstep;
+    const Tick ticks = exact ? counted_ticks(truth_.holds(), last_tick_ + 1) : last_tick_ + 1;
+    const std::int64_t most = ticks + lives_[id] - 1;
     if (steps <= most) continue;
     violate(t_s, Invariant::kNoStepCountsTwice, name_of(holder.self),
             text("holds ", steps, " steps of agent ", id, " in all, ", most, " are possible"));
@@ -70,9 +74,11 @@ void Invariants::check_average(double t_s, const TableView& holder) {
     violate(t_s, Invariant::kAverageOfWhatIsHeld, name_of(holder.self),
             text("differs by ", error, " at tick ", holder.answered));
   }
-  // Before its own first tick, where a restarted world may stand, a newcomer covers nothing itself.
+  // Before its own first tick, where a restarted world may stand, and while the mission is paused,
+  // a newcomer covers nothing itself.
+  if (holder.held) return;
   const auto shadow = shadows_.find(holder.self);
-  if (shadow != shadows_.end() && holder.answered < shadow->second.active_from()) return;
+  if (shadow != shadows_.end() && holder.counted < shadow->second.active_from()) return;
   const double c_00 = (*holder.coverage)[0];
   if (std::abs(c_00 - 1) > rounding(last_tick_)) {
     violate(t_s, Invariant::kZerothIsOne, name_of(holder.self), text("c_00 = ", c_00));

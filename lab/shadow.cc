@@ -29,9 +29,28 @@ double marginal_variance(double length_m, int modes, const Mu& mu) {
   return std::max(0.0, square_m2 - mean_m * mean_m);
 }
 
-/// h for a team of n: a s / (u_max √n), and at most what is left where the plan says so.
-double horizon_s(const Mission& mission, int n, Tick tick) {
+/// The same of a target in the modes of a free domain, in x and y together: of Σ μ_k e_k / mean
+/// e_k² in each cell.
+double free_variance(const FreeModes& modes, const Coefficients& mu) {
+  Eigen::VectorXd shares(modes.cell_count);
+  Eigen::Matrix2Xd places_m(2, modes.cell_count);
+  for (int cell = 0; cell < modes.cell_count; ++cell) {
+    shares[cell] = 0;
+    for (int k = 0; k < modes.mode_count; ++k) {
+      const double mean_square = modes.mean_squares[static_cast<std::size_t>(k)];
+      shares[cell] += mu[k] * static_cast<double>(modes.values_of(cell)[k]) / mean_square;
+    }
+    places_m.col(cell) = modes.center_m(cell);
+  }
+  shares /= shares.sum();
+  const Eigen::Vector2d mean_m = places_m * shares;
+  return std::max(0.0, (places_m.colwise() - mean_m).colwise().squaredNorm().dot(shares));
+}
+
+/// The second moment of the target about its mean.
+double target_variance(const Mission& mission) {
   const Coefficients& mu = mission.target_coefficients;
+  if (mission.basis.free_domain) return free_variance(*mission.basis.free_modes(), mu);
   const auto [modes_x, modes_y, modes_z] =
       std::tuple(mission.basis.modes_x, mission.basis.modes_y, mission.basis.modes_z);
   // The modes along an axis are so far from each other in the order of the basis.
@@ -40,7 +59,12 @@ double horizon_s(const Mission& mission, int n, Tick tick) {
                              [&](int mode) { return mu[mode * apart]; });
   };
   const double in_plane_m2 = variance_m2(0, modes_x, modes_y) + variance_m2(1, modes_y, 1);
-  const double spread_m = std::sqrt(in_plane_m2 + variance_m2(2, modes_z, modes_x * modes_y));
+  return in_plane_m2 + variance_m2(2, modes_z, modes_x * modes_y);
+}
+
+/// h for a team of n: a s / (u_max √n), and at most what is left where the plan says so.
+double horizon_s(const Mission& mission, double variance_m2, int n, Tick tick) {
+  const double spread_m = std::sqrt(variance_m2);
   const double h_s = mission.law.anticipation * spread_m / mission.law.u_max_mps / std::sqrt(n);
   if (!mission.law.ends_with_plan) return h_s;
   const Tick left = std::max<Tick>(0, mission.timing.tick_count - tick);
@@ -67,8 +91,10 @@ double quality_of(const Mission& mission, const RosterEntry* entry) {
   return mission.kinds.empty() || entry == nullptr ? 1 : kind_in(mission, entry->kind).quality;
 }
 
-/// f(x) dt of every mode, straight from (2).
+/// f(x) dt of every mode, straight from (2), or from the table.
 Coefficients gain_at(const Mission& mission, const Eigen::Vector3d& x_m) {
+  if (mission.basis.free_domain)
+    return mission.timing.dt_s * basis_values(x_m, mission.domain, mission.basis);
   const auto cosines = [&](int axis, int modes) {
     const double inside_m = x_m[axis] - mission.domain.origin_m[axis];
     const double angle = std::numbers::pi * inside_m / mission.domain.size_m[axis];
@@ -134,7 +160,7 @@ bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, T
 
 bool flies(const TableView& agent, const RosterEntry& entry) {
   return entry.author != agent.self && !is_forgotten(entry, agent) &&
-         is_newest(*agent.roster, entry, agent.answered);
+         is_newest(*agent.roster, entry, agent.counted);
 }
 
 }  // namespace
@@ -160,13 +186,14 @@ void Shadow::take(const TableView& agent, const Contribution& theirs) {
 }
 
 void Shadow::note_places(const Mission& mission, const TableView& agent, const WorldState& world) {
-  const Tick tick = world.header.tick;
-  for (int i = 0; i < world.vehicle_count && tick >= positions_tick_; ++i) {
+  const Tick said = world.header.tick;
+  for (int i = 0; i < world.vehicle_count && said >= positions_tick_; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     positions_m_[vehicle.id] = vehicle.position_m;
   }
-  positions_tick_ = std::max(positions_tick_, tick);
-  if (tick < active_from_) return;
+  positions_tick_ = std::max(positions_tick_, said);
+  const Tick tick = counted_ticks(agent.holds, said);
+  if (tick < active_from_ || is_held(agent.holds, said)) return;
   const Timing& timing = mission.timing;
   const auto hold =
       static_cast<Tick>(std::max(1.0, std::ceil(timing.command_hold_s / timing.dt_s)));
@@ -175,7 +202,7 @@ void Shadow::note_places(const Mission& mission, const TableView& agent, const W
                                Forecast::kPlacesBeyondPeriod);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    const bool driven = timing.pace == Pace::kLockstep || vehicle.answered_tick >= tick - hold;
+    const bool driven = timing.pace == Pace::kLockstep || vehicle.answered_tick >= said - hold;
     if (!driven || vehicle.id == agent.self.agent) continue;
     if (!in_range(mission, agent.self.agent, vehicle.id)) continue;
     std::deque<Place>& places = places_[vehicle.id];
@@ -304,19 +331,20 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
 Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) const {
   const double dt_s = mission.timing.dt_s;
   Coefficients c = Coefficients::Zero(mission.basis.mode_count());
+  if (!variance_m2_) variance_m2_ = target_variance(mission);
   const auto team = this->team(mission, agent);
   const int size = block_size(mission);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const auto at = static_cast<std::size_t>(b);
     const auto fly = std::count_if(team.begin(), team.end(),
                                    [at](const auto& parts) { return parts[at].gained_steps > 0; });
-    const double h_s = horizon_s(mission, 1 + static_cast<int>(fly), agent.answered);
+    const double h_s = horizon_s(mission, *variance_m2_, 1 + static_cast<int>(fly), agent.counted);
     double time_s = 0;
     std::vector<double> sums(static_cast<std::size_t>(size));
     for (const auto& parts : team) {
       const Part& part = parts[at];
       const double gained_s = static_cast<double>(part.gained_steps) * dt_s;
-      const Tick age = std::max<Tick>(0, agent.answered - part.tick);
+      const Tick age = std::max<Tick>(0, agent.counted - part.tick);
       const double w_s =
           gained_s > 0 ? weight_s(mission, h_s, part.gained_steps, age, part.period) : 0;
       const double share = w_s > 0 ? w_s / gained_s : 0;

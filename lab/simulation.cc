@@ -29,7 +29,7 @@ Simulation::Simulation(SimulationOptions options, std::ostream& trajectory, std:
       trajectory_(trajectory),
       metrics_(metrics),
       observer_(observer),
-      mission_(std::get<Mission>(decode_plan(options_.plan))),
+      mission_(std::get<Mission>(decode_plan_with_table(options_.plan))),
       run_(identity(mission_, ~0U, 0)),
       agent_count_(static_cast<int>(mission_.starts_m.size())),
       network_(mission_.seed, options_.faults, node_count(), options_.latency),
@@ -59,8 +59,9 @@ void Simulation::start(NodeId id) {
         CoordinatorIdentity{run_, incarnation, options_.host, options_.version},
         again ? std::vector<std::byte>() : options_.plan,
         again ? Takeover::kMust : Takeover::kNever);
+    if (!again) std::get<std::unique_ptr<Coordinator>>(node.core)->plan_holds(options_.holds);
   } else if (id == world_node()) {
-    node.core = std::make_unique<World>(run_, incarnation);
+    node.core = std::make_unique<World>(run_, incarnation, options_.physics);
   } else {
     node.core = std::make_unique<Recorder>(run_, incarnation, trajectory_, metrics_);
   }
@@ -120,6 +121,7 @@ bool Simulation::step(Instant until) {
   if (next == Instant::max()) return false;
   now_ = std::max(now_, next);
   do_faults();
+  tell_coordinator();
   deliver_due();
   advance_due();
   supervise_coordinator();
@@ -197,6 +199,7 @@ void Simulation::note(NodeId from, const Outgoing& said) {
   counts_.digests += std::holds_alternative<Digest>(said.message);
   if (const auto* world = std::get_if<WorldState>(&said.message)) {
     last_tick_ = std::max(last_tick_, world->header.tick);
+    counted_ = std::max(counted_, world->header.tick - world->uncounted_ticks);
   }
   if (const auto* part = std::get_if<MissionPart>(&said.message)) {
     end_said_ |= part->state == MissionState::kEnded || part->state == MissionState::kFailed;

@@ -40,6 +40,8 @@ struct SimulationOptions {
   SubscriptionTable subscriptions = kSubscriptions;  ///< what tests take away is not heard
   std::string host = "laboratory";
   PacingClock::duration latency{};  ///< of a message that nothing happens to
+  std::vector<Hold> holds{};        ///< ticks in which the mission is paused; are_holds()
+  PhysicsMaker physics{};           ///< what moves the bodies of the world; sim/physics.h
   /// For tests: whether a message that `to` subscribes to does not reach it. Healing does not end
   /// it.
   std::function<bool(const Message&, NodeId to)> drop{};
@@ -51,6 +53,7 @@ struct SimulationCounts {
   MessageFaults faults;
   std::int64_t splits = 0, one_way_cuts = 0;
   std::int64_t agent_crashes = 0, coordinator_crashes = 0, world_crashes = 0, skewed_clocks = 0;
+  std::int64_t pauses = 0;
 };
 
 /// Hears of what happens in a simulation, at once.
@@ -115,7 +118,7 @@ class Simulation {
   /// Of the world; −1 before its first.
   Tick last_tick() const { return last_tick_; }
   /// The last tick was published, or a coordinator has said the end.
-  bool mission_over() const { return end_said_ || last_tick_ >= mission_.timing.tick_count; }
+  bool mission_over() const { return end_said_ || counted_ >= mission_.timing.tick_count; }
   /// The last moment at which a process was down or cut off, or messages were so late or so few
   /// that recovery cannot be judged.
   std::optional<Instant> hindered() const { return hindered_; }
@@ -170,6 +173,7 @@ class Simulation {
   bool crash(NodeId node, double lasts_s);
   void heal();
   void supervise_coordinator();
+  void tell_coordinator();
 
   SimulationOptions options_;
   std::ostream &trajectory_, &metrics_;
@@ -183,8 +187,8 @@ class Simulation {
   std::vector<NodeId> listeners_[kBusCount][kMessageTypeCount];
 
   Instant now_{};
-  Tick last_tick_ = -1;
-  bool end_said_ = false;  // by a coordinator
+  Tick last_tick_ = -1, counted_ = -1;  // the latter of ticks before it that count
+  bool end_said_ = false;               // by a coordinator
   Outbox outbox_;
   std::vector<std::byte> bytes_, damaged_;
   std::vector<std::shared_ptr<Decoded>> spare_;  // to use again
@@ -193,7 +197,9 @@ class Simulation {
   std::vector<FaultEvent> events_;
   std::size_t next_fault_ = 0;
   std::vector<FaultEnd> fault_ends_;
-  double faulty_s_;  // of progress_s(), until all is healed
+  std::optional<Instant> paused_until_;  // an operator wants the mission to be paused
+  std::int64_t told_ = 0;                // messages of that operator
+  double faulty_s_;                      // of progress_s(), until all is healed
   bool healed_ = false;
   bool hinders_;  // even what happens to messages alone
   std::optional<Instant> hindered_;

@@ -50,7 +50,7 @@ Instant Simulation::next_fault() const {
   const bool any = next_fault_ < events_.size();
   Instant next(seconds(any ? std::min(events_[next_fault_].at_s, faulty_s_) : faulty_s_));
   for (const FaultEnd& end : fault_ends_) next = std::min(next, end.at);
-  return next;
+  return std::min(next, paused_until_.value_or(next));
 }
 
 /// Time passes in whole nanoseconds: it may have come although progress_s() is a rounding short.
@@ -96,6 +96,10 @@ void Simulation::begin(const FaultEvent& event) {
     case kWorldCrash:
       counts_.world_crashes += crash(world_node(), event.lasts_s);
       return;
+    case kPause:
+      ++counts_.pauses;
+      paused_until_ = std::max(paused_until_.value_or(now_), now_ + seconds(event.lasts_s));
+      return;
   }
 }
 
@@ -111,7 +115,19 @@ void Simulation::cut(const FaultEvent& event, bool join) {
   }
 }
 
+/// What an operator who wants the mission to be paused, or to go on, says until it is named.
+void Simulation::tell_coordinator() {
+  const NodeId node = coordinator_node();
+  if (told_ == 0 && !paused_until_) return;
+  if (!up(node) || finished(node) || coordinator().looking() || mission_over()) return;
+  const auto& holds = coordinator().holds();
+  if (is_open(holds) == paused_until_.has_value()) return;
+  const Pause pause{{run_, kOperator, 1, ++told_, 0}, named_changes(holds), {}};
+  deliver(node, pause, Delivery{Bus::kSwarm, kOperator, {}, nullptr});
+}
+
 void Simulation::end_events() {
+  if (paused_until_ && *paused_until_ <= now_) paused_until_.reset();
   std::erase_if(fault_ends_, [this](const FaultEnd& end) {
     if (end.at > now_) return false;
     cut(end.event, true);
@@ -165,6 +181,7 @@ void Simulation::supervise_coordinator() {
 void Simulation::heal() {
   healed_ = true;
   fault_ends_.clear();
+  paused_until_.reset();
   network_.heal(now_);
   for (Node& node : nodes_) {
     if (!node.up) node.restart = now_;

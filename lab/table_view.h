@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -17,12 +18,15 @@ namespace ergocast::lab {
 
 struct TableView {
   Author self;
-  const CoverageTable* table = nullptr;    ///< null: it is not admitted
-  const Coefficients* coverage = nullptr;  ///< its c_k, as of `answered`
-  const std::vector<RosterEntry>* roster = nullptr;
+  const CoverageTable* table = nullptr;              ///< null: it is not admitted
+  const Coefficients* coverage = nullptr;            ///< its c_k, as of `answered`
+  const std::vector<RosterEntry>* roster = nullptr;  ///< in ticks that count
   Tick answered = -1;
   std::int64_t roster_revision = 0;        ///< that the world flies this tick by
   const Coefficients* foreseen = nullptr;  ///< its ĉ_k, as of `answered`, where its law looks ahead
+  std::span<const Hold> holds{};           ///< as far as it knows
+  Tick counted = -1;                       ///< the number of `answered` among ticks that count
+  bool held = false;                       ///< whether `answered` does not count
 };
 
 /// How far a sum of so many terms ≤ dt may be from the exact one, relative.

@@ -26,7 +26,7 @@ class Trial : SimulationObserver {
  public:
   Trial(SimulationOptions options, std::ostream& trajectory, std::ostream& metrics)
       : faults_(options.faults),
-        mission_(std::get<Mission>(decode_plan(options.plan))),
+        mission_(std::get<Mission>(decode_plan_with_table(options.plan))),
         invariants_(mission_),
         agents_(mission_.starts_m.size()),
         simulation_(std::move(options), trajectory, metrics, this) {}
@@ -131,8 +131,9 @@ void Trial::received(NodeId node, const Message& message) {
   const Agent& agent = simulation_.agent(node);
   const auto* digest = std::get_if<Digest>(&message);
   if (digest != nullptr) invariants_.heard(agent.author(), *digest);
-  invariants_.received({agent.author(), agent.coverage(), nullptr, &agent.follower().roster()},
-                       message);
+  TableView view{agent.author(), agent.coverage(), nullptr, &agent.counted_roster()};
+  view.holds = agent.follower().holds();
+  invariants_.received(view, message);
 }
 
 void Trial::advanced(NodeId node, bool hurries) {
@@ -199,10 +200,13 @@ TableView Trial::view_of(NodeId node) const {
   return {agent.author(),
           agent.coverage(),
           &agent.team_coverage(),
-          &agent.follower().roster(),
+          &agent.counted_roster(),
           agent.tick(),
           agent.roster_revision(),
-          &agent.foreseen_coverage()};
+          &agent.foreseen_coverage(),
+          agent.follower().holds(),
+          agent.counted_tick(),
+          agent.held()};
 }
 
 /// Of all agents that are up. Who has reached the plan's end has finished.
@@ -297,6 +301,7 @@ TrialResult Trial::result() {
   static_cast<SimulationCounts&>(figures_) = simulation_.counts();
   figures_.seed = mission_.seed;
   figures_.virtual_s = t_s();
+  figures_.held_ticks = simulation_.recorder().facts().held_ticks;
   figures_.ergodic_metric = simulation_.recorder().facts().ergodic_metric_last;
   figures_.view_error = invariants_.largest_view_error();
   for (NodeId node = 0; is_agent(node); ++node) {

@@ -21,7 +21,7 @@ struct TrialFigures : SimulationCounts {
   double virtual_s = 0;
   double ergodic_metric = 0;  ///< φ² at the end, by the observer
   double view_error = 0;      ///< max_a √(Σ λ (c_a − c_true)²) at the end
-  std::int64_t agent_steps = 0, evictions = 0;
+  std::int64_t agent_steps = 0, evictions = 0, held_ticks = 0;
   /// From the restart of an agent until it holds again all that its predecessors had told anybody.
   double recovery_mean_s = 0, recovery_max_s = 0;
   std::int64_t recoveries = 0;

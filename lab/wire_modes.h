@@ -22,7 +22,8 @@ inline WireModes modes_on_wire(const Mission& mission) {
   for (int l = 0; l < basis.modes_z; ++l) {
     for (int m = 0; m < basis.modes_x; ++m) {
       for (int n = 0; n < basis.modes_y; ++n) {
-        const int squared = sorted ? l * l + m * m + n * n : 0;
+        // Those of a free domain ascend by themselves.
+        const int squared = sorted && !basis.free_domain ? l * l + m * m + n * n : 0;
         order.emplace_back(squared, static_cast<int>(order.size()));
       }
     }

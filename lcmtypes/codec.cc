@@ -57,7 +57,8 @@ std::variant<Message, Refusal> decode_as(std::span<const std::byte> bytes) {
 /// Messages that begin, control or end missions need a signature: the team's shared key is not
 /// enough.
 template <class Plain>
-constexpr bool kSigned = std::is_same_v<Plain, MissionPart> || std::is_same_v<Plain, Stop>;
+constexpr bool kSigned = std::is_same_v<Plain, MissionPart> || std::is_same_v<Plain, Stop> ||
+                         std::is_same_v<Plain, Pause>;
 
 struct Decoder {
   std::uint64_t fingerprint;
@@ -80,6 +81,7 @@ const Decoder* decoder_for(std::uint64_t wanted) {
                                        entry<TeamStatus>(),
                                        entry<Hello>(),
                                        entry<Stop>(),
+                                       entry<Pause>(),
                                        entry<Digest>(),
                                        entry<Contribution, Averages>(),
                                        entry<Contribution, LowSums>(),

@@ -15,6 +15,7 @@
 #include <ergocast/low_averages_t.hpp>
 #include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
+#include <ergocast/pause_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
 #include <ergocast/team_status_t.hpp>
@@ -66,6 +67,12 @@ struct Fields<MissionPart> {
       io.small(entry.kind, kMaxKinds - 1);
     }
     io.bytes(m.plan);
+    io.count_or_none(m.stand_by_revision);
+    io.length(m.holds, kMaxHoldsPerMessage);
+    for (auto& hold : m.holds) {
+      io.count(hold.from);
+      io.count_or_none(hold.until);
+    }
     io.text(m.reason, kMaxReasonLength);
   }
 };
@@ -162,6 +169,7 @@ struct Fields<TeamStatus> {
     io.quantity(m.ergodic_metric);
     io.within(m.silent_agent, kOperator, kMaxAgents - 1);
     io.count(m.missed_deadlines);
+    io.flag(m.paused);
     io.text(m.host, kMaxHostLength);
   }
 
@@ -181,6 +189,15 @@ struct Fields<Stop> {
 };
 
 template <>
+struct Fields<Pause> {
+  using Generated = pause_t;
+  static void list(auto& io, auto& m) {
+    io.bytes(m.signature);
+    io.within(m.changes, 0, 2 * static_cast<int>(kMaxHolds));
+  }
+};
+
+template <>
 struct Fields<WorldState> {
   using Generated = world_state_t;
   static void list(auto& io, auto& m) {
@@ -189,6 +206,8 @@ struct Fields<WorldState> {
     io.count(m.missed_deadlines);
     io.count(m.skipped_ticks);
     io.count(m.clamped_commands);
+    io.count(m.uncounted_ticks);
+    io.holds(m.uncounted_ticks <= m.header.tick);
     io.within(m.part, 0, kMaxAgents - 1);
     io.within(m.parts, 1, kMaxAgents);
     io.holds(m.part < m.parts);

@@ -101,6 +101,19 @@ class TextWriter : public FieldVisitor {
     if (!mission_.domain.planar()) last_ = shortest(center_m.z());
   }
   void duration(int, const Timing& timing) { put("duration_s", shortest(duration_s(timing))); }
+  void walls(int, const char*, const Rings& walls) {
+    const std::vector<int> depth = depths(walls);
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+      enter("world");
+      const bool is_hole = depth[i] % 2 == 1;
+      if (is_hole) {
+        text_ += "    holes {\n" + corners("      ", walls[i]) + "    }\n";
+      } else {
+        text_ += "  walls {\n" + corners("    ", walls[i]);
+      }
+      if (i + 1 == walls.size() || depth[i + 1] % 2 == 0) text_ += "  }\n";
+    }
+  }
   void starts(int, int, const std::vector<Eigen::Vector3d>& starts_m) {
     enter("agents");
     for (const Eigen::Vector3d& x_m : starts_m) {
@@ -112,6 +125,14 @@ class TextWriter : public FieldVisitor {
   }
 
  private:
+  static std::string corners(const std::string& indent, const Ring& ring) {
+    std::string text;
+    for (const Eigen::Vector2d& corner_m : ring) {
+      text += indent + "vertices { x_m: " + shortest(corner_m.x()) +
+              " y_m: " + shortest(corner_m.y()) + " }\n";
+    }
+    return text;
+  }
   /// Closes the block that is open, and opens `block`, unless that is empty or open already.
   void enter(const std::string& block) {
     if (block == block_) return;

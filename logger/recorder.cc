@@ -105,6 +105,10 @@ void Recorder::on(const Stop& stop, const Arrival& arrival) {
 
 void Recorder::begin() {
   observer_.begin(mission());
+  if (mission().basis.free_domain) {
+    in_cosines_ = in_cosines(mission());
+    cosines_.begin(*in_cosines_);
+  }
   trajectory_ << (mission().domain.planar() ? kTrajectoryHeader : kTrajectoryHeaderInSpace) << '\n';
   if (former_.rows) replay(*former_.rows);
   former_.rows.reset();
@@ -113,7 +117,7 @@ void Recorder::begin() {
 
 void Recorder::replay(const RunData& past) {
   for (const MetricsRow& row : past.metrics) {
-    facts_.t_s.push_back(row.t_s);
+    facts_.t_s.push_back(static_cast<double>(me_.counted(row.tick)) * mission().timing.dt_s);
     facts_.ergodic_metric.push_back(row.ergodic_metric);
   }
   if (!past.metrics.empty()) {
@@ -127,8 +131,11 @@ void Recorder::replay(const RunData& past) {
       if (vehicles > 0) end_row();
       expected = std::max(expected, vehicles);
       next_row_ = row.tick;
+      uncounted_ = row.tick - me_.counted(row.tick);
+      row_counts_ = !me_.is_held(row.tick);
       vehicles = 0;
       ++facts_.ticks;
+      facts_.held_ticks += row_counts_ ? 0 : 1;
     }
     observe(id, row.x_m);
     ++vehicles;
@@ -139,7 +146,12 @@ void Recorder::replay(const RunData& past) {
   // With fewer rows, the last tick may be incomplete, and is recorded to its end.
   if (vehicles == 0 || vehicles < expected) return;
   end_row();
+  pass_row();
+}
+
+void Recorder::pass_row() {
   ++next_row_;
+  uncounted_ += row_counts_ ? 0 : 1;
 }
 
 bool Recorder::is_lockstep() const {
@@ -149,7 +161,7 @@ bool Recorder::is_lockstep() const {
 void Recorder::on(const WorldState& world, const Arrival& arrival) {
   const Tick tick = world.header.tick;
   if (me_.knows_mission()) {
-    if (tick > mission().timing.tick_count) return;
+    if (tick - world.uncounted_ticks > mission().timing.tick_count) return;
     heard_.newest = std::max(heard_.newest, tick);
     if (arrival.fresh) meet(world.header, arrival.now);
     if (arrival.fresh) heard_.world_left = world.last;
@@ -165,7 +177,7 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
   if (state.complete()) return;
   const auto parts = static_cast<std::size_t>(world.parts);
   if (state.world != world.header.incarnation || state.parts.size() != parts) {
-    state = {world.header.incarnation, std::vector<bool>(parts), {}};
+    state = {world.header.incarnation, std::vector<bool>(parts), {}, world.uncounted_ticks};
   }
   state.parts[static_cast<std::size_t>(world.part)] = true;
   for (int i = 0; i < world.vehicle_count; ++i) {
@@ -188,7 +200,7 @@ void Recorder::advance(Instant now, Outbox& out) {
   if (me_.knows_mission()) {
     if (given_up(now)) go_on(now);
     write_rows(now);
-    if (next_row_ >= mission().timing.tick_count && !ending_.since) {
+    if (all_rows_written() && !ending_.since) {
       ending_.since = now;
       ending_.reason = "mission complete";
     }
@@ -227,7 +239,7 @@ void Recorder::write_rows(Instant now) {
 
 void Recorder::acknowledge(Instant now, Outbox& out) {
   const Tick recorded = next_row_ - 1;
-  const bool last = ending_.finished || next_row_ >= mission().timing.tick_count;
+  const bool last = ending_.finished || all_rows_written();
   const bool progress =
       recorded > acked_.tick + kAckEveryTicks - 1 || (last && recorded > acked_.tick);
   if (!progress && now < acked_.next) return;
@@ -274,8 +286,7 @@ void Recorder::close() {
 
 const char* Recorder::result() const {
   if (ending_.failed) return "failed";
-  const bool complete = me_.knows_mission() && next_row_ >= mission().timing.tick_count;
-  return complete ? "done" : "stopped";
+  return all_rows_written() ? "done" : "stopped";
 }
 
 bool Recorder::holds(Tick tick) const {
@@ -284,20 +295,25 @@ bool Recorder::holds(Tick tick) const {
 }
 
 bool Recorder::write_next_row() {
-  if (!writing() || next_row_ >= mission().timing.tick_count) return false;
+  if (!writing() || all_rows_written()) return false;
   if (!holds(next_row_) || !holds(next_row_ + 1)) return false;
-  write_trajectory(states_.at(next_row_), states_.at(next_row_ + 1));
+  const State &now = states_.at(next_row_), &next = states_.at(next_row_ + 1);
+  uncounted_ = now.uncounted;
+  row_counts_ = next.uncounted == now.uncounted;
+  write_trajectory(now, next);
   end_row();
   states_.erase(next_row_);
-  if (next_row_ > former_.end.first) ++facts_.ticks;
-  ++next_row_;
+  if (next_row_ > former_.end.first) {
+    ++facts_.ticks;
+    facts_.held_ticks += row_counts_ ? 0 : 1;
+  }
+  pass_row();
   return true;
 }
 
 /// Whether a state that may be lost for good is missing and newer ones have arrived.
 bool Recorder::gap_ahead() const {
-  if (!me_.knows_mission() || next_row_ >= mission().timing.tick_count || states_.empty())
-    return false;
+  if (!me_.knows_mission() || all_rows_written() || states_.empty()) return false;
   const Tick missing = holds(next_row_) ? next_row_ + 1 : next_row_;
   return states_.rbegin()->first > missing && (!is_lockstep() || missing < heard_.lost_before);
 }
@@ -328,6 +344,8 @@ void Recorder::skip_gap() {
   if (is_lockstep()) resume = std::min(resume, heard_.lost_before);
   facts_.gaps += resume - std::max(next_row_, former_.end.first + 1);
   next_row_ = resume;
+  uncounted_ =
+      states_.contains(resume) ? states_.at(resume).uncounted : resume - me_.counted(resume);
   states_.erase(states_.begin(), states_.lower_bound(resume));
 }
 
@@ -363,7 +381,11 @@ const RosterEntry* Recorder::member(AgentId id) const {
 }
 
 void Recorder::observe(AgentId id, const Eigen::Vector3d& x_m) {
-  if (const RosterEntry* entry = member(id)) observer_.see(mission(), entry->kind, x_m);
+  const RosterEntry* entry = member(id);
+  if (entry != nullptr && row_counts_) {
+    observer_.see(mission(), entry->kind, x_m);
+    if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
+  }
   if (mission().separation.distance_m > 0) row_places_m_.push_back(x_m);
 }
 
@@ -376,10 +398,11 @@ void Recorder::end_row() {
 void Recorder::write_due_metrics() {
   const Mission& mission = me_.mission();
   const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
-  const bool last = next_row_ + 1 == mission.timing.tick_count;
-  if (!observer_.has_seen_any() || (next_row_ % period != 0 && !last)) return;
+  const bool last = counted() + 1 == mission.timing.tick_count;
+  if (!observer_.has_seen_any() || !row_counts_ || (counted() % period != 0 && !last)) return;
   if (next_row_ <= former_.metrics.tick) return;
   write_metrics(observer_.metric(mission));
+  if (in_cosines_) facts_.cosine_metric_last = cosines_.metric(*in_cosines_);
 }
 
 Blocks Recorder::blocks() const {
@@ -425,7 +448,7 @@ void Recorder::write_metrics(double metric) {
   metrics_ << line << '\n';
   if (facts_.t_s.empty()) facts_.ergodic_metric_first = metric;
   facts_.ergodic_metric_last = metric;
-  facts_.t_s.push_back(t_s);
+  facts_.t_s.push_back(static_cast<double>(counted()) * mission().timing.dt_s);
   facts_.ergodic_metric.push_back(metric);
 }
 

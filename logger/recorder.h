@@ -32,11 +32,13 @@ namespace ergocast {
 /// The results of the whole run.
 struct RunFacts {
   Tick ticks = 0;         ///< recorded
+  Tick held_ticks = 0;    ///< of these, in which the mission was paused and nothing counts
   Tick former_ticks = 0;  ///< of these, recorded before this recorder resumed
   double ergodic_metric_first = 0, ergodic_metric_last = 0;
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
-  Tick gaps = 0;                            ///< ticks without rows before the last row
-  bool halted = false;                      ///< by an emergency stop: the last row stands still
+  double cosine_metric_last = 0;  ///< with basis.free_domain: φ² in cosines at the last row
+  Tick gaps = 0;                  ///< ticks without rows before the last row
+  bool halted = false;            ///< by an emergency stop: the last row stands still
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
   std::int64_t clamped_commands = 0;                     ///< by the speed limit, likewise
   /// Where a distance is kept: the least of any two bodies at any recorded tick; none: the greatest
@@ -98,6 +100,7 @@ class Recorder {
     Incarnation world = 0;
     std::vector<bool> parts;
     std::map<AgentId, Vehicle> vehicles;
+    Tick uncounted = 0;  // ticks before it that do not count
     bool complete() const;
   };
 
@@ -135,11 +138,17 @@ class Recorder {
   void meet(const Header& world, Instant now);
   void begin();
   void replay(const RunData& past);
+  void pass_row();
   bool writing() const { return trajectory_.good() && metrics_.good(); }
   void write_rows(Instant now);
   void acknowledge(Instant now, Outbox& out);
   bool write_next_row();
   bool holds(Tick tick) const;
+  /// The number of the next row's tick among those that count.
+  Tick counted() const { return next_row_ - uncounted_; }
+  bool all_rows_written() const {
+    return me_.knows_mission() && counted() >= mission().timing.tick_count;
+  }
   bool gap_ahead() const;
   bool gap_is_final(Instant now) const;
   bool given_up(Instant now) const;
@@ -163,12 +172,16 @@ class Recorder {
   std::ostream& metrics_;
   std::map<Tick, State> states_;
   Tick next_row_ = 0;
-  Instant progress_{};  // last row, or first message of a new world
+  Tick uncounted_ = 0;      // ticks before it that do not count, …
+  bool row_counts_ = true;  // … and whether it does itself: as the world says
+  Instant progress_{};      // last row, or first message of a new world
   Heard heard_;
   Acknowledged acked_;
   Ending ending_;
   Former former_;
   Observer observer_;
+  std::optional<Mission> in_cosines_;  // with basis.free_domain
+  Observer cosines_;                   // then begun
   std::map<Author, AgentStatus> statuses_;
   RunFacts facts_;
   std::vector<Eigen::Vector3d> row_places_m_;  // of all bodies, where a distance is kept

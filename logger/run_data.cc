@@ -18,7 +18,10 @@
 #include "core/kinds.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
+#include "logger/summary.h"
 #include "logger/table_lines.h"
+#include "modes/provide.h"
+#include "modes/table_file.h"
 #include "team/plan.h"
 #include "text/regular_file.h"
 
@@ -154,6 +157,12 @@ std::variant<Mission, std::string> read_mission(const std::filesystem::path& run
   if (!in.is_open()) return name + "missing or not readable: is this a run directory?";
   auto read = decode_plan(std::as_bytes(std::span(plan)));
   if (const auto* problem = std::get_if<std::string>(&read)) return name + *problem;
+  Mission& mission = std::get<Mission>(read);
+  if (mission.basis.free_domain) {
+    auto table = load_table(run_dir / table_file_name(mission.basis.table_hash));
+    if (auto* kept = std::get_if<ModesTable>(&table)) keep_table(std::move(*kept));
+  }
+  if (const auto problem = provide_table(mission)) return name + *problem;
   return read;
 }
 
@@ -178,6 +187,8 @@ std::optional<std::string> read_up_to_damage(const std::filesystem::path& run_di
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir) {
   RunData run;
   if (auto problem = read_up_to_damage(run_dir, run)) return *problem;
+  const auto summary = read_summary(run_dir);
+  if (const auto* json = std::get_if<nlohmann::ordered_json>(&summary)) run.holds = holds_in(*json);
   return run;
 }
 
@@ -199,7 +210,10 @@ void for_each_row(const RunData& run,
 std::optional<PowerLaw> fit_last_decade(const RunData& run) {
   std::vector<double> t_s, values;
   for (const MetricsRow& row : run.metrics) {
-    t_s.push_back(row.t_s);
+    const Tick counted = counted_ticks(run.holds, row.tick);
+    const bool same = counted == row.tick;
+    t_s.push_back(same ? row.t_s
+                       : row.t_s * static_cast<double>(counted) / static_cast<double>(row.tick));
     values.push_back(row.ergodic_metric);
   }
   return fit_last_decade(t_s, values);
@@ -212,7 +226,7 @@ Coefficients coverage_of(const RunData& run, const Mission& mission) {
   for (const auto& [agent, track] : run.tracks) {
     const Sensor& sensor = sensors.of(planned_kind(mission, agent));
     for (const TrackPoint& point : track) {
-      if (!mission.domain.contains(point.x_m)) continue;
+      if (!mission.domain.contains(point.x_m) || is_held(run.holds, point.tick)) continue;
       samples += sensor.sample(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
                                sums.data());
     }

@@ -86,6 +86,12 @@ Json messages(const Recorder& recorder, const RunContext& context) {
 Json conventions(const Basis& basis) {
   const std::string s = Json(basis.sobolev_exponent).dump();
   const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
+  if (basis.free_domain) {
+    return {{"basis", "modes of the free domain"},
+            {"table", to_hex(basis.table_hash)},
+            {"h_k", basis.normalized ? "f_k divided by h_k = sqrt(integral of f_k^2)" : "1"},
+            {"lambda", (squared ? "(1 + nu_k L^2 / pi^2)^-" : "(1 + sqrt(nu_k) L / pi)^-") + s}};
+  }
   return {{"h_k", basis.normalized ? "f_k divided by h_k = sqrt(prod L_i (1/2)^[k_i > 0])" : "1"},
           {"lambda", (squared ? "(1 + |k|^2)^-" : "(1 + |k|)^-") + s}};
 }
@@ -121,6 +127,14 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
   summary["tick_count"] = mission.timing.tick_count;
 }
 
+/// The ticks that do not count: the first one, and the first one that counts again, if it is named.
+Json holds_of(std::span<const Hold> holds) {
+  Json list = Json::array();
+  for (const Hold& hold : holds)
+    list.push_back({hold.from, hold.open() ? Json(nullptr) : Json(hold.until)});
+  return list;
+}
+
 /// The recorder's reason, with important remarks on the result.
 std::string reason_of(const Recorder& recorder) {
   const RunFacts& facts = recorder.facts();
@@ -144,11 +158,20 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
                {"cpu_fma", context.cpu_has_fma}};
   const auto& mission = recorder.follower().mission();
   if (mission) add_mission(*mission, context, summary);
-  summary["ticks"] = facts.ticks;
+  summary["ticks"] = facts.ticks - facts.held_ticks;
+  if (const auto holds = recorder.follower().holds(); !holds.empty()) {
+    summary["held_ticks"] = facts.held_ticks;
+    summary["holds"] = holds_of(holds);
+  }
   const bool observed = !facts.t_s.empty();
   summary["ergodic_metric"] = {
       {"first", observed ? number(facts.ergodic_metric_first) : Json(nullptr)},
       {"last", observed ? number(facts.ergodic_metric_last) : Json(nullptr)}};
+  if (mission && mission->basis.free_domain) {
+    summary["ergodic_metric"]["basis"] = "modes of the free domain";
+    summary["ergodic_metric_in_cosines"] = {
+        {"last", observed ? number(facts.cosine_metric_last) : Json(nullptr)}};
+  }
   if (mission && mission->goal_ergodic_metric > 0) {
     summary["goal"] = {
         {"ergodic_metric", mission->goal_ergodic_metric},
@@ -189,6 +212,18 @@ std::variant<Json, std::string> read_summary(const std::filesystem::path& run_di
     return file.string() + ": is not JSON: " + error.what() +
            ": copy it again from where the run was recorded, or remove it";
   }
+}
+
+std::vector<Hold> holds_in(const Json& summary) {
+  std::vector<Hold> holds;
+  if (!summary.is_object()) return holds;
+  const Json list = summary.value("holds", Json::array());
+  for (const Json& pair : list) {
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer()) return {};
+    if (!pair[1].is_null() && !pair[1].is_number_integer()) return {};
+    holds.push_back({pair[0].get<Tick>(), pair[1].is_null() ? -1 : pair[1].get<Tick>()});
+  }
+  return are_holds(holds) ? holds : std::vector<Hold>();
 }
 
 std::string to_text(const Json& summary) {

@@ -31,6 +31,9 @@ struct RunContext {
 /// The summary as far as the record determines it. Keys are documented in docs/run_directory.md.
 nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& context);
 
+/// The ticks that a summary says do not count; none if what it says cannot be.
+std::vector<Hold> holds_in(const nlohmann::ordered_json& summary);
+
 /// The text of the file. Bytes that are not UTF-8, which the network may bring, are replaced.
 std::string to_text(const nlohmann::ordered_json& summary);
 

@@ -8,7 +8,9 @@
 
 namespace ergocast {
 
-std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target) {
+std::vector<Figure> draw_figures(const RunData& run, const Mission& flown, const Field& target) {
+  // Maps are of cosines; φ² over time is as it was recorded.
+  const Mission mission = in_cosines(flown);
   const Coefficients coverage = coverage_of(run, mission);
   std::vector<Figure> tracks, fields, modes;
   for (const View& view : views_of(mission.domain)) {
@@ -25,7 +27,7 @@ std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, con
   const auto add = [&all](const std::vector<Figure>& figures) {
     all.insert(all.end(), figures.begin(), figures.end());
   };
-  add({metric_figure(run, mission)});
+  add({metric_figure(run, flown)});
   add(fields);
   add(modes);
   add({speeds_figure(run, mission), communication_figure(run, mission)});
@@ -34,6 +36,11 @@ std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, con
 
 std::string conventions_line(const Basis& basis) {
   const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
+  if (basis.free_domain) {
+    return std::string("modes of the free domain, λ = (1 + ") + (squared ? "νL²/π²" : "√ν L/π") +
+           ")^−" + readable(basis.sobolev_exponent) + ", f " + (basis.normalized ? "" : "not ") +
+           "divided by hₖ, " + std::to_string(basis.mode_count()) + " modes";
+  }
   return std::string("λ = (1 + |k|") + (squared ? "²" : "") + ")^−" +
          readable(basis.sobolev_exponent) + ", f " + (basis.normalized ? "" : "not ") +
          "divided by hₖ, " + std::to_string(basis.modes_x) + " × " + std::to_string(basis.modes_y) +

@@ -40,8 +40,9 @@ Figure speeds_figure(const RunData& run, const Mission& mission);
 /// Contributions received and lost, staleness, and how much the agents' own φ² differ.
 Figure communication_figure(const RunData& run, const Mission& mission);
 
-/// All figures, in the order of the report: six, in a box a map of each kind for each view.
-std::vector<Figure> draw_figures(const RunData& run, const Mission& mission, const Field& target);
+/// All figures, in the order of the report: six, in a box a map of each kind for each view. Maps of
+/// a mission that steers by the modes of its free domain are of cosines.
+std::vector<Figure> draw_figures(const RunData& run, const Mission& flown, const Field& target);
 
 /// "λ = (1 + |k|²)^−1.5, f not divided by hₖ, 15 × 15 modes": the conventions that a φ² depends on.
 std::string conventions_line(const Basis& basis);

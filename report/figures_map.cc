@@ -171,10 +171,27 @@ void draw_signs(Svg& svg, double right, double y) {
 
 // --- coverage and coefficients ---
 
+/// Where an odd number of rings are around.
+void draw_walls(Svg& svg, const Rings& walls, const Plot& plot) {
+  if (walls.empty()) return;
+  const Area& area = plot.area();
+  svg.begin_clip({area.left, area.top, area.width, area.height});
+  std::string data;
+  for (const Ring& ring : walls) {
+    Polyline line;
+    for (const Eigen::Vector2d& corner_m : ring) line.push_back(plot.at(corner_m));
+    data += path_data(line) + 'Z';
+  }
+  svg.path(data, "fill=\"#777\" fill-rule=\"evenodd\" stroke=\"#333\" stroke-width=\"1\"");
+  svg.end_clip();
+}
+
 void draw_field(Svg& svg, const Area& area, const Field& field, double brightest,
-                const Rectangle& domain, const View& view, std::string_view title) {
+                const Mission& mission, const View& view, std::string_view title) {
+  const Rectangle domain = base_of(mission.domain);
   Plot plot(svg, area, across_axis(domain, view), up_axis(domain, view));
   plot.image(field / brightest, viridis(), true);
+  draw_walls(svg, mission.walls, plot);
   plot.frame();
   svg.text({area.left, area.top - 9}, "class=\"head\"", title);
 }
@@ -209,6 +226,7 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
   // A uniform target is drawn light, and not as dark as a peak.
   const double densest = std::max(2.0, ground.maxCoeff());
   plot.image(ground / densest, pencil(), true);
+  draw_walls(svg, mission.walls, plot);
 
   const DrawnTracks tracks = draw_tracks(run, plot);
   plot.frame();
@@ -236,8 +254,8 @@ Figure coverage_figure(const Coefficients& coverage, const Mission& mission, con
                           : Area{first.right() + kGap, first.top, first.width, first.height};
   Svg svg(second.right() + kBar, second.bottom() + kRoomBelow, "coverage",
           "Coverage beside the target");
-  draw_field(svg, first, achieved, brightest, domain, view, "achieved: Σ cₖ fₖ");
-  draw_field(svg, second, target, brightest, domain, view, "target: Σ μₖ fₖ");
+  draw_field(svg, first, achieved, brightest, mission, view, "achieved: Σ cₖ fₖ");
+  draw_field(svg, second, target, brightest, mission, view, "target: Σ μₖ fₖ");
   color_bar(svg, second, viridis(), range_axis("time spent, × uniform", "", 0, brightest));
   return {"coverage" + view.ending(), svg.str()};
 }

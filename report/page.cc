@@ -79,8 +79,8 @@ std::string weights_text(const Basis& basis) {
          readable(basis.sobolev_exponent) + ", |k|² = m² + n²" + (basis.planar() ? "" : " + l²");
 }
 
-/// What a φ² depends on, and what the page draws.
-Json conventions(const Mission& mission) {
+/// What a φ² depends on, and what the page draws; of a mission that is drawn in cosines.
+Json conventions(const Mission& mission, bool free_domain) {
   const Basis& basis = mission.basis;
   Json list = Json::array();
   const auto add = [&list](const char* name, const std::string& text) {
@@ -90,6 +90,11 @@ Json conventions(const Mission& mission) {
     add("view",
         "slices are what the modes say of their plane; xy, xz and yz are averages along the third "
         "axis");
+  }
+  if (free_domain) {
+    add("free domain",
+        "agents steer by the modes of the domain without its walls, and φ² over time is of these: "
+        "λₖ = (1 + νₖ L²/π²)^−s, mean fₖ² = ¼; maps and what follows are of cosines");
   }
   add("metric", std::string("φ² = Σ λₖ (cₖ − μₖ)²") + (basis.normalized ? " / hₖ²" : ""));
   add("weights", weights_text(basis));
@@ -174,13 +179,27 @@ Json seen(const Mission& mission, const Sensors& sensors) {
   return list;
 }
 
+/// The walls' corners, from the domain's corner.
+Json rings_of(const Mission& mission) {
+  Json rings = Json::array();
+  for (const Ring& ring : mission.walls) {
+    Json corners = Json::array();
+    for (const Eigen::Vector2d& corner_m : ring)
+      corners.push_back(rounded_list(corner_m - mission.domain.origin_m.head<2>(), 9));
+    rings.push_back(std::move(corners));
+  }
+  return rings;
+}
+
 }  // namespace
 
 std::string title_of(const Mission& mission) {
   return mission.name.empty() ? "unnamed mission" : mission.name;
 }
 
-Json page_mission(const Mission& mission, const Field& density) {
+Json page_mission(const Mission& flown, const Field& density) {
+  // The page computes cosines; it has no table of other modes.
+  const Mission mission = in_cosines(flown);
   const Basis& basis = mission.basis;
   const Box& domain = mission.domain;
   const int axes = domain.planar() ? 2 : 3;
@@ -198,9 +217,11 @@ Json page_mission(const Mission& mission, const Field& density) {
                {"agents", mission.starts_m.size()},
                {"radio_range_m", mission.radio_range_m},
                {"goal", mission.goal_ergodic_metric},
-               {"conventions", conventions(mission)},
+               {"free_domain", flown.basis.free_domain},
+               {"conventions", conventions(mission, flown.basis.free_domain)},
                {"density", encoded_density(density)}};
   if (const Sensors sensors(mission); !sensors.alike()) page["seen"] = seen(mission, sensors);
+  if (!mission.walls.empty()) page["walls"] = rings_of(mission);
   return page;
 }
 

@@ -12,10 +12,12 @@
 namespace ergocast {
 
 /// The mission: {"name", "seed", "origin_m", "size_m", "modes", "target": μ_k, "weights": λ_k /
-/// h_k², "dt_s", "tick_count", "agents", "radio_range_m", "conventions": [[name, text], …],
-/// "density": null or {"width", "height", "full", "data"}}. Origin, size and modes have two
-/// numbers, in a box three. `density` has a byte a cell, the north-west first; 255 is `full` times
-/// the uniform density or more. In a box it is the average along z.
+/// h_k², "dt_s", "tick_count", "agents", "radio_range_m", "free_domain", "conventions": [[name,
+/// text], …], "density": null or {"width", "height", "full", "data"}}. Origin, size and modes have
+/// two numbers, in a box three. With "free_domain" μ and λ are those of cosines all the same, by
+/// which the page draws; φ² over time is in the modes of the free domain. `density` has a byte a
+/// cell, the north-west first; 255 is `full` times the uniform density or more. In a box it is the
+/// average along z.
 /// @param density  in multiples of the uniform density; if empty, the page draws the sum of the μ_k
 nlohmann::ordered_json page_mission(const Mission& mission, const Field& density);
 

@@ -46,7 +46,7 @@ Coefficients projected(const Coefficients& coefficients, const Basis& basis, con
 }
 
 RunData projected(const RunData& run, const View& view) {
-  RunData seen{run.tracks, {}};
+  RunData seen{run.tracks, {}, run.holds};
   for (auto& [agent, track] : seen.tracks) {
     for (TrackPoint& point : track) {
       point.x_m = projected(point.x_m, view);

@@ -14,6 +14,8 @@
 #include <ctime>
 #include <sstream>
 
+#include "modes/provide.h"
+#include "modes/table_file.h"
 #include "runtime/key_file.h"
 #include "runtime/logging.h"
 #include "text/likeness.h"
@@ -142,6 +144,17 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->envname("ERGOCAST_LOG_LEVEL")
       ->check(CLI::IsMember(kLogLevels))
       ->type_name("LEVEL");
+  app.add_option_function<std::string>(
+         "--modes",
+         [](const std::string& file) {
+           auto table = load_table(file);
+           if (const auto* problem = std::get_if<std::string>(&table))
+             throw CLI::ValidationError("--modes", *problem);
+           keep_table(std::get<ModesTable>(std::move(table)));
+         },
+         "Table of the modes of a mission with basis.free_domain; without: computed in a second or "
+         "more")
+      ->type_name("FILE");
   app.set_version_flag("--version", version_text());
 }
 

@@ -49,7 +49,8 @@ struct NodeOptions : BusOptions {
   std::string log_level = "info";
 };
 
-/// Adds --log-level (default: $ERGOCAST_LOG_LEVEL, or info) and --version to those.
+/// Adds --log-level (default: $ERGOCAST_LOG_LEVEL, or info), --modes, which keeps the table in this
+/// process, and --version to those.
 void add_node_options(CLI::App& app, NodeOptions& options);
 
 /// --event-log-limit, for programs that write an event log. @param mib  its default

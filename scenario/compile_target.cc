@@ -34,6 +34,13 @@ std::string text_of(const Rectangle& rectangle) {
          span_text(rectangle.origin_m.y(), rectangle.size_m.y());
 }
 
+/// The cosines, also where agents steer by other modes.
+Basis cosines_of(const proto::Basis& written) {
+  Basis basis = basis_of(written);
+  basis.free_domain = false;
+  return basis;
+}
+
 class TargetCompiler {
  public:
   TargetCompiler(const proto::Scenario& scenario, Checks& checks)
@@ -41,8 +48,8 @@ class TargetCompiler {
         checks_(checks),
         domain_(domain_of(scenario.domain())),
         base_(base_of(domain_)),
-        basis_(basis_of(scenario.basis())),
-        target_(target_of(written_)),
+        basis_(cosines_of(scenario.basis())),
+        target_(target_of(scenario)),
         along_z_(domain_, basis_),
         storeys_(storeys_of(domain_, target_.keep_outs)) {
     const Eigen::Vector2d cells =

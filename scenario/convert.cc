@@ -41,6 +41,11 @@ Ring ring_of(const Vertices& vertices) {
   return ring;
 }
 
+void add_rings(const proto::Polygon& polygon, Rings& rings) {
+  rings.push_back(ring_of(polygon.vertices()));
+  for (const proto::Ring& hole : polygon.holes()) rings.push_back(ring_of(hole.vertices()));
+}
+
 /// Fills a part of a mission from the fields of the same names in `block`.
 class BlockReader : public FieldVisitor {
  public:
@@ -133,7 +138,8 @@ Rectangle extent_of(const proto::Map& map) {
   return {{map.origin_x_m(), map.origin_y_m()}, {map.size_x_m(), map.size_y_m()}};
 }
 
-TargetDensity target_of(const proto::Target& target) {
+TargetDensity target_of(const proto::Scenario& scenario) {
+  const proto::Target& target = scenario.target();
   TargetDensity density;
   density.uniform_weight = target.uniform_weight();
   for (const proto::Gaussian& gaussian : target.gaussians()) {
@@ -148,7 +154,27 @@ TargetDensity target_of(const proto::Target& target) {
   for (const proto::Polygon& keep_out : target.keep_outs()) {
     density.keep_outs.push_back({polygon_of(keep_out), heights_of(keep_out)});
   }
+  for (const proto::Polygon& wall : scenario.world().walls())
+    density.keep_outs.push_back({polygon_of(wall), heights_of(wall)});
   return density;
+}
+
+bool has_walls(const proto::Scenario& scenario) {
+  return scenario.world().walls_size() > 0 ||
+         std::ranges::any_of(scenario.target().keep_outs(), &proto::Polygon::solid);
+}
+
+void make_walls(proto::Scenario& scenario) {
+  auto& keep_outs = *scenario.mutable_target()->mutable_keep_outs();
+  for (const proto::Polygon& keep_out : keep_outs) {
+    if (!keep_out.solid()) continue;
+    proto::Polygon& wall = *scenario.mutable_world()->add_walls();
+    wall = keep_out;
+    wall.clear_solid();
+  }
+  keep_outs.erase(std::remove_if(keep_outs.begin(), keep_outs.end(),
+                                 [](const auto& keep_out) { return keep_out.solid(); }),
+                  keep_outs.end());
 }
 
 Mission mission_of(const proto::Scenario& scenario) {
@@ -159,6 +185,10 @@ Mission mission_of(const proto::Scenario& scenario) {
   mission.timing.tick_count = std::llround(scenario.time().duration_s() / mission.timing.dt_s);
   for (const proto::Start& start : scenario.agents().starts())
     mission.starts_m.emplace_back(start.x_m(), start.y_m(), start.z_m());
+  for (const proto::Polygon& wall : scenario.world().walls()) add_rings(wall, mission.walls);
+  for (const proto::Polygon& keep_out : scenario.target().keep_outs()) {
+    if (keep_out.solid()) add_rings(keep_out, mission.walls);
+  }
   return mission;
 }
 

@@ -12,12 +12,18 @@ namespace ergocast {
 Box domain_of(const proto::Domain& domain);
 Polygon polygon_of(const proto::Polygon& polygon);
 /// The whole target, except its maps.
-TargetDensity target_of(const proto::Target& target);
+TargetDensity target_of(const proto::Scenario& scenario);
 /// The extent of the map that the scenario states.
 Rectangle extent_of(const proto::Map& map);
 Basis basis_of(const proto::Basis& basis);
 /// What `law` says it pulls to.
 Eigen::Vector3d contraction_center_of(const proto::Law& law, const Box& domain);
+
+/// Whether anything is solid: a wall, or a keep-out.
+bool has_walls(const proto::Scenario& scenario);
+
+/// The solid keep-outs become the last of the walls, which mean the same.
+void make_walls(proto::Scenario& scenario);
 
 /// The whole mission, except μ.
 Mission mission_of(const proto::Scenario& scenario);

@@ -34,7 +34,9 @@ void fill_scalar(Message& message, const FieldDescriptor& field) {
   if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
     reflection->SetEnumValue(&message, &field, 0);
   } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
-    reflection->SetBool(&message, &field, false);
+    // A polygon says only if it is solid.
+    if (field.containing_type() != proto::Polygon::descriptor())
+      reflection->SetBool(&message, &field, false);
   } else if (const FieldRule* rule = rule_of(field); rule && rule->absence == Absence::kDefaulted) {
     set_number(message, field, rule->default_value);
   }
@@ -182,9 +184,10 @@ void fill_separation(proto::Scenario& scenario) {
 
 /// The name of a map or GeoJSON file is relative to the scenario's folder, not to the working
 /// directory.
-void make_absolute(const std::filesystem::path& scenario, proto::Target& target) {
+void make_absolute(const std::filesystem::path& file, proto::Scenario& scenario) {
   std::error_code error;
-  const std::filesystem::path folder = std::filesystem::absolute(scenario, error).parent_path();
+  const std::filesystem::path folder = std::filesystem::absolute(file, error).parent_path();
+  proto::Target& target = *scenario.mutable_target();
   const auto whole = [&folder](const std::string& name) {
     return name.empty() ? name : (folder / name).lexically_normal().string();
   };
@@ -200,6 +203,10 @@ void make_absolute(const std::filesystem::path& scenario, proto::Target& target)
   }
   for (proto::Polygon& keep_out : *target.mutable_keep_outs()) {
     if (keep_out.has_file()) keep_out.set_file(whole(keep_out.file()));
+  }
+  if (!scenario.has_world()) return;
+  for (proto::Polygon& wall : *scenario.mutable_world()->mutable_walls()) {
+    if (wall.has_file()) wall.set_file(whole(wall.file()));
   }
 }
 
@@ -268,7 +275,9 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
   fill_team(*scenario.mutable_agents());
   fill_constants(scenario, planar);
   fill_separation(scenario);
-  make_absolute(file, *scenario.mutable_target());
+  make_absolute(file, scenario);
+  if (has_walls(scenario) && !scenario.world().has_wall_clearance_m())
+    scenario.mutable_world()->set_wall_clearance_m(0);
   fill_law(domain, *scenario.mutable_law());
   proto::Agents& agents = *scenario.mutable_agents();
   fill_kinds(scenario.law(), agents);

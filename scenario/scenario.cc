@@ -11,11 +11,13 @@
 #include "scenario/convert.h"
 #include "scenario/defaults.h"
 #include "scenario/findings.h"
-#include "scenario/geojson_target.h"
+#include "scenario/free_domain.h"
 #include "scenario/origin.h"
+#include "scenario/polygon_files.h"
 #include "scenario/scenario.pb.h"
 #include "scenario/text.h"
 #include "scenario/validate.h"
+#include "scenario/validate_walls.h"
 #include "scenario/warnings.h"
 #include "text/regular_file.h"
 
@@ -64,6 +66,13 @@ struct Scenario::State {
         listed_starts(listed) {
     mission.target_coefficients = std::move(target.coefficients);
   }
+
+  /// The same domain, walls and target as those of another mission.
+  void use_free_domain_of(const Mission& other) {
+    mission.basis = other.basis;
+    mission.target_coefficients = other.target_coefficients;
+    mission.cosine_target = other.cosine_target;
+  }
 };
 
 std::variant<Scenario, Problems> Scenario::load(const std::filesystem::path& file,
@@ -81,19 +90,27 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   put_over(overrides, scenario, findings);
   fill_in(scenario, file);
   Checks checks(findings);
-  auto polygon_files = read_geojson_files(scenario, checks, findings);
+  auto polygon_files = read_polygon_files(scenario, checks, findings);
   validate(scenario, checks);
   std::optional<CompiledTarget> target;
   if (checks.sound("domain") && checks.sound("basis") && checks.sound("target")) {
     target = compile_target(scenario, checks);
   }
+  if (target && findings.empty())
+    validate_free_region(mission_of(scenario), target->density, checks);
   if (!findings.empty()) return findings.take();
 
+  make_walls(scenario);
   const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
   state->polygon_files = std::move(polygon_files);
-  warn(state->mission, findings);
+  if (auto problem = use_free_domain(state->target_density, state->mission)) {
+    findings.add("basis.free_domain", "the free domain has no modes: " + *problem,
+                 "widen the narrowest way, or write free_domain: false");
+    return findings.take();
+  }
+  warn(state->mission, state->target_density, findings);
   state->warnings = findings.take();
   return Scenario(std::move(state));
 }
@@ -121,9 +138,11 @@ Scenario Scenario::with_seed(std::uint64_t seed) const {
   agents.mutable_starts()->DeleteSubrange(state_->listed_starts, drawn);
   agents.set_random_count(drawn);
   draw_starts(scenario);
-  return Scenario(std::make_shared<State>(
+  auto state = std::make_shared<State>(
       std::move(scenario), CompiledTarget{mission().target_coefficients, state_->target_density},
-      state_->listed_starts));
+      state_->listed_starts);
+  state->use_free_domain_of(mission());
+  return Scenario(std::move(state));
 }
 
 Scenario::Scenario(std::shared_ptr<const State> state) : state_(std::move(state)) {}

@@ -10,11 +10,13 @@
 #include "scenario/convert.h"
 #include "scenario/explain.h"
 #include "scenario/fields.h"
+#include "scenario/free_domain.h"
 #include "scenario/utf8.h"
 #include "scenario/validate_kinds.h"
 #include "scenario/validate_separation.h"
 #include "scenario/validate_target.h"
 #include "scenario/validate_vehicle.h"
+#include "scenario/validate_walls.h"
 
 namespace ergocast {
 namespace {
@@ -39,6 +41,7 @@ class Validator {
     domain();
     if (scenario_.has_target()) validate_target(scenario_, checks_);
     basis();
+    validate_free_domain(scenario_, checks_);
     law();
     time();
     agents();
@@ -46,6 +49,7 @@ class Validator {
     validate_kinds(scenario_, checks_);
     validate_vehicle(scenario_, checks_);
     if (scenario_.has_separation()) validate_separation(scenario_, checks_);
+    validate_walls(scenario_, checks_);
   }
 
  private:

@@ -12,6 +12,7 @@
 #include "core/separation.h"
 #include "scenario/checks.h"
 #include "scenario/footprint_reach.h"
+#include "scenario/hidden_mass.h"
 #include "scenario/validate_separation.h"
 
 namespace ergocast {
@@ -25,6 +26,9 @@ constexpr double kLongestStep = 0.05;
 
 /// A least φ² above this share of an even coverage's makes a target finer than the footprints.
 constexpr double kReachable = 0.01;
+
+/// Of a target that walls hide from itself, docs/targets.md.
+constexpr double kMostHidden = 0.1;
 
 /// The law's noise as a formula of scenario fields.
 std::string noise_text(const ControlLaw& law, double dt_s) {
@@ -111,6 +115,30 @@ void warn_of_packing(const Mission& mission, Findings& findings) {
                "long agents are blocked");
 }
 
+/// A vehicle that follows late needs room to stop.
+void warn_of_late_vehicles(const Mission& mission, Findings& findings) {
+  if (mission.separation.distance_m == 0 || mission.separation.response_s == 0) return;
+  const double side_m = mission.domain.shortest_side_m();
+  for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id) {
+    const double margin_m = late_edge_margin_m(mission, id);
+    if (margin_m > side_m / 4) {
+      findings.add("separation.response_s",
+                   "vehicles that follow so late keep " + shortest(rounded_up(margin_m)) +
+                       " m from every edge, more than a quarter of the domain's shorter side: "
+                       "little of the domain is left to them",
+                   "write a smaller world.speed_limit_mps or response_s, or a larger domain");
+      return;
+    }
+    if (room_to_begin(mission, id).contains(mission.starts_m[static_cast<std::size_t>(id)]))
+      continue;
+    findings.add(indexed("agents.starts", id),
+                 "is nearer to an edge than the " + shortest(rounded_up(margin_m)) +
+                     " m that a vehicle keeps that follows so late: it may cross the edge as long "
+                     "as it is there",
+                 "move it inside");
+  }
+}
+
 /// Coarse sensors blur what they see: no paths make up for it.
 void warn_of_footprints(const Mission& mission, Findings& findings) {
   const bool any = std::ranges::any_of(
@@ -156,14 +184,29 @@ void warn_of_rare_modes(const Mission& mission, Findings& findings) {
   }
 }
 
+/// Cosines know no walls.
+void warn_of_hidden_mass(const Mission& mission, const DensityGrid& density, Findings& findings) {
+  if (mission.walls.empty() || mission.basis.free_domain) return;
+  const double hidden = hidden_share(mission, density);
+  if (hidden <= kMostHidden) return;
+  findings.add("world.walls",
+               "hide the target from itself: for " + shortest(rounded_up(100 * hidden)) +
+                   " % of its pairs of places the shortest way is more than " + shortest(kDetour) +
+                   " times the straight line, and the cosines of the basis know only that. Agents "
+                   "follow walls where they get stuck, and cover the target late",
+               "write basis { free_domain: true }, open more passages, or accept it");
+}
+
 }  // namespace
 
-void warn(const Mission& mission, Findings& findings) {
+void warn(const Mission& mission, const DensityGrid& density, Findings& findings) {
   warn_of_speed_limits(mission, findings);
   warn_of_coarse_steps(mission, findings);
   warn_of_packing(mission, findings);
+  warn_of_late_vehicles(mission, findings);
   warn_of_footprints(mission, findings);
   warn_of_rare_modes(mission, findings);
+  warn_of_hidden_mass(mission, density, findings);
 }
 
 }  // namespace ergocast

@@ -4,10 +4,12 @@
 
 #include "core/mission.h"
 #include "scenario/findings.h"
+#include "target/density_picture.h"
 
 namespace ergocast {
 
 /// Adds the warnings about `mission`, which breaks no rule.
-void warn(const Mission& mission, Findings& findings);
+/// @param density  of its target
+void warn(const Mission& mission, const DensityGrid& density, Findings& findings);
 
 }  // namespace ergocast

@@ -80,13 +80,21 @@ void World::recall(AgentId id, VehicleSlot& slot) {
   }
   for (Tick tick = slot.answered(); tick < tick_; ++tick) {
     drive(id, slot, tick, realtime);
+    if (!mission().walls.empty()) keep_from_walls(id, slot, tick);
     move(id, slot, tick);
   }
 }
 
+/// As filter_commands(), where no distance is kept.
+void World::keep_from_walls(AgentId id, VehicleSlot& slot, Tick tick) {
+  const double limit_mps = motion_of(mission(), id).speed_limit_mps;
+  const Mover self{id, tick, slot.x_m, limit_mps, slot.applied_mps};
+  slot.next_mps = filter_->safe(self, slot.next_mps, {}).velocity_mps;
+}
+
 void World::on(const WorldState& before, const Arrival&) {
   if (!question_.since || !keeps_distance()) return;
-  if (before.header.tick <= mission().timing.tick_count) question_.before.see(before);
+  if (before.header.tick <= me_.end_tick()) question_.before.see(before);
 }
 
 /// All vehicles by where all of them are, so that their order does not count. In lockstep only by
@@ -101,9 +109,43 @@ void World::filter_commands() {
   }
   for (auto& [id, slot] : vehicles_) {
     const Motion motion = motion_of(mission(), id);
-    if (!driven(slot, tick_, true) || (motion.is_point() && !guards)) continue;
+    if (!driven(slot, tick_, true) || (motion.is_point() && !filters_again(mission()))) continue;
     const Mover self{id, tick_, slot.x_m, motion.speed_limit_mps, slot.applied_mps};
     slot.next_mps = filter_->safe(self, slot.next_mps, bodies_).velocity_mps;
+  }
+}
+
+// ---- a physics in the place of core/vehicle.h
+// ------------------------------------------------------------
+
+/// Once a mission is known. False: there is none for it.
+bool World::make_physics() {
+  if (!physics_maker_ || physics_) return true;
+  auto made = physics_maker_(mission());
+  if (auto* problem = std::get_if<std::string>(&made)) {
+    no_physics_ = true;
+    finish(std::move(*problem));
+    return false;
+  }
+  physics_ = std::move(std::get<0>(made));
+  return true;
+}
+
+void World::place_bodies() {
+  if (!physics_) return;
+  for (const auto& [id, slot] : vehicles_) physics_->place(id, slot.x_m, slot.applied_mps);
+}
+
+/// By the physics. Agents refuse a place outside of the domain, unless they keep a distance: then
+/// they need the true one.
+void World::move_bodies() {
+  moved_.clear();
+  for (const auto& [id, slot] : vehicles_) moved_.push_back({id, slot.next_mps});
+  physics_->pass_tick(moved_);
+  for (const PhysicalBody& body : moved_) {
+    VehicleSlot& slot = vehicles_.at(body.id);
+    slot.x_m = keeps_distance() ? body.position_m : mission().domain.nearest(body.position_m);
+    slot.applied_mps = body.velocity_mps;
   }
 }
 

@@ -36,6 +36,7 @@ class RecordWindow {
   bool empty() const { return history_.empty(); }
   /// The states last remembered. @pre !empty()
   std::vector<WorldState>& newest() { return history_.back(); }
+  const std::vector<WorldState>& newest() const { return history_.back(); }
 
   /// Calls `repeat` with the states before `tick` that the logger lacks, a bounded number of them.
   template <class F>

@@ -28,10 +28,14 @@ constexpr auto kMissionPatience = 1500ms;
 constexpr auto kQuestionPatience = 2s;
 /// How long the world repeats the end after the last progress of the record.
 constexpr auto kLinger = 2s;
+/// Lockstep: the ticks of a paused mission take time, at most so much, because nobody waits for
+/// them.
+constexpr double kLongestHeldTick_s = 0.1;
 
 }  // namespace
 
-World::World(RunId run, Incarnation incarnation) : me_(kRole, {run, kWorld, incarnation}) {}
+World::World(RunId run, Incarnation incarnation, PhysicsMaker physics)
+    : me_(kRole, {run, kWorld, incarnation}), physics_maker_(std::move(physics)) {}
 
 void World::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (finished_) return;
@@ -43,6 +47,7 @@ void World::receive(const Message& message, Bus bus, AgentId transmitter, Instan
 void World::on(const MissionPart&, const Arrival& arrival) {
   if (emergency_stopped_ || !arrival.mission_changed) return;
   if (follower().plan_problem()) return finish(*follower().plan_problem());
+  if (!make_physics()) return;
   // At its own end the world stays until the record, too, has the last states.
   if (follower().over() && (!over_since_ || record_.complete(tick_)))
     return finish(follower().reason());
@@ -122,11 +127,15 @@ void World::begin(Instant now) {
     tick_ = std::max({tick_, entry.active_from, entry.active_until});
   }
   if (keeps_distance()) tick_ = std::max(tick_, question_.before.newest());
-  tick_ = std::min(tick_, mission().timing.tick_count);  // whatever the roster says
+  tick_ = std::min(tick_, me_.end_tick());  // whatever the roster says
   begun_at_ = tick_;
-  if (world_guards(mission()) || any_but_points(mission())) filter_.emplace(mission(), 0);
-  if (keeps_distance()) return settle();
-  for (auto& [id, slot] : vehicles_) recall(id, slot);
+  if (filters_again(mission()) || any_but_points(mission())) filter_.emplace(mission(), 0);
+  if (keeps_distance()) {
+    settle();
+  } else {
+    for (auto& [id, slot] : vehicles_) recall(id, slot);
+  }
+  place_bodies();
 }
 
 void World::take_roster() {
@@ -145,6 +154,7 @@ void World::take_roster() {
     if (is_new) {
       const AgentId id = entry.author.agent;
       place(id, at->second, begun_at_ ? place_for(id) : start_of(mission, id));
+      if (physics_ && begun_at_) physics_->place(id, at->second.x_m, at->second.applied_mps);
     }
     if (at->second.author != entry.author) {
       at->second.command.reset();
@@ -168,10 +178,12 @@ void World::on(const Command& command, const Arrival&) {
   const Mission& mission = me_.mission();
   const Eigen::Vector3d step_m = command.velocity_mps * mission.timing.dt_s;
   // A step that overflows is no velocity. No agent answers a tick that was not sent.
-  const Tick newest = question_.since ? mission.timing.tick_count : tick_;
+  const Tick newest = question_.since ? me_.end_tick() : tick_;
   // A command of no tick yet is the answer of an agent that knows no position.
   const bool somewhere = question_.since && command.header.tick >= 0;
-  const bool outside = somewhere && !mission.domain.contains(command.position_m);
+  // Where a distance is kept, another message says the places; a body may have been pushed out.
+  const bool outside =
+      somewhere && !keeps_distance() && !mission.domain.contains(command.position_m);
   if (!step_m.allFinite() || command.header.tick > newest || outside) {
     me_.count_refused(Refusal::kRange);
     return;
@@ -205,6 +217,19 @@ bool World::everyone_answered() const {
   return driven;
 }
 
+/// Lockstep: whether the coordinator is to name a tick before the next one. It names one that all
+/// agents will know before it comes.
+bool World::stands_by() const {
+  const std::int64_t since = follower().stand_by_revision();
+  return since >= 0 && mission().timing.pace == Pace::kLockstep && !record_.empty() &&
+         record_.newest().front().roster_revision >= since;
+}
+
+/// Whether all is there for the next step of a paused mission but the time.
+bool World::waits_for_time(Instant now) const {
+  return now < schedule_.held_until && everyone_answered() && !stands_by();
+}
+
 bool World::record_is_close(Instant now) {
   if (!mission().wait_for_logger) return true;
   // Half of it, so that the coordinator does not lose patience with the team first.
@@ -231,14 +256,16 @@ void World::advance(Instant now, Outbox& out) {
 }
 
 void World::advance_lockstep(Instant now, Outbox& out) {
-  const bool over = over_since_ || tick_ >= mission().timing.tick_count;
+  const bool over = over_since_ || me_.is_over(tick_);
   if (!schedule_.published) {
     if (!record_is_close(now)) {
       if (now >= schedule_.next_publish) repeat(now, out);
       return;
     }
     remember_and_publish(now, out);
-  } else if (!over && everyone_answered()) {
+  } else if (waits_for_time(now)) {
+    schedule_.next_publish = std::max(schedule_.next_publish, schedule_.held_until);
+  } else if (!over && everyone_answered() && !stands_by()) {
     step(false);
     schedule_.published = false;
     return advance_lockstep(now, out);
@@ -264,7 +291,7 @@ void World::advance_realtime(Instant now, Outbox& out) {
     counted_.skipped_ticks += late - timing.catch_up_limit_ticks;
     schedule_.next_tick += (late - timing.catch_up_limit_ticks) * period;
   }
-  while (now >= schedule_.next_tick && tick_ < timing.tick_count) {
+  while (now >= schedule_.next_tick && !me_.is_over(tick_)) {
     for (const auto& [id, slot] : vehicles_) {
       if (slot.author.incarnation != 0 && slot.answered() < tick_) ++counted_.missed_deadlines;
     }
@@ -272,13 +299,14 @@ void World::advance_realtime(Instant now, Outbox& out) {
     remember_and_publish(now, out);
     schedule_.next_tick += period;
   }
-  if (tick_ >= timing.tick_count) over_since_ = now;
+  if (me_.is_over(tick_)) over_since_ = now;
 }
 
 /// One more tick, in which no vehicle moves.
 void World::send_zero_velocity(Instant now, Outbox& out) {
   if (!schedule_.published) remember_and_publish(now, out);  // where the last step led
-  for (auto& [id, slot] : vehicles_) slot.applied_mps.setZero();
+  for (auto& [id, slot] : vehicles_) slot.applied_mps = slot.next_mps = {0, 0, 0};
+  if (physics_) move_bodies();  // what has mass rolls on
   ++tick_;
   over_since_ = now;
   remember_and_publish(now, out);
@@ -309,7 +337,11 @@ void World::step(bool hold_old_commands) {
       ++counted_.clamped_commands;
   }
   if (filter_) filter_commands();
-  for (auto& [id, slot] : vehicles_) move(id, slot, tick_);
+  if (physics_) {
+    move_bodies();
+  } else {
+    for (auto& [id, slot] : vehicles_) move(id, slot, tick_);
+  }
   ++tick_;
 }
 
@@ -345,6 +377,7 @@ std::vector<WorldState> World::snapshot() const {
     states[part].missed_deadlines = counted_.missed_deadlines;
     states[part].skipped_ticks = counted_.skipped_ticks;
     states[part].clamped_commands = counted_.clamped_commands;
+    states[part].uncounted_ticks = tick_ - me_.counted(tick_);
     states[part].roster_revision = follower().revision();
     states[part].header.tick = tick_;
   }
@@ -381,6 +414,9 @@ void World::remember_and_publish(Instant now, Outbox& out) {
   schedule_.published = true;
   schedule_.repeat_period = kRepeatPeriod;
   schedule_.next_publish = now + schedule_.repeat_period;
+  schedule_.held_until = now;
+  if (me_.is_held(tick_))
+    schedule_.held_until += seconds(std::min(mission().timing.dt_s, kLongestHeldTick_s));
   record_.remember(snapshot());
   publish(record_.newest(), out);
 }

@@ -4,19 +4,22 @@
 //   x_{n+1} = reflect(x_n + v_n dt + σ_w √dt ξ),  ξ: the actuation disturbance, off by default.
 //   v_n is the command, cut to the vehicle's speed limit. Where bodies keep a distance, a world in
 //   real time then filters all commands together, core/separation.h: held and late ones do not know
-//   where the others have gone.
+//   where the others have gone. Where there are walls, a world always does, and they stop ξ.
+//   A physics may move the bodies instead, physics.h: x_{n+1} is then what comes of the commands.
 //
 // In lockstep a tick is repeated until every member of the roster has answered it, and the world
 // runs a bounded number of ticks ahead of the record. In real time it follows the clock.
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/ids.h"
 #include "core/separation.h"
+#include "sim/physics.h"
 #include "sim/record_window.h"
 #include "team/bodies.h"
 #include "team/messages.h"
@@ -28,7 +31,8 @@ class World {
  public:
   static constexpr Role kRole = Role::kWorld;
 
-  World(RunId run, Incarnation incarnation);
+  /// @param physics  what moves the bodies; without it core/vehicle.h does
+  World(RunId run, Incarnation incarnation, PhysicsMaker physics = {});
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
@@ -40,7 +44,7 @@ class World {
 
   bool finished() const { return finished_; }
   /// Whether it has finished because it cannot take part at all.
-  bool failed() const { return follower().plan_problem().has_value(); }
+  bool failed() const { return follower().plan_problem().has_value() || no_physics_; }
   RunId run() const { return me_.run(); }
   const std::string& reason() const { return reason_; }
   const MissionFollower& follower() const { return me_.follower(); }
@@ -55,6 +59,8 @@ class World {
   std::int64_t clamped_commands() const { return counted_.clamped_commands; }
   /// Messages that came through the wire's checks and had no effect because they cannot be true.
   std::int64_t refused() const { return me_.refused(Refusal::kRange); }
+  /// Of the physics, if there is one.
+  std::string physics_summary() const { return physics_ ? physics_->summary() : ""; }
   /// True once a silent logger has been given up.
   bool logger_lost() const { return record_.lost(); }
 
@@ -80,6 +86,7 @@ class World {
     Instant next_publish{};
     std::chrono::nanoseconds repeat_period{};
     Instant next_tick{};
+    Instant held_until{};    // lockstep: a held tick lasts so long
     bool published = false;  // tick_
   };
   struct Counted {
@@ -109,8 +116,14 @@ class World {
   bool keeps_distance() const { return mission().separation.distance_m > 0; }
   void drive(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   void move(AgentId id, VehicleSlot& slot, Tick tick) const;
+  bool make_physics();
+  void place_bodies();
+  void move_bodies();
   void filter_commands();
+  void keep_from_walls(AgentId id, VehicleSlot& slot, Tick tick);
   bool everyone_answered() const;
+  bool stands_by() const;
+  bool waits_for_time(Instant now) const;
   bool record_is_close(Instant now);
   void advance_lockstep(Instant now, Outbox& out);
   void advance_realtime(Instant now, Outbox& out);
@@ -138,8 +151,12 @@ class World {
   std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
   RecordWindow record_;
   Counted counted_;
-  std::optional<SeparationFilter> filter_;  // of commands, if it guards or some are no points
+  std::optional<SeparationFilter> filter_;  // of commands: it guards, walls, or some no points
   std::vector<Neighbour> bodies_;           // of the tick, for the guard
+  PhysicsMaker physics_maker_;
+  std::unique_ptr<Physics> physics_;  // null: core/vehicle.h
+  std::vector<PhysicalBody> moved_;
+  bool no_physics_ = false;  // that could move the bodies of this mission
 };
 
 }  // namespace ergocast

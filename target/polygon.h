@@ -5,10 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace ergocast {
+#include "core/rings.h"
 
-/// The corners in order [m]; the last is joined to the first.
-using Ring = std::vector<Eigen::Vector2d>;
+namespace ergocast {
 
 /// The area inside the outline and outside all holes.
 struct Polygon {
@@ -16,15 +15,11 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
-/// Area of a ring that does not cross itself [m²], positive in either orientation.
-double area_m2(const Ring& ring);
-
 /// Area without that of the holes [m²].
 /// @pre the holes lie inside the outline and apart from each other
 double area_m2(const Polygon& polygon);
 
 /// Whether `x_m` is inside. On the edge the result may be either.
-bool contains(const Ring& ring, const Eigen::Vector2d& x_m);
 bool contains(const Polygon& polygon, const Eigen::Vector2d& x_m);
 
 }  // namespace ergocast

@@ -44,8 +44,8 @@ PacingClock::duration silence_of(AgentId sender,
 inline constexpr double kFarewellPatience_s = 30;
 
 /// Whether a running mission must be over: nothing was received from its world and coordinator for
-/// `silence`, and its newest tick was `newest`. A process that was disconnected when the mission
-/// ended stops by itself. The others have exited and cannot tell it.
+/// `silence`, and `newest` was the count of its newest tick. A process that was disconnected when
+/// the mission ended stops by itself. The others have exited and cannot tell it.
 bool must_be_over(const Timing& timing, Tick newest, PacingClock::duration silence);
 
 class Liveness {

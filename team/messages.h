@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/contribution.h"
+#include "core/hold.h"
 #include "core/ids.h"
 #include "core/roster.h"
 
@@ -22,7 +23,8 @@ inline constexpr int kMaxRosterEntriesPerMessage = 8;
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 512;
-inline constexpr int kMaxReasonLength = 175;
+inline constexpr int kMaxHoldsPerMessage = 1;
+inline constexpr int kMaxReasonLength = 150;
 /// The period of an agent's status in wall time.
 inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
 
@@ -73,8 +75,12 @@ struct MissionPart {
   std::uint64_t content_hash = 0;   ///< the sum of hash_of() over all parts of the revision
   std::vector<RosterEntry> roster;  ///< this part's share, in the order of admission
   std::vector<std::byte> plan;      ///< this part's share of the compiled plan
-  std::string reason;               ///< why it ended or failed
-  Signature signature{};            ///< the coordinator's, which teammates repeat
+  std::vector<Hold> holds;          ///< this part's share, in ascending order
+  /// Lockstep: the world does not go beyond the first tick that it flies by this revision or a
+  /// later one, until the coordinator has named a tick. −1: it goes on.
+  std::int64_t stand_by_revision = -1;
+  std::string reason;     ///< why it ended or failed
+  Signature signature{};  ///< the coordinator's, which teammates repeat
 };
 
 struct DigestEntry {
@@ -126,6 +132,7 @@ struct TeamStatus {
   double ergodic_metric = 0;  ///< median of the agents' own φ²; 0 until one has answered a tick
   AgentId silent_agent = kUnassigned;  ///< the first that is not alive, if any
   std::int64_t missed_deadlines = 0;   ///< as the world counts them
+  bool paused = false;                 ///< the newest tick is held
   std::string host;                    ///< the coordinator's
 };
 
@@ -136,6 +143,16 @@ struct Stop {
   bool failed = false;  ///< whether the mission failed, or was only ended
   std::string reason;
   bool now = false;  ///< emergency: all vehicles stand still at once
+  Signature signature{};
+};
+
+/// Pauses a mission, or lets a paused one go on. Only the coordinator obeys, once: a recording of
+/// it names a change that was made.
+struct Pause {
+  Header header;
+  /// So many beginnings and ends of holds are named (named_changes(), core/hold.h): the next is
+  /// wanted. An even number pauses, an odd one resumes.
+  std::int32_t changes = 0;
   Signature signature{};
 };
 
@@ -154,6 +171,7 @@ struct WorldState {
   std::int64_t missed_deadlines = 0;  ///< real time: commands that came too late for their tick
   std::int64_t skipped_ticks = 0;     ///< real time: ticks that a delayed world skipped
   std::int64_t clamped_commands = 0;  ///< steps of a vehicle that the speed limit made slower
+  Tick uncounted_ticks = 0;           ///< ticks before this one that did not count, core/hold.h
   std::int32_t part = 0, parts = 1;
   bool last = false;  ///< the mission is over, and the world leaves: this is its last message
   std::int32_t vehicle_count = 0;
@@ -178,7 +196,7 @@ struct RecordAck {
 inline constexpr Tick kRecordWindowTicks = 64;
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
-                             WorldState, Command, RecordAck, Digest>;
+                             WorldState, Command, RecordAck, Digest, Pause>;
 
 enum class Bus { kSwarm, kWorld, kCommand };
 inline constexpr int kBusCount = 3;

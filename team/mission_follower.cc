@@ -33,6 +33,7 @@ std::uint64_t hash_of(const MissionPart& part) {
     add(entry.forgotten), add(entry.since_tick), add(entry.since_revision);
     add(entry.kind);
   }
+  for (const Hold& hold : part.holds) add(hold.from), add(hold.until);
   for (const std::byte byte : part.plan) add(byte);
   return hash;
 }
@@ -108,9 +109,13 @@ void MissionFollower::forget_oldest() {
 
 bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart> parts) {
   std::vector<std::byte> plan;
-  for (const MissionPart& part : parts) plan.insert(plan.end(), part.plan.begin(), part.plan.end());
+  std::vector<Hold> holds;
+  for (const MissionPart& part : parts) {
+    plan.insert(plan.end(), part.plan.begin(), part.plan.end());
+    holds.insert(holds.end(), part.holds.begin(), part.holds.end());
+  }
   const bool first = !mission_ && !plan_problem_;
-  if (!first && plan != plan_) {
+  if ((!first && plan != plan_) || !are_holds(holds)) {
     ++foreign_plans_;
     return false;
   }
@@ -118,6 +123,8 @@ bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart>
   revision_ = newest.revision;
   state_ = newest.state;
   reason_ = newest.reason;
+  holds_ = std::move(holds);
+  stand_by_revision_ = newest.stand_by_revision;
   roster_.clear();
   known_.resize(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -139,7 +146,7 @@ bool MissionFollower::commit(const MissionPart& newest, std::vector<MissionPart>
     plan_problem_ = "another mission";
     return true;
   }
-  auto decoded = decode_plan(plan_);
+  auto decoded = needs_table_ ? decode_plan_with_table(plan_) : decode_plan(plan_);
   if (auto* mission = std::get_if<Mission>(&decoded)) mission_ = std::move(*mission);
   if (auto* problem = std::get_if<std::string>(&decoded)) plan_problem_ = std::move(*problem);
   return true;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,7 @@
 
 namespace ergocast {
 
-/// A hash of a part's content: its number and its shares of roster and plan.
+/// A hash of a part's content: its number and its shares of roster, plan and holds.
 std::uint64_t hash_of(const MissionPart& part);
 
 class MissionFollower {
@@ -24,10 +25,14 @@ class MissionFollower {
   /// From now on accepts only this plan: a foreign plan is a plan_problem().
   /// @pre no part has been received
   void expect_plan(std::vector<std::byte> plan) { expected_plan_ = std::move(plan); }
+  /// From now on the mission has the table of its modes, too, if it needs one; which takes a second
+  /// or more once, where nobody has handed it over. Without it, that is a plan_problem().
+  void need_table() { needs_table_ = true; }
 
   /// Takes in one part, in any order. True if it completed a newer revision: all its parts have
   /// been received, or the newest received of those that are missing have its content_hash. A run
-  /// has one plan: a revision with another plan only counts in foreign_plans().
+  /// has one plan: a revision with another plan, or with holds that are none, only counts in
+  /// foreign_plans().
   bool receive(const MissionPart& part);
 
   /// The mission, once a whole plan has arrived and decoded.
@@ -35,7 +40,8 @@ class MissionFollower {
   /// Why this program cannot use the received plan: another version, damage, or not the expected
   /// plan.
   const std::optional<std::string>& plan_problem() const { return plan_problem_; }
-  /// Complete revisions that were ignored because their plan is not this run's.
+  /// Complete revisions that were ignored because their plan is not this run's, or their holds are
+  /// none.
   std::int64_t foreign_plans() const { return foreign_plans_; }
 
   std::int64_t revision() const { return revision_; }
@@ -46,6 +52,10 @@ class MissionFollower {
   MissionState state() const { return state_; }
   bool over() const { return state_ == MissionState::kEnded || state_ == MissionState::kFailed; }
   const std::string& reason() const { return reason_; }
+  /// Ticks that do not count, as are_holds() says.
+  std::span<const Hold> holds() const { return holds_; }
+  /// See MissionPart.
+  std::int64_t stand_by_revision() const { return stand_by_revision_; }
   /// In ascending order of authors.
   const std::vector<RosterEntry>& roster() const { return roster_; }
   const std::vector<std::byte>& plan() const { return plan_; }
@@ -58,12 +68,15 @@ class MissionFollower {
 
  private:
   std::vector<std::byte> expected_plan_;  // empty: any
+  bool needs_table_ = false;
   std::optional<Mission> mission_;
   std::optional<std::string> plan_problem_;
   std::int64_t foreign_plans_ = 0;
   std::int64_t revision_ = -1;
   MissionState state_ = MissionState::kWaiting;
   std::string reason_;
+  std::vector<Hold> holds_;
+  std::int64_t stand_by_revision_ = -1;
   std::vector<RosterEntry> roster_;
   std::vector<std::pair<Incarnation, std::size_t>> by_incarnation_;  // places in it, ascending
   std::vector<std::byte> plan_;

@@ -68,7 +68,7 @@ bool Participant::cut_off(Tick newest, Instant now) const {
   for (const AgentId sender : {kCoordinator, other}) {
     last = std::max(last, liveness_.last_sign_of_kind(sender).value_or(last));
   }
-  return must_be_over(mission().timing, newest, now - last);
+  return must_be_over(mission().timing, counted(newest), now - last);
 }
 
 void Participant::relay(Bus bus, const Contribution& block, Outbox& out) const {

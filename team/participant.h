@@ -40,7 +40,10 @@ struct Arrival {
 
 class Participant {
  public:
-  Participant(Role role, const Identity& self) : role_(role), self_(self) {}
+  Participant(Role role, const Identity& self) : role_(role), self_(self) {
+    // Who computes f.
+    if (role == Role::kAgent || role == Role::kLogger) follower_.need_table();
+  }
 
   /// The checks that all processes share. Returns nothing if our role has no subscription to the
   /// message on `bus`, if the message is our own, or if it is of another run, which counts as
@@ -59,6 +62,13 @@ class Participant {
   const Mission& mission() const { return *follower_.mission(); }
   const Timing& timing() const { return mission().timing; }
   bool knows_mission() const { return follower_.mission().has_value(); }
+  bool is_held(Tick tick) const { return ergocast::is_held(follower_.holds(), tick); }
+  /// The number of a tick among those that count.
+  Tick counted(Tick tick) const { return counted_ticks(follower_.holds(), tick); }
+  /// Whether `tick` is after the last one that counts. @pre knows_mission()
+  bool is_over(Tick tick) const { return counted(tick) >= timing().tick_count; }
+  /// The first such tick, as far as it is known. @pre knows_mission()
+  Tick end_tick() const { return tick_after(follower_.holds(), timing().tick_count); }
   /// The sender's roster entry if it is a present or former member under its own number; else null.
   const RosterEntry* member(const Header& from) const;
 

@@ -12,6 +12,7 @@
 
 #include "core/mission_fields.h"
 #include "core/require.h"
+#include "modes/provide.h"
 #include "team/messages.h"
 
 namespace ergocast {
@@ -44,7 +45,7 @@ bool is_version(const std::string& text) {
 
 // Protobuf's wire format: each field is its number with the kind of its bytes, then the bytes. A
 // plan has the fields in ascending order, and none that is 0.
-constexpr int kVersionField = 1;
+constexpr int kVersionField = 1, kRingCorners = 1;
 constexpr unsigned kVarint = 0, kFixed64 = 1, kBlock = 2;
 // Doubles are copied as they are.
 static_assert(std::endian::native == std::endian::little);
@@ -69,6 +70,9 @@ class PlanWriter {
   void value(int field, const Coefficients& numbers) {
     value(field, bytes_of(numbers.data(), numbers.size()));
   }
+  void value_if_any(int field, const Coefficients& numbers) {
+    if (numbers.size() > 0) value(field, numbers);
+  }
   /// Heights are in no plan if all are 0.
   void places(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
     std::string bytes, heights;
@@ -88,6 +92,16 @@ class PlanWriter {
     for (const AgentKind& kind : kinds) {
       PlanWriter block;
       write(block, kind);
+      const std::string bytes = block.bytes();
+      fields_[field] += tag(field, kBlock) + varint(bytes.size()) + bytes;
+    }
+  }
+  void rings(int field, const Rings& rings) {
+    for (const Ring& ring : rings) {
+      std::string corners;
+      for (const Eigen::Vector2d& corner_m : ring) corners += bytes_of(corner_m.data(), 2);
+      PlanWriter block;
+      block.value(kRingCorners, corners);
       const std::string bytes = block.bytes();
       fields_[field] += tag(field, kBlock) + varint(bytes.size()) + bytes;
     }
@@ -156,6 +170,7 @@ class PlanReader {
     const std::vector<double> numbers = numbers_at(field);
     coefficients = Eigen::Map<const Coefficients>(numbers.data(), std::ssize(numbers));
   }
+  void value_if_any(int field, Coefficients& coefficients) const { value(field, coefficients); }
   void places(int xy, int z, std::vector<Eigen::Vector3d>& places_m) const {
     const std::vector<double> numbers = numbers_at(xy), heights = numbers_at(z);
     for (std::size_t i = 0; i < numbers.size() / 2; ++i) {
@@ -174,6 +189,15 @@ class PlanReader {
     for (auto at = first; at != end; ++at) {
       const PlanReader block(at->second.bytes);
       read(block, kinds.emplace_back());
+    }
+  }
+  void rings(int field, Rings& rings) const {
+    const auto [first, end] = fields_.equal_range(static_cast<std::uint64_t>(field));
+    for (auto at = first; at != end; ++at) {
+      const std::vector<double> numbers = PlanReader(at->second.bytes).numbers_at(kRingCorners);
+      Ring& ring = rings.emplace_back();
+      for (std::size_t i = 1; i < numbers.size(); i += 2)
+        ring.emplace_back(numbers[i - 1], numbers[i]);
     }
   }
   void optional(int field, std::optional<VehicleLimits>& part, const auto& read) const {
@@ -263,7 +287,10 @@ class PlanFields : public FieldVisitor {
     });
   }
   void starts(int xy, int z, auto& starts_m) { wire_.places(xy, z, starts_m); }
+  void walls(int field, const char*, auto& walls) { wire_.rings(field, walls); }
   void hidden_flag(int field, auto& value) { wire_.value(field, value); }
+  void hash(int field, auto& value) { wire_.value(field, value); }
+  void other_target(int field, auto& target) { wire_.value_if_any(field, target); }
 
  private:
   Wire& wire_;
@@ -302,6 +329,17 @@ std::variant<Mission, std::string> decode_plan(std::span<const std::byte> bytes)
   if (!within_limits(mission) || !std::ranges::equal(encode_plan(mission), bytes))
     return broken_plan();
   return mission;
+} catch (...) {
+  return "out of memory";
+}
+
+std::variant<Mission, std::string> decode_plan_with_table(std::span<const std::byte> plan) noexcept
+    try {
+  auto decoded = decode_plan(plan);
+  if (auto* mission = std::get_if<Mission>(&decoded)) {
+    if (auto problem = provide_table(*mission)) return *std::move(problem);
+  }
+  return decoded;
 } catch (...) {
   return "out of memory";
 }

@@ -21,6 +21,10 @@ std::vector<std::byte> encode_plan(const Mission& mission);
 /// their mission.
 std::variant<Mission, std::string> decode_plan(std::span<const std::byte> plan) noexcept;
 
+/// The same with the table of its modes, if it needs one, by provide_table() of modes/provide.h; an
+/// error where this program has none of that hash.
+std::variant<Mission, std::string> decode_plan_with_table(std::span<const std::byte> plan) noexcept;
+
 /// 32 hex digits that identify a plan: XXH3-128 of its bytes.
 std::string plan_hash(std::span<const std::byte> plan);
 

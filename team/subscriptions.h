@@ -19,7 +19,7 @@ enum class Role {
   kDriver,  ///< robots in the world's place
   kLogger,
   kLauncher,  ///< `ergocast run`
-  kMonitor,   ///< `ergocast status`, `ergocast stop`
+  kMonitor,   ///< `ergocast status`, `ergocast stop`, `ergocast pause`
 };
 inline constexpr int kRoleCount = 7;
 
@@ -59,7 +59,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   };
   hears(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop>);
   hears(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
-  hears(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
+  hears(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop, Pause>);
   hears(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);
   hears(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, WorldState, Command, RecordAck, Stop>);
   hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);

@@ -29,11 +29,14 @@ enum class Outside {
   kHash,         // xxHash
   kCrypto,       // libsodium
   kGenerator,    // Random123
+  kSpectra,      // Spectra, and the sparse part of Eigen
   kPng,          // libpng
   kLoader,       // dlopen: libnetcdf
   kHttp,         // cpp-httplib
   kPython,       // pybind11
   kEarth,        // PROJ
+  kXml,          // pugixml
+  kPhysics,      // MuJoCo, and EGL for its pictures
   kFiles,        // files and standard streams
   kSystem,       // sockets, signals, processes, threads, the machine's clocks and dice
 };
@@ -51,23 +54,34 @@ const std::vector<Rule> kRules = {
     {"core", {"core"}, {kGenerator}},
     {"target", {"text", "core", "target"}, {kPng, kFiles}},
     {"target/netcdf_library.cc", {"target"}, {kLoader}},
+    // Modes of a free domain: computed by whoever lacks their table.
+    {"modes", {"core", "modes"}, {}},
+    {"modes/eigen_modes.cc", {"core", "modes"}, {kSpectra}},
+    {"modes/table.cc", {"core", "modes"}, {kHash}},
+    {"modes/table_file.h", {"modes"}, {kFiles}},
+    {"modes/table_file.cc", {"core", "modes"}, {kFiles, kSystem}},
+    {"modes/provide.cc", {"core", "modes"}, {kHash, kSystem}},
     {"team", {"core", "team"}, {}},
-    {"team/plan.cc", {"core", "team"}, {kHash}},
+    {"team/plan.cc", {"core", "modes", "team"}, {kHash}},
     {"lcmtypes", {"text", "core", "team", "lcmtypes"}, {kLcmTypes, kHash, kCrypto}},
-    // Longitude and latitude: for scenarios and exports, not for those who fly.
-    {"geo", {"text", "core", "geo"}, {kEarth, kFiles, kJson}},
-    {"scenario", {"text", "core", "target", "geo", "scenario"}, {kProtobuf, kCommandLine, kFiles}},
+    // Places on the earth, and drawings: for scenarios and exports, not for those who fly.
+    {"geo", {"text", "core", "geo"}, {kEarth, kFiles, kJson, kXml}},
+    {"scenario",
+     {"text", "core", "modes", "target", "geo", "scenario"},
+     {kProtobuf, kCommandLine, kFiles}},
     {"runtime",
-     {"text", "core", "team", "lcmtypes", "runtime"},
+     {"text", "core", "modes", "team", "lcmtypes", "runtime"},
      {kLcm, kZstd, kLog, kCommandLine, kCrypto, kFiles, kSystem}},
     // The participants: they know the shared parts, but not each other.
     {"agent", {"core", "team", "agent"}, {}},
     {"coordinator", {"core", "team", "coordinator"}, {}},
     {"sim", {"core", "team", "sim"}, {}},
-    {"logger", {"text", "core", "team", "logger"}, {kFiles, kJson}},
+    {"logger", {"text", "core", "modes", "team", "logger"}, {kFiles, kJson}},
     {"agent/main.cc", {"agent", "runtime"}, {kLog}},
     {"coordinator/main.cc", {"team", "coordinator", "scenario", "runtime"}, {kLog}},
     {"sim/main.cc", {"sim", "runtime"}, {kLog}},
+    {"sim/world_process.h", {"sim", "runtime"}, {}},
+    {"sim/world_process.cc", {"sim", "runtime"}, {kLog}},
     {"logger/main.cc", {"team", "logger", "runtime", "lcmtypes"}, {kLog, kFiles, kSystem}},
     {"report", {"text", "core", "target", "team", "logger", "report"}, {kFiles, kJson}},
     {"export",
@@ -84,8 +98,8 @@ const std::vector<Rule> kRules = {
     {"ops/deploy", {"text", "core", "scenario", "runtime", "ops/deploy"}, {kFiles}},
     {"cli/page_server.cc", {"cli"}, {kHttp, kSystem}},
     {"cli",
-     {"text", "core", "target", "team", "lcmtypes", "scenario", "runtime", "logger", "report",
-      "geo", "export", "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
+     {"text", "core", "modes", "target", "team", "lcmtypes", "scenario", "runtime", "logger",
+      "report", "geo", "export", "lab", "lab/studies", "ops/doctor", "ops/deploy", "cli"},
      {kLog, kCommandLine, kJson, kFiles, kSystem}},
     // What is Python's: of the command, only how it writes a run directory.
     {"python",
@@ -96,6 +110,10 @@ const std::vector<Rule> kRules = {
     // The example to copy: a participant with its main.
     {"examples/driver", {"core", "team", "examples/driver"}, {}},
     {"examples/driver/main.cc", {"examples/driver", "runtime"}, {kLog}},
+    // Robots in a physics engine: the simulated world with other bodies.
+    {"examples/mujoco", {"core", "team", "sim", "examples/mujoco"}, {kPhysics}},
+    {"examples/mujoco/main.cc", {"sim", "runtime", "examples/mujoco"}, {kLog}},
+    {"examples/mujoco/film.cc", {"team", "scenario", "lab", "examples/mujoco"}, {kPhysics, kFiles}},
 };
 
 /// Folders with code that may include everything.
@@ -120,11 +138,14 @@ const std::vector<Kind> kKinds = {
     {kHash, {"xxhash.h"}},
     {kCrypto, {"sodium.h"}},
     {kGenerator, {"Random123/*"}},
+    {kSpectra, {"Spectra/*", "Eigen/Sparse*"}},
     {kPng, {"png.h"}},
     {kLoader, {"dlfcn.h"}},
     {kHttp, {"httplib.h"}},
     {kPython, {"pybind11/*"}},
     {kEarth, {"proj.h"}},
+    {kXml, {"pugixml.hpp"}},
+    {kPhysics, {"mujoco/*", "EGL/*"}},
     {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},
     {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
                "future",     "semaphore", "latch",        "barrier",
@@ -305,7 +326,7 @@ TEST(LayeringChecker, NamesFileAndLineOfEveryPlantedViolation) {
       {"lab/simulation_faults.cc", "#include \"lab/studies/study_run.h\""},
       {"logger/recorder.cc", "#include \"report/report.h\""},
       {"scenario/scenario.cc", "#include <png.h>"},
-      {"scenario/geojson_target.cc", "#include <proj.h>"},
+      {"scenario/polygon_files.cc", "#include <proj.h>"},
       {"agent/agent.cc", "#include <proj.h>"},
       {"agent/agent.cc", "#include \"geo/local_plane.h\""},
       {"sim/main.cc", "#include \"geo/local_plane.h\""},

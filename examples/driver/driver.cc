@@ -49,7 +49,7 @@ void Driver::on(const MissionPart& part, const Arrival& arrival) {
   take_roster();
   if (running_ || follower().state() != MissionState::kRunning) return;
   running_ = true;
-  if (world_guards(me_.mission())) guard_.emplace(me_.mission(), 0);
+  if (filters_again(me_.mission())) guard_.emplace(me_.mission(), 0);
   tick_ = part.header.tick;
   next_tick_ = arrival.now;
 }
@@ -124,7 +124,7 @@ void Driver::advance(Instant now, Outbox& out) {
   }
   if (!running_ || finished_ || now < next_tick_) return;
   const Timing& timing = me_.mission().timing;
-  if (said_ && tick_ < timing.tick_count) pass_tick();
+  if (said_ && !me_.is_over(tick_)) pass_tick();
   say_where(out);
   said_ = true;
   // At the end the last state is repeated until the coordinator has ended the mission.
@@ -162,6 +162,7 @@ void Driver::say_where(Outbox& out) {
     state.roster_revision = follower().revision();
     state.missed_deadlines = missed_deadlines_;
     state.clamped_commands = clamped_commands_;
+    state.uncounted_ticks = tick_ - me_.counted(tick_);
     state.part = static_cast<std::int32_t>(part);
     state.parts = static_cast<std::int32_t>(parts);
     for (; drive != drives_.end() && state.vehicle_count < kMaxVehiclesPerState; ++drive) {

@@ -4,6 +4,7 @@
 #include "lab/studies/study_run.h"
 
 #include <algorithm>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -36,23 +37,53 @@ std::int64_t blocks_sent(const Mission& mission) {
   return count;
 }
 
-/// Hears what the logger hears, and adds up coverage as an ideal team does.
+/// Adds up the coverage of all places as an ideal team does, and judges it.
+class Judge {
+ public:
+  /// @param judged  outlives it
+  explicit Judge(const Mission& judged)
+      : mission_(judged),
+        controller_(judged),
+        table_(judged.basis, judged.timing.dt_s),
+        sensors_(judged),
+        coverage_(Coefficients::Zero(judged.basis.mode_count())) {
+    for (std::size_t i = 0; i < judged.starts_m.size(); ++i) {
+      table_.add_row(author(i));
+      table_.set_quality(author(i), sensor(i).quality);
+    }
+  }
+
+  void see(std::size_t agent, const Eigen::Vector3d& x_m) {
+    table_.add_sample(author(agent), BasisAt(x_m, mission_.domain, mission_.basis),
+                      sensor(agent).footprint());
+  }
+  double metric() {
+    table_.average(coverage_);
+    return controller_.metric(coverage_);
+  }
+
+ private:
+  static Author author(std::size_t agent) { return {static_cast<AgentId>(agent), 1}; }
+  const Sensor& sensor(std::size_t agent) const {
+    return sensors_.of(planned_kind(mission_, static_cast<AgentId>(agent)));
+  }
+
+  const Mission& mission_;
+  Controller controller_;
+  CoverageTable table_;
+  Sensors sensors_;
+  Coefficients coverage_;
+};
+
+/// Hears what the logger hears.
 class Observer : public lab::SimulationObserver {
  public:
   explicit Observer(const Mission& mission)
       : mission_(mission),
         logger_(static_cast<lab::NodeId>(mission.starts_m.size()) + 2),
         measure_(mission),
-        controller_(mission),
-        table_(mission.basis, mission.timing.dt_s),
-        sensors_(mission),
-        coverage_(Coefficients::Zero(mission.basis.mode_count())),
-        vehicles_(mission.starts_m.size()) {
-    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-      table_.add_row(author(i));
-      table_.set_quality(author(i), sensor(i).quality);
-    }
-  }
+        judge_(mission),
+        vehicles_(mission.starts_m.size()) {}
 
   void received(lab::NodeId node, const Message& message) override {
     if (node != logger_) return;
@@ -67,12 +98,6 @@ class Observer : public lab::SimulationObserver {
   }
 
  private:
-  static Author author(std::size_t agent) { return {static_cast<AgentId>(agent), 1}; }
-
-  const Sensor& sensor(std::size_t agent) const {
-    return sensors_.of(planned_kind(mission_, static_cast<AgentId>(agent)));
-  }
-
   void hear(const WorldState& world) {
     if (world.header.tick <= tick_) return;  // said again
     if (world.header.tick != gathering_) {
@@ -96,21 +121,16 @@ class Observer : public lab::SimulationObserver {
       if (ended) continue;
       const Eigen::Vector3d& x_m = vehicles_[i].position_m;
       measure_.position(i, tick, x_m);
-      table_.add_sample(author(i), BasisAt(x_m, mission_.domain, mission_.basis),
-                        sensor(i).footprint());
+      judge_.see(i, x_m);
     }
     if (ended || !measure_.wants_metric(tick)) return;
-    table_.average(coverage_);
-    measure_.metric(tick, controller_.metric(coverage_));
+    measure_.metric(tick, judge_.metric());
   }
 
   const Mission& mission_;
   const lab::NodeId logger_;
   StudyMeasure measure_;
-  Controller controller_;
-  CoverageTable table_;
-  Sensors sensors_;
-  Coefficients coverage_;
+  Judge judge_;
   std::vector<Vehicle> vehicles_;  // at tick gathering_
   Tick tick_ = -1, gathering_ = -1;
   int parts_ = 0;
@@ -120,13 +140,20 @@ class Observer : public lab::SimulationObserver {
 }  // namespace
 
 StudyFigures fly_without_messages(const Mission& mission) {
-  StudyMeasure measure(mission);
+  const Mission judged = in_cosines(mission);
+  StudyMeasure measure(judged);
   lab::IdealTeam team(mission);
+  std::optional<Judge> judge;  // where the team's own φ² is not in cosines
+  if (mission.basis.free_domain) judge.emplace(judged);
   for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
-    for (std::size_t i = 0; i < team.size(); ++i) measure.position(i, tick, team.x_m(i));
+    for (std::size_t i = 0; i < team.size(); ++i) {
+      measure.position(i, tick, team.x_m(i));
+      if (judge) judge->see(i, team.x_m(i));
+    }
     team.step();
     for (std::size_t i = 0; i < team.size(); ++i) measure.command(team.v_mps(i));
-    if (measure.wants_metric(tick)) measure.metric(tick, team.metric());
+    if (!measure.wants_metric(tick)) continue;
+    measure.metric(tick, judge ? judge->metric() : team.metric());
   }
   StudyFigures figures = measure.figures();
   figures.messages = blocks_sent(mission);
@@ -134,15 +161,16 @@ StudyFigures fly_without_messages(const Mission& mission) {
 }
 
 StudyFigures fly_with_messages(std::span<const std::byte> plan) {
-  const Mission mission = std::get<Mission>(decode_plan(plan));
-  Observer observer(mission);
+  const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
+  const Mission judged = in_cosines(mission);
+  Observer observer(judged);
   NullBuffer nowhere;
   lab::Simulation({.plan = {plan.begin(), plan.end()}}, nowhere, nowhere, &observer).run();
   return observer.figures();
 }
 
 StudyFigures fly_study_run(std::span<const std::byte> plan) {
-  const Mission mission = std::get<Mission>(decode_plan(plan));
+  const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
   if (lab::IdealTeam::stands_for(mission)) return fly_without_messages(mission);
   return fly_with_messages(plan);
 }

@@ -2,7 +2,8 @@
 // What one mission was like, in numbers.
 //
 // The mission's ticks are n = 0 … tick_count − 1, at t = n·dt; φ² at tick n counts the samples of
-// ticks 0 … n, as in metrics.csv. Positions are those at the ticks.
+// ticks 0 … n, as in metrics.csv. Positions are those at the ticks. φ² is in cosines, also of a
+// mission that steers by the modes of its free domain: so all missions of a study compare.
 #pragma once
 
 #include <array>

@@ -38,8 +38,10 @@ final class CoefficientsView extends Picture {
     String aboveOnly = team.plan.inBox() ? " without waves along z" : "";
     headline(g,
         "Coefficients of the " + team.plan.modes[0] + " × " + team.plan.modes[1] + " modes"
-            + aboveOnly,
-        "m to the right, n upwards; sums divided by the time they cover; grey: not heard", LEFT);
+            + aboveOnly + (team.plan.freeDomain ? " of the free domain" : ""),
+        (team.plan.freeDomain ? "ascending upwards, then to the right" : "m to the right, n upwards")
+            + "; sums divided by the time they cover; grey: not heard",
+        LEFT);
     List<Tile> tiles = tiles(team);
     int width = Math.max(20, getWidth() - LEFT - RIGHT);
     int height = Math.max(20, getHeight() - TOP - BOTTOM);

@@ -14,7 +14,7 @@ import java.awt.image.BufferedImage;
 import java.util.Arrays;
 import java.util.Map;
 
-/** The target in grey, and on it each agent with its track, seen along one axis. */
+/** The target in grey, walls, and on them each agent with its track, seen along one axis. */
 final class MapView extends Picture {
   private static final String[] AXES = {"x", "y", "z"};
   private static final int CELLS = 200;
@@ -55,6 +55,7 @@ final class MapView extends Picture {
     if (plan != drawnPlan) drawTarget(plan);
     Axes axes = axes(plan);
     String modes = plan.modes[0] + " × " + plan.modes[1] + (plan.inBox() ? " × " + plan.modes[2] : "");
+    if (plan.freeDomain) modes += " cosine";
     headline(g, plan.inBox() ? "Target and team along " + AXES[3 - across - up] : "Target and team",
         plan.inBox() ? "grey: the average of the target of " + modes + " modes"
                      : "grey: the target of " + modes + " modes, 0 where they make it negative",
@@ -68,6 +69,7 @@ final class MapView extends Picture {
 
     Shape all = g.getClip();
     g.clip(area);
+    drawWalls(g, axes, plan);
     int points = Math.max(100, MOST_POINTS / Math.max(1, team.agents.size()));
     team.agents.forEach((id, agent) -> drawTrack(g, axes, id, agent, points));
     g.setClip(all);
@@ -78,7 +80,7 @@ final class MapView extends Picture {
 
   private void drawTarget(Plan plan) {
     double[][] density = CosineSeries.density(
-        plan.seen(plan.target, across, up), plan.modes[across], plan.modes[up], CELLS);
+        plan.seen(plan.cosineTarget, across, up), plan.modes[across], plan.modes[up], CELLS);
     densest = Arrays.stream(density).flatMapToDouble(Arrays::stream).max().orElse(1);
     target = new BufferedImage(CELLS, CELLS, BufferedImage.TYPE_INT_RGB);
     for (int i = 0; i < CELLS; ++i) {
@@ -105,6 +107,22 @@ final class MapView extends Picture {
   private static Axes.Scale scale(Plan plan, int axis) {
     double low = plan.origin[axis];
     return new Axes.Scale(AXES[axis] + " [m]", low, low + plan.size[axis], false);
+  }
+
+  /** Where an odd number of rings are around. */
+  private static void drawWalls(Graphics2D g, Axes axes, Plan plan) {
+    Path2D walls = new Path2D.Double(Path2D.WIND_EVEN_ODD);
+    for (double[] ring : plan.walls) {
+      for (int i = 0; i + 1 < ring.length; i += 2) {
+        double x = axes.pixelX(ring[i]);
+        double y = axes.pixelY(ring[i + 1]);
+        if (i == 0) walls.moveTo(x, y);
+        walls.lineTo(x, y);
+      }
+      if (ring.length > 0) walls.closePath();
+    }
+    g.setColor(Color.GRAY);
+    g.fill(walls);
   }
 
   private void drawTrack(Graphics2D g, Axes axes, int id, Team.Agent agent, int points) {

@@ -33,7 +33,9 @@ final class MetricView extends Picture {
         Axes.Scale.decades("φ²", empty ? 0.1 : low, empty ? 1 : high));
     String newest = empty ? "" : String.format(Locale.ROOT, " = %.3g", metric.y(metric.size() - 1));
     headline(g, "Ergodic metric φ²" + newest,
-        "median of what the agents know; 0 is perfect coverage", LEFT);
+        (team.plan.freeDomain ? "in modes of the free domain; " : "")
+            + "median of what the agents know; 0 is perfect coverage",
+        LEFT);
     axes.grid(g);
     axes.frame(g);
     Path2D curve = new Path2D.Double();

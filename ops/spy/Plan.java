@@ -4,10 +4,13 @@ package ergocast.spy;
 import java.nio.ByteBuffer;
 import java.nio.ByteOrder;
 import java.nio.charset.StandardCharsets;
+import java.util.ArrayList;
 import java.util.Arrays;
 import java.util.Comparator;
 import java.util.HashMap;
+import java.util.List;
 import java.util.Map;
+import java.util.function.BiConsumer;
 import java.util.stream.IntStream;
 
 /** The fields of a compiled plan, listed in team/plan.proto, that the pictures need. */
@@ -15,6 +18,8 @@ final class Plan {
   static final int MAX_MODES = 64; // along an axis
   static final int MAX_MODES_TOGETHER = 4096;
   static final long MAX_TICKS = 100000000;
+  static final int MAX_CORNERS = 1024;
+  private static final int WALLS = 21;
   static final int LOW_MODES = 64; // in the first block where the others are sent less often
 
   final String name;
@@ -22,7 +27,10 @@ final class Plan {
   final double dt, duration; // [s]
   final long lastTick;
   final int[] modes = {1, 1, 1}; // along x, y and z; 1 along z in a plane
+  final boolean freeDomain; // its modes are no cosines
   final double[] target; // mu, (l * modes[0] + m) * modes[1] + n
+  final double[] cosineTarget; // the same in cosines, which can be drawn
+  final List<double[]> walls = new ArrayList<>(); // rings: x and y of each corner in turn [m]
   private final boolean separated; // low modes from others: they travel by ascending |k|
   private final int[] wire; // the modes in the order in which they travel
 
@@ -53,12 +61,13 @@ final class Plan {
     lastTick = varint(timing.get(2));
     require(lastTick >= 1 && lastTick <= MAX_TICKS);
     duration = lastTick * dt;
-    ByteBuffer coefficients = plan.get(6);
     require(name.length() <= 64 && count <= MAX_MODES_TOGETHER);
-    require(coefficients.remaining() == 8 * count);
-    target = new double[count];
-    for (int k = 0; k < target.length; ++k)
-      target[k] = within(coefficients.getDouble(), -1.001, 1.001);
+    freeDomain = basis.containsKey(7);
+    target = coefficients(plan.get(6), count);
+    cosineTarget = freeDomain ? coefficients(plan.get(24), count) : target;
+    each(ByteBuffer.wrap(bytes), (field, value) -> {
+      if (field == WALLS) walls.add(corners(fields(value).get(1)));
+    });
     separated = timing.containsKey(12) && count > LOW_MODES;
     wire = inOrder();
   }
@@ -85,7 +94,7 @@ final class Plan {
     int n = k % modes[1];
     int m = k / modes[1] % modes[0];
     int l = k / modes[1] / modes[0];
-    return separated ? l * l + m * m + n * n : 0;
+    return separated && !freeDomain ? l * l + m * m + n * n : 0;
   }
 
   boolean inBox() {
@@ -109,9 +118,23 @@ final class Plan {
     return seen;
   }
 
+  private static double[] corners(ByteBuffer value) {
+    require(value != null && value.remaining() % 16 == 0 && value.remaining() <= 16 * MAX_CORNERS);
+    double[] corners = new double[value.remaining() / 8];
+    for (int i = 0; i < corners.length; ++i)
+      corners[i] = within(value.getDouble(), -1e13, 1e13);
+    return corners;
+  }
+
   /** The values of a message's fields by number: the last of each, as bytes still to be read. */
   private static Map<Integer, ByteBuffer> fields(ByteBuffer message) {
     Map<Integer, ByteBuffer> found = new HashMap<>();
+    each(message, found::put);
+    return found;
+  }
+
+  /** Passes the value of each field on, as bytes still to be read. */
+  private static void each(ByteBuffer message, BiConsumer<Integer, ByteBuffer> visit) {
     while (message.hasRemaining()) {
       long key = varint(message);
       int kind = (int) (key & 7);
@@ -123,10 +146,9 @@ final class Plan {
       require((kind <= 2 || kind == 5) && length >= 0 && length <= message.limit() - begin);
       ByteBuffer value = message.duplicate().order(ByteOrder.LITTLE_ENDIAN);
       value.limit(begin + (int) length).position(begin);
-      found.put((int) (key >>> 3), value);
+      visit.accept((int) (key >>> 3), value);
       message.position(begin + (int) length);
     }
-    return found;
   }
 
   private static long varint(ByteBuffer in) {
@@ -137,6 +159,13 @@ final class Plan {
       if (part >= 0) return value;
     }
     throw new IllegalArgumentException("no varint");
+  }
+
+  private static double[] coefficients(ByteBuffer numbers, int count) {
+    require(numbers.remaining() == 8 * count);
+    double[] all = new double[count];
+    for (int k = 0; k < count; ++k) all[k] = within(numbers.getDouble(), -1.001, 1.001);
+    return all;
   }
 
   private static int modes(Map<Integer, ByteBuffer> basis, int field) {

@@ -96,7 +96,7 @@ export function paintChart(g, run, { t: now, quantity, axis, colours, guide, poi
   g.globalAlpha = 1;
   curve(g, s, t, 0, i);
   for (const incident of run.incidents) {
-    g.fillStyle = colours[{ silent: 'bad', gone: 'gone', late: 'warn' }[incident.kind] ?? 'ok'];
+    g.fillStyle = colours[{ silent: 'bad', gone: 'gone', late: 'warn', paused: 'muted' }[incident.kind] ?? 'ok'];
     g.fillRect(s.x(incident.t) - 1, bottom - 6, 2, 6);
   }
   const cursor = (at, colour, dashed) => {

@@ -46,6 +46,7 @@ export class Coverage {
         const { p, z } = track, end = Math.min(to, until, track.last + 1);
         for (let k = Math.max(from, begin, track.first); k < end; k++) {
           const px = p[2 * k], py = p[2 * k + 1];
+          if (run.holds.length && run.heldAt(k)) continue;  // the mission is paused
           if (!(px >= 0 && px <= lx && py >= 0 && py <= ly)) continue;
           count += sensor ? sensor.quality : 1;
           cosines(cx, px / lx);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ground of the map: target, achieved or difference, the target's outline, and where nobody is
-// wanted. Draws on a canvas, or on anything with the same methods (svg.js).
+// The ground of the map: target, achieved or difference, the target's outline, where nobody is
+// wanted, and walls. Draws on a canvas, or on anything with the same methods (svg.js).
 import { clamp } from './text.js';
 
 const CONTOUR = 64;           // of 255: the target's outline over the other shadings
@@ -80,6 +80,27 @@ function stroke(g, view, pieces) {
   g.stroke();
 }
 
+// A place is solid if an odd number of rings are around it.
+function paintWalls(g, run, view, colours) {
+  const [lx, ly] = run.size, rings = run.mission.walls ?? [];
+  if (!rings.length) return;
+  g.save();
+  g.beginPath();
+  g.rect(view.px(0), view.py(ly), lx * view.scale, ly * view.scale);
+  g.clip();
+  g.beginPath();
+  for (const ring of rings) {
+    ring.forEach(([x, y], i) => { if (i) g.lineTo(view.px(x), view.py(y)); else g.moveTo(view.px(x), view.py(y)); });
+    g.closePath();
+  }
+  g.fillStyle = colours.muted;
+  g.strokeStyle = colours.ink;
+  g.lineWidth = 1.2;
+  g.fill('evenodd');
+  g.stroke();
+  g.restore();
+}
+
 export function paintShading(g, run, view, { layer, row, colours }) {
   const [lx, ly] = run.size;
   run.outline ??= outlineOf(run);
@@ -104,4 +125,5 @@ export function paintShading(g, run, view, { layer, row, colours }) {
     stroke(g, view, run.outline);
   }
   g.globalAlpha = 1;
+  paintWalls(g, run, view, colours);
 }

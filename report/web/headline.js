@@ -11,9 +11,10 @@ function missionState(all) {
   const worst = all.find(agent => agent.state.rank === 0), { summary, end } = S.run;
   if (worst) return [`${worst.track.id} silent`, 'bad'];
   if (S.live && S.following) {
-    const state = S.facts?.state?.state ?? 'waiting';
+    const state = S.facts?.state?.paused ? 'paused' : S.facts?.state?.state ?? 'waiting';
     return [state, state === 'failed' ? 'bad' : state === 'running' ? '' : 'idle'];
   }
+  if (S.t < end && S.run.heldAt(S.run.rowAt(S.t))) return ['paused', 'idle'];
   if (S.t < end || S.live) return ['running', ''];
   const result = typeof summary?.result === 'string' ? summary.result : 'no result';
   return [result, result === 'done' ? '' : result === 'failed' ? 'bad' : 'warn'];

@@ -35,9 +35,10 @@ export function addLog(lines) {
   if (low) log.scrollTop = log.scrollHeight;
 }
 
-// φ² each mission second from all positions; if the page lacks the beginning, what the agents say.
+// φ² each mission second from all positions; if the page lacks the beginning, or the modes of the free
+// domain, what the agents say.
 function addMetrics(run, team) {
-  const { metrics } = run, every = Math.max(1, Math.round(1 / run.step)), whole = run.tracks.some(track => track.first === 0);
+  const { metrics } = run, every = Math.max(1, Math.round(1 / run.step)), whole = !run.mission.free_domain && run.tracks.some(track => track.first === 0);
   if (whole) {
     for (let row = run.nextMetric ?? 0; row < run.rows; row += every) {
       const value = run.coverage.metric(row);
@@ -83,6 +84,7 @@ export function watchLive(page) {
       const { team } = frame, { agents } = team, t = Math.min(team.t_s ?? 0, Math.max(run.end, 0));
       team.byId = new Map(agents.map(agent => [agent.id, agent]));
       run.said = saidBy(team);
+      run.setHolds(team.holds);
       if (run.times.length && run.times[run.times.length - 1] >= t) { run.times.pop(); run.history.pop(); }
       if (run.times.length < MOST_STATUSES) { run.times.push(t); run.history.push({ t, team }); }
       Object.assign(facts, { rate: rate.add(agents), lost: sum(agents, 'contributions_lost'), missed: team.missed_deadlines, state: team });

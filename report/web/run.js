@@ -31,6 +31,7 @@ export class Run {
     this.byId = new Map();
     this.metrics = { t: [], phi: [], spread: [], age: [], received: [], lost: [] };
     this.incidents = [];                    // {t, kind, sign, text, agent, until}, ascending
+    this.holds = [];                        // [first tick that does not count, first that counts again or null]
     this.history = [];                      // {t, team} as live statuses came
     this.times = [];                        // their t
     this.summary = null;
@@ -39,6 +40,16 @@ export class Run {
     this.density = decodeDensity(mission.density) ?? targetOfModes(mission.target, this.coverage.M, this.coverage.N, this.size);
   }
   get end() { return Math.max(0, this.rows - 1) * this.step; }
+  heldAt(row) {
+    const tick = row * this.stride;
+    return this.holds.some(([from, until]) => from <= tick && tick < (until ?? Infinity));
+  }
+  setHolds(holds) {
+    const pairs = Array.isArray(holds) ? holds.filter(Array.isArray) : [];
+    if (JSON.stringify(pairs) === JSON.stringify(this.holds)) return;
+    this.holds = pairs;
+    this.coverage.reset(0);
+  }
   rowAt(t) { return Math.max(0, Math.min(this.rows - 1, Math.round(t / this.step))); }
   track(id) {
     let track = this.byId.get(id);
@@ -126,6 +137,7 @@ export function recordedRun(record) {
   run.add(record.tracks);
   run.metrics = record.metrics;
   run.summary = record.summary && typeof record.summary === 'object' && !Array.isArray(record.summary) ? record.summary : null;
+  run.setHolds(run.summary?.holds);
   run.slope = record.slope;
   run.ticks = record.ticks;
   const agents = Array.isArray(run.summary?.agents) ? run.summary.agents.filter(a => a && typeof a === 'object') : [];

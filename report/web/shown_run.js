@@ -6,12 +6,21 @@ import { buildTeam } from './team.js';
 import { showFacts } from './details.js';
 import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
+import { QUANTITIES } from './chart.js';
 import { beginSpace } from './space_controls.js';
 import { $, put } from './text.js';
 
 const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
 
 let runs = 0;
+
+// φ² over time is as it was recorded; the maps are of cosines.
+function nameBasis(run) {
+  const basis = run.mission.free_domain ? 'in modes of the free domain' : '';
+  QUANTITIES.phi.title = `Ergodic metric φ²${basis && `, ${basis}`}`;
+  $('nowMetric').title = basis;
+  for (const option of $('quantity').options) option.text = QUANTITIES[option.value].title;
+}
 
 function show(run) {
   run.id = ++runs;
@@ -21,6 +30,7 @@ function show(run) {
   document.title = `${run.mission.name} – Ergocast`;
   $('slider').max = Math.max(0, run.rows - 1);
   $('slider').step = 1;
+  nameBasis(run);
   $('radioLabel').hidden = !(run.mission.radio_range_m > 0);
   if (first) S.tail = startTail(run);
   beginSpace(run);

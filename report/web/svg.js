@@ -24,7 +24,7 @@ export class SvgContext {
     if (!this.path) return;
     this.out.push(`<path d="${this.path}" fill="none" stroke="${this.strokeStyle}" stroke-width="${two(this.lineWidth)}" stroke-linejoin="${this.lineJoin}"${this.dash ? ` stroke-dasharray="${this.dash}"` : ''}${this.alpha('stroke')}/>`);
   }
-  fill() { this.out.push(`<path d="${this.path}" fill="${this.fillStyle}"${this.alpha('fill')}/>`); }
+  fill(rule = 'nonzero') { this.out.push(`<path d="${this.path}" fill="${this.fillStyle}" fill-rule="${rule}"${this.alpha('fill')}/>`); }
   fillRect(x, y, w, h) { this.out.push(`<rect x="${two(x)}" y="${two(y)}" width="${two(w)}" height="${two(h)}" fill="${this.fillStyle}"${this.alpha('fill')}/>`); }
   strokeRect(x, y, w, h) { this.beginPath(); this.rect(x, y, w, h); this.stroke(); }
   setLineDash(list) { this.dash = list.join(' '); }

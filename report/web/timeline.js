@@ -3,7 +3,7 @@
 import { S, SPEEDS, ask } from './state.js';
 import { $, clamp, element } from './text.js';
 
-const COLOUR = { silent: 'var(--bad)', gone: 'var(--gone)', late: 'var(--warn)', ok: 'var(--ok)' };
+const COLOUR = { silent: 'var(--bad)', gone: 'var(--gone)', late: 'var(--warn)', ok: 'var(--ok)', paused: 'var(--muted)' };
 let last = 0;
 
 export function seek(t) {

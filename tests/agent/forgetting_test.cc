@@ -109,6 +109,25 @@ TEST(AgentForgets, NobodyWhoseAdmissionDiedWithTheCoordinator) {
   EXPECT_FALSE(steered_alone(agent, mission, 2)) << "as for who was admitted since";
 }
 
+TEST(AgentForgets, AndRemembersWhileTheMissionIsPaused) {
+  // Holds go by the world's ticks, and so does forgetting.
+  const Mission mission = small_mission(2);
+  Agent agent = running_agent(mission);
+  give(agent, block_of(mission, 1, kGone, 100), at(0s));
+  MissionPart gone = forgetting_from(2);
+  gone.holds = {{1, -1}};
+  give(agent, gone, at(0s));
+  MissionPart again = forgetting_from(4, 2);
+  again.roster[1].forgotten = false;
+  again.holds = gone.holds;
+  for (Tick tick = 0; tick < 6; ++tick) {
+    if (tick == 3) give(agent, again, at(0s));
+    EXPECT_EQ(only<Command>(tell(agent, world_at(tick, 2 * (tick >= 3)))).size(), 1u);
+    EXPECT_EQ(agent.held(), tick >= 1);
+    EXPECT_EQ(steered_alone(agent, mission, 1), tick >= 2 && tick < 4) << tick;
+  }
+}
+
 TEST(AgentForgets, NeverItself) {
   const Mission mission = small_mission(2);
   Agent agent = running_agent(mission);

@@ -87,6 +87,33 @@ void ControlStep(benchmark::State& state, Sight sight) {
   state.counters["step/floor"] = step_s / floor_s;
 }
 
+/// The step with the modes of a free domain beside that with as many cosines.
+void FreeDomainStep(benchmark::State& state, Sight sight) {
+  const auto modes = static_cast<int>(state.range(0)), agents = static_cast<int>(state.range(1));
+  StepTeam cosines(modes, agents, sight), free(modes, agents, sight, true);
+  Timings with_cosines, with_table, nothing;
+  double cosines_s = 0, table_s = 0;
+  for (auto _ : state) {
+    for (int i = 0; i < kTicksPerRound; ++i) {
+      for (StepTeam* team : {&cosines, &free}) {
+        team->teammates_step();
+        team->merge_news();
+      }
+      Eigen::Vector3d v_mps;
+      with_cosines.add([&] { v_mps = cosines.step(); });
+      with_table.add([&] { v_mps = free.step(); });
+      nothing.add([] {});
+    }
+    const double clock_s = nothing.take_median();
+    const double round_s = with_table.take_median() - clock_s;
+    state.SetIterationTime(round_s);
+    table_s += round_s;
+    cosines_s += with_cosines.take_median() - clock_s;
+  }
+  state.counters["step_ns"] = 1e9 * table_s / kRounds;
+  state.counters["step/cosines"] = table_s / cosines_s;
+}
+
 /// All blocks of all teammates, each one new.
 void MergeNews(benchmark::State& state) {
   StepTeam team = team_of(state, Sight::kToldEachTick);
@@ -124,6 +151,14 @@ BENCHMARK_CAPTURE(ControlStep, told_each_10_ticks, Sight::kToldEach10Ticks)
 BENCHMARK_CAPTURE(ControlStep, reckoned, Sight::kReckoned)->Apply([](auto* benchmark) {
   each_size(benchmark, {4, 16});
 });
+void each_free_size(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"modes_per_axis", "agents"})->UseManualTime()->Iterations(kRounds);
+  for (const int modes : {10, 16, 20}) {
+    for (const int agents : {1, 4, 16}) benchmark->Args({modes, agents});
+  }
+}
+BENCHMARK_CAPTURE(FreeDomainStep, known, Sight::kKnown)->Apply(each_free_size);
+BENCHMARK_CAPTURE(FreeDomainStep, reckoned, Sight::kReckoned)->Apply(each_free_size);
 BENCHMARK(MergeNews)->Apply([](auto* benchmark) { each_size(benchmark, {4}); });
 
 }  // namespace

@@ -5,16 +5,22 @@
 #include <cmath>
 
 #include "core/require.h"
+#include "modes/provide.h"
 
 namespace ergocast::bench {
 namespace {
 
 /// The law that scenarios get by default: relative ε, contraction and adaptive noise.
-Mission full_mission(int modes_per_axis, Sight sight) {
+Mission full_mission(int modes_per_axis, Sight sight, bool free_domain) {
   Mission mission;
   mission.seed = 7;
   mission.domain.size_m = {2000, 2000, 0};
   mission.basis.modes_x = mission.basis.modes_y = modes_per_axis;
+  if (free_domain) {
+    mission.basis.free_domain = true;
+    mission.basis.table = std::get<ModesTable>(table_of(mission));
+    mission.basis.table_hash = mission.basis.table->hash;
+  }
   mission.target_coefficients = basis_values({500, 700, 0}, mission.domain, mission.basis);
   mission.law.u_max_mps = 20;
   mission.law.regularization = Regularization::kRelative;
@@ -41,8 +47,8 @@ Eigen::Vector3d place(AgentId id, Tick tick) {
 
 }  // namespace
 
-StepTeam::StepTeam(int modes_per_axis, int agents, Sight sight)
-    : mission_(full_mission(modes_per_axis, sight)),
+StepTeam::StepTeam(int modes_per_axis, int agents, Sight sight, bool free_domain)
+    : mission_(full_mission(modes_per_axis, sight, free_domain)),
       own_(mission_.basis, mission_.timing.dt_s),
       controller_(mission_),
       forecast_(mission_, author_of(0)),

@@ -21,7 +21,8 @@ enum class Sight {
 
 class StepTeam {
  public:
-  StepTeam(int modes_per_axis, int agents, Sight sight);
+  /// @param free_domain  steers by the modes of a free domain without walls, as many as of cosines
+  StepTeam(int modes_per_axis, int agents, Sight sight, bool free_domain = false);
 
   const Mission& mission() const { return mission_; }
   Tick tick() const { return tick_; }

@@ -53,17 +53,18 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
-WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
 WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
 WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
 WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
 WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", World*, Instant, Outbox&)
 WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
-WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
-WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSG_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
+WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
 // clang-format on
 
@@ -171,6 +172,10 @@ void bug_make_filter(SeparationFilter* self, const Mission& mission, Tick hold_t
   if (bug("a body looks everywhere at once")) changed.vehicle = {};
   if (bug("a loiter circle is a point"))
     changed.separation.distance_m -= 2 * loiter_radius_m(motion_of(mission, 0));
+  if (bug("walls are air")) changed.walls.clear();
+  if (bug("walls keep half of their clearance")) changed.wall_clearance_m /= 2;
+  if (bug("a loiter circle may reach into walls"))
+    changed.wall_clearance_m -= loiter_radius_m(motion_of(mission, 0));
   if (bug("nobody knows of position errors")) changed.separation.position_error_m = 0;
   if (bug("edges count afterwards")) {
     changed.domain.origin_m.head<2>().array() -= 1000;
@@ -182,7 +187,16 @@ void bug_make_filter(SeparationFilter* self, const Mission& mission, Tick hold_t
 SafeVelocity bug_safe(SeparationFilter* self, const Mover& mover, const Eigen::Vector3d& wanted_mps,
                       std::span<const Neighbour> others) {
   if (bug("bodies are no bodies")) return {wanted_mps};
+  if (bug("nobody brakes before walls")) {
+    Mover standing = mover;
+    standing.velocity_mps.setZero();
+    return real_safe(self, standing, wanted_mps, misjudged(self, mover, others));
+  }
   return real_safe(self, mover, wanted_mps, misjudged(self, mover, others));
+}
+
+bool bug_filters_again(const Mission& mission) {
+  return real_filters_again(mission) && !bug("held commands know no walls");
 }
 
 // ---- coverage
@@ -352,11 +366,25 @@ bool speaks_digest(const Outgoing& outgoing) {
 
 }  // namespace
 
+/// While its mission is paused.
+void ignore_pause(const Agent& self, Outbox& out) {
+  if (bug("a sample counts while all stand")) {
+    const Mission& mission = *self.follower().mission();
+    real_add_sample(const_cast<CoverageTable*>(self.coverage()), self.author(),
+                    BasisAt(mission.starts_m[0], mission.domain, mission.basis), nullptr);
+  }
+  for (Outgoing& one : out) {
+    auto* command = std::get_if<Command>(&one.message);
+    if (command != nullptr && bug("an agent creeps on")) command->velocity_mps.x() = 1e-3;
+  }
+}
+
 void bug_advance(Agent* self, Instant now, Outbox& out) {
   if (bug("an agent crashes") && self->tick() == kUnderWay) std::abort();
   if (bug("an agent gives up") && self->tick() == kUnderWay) self->leave("no more");
   real_advance(self, now, out);
   const bool is_one_of_them = self->author().agent == 2;
+  if (self->held()) ignore_pause(*self, out);
   if (bug("a newcomer is mute") && is_one_of_them) {
     std::erase_if(out,
                   [](const Outgoing& one) { return std::holds_alternative<Hello>(one.message); });
@@ -416,6 +444,13 @@ bool hangs(const World& world) {
 
 void bug_turn_world(World* self, Instant now, Outbox& out) {
   if (!hangs(*self)) real_turn_world(self, now, out);
+  if (bug("the world creeps on")) {
+    for (Outgoing& one : out) {
+      auto* state = std::get_if<WorldState>(&one.message);
+      if (state != nullptr && is_held(self->follower().holds(), state->header.tick))
+        state->vehicles[0].velocity_mps.x() = 1e-3;
+    }
+  }
   if (bug("the world keeps a tick to itself") && self->tick() == kUnderWay) {
     std::erase_if(
         out, [](const Outgoing& one) { return std::holds_alternative<WorldState>(one.message); });

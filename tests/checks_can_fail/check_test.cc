@@ -209,6 +209,8 @@ std::vector<Mistake> mistakes_of_targets() {
        "regions { polygon { file: \"line.geojson\" } } } "
        "origin { latitude_deg: 47.5 longitude_deg: 9.2",
        "target.regions[0].polygon.file: "},
+      {kUniform, kUniform + " keep_outs { file: \"square.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, kUniform + " keep_outs { file: \"many.svg\" }", "target.keep_outs[0].file: "},
       {kUniform, "regions { polygon { " + repeated(2, "vertices { x_m: 1 y_m: 1 } ") + "} }",
        "target.regions[0].polygon: 2 vertices enclose nothing"},
       {kUniform, "uniform_weight: 1 keep_outs { vertices { x_m: 1 y_m: 1 } }",
@@ -337,6 +339,86 @@ std::vector<Mistake> mistakes_of_kinds() {
   };
 }
 
+/// Corners in turn as a wall's or keep-out's fields.
+std::string corners(const std::string& numbers) {
+  const std::string text = polygon(numbers);
+  const auto from = text.find("vertices"), to = text.rfind(" } }");
+  return text.substr(from, to - from);
+}
+std::string wall(const std::string& numbers, const std::string& more = "") {
+  return "walls { " + corners(numbers) + more + " } ";
+}
+
+std::vector<Mistake> mistakes_of_walls() {
+  const std::string block = "60 10 80 10 80 30 60 30", limit = "speed_limit_mps: 1000 ";
+  const auto world = [](const std::string& fields, const std::string& said, bool has_line = true) {
+    return Mistake{kLaw, "world { " + fields + " } law {", said, has_line};
+  };
+  const std::string block_and_limit = limit + wall(block);
+  std::string many;
+  for (int i = 0; i < 342; ++i) {
+    const std::string x = std::to_string(20 + i / 5.0);
+    many += wall(x + " 1 " + std::to_string(20.1 + i / 5.0) + " 1 " + x + " 2");
+  }
+  return {
+      world(limit + "wall_clearance_m: 1", "world.wall_clearance_m: has no effect without walls"),
+      world(limit + wall(block, "solid: true"), "world.walls[0].solid: is for keep-outs"),
+      {kUniform, "regions { polygon { " + corners(block) + " solid: true } }",
+       "target.regions[0].polygon.solid: is for keep-outs"},
+      world(limit + wall("60 10 80 10"), "world.walls[0]: 2 vertices enclose nothing"),
+      world(limit + wall(block, hole("90 10 95 10 95 20")),
+            "world.walls[0].holes[0]: the hole is outside"),
+      world(limit + wall("60 10 1101 10 80 30"), "world.walls[0]: has a vertex that is farther"),
+      world(limit + many, "world: 1026 vertices of walls are above the limit 1024", false),
+      world(block_and_limit + wall("70 20 90 20 90 40"),
+            "world.walls[1]: crosses, touches or overlaps world.walls[0]"),
+      world(block_and_limit + wall("65 15 70 15 70 20"),
+            "world.walls[1]: crosses, touches or overlaps world.walls[0]"),
+      {kUniform,
+       kUniform + " keep_outs { " + corners(block) + " solid: true } keep_outs { solid: true " +
+           corners("70 20 90 20 90 40") + " } } world { speed_limit_mps: 1000 ",
+       "target.keep_outs[1]: crosses, touches or overlaps target.keep_outs[0]"},
+      world(wall(block), "world.speed_limit_mps: is missing, and walls rely on it", false),
+      world(block_and_limit + "disturbance_intensity: 1 } vehicle { kind: UNICYCLE "
+                              "max_turn_radps: 10",
+            "world.disturbance_intensity: pushes vehicles that are no POINT", false),
+      world(block_and_limit + "} separation { distance_m: 2 position_error_m: 0.5",
+            "world.wall_clearance_m: 0 is too little", false),
+      world(limit + wall("5 15 15 15 15 25 5 25"), "agents.starts[0]: is in a wall", false),
+      world(block_and_limit + "wall_clearance_m: 51",
+            "agents.starts[0]: is 50 m from a wall, nearer than the 51", false),
+      world(limit + wall("50 -1 51 -1 51 51 50 51"),
+            "world.walls: cut the free domain in 2 parts: the one around x ", false),
+      world(limit + wall("20 -20 120 -20 120 70 -20 70 -20 32 20 32") + "wall_clearance_m: 9.9",
+            "world.walls: leave only", false),
+  };
+}
+
+/// What the modes of a free domain do not go with.
+std::vector<Mistake> mistakes_of_free_domains() {
+  const std::string few = "basis { modes_x: 5 modes_y: 4 free_domain: true";
+  const std::string start = "starts { x_m: 10 y_m: 20 }";
+  const auto kind = [&](const std::string& sees, const std::string& said) {
+    return Mistake{start, start + " kind { name: \"a\" count: 1 " + sees + " } } " + few, said};
+  };
+  const auto wall = [](double low_m, double high_m) {
+    const std::string low = std::to_string(low_m), high = std::to_string(high_m);
+    return "walls { vertices { x_m: 49 y_m: " + low + " } vertices { x_m: 51 y_m: " + low +
+           " } vertices { x_m: 51 y_m: " + high + " } vertices { x_m: 49 y_m: " + high + " } } ";
+  };
+  // A gap between two rows of cells, which are 0.88 m high.
+  const std::string gap = wall(-5, 24.3) + wall(24.9, 55);
+  return {
+      {kLaw, "basis { modes_x: 21 modes_y: 20 free_domain: true } law {",
+       "basis.free_domain: 420 modes are above the limit of a free domain"},
+      {kLaw, "world { speed_limit_mps: 100 " + gap + "} " + few + " } law {",
+       "basis.free_domain: the free domain has no modes"},
+      in_space(kLaw, few + " } law {", "basis.free_domain: needs a plane"),
+      kind("footprint_sigma_m: 3", "agents.kind[0].footprint_sigma_m: is a blur of cosines"),
+      kind("band { to: 3 }", "agents.kind[0].band: is of cosines"),
+  };
+}
+
 std::vector<Mistake> mistakes_in_space() {
   const std::string bell = "gaussians { mean_x_m: 5 mean_y_m: 5 mean_z_m: -5 ";
   const std::string prism =
@@ -345,6 +427,8 @@ std::vector<Mistake> mistakes_in_space() {
       "maps { file: \"even.csv\" origin_x_m: 0 origin_y_m: 0 size_x_m: 100 "
       "size_y_m: 50 layers { low_z_m: -9 high_z_m: -5 value: ";
   return {
+      in_space(kLaw, "world { speed_limit_mps: 9 " + wall("60 10 80 10 80 30") + "} law {",
+               "world.walls[0]: walls belong to a plane"),
       {"y_m: 20", "y_m: 20 z_m: 3", "agents.starts[0].z_m: the domain is a plane"},
       in_space(kLaw, "basis { modes_x: 17 modes_y: 17 modes_z: 17 } law {",
                "basis: 4913 modes are above the limit"),
@@ -417,6 +501,9 @@ class Scenarios : public OwnHost {
     write("many.geojson", R"({"type":"Polygon","coordinates":[[)" + repeated(4100, "[9.2,47.5],") +
                               "[9.2,47.5]]]}");
     write("line.geojson", R"({"type":"LineString","coordinates":[]})");
+    write("square.svg", "<svg viewBox='0 0 1 1'><rect width='1' height='1'/></svg>");
+    write("many.svg",
+          "<svg viewBox='0 0 2 1'><path d='M0 0" + repeated(2100, "h.1v.1") + "'/></svg>");
     fs::create_directory(folder_ / "folder.csv");
     fs::create_symlink(unreadable_file(), folder_ / "locked.csv");
     write("empty.csv", "");
@@ -572,11 +659,17 @@ separation { distance_m: 2 }
 /// What its kind of vehicles does not have.
 constexpr const char* kWinged = R"(
 domain { size_x_m: 100 size_y_m: 50 }
-target { uniform_weight: 1 }
+target {
+  uniform_weight: 1
+  keep_outs { vertices { x_m: 60 y_m: 10 } vertices { x_m: 70 y_m: 10 } vertices { x_m: 70 y_m: 20 } solid: true }
+}
 law { u_max_mps: 5 }
 time { duration_s: 60 }
 agents { starts { x_m: 10 y_m: 20 } }
-world { speed_limit_mps: 100 }
+world {
+  speed_limit_mps: 100 wall_clearance_m: 1
+  walls { vertices { x_m: 80 y_m: 10 } vertices { x_m: 90 y_m: 10 } vertices { x_m: 90 y_m: 20 } }
+}
 vehicle { kind: FIXED_WING max_turn_radps: 1 min_speed_mps: 4 }
 )";
 
@@ -701,7 +794,8 @@ class CheckCanFail : public Scenarios {
     EXPECT_EQ(ergocast({"check", file_}), 0) << output();
     for (const auto& mistakes :
          {mistakes_of_the_text(), mistakes_between_fields(), mistakes_of_targets(),
-          mistakes_of_maps(), mistakes_of_kinds(), mistakes_in_space()}) {
+          mistakes_of_maps(), mistakes_of_kinds(), mistakes_of_free_domains(), mistakes_of_walls(),
+          mistakes_in_space()}) {
       for (const Mistake& mistake : mistakes) expect_mistake(mistake);
     }
   }
@@ -783,6 +877,16 @@ class CheckCanFail : public Scenarios {
     EXPECT_NE(output().find("10 agents 10 m apart take up 15.71 %"), std::string::npos) << output();
   }
 
+  void expect_warning_of_late_vehicles(const std::string& response_s, const std::string& what) {
+    write("s.textproto", kGood +
+                             "world { speed_limit_mps: 1000 }\nseparation { distance_m: 2 "
+                             "response_s: " +
+                             response_s + " }\n");
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_NE(output().find(what), std::string::npos) << what << ":\n" << output();
+  }
+
   void expect_warning_of_footprints() {
     std::string text = kGood;
     const std::string even = "uniform_weight: 1";
@@ -799,7 +903,20 @@ class CheckCanFail : public Scenarios {
         << output();
   }
 
+  void expect_warning_of_hidden_mass() {
+    std::string text = kGood;
+    text.insert(text.find(kLaw),
+                "world { speed_limit_mps: 1000 " + wall("50 -1 51 -1 51 40 50 40") + "}\n");
+    write("s.textproto", text);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_TRUE(output().starts_with("warning: " + file_.string() + ":3:")) << output();
+    EXPECT_NE(output().find("world.walls: hide the target from itself"), std::string::npos)
+        << output();
+  }
+
   void plant_warnings() {
+    expect_warning_of_hidden_mass();
     expect_warning_of_footprints();
     expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");
     expect_warning("noise_ceiling: 2.5", "6", "m/s held for 3 steps");
@@ -808,6 +925,9 @@ class CheckCanFail : public Scenarios {
     expect_warning_of_rare_modes("modes_x: 8 modes_y: 8", "has no effect: the basis has 64 modes");
     expect_warning_of_rare_modes("modes_x: 9", "makes 600 ticks between two broadcasts");
     expect_warning_of_packing();
+    expect_warning_of_late_vehicles("0.02", "separation.response_s: vehicles that follow so late");
+    expect_warning_of_late_vehicles("0.011",
+                                    "agents.starts[0]: is nearer to an edge than the 11 m");
   }
 };
 

@@ -22,12 +22,14 @@ struct Plant {
   std::string faults = "";    ///< a fault file's lines
   std::string scenario = "";  ///< lines added to faulty_team's
   std::string says = "";      ///< selects one of several reports under that name
+  const char* pace = "--realtime";
 };
 
 // To the mission's end, so that effects of few blocks appear, too.
 const char* const kLateBlocks =
     "loss = 0.5\nreordering = 0.5\nreordering_max_s = 3\nswarm_bus_only = 1\nlasting_share = 1";
 const char* const kDeadAgents = "agent_crashes_per_s = 0.1\ndowntime_max_s = 20";
+const char* const kPauses = "pauses_per_s = 0.3\npause_max_s = 5";
 const char* const kByRowsAlone = "agents { dead_reckoning: false }";
 
 const char* const kCrowd =
@@ -52,6 +54,20 @@ const char* const kCrowdWithWings =
     "separation { distance_m: 15 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
     "vehicle { kind: FIXED_WING max_turn_radps: 1.5 min_speed_mps: 5 }\n"
     "target { gaussians { mean_x_m: 50 mean_y_m: 50 sigma_m: 3 weight: 20 } }";
+/// A block on the way between the two Gaussians, and where many want to be.
+#define WALLED                                                                                  \
+  "goal_ergodic_metric: 1\ntarget { gaussians { mean_x_m: 50 mean_y_m: 47 sigma_m: 10 weight: " \
+  "5 } }\n"                                                                                     \
+  "world { speed_limit_mps: 20 walls { vertices { x_m: 42 y_m: 40 } vertices { x_m: 58 y_m: "   \
+  "40 } vertices { x_m: 58 y_m: 55 } vertices { x_m: 42 y_m: 55 } } wall_clearance_m: 2 }"
+const char* const kWalled = WALLED;
+const char* const kWalledCrowd = WALLED "\nseparation { distance_m: 10 }";
+const char* const kWalledWithInertia =
+    WALLED "\nvehicle { kind: ACCELERATION max_acceleration_mps2: 10 }";
+const char* const kWalledWithWings =
+    WALLED "\nvehicle { kind: FIXED_WING max_turn_radps: 1.5 min_speed_mps: 5 }";
+#undef WALLED
+
 const char* const kUnsureCrowd =
     "separation { distance_m: 20 position_error_m: 1 }\nworld { speed_limit_mps: 20 }\n"
     "goal_ergodic_metric: 1";
@@ -93,6 +109,11 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "a neighbour needs no way to brake", "", kMixedCrowd},
     {Invariant::kDistanceKept, "a neighbour's loiter circle is a point", "", kMixedCrowd},
     {Invariant::kDistanceKept, "a neighbour is taken for another vehicle", "", kMixedCrowd},
+    {Invariant::kWallsKept, "walls are air", "", kWalledCrowd},
+    {Invariant::kWallsKept, "walls keep half of their clearance", "", kWalledCrowd},
+    {Invariant::kWallsKept, "held commands know no walls", "loss = 0.3", kWalled},
+    {Invariant::kWallsKept, "nobody brakes before walls", "", kWalledWithInertia},
+    {Invariant::kWallsKept, "a loiter circle may reach into walls", "", kWalledWithWings},
     {Invariant::kSumsBounded, "a sum runs away"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},
@@ -100,6 +121,10 @@ const Plant kPlants[] = {
     {Invariant::kDamagedMessagesRefused, "damage passes", "corruption = 0.01"},
     {Invariant::kHeldNeverShrinks, "a backup is put back"},
     {Invariant::kNoStepCountsTwice, "a sample counts twice"},
+    {Invariant::kNothingCountsWhilePaused, "a sample counts while all stand", kPauses},
+    {Invariant::kNobodyMovesWhilePaused, "an agent creeps on", kPauses, "", ": agent "},
+    {Invariant::kNobodyMovesWhilePaused, "the world creeps on", kPauses, "", ": vehicle ",
+     "--lockstep"},
     {Invariant::kAverageOfWhatIsHeld, "the average is off"},
     {Invariant::kForecastOfWhatIsKnown, "a late block becomes the one before", kLateBlocks,
      kByRowsAlone},
@@ -150,8 +175,8 @@ class InvariantsCanFail : public OwnHost {
     std::ofstream(scenario) << text;
     std::ofstream(faults) << plant.faults << '\n';
     setenv("ERGOCAST_BUG", bug, 1);
-    const int code = run("ergocast-with-bugs", {"simulate", scenario, "--seeds", "1:2", "--jobs",
-                                                "1", "--faults", faults});
+    const int code = run("ergocast-with-bugs", {"simulate", scenario, plant.pace, "--seeds", "1:2",
+                                                "--jobs", "1", "--faults", faults});
     unsetenv("ERGOCAST_BUG");
     return code;
   }

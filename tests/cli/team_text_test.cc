@@ -32,7 +32,7 @@ TeamPicture flying_team() {
   picture.run = 0x1234;
   picture.scenario = "quadrimodal_corners";
   picture.state = MissionState::kRunning;
-  picture.tick = 599999;
+  picture.tick = picture.counted = 599999;
   picture.tick_count = 1000000;
   picture.dt_s = 0.1;
   picture.ergodic_metric = 0.00123;

@@ -17,6 +17,9 @@
 #include "core/coverage_table.h"
 #include "core/forecast.h"
 #include "core/separation.h"
+#include "core/wall_following.h"
+#include "core/walls.h"
+#include "tests/modes/rooms.h"
 #include "tests/support/team.h"
 
 namespace {
@@ -99,6 +102,17 @@ TEST(Allocations, AreCountedWhateverTheWay) {
   EXPECT_EQ(allocations_in([] { g_seen = nullptr; }), 0u);
 }
 
+/// The same with fewer modes, those of a free domain without walls.
+void steer_by_free_domain(Mission& mission) {
+  static const ModesTable table =
+      test::table_of(test::grid_of(test::small_mission(4).domain, test::sees_all), 144);
+  mission.basis.modes_x = mission.basis.modes_y = 12;
+  mission.target_coefficients = Coefficients::Unit(144, 0);
+  mission.basis.free_domain = true;
+  mission.basis.table = table;
+  mission.basis.table_hash = table->hash;
+}
+
 /// 20 × 20 modes, four agents, every feature of the law on; in a plane or in space.
 Mission full_mission(Regularization regularization, Perturbation perturbation, int modes_z) {
   Mission mission = test::small_mission(4);
@@ -117,13 +131,16 @@ Mission full_mission(Regularization regularization, Perturbation perturbation, i
 }
 
 TEST(Allocations, AControlStepWithAllBlocksNewMakesNone) {
-  const std::tuple<Regularization, Perturbation, int> laws[] = {
-      {Regularization::kAbsolute, Perturbation::kConstant, 1},
-      {Regularization::kRelative, Perturbation::kAdaptive, 1},
-      {Regularization::kAbsolute, Perturbation::kConstant, 3},
-      {Regularization::kRelative, Perturbation::kAdaptive, 3}};
-  for (const auto& [regularization, perturbation, modes_z] : laws) {
-    const Mission mission = full_mission(regularization, perturbation, modes_z);
+  const std::tuple<Regularization, Perturbation, int, bool> laws[] = {
+      {Regularization::kAbsolute, Perturbation::kConstant, 1, false},
+      {Regularization::kRelative, Perturbation::kAdaptive, 1, false},
+      {Regularization::kAbsolute, Perturbation::kConstant, 3, false},
+      {Regularization::kRelative, Perturbation::kAdaptive, 3, false},
+      {Regularization::kAbsolute, Perturbation::kConstant, 1, true},
+      {Regularization::kRelative, Perturbation::kAdaptive, 1, true}};
+  for (const auto& [regularization, perturbation, modes_z, free_domain] : laws) {
+    Mission mission = full_mission(regularization, perturbation, modes_z);
+    if (free_domain) steer_by_free_domain(mission);
     Controller controller(mission);
     CoverageTable own(mission.basis, mission.timing.dt_s);
     Coefficients coverage = Coefficients::Zero(mission.basis.mode_count());
@@ -166,11 +183,37 @@ TEST(Allocations, KeepingADistanceMakesNone) {
   EXPECT_EQ(allocations_in([&] { filter.safe(self, {30, 20, 0}, others); }), 0u);
 }
 
+TEST(Allocations, KeepingOutOfWallsMakesNone) {
+  Mission mission = full_mission(Regularization::kAbsolute, Perturbation::kConstant, 1);
+  mission.speed_limit_mps = 40;
+  mission.disturbance_intensity = 5;
+  Ring star;
+  for (int i = 0; i < kMaxWallVertices; ++i) {
+    const double angle = 6.28 * i / kMaxWallVertices, radius_m = i % 2 == 0 ? 3 : 300;
+    star.emplace_back(500 + radius_m * std::cos(angle), 500 + radius_m * std::sin(angle));
+  }
+  mission.walls = {star};
+  SeparationFilter filter(mission, 0);
+  WallFollower follower(mission, 0);
+  const auto step = [&](Tick tick) {
+    const Eigen::Vector3d x_m(498, 502, 0);
+    const Eigen::Vector3d aim_mps = follower.aim(tick, x_m, {30, 20, 0});
+    const SafeVelocity safe = filter.safe({0, tick, x_m, 40}, aim_mps, {});
+    follower.note(safe.wall);
+    ASSERT_TRUE(moved(mission, 0, tick, x_m, safe.velocity_mps).allFinite());
+  };
+  for (Tick tick = 0; tick < 60; ++tick)
+    EXPECT_EQ(allocations_in([&] { step(tick); }), 0u) << "tick " << tick;
+  EXPECT_TRUE(follower.follows());
+}
+
 TEST(Allocations, LookingAheadMakesNoneOnceTheTeamIsKnown) {
-  const std::tuple<bool, int, int> missions[] = {{false, 1, 1}, {true, 1, 1},  {false, 3, 1},
-                                                 {true, 3, 1},  {false, 1, 4}, {true, 1, 4}};
-  for (const auto& [dead_reckoning, modes_z, factor] : missions) {
+  const std::tuple<bool, int, int, bool> missions[] = {
+      {false, 1, 1, false}, {true, 1, 1, false}, {false, 3, 1, false}, {true, 3, 1, false},
+      {false, 1, 4, false}, {true, 1, 4, false}, {false, 1, 1, true},  {true, 1, 1, true}};
+  for (const auto& [dead_reckoning, modes_z, factor, free_domain] : missions) {
     Mission mission = full_mission(Regularization::kRelative, Perturbation::kAdaptive, modes_z);
+    if (free_domain) steer_by_free_domain(mission);
     mission.law.anticipation = 2;
     mission.dead_reckoning = dead_reckoning;
     mission.timing.broadcast_period_ticks = 5;

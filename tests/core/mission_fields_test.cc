@@ -48,7 +48,10 @@ class Count : public FieldVisitor {
   void kinds(auto&&...) { ++fields; }
   void kind_name(auto&&...) { ++fields; }
   void own_vehicle(auto&&...) { ++fields; }
+  void walls(auto&&...) { ++fields; }
   void hidden_flag(auto&&...) { ++fields; }
+  void hash(auto&&...) { ++fields; }
+  void other_target(auto&&...) { ++fields; }
 };
 
 template <class Part>
@@ -65,7 +68,7 @@ TEST(MissionFields, AreAllMembers) {
   EXPECT_EQ(listed<Mission>(), members<Mission>());
   EXPECT_EQ(listed<AgentKind>(), members<AgentKind>());
   EXPECT_EQ(listed<Box>(), 3 * members<Box>());  // a vector each
-  EXPECT_EQ(listed<Basis>(), members<Basis>());
+  EXPECT_EQ(listed<Basis>(), members<Basis>() - 1) << "no plan carries the table itself";
   EXPECT_EQ(listed<VehicleLimits>(), members<VehicleLimits>());
   EXPECT_EQ(listed<Separation>(), members<Separation>() - 1) << "guard means nothing without it";
 }

@@ -173,6 +173,59 @@ TEST(Separation, NeverLeavesTheDomain) {
 }
 
 /// The world executes the result as it is: no cut may follow that would be counted.
+/// How near a body that follows as a low pass of 0.4 s comes to the edges, which it drives at. One
+/// that is outside is nearer than 0.
+/// @param wall  in place of the domain's right edge
+double nearest_edge_m(double response_s, double position_error_m, bool wall = false) {
+  Mission mission = team_mission();
+  mission.domain = {{0, 0, 0}, {100, 80, 0}};
+  mission.timing.pace = Pace::kLockstep;
+  mission.separation.response_s = response_s;
+  mission.separation.position_error_m = position_error_m;
+  if (wall) {
+    mission.domain.size_m.x() = 300;
+    mission.walls = {{{100, -10}, {110, -10}, {110, 70}, {100, 70}}};
+  }
+  SeparationFilter filter(mission, 0);
+  Eigen::Vector3d x_m(50, 40, 0), v_mps(0, 0, 0);
+  double least_m = 100;
+  for (Tick tick = 0; tick < 200; ++tick) {
+    const Eigen::Vector3d told_m = x_m - Eigen::Vector3d(position_error_m, position_error_m, 0);
+    const Eigen::Vector3d safe_mps =
+        filter.safe({0, tick, told_m, 20}, {16, 12, 0}, {}).velocity_mps;
+    for (int step = 0; step < 100; ++step) {
+      v_mps += (safe_mps - v_mps) * 1e-3 / 0.4;
+      x_m += v_mps * 1e-3;
+    }
+    least_m = std::min({least_m, 100 - x_m.x(), 80 - x_m.y()});
+  }
+  return least_m;
+}
+
+TEST(Separation, ABodyThatFollowsLateStopsBeforeTheEdges) {
+  EXPECT_LT(nearest_edge_m(0, 0), -1) << "one that is believed to follow at once leaves";
+  EXPECT_GE(nearest_edge_m(0.45, 0), 0.45 * 20 - 0.1) << "T V";
+  EXPECT_GE(nearest_edge_m(0.45, 0.5), 0.45 * 20 + 0.5 - 0.1) << "T V + 2 e, of which it errs e";
+  EXPECT_LT(nearest_edge_m(0, 0, true), -1) << "and so it does where there is a wall";
+  EXPECT_GE(nearest_edge_m(0.45, 0, true), 0.45 * 20 - 0.1);
+  EXPECT_GE(nearest_edge_m(0.45, 0.5, true), 0.45 * 20 + 0.5 - 0.1);
+}
+
+TEST(Separation, BodiesThatFollowLateBeginAwayFromTheEdges) {
+  Mission mission = team_mission();
+  mission.domain = {{0, 0, 0}, {100, 80, 0}};
+  mission.separation.response_s = 0.45;
+  mission.speed_limit_mps = 20;
+  EXPECT_EQ(late_edge_margin_m(mission, 0), 9);
+  for (AgentId id = 0; id < 200; ++id) {
+    const Eigen::Vector3d x_m = start_beside(mission, id, {}, start_distance_m);
+    ASSERT_GE(std::min(x_m.x(), x_m.y()), 9);
+    ASSERT_LE(std::max(x_m.x() - 100, x_m.y() - 80), -9);
+  }
+  mission.separation.response_s = 5;
+  EXPECT_EQ(room_to_begin(mission, 0).size_m, Eigen::Vector3d(60, 40, 0)) << "a quarter at most";
+}
+
 TEST(Separation, ResultsAreWithinTheSpeedLimit) {
   const Mission mission = team_mission();
   SeparationFilter filter(mission, 0);

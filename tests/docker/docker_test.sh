@@ -51,6 +51,8 @@ a_team_of_more_than_planned_flies_too() {
 too_few_agents_end_with_a_sentence() {
   ERGOCAST_SCENARIO=impatient
   plan too_few 3
+  # The agents first: a slow machine may take longer to start them than the coordinator waits.
+  expect compose up --detach --scale agent=2 agent
   expect compose up --detach --scale agent=2
   becomes all_ended
   is "$(one coordinator)" .State.ExitCode 4 || complain 'a mission without its quorum is no failure'

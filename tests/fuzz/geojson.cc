@@ -8,7 +8,7 @@ namespace ergocast::fuzz {
 
 FUZZ_TARGET(geojson) {
   const auto parsed = parse_geojson(text_of(input));
-  if (const auto* problem = std::get_if<GeoJsonProblem>(&parsed)) {
+  if (const auto* problem = std::get_if<PolygonFileProblem>(&parsed)) {
     ERGOCAST_REQUIRE(!problem->what.empty() && !problem->remedy.empty());
     return;
   }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the first binary inputs of the corpora: fuzz-seeds DIRECTORY. Run it again when the format
 // of a message or of the plan has changed, or the program's version, which is in the plan.
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <string>
+#include <variant>
 
 #include "lcmtypes/channels.h"
 #include "ops/doctor/peer_ledger.h"
@@ -47,8 +49,10 @@ std::string framed(const std::string& content) {
          content;
 }
 
-const char* const kKinds[] = {"hello", "mission", "contribution", "agent_status", "team_status",
-                              "stop",  "world",   "command",      "record_ack",   "digest"};
+constexpr std::array<const char*, std::variant_size_v<Message>> kKinds{
+    "hello", "mission", "contribution", "agent_status", "team_status", "stop",
+    "world", "command", "record_ack",   "digest",       "pause"};
+static_assert(kKinds.back() != nullptr, "each kind of message has its name");
 
 void datagrams(const Seeds& seeds) {
   for (const Message& message : test::every_message()) {

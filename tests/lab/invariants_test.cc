@@ -65,7 +65,16 @@ class InvariantsTest : public ::testing::Test {
   TableView holder(const CoverageTable& table, Coefficients& c, const Author& self = kOne) {
     c = Coefficients::Zero(144);
     table.average(c);
-    return {self, &table, &c, &roster_, 88};
+    TableView view{self, &table, &c, &roster_, 88};
+    view.counted = 88;
+    return view;
+  }
+  /// An agent that answers the tick of command().
+  static TableView answering() {
+    TableView view;
+    view.self = kOne;
+    view.answered = view.counted = 3;
+    return view;
   }
   std::string violated() const { return violated_by(team_); }
   /// What is violated by a ĉ that is off by so much, after a teammate was heard twice and then
@@ -125,15 +134,34 @@ TEST_F(InvariantsTest, PositionsAreInTheDomain) {
   EXPECT_EQ(violated(), "positions are in the domain");
 }
 
+TEST_F(InvariantsTest, BodiesKeepOutOfWalls) {
+  mission_.walls = {{{2, 2}, {8, 2}, {8, 8}, {2, 8}}, {{4, 4}, {6, 4}, {6, 6}, {4, 6}}};
+  mission_.wall_clearance_m = 0.5;
+  for (const Eigen::Vector3d& x_m : {Eigen::Vector3d(1.5, 5, 0), Eigen::Vector3d(1.7, 1.5, 0),
+                                     Eigen::Vector3d(5, 4.5, 0), Eigen::Vector3d(9, 9, 0)}) {
+    Invariants team(mission_);
+    team.sent(0, world(1, x_m), nullptr);
+    EXPECT_EQ(violated_by(team), "") << x_m.transpose();
+  }
+  for (const Eigen::Vector3d& x_m : {Eigen::Vector3d(1.6, 5, 0), Eigen::Vector3d(1.7, 1.7, 0),
+                                     Eigen::Vector3d(5, 4.4, 0), Eigen::Vector3d(3, 5, 0)}) {
+    Invariants team(mission_);
+    team.sent(0, world(1, x_m), nullptr);
+    EXPECT_EQ(violated_by(team), "bodies keep out of walls") << x_m.transpose();
+  }
+}
+
 TEST_F(InvariantsTest, InputsAreBounded) {
-  team_.sent(1, command(2), nullptr);
+  const TableView one = answering();
+  team_.sent(1, command(2), &one);
   EXPECT_EQ(violated(), "");
-  team_.sent(1, command(2.0001), nullptr);
+  team_.sent(1, command(2.0001), &one);
   EXPECT_EQ(violated(), "|u| <= u_max");
 }
 
 TEST_F(InvariantsTest, NotANumberIsNoInput) {
-  team_.sent(1, command(std::numeric_limits<double>::quiet_NaN()), nullptr);
+  const TableView one = answering();
+  team_.sent(1, command(std::numeric_limits<double>::quiet_NaN()), &one);
   EXPECT_EQ(violated(), "|u| <= u_max");
 }
 

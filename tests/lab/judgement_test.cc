@@ -73,6 +73,8 @@ bool never_missed(const Heard& heard) {
   // No operator sends STOP here, and no second agent of a number or second coordinator is started;
   // the tests of real processes do that.
   if (type == kTypes<Stop>) return true;
+  // Its operator tells the coordinator itself to pause.
+  if (type == kTypes<Pause>) return true;
   if (heard.role == Role::kAgent) return type == kTypes<AgentStatus>;
   if (heard.role == Role::kCoordinator) {
     // It asks in lockstep only the agent that a starting world waits for.

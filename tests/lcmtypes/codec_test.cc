@@ -15,6 +15,7 @@
 #include <ergocast/low_averages_t.hpp>
 #include <ergocast/low_sums_t.hpp>
 #include <ergocast/mission_t.hpp>
+#include <ergocast/pause_t.hpp>
 #include <ergocast/record_ack_t.hpp>
 #include <ergocast/stop_t.hpp>
 #include <ergocast/team_status_t.hpp>
@@ -164,6 +165,10 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   ASSERT_EQ(part_wire.plan_size, 300);
   EXPECT_EQ(std::memcmp(part_wire.plan.data(), part.plan.data(), 300), 0);
   EXPECT_EQ(std::memcmp(part_wire.mission_signature, a_signature().data(), 64), 0);
+  EXPECT_EQ(part_wire.stand_by_revision, 11);
+  ASSERT_EQ(part_wire.hold_count, 1);
+  EXPECT_EQ(part_wire.holds[0].hold_from, 55);
+  EXPECT_EQ(part_wire.holds[0].hold_until, -1);
   EXPECT_EQ(part_wire.reason, "because");
 
   const auto team_wire = read_by_lcm<team_status_t>(encoded(team_status()));
@@ -175,6 +180,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(team_wire.median_ergodic_metric, 1.0 / 7);
   EXPECT_EQ(team_wire.silent_agent, 2);
   EXPECT_EQ(team_wire.team_missed_deadlines, 9);
+  EXPECT_EQ(team_wire.team_paused, 1);
   EXPECT_EQ(team_wire.team_host, "base.example");
 
   const auto stop_wire = read_by_lcm<stop_t>(encoded(stop()));
@@ -183,6 +189,11 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheMission) {
   EXPECT_EQ(stop_wire.stop_failed, 1);
   EXPECT_EQ(stop_wire.stop_now, 1);
   EXPECT_EQ(stop_wire.stop_reason, "enough");
+
+  const auto pause_wire = read_by_lcm<pause_t>(encoded(pause()));
+  expect_header(pause_wire.header, kOperator);
+  EXPECT_EQ(std::memcmp(pause_wire.pause_signature, a_signature().data(), 64), 0);
+  EXPECT_EQ(pause_wire.named_changes, 3);
 }
 
 TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
@@ -192,6 +203,7 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfTheWorld) {
   EXPECT_EQ(wire.missed_deadlines, 4);
   EXPECT_EQ(wire.skipped_ticks, 5);
   EXPECT_EQ(wire.clamped_commands, 6);
+  EXPECT_EQ(wire.uncounted_ticks, 7);
   EXPECT_EQ(wire.state_part, 1);
   EXPECT_EQ(wire.state_parts, 8);
   ASSERT_EQ(wire.vehicle_count, 2);

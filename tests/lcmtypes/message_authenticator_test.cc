@@ -34,10 +34,12 @@ const MessageAuthenticator kOtherTeam{key_of(2)};
 Message unsigned_copy(Message message) {
   if (auto* part = std::get_if<MissionPart>(&message)) part->signature = {};
   if (auto* stop = std::get_if<Stop>(&message)) stop->signature = {};
+  if (auto* pause = std::get_if<Pause>(&message)) pause->signature = {};
   return message;
 }
 bool is_signed(const Message& message) {
-  return std::holds_alternative<MissionPart>(message) || std::holds_alternative<Stop>(message);
+  return std::holds_alternative<MissionPart>(message) || std::holds_alternative<Stop>(message) ||
+         std::holds_alternative<Pause>(message);
 }
 
 Bytes sealed(const Message& message, const MessageAuthenticator& seal,

@@ -51,6 +51,8 @@ inline MissionPart mission_part() {
   m.parts = 5;
   m.roster = {{{0, 0xffffffffffffffff}, 0, -1}, {{127, 5}, 100, 200, true, 300, 11, 3}};
   for (int i = 0; i < 300; ++i) m.plan.push_back(static_cast<std::byte>(i * 7));
+  m.holds = {{55, -1}};
+  m.stand_by_revision = 11;
   m.reason = "because";
   m.signature = a_signature();
   return m;
@@ -135,10 +137,13 @@ inline TeamStatus team_status() {
           1.0 / 7,
           2,
           9,
+          true,
           "base.example"};
 }
 
 inline Stop stop() { return {header_of_sender(kOperator), true, "enough", true, a_signature()}; }
+
+inline Pause pause() { return {header_of_sender(kOperator), 3, a_signature()}; }
 
 inline WorldState world_state() {
   WorldState m;
@@ -147,6 +152,7 @@ inline WorldState world_state() {
   m.missed_deadlines = 4;
   m.skipped_ticks = 5;
   m.clamped_commands = 6;
+  m.uncounted_ticks = 7;
   m.part = 1;
   m.parts = 8;
   m.vehicle_count = 2;
@@ -171,9 +177,9 @@ inline Digest digest() {
 }
 
 inline std::vector<Message> every_message() {
-  return {hello(),    mission_part(), contribution(), agent_status(), team_status(),
-          stop(),     world_state(),  command(),      record_ack(),   digest(),
-          averages(), low_sums(),     low_averages()};
+  return {hello(), mission_part(), contribution(), agent_status(), team_status(),
+          stop(),  world_state(),  command(),      record_ack(),   digest(),
+          pause(), averages(),     low_sums(),     low_averages()};
 }
 
 // ---- bytes

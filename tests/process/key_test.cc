@@ -148,9 +148,12 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
   for (int i = 0; i < 20; ++i) {
     outsider.say(Bus::kSwarm, stop("no key"));
     member.say(Bus::kSwarm, stop("an agent's key"));
+    outsider.say(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
+    member.say(Bus::kSwarm, Pause{{run, kOperator, 1, 0, 0}, 0, {}});
   }
   EXPECT_TRUE(logs("coordinator", "somebody speaks without our --key-file"));
   ASSERT_TRUE(moves_on()) << said();
+  EXPECT_EQ(ergocast({"pause", "--lcm-url", kUrl, "--key-file", team_}), 2) << output();
   ASSERT_TRUE(eventually([&] {
     coordinator.say(Bus::kSwarm, stop("the operator"));
     coordinator.say(Bus::kCommand, stop("the operator"));
@@ -158,8 +161,9 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
   }));
   EXPECT_TRUE(logs("coordinator", "the operator"));
   const auto refused = summary()["messages"]["refused"];
-  EXPECT_GE(refused["unkeyed"], 20);
-  EXPECT_GE(refused["unsigned"], 20);
+  EXPECT_GE(refused["unkeyed"], 40);
+  EXPECT_GE(refused["unsigned"], 40);
+  EXPECT_FALSE(summary().contains("holds"));
 }
 
 TEST_F(Keyed, ProcessesByHandFlyWithTheirOwnFiles) {

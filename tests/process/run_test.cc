@@ -195,6 +195,24 @@ TEST_F(MissionRun, AnAgentNeedsNoMoreThanThirtyMegabytes) {
   EXPECT_EQ(wait_for(mission), 0) << output();
 }
 
+TEST_F(MissionRun, StartsAnotherProgramInTheWorldsPlace) {
+  ASSERT_EQ(ergocast({"run", scenario_file("paper_fig1a"), "--realtime=20", "--duration", "20",
+                      "--world", "ergocast-example-driver", "--out", out()}),
+            0)
+      << output();
+  EXPECT_TRUE(std::filesystem::exists(out() / "log/world.log"));
+  EXPECT_FALSE(std::filesystem::exists(out() / "log/sim.log"));
+  // The driver refuses lockstep, as it says.
+  EXPECT_EQ(ergocast({"run", scenario_file("paper_fig1a"), "--lockstep", "--world",
+                      (program_folder() / "ergocast-example-driver").string(), "--out",
+                      out().string() + "-2"}),
+            4);
+  EXPECT_NE(output().find("lockstep"), std::string::npos) << output();
+  EXPECT_EQ(ergocast({"run", scenario_file("paper_fig1a"), "--world", "./no-such-program"}), 2);
+  EXPECT_NE(output().find("--world ./no-such-program: there is no program"), std::string::npos)
+      << output();
+}
+
 TEST_F(MissionRun, CompressesFinishedSegmentsWhereItIsAskedTo) {
   // Every tick writes about 45 kB, so the first 64 MiB take some 1500 ticks.
   ASSERT_EQ(ergocast({"run", scenario_file("paper_fig1a"), "--agents", "16", "--duration", "200",

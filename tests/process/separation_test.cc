@@ -65,5 +65,21 @@ TEST_P(CrowdRun, KeepsItsDistanceAndSaysWhatThatCost) {
   EXPECT_NE(text_of(out() / "report.html").find("longest_block_s"), std::string::npos);
 }
 
+class CheckedScenario : public OwnHost {
+ protected:
+  bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
+};
+
+TEST_F(CheckedScenario, SaysWhatBodiesThatFollowLateKeep) {
+  const std::string late = "separation.response_s=0.25";
+  ASSERT_EQ(ergocast({"check", scenario_file("crowded_team"), "--set", late}), 0) << output();
+  EXPECT_TRUE(
+      said("bodies follow 0.25 s late: they close 10 % of a gap in a tick, and keep 5 m "
+           "more, in all 13 m from each other and 5 m from the edges"))
+      << output();
+  ASSERT_EQ(ergocast({"check", scenario_file("crowded_team")}), 0);
+  EXPECT_FALSE(said("late")) << output();
+}
+
 }  // namespace
 }  // namespace ergocast::test

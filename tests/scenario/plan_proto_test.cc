@@ -55,6 +55,7 @@ class PlanNames : public FieldVisitor {
   }
   void seed(int number, const char* name, auto&) { expect(number, name); }
   void name(int number, const char* name, auto&) { expect(number, name); }
+  void walls(int number, const char* name, auto&) { expect(number, name); }
   void part(int number, const char* name, auto& part) {
     const pb::FieldDescriptor* field = expect(number, name);
     if (field == nullptr) return;
@@ -85,7 +86,8 @@ TEST(PlanProto, IsWhatAPlansBytesAre) {
   rich.wait_for_logger = true;
   proto::Plan all;
   for (const Mission& mission :
-       {rich, test::with_inertia(rich), test::with_wings(test::rich_mission())}) {
+       {rich, test::with_inertia(rich), test::with_wings(test::rich_mission()),
+        test::with_walls(test::rich_mission()), test::with_free_domain(test::rich_mission())}) {
     const std::vector<std::byte> bytes = encode_plan(mission);
     proto::Plan plan;
     ASSERT_TRUE(plan.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));

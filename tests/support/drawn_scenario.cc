@@ -101,6 +101,13 @@ Rule many(int least, int most) { return {draw_block, least, most}; }
 const Draw kCoin = [](Block& block, const FieldDescriptor& field, RandomStream& random) {
   block.GetReflection()->SetBool(&block, &field, random.coin());
 };
+/// Now and then true.
+const Draw kRarely = [](Block& block, const FieldDescriptor& field, RandomStream& random) {
+  block.GetReflection()->SetBool(&block, &field, random.uniform() < 0.2);
+};
+const Draw kTrue = [](Block& block, const FieldDescriptor& field, RandomStream&) {
+  block.GetReflection()->SetBool(&block, &field, true);
+};
 /// A place [m] inside every domain.
 const Draw kPlace = number(1, 99);
 
@@ -184,6 +191,7 @@ const std::map<std::string, Rule>& rules() {
       {"Basis.modes_y", may(number(2, 24))},
       {"Basis.modes_z", may(number(1, 6))},
       {"Basis.sobolev_exponent", may(number(0.1, 3))},
+      {"Basis.free_domain", may(kRarely)},  // in a plane, of few modes: see agree()
 
       {"Law.u_max_mps", must(spread(1, 40))},
       {"Law.epsilon", may(spread(1e-3, 1))},
@@ -239,6 +247,9 @@ const std::map<std::string, Rule>& rules() {
       {"Separation.disturbance_m", may(spread(1e-4, 1e-2))},
       {"Separation.response_s", may(either(0, spread(0.01, 1)))},
 
+      {"Polygon.solid", may(kTrue)},
+      {"World.walls", many(0, 2)},
+      {"World.wall_clearance_m", may(either(0, number(0.5, 1)))},
       {"World.disturbance_intensity", may(spread(0.01, 5))},
       {"World.radio_range_m", may(either(0, spread(5, 500)))},
       {"World.speed_limit_mps", may(spread(0.5, 100))},
@@ -355,6 +366,45 @@ void agree_on_distance(proto::Scenario& scenario) {
   for (int i = 0; i < agents.starts_size(); ++i) agents.mutable_starts(i)->set_x_m(5 + 20 * i);
 }
 
+bool all_are_points(const proto::Scenario& scenario) {
+  const auto& kinds = scenario.agents().kind();
+  return scenario.vehicle().kind() == proto::Vehicle::POINT &&
+         std::all_of(kinds.begin(), kinds.end(), [](const proto::Kind& kind) {
+           return kind.vehicle().kind() == proto::Vehicle::POINT;
+         });
+}
+
+/// Walls stand apart from each other and from the starts, and belong to a plane.
+void agree_on_walls(proto::Scenario& scenario) {
+  proto::World& world = *scenario.mutable_world();
+  const bool planar = !scenario.domain().has_size_z_m();
+  int walls = 0;
+  const auto put = [&](proto::Polygon& wall) {
+    wall.mutable_vertices(0)->set_x_m(95);
+    wall.mutable_vertices(0)->set_y_m(95 - 18 * walls++);
+    make_round(wall, 8);
+    wall.clear_holes();  // a room without a door
+  };
+  for (proto::Region& region : *scenario.mutable_target()->mutable_regions())
+    region.mutable_polygon()->clear_solid();
+  if (!planar) world.clear_walls();
+  for (proto::Polygon& wall : *world.mutable_walls()) {
+    wall.clear_solid();
+    wall.clear_file();
+    put(wall);
+  }
+  for (proto::Polygon& keep_out : *scenario.mutable_target()->mutable_keep_outs()) {
+    if (!planar || keep_out.has_file()) keep_out.clear_solid();
+    if (keep_out.solid()) put(keep_out);
+  }
+  if (walls == 0) return world.clear_wall_clearance_m();
+  if (!world.has_speed_limit_mps()) world.set_speed_limit_mps(20);
+  if (!all_are_points(scenario)) world.clear_disturbance_intensity();
+  for (proto::Start& start : *scenario.mutable_agents()->mutable_starts())
+    start.set_y_m(std::min(start.y_m(), 30.0));
+  if (scenario.has_separation()) world.set_wall_clearance_m(1);
+}
+
 /// Names that differ, and counts that are the team: the last kind has whoever is left.
 void agree_on_kinds(int team, proto::Agents& agents) {
   for (int i = 0; i < agents.kind_size(); ++i) {
@@ -398,6 +448,19 @@ void agree_on_vehicles(proto::Scenario& scenario) {
   scenario.mutable_world()->clear_disturbance_intensity();
 }
 
+/// A plane, sensors that see points, and a table that is soon computed.
+void agree_on_free_domain(proto::Scenario& scenario) {
+  proto::Basis& basis = *scenario.mutable_basis();
+  if (scenario.domain().has_size_z_m()) basis.clear_free_domain();
+  if (!basis.free_domain()) return;
+  basis.set_modes_x(std::min(basis.has_modes_x() ? basis.modes_x() : 6, 6));
+  basis.set_modes_y(std::min(basis.has_modes_y() ? basis.modes_y() : 6, 6));
+  for (proto::Kind& kind : *scenario.mutable_agents()->mutable_kind()) {
+    kind.clear_footprint_sigma_m();
+    kind.clear_band();
+  }
+}
+
 void agree(proto::Scenario& scenario) {
   agree(*scenario.mutable_target());
   const bool planar = !scenario.domain().has_size_z_m();
@@ -427,8 +490,10 @@ void agree(proto::Scenario& scenario) {
   const int team = agents.starts_size() + agents.random_count();
   if (agents.has_quorum()) agents.set_quorum(std::min(agents.quorum(), team));
   agree_on_kinds(team, agents);
+  agree_on_free_domain(scenario);
   agree_on_vehicles(scenario);
   if (scenario.has_separation()) agree_on_distance(scenario);
+  agree_on_walls(scenario);
 }
 
 void add_fields(const Descriptor& type, std::set<std::string>& names) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/mission_limits.h"
+#include "core/walls.h"
 #include "team/messages.h"
 #include "team/plan.h"
 #include "tests/team/rich_mission.h"
@@ -16,6 +17,9 @@ namespace {
 
 using test::rich_mission;
 using test::rich_mission_in_space;
+using test::with_free_domain;
+using test::with_inertia;
+using test::with_walls;
 using test::with_wings;
 using Bytes = std::vector<std::byte>;
 
@@ -51,6 +55,11 @@ class Numbers : public FieldVisitor {
   void contraction_center(int, int, Eigen::Vector3d& x_m) {
     all.insert(all.end(), {&x_m.x(), &x_m.y(), &x_m.z()});
   }
+  void walls(int, const char*, Rings& rings) {
+    for (Ring& ring : rings) {
+      for (Eigen::Vector2d& x_m : ring) all.insert(all.end(), {&x_m.x(), &x_m.y()});
+    }
+  }
   void starts(int, int, std::vector<Eigen::Vector3d>& starts_m) {
     for (Eigen::Vector3d& x_m : starts_m) all.insert(all.end(), {&x_m.x(), &x_m.y(), &x_m.z()});
   }
@@ -65,7 +74,8 @@ TEST(HostilePlan, CutShortIsRefused) {
 
 TEST(HostilePlan, OfRandomBytesIsRefusedOrWithinLimits) {
   std::mt19937 random(1);
-  const Bytes plans[] = {encode_plan(rich_mission()), encode_plan(rich_mission_in_space())};
+  const Bytes plans[] = {encode_plan(with_walls(rich_mission())),
+                         encode_plan(rich_mission_in_space())};
   for (int i = 0; i < 20000; ++i) {
     const Bytes& plan = plans[i / 2 % 2];
     Bytes noisy = plan;
@@ -79,7 +89,8 @@ TEST(HostilePlan, OfRandomBytesIsRefusedOrWithinLimits) {
 }
 
 TEST(HostilePlan, WithANumberThatIsNoneOrHugeIsRefused) {
-  for (const Mission& good : {rich_mission(), rich_mission_in_space()}) {
+  for (const Mission& good :
+       {rich_mission(), rich_mission_in_space(), with_walls(rich_mission())}) {
     Mission mission = good;
     const std::size_t count = Numbers(mission).all.size();
     ASSERT_GT(count, 25u);
@@ -103,6 +114,36 @@ TEST(HostilePlan, WithACoefficientThatCannotBeIsRefused) {
   Mission mission = rich_mission();
   mission.target_coefficients[0] = 0.999;
   EXPECT_FALSE(is_taken(mission));
+}
+
+// What computes modes relies on it.
+TEST(HostilePlan, SteersByModesOnlyWithAllThatBelongsToThem) {
+  ASSERT_TRUE(is_taken(with_free_domain(rich_mission())));
+  constexpr void (*kBroken[])(Mission&) = {
+      [](Mission& m) { m.basis.table_hash = 0; },
+      [](Mission& m) { m.basis.free_domain = false; },
+      [](Mission& m) { m.basis.free_domain = false, m.basis.table_hash = 0; },
+      [](Mission& m) { m.basis.free_domain = false, m.cosine_target = {}; },
+      [](Mission& m) { m.cosine_target = {}; },
+      [](Mission& m) { m.cosine_target.conservativeResize(5); },
+      [](Mission& m) { m.cosine_target[0] = 0.5; },
+      [](Mission& m) { m.cosine_target[3] = 1.001; },
+      [](Mission& m) { m.cosine_target[3] = std::nan(""); },
+      [](Mission& m) { m.kinds[0].footprint_sigma_m = 1; },
+      [](Mission& m) { m.kinds[1].band_from = 1; },
+      [](Mission& m) { m.kinds[1].band_to = 2; },
+      [](Mission& m) {  // more than anybody computes
+        m.basis.modes_x = 21;
+        m.basis.modes_y = 20;
+        m.target_coefficients = m.cosine_target = Coefficients::Unit(420, 0);
+      },
+  };
+  for (std::size_t i = 0; i < std::size(kBroken); ++i) {
+    Mission mission = with_free_domain(rich_mission());
+    kBroken[i](mission);
+    EXPECT_FALSE(is_taken(mission)) << "change " << i;
+  }
+  EXPECT_FALSE(within_limits(with_free_domain(rich_mission_in_space())));
 }
 
 TEST(HostilePlan, InAPlaneHasNoHeights) {
@@ -270,6 +311,31 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) {
         m.starts_m.assign(kMaxAgents + 1, {17, 20, 0});
       },
+      [](Mission& m) { m.wall_clearance_m = 1; },  // of no walls
+      [](Mission& m) { m = with_walls(rich_mission_in_space()); },
+      [](Mission& m) { m = with_walls(m), m.wall_clearance_m = -1; },
+      [](Mission& m) { m = with_walls(m), m.wall_clearance_m = 0.29; },  // errors of 0.15 m
+      [](Mission& m) {
+        m = with_walls(m), m.starts_m[0] = {41, 31, 0};
+      },
+      [](Mission& m) {
+        m = with_walls(m), m.starts_m[0] = {38.3, 35, 0};
+      },
+      [](Mission& m) { m = with_walls(m), m.walls[0].resize(2); },
+      [](Mission& m) { m = with_walls(m), m.walls[0].clear(); },
+      [](Mission& m) { m = with_walls(m), std::swap(m.walls[0][0], m.walls[0][1]); },
+      [](Mission& m) { m = with_walls(m), std::swap(m.walls[1], m.walls[2]); },  // a room elsewhere
+      [](Mission& m) {
+        m = with_walls(m), m.walls[2][0] = {50, 40};
+      },  // crosses
+      [](Mission& m) {
+        m = with_walls(m), m.walls[2][0] = {1200, 12};
+      },
+      [](Mission& m) { m = with_walls(m), m.walls[2][1] = m.walls[2][0]; },
+      [](Mission& m) {
+        m = with_walls(m), m.walls[2].resize(kMaxWallVertices, {75, 15});
+      },
+      [](Mission& m) { m = with_walls(with_inertia(m)); },  // and a disturbance
       [](Mission& m) { m.quorum = 0; },
       [](Mission& m) { m.quorum = 3; },
       [](Mission& m) { m.forget_silent_after_s = -1; },
@@ -287,6 +353,7 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
     EXPECT_TRUE(has(problem_of(encode_plan(mission)), "breaks that version's rules"))
         << "change " << i;
   }
+  EXPECT_TRUE(is_taken(with_walls(rich_mission())));
   Mission wide = rich_mission();
   widen(wide);
   EXPECT_TRUE(is_taken(wide));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/mission_fields.h"
+#include "core/walls.h"
 #include "team/messages.h"
 #include "tests/team/rich_mission.h"
 
@@ -15,6 +16,11 @@ namespace ergocast {
 namespace {
 
 using test::rich_mission;
+using test::rich_mission_in_space;
+using test::with_free_domain;
+using test::with_inertia;
+using test::with_walls;
+using test::with_wings;
 using Bytes = std::vector<std::byte>;
 
 /// Every field as a text, to the last bit.
@@ -52,7 +58,17 @@ class Fields : public FieldVisitor {
     for (const Eigen::Vector3d& x_m : places_m) all += text_of(x_m);
     texts.push_back(all);
   }
+  void walls(int, const char*, const Rings& rings) {
+    std::string all;
+    for (const Ring& ring : rings) {
+      all += " ring";
+      for (const Eigen::Vector2d& x_m : ring) all += text_of(on_ground(x_m));
+    }
+    texts.push_back(all);
+  }
   void hidden_flag(int, bool value) { texts.push_back(std::to_string(value)); }
+  void hash(int, std::uint64_t value) { texts.push_back(std::to_string(value)); }
+  void other_target(int field, const Coefficients& values) { target(field, values); }
 
  private:
   static std::string text_of(double value) {
@@ -98,15 +114,19 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   plain_mission.separation.distance_m = 1;  // so that all its fields are listed
   const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts,
              moving = Fields(with_inertia(mission)).texts,
-             flying = Fields(with_wings(mission)).texts;
+             flying = Fields(with_wings(mission)).texts, walled = Fields(with_walls(mission)).texts,
+             freed = Fields(with_free_domain(rich_mission())).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
-    EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i] || flying[i] != plain[i])
+    EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i] || flying[i] != plain[i] ||
+                walled[i] != plain[i] || freed[i] != plain[i])
         << "default: field " << i;
   expect_travels(mission);
   expect_travels(rich_mission());
   expect_travels(with_inertia(mission));
   expect_travels(with_wings(rich_mission()));
+  expect_travels(with_free_domain(rich_mission()));
+  expect_travels(with_walls(rich_mission()));
 }
 
 // Two swapped switches would not show if both are true.
@@ -120,6 +140,7 @@ TEST(Plan, CarriesEachSwitchByItself) {
     if (!one.turned()) break;
     if (mission.law.perturbation == Perturbation::kConstant) mission.law.noise_ceiling = 0;
     if (mission.vehicle.kind != VehicleKind::kPoint) mission = with_inertia(mission);
+    if (mission.basis.free_domain) mission = with_free_domain(mission);
     if (!mission.separation.guard) mission.timing.command_hold_s = 0;
     expect_travels(mission);
   }
@@ -205,6 +226,11 @@ TEST(Plan, OfTheLargestMissionFitsItsMessages) {
   mission.timing.tick_count = 80'000'000;
   mission.timing.broadcast_period_ticks = mission.timing.catch_up_limit_ticks = 1000;
   mission.timing.high_mode_period_factor = 1;
+  for (int i = 0; i < kMaxWallVertices / 3; ++i) {
+    const Eigen::Vector2d at(-3 + i % 100, 52 + i / 100);  // where nobody begins
+    mission.walls.push_back({at, at + Eigen::Vector2d(0.5, 0), at + Eigen::Vector2d(0, 0.5)});
+  }
+  mission.wall_clearance_m = 1;
   EXPECT_LE(encode_plan(mission).size(), std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage);
   expect_travels(mission);
 }

@@ -42,6 +42,7 @@ inline Mission rich_mission() {
   mission.basis.modes_x = 3;
   mission.basis.modes_y = 2;
   mission.basis.sobolev_exponent = 1.75;
+  mission.basis.free_domain = false;  // kinds have footprints: with_free_domain()
   mission.target_coefficients = Coefficients(6);
   mission.target_coefficients << 1, 0.1, -0.2, 0.3, -0.4, 0.55;
   ControlLaw& law = mission.law;
@@ -78,7 +79,8 @@ inline Mission rich_mission() {
   mission.separation.position_error_m = 0.15;
   mission.separation.disturbance_m = 0.22;
   mission.separation.response_s = 1.1;
-  mission.vehicle = {};  // inertia allows none of these: with_inertia()
+  mission.wall_clearance_m = 0;  // of none: with_walls()
+  mission.vehicle = {};          // inertia allows none of these: with_inertia()
   mission.wait_for_logger = false;
   return mission;
 }
@@ -104,6 +106,25 @@ inline Mission with_inertia(Mission mission) {
   mission.separation = {};
   mission.separation.distance_m = 0.65;
   mission.separation.guard = true;
+  return mission;
+}
+
+/// With a wall that has a room, too small for a way into it to be asked for, and a triangle.
+inline Mission with_walls(Mission mission) {
+  mission.walls = {{{40, 30}, {60, 30}, {60, 45}, {40, 45}},
+                   {{45, 35}, {49, 35}, {49, 39}, {45, 39}},
+                   {{70, 10}, {80, 12}, {75.5, 20}}};
+  mission.wall_clearance_m = 1.75;
+  return mission;
+}
+
+/// One that steers by the modes of its free domain, by sensors that see points.
+inline Mission with_free_domain(Mission mission) {
+  mission.basis.free_domain = true;
+  mission.basis.table_hash = 0xfedcba9876543210;
+  mission.cosine_target = -0.5 * mission.target_coefficients;
+  mission.cosine_target[0] = 1;
+  for (AgentKind& kind : mission.kinds) kind.footprint_sigma_m = kind.band_from = kind.band_to = 0;
   return mission;
 }
 

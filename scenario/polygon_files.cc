@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Projects the positions, then checks each polygon as one that is written in the scenario.
-#include "scenario/geojson_target.h"
+// Places the polygons in the plane, then checks each as one that is written in the scenario.
+#include "scenario/polygon_files.h"
 
 #include <optional>
 #include <utility>
@@ -8,16 +8,12 @@
 
 #include "geo/geojson.h"
 #include "scenario/convert.h"
+#include "scenario/drawn_polygons.h"
 #include "scenario/polygon_flaw.h"
 #include "scenario/validate_target.h"
 
 namespace ergocast {
 namespace {
-
-struct ReadPolygon {
-  std::string member;
-  Polygon polygon;
-};
 
 /// Whether the box around the outline has a point in common with the domain.
 bool meets(const Polygon& polygon, const Box& domain) {
@@ -48,9 +44,9 @@ void write_polygon(const Polygon& polygon, proto::Polygon& written) {
   for (const Ring& hole : polygon.holes) write_ring(hole, *written.add_holes()->mutable_vertices());
 }
 
-class GeoJsonReader {
+class PolygonFileReader {
  public:
-  GeoJsonReader(proto::Scenario& scenario, Checks& checks, Findings& findings)
+  PolygonFileReader(proto::Scenario& scenario, Checks& checks, Findings& findings)
       : scenario_(scenario),
         target_(*scenario.mutable_target()),
         checks_(checks),
@@ -64,7 +60,9 @@ class GeoJsonReader {
 
   void run() {
     for (int i = 0, listed = target_.regions_size(); i < listed; ++i) region(i);
-    for (int i = 0, listed = target_.keep_outs_size(); i < listed; ++i) keep_out(i);
+    polygons(*target_.mutable_keep_outs(), "target.keep_outs");
+    if (scenario_.world().walls_size() > 0)
+      polygons(*scenario_.mutable_world()->mutable_walls(), "world.walls");
   }
 
  private:
@@ -83,47 +81,65 @@ class GeoJsonReader {
     }
   }
 
-  void keep_out(int index) {
-    double area = 0;
-    const auto found = read(target_.keep_outs(index), indexed("target.keep_outs", index), area);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (i > 0) name(found[i], "target.keep_outs", target_.keep_outs_size());
-      proto::Polygon& one = i == 0 ? *target_.mutable_keep_outs(index) : *target_.add_keep_outs();
-      if (i > 0) one = target_.keep_outs(index);
-      write_polygon(found[i].polygon, one);
+  /// Keep-outs or walls.
+  void polygons(google::protobuf::RepeatedPtrField<proto::Polygon>& list, const std::string& path) {
+    for (int index = 0, listed = list.size(); index < listed; ++index) {
+      double area = 0;
+      const auto found = read(list[index], indexed(path, index), area);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (i > 0) name(found[i], path, list.size());
+        proto::Polygon& one = i == 0 ? list[index] : *list.Add();
+        if (i > 0) one = list[index];
+        write_polygon(found[i].polygon, one);
+      }
     }
   }
 
   /// Problems of the block that is added next are those of the file's member.
-  void name(const ReadPolygon& polygon, const std::string& list, int index) {
+  void name(const PlacedPolygon& polygon, const std::string& list, int index) {
     findings_.blame(indexed(list, index), file_ + ": " + polygon.member);
   }
 
   /// The polygons of the file that meet the domain; none if there is no file or a problem.
   /// @param area  [m²] of all in the file
-  std::vector<ReadPolygon> read(const proto::Polygon& written, const std::string& path,
-                                double& area) {
+  std::vector<PlacedPolygon> read(const proto::Polygon& written, const std::string& path,
+                                  double& area) {
     if (!written.has_file()) return {};
     const std::string field = path + ".file";
     if (written.vertices_size() > 0 || written.holes_size() > 0) {
       checks_.problem(field, "stands beside vertices or holes", "keep one of them");
       return {};
     }
-    if (!scenario_.has_origin()) {
+    file_ = written.file();
+    const bool drawing = file_.ends_with(".svg");
+    if (!drawing && !scenario_.has_origin()) {
       checks_.problem(field, "needs to know where on the earth the scenario lies",
                       "add origin { latitude_deg: … longitude_deg: … }, the place of (0, 0)");
-      return {};
     }
-    file_ = written.file();
     const proto::Domain& domain = scenario_.domain();
-    if (!plane_ || !checks_.sound("domain") || !(domain.size_x_m() > 0) || !(domain.size_y_m() > 0))
+    const bool has_place = drawing || plane_.has_value();
+    if (!has_place || !checks_.sound("domain") || !(domain.size_x_m() > 0) ||
+        !(domain.size_y_m() > 0))
       return {};
-    auto read = read_geojson(file_);
-    if (const auto* problem = std::get_if<GeoJsonProblem>(&read)) {
-      refuse(field, problem->member, problem->what, problem->remedy);
-      return {};
+    auto found = drawing ? drawn(field) : on_earth(field);
+    if (!found) return {};
+    return inside(std::move(*found), field, area);
+  }
+
+  /// Those that meet the domain, if all are sound.
+  std::vector<PlacedPolygon> inside(std::vector<PlacedPolygon> found, const std::string& field,
+                                    double& area) {
+    const Box domain = domain_of(scenario_.domain());
+    for (const PlacedPolygon& one : found) {
+      area += area_m2(one.polygon);
+      if (!sound(one, field, domain)) return {};
     }
-    return in_metres(std::get<0>(read), field, area);
+    std::erase_if(found, [&](const PlacedPolygon& one) { return !meets(one.polygon, domain); });
+    if (found.empty()) {
+      refuse(field, "", "none of its polygons meets the domain",
+             "move the origin or the domain there");
+    }
+    return found;
   }
 
   void refuse(const std::string& field, const std::string& member, const std::string& what,
@@ -132,36 +148,68 @@ class GeoJsonReader {
                     std::move(remedy));
   }
 
-  std::vector<ReadPolygon> in_metres(const std::vector<GeoPolygon>& polygons,
-                                     const std::string& field, double& area) {
-    int vertices = 0;
-    for (const GeoPolygon& polygon : polygons)
-      for (const auto& ring : polygon.rings) vertices += static_cast<int>(ring.size());
-    if (vertices > kMaxVertices) {
-      refuse(field, "",
-             "has " + std::to_string(vertices) + " vertices, above the limit " +
-                 std::to_string(kMaxVertices),
-             "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson");
-      return {};
-    }
-    const Box domain = domain_of(scenario_.domain());
-    std::vector<ReadPolygon> inside;
-    for (const GeoPolygon& polygon : polygons) {
-      auto local = local_polygon(polygon, field, domain.size_m.maxCoeff());
-      if (!local) return {};
-      area += area_m2(local->polygon);
-      if (meets(local->polygon, domain)) inside.push_back(std::move(*local));
-    }
-    if (inside.empty()) {
-      refuse(field, "", "none of its polygons meets the domain",
-             "move the origin or the domain there");
-    }
-    return inside;
+  /// @param vertices  of all polygons of the file
+  bool few_enough(std::size_t vertices, const std::string& field, std::string remedy) {
+    if (vertices <= kMaxVertices) return true;
+    refuse(field, "",
+           "has " + std::to_string(vertices) + " vertices, above the limit " +
+               std::to_string(kMaxVertices),
+           std::move(remedy));
+    return false;
   }
 
-  std::optional<ReadPolygon> local_polygon(const GeoPolygon& polygon, const std::string& field,
-                                           double longer_side_m) {
-    ReadPolygon local{polygon.member, {}};
+  bool sound(const PlacedPolygon& one, const std::string& field, const Box& domain) {
+    const auto flaw = flaw_of(one.polygon, least_area_m2(domain.size_m.maxCoeff()));
+    if (!flaw) return true;
+    refuse(field, one.member, "ring " + std::to_string(flaw->hole + 1) + ": " + flaw->what,
+           flaw->remedy);
+    return false;
+  }
+
+  std::optional<std::vector<PlacedPolygon>> drawn(const std::string& field) {
+    const auto read = read_svg(file_);
+    if (const auto* problem = std::get_if<PolygonFileProblem>(&read)) {
+      refuse(field, problem->member, problem->what, problem->remedy);
+      return std::nullopt;
+    }
+    const Drawing& drawing = std::get<Drawing>(read);
+    std::size_t vertices = 0;
+    for (const DrawnShape& shape : drawing.shapes)
+      for (const auto& ring : shape.rings) vertices += ring.size();
+    if (!few_enough(vertices, field, "simplify it: in Inkscape, Path > Simplify"))
+      return std::nullopt;
+    auto placed = place_drawing(drawing, domain_of(scenario_.domain()));
+    if (const auto* problem = std::get_if<PolygonFileProblem>(&placed)) {
+      refuse(field, problem->member, problem->what, problem->remedy);
+      return std::nullopt;
+    }
+    return std::get<0>(std::move(placed));
+  }
+
+  std::optional<std::vector<PlacedPolygon>> on_earth(const std::string& field) {
+    const auto read = read_geojson(file_);
+    if (const auto* problem = std::get_if<PolygonFileProblem>(&read)) {
+      refuse(field, problem->member, problem->what, problem->remedy);
+      return std::nullopt;
+    }
+    const auto& polygons = std::get<std::vector<GeoPolygon>>(read);
+    std::size_t vertices = 0;
+    for (const GeoPolygon& polygon : polygons)
+      for (const auto& ring : polygon.rings) vertices += ring.size();
+    if (!few_enough(vertices, field,
+                    "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson"))
+      return std::nullopt;
+    std::vector<PlacedPolygon> placed;
+    for (const GeoPolygon& polygon : polygons) {
+      auto local = local_polygon(polygon, field);
+      if (!local) return std::nullopt;
+      placed.push_back(std::move(*local));
+    }
+    return placed;
+  }
+
+  std::optional<PlacedPolygon> local_polygon(const GeoPolygon& polygon, const std::string& field) {
+    PlacedPolygon local{polygon.member, {}};
     for (std::size_t i = 0; i < polygon.rings.size(); ++i) {
       Ring ring;
       for (const GeoPlace& place : polygon.rings[i]) {
@@ -179,11 +227,6 @@ class GeoJsonReader {
         local.polygon.holes.push_back(std::move(ring));
       }
     }
-    if (const auto flaw = flaw_of(local.polygon, least_area_m2(longer_side_m))) {
-      const std::string ring = "ring " + std::to_string(flaw->hole + 1) + ": ";
-      refuse(field, polygon.member, ring + flaw->what, flaw->remedy);
-      return std::nullopt;
-    }
     return local;
   }
 
@@ -197,7 +240,7 @@ class GeoJsonReader {
 
 }  // namespace
 
-std::vector<std::filesystem::path> read_geojson_files(proto::Scenario& scenario, Checks& checks,
+std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario, Checks& checks,
                                                       Findings& findings) {
   std::vector<std::filesystem::path> files;
   const auto add = [&files](const proto::Polygon& polygon) {
@@ -205,7 +248,8 @@ std::vector<std::filesystem::path> read_geojson_files(proto::Scenario& scenario,
   };
   for (const proto::Region& region : scenario.target().regions()) add(region.polygon());
   for (const proto::Polygon& keep_out : scenario.target().keep_outs()) add(keep_out);
-  GeoJsonReader(scenario, checks, findings).run();
+  for (const proto::Polygon& wall : scenario.world().walls()) add(wall);
+  PolygonFileReader(scenario, checks, findings).run();
   return files;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Replaces the names of GeoJSON files by the polygons in them, in metres.
+// Replaces the names of files of polygons by the polygons in them, in metres.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace ergocast {
 /// out. The polygons of a region share its weight by their areas. Reports what is wrong with a
 /// file, with its member; such a name stays. Returns the names of all files.
 /// @pre the defaults are filled in
-std::vector<std::filesystem::path> read_geojson_files(proto::Scenario& scenario, Checks& checks,
+std::vector<std::filesystem::path> read_polygon_files(proto::Scenario& scenario, Checks& checks,
                                                       Findings& findings);
 
 }  // namespace ergocast

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which places of a domain with walls a body can reach from which, keeping its clearance.
+//
+// The domain is a grid, usually with 256 cells along its longer side. Two neighbouring cells are
+// joined if the straight way between their centres keeps the clearance, which is tested exactly. So
+// every way that is found is one, and a passage narrower than a cell and twice the clearance may be
+// missed.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/rings.h"
+
+namespace ergocast {
+
+class FreeRegion {
+ public:
+  /// @pre `domain` is planar, and no edges of `walls` touch
+  /// @param kept_m  above 0
+  FreeRegion(const Rings& walls, const Box& domain, double kept_m, int cells = 256);
+
+  /// The parts that no way joins, the largest first. Those below 1/1000 of all that is free are
+  /// left out: they are niches that the grid does not resolve.
+  int parts() const { return static_cast<int>(sizes_.size()); }
+  /// Of the domain's area.
+  double free_share() const;
+  /// Of what is free.
+  double share_of(int part) const;
+  /// The part that the cell of `x_m` belongs to; nothing where its centre is not free.
+  std::optional<int> part_at(const Eigen::Vector2d& x_m) const;
+  /// The centre of the part's cell that is farthest from all walls.
+  Eigen::Vector2d middle_m(int part) const;
+
+  int cells() const { return columns_ * rows_; }
+  int cell_at(const Eigen::Vector2d& x_m) const;
+  Eigen::Vector2d center_m(int cell) const;
+  /// The length of the shortest way from the centre of a cell to that of each, along neighbours: at
+  /// most 8 % too long. Infinite where there is none.
+  std::vector<double> ways_m(int from) const;
+
+ private:
+  void join(const Rings& walls, double kept_m);
+  bool joined(const Rings& walls, int from, int to, double kept_m) const;
+  /// Calls `each(neighbour)` for those that a cell is joined with.
+  void for_joined(int cell, auto&& each) const;
+  void grow(int seed, int part);
+  void sort_parts();
+
+  Box domain_;
+  int columns_ = 1, rows_ = 1;
+  std::vector<double> clearance_m_;  // of each cell's centre
+  std::vector<std::uint8_t> joins_;  // of each cell, a bit for each neighbour
+  std::vector<int> part_;            // of each cell; −1: none
+  std::vector<int> sizes_;           // in cells
+};
+
+}  // namespace ergocast

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Closed rings in the plane: which edges touch, and what is inside.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace ergocast {
+
+/// The corners in order [m]; the last is joined to the first.
+using Ring = std::vector<Eigen::Vector2d>;
+using Rings = std::vector<Ring>;
+
+/// An edge of a ring.
+struct Segment {
+  Eigen::Vector2d from_m, to_m;
+
+  /// Its point that is nearest to `x_m`.
+  Eigen::Vector2d nearest_m(const Eigen::Vector2d& x_m) const {
+    const Eigen::Vector2d along_m = to_m - from_m;
+    const double square = along_m.squaredNorm(), share = along_m.dot(x_m - from_m);
+    if (!(share > 0)) return from_m;
+    return share >= square ? to_m : Eigen::Vector2d(from_m + share / square * along_m);
+  }
+};
+
+/// Calls `each(segment)` for every edge of every ring, in order.
+void for_segments(const Rings& rings, auto&& each) {
+  for (const Ring& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      each(Segment{ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]});
+  }
+}
+
+/// Whether two segments have a point in common. The sign of every small difference is right.
+bool touch(const Segment& one, const Segment& other);
+
+/// Least distance between two segments [m]; 0 if they touch.
+double distance_m(const Segment& one, const Segment& other);
+
+/// Two edges by their rings and first corners, the later one first.
+struct EdgePair {
+  std::size_t ring, corner, other_ring, other_corner;
+};
+/// The first pair of edges that cross or touch, but for neighbours at their common corner; those
+/// only where one goes back along the other.
+std::optional<EdgePair> touching_edges(const Rings& rings);
+
+/// Area of a ring that does not cross itself [m²], positive in either orientation.
+double area_m2(const Ring& ring);
+
+/// Whether `x_m` is inside. On the edge the result may be either.
+bool contains(const Ring& ring, const Eigen::Vector2d& x_m);
+
+/// How many other rings each ring is inside of.
+/// @pre no edges touch
+std::vector<int> depths(const Rings& rings);
+
+}  // namespace ergocast

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What runs on a robot: it turns a velocity that the robot is to have into wheel speeds or thrusts.
+// It knows only what its own sensors tell.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "examples/mujoco/room.h"
+
+namespace ergocast::mujoco {
+
+/// What a robot knows of itself.
+struct RobotState {
+  Eigen::Vector3d position_m{0, 0, 0}, velocity_mps{0, 0, 0};
+  Eigen::Matrix3d attitude = Eigen::Matrix3d::Identity();  ///< from its axes to those of the room
+  Eigen::Vector3d turning_radps{0, 0, 0};                  ///< in its own axes
+};
+
+/// A disc turns until it looks along the line of the wanted velocity, at most at kTurnLimit_radps,
+/// and rolls along it, forwards or backwards, the slower the less it looks there.
+class DiscPilot {
+ public:
+  static constexpr double kTurnLimit_radps = 4;
+
+  explicit DiscPilot(const RobotDesign& design) : design_(design) {}
+  /// Speeds of the left and the right wheel [rad/s].
+  std::array<double, 2> wheels_radps(const RobotState& state, const Eigen::Vector3d& wanted_mps);
+
+ private:
+  RobotDesign design_;
+  bool backwards_ = false;
+};
+
+/// A quadrotor leans into the direction in which it is to become faster, and keeps height and
+/// heading.
+class QuadrotorPilot {
+ public:
+  explicit QuadrotorPilot(const RobotDesign& design) : design_(design) {}
+  /// Thrust of each rotor [N], before the rotors' own limits.
+  std::array<double, 4> thrusts_n(const RobotState& state, const Eigen::Vector3d& wanted_mps) const;
+
+ private:
+  RobotDesign design_;
+};
+
+}  // namespace ergocast::mujoco

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the readers of polygons share: the text of a file, and what is wrong with one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+
+namespace ergocast {
+
+inline constexpr std::size_t kMaxPolygonFileBytes = std::size_t{16} << 20;
+
+struct PolygonFileProblem {
+  std::string member;  ///< the place in the file, or empty for the whole file
+  std::string what, remedy;
+};
+
+/// The bytes of a file of polygons, at most kMaxPolygonFileBytes.
+/// @param extension  ".svg"
+/// @param simplify   what to do about a file that is larger
+std::variant<std::string, PolygonFileProblem> text_of_polygon_file(
+    const std::filesystem::path& file, const std::string& extension, const std::string& simplify);
+
+}  // namespace ergocast

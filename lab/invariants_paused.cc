@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What holds while the mission is paused: nothing counts, and who has braked stands or loiters.
+#include <algorithm>
+#include <cmath>
+
+#include "core/kinds.h"
+#include "core/vehicle.h"
+#include "lab/invariants.h"
+
+namespace ergocast::lab {
+namespace {
+
+/// A unicycle that stands says where it looks by a velocity of 1e-9 of its limit.
+constexpr double kStanding = 1e-8;
+
+/// Whether bodies may be told to move apart although all stand.
+bool may_give_way(const Separation& separation) {
+  return separation.position_error_m > 0 || separation.disturbance_m > 0 ||
+         separation.response_s > 0;
+}
+
+/// So many ticks after a command of 0 a vehicle stands, or flies as slowly as it can.
+Tick braking_ticks(const Motion& motion, double dt_s) {
+  if (motion.vehicle.kind != VehicleKind::kAcceleration) return 1;
+  const double most_mps = motion.vehicle.max_acceleration_mps2 * dt_s;
+  return 2 + static_cast<Tick>(std::ceil(motion.speed_limit_mps / most_mps));
+}
+
+}  // namespace
+
+/// An agent that knows that the mission is paused wants no motion.
+void Invariants::check_paused(double t_s, const Command& command) {
+  const Motion motion = motion_of(mission_, command.header.sender);
+  const bool stands_at_once = motion.is_point() && !may_give_way(mission_.separation);
+  if (!stands_at_once || command.velocity_mps.isZero(0)) return;
+  violate(t_s, Invariant::kNobodyMovesWhilePaused, "agent " + std::to_string(command.header.sender),
+          text("|v| = ", command.velocity_mps.norm(), " m/s at tick ", command.header.tick));
+}
+
+/// In lockstep everybody knows it. In real time commands are held, and some may not know it yet.
+void Invariants::check_paused(double t_s, const WorldState& world) {
+  const Tick tick = world.header.tick;
+  if (mission_.timing.pace == Pace::kRealtime || may_give_way(mission_.separation)) return;
+  for (const Hold& hold : truth_.holds()) {
+    for (int i = 0; i < world.vehicle_count; ++i) {
+      const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
+      const Motion motion = motion_of(mission_, vehicle.id);
+      // The velocity is that of the step that led here.
+      const Tick stands_from = hold.from + braking_ticks(motion, mission_.timing.dt_s);
+      if (tick < stands_from || tick > hold.end()) continue;
+      const double speed_mps = vehicle.velocity_mps.norm();
+      const double least_mps = motion.vehicle.min_speed_mps;
+      const double most_mps = std::max(least_mps * (1 + 1e-9), kStanding * motion.speed_limit_mps);
+      if (speed_mps <= most_mps) continue;
+      violate(t_s, Invariant::kNobodyMovesWhilePaused, "vehicle " + std::to_string(vehicle.id),
+              text("|v| = ", speed_mps, " m/s at tick ", tick, ", paused from tick ", hold.from));
+    }
+  }
+}
+
+void Invariants::check_paused(double t_s, const TableView& holder) {
+  const std::int64_t steps = steps_of(*holder.table, holder.self);
+  const auto [before, is_new] = own_steps_.try_emplace(holder.self, steps);
+  // In lockstep all that was said of the mission decides, in real time what the agent knows of it.
+  const bool exact = mission_.timing.pace == Pace::kLockstep;
+  const bool held = exact ? is_held(truth_.holds(), holder.answered) : holder.held;
+  if (held && !is_new && steps > before->second) {
+    violate(t_s, Invariant::kNothingCountsWhilePaused, name_of(holder.self),
+            text("has ", steps - before->second, " more steps at tick ", holder.answered));
+  }
+  before->second = steps;
+}
+
+}  // namespace ergocast::lab

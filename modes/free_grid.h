@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The cells of a domain with walls, and which of them see each other.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace ergocast {
+
+/// Whether the straight way from one place to another is free; of a place to itself, whether it is.
+using Sees = std::function<bool(const Eigen::Vector2d&, const Eigen::Vector2d&)>;
+
+/// A grid of nearly square cells over a domain; its numbers are those of FreeModes.
+struct FreeGrid {
+  Eigen::Vector2d origin_m, size_m;
+  int columns, rows;
+  std::vector<std::int32_t> owner, place, around;
+  /// Neighbours that see each other, the lower number first: along x and along y.
+  std::vector<std::pair<int, int>> doors_x, doors_y;
+
+  int cell_count() const { return static_cast<int>(place.size()); }
+};
+
+/// About 80 × 80 cells, whatever the domain's shape is. A cell is free if its middle is, and its
+/// middle sees those of its neighbours or does not. Free cells that are cut off from the most of
+/// them count as walls.
+/// @return  or a sentence: nothing is free, or more than a hundredth of it is cut off
+std::variant<FreeGrid, std::string> free_grid(const Box& domain, const Sees& sees);
+
+}  // namespace ergocast

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps tables by what they were computed from, and computes those that nobody has handed over.
+#include "modes/provide.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <mutex>
+#include <vector>
+
+#include "core/rings.h"
+#include "core/walls.h"
+#include "modes/eigen_modes.h"
+#include "modes/free_grid.h"
+
+namespace ergocast {
+namespace {
+
+/// The tables of this process. Missions may be prepared in several threads.
+struct Shelf {
+  std::mutex access;
+  std::vector<ModesTable> tables;
+};
+
+Shelf& shelf() {
+  static Shelf the_one;
+  return the_one;
+}
+
+template <class Fits>
+ModesTable known_table(const Fits& fits) {
+  Shelf& all = shelf();
+  const std::lock_guard lock(all.access);
+  const auto at = std::ranges::find_if(all.tables, fits);
+  return at == all.tables.end() ? nullptr : *at;
+}
+
+/// Of what a table is computed from.
+std::uint64_t key_of(const Mission& mission) {
+  std::vector<double> numbers = {mission.domain.origin_m.x(), mission.domain.origin_m.y(),
+                                 mission.domain.size_m.x(), mission.domain.size_m.y(),
+                                 static_cast<double>(mission.basis.mode_count())};
+  for (const Ring& wall : mission.walls) {
+    numbers.push_back(static_cast<double>(wall.size()));
+    for (const Eigen::Vector2d& corner_m : wall)
+      numbers.insert(numbers.end(), {corner_m.x(), corner_m.y()});
+  }
+  return XXH3_64bits(numbers.data(), numbers.size() * sizeof(double));
+}
+
+/// Whether two segments are so near each other that they may touch.
+bool boxes_touch(const Segment& one, const Segment& other) {
+  const Eigen::Array2d low = one.from_m.cwiseMin(one.to_m), high = one.from_m.cwiseMax(one.to_m);
+  return (other.from_m.cwiseMax(other.to_m).array() >= low).all() &&
+         (other.from_m.cwiseMin(other.to_m).array() <= high).all();
+}
+
+bool sees(const Rings& walls, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+  if (from_m == to_m) return !solid_at(walls, from_m);
+  const Segment way{from_m, to_m};
+  bool free = true;
+  for_segments(walls, [&](const Segment& edge) {
+    free = free && !(boxes_touch(way, edge) && touch(way, edge));
+  });
+  return free;
+}
+
+std::variant<ModesTable, std::string> computed(const Mission& mission) {
+  auto grid = free_grid(mission.domain, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return sees(mission.walls, a, b);
+  });
+  if (auto* problem = std::get_if<std::string>(&grid)) return std::move(*problem);
+  const FreeGrid& cells = std::get<FreeGrid>(grid);
+  const int modes = mission.basis.mode_count();
+  if (modes > cells.cell_count() / 4) {
+    return "it has only " + std::to_string(cells.cell_count()) + " cells for " +
+           std::to_string(modes) + " modes";
+  }
+  const auto found = eigen_modes(cells, modes);
+  if (!found) return "its modes do not converge";
+  const auto bytes =
+      std::make_shared<const std::vector<std::byte>>(encode_table(cells, *found, key_of(mission)));
+  return decode_table(*bytes, bytes);
+}
+
+}  // namespace
+
+void keep_table(ModesTable table) {
+  Shelf& all = shelf();
+  const std::lock_guard lock(all.access);
+  const auto same = [&](const ModesTable& other) { return other->hash == table->hash; };
+  if (std::ranges::none_of(all.tables, same)) all.tables.push_back(std::move(table));
+}
+
+std::variant<ModesTable, std::string> table_of(const Mission& mission) {
+  const std::uint64_t key = key_of(mission);
+  const auto fits = [=](const ModesTable& table) { return table->key == key; };
+  if (ModesTable known = known_table(fits)) return known;
+  auto table = computed(mission);
+  if (const auto* made = std::get_if<ModesTable>(&table)) keep_table(*made);
+  return table;
+}
+
+std::optional<std::string> provide_table(Mission& mission) {
+  Basis& basis = mission.basis;
+  if (!basis.free_domain || basis.table) return std::nullopt;
+  const std::uint64_t hash = basis.table_hash;
+  const auto fits = [=](const ModesTable& table) { return table->hash == hash; };
+  ModesTable table = known_table(fits);
+  if (table == nullptr) {
+    auto made = table_of(mission);
+    if (auto* problem = std::get_if<std::string>(&made))
+      return "the modes of the free domain cannot be computed: " + *problem;
+    table = std::get<ModesTable>(std::move(made));
+  }
+  if (table->hash != hash || table->mode_count != basis.mode_count() ||
+      table->size_m != mission.domain.size_m.head<2>() ||
+      table->origin_m != mission.domain.origin_m.head<2>()) {
+    return "the mission steers by the modes of table " + to_hex(hash) +
+           ", and this computer's program computes others: start it with --modes and that table's "
+           "file, modes-" +
+           to_hex(hash) + ".bin";
+  }
+  basis.table = std::move(table);
+  return std::nullopt;
+}
+
+}  // namespace ergocast

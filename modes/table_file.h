@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tables of modes in files: each is named by its hash, and processes share one copy in memory.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "modes/table.h"
+
+namespace ergocast {
+
+/// "modes-<16 hex digits>.bin"
+std::string table_file_name(std::uint64_t hash);
+
+/// The table in `file`, checked; or a sentence that names the file and why it is none.
+std::variant<ModesTable, std::string> load_table(const std::filesystem::path& file);
+
+/// Writes the table into `folder`, unless it is there, and appears at once or not at all.
+/// @return  why it could not
+std::optional<std::string> save_table(const FreeModes& table, const std::filesystem::path& folder);
+
+}  // namespace ergocast

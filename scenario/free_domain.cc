@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Holds a scenario against what the modes of a free domain are made for, and integrates its target.
+#include "scenario/free_domain.h"
+
+#include "modes/provide.h"
+
+namespace ergocast {
+namespace {
+
+/// The share of the mass that each free cell has: e_k at a place is a mean of at most four cells.
+Eigen::VectorXd masses_of_cells(const DensityGrid& density, const FreeModes& modes) {
+  Eigen::VectorXd masses = Eigen::VectorXd::Zero(modes.cell_count);
+  const Eigen::Vector2d count(static_cast<double>(density.rows()),
+                              static_cast<double>(density.cols()));
+  const Eigen::Vector2d step_m = modes.size_m.cwiseQuotient(count);
+  for (Eigen::Index j = 0; j < density.cols(); ++j) {
+    for (Eigen::Index i = 0; i < density.rows(); ++i) {
+      const Eigen::Vector2d middle(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
+      const FreePlace at(modes.origin_m + step_m.cwiseProduct(middle), modes);
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const auto cell = (at.corners[corner] - modes.values.data()) / modes.mode_count;
+        masses[cell] += at.shares[corner] * density(i, j);
+      }
+    }
+  }
+  return masses / masses.sum();
+}
+
+Coefficients target_in(const FreeModes& modes, const DensityGrid& density) {
+  const Eigen::VectorXd masses = masses_of_cells(density, modes);
+  Coefficients target = Coefficients::Zero(modes.mode_count);
+  for (int cell = 0; cell < modes.cell_count; ++cell) {
+    const float* const values = modes.values_of(cell);
+    for (int k = 0; k < modes.mode_count; ++k)
+      target[k] += masses[cell] * static_cast<double>(values[k]);
+  }
+  target[0] = 1;  // but for rounding
+  return target;
+}
+
+}  // namespace
+
+void validate_free_domain(const proto::Scenario& scenario, Checks& checks) {
+  const proto::Basis& basis = scenario.basis();
+  if (!basis.free_domain() || !checks.sound("basis") || !checks.sound("domain")) return;
+  const std::string remedy = "or write free_domain: false";
+  if (scenario.domain().has_size_z_m()) {
+    checks.problem("basis.free_domain", "needs a plane, and the domain is a box",
+                   "leave domain.size_z_m out, " + remedy);
+    return;
+  }
+  if (const int modes = basis.modes_x() * basis.modes_y(); modes > kMostFreeModes) {
+    checks.problem("basis.free_domain",
+                   std::to_string(modes) + " modes are above the limit of a free domain, " +
+                       std::to_string(kMostFreeModes),
+                   "write fewer, such as 16 along each axis, " + remedy);
+  }
+  for (int i = 0; i < scenario.agents().kind_size(); ++i) {
+    const proto::Kind& kind = scenario.agents().kind(i);
+    const std::string path = indexed("agents.kind", i);
+    if (kind.footprint_sigma_m() > 0) {
+      checks.problem(path + ".footprint_sigma_m",
+                     "is a blur of cosines, and basis.free_domain uses none",
+                     "write footprint_sigma_m: 0, " + remedy);
+    }
+    if (kind.has_band()) {
+      checks.problem(path + ".band", "is of cosines, and basis.free_domain uses none",
+                     "remove the band, " + remedy);
+    }
+  }
+}
+
+std::optional<std::string> use_free_domain(const DensityGrid& density, Mission& mission) {
+  Basis& basis = mission.basis;
+  if (!basis.free_domain) return std::nullopt;
+  auto table = table_of(mission);
+  if (auto* problem = std::get_if<std::string>(&table)) return std::move(*problem);
+  basis.table = std::get<ModesTable>(std::move(table));
+  basis.table_hash = basis.table->hash;
+  mission.cosine_target = std::move(mission.target_coefficients);
+  mission.target_coefficients = target_in(*basis.table, density);
+  return std::nullopt;
+}
+
+}  // namespace ergocast

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Missions that steer by the modes of their free domain: what goes with them, and their target.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/mission.h"
+#include "scenario/checks.h"
+#include "scenario/scenario.pb.h"
+#include "target/density_picture.h"
+
+namespace ergocast {
+
+/// Reports what basis.free_domain does not go with.
+void validate_free_domain(const proto::Scenario& scenario, Checks& checks);
+
+/// Gives a mission with basis.free_domain, whose μ is that of the cosines, its table and its own μ:
+/// μ_k = ∫ e_k ρ, each cell of `density` with the value of e_k in its middle.
+/// @return  why it cannot, as a sentence; nothing for a mission without free domain
+std::optional<std::string> use_free_domain(const DensityGrid& density, Mission& mission);
+
+}  // namespace ergocast

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An SVG drawing: refused with a problem, or rings of finite corners.
+#include "geo/svg.h"
+
+#include "tests/fuzz/target.h"
+
+namespace ergocast::fuzz {
+
+FUZZ_TARGET(svg) {
+  const auto parsed = parse_svg(text_of(input));
+  if (const auto* problem = std::get_if<PolygonFileProblem>(&parsed)) {
+    ERGOCAST_REQUIRE(!problem->what.empty() && !problem->remedy.empty());
+    return;
+  }
+  const auto& drawing = std::get<Drawing>(parsed);
+  ERGOCAST_REQUIRE(!drawing.shapes.empty() && drawing.size.minCoeff() > 0);
+  for (const DrawnShape& shape : drawing.shapes) {
+    ERGOCAST_REQUIRE(!shape.rings.empty());
+    for (const auto& ring : shape.rings) {
+      ERGOCAST_REQUIRE(ring.size() >= 3 && ring.front() != ring.back());
+      for (const Eigen::Vector2d& corner : ring) ERGOCAST_REQUIRE(corner.allFinite());
+    }
+  }
+}
+
+}  // namespace ergocast::fuzz

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A mission gets the table of its hash or none: it is known, handed over, or computed.
+#include "modes/provide.h"
+
+#include <gtest/gtest.h>
+
+#include "core/coverage_table.h"
+#include "tests/modes/rooms.h"
+
+namespace ergocast {
+namespace {
+
+Mission mission_of(double side_m) {
+  Mission mission;
+  mission.domain.size_m = {side_m, side_m, 0};
+  mission.basis.modes_x = 3;
+  mission.basis.modes_y = 4;
+  mission.basis.free_domain = true;
+  return mission;
+}
+
+TEST(Provide, ComputesATableOnce) {
+  const Mission mission = mission_of(50);
+  const auto one = table_of(mission), other = table_of(mission);
+  ASSERT_TRUE(std::holds_alternative<ModesTable>(one));
+  EXPECT_EQ(std::get<ModesTable>(one).get(), std::get<ModesTable>(other).get());
+  EXPECT_EQ(std::get<ModesTable>(one)->mode_count, 12);
+}
+
+TEST(Provide, HasAnotherTableForOtherMissions) {
+  const ModesTable small = std::get<ModesTable>(table_of(mission_of(60)));
+  const ModesTable large = std::get<ModesTable>(table_of(mission_of(70)));
+  Mission more = mission_of(60);
+  more.basis.modes_x = 4;
+  const ModesTable richer = std::get<ModesTable>(table_of(more));
+  EXPECT_NE(small->hash, large->hash);
+  EXPECT_NE(small->hash, richer->hash);
+}
+
+// A wall that is thinner than a cell, with a gap below.
+TEST(Provide, KnowsTheMissionsWalls) {
+  Mission open = mission_of(65), walled = open;
+  walled.walls = {{{32, 10}, {32.4, 10}, {32.4, 65}, {32, 65}}};
+  const ModesTable without = std::get<ModesTable>(table_of(open));
+  const ModesTable with = std::get<ModesTable>(table_of(walled));
+  EXPECT_NE(without->key, with->key);
+  EXPECT_LT(with->eigenvalues_per_m2[1], 0.6 * without->eigenvalues_per_m2[1]);
+  walled.walls[0][1].x() = walled.walls[0][2].x() = 32.5;
+  EXPECT_NE(std::get<ModesTable>(table_of(walled))->key, with->key);
+}
+
+// Each wall takes away what it covers.
+TEST(Provide, HasNoCellsInWalls) {
+  Mission mission = mission_of(66);
+  mission.walls = {{{20, 20}, {40, 20}, {40, 40}, {20, 40}},
+                   {{25, 25}, {28, 25}, {28, 28}, {25, 28}}};
+  const auto cut = table_of(mission);
+  ASSERT_TRUE(std::holds_alternative<ModesTable>(cut));
+  const FreeModes& modes = *std::get<ModesTable>(cut);
+  EXPECT_NEAR(modes.free_area_m2(), 66 * 66 - 20 * 20, 66 * 4) << "nor in a room without a door";
+}
+
+TEST(Provide, GivesTheTableOfTheHash) {
+  Mission mission = mission_of(80);
+  mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;
+  EXPECT_EQ(provide_table(mission), std::nullopt);
+  ASSERT_NE(mission.basis.table, nullptr);
+  EXPECT_EQ(mission.basis.table->hash, mission.basis.table_hash);
+}
+
+// As of a program that rounds otherwise.
+TEST(Provide, UsesWhatIsHandedOverInPlaceOfWhatItWouldCompute) {
+  Mission mission = mission_of(90);
+  const FreeGrid grid = test::grid_of(mission.domain, test::sees_all);
+  auto modes = *eigen_modes(grid, 12);
+  modes.values.col(5) *= 1 - 1e-6;
+  const auto bytes =
+      std::make_shared<const std::vector<std::byte>>(encode_table(grid, modes, 12345));
+  const ModesTable theirs = std::get<ModesTable>(decode_table(*bytes, bytes));
+  mission.basis.table_hash = theirs->hash;
+  const auto problem = provide_table(mission);
+  ASSERT_TRUE(problem);
+  EXPECT_NE(problem->find("--modes"), std::string::npos) << *problem;
+  EXPECT_EQ(mission.basis.table, nullptr);
+  keep_table(theirs);
+  EXPECT_EQ(provide_table(mission), std::nullopt);
+  EXPECT_EQ(mission.basis.table.get(), theirs.get());
+}
+
+TEST(Provide, RefusesATableOfAnotherDomainOrOfOtherModes) {
+  Mission mission = mission_of(100);
+  mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;
+  Mission elsewhere = mission_of(101);
+  elsewhere.basis.table_hash = mission.basis.table_hash;
+  EXPECT_TRUE(provide_table(elsewhere));
+  Mission finer = mission;
+  finer.basis.modes_x = 4;
+  EXPECT_TRUE(provide_table(finer));
+}
+
+TEST(Provide, LeavesCosinesAlone) {
+  Mission mission;
+  EXPECT_EQ(provide_table(mission), std::nullopt);
+  EXPECT_EQ(mission.basis.table, nullptr);
+}
+
+// What teammates say of these modes has the bounds that tables hold all sums against.
+TEST(Provide, SumsOfItsModesAreAccepted) {
+  Mission mission = mission_of(110);
+  mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;
+  ASSERT_EQ(provide_table(mission), std::nullopt);
+  CoverageTable ours(mission.basis, 0.1), theirs(mission.basis, 0.1);
+  for (int i = 0; i < 1000; ++i) {
+    theirs.add_sample({3, 9}, BasisAt({0.11 * i, 0.01, 0}, mission.domain, mission.basis));
+    Contribution block = theirs.block({3, 9}, 0);
+    block.next_broadcast_tick = i + 1;
+    ASSERT_EQ(ours.merge(block, 1000), Merge::kNewer) << i;
+  }
+}
+
+}  // namespace
+}  // namespace ergocast

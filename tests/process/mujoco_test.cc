@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Robots in a physics engine in place of ergocast-sim, in lockstep; everything else is unchanged.
+#include "tests/process/mission.h"
+#include "tests/process/record.h"
+
+namespace ergocast::test {
+namespace {
+
+class RobotsInPhysics : public ByHand {
+ protected:
+  /// A short mission of four discs.
+  std::filesystem::path four_discs() {
+    std::string text =
+        text_of(std::filesystem::path(ERGOCAST_SOURCE_DIR) / "examples/mujoco/discs.textproto");
+    for (const auto& [from, to] : {std::pair{"random_count: 16", "random_count: 4"},
+                                   std::pair{"duration_s: 60", "duration_s: 10"}})
+      text.replace(text.find(from), std::string(from).size(), to);
+    const auto file = folder_ / "discs.textproto";
+    std::ofstream(file) << text;
+    return file;
+  }
+};
+
+TEST_F(RobotsInPhysics, FlyAWholeMissionInLockstepAndTouchNobody) {
+  std::filesystem::create_directory(out());
+  Program& logger = hand("ergocast-logger", {"--out", out()});
+  Program& world = hand("ergocast-example-mujoco");
+  for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
+  Program& coordinator = hand("ergocast-coordinator", {four_discs()});
+  EXPECT_EQ(wait_for(coordinator.child), 0) << coordinator.said();
+  EXPECT_EQ(wait_for(world.child), 0) << world.said();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  EXPECT_TRUE(world.says("finished at tick 100: mission complete")) << world.said();
+  EXPECT_TRUE(world.says("0 contacts of two robots, 0 of a robot and a wall")) << world.said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["ticks"], 100);
+  EXPECT_GE(summary()["separation"]["nearest_m"], 0.45);
+}
+
+TEST_F(RobotsInPhysics, RefuseAMissionOfOtherVehicles) {
+  Program& world = hand("ergocast-example-mujoco", {"--robots", "quadrotors"});
+  for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
+  std::string other = text_of(four_discs());
+  other.erase(other.find("  response_s: 0.15"), 18);
+  other += "vehicle { kind: UNICYCLE  max_turn_radps: 2 }\n";
+  std::ofstream(folder_ / "other.textproto") << other;
+  hand("ergocast-coordinator", {folder_ / "other.textproto"});
+  EXPECT_EQ(wait_for(world.child), 4) << world.said();
+  EXPECT_TRUE(world.says("vehicle { kind: POINT }")) << world.said();
+}
+
+}  // namespace
+}  // namespace ergocast::test

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `ergocast pause` and `ergocast resume`: real processes stand still between two ticks, whoever
+// restarts meanwhile, and go on.
+#include <algorithm>
+
+#include "tests/process/mission.h"
+#include "tests/process/record.h"
+
+namespace ergocast::test {
+namespace {
+
+class PauseCommand : public FlyingMission {
+ protected:
+  int say(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
+  bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
+  /// From the state of the team that `ergocast status` shows.
+  bool shown(const std::string& part) {
+    ergocast({"status", "--lcm-url", kUrl});
+    return answered(part);
+  }
+  /// Whether all vehicles stand in each recorded tick between, and all rows count outside.
+  void expect_standing(Tick from, Tick until) {
+    int rows = 0;
+    for (const auto& [tick, row] : recorded_rows(out())) {
+      if (tick < from || tick >= until) continue;
+      for (const auto& [id, one] : row) {
+        EXPECT_TRUE(one.stands()) << "agent " << id << " at tick " << tick;
+        ++rows;
+      }
+    }
+    EXPECT_GE(rows, 4);
+  }
+};
+
+TEST_F(PauseCommand, HoldsAMissionInLockstepWhichItsSimulationRepeats) {
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  EXPECT_EQ(say("resume"), 0) << output();
+  EXPECT_TRUE(answered("is not paused")) << output();
+  ASSERT_EQ(say("pause"), 0) << output();
+  EXPECT_TRUE(answered("paused from tick ")) << output();
+  EXPECT_TRUE(shown("paused, tick ")) << output();
+  EXPECT_EQ(say("pause"), 0) << output();
+  EXPECT_TRUE(answered("paused already")) << output();
+  signal_to({"ergocast-coordinator"}, SIGKILL);
+  ASSERT_TRUE(eventually([&] { return say("resume") == 0; })) << output();
+  EXPECT_TRUE(answered("goes on from tick ")) << output();
+  ASSERT_TRUE(moves_on());
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  const auto holds = summary()["holds"];
+  ASSERT_EQ(holds.size(), 1U);
+  const Tick from = holds[0][0], until = holds[0][1];
+  EXPECT_LT(from, until);
+  EXPECT_EQ(summary()["held_ticks"], until - from);
+  expect_standing(from, until);
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+TEST_F(PauseCommand, HoldsAMissionInRealTimeInWhichAnAgentRestarts) {
+  Child mission =
+      launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--lcm-url", kUrl});
+  ASSERT_EQ(say("pause"), 0) << output();
+  signal_to(agent(2), SIGKILL);
+  ASSERT_TRUE(eventually([&] { return shown("4 of 4 agents alive") && shown("paused, tick "); }))
+      << output();
+  ASSERT_EQ(say("resume"), 0) << output();
+  ASSERT_TRUE(moves_on());
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  const auto holds = summary()["holds"];
+  ASSERT_EQ(holds.size(), 1U);
+  // A command may be late by as long as old ones are held.
+  expect_standing(holds[0][0].get<Tick>() + 10, holds[0][1]);
+}
+
+TEST_F(PauseCommand, SaysWhyThereIsNothingToPause) {
+  EXPECT_EQ(say("pause"), 4);
+  EXPECT_TRUE(answered("nobody of any run")) << output();
+}
+
+}  // namespace
+}  // namespace ergocast::test
