@@ -2,6 +2,7 @@
 // A record as all exports need it: rows, densities, log lines, and times since 1970.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -37,7 +38,7 @@ struct ExportRecord {
       0;  ///< of tick 0: when the recording began, or 1970 if that is not known
 
   std::uint64_t time_ns(double t_s) const {
-    return start_ns + static_cast<std::uint64_t>(t_s * 1e9 + 0.5);
+    return start_ns + static_cast<std::uint64_t>(std::llround(t_s * 1e9));
   }
 };
 

@@ -44,7 +44,8 @@ class GridBuilder {
   }
   int all() const { return grid_.columns * grid_.rows; }
   Eigen::Vector2d middle_m(int at) const {
-    return at_m(at / grid_.rows + 0.5, at % grid_.rows + 0.5);
+    const int column = at / grid_.rows, row = at % grid_.rows;
+    return at_m(column + 0.5, row + 0.5);
   }
   Eigen::Vector2d at_m(double column, double row) const {
     return grid_.origin_m +

@@ -50,8 +50,8 @@ std::vector<double> mean_squares_of(const std::vector<float>& values, std::size_
     const auto value = static_cast<double>(values[i]);
     squares[i % modes] += value * value;
   }
-  const auto cells = static_cast<double>(values.size() / modes);
-  for (double& square : squares) square /= cells;
+  const std::size_t cells = values.size() / modes;
+  for (double& square : squares) square /= static_cast<double>(cells);
   return squares;
 }
 
