@@ -37,6 +37,7 @@ struct MissionOptions {
   bool event_log = false;                     ///< `simulate` only; `run` always writes one
   bool event_log_zstd = false;                ///< `run` only
   std::filesystem::path world;                ///< `run` only; empty: ergocast-sim
+  std::vector<std::string> world_arguments;   ///< of that program
   bool watch = false;                         ///< `run` only: serves a page
   PageServer::Options page;
 };

@@ -61,7 +61,7 @@ std::optional<std::string> Launcher::start() {
         std::to_string(setup_.event_log_mib)});
   if (setup_.event_log_zstd) processes_.back().program.command.push_back("--event-log-zstd");
   const bool simulated = setup_.world.filename() == "ergocast-sim";
-  plan(Role::kWorld, simulated ? "sim" : "world", setup_.world, {});
+  plan(Role::kWorld, simulated ? "sim" : "world", setup_.world, setup_.world_arguments);
   plan(Role::kCoordinator, "coordinator", "ergocast-coordinator",
        {(setup_.run_dir / "scenario.textproto").string()});
   for (int id = 0; id < setup_.agents; ++id) {

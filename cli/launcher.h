@@ -29,6 +29,7 @@ class Launcher {
   struct Setup {
     std::filesystem::path programs;  ///< folder of the ergocast-* executables
     std::filesystem::path world;     ///< the simulated world, or who takes its place
+    std::vector<std::string> world_arguments;
     std::filesystem::path run_dir;
     LcmUrl url;
     RunId run = 0;

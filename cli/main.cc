@@ -194,6 +194,13 @@ int parse_and_do(int argc, char** argv) {
                    "Start this program in the place of ergocast-sim: a driver of robots or another "
                    "simulation; a name without '/' is one beside ergocast")
       ->type_name("PROGRAM");
+  run_command
+      ->add_option("--world-arg", mission.world_arguments,
+                   "Argument of that program, as in --world-arg=--robots --world-arg=quadrotors; "
+                   "again for another one")
+      ->type_name("ARG")
+      ->allow_extra_args(false)
+      ->needs("--world");
   run_command->add_flag("--watch", mission.watch,
                         "Show it in a browser, and the record afterwards, until Ctrl-C");
   add_page_options(*run_command, mission.page);

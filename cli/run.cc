@@ -217,6 +217,7 @@ int run(const MissionOptions& options) {
   if (const auto* problem = std::get_if<std::string>(&world))
     return report_error(kExitBadInput, *problem);
   setup.world = std::get<fs::path>(world);
+  setup.world_arguments = options.world_arguments;
   setup.agents = static_cast<int>(scenario->mission().starts_m.size());
   for (const AgentKind& kind : scenario->mission().kinds)
     setup.kinds.insert(setup.kinds.end(), static_cast<std::size_t>(kind.count), kind.name);

@@ -71,6 +71,10 @@ std::string what_cannot_be_repeated(const Json& summary, const Mission& mission)
   if (mission.timing.pace == Pace::kRealtime) {
     return "it ran in real time, where what an agent knew depended on the network";
   }
+  for (const auto& process : summary.value("processes", Json::array())) {
+    if (process.at("name") == "world")
+      return "another program than ergocast-sim moved its vehicles (run --world)";
+  }
   const auto roster = summary.value("agents", Json());
   const std::size_t agents = mission.starts_m.size();
   if (!roster.is_array()) return "its summary names no agents";

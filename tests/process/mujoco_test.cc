@@ -49,5 +49,37 @@ TEST_F(RobotsInPhysics, RefuseAMissionOfOtherVehicles) {
   EXPECT_TRUE(world.says("vehicle { kind: POINT }")) << world.said();
 }
 
+/// What README.md shows: robots with real contacts in the office, held on the way.
+class RobotsInTheOffice : public FlyingMission {
+ protected:
+  std::string said_by_the_world() { return text_of(out() / "log/world.log"); }
+};
+
+TEST_F(RobotsInTheOffice, ArePausedAndGoOnAndTouchNobody) {
+  const auto office = std::filesystem::path(ERGOCAST_SOURCE_DIR) / "scenarios/office.textproto";
+  Child mission = launch_endless(office, {"--lcm-url", kUrl, "--world", "ergocast-example-mujoco",
+                                          "--world-arg=--robots", "--world-arg=discs"});
+  ASSERT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_EQ(ergocast({"resume", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(moves_on());
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  EXPECT_NE(said_by_the_world().find("0 contacts of two robots, 0 of a robot and a wall"),
+            std::string::npos)
+      << said_by_the_world();
+  EXPECT_EQ(summary()["holds"].size(), 1U);
+  EXPECT_GE(summary()["separation"]["nearest_m"], 0.45);
+  EXPECT_EQ(ergocast({"verify", out()}), 2);
+  EXPECT_NE(output().find("another program than ergocast-sim"), std::string::npos) << output();
+}
+
+TEST_F(RobotsInTheOffice, HaveTheLagThatTheWorldIsToldOf) {
+  EXPECT_EQ(ergocast({"run", "office", "--world", "ergocast-example-mujoco", "--world-arg=--lag",
+                      "--world-arg=9", "--out", out()}),
+            4);
+  EXPECT_NE(said_by_the_world().find("--lag"), std::string::npos) << said_by_the_world();
+  EXPECT_EQ(ergocast({"run", "office", "--world-arg=--lag"}), 2) << "without --world";
+}
+
 }  // namespace
 }  // namespace ergocast::test
