@@ -101,9 +101,11 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
 }
 
 /// Whether the ticks have stopped coming: then what we have is said now and then without waiting
-/// for more. In lockstep no broadcast may come before the one that was announced.
+/// for more. In lockstep no broadcast may come before the one that was announced. While the mission
+/// is paused there is nothing new to say, and who joined meanwhile has nothing to say at all.
 bool Agent::stalled(const InMission& flight, Instant now) const {
-  return mission().timing.pace == Pace::kRealtime && flight.step.tick >= flight.active_from &&
+  return mission().timing.pace == Pace::kRealtime && !flight.step.held &&
+         flight.step.tick >= flight.active_from &&
          now - std::max(flight.step.begun, flight.stalled_said) >= kStallPeriod;
 }
 

@@ -88,6 +88,11 @@ Faults drawn(std::uint64_t seed) {
     faults.replay = 0.3 * std::pow(random.uniform(), 2);
     faults.replay_max_s = random.log_uniform(0.1, 60);
   }
+  // Last, so that a seed keeps its other faults.
+  if (random.coin()) {
+    faults.pauses_per_s = random.log_uniform(0.03, 0.15);
+    faults.pause_max_s = random.log_uniform(0.1, 10);
+  }
   return faults;
 }
 

@@ -44,6 +44,7 @@ enum class Invariant : std::uint8_t {
   kHeldNeverShrinks,
   kNoStepCountsTwice,
   kNothingCountsWhilePaused,
+  kWhatIsNotPausedCounts,
   kNobodyMovesWhilePaused,
   kAverageOfWhatIsHeld,
   kForecastOfWhatIsKnown,
@@ -82,6 +83,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kHeldNeverShrinks, "what is held never shrinks"},
         {Invariant::kNoStepCountsTwice, "no step counts twice"},
         {Invariant::kNothingCountsWhilePaused, "nothing counts while the mission is paused"},
+        {Invariant::kWhatIsNotPausedCounts, "every tick counts unless the mission is paused"},
         {Invariant::kNobodyMovesWhilePaused, "nobody moves while the mission is paused"},
         {Invariant::kAverageOfWhatIsHeld, "c_k = sum S / sum elapsed of what is held"},
         {Invariant::kForecastOfWhatIsKnown, "forecast of what is known"},
@@ -158,10 +160,14 @@ class Invariants {
   /// A message has reached an agent, which now knows what `listener` says; no c_k is asked for. To
   /// be called for each MISSION, as one of them admits the agent and names its first tick.
   void received(const TableView& listener, const Message& message);
+  /// An agent has begun a tick, `holder.answered`, which it need not have answered yet: it has more
+  /// steps than before if the tick counts, and no more if not. To be called for each, before it
+  /// hears anything else.
+  void began(double t_s, const TableView& holder);
   /// An agent has answered a tick: what it holds never shrinks, no author's steps exceed the ticks
-  /// there were that count, none of its own is of a tick that does not, c_k is Σ S / Σ elapsed of
-  /// what it holds, c_00 = 1, and ĉ_k, where its law looks ahead, follows by the equation of
-  /// core/forecast.h from what has reached it (lab/shadow.h).
+  /// there were that count, c_k is Σ S / Σ elapsed of what it holds, c_00 = 1, and ĉ_k, where its
+  /// law looks ahead, follows by the equation of core/forecast.h from what has reached it
+  /// (lab/shadow.h).
   void answered(double t_s, const TableView& holder);
   /// An agent's core has refused so many messages, of which none was damaged.
   void refused(double t_s, const Author& who, const RefusalCounts& counts);
@@ -211,7 +217,6 @@ class Invariants {
   void check(double t_s, const Command& command, const TableView& speaker);
   void check_paused(double t_s, const Command& command);
   void check_paused(double t_s, const WorldState& world);
-  void check_paused(double t_s, const TableView& holder);
   void check(double t_s, const Contribution& block, AgentId relayer, const TableView* speaker);
   void check(double t_s, const Digest& digest, const TableView& speaker);
   void check_steps(double t_s, const TableView& holder);
@@ -244,7 +249,7 @@ class Invariants {
   std::map<AgentId, int> lives_;
   MissionFollower truth_;                                  // of all that was said of the mission
   std::map<Author, std::map<Author, std::int64_t>> held_;  // holder, author: steps
-  std::map<Author, std::int64_t> own_steps_;               // after the tick answered last
+  std::map<Author, std::int64_t> own_steps_;               // after the tick begun last
   std::map<Author, Shadow> shadows_;  // of each life of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
   Bodies bodies_;                                   // where a distance is kept

@@ -32,7 +32,6 @@ void Invariants::received(const TableView& listener, const Message& message) {
 
 void Invariants::answered(double t_s, const TableView& holder) {
   check_steps(t_s, holder);
-  check_paused(t_s, holder);
   const bool looks_ahead =
       mission_.law.anticipation > 0 && holder.foreseen != nullptr && !holder.held;
   if (looks_ahead) shadows_.at(holder.self).answer(mission_, holder);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds while the mission is paused: nothing counts, and who has braked stands or loiters.
+// What holds while the mission is paused, and only then: nothing counts, and who has braked stands
+// or loiters.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/kinds.h"
 #include "core/vehicle.h"
@@ -58,17 +60,22 @@ void Invariants::check_paused(double t_s, const WorldState& world) {
   }
 }
 
-void Invariants::check_paused(double t_s, const TableView& holder) {
+void Invariants::began(double t_s, const TableView& holder) {
   const std::int64_t steps = steps_of(*holder.table, holder.self);
-  const auto [before, is_new] = own_steps_.try_emplace(holder.self, steps);
+  const auto [last, is_first] = own_steps_.try_emplace(holder.self, steps);
+  const std::int64_t before = std::exchange(last->second, steps);
+  if (is_first) return;
   // In lockstep all that was said of the mission decides, in real time what the agent knows of it.
   const bool exact = mission_.timing.pace == Pace::kLockstep;
-  const bool held = exact ? is_held(truth_.holds(), holder.answered) : holder.held;
-  if (held && !is_new && steps > before->second) {
+  const bool held = is_held(exact ? truth_.holds() : holder.holds, holder.answered);
+  if (held && steps > before) {
     violate(t_s, Invariant::kNothingCountsWhilePaused, name_of(holder.self),
-            text("has ", steps - before->second, " more steps at tick ", holder.answered));
+            text("has ", steps - before, " more steps at tick ", holder.answered));
   }
-  before->second = steps;
+  if (!held && before > 0 && steps == before) {
+    violate(t_s, Invariant::kWhatIsNotPausedCounts, name_of(holder.self),
+            text("has no step of tick ", holder.answered));
+  }
 }
 
 }  // namespace ergocast::lab

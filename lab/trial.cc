@@ -39,7 +39,7 @@ class Trial : SimulationObserver {
     std::vector<std::pair<Author, std::int64_t>> lacks;
   };
   struct AgentState {
-    Tick answered = -1;
+    Tick begun = -1, answered = -1;
     bool judged = false;  // it has finished, and whether it may have is said
     std::optional<Recovery> recovery;
   };
@@ -60,6 +60,7 @@ class Trial : SimulationObserver {
   TableView view_of(NodeId node) const;
   std::vector<TableView> views(bool also_finished) const;
 
+  void note_tick(NodeId node);
   void note_answer(NodeId node, const Command& command, const TableView& view);
   void expect_back(NodeId node);
   void look_for_recovery(NodeId node);
@@ -103,6 +104,7 @@ void Trial::started(NodeId node, Incarnation incarnation, bool again) {
 }
 
 void Trial::says(NodeId node, const Outbox& outbox) {
+  if (is_agent(node)) note_tick(node);
   // Once for all: c_k is added up for who holds it.
   const TableView view = is_agent(node) ? view_of(node) : TableView();
   for (const Outgoing& said : outbox) {
@@ -110,6 +112,18 @@ void Trial::says(NodeId node, const Outbox& outbox) {
     const auto* command = std::get_if<Command>(&said.message);
     if (command != nullptr && is_agent(node)) note_answer(node, *command, view);
   }
+}
+
+/// Once for each tick that an agent begins.
+void Trial::note_tick(NodeId node) {
+  const Agent& agent = simulation_.agent(node);
+  // The tick after the last one is not begun.
+  if (agent.finished() || agent.tick() == at(node).begun) return;
+  at(node).begun = agent.tick();
+  TableView view{agent.author(), agent.coverage()};
+  view.answered = agent.tick();
+  view.holds = agent.follower().holds();
+  invariants_.began(t_s(), view);
 }
 
 /// Once for each tick that an agent answers.
@@ -140,6 +154,7 @@ void Trial::advanced(NodeId node, bool hurries) {
   invariants_.wakeup(t_s(), simulation_.name_of(node), hurries);
   if (is_agent(node)) {
     const Agent& agent = simulation_.agent(node);
+    note_tick(node);
     invariants_.refused(t_s(), agent.author(), agent.refused());
     look_for_recovery(node);
     if (!agent.finished() || at(node).judged) return;

@@ -17,6 +17,7 @@
 #include "core/coverage_table.h"
 #include "core/forecast.h"
 #include "core/geometry.h"
+#include "core/hold.h"
 #include "core/separation.h"
 #include "core/vehicle.h"
 #include "lcmtypes/codec.h"
@@ -61,6 +62,9 @@ WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_
 WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
 WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
 WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
+WRAPPED(bool, is_held, "_ZN8ergocast7is_heldESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
+WRAPPED(Tick, counted_ticks, "_ZN8ergocast13counted_ticksESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
+WRAPPED(Tick, tick_after, "_ZN8ergocast10tick_afterESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
@@ -199,6 +203,47 @@ bool bug_filters_again(const Mission& mission) {
   return real_filters_again(mission) && !bug("held commands know no walls");
 }
 
+// ---- pauses
+// --------------------------------------------------------------------------------------
+
+namespace {
+
+/// Whether the agent acts that takes pauses for something else.
+bool one_agent_acts = false;
+class Acting {
+ public:
+  explicit Acting(const Agent& agent) { one_agent_acts = agent.id() == 2; }
+  ~Acting() { one_agent_acts = false; }
+};
+
+/// How much later it goes on than the others.
+constexpr Tick kLate = 3;
+
+/// The ticks that do not count, as the one who acts takes them.
+std::vector<Hold> misread(std::span<const Hold> holds) {
+  std::vector<Hold> taken(holds.begin(), holds.end());
+  if (!one_agent_acts) return taken;
+  if (bug("one agent ignores pauses")) taken.clear();
+  for (Hold& hold : taken) {
+    if (bug("one agent goes on later") && !hold.open()) hold.until += kLate;
+  }
+  return taken;
+}
+
+}  // namespace
+
+bool bug_is_held(std::span<const Hold> holds, Tick tick) {
+  return real_is_held(misread(holds), tick);
+}
+
+Tick bug_counted_ticks(std::span<const Hold> holds, Tick tick) {
+  return real_counted_ticks(misread(holds), tick);
+}
+
+Tick bug_tick_after(std::span<const Hold> holds, Tick count) {
+  return bug("the end does not move") ? count : real_tick_after(holds, count);
+}
+
 // ---- coverage
 // ------------------------------------------------------------------------------------
 
@@ -254,6 +299,7 @@ void bug_make_table(CoverageTable* self, const Basis& basis, double dt_s, Tick j
 void bug_hear(Agent* self, const Message& message, Bus bus, AgentId transmitter, Instant now) {
   listener = self;
   is_relayed = transmitter != header_of(message).sender;
+  const Acting acting(*self);
   real_hear(self, message, bus, transmitter, now);
 }
 
@@ -382,7 +428,10 @@ void ignore_pause(const Agent& self, Outbox& out) {
 void bug_advance(Agent* self, Instant now, Outbox& out) {
   if (bug("an agent crashes") && self->tick() == kUnderWay) std::abort();
   if (bug("an agent gives up") && self->tick() == kUnderWay) self->leave("no more");
-  real_advance(self, now, out);
+  {
+    const Acting acting(*self);
+    real_advance(self, now, out);
+  }
   const bool is_one_of_them = self->author().agent == 2;
   if (self->held()) ignore_pause(*self, out);
   if (bug("a newcomer is mute") && is_one_of_them) {

@@ -122,6 +122,8 @@ const Plant kPlants[] = {
     {Invariant::kHeldNeverShrinks, "a backup is put back"},
     {Invariant::kNoStepCountsTwice, "a sample counts twice"},
     {Invariant::kNothingCountsWhilePaused, "a sample counts while all stand", kPauses},
+    {Invariant::kNothingCountsWhilePaused, "one agent ignores pauses", kPauses},
+    {Invariant::kWhatIsNotPausedCounts, "one agent goes on later", kPauses},
     {Invariant::kNobodyMovesWhilePaused, "an agent creeps on", kPauses, "", ": agent "},
     {Invariant::kNobodyMovesWhilePaused, "the world creeps on", kPauses, "", ": vehicle ",
      "--lockstep"},
@@ -157,6 +159,7 @@ const Plant kPlants[] = {
     {Invariant::kEverybodyEnds, "the world hangs"},
     {Invariant::kMissionDoesNotFail, "the coordinator panics"},
     {Invariant::kLastTickReached, "the coordinator ends too early"},
+    {Invariant::kLastTickReached, "the end does not move", kPauses},
     {Invariant::kRecordIsWhole, "the world keeps a tick to itself"},
     {Invariant::kGoalReached, "", "", "goal_ergodic_metric: 1e-9"},
 };

@@ -239,6 +239,28 @@ TEST_F(InvariantsTest, NoStepCountsTwice) {
   EXPECT_EQ(violated(), "no step counts twice");
 }
 
+TEST_F(InvariantsTest, ATickCountsUnlessTheMissionIsPausedAsFarAsTheAgentKnows) {
+  mission_.timing.pace = Pace::kRealtime;
+  const std::vector<Hold> paused{{4, 7}};
+  // Of each tick from 0 on, how many steps it adds.
+  const auto violated_by_steps = [&](const std::vector<int>& steps) {
+    Invariants team(mission_);
+    CoverageTable table(mission_.basis, 0.1);
+    for (std::size_t tick = 0; tick < steps.size(); ++tick) {
+      cover(table, kOne, steps[tick]);
+      TableView view = holder(table, c_one_);
+      view.answered = static_cast<Tick>(tick);
+      view.holds = paused;
+      team.began(1, view);
+    }
+    return violated_by(team);
+  };
+  EXPECT_EQ(violated_by_steps({0, 0, 1, 1, 0, 0, 0, 1}), "") << "admitted at tick 2";
+  EXPECT_EQ(violated_by_steps({1, 1, 1, 1, 0, 0, 1}), "nothing counts while the mission is paused");
+  EXPECT_EQ(violated_by_steps({1, 1, 1, 1, 0, 0, 0, 0}),
+            "every tick counts unless the mission is paused");
+}
+
 TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {
   CoverageTable table(mission_.basis, 0.1), one(mission_.basis, 0.1), two(mission_.basis, 0.1);
   for (CoverageTable* rows : {&table, &one}) cover(*rows, kOne, 30, 2);

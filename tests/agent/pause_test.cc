@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an agent says in real time while its ticks do not come, in a mission that is paused or not.
+#include <gtest/gtest.h>
+
+#include "tests/agent/driven_agent.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+/// The contributions of three seconds after tick 0, the only one that comes.
+std::vector<Contribution> said_in_silence(std::vector<Hold> holds) {
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
+  announce(mission);
+  Agent agent(identity_of(0));
+  MissionPart part = mission_part(0, MissionState::kRunning, roster_of(2));
+  part.holds = std::move(holds);
+  give(agent, part, at(0s));
+  tell(agent, world_state(0, {{100, 500, 0}, {200, 500, 0}}));
+  Outbox said;
+  for (auto now = 100ms; now <= 3s; now += 100ms) agent.advance(at(now), said);
+  EXPECT_FALSE(agent.finished()) << agent.reason();
+  return only<Contribution>(said);
+}
+
+TEST(AgentWithoutTicks, RepeatsOnceASecondWhatItHas) {
+  const auto said = said_in_silence({});
+  ASSERT_EQ(said.size(), 3u);
+  for (const Contribution& one : said) EXPECT_EQ(one.steps, 1);
+}
+
+TEST(AgentWithoutTicks, SaysNothingWhileTheMissionIsPaused) {
+  // It joined in the pause and has covered nothing: others would refuse a row of no steps.
+  EXPECT_TRUE(said_in_silence({{0, -1}}).empty());
+}
+
+}  // namespace
+}  // namespace ergocast
