@@ -14,6 +14,7 @@
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "logger/run_record.h"
+#include "modes/table_file.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 #include "text/regular_file.h"
@@ -109,6 +110,15 @@ int write_files(const std::vector<TextFile>& files, const fs::path& folder) {
   return kExitDone;
 }
 
+/// Puts the table that `mission` names beside the written files.
+int write_modes(const DeployMission& mission, const Basis& basis, const fs::path& folder) {
+  if (mission.modes.empty()) return kExitDone;
+  if (const auto problem = save_table(*basis.table, folder))
+    return report_error(kExitBadInput, *problem);
+  std::printf("%s\n", (folder / mission.modes).c_str());
+  return kExitDone;
+}
+
 int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, {});
   if (!scenario) return kExitBadInput;
@@ -131,11 +141,15 @@ int deploy(const DeployOptions& options) {
       return report_error(kExitBadInput, *problem);
     mission.keys = fs::absolute(options.keys).lexically_normal();
   }
+  const Basis& basis = scenario->mission().basis;
+  if (basis.free_domain && !options.out.empty()) mission.modes = table_file_name(basis.table_hash);
   const auto render = options.to == "ssh"       ? ssh_files
                       : options.to == "systemd" ? systemd_files
                                                 : compose_files;
   const std::vector<TextFile> files = render(hosts, mission);
-  return options.out.empty() ? print(files) : write_files(files, options.out);
+  if (options.out.empty()) return print(files);
+  const int written = write_files(files, options.out);
+  return written == kExitDone ? write_modes(mission, basis, options.out) : written;
 }
 
 }  // namespace

@@ -154,6 +154,7 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
          },
          "Table of the modes of a mission with basis.free_domain; without: computed in a second or "
          "more")
+      ->envname("ERGOCAST_MODES")
       ->type_name("FILE");
   app.set_version_flag("--version", version_text());
 }

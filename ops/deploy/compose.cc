@@ -80,6 +80,8 @@ std::string head(const DeployHost& host, const DeployMission& mission, const std
   }
   if (host.logger)
     text += "# The record goes into a folder below ./runs, a new one for every mission.\n";
+  if (!mission.modes.empty())
+    text += "# Beside this file has to lie " + mission.modes + ", the modes of the free domain.\n";
   return text + key_head(host, mission);
 }
 
@@ -91,22 +93,25 @@ std::string compose_text(const DeployHost& host, const DeployMission& mission, b
       yaml(mission.url.base()) + '\n';
   const bool keyed = !mission.keys.empty();
   if (keyed) text += "    ERGOCAST_KEY_FILE: /mission.key\n";
-  const std::string key = keyed ? mount(kTeamKey, "/mission.key") : "";
+  if (!mission.modes.empty()) text += "    ERGOCAST_MODES: /modes.bin\n";
+  const std::string modes = mission.modes.empty() ? "" : mount("./" + mission.modes, "/modes.bin");
+  const std::string mounts = modes + (keyed ? mount(kTeamKey, "/mission.key") : "");
   text += "  stop_grace_period: 30s\n";
   if (!alone) text += "  network_mode: host\n";
   text += "\nservices:\n";
   for (const DeployProcess& process : processes_of(host)) {
     // The image's script writes each mission into a new folder that belongs to the owner of ./runs.
-    text += process.name == "logger"
-                ? service("logger", "\"on-failure:5\"", {"record"}, "      - ./runs:/runs\n" + key,
-                          "    user: root\n")
-                : service(process.name, "\"on-failure:5\"", unless_in_vain(process.command), key);
+    text +=
+        process.name == "logger"
+            ? service("logger", "\"on-failure:5\"", {"record"}, "      - ./runs:/runs\n" + mounts,
+                      "    user: root\n")
+            : service(process.name, "\"on-failure:5\"", unless_in_vain(process.command), mounts);
   }
   if (host.coordinator) {
     // A restarted coordinator would begin a second mission.
     text += service("coordinator", "\"no\"",
                     {"ergocast-coordinator", "/mission/" + mission.files.front()},
-                    mount(mission.folder.string(), "/mission") +
+                    mount(mission.folder.string(), "/mission") + modes +
                         (keyed ? mount(kCoordinatorKey, "/mission.key") : ""));
   }
   return text;

@@ -41,6 +41,9 @@ struct DeployMission {
   LcmUrl url;
   /// Whole path of the mission key, as `ergocast keygen` was given it; empty: none.
   std::filesystem::path keys;
+  /// Name of the file with the mission's table of modes, which lies beside the written files;
+  /// empty: none, and each host computes the table that the mission needs, if any.
+  std::string modes;
 };
 
 /// Problems of a valid hosts file with this mission. The problems name the file as `file`.

@@ -48,7 +48,7 @@ std::string script_settings(const std::vector<DeployHost>& hosts, const DeployMi
   return "\nmission=" + shell_word(mission.name) + "\nurl=" + shell_word(mission.url.base()) +
          "\nscenario_folder=" + shell_word(mission.folder.string()) +
          "\nscenario_files=" + array(mission.files) +
-         "\nkeys=" + shell_word(mission.keys.string()) +
+         "\nkeys=" + shell_word(mission.keys.string()) + "\nmodes=" + shell_word(mission.modes) +
          "\ncoordinator=" + shell_word(coordinator) + "\nhosts=" + array(addresses) + '\n';
 }
 

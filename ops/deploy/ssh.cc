@@ -34,6 +34,11 @@ copy_key() {
   ssh "$1" "umask 077 && cd $folder && cat >$2.new && mv -f $2.new $2" <"$keys${2#mission}"
 }
 
+# The modes of the free domain, which all have to take from one table.
+copy_modes() {
+  ssh "$1" "cat >$folder/$modes" <"$(dirname "${BASH_SOURCE[0]}")/$modes"
+}
+
 launch() {
   local host=$1 process=$2
   shift 2
@@ -97,6 +102,9 @@ case ${1:-} in
       for host in "${hosts[@]}"; do copy_key "$host" mission.key; done
       copy_key "$coordinator" mission.coordinator.key
     fi
+    if [ -n "$modes" ]; then
+      for host in "${hosts[@]}"; do copy_modes "$host"; done
+    fi
     each_process launch
     ;;
   status)
@@ -131,6 +139,8 @@ std::string process_line(const DeployHost& host, const DeployProcess& process,
   std::string line = "  \"$1\" " + shell_word(host.address) + ' ' + process.name;
   for (const std::string& word : process.command) line += ' ' + shell_word(word);
   if (!mission.keys.empty()) line += std::string(" --key-file ../") + key;
+  if (!mission.modes.empty() && process.name != "sim")
+    line += " --modes ../" + shell_word(mission.modes);
   return line + '\n';
 }
 

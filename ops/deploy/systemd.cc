@@ -26,10 +26,18 @@ constexpr const char* kUnitBody = R"sh(
 failed=no
 
 write_settings() {
+  local table=${modes:+$'\n'ERGOCAST_MODES=/etc/ergocast/mission/$modes}
   ssh "$1" 'sudo tee /etc/ergocast/ergocast.env >/dev/null' <<END
 LCM_DEFAULT_URL=$url
-ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}
+ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}$table
 END
+}
+
+# The modes of the free domain, which all have to take from one table.
+install_modes() {
+  ssh "$1" "sudo mkdir -p /etc/ergocast/mission &&
+    sudo sh -c 'umask 022 && cat >/etc/ergocast/mission/$modes'" \
+    <"$(dirname "${BASH_SOURCE[0]}")/$modes"
 }
 
 # install_key HOST FILE DROP-IN UNITS: FILE, for root only, and what hands it to these services.
@@ -58,6 +66,9 @@ case ${1:-} in
     if [ -n "$keys" ]; then
       for host in "${hosts[@]}"; do install_key "$host" mission.key mission-key.conf ergocast-; done
       install_key "$coordinator" mission.coordinator.key signing-key.conf ergocast-coordinator
+    fi
+    if [ -n "$modes" ]; then
+      for host in "${hosts[@]}"; do install_modes "$host"; done
     fi
     ;;
   start | enable | disable)

@@ -49,6 +49,27 @@ TEST_F(Deploy, WritesIntoAFolderAndNeverOverAFile) {
   EXPECT_FALSE(std::filesystem::exists(out() / "ground.compose.yaml"));
 }
 
+TEST_F(Deploy, HandsTheTableOfModesToEveryHost) {
+  const std::string office =
+      (std::filesystem::path(ERGOCAST_SOURCE_DIR) / "scenarios/office.textproto").string();
+  for (const char* to : {"ssh", "systemd", "compose"}) {
+    const std::filesystem::path into = out() / to;
+    ASSERT_EQ(ergocast({"deploy", office, "--to", to, "--hosts",
+                        hosts("ground coordinator logger sim\nrover agents=6\n"), "--out", into}),
+              0)
+        << output();
+    const std::string said = output();
+    const auto table = said.find("modes-");
+    ASSERT_NE(table, std::string::npos) << said;
+    const std::string name = said.substr(table, said.find('\n', table) - table);
+    EXPECT_GT(std::filesystem::file_size(into / name), 1000000U);
+    std::string texts;
+    for (const auto& entry : std::filesystem::directory_iterator(into))
+      if (entry.path().extension() != ".bin") texts += text_of(entry);
+    EXPECT_NE(texts.find(name), std::string::npos) << texts;
+  }
+}
+
 TEST_F(Deploy, NamesEveryProblemAtOnce) {
   EXPECT_EQ(
       deploy("ssh", "ground sim\nrover agents=4\n", {"--lcm-url", "udpm://239.1.2.3:7000?ttl=0"}),

@@ -110,6 +110,30 @@ TEST_F(DeployFiles, TheSshScriptGivesEveryProcessItsOwnKey) {
             "ops@10.0.0.1 key\npi@10.0.0.2 key\nops@10.0.0.1 coordinator.key\n");
 }
 
+TEST_F(DeployFiles, TheTableOfModesGoesToEveryHostAndToAllButTheWorld) {
+  mission_.modes = "modes-0123456789abcdef.bin";
+  std::ofstream(folder_ / mission_.modes) << "table";
+  const auto scripts = {ssh_files(hosts_, mission_)[0].text,
+                        systemd_files(hosts_, mission_)[0].text};
+  for (const std::string& script : scripts) {
+    const auto set = script.find("copy_modes") != script.npos ? "start" : "setup";
+    const std::string said =
+        output(std::string("set -- ") + set + "; . \"$file\"; cat \"$file.modes\"",
+               "ssh() { case $* in *nohup*) echo \"starting ${3#*nohup }\";; *pid*) return 1;; "
+               "*modes-*) echo \"$1 $(cat)\" >>\"$file.modes\";; *) cat >/dev/null;; esac; }\n"
+               "tar() { :; }\n" +
+                   script);
+    EXPECT_TRUE(has(said, "ops@10.0.0.1 table\npi@10.0.0.2 table\n")) << said;
+    if (std::string(set) != "start") continue;
+    EXPECT_TRUE(has(said, "ergocast-agent --id 3 --modes ../modes-0123456789abcdef.bin")) << said;
+    EXPECT_TRUE(has(said, "ergocast-sim --lcm-url")) << said;
+  }
+  for (const TextFile& file : compose_files(hosts_, mission_)) {
+    EXPECT_TRUE(has(file.text, "source: \"./modes-0123456789abcdef.bin\"")) << file.text;
+    EXPECT_TRUE(has(file.text, "ERGOCAST_MODES: /modes.bin")) << file.text;
+  }
+}
+
 TEST_F(DeployFiles, TheSystemdScriptSetsUpEveryHost) {
   // An ssh that prints what it would do.
   const std::string ssh =
