@@ -5,6 +5,7 @@
 //     ffmpeg -f rawvideo -pixel_format rgb24 -video_size 720x720 -framerate 20 -i - film.webm
 #include <EGL/egl.h>
 
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -19,7 +20,6 @@
 #include "lab/simulation.h"
 #include "scenario/scenario.h"
 #include "team/plan.h"
-#include "text/read_number.h"
 
 namespace ergocast::mujoco {
 namespace {
@@ -151,9 +151,9 @@ int fly(const Mission& mission, const RobotDesign& design, const Film& film) {
 }
 
 bool read_whole(const char* text, int& number) {
-  const auto read = read_number<int>(text);
-  number = read.value_or(0);
-  return number > 0;
+  const char* const end = text + std::strlen(text);
+  const auto [rest, error] = std::from_chars(text, end, number);
+  return error == std::errc() && rest == end && number > 0;
 }
 
 int run(int argc, char** argv) {
