@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The run record: trajectory.csv and metrics.csv from the world's states, as an outside observer.
 //
+// Where each robot has a driver of its own, each says one part of a state, and they are joined; of
+// a part that does not come in time the rows are missing.
+//
 // Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
 // the world applied in between. Rows are written in order and acknowledged to the world, which in
 // lockstep repeats every missing state. Acknowledged rows are in the file, so a killed recorder
@@ -144,6 +147,7 @@ class Recorder {
   void acknowledge(Instant now, Outbox& out);
   bool write_next_row();
   bool holds(Tick tick) const;
+  bool has_drivers() const;
   /// The number of the next row's tick among those that count.
   Tick counted() const { return next_row_ - uncounted_; }
   bool all_rows_written() const {
