@@ -52,13 +52,15 @@ class SeparationRules {
     const double held_s =
         static_cast<double>(unguarded_hold_ticks(mission_)) * mission_.timing.dt_s;
     const double step_s = tells_places(mission_) ? mission_.timing.dt_s : 0;
-    const double most_s = mission_.separation.distance_m / (4 * fastest_mps(mission_)) - step_s;
-    if (held_s - step_s <= most_s * (1 + 1e-9)) return;
+    const double whole_s = mission_.separation.distance_m / (4 * fastest_mps(mission_));
+    if (held_s <= whole_s * (1 + 1e-9)) return;
+    const double most_s = whole_s - step_s;
     checks_.problem("time.command_hold_s",
                     shortest(mission_.timing.command_hold_s) +
                         " is too long without separation.guard: a vehicle may be anywhere within "
-                        "distance_m, unless it is at most distance_m / (4 speed_limit_mps) " +
-                        (step_s > 0 ? "- dt_s = " : "= ") + shortest(rounded_up(most_s)),
+                        "distance_m, unless it is at most distance_m / (4 speed_limit_mps)" +
+                        (step_s > 0 ? " - dt_s" : "") +
+                        (most_s < 0 ? ", which is below 0" : " = " + shortest(rounded_up(most_s))),
                     most_s < 0 ? "write a greater distance_m, or a smaller dt_s or speed_limit_mps"
                                : "write at most " + shortest(rounded_down(most_s)) +
                                      (step_s > 0 ? "" : ", or guard: true"));

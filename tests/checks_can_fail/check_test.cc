@@ -165,6 +165,10 @@ std::vector<Mistake> mistakes_between_fields() {
       {"time {",
        keeping("distance_m: 20 lease_s: 2", "", "time { pace: REALTIME command_hold_s: 0.2 "),
        "distance_m / (4 speed_limit_mps) - dt_s = 0.15"},
+      {"time {", keeping("distance_m: 5 lease_s: 2", "", "time { pace: REALTIME "),
+       "- dt_s, which is below 0 (write a greater distance_m, or a smaller dt_s"},
+      {"agents {", keeping("distance_m: 0.1 lease_s: 2", "", "agents { random_count: 256 "),
+       "separation.lease_s: is for at most 256 agents, not 257"},
       {kLaw, keeping("distance_m: 5 lease_s: 0.2", ""),
        "separation.lease_s: 0.2 is not between 0.5 and 1000"},
       {kLaw, keeping("distance_m: 5 lease_s: 2 guard: true", ""),
@@ -664,7 +668,7 @@ agents {
 }
 world { speed_limit_mps: 100 }
 vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
-separation { distance_m: 2 }
+separation { distance_m: 2 lease_s: 0 }
 )";
 
 /// What its kind of vehicles does not have.
