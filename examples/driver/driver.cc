@@ -129,6 +129,9 @@ void Driver::on(const Command& command, const Arrival&) {
   if (halt) halt_robot(drive);
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
   drive.answered = command.header.tick;
+  const Timing& timing = me_.mission().timing;
+  const double age_s = static_cast<double>(tick_ - drive.answered) * timing.dt_s;
+  if (age_s > timing.command_hold_s) return halt_robot(drive);
   const Eigen::Vector3d allowed_mps =
       within_speed_limit(motion_of(me_.mission(), command.header.sender), command.velocity_mps);
   if (allowed_mps != command.velocity_mps) ++clamped_commands_;
