@@ -42,8 +42,9 @@ struct RunFacts {
   double cosine_metric_last = 0;  ///< with basis.free_domain: φ² in cosines at the last row
   Tick gaps = 0;                  ///< ticks without rows before the last row
   bool halted = false;            ///< by an emergency stop: the last row stands still
-  std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
-  std::int64_t clamped_commands = 0;                     ///< by the speed limit, likewise
+  /// Real time, as the world counts them; of several drivers the one with the most.
+  std::int64_t missed_deadlines = 0, skipped_ticks = 0;
+  std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise
   /// Where a distance is kept: the least of any two bodies at any recorded tick; none: the greatest
   /// number [m].
   double nearest_m = std::numeric_limits<double>::max();
