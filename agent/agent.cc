@@ -102,6 +102,8 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
     me_.set_id(own->author.agent);
     radio_ = RadioRange(mission().radio_range_m);
     state_.emplace<InMission>(mission(), *own, me_.counted(own->active_from));
+    if (tells_places(mission()))
+      in_mission()->beacons.emplace(mission(), own->author, follower().revision());
     note_roster();
   }
   std::optional<Instant>& running_since = in_mission()->running_since;
@@ -111,7 +113,9 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
 /// A control step allocates nothing.
 void Agent::note_roster() {
   InMission* const flight = in_mission();
-  if (flight == nullptr || follower().holds().empty()) return;
+  if (flight == nullptr) return;
+  if (flight->beacons) flight->beacons->note_roster(follower().roster());
+  if (follower().holds().empty()) return;
   flight->held_roster = in_counted_ticks(follower().roster(), follower().holds());
 }
 
@@ -203,6 +207,12 @@ void Agent::on(const Digest& theirs, const Arrival& arrival) {
                           flight->step.counted);
 }
 
+void Agent::on(const Beacon& beacon, const Arrival& arrival) {
+  InMission* const flight = in_mission();
+  if (flight == nullptr || !flight->beacons) return;
+  flight->beacons->hear(beacon, arrival.fresh, {flight->step.tick, arrival.now});
+}
+
 void Agent::on(const WorldState& world, const Arrival& arrival) {
   InMission* const flight = in_mission();
   if (flight == nullptr) return;
@@ -224,8 +234,8 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
       step.repeat_wanted = step.repeat_wanted || arrival.fresh;
       return;
     }
-    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.position_m,
-                                vehicle.velocity_mps};
+    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.answered_tick,
+                                vehicle.position_m, vehicle.velocity_mps};
   }
 }
 

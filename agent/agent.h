@@ -24,6 +24,7 @@
 #include "core/separation.h"
 #include "core/wall_following.h"
 #include "team/author_map.h"
+#include "team/beacon_book.h"
 #include "team/bodies.h"
 #include "team/deadline.h"
 #include "team/messages.h"
@@ -90,6 +91,10 @@ class Agent {
   /// What its last command answers to: ĉ_k if the law looks ahead, else c_k.
   const Coefficients& foreseen_coverage() const;
   const MissionFollower& follower() const { return me_.follower(); }
+  /// What it knows of teammates' places, where agents tell them; null elsewhere.
+  const BeaconBook* beacons() const {
+    return flight() && flight()->beacons ? &*flight()->beacons : nullptr;
+  }
   /// Of the roster that the world flies tick() by.
   std::int64_t roster_revision() const { return flight() ? flight()->step.roster_revision : 0; }
   const RefusalCounts& refused() const { return me_.refused(); }
@@ -128,6 +133,7 @@ class Agent {
   struct WorldView {
     Tick tick;
     std::int64_t roster_revision;
+    std::int64_t answered_tick;
     Eigen::Vector3d position_m, velocity_mps;
   };
   /// From its admission on. While the mission waits for its quorum, no tick comes.
@@ -145,6 +151,7 @@ class Agent {
     StateParts state_parts;
     std::optional<SeparationFilter> separation;  // if commands are filtered
     Bodies bodies;                               // then, of the newest tick
+    std::optional<BeaconBook> beacons;           // where only agents know their places
     std::optional<WallFollower> follower;        // where there are walls
     std::vector<RosterEntry> held_roster;        // as counted_roster() says, once there are holds
     Coefficients foreseen;
@@ -173,6 +180,7 @@ class Agent {
   void on(const Digest& theirs, const Arrival& arrival);
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const WorldState& world, const Arrival& arrival);
+  void on(const Beacon& beacon, const Arrival& arrival);
   void on(const Hello& hello, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
 
@@ -196,6 +204,7 @@ class Agent {
   void fly(InMission& flight, Instant now, Outbox& out);
   void note_places(InMission& flight, const WorldState& world);
   bool begin_tick(InMission& flight, Instant now, Outbox& out);
+  void say_place(InMission& flight, const WorldView& view, Outbox& out);
   bool stalled(const InMission& flight, Instant now) const;
   void broadcast(InMission& flight, bool all, Outbox& out);
   void repeat(InMission& flight, Outbox& out);
@@ -204,6 +213,7 @@ class Agent {
   void forget_silent(InMission& flight) const;
   Eigen::Vector3d wanted(InMission& flight);
   Eigen::Vector3d kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps);
+  SafeVelocity safe_velocity(InMission& flight, const Eigen::Vector3d& aim_mps);
   void answer_digests(InMission& flight, Instant now, Outbox& out);
   void report_position(InMission& flight, Outbox& out);
 

@@ -93,11 +93,20 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   step.body_mps = view.velocity_mps;
   step.x_m = mission.domain.nearest(view.position_m);
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
+  if (flight.beacons) say_place(flight, view, out);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
   if (step.tick < flight.active_from || step.held) return true;
   flight.table.add_sample(me_.author(), *step.basis_at, flight.sensors.of(flight.kind).footprint());
   broadcast(flight, false, out);
   return true;
+}
+
+void Agent::say_place(InMission& flight, const WorldView& view, Outbox& out) {
+  flight.beacons->measured(view.answered_tick, view.roster_revision, view.position_m,
+                           view.velocity_mps);
+  const auto beacon =
+      flight.beacons->next(follower().revision(), {flight.step.tick, flight.step.begun});
+  if (beacon) me_.publish(Bus::kSwarm, *beacon, flight.step.tick, out);
 }
 
 /// Whether the ticks have stopped coming: then what we have is said now and then without waiting
@@ -138,7 +147,7 @@ bool Agent::may_answer(InMission& flight) const {
   Step& step = flight.step;
   step.waiting_for = kUnassigned;
   // Who does not know where all bodies are does not move.
-  if (flight.separation && !flight.bodies.complete(step.tick)) {
+  if (flight.separation && !flight.beacons && !flight.bodies.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;
   }
@@ -172,6 +181,7 @@ void Agent::answer(InMission& flight, Outbox& out) {
   forget_silent(flight);
   flight.last_command.velocity_mps = kept_apart(flight, wanted(flight));
   step.answered = step.tick;
+  if (flight.beacons) flight.beacons->commands({step.tick, step.begun});
   me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
 }
 
@@ -206,20 +216,28 @@ Eigen::Vector3d Agent::wanted(InMission& flight) {
 /// The last step of a command.
 Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps) {
   if (!flight.separation) return wanted_mps;
-  const double limit_mps = motion_of(mission(), me_.id()).speed_limit_mps;
-  const Tick tick = flight.step.tick;
-  const Eigen::Vector3d& x_m = flight.step.body_m;
   const Eigen::Vector3d aim_mps =
-      flight.follower ? flight.follower->aim(tick, x_m, wanted_mps) : wanted_mps;
-  const SafeVelocity safe =
-      flight.separation->safe({me_.id(), tick, x_m, limit_mps, flight.step.body_mps}, aim_mps,
-                              flight.bodies.neighbours(mission()));
+      flight.follower ? flight.follower->aim(flight.step.tick, flight.step.body_m, wanted_mps)
+                      : wanted_mps;
+  const SafeVelocity safe = safe_velocity(flight, aim_mps);
   if (flight.follower) flight.follower->note(safe.wall);
   status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
   status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
   status_.blocked_ticks += safe.blocked ? 1 : 0;
   status_.longest_block_ticks = std::max(status_.longest_block_ticks, status_.blocked_now_ticks);
   return safe.velocity_mps;
+}
+
+SafeVelocity Agent::safe_velocity(InMission& flight, const Eigen::Vector3d& aim_mps) {
+  const Step& step = flight.step;
+  // A body may have appeared that we do not know of.
+  if (flight.beacons && follower().revision() < step.roster_revision)
+    return {.blocked = true, .blind = true};
+  const auto others = flight.beacons ? flight.beacons->bodies(step.body_m, {step.tick, step.begun})
+                                     : flight.bodies.neighbours(mission());
+  const double limit_mps = motion_of(mission(), me_.id()).speed_limit_mps;
+  const Mover self{me_.id(), step.tick, step.body_m, limit_mps, step.body_mps};
+  return flight.separation->safe(self, aim_mps, others);
 }
 
 void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "agent/agent.h"
 #include "runtime/event_loop.h"
@@ -46,6 +47,24 @@ class EncodingLog {
   bool said_ = false;
 };
 
+/// Says once each that places of teammates were refused.
+class BeaconLog {
+ public:
+  void look(const Agent& agent) {
+    const BeaconBook* const beacons = agent.beacons();
+    if (beacons == nullptr) return;
+    if (beacons->late() > 0 && !std::exchange(late_said_, true))
+      spdlog::info("beacons of teammates overtake each other; who is overtaken is not heard");
+    if (beacons->from_the_future() > 0 && !std::exchange(future_said_, true))
+      spdlog::warn(
+          "a teammate's beacon answers to one that this agent has not sent yet, and is refused: "
+          "does another process speak for this agent?");
+  }
+
+ private:
+  bool late_said_ = false, future_said_ = false;
+};
+
 int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) {
   StopSignals signals;
   Agent agent({node.run, requested_id, random_identity(), host_name(), version(), kind});
@@ -64,6 +83,7 @@ int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) 
   TrafficWatch watch(transport);
   WaitingLog waiting;
   EncodingLog encodings;
+  BeaconLog beacons;
   LoopLag lag;
   AgentPhase logged = AgentPhase::kJoining;
   spdlog::info("joining on {}", node.url.base());
@@ -83,6 +103,7 @@ int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) 
           agent.note_rate_offender(transport.rate_offender());
           waiting.look(agent, now());
           encodings.look(agent);
+          beacons.look(agent);
         }
         if (agent.phase() == logged) return;
         logged = agent.phase();

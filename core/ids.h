@@ -24,6 +24,8 @@ using Tick = std::int64_t;
 
 inline constexpr int kMaxAgents = 1024;
 inline constexpr int kMaxIncarnationsPerAgent = 16;
+/// Of missions with separation.lease_s: each echoes all others in one message.
+inline constexpr int kMostLeasedAgents = 256;
 /// Incarnations of all agents together.
 inline constexpr std::size_t kMaxRosterEntries = std::size_t{4} * kMaxAgents;
 inline constexpr int kMaxModesPerAxis = 64;

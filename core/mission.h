@@ -70,6 +70,9 @@ struct Separation {
   double disturbance_m = 0;     ///< what the world may add to a body's step; it cuts the rest
   double response_s = 0;        ///< how long a body takes to follow a command, T
   bool guard = false;           ///< real time: the world filters the commands again
+  /// Real time: each body knows its own place alone, and agents tell each other theirs. Who is not
+  /// known to be heard by a teammate for so long stands; 0: the world knows all places.
+  double lease_s = 0;
 };
 
 enum class VehicleKind {

@@ -124,6 +124,7 @@ void list_fields(auto& io, MaybeConst<Separation> auto& separation) {
   io.number(3, "disturbance_m", separation.disturbance_m, limits::between(0, 1e7), kept);
   io.number(4, "response_s", separation.response_s, limits::between(0, 1e4), kept);
   if (separation.distance_m != 0) io.flag(5, "guard", separation.guard);
+  io.number_unless(6, "lease_s", separation.lease_s, limits::between(0, 3600), 0);
 }
 
 void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {

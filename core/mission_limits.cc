@@ -158,9 +158,19 @@ bool bodies_fit(const Mission& mission) {
   return true;
 }
 
+/// Nobody else knows the places, and all hear each other.
+bool lease_fits(const Mission& mission) {
+  if (mission.separation.lease_s == 0) return true;
+  const Tick ticks = lease_ticks(mission);
+  return ticks >= kLeastLeaseTicks && ticks <= kMostLeaseTicks && !mission.separation.guard &&
+         mission.separation.disturbance_m == 0 && mission.radio_range_m == 0 &&
+         mission.starts_m.size() <= kMostLeasedAgents;
+}
+
 /// Everything that keeps bodies apart relies on room.
 bool fits(const Separation& separation, const Mission& mission) {
-  if (separation.distance_m == 0) return !separation.guard;
+  if (separation.distance_m == 0) return !separation.guard && separation.lease_s == 0;
+  if (!lease_fits(mission)) return false;
   if (any_but_points(mission) && !sure_of_bodies(mission)) return false;
   const double held_s = static_cast<double>(unguarded_hold_ticks(mission)) * mission.timing.dt_s;
   return separation.distance_m <= mission.domain.shortest_side_m() / 4 &&

@@ -192,11 +192,17 @@ inline constexpr int kMostDraws = 1000;
 Tick command_hold_ticks(const Timing& timing);
 
 /// H of an agent's own filter: 0 in lockstep, and where the world holds all commands to the
-/// distance again; else command_hold_ticks().
+/// distance again; else command_hold_ticks(), and where bodies have no common ticks one more.
 Tick unguarded_hold_ticks(const Mission& mission);
 
 /// Whether the world filters commands again, with true positions.
 bool world_guards(const Mission& mission);
+
+/// Whether agents know the places of the others from these alone, team/beacon_book.h.
+bool tells_places(const Mission& mission);
+/// Of separation.lease_s, rounded down.
+Tick lease_ticks(const Mission& mission);
+inline constexpr Tick kLeastLeaseTicks = 5, kMostLeaseTicks = 10000;
 
 /// Whether the world, or who drives the whole team, has a reason to filter the commands of points
 /// again: it guards, or there are walls, which a held command does not know.

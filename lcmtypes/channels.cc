@@ -15,11 +15,12 @@ namespace {
 constexpr std::array<std::string_view, std::variant_size_v<Message>> kNames = {
     "ERGOCAST_HELLO",       "ERGOCAST_MISSION", "ERGOCAST_CONTRIBUTION", "ERGOCAST_AGENT_STATUS",
     "ERGOCAST_TEAM_STATUS", "ERGOCAST_STOP",    "ERGOCAST_WORLD_STATE",  "ERGOCAST_COMMAND",
-    "ERGOCAST_RECORD_ACK",  "ERGOCAST_DIGEST",  "ERGOCAST_PAUSE"};
+    "ERGOCAST_RECORD_ACK",  "ERGOCAST_DIGEST",  "ERGOCAST_PAUSE",        "ERGOCAST_BEACON"};
 
 template <class T>
-constexpr bool kPerAgent = std::is_same_v<T, Contribution> || std::is_same_v<T, AgentStatus> ||
-                           std::is_same_v<T, Command> || std::is_same_v<T, Digest>;
+constexpr bool kPerAgent =
+    std::is_same_v<T, Contribution> || std::is_same_v<T, AgentStatus> ||
+    std::is_same_v<T, Command> || std::is_same_v<T, Digest> || std::is_same_v<T, Beacon>;
 
 bool per_agent(const Message& message) {
   return std::visit([](const auto& m) { return kPerAgent<std::decay_t<decltype(m)>>; }, message);

@@ -83,6 +83,7 @@ const Decoder* decoder_for(std::uint64_t wanted) {
                                        entry<Stop>(),
                                        entry<Pause>(),
                                        entry<Digest>(),
+                                       entry<Beacon>(),
                                        entry<Contribution, Averages>(),
                                        entry<Contribution, LowSums>(),
                                        entry<Contribution, LowAverages>()};

@@ -8,6 +8,7 @@
 
 #include <ergocast/agent_status_t.hpp>
 #include <ergocast/averages_t.hpp>
+#include <ergocast/beacon_t.hpp>
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
@@ -250,6 +251,20 @@ struct Fields<Digest> {
       io.count(entry.steps);
       io.number(entry.state_hash);
     }
+  }
+};
+
+template <>
+struct Fields<Beacon> {
+  using Generated = beacon_t;
+  static void list(auto& io, auto& m) {
+    io.holds(m.header.sender >= 0 && m.header.tick >= 0);
+    io.count(m.roster_revision);
+    io.vector(m.position_m);
+    io.vector(m.velocity_mps);
+    io.number(m.number);
+    io.holds(m.number != 0);
+    for (auto& echo : io.length(m.echoes, m.echo_count)) io.number(echo);
   }
 };
 

@@ -28,10 +28,13 @@ inline constexpr std::int64_t kMostEver = std::int64_t{1} << 48;
 
 /// The unsigned number of the same size, most significant byte first on the wire.
 template <class Number>
-using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t, std::uint32_t>;
+using Bits =
+    std::conditional_t<sizeof(Number) == 8, std::uint64_t,
+                       std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint16_t>>;
 
 inline std::uint64_t swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
 inline std::uint32_t swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
+inline std::uint16_t swapped(std::uint16_t bits) { return __builtin_bswap16(bits); }
 
 /// `text` as it is sent: at most `limit` characters, ending before a NUL, with a space in place of
 /// each control character for terminals. Readers refuse other texts.

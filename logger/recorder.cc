@@ -24,6 +24,8 @@ constexpr Tick kAckEveryTicks = 16;
 constexpr double kMetricsPeriod_s = 1.0;
 /// Real time repeats no state: a missing one is given up after so many newer ones.
 constexpr std::size_t kGiveUpAfterStates = 16;
+/// And a part of a state, that of one driver of many, after half as many.
+constexpr std::size_t kDriverPatience = kGiveUpAfterStates / 2;
 /// Lockstep: states more than so many ticks ahead are forged, or no row can be written. In real
 /// time the record may be behind by any number of ticks.
 constexpr Tick kLeadTicks = 1024;
@@ -176,9 +178,11 @@ void Recorder::on(const WorldState& world, const Arrival& arrival) {
   // A repeat adds nothing, and a restarted world may not know the velocities.
   if (state.complete()) return;
   const auto parts = static_cast<std::size_t>(world.parts);
-  if (state.world != world.header.incarnation || state.parts.size() != parts) {
+  const bool other = state.world != world.header.incarnation || state.parts.size() != parts;
+  if (state.parts.empty() || (other && !has_drivers())) {
     state = {world.header.incarnation, std::vector<bool>(parts), {}, world.uncounted_ticks};
   }
+  if (state.parts.size() < parts) state.parts.resize(parts);
   state.parts[static_cast<std::size_t>(world.part)] = true;
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
@@ -275,6 +279,8 @@ void Recorder::close() {
   if (ending_.finished) return;
   ending_.finished = true;
   if (!observer_.begun()) trajectory_ << kTrajectoryHeader << '\n';
+  while (has_drivers() && write_next_row()) {
+  }
   // The last chance to write the rows after a gap.
   heard_.lost_before = std::max(heard_.lost_before, heard_.newest);
   while (writing() && gap_ahead() && next_pair() != states_.end()) {
@@ -291,8 +297,15 @@ const char* Recorder::result() const {
 
 bool Recorder::holds(Tick tick) const {
   const auto state = states_.find(tick);
-  return state != states_.end() && state->second.complete();
+  if (state == states_.end()) return false;
+  const bool overdue =
+      ending_.finished || states_.rbegin()->first >= tick + static_cast<Tick>(kDriverPatience);
+  return state->second.complete() || (has_drivers() && overdue);
 }
+
+/// Whether several drivers may say a tick, each its own robot's part: then a row is also written
+/// without a robot whose driver is not heard.
+bool Recorder::has_drivers() const { return me_.knows_mission() && tells_places(mission()); }
 
 bool Recorder::write_next_row() {
   if (!writing() || all_rows_written()) return false;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The run record: trajectory.csv and metrics.csv from the world's states, as an outside observer.
 //
+// Where each robot has a driver of its own, each says one part of a state, and they are joined; of
+// a part that does not come in time the rows are missing.
+//
 // Tick n's row needs two states: n, which has the position, and n+1, which has the velocity that
 // the world applied in between. Rows are written in order and acknowledged to the world, which in
 // lockstep repeats every missing state. Acknowledged rows are in the file, so a killed recorder
@@ -39,8 +42,9 @@ struct RunFacts {
   double cosine_metric_last = 0;  ///< with basis.free_domain: φ² in cosines at the last row
   Tick gaps = 0;                  ///< ticks without rows before the last row
   bool halted = false;            ///< by an emergency stop: the last row stands still
-  std::int64_t missed_deadlines = 0, skipped_ticks = 0;  ///< real time, as the world counts them
-  std::int64_t clamped_commands = 0;                     ///< by the speed limit, likewise
+  /// Real time, as the world counts them; of several drivers the one with the most.
+  std::int64_t missed_deadlines = 0, skipped_ticks = 0;
+  std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise
   /// Where a distance is kept: the least of any two bodies at any recorded tick; none: the greatest
   /// number [m].
   double nearest_m = std::numeric_limits<double>::max();
@@ -144,6 +148,7 @@ class Recorder {
   void acknowledge(Instant now, Outbox& out);
   bool write_next_row();
   bool holds(Tick tick) const;
+  bool has_drivers() const;
   /// The number of the next row's tick among those that count.
   Tick counted() const { return next_row_ - uncounted_; }
   bool all_rows_written() const {

@@ -271,7 +271,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
     fill_heights(domain, *scenario.mutable_target());
   if (!planar && !scenario.domain().has_origin_z_m()) scenario.mutable_domain()->set_origin_z_m(0);
   if (scenario.has_separation() && !scenario.separation().has_guard())
-    scenario.mutable_separation()->set_guard(true);
+    scenario.mutable_separation()->set_guard(scenario.separation().lease_s() == 0);
   fill_team(*scenario.mutable_agents());
   fill_constants(scenario, planar);
   fill_separation(scenario);

@@ -22,6 +22,7 @@ class SeparationRules {
     for (int kind = 0; kind < std::max(1, scenario_.agents().kind_size()); ++kind)
       disturbance(motion_of_kind(mission_, kind).speed_limit_mps * mission_.timing.dt_s);
     hold();
+    lease(team);
     room(static_cast<std::size_t>(team));
     starts();
   }
@@ -50,14 +51,50 @@ class SeparationRules {
   void hold() {
     const double held_s =
         static_cast<double>(unguarded_hold_ticks(mission_)) * mission_.timing.dt_s;
-    const double most_s = mission_.separation.distance_m / (4 * fastest_mps(mission_));
-    if (held_s <= most_s * (1 + 1e-9)) return;
+    const double step_s = tells_places(mission_) ? mission_.timing.dt_s : 0;
+    const double whole_s = mission_.separation.distance_m / (4 * fastest_mps(mission_));
+    if (held_s <= whole_s * (1 + 1e-9)) return;
+    const double most_s = whole_s - step_s;
     checks_.problem("time.command_hold_s",
                     shortest(mission_.timing.command_hold_s) +
                         " is too long without separation.guard: a vehicle may be anywhere within "
-                        "distance_m, unless it is at most distance_m / (4 speed_limit_mps) = " +
-                        shortest(rounded_up(most_s)),
-                    "write at most " + shortest(rounded_down(most_s)) + ", or guard: true");
+                        "distance_m, unless it is at most distance_m / (4 speed_limit_mps)" +
+                        (step_s > 0 ? " - dt_s" : "") +
+                        (most_s < 0 ? ", which is below 0" : " = " + shortest(rounded_up(most_s))),
+                    most_s < 0 ? "write a greater distance_m, or a smaller dt_s or speed_limit_mps"
+                               : "write at most " + shortest(rounded_down(most_s)) +
+                                     (step_s > 0 ? "" : ", or guard: true"));
+  }
+
+  void lease(int team) {
+    const double lease_s = mission_.separation.lease_s, dt_s = mission_.timing.dt_s;
+    if (lease_s == 0) return;
+    const Tick ticks = lease_ticks(mission_);
+    if (ticks < kLeastLeaseTicks || ticks > kMostLeaseTicks) {
+      lease_problem(shortest(lease_s) + " is not between " +
+                        shortest(static_cast<double>(kLeastLeaseTicks) * dt_s) + " and " +
+                        shortest(static_cast<double>(kMostLeaseTicks) * dt_s) +
+                        ", 5 and 10000 steps of dt_s",
+                    "write " + shortest(static_cast<double>(20) * dt_s));
+    }
+    if (mission_.separation.guard)
+      lease_problem("says that nobody knows all places, and guard that the world does",
+                    "remove guard or lease_s");
+    if (mission_.separation.disturbance_m > 0)
+      lease_problem(
+          "relies on bodies that stay where they stand, and disturbance_m lets them drift",
+          "write world.disturbance_intensity: 0, or remove lease_s");
+    if (mission_.radio_range_m > 0)
+      lease_problem(
+          "needs all agents to hear each other, and world.radio_range_m keeps them from it",
+          "remove one of them");
+    if (team > kMostLeasedAgents)
+      lease_problem("is for at most " + std::to_string(kMostLeasedAgents) + " agents, not " +
+                        std::to_string(team),
+                    "write fewer agents, or remove lease_s");
+  }
+  void lease_problem(const std::string& what, std::string remedy) {
+    checks_.problem("separation.lease_s", what, std::move(remedy));
   }
 
   void room(std::size_t team) {

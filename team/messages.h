@@ -24,6 +24,7 @@ inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 512;
 inline constexpr int kMaxHoldsPerMessage = 1;
+inline constexpr int kMaxEchoesPerMessage = kMostLeasedAgents;
 inline constexpr int kMaxReasonLength = 150;
 /// The period of an agent's status in wall time.
 inline constexpr std::chrono::nanoseconds kAgentStatusPeriod = std::chrono::milliseconds(500);
@@ -186,6 +187,20 @@ struct Command {
   Incarnation asked_by = 0;  ///< the world that asked; 0: it answers a tick
 };
 
+/// Where a body is, and what its agent had heard of its teammates before that was measured: an
+/// agent whose beacon k comes back as an echo knows that the place is younger than k. See
+/// team/beacon_book.h.
+struct Beacon {
+  Header header;
+  std::int64_t roster_revision = 0;  ///< that the sender knows: its echoes are of these members
+  Eigen::Vector3d position_m{0, 0, 0};
+  Eigen::Vector3d velocity_mps{0, 0, 0};
+  std::uint16_t number = 1;  ///< grows by one with each beacon; 1 follows 65535
+  std::int32_t echo_count = 0;
+  /// By the agent's number, the number of its newest beacon that was heard in time; 0: none.
+  std::array<std::uint16_t, kMaxEchoesPerMessage> echoes{};
+};
+
 /// The logger has recorded all ticks up to and including header.tick (−1: it is ready).
 struct RecordAck {
   Header header;
@@ -196,7 +211,7 @@ struct RecordAck {
 inline constexpr Tick kRecordWindowTicks = 64;
 
 using Message = std::variant<Hello, MissionPart, Contribution, AgentStatus, TeamStatus, Stop,
-                             WorldState, Command, RecordAck, Digest, Pause>;
+                             WorldState, Command, RecordAck, Digest, Pause, Beacon>;
 
 enum class Bus { kSwarm, kWorld, kCommand };
 inline constexpr int kBusCount = 3;

@@ -57,11 +57,12 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   const auto hears = [&table](Role role, Bus bus, MessageTypes types) {
     table[static_cast<std::size_t>(role)][static_cast<std::size_t>(bus)] = types;
   };
-  hears(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop>);
+  hears(Role::kAgent,       Bus::kSwarm,   kTypes<Hello, MissionPart, Contribution, Digest, AgentStatus, Stop, Beacon>);
   hears(Role::kAgent,       Bus::kWorld,   kTypes<Hello, WorldState>);
   hears(Role::kCoordinator, Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop, Pause>);
   hears(Role::kCoordinator, Bus::kWorld,   kTypes<Hello, WorldState, RecordAck>);
   hears(Role::kWorld,       Bus::kCommand, kTypes<MissionPart, WorldState, Command, RecordAck, Stop>);
+  hears(Role::kDriver,      Bus::kWorld,   kTypes<WorldState>);
   hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);
   hears(Role::kLauncher,    Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, Stop>);

@@ -4,10 +4,14 @@
 #include "examples/driver/driver.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace ergocast::example {
 namespace {
+
+/// A driver of one robot listens for so long whether another one drives it.
+constexpr std::chrono::nanoseconds kListening = std::chrono::seconds(1);
 
 void halt_robot(auto& slot) {
   slot.commanded_mps.setZero();
@@ -16,8 +20,9 @@ void halt_robot(auto& slot) {
 
 }  // namespace
 
-Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps)
-    : me_(kRole, {run, kWorld, incarnation}), speed_limit_mps_(speed_limit_mps) {}
+Driver::Driver(RunId run, Incarnation incarnation, double speed_limit_mps,
+               std::optional<AgentId> only)
+    : me_(kRole, {run, kWorld, incarnation}), speed_limit_mps_(speed_limit_mps), only_(only) {}
 
 void Driver::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (finished_) return;
@@ -33,25 +38,56 @@ void Driver::on(const Stop& over, const Arrival&) {
 }
 
 void Driver::on(const MissionPart& part, const Arrival& arrival) {
+  if (running_ && only_) catch_up(part.header.tick);
   if (!arrival.mission_changed) return;
   if (follower().over()) return stop(follower().reason());
-  failed_ = follower().plan_problem() || me_.mission().timing.pace == Pace::kLockstep;
-  if (failed_) {
-    return stop(follower().plan_problem().value_or(
-        "the mission is in lockstep, which robots cannot be: give it pace: REALTIME"));
-  }
-  failed_ = !has_vehicles_for(me_.mission());
-  if (failed_) {
-    return stop(
-        "the mission is for other vehicles: give it vehicle { kind: POINT }, or UNICYCLE and at "
-        "most the robots' 2 rad/s");
+  if (const auto why = why_not()) {
+    failed_ = true;
+    return stop(*why);
   }
   take_roster();
   if (running_ || follower().state() != MissionState::kRunning) return;
   running_ = true;
   if (filters_again(me_.mission())) guard_.emplace(me_.mission(), 0);
   tick_ = part.header.tick;
-  next_tick_ = arrival.now;
+  begun_ = next_tick_ = arrival.now + (only_ ? kListening : std::chrono::nanoseconds(0));
+}
+
+/// Why it cannot take part.
+std::optional<std::string> Driver::why_not() const {
+  if (follower().plan_problem()) return follower().plan_problem();
+  const Mission& mission = me_.mission();
+  if (mission.timing.pace == Pace::kLockstep)
+    return "the mission is in lockstep, which robots cannot be: give it pace: REALTIME";
+  if (!has_vehicles_for(mission))
+    return "the mission is for other vehicles: give it vehicle { kind: POINT }, or UNICYCLE and at "
+           "most the robots' 2 rad/s";
+  if (only_ && mission.separation.distance_m > 0 && !tells_places(mission))
+    return "a driver of one robot does not know where the others are: give the mission separation "
+           "{ lease_s }, so that agents tell each other, or drive all robots without --id";
+  return std::nullopt;
+}
+
+/// The tick of another driver may be one ahead, because it began at another moment. More means that
+/// ours were late.
+void Driver::catch_up(Tick team_tick) {
+  if (team_tick <= tick_ + 1) return;
+  skipped_ticks_ += team_tick - tick_;
+  tick_ = std::min(team_tick, me_.end_tick());
+}
+
+/// Whoever drives it already goes on. Of two that began together, the one with the greater identity
+/// gives way; later nobody does, because that may be a recording.
+void Driver::on(const WorldState& other, const Arrival& arrival) {
+  const bool begins = !running_ || arrival.now < begun_ + kListening;
+  if (!only_ || !arrival.fresh || !begins) return;
+  if (said_ && other.header.incarnation > me_.incarnation()) return;
+  for (int i = 0; i < other.vehicle_count; ++i) {
+    if (other.vehicles[static_cast<std::size_t>(i)].id != *only_) continue;
+    failed_ = true;
+    return stop("robot " + std::to_string(*only_) +
+                " is driven by another driver already: end that one first, or choose another --id");
+  }
 }
 
 /// Whether the robots can move as all kinds of agents expect it.
@@ -70,7 +106,8 @@ bool Driver::has_vehicles_for(const Mission& mission) {
 void Driver::take_roster() {
   std::map<AgentId, Author> members;
   for (const RosterEntry& entry : follower().roster()) {
-    if (entry.active_until < 0) members[entry.author.agent] = entry.author;
+    const bool ours = !only_ || entry.author.agent == *only_;
+    if (ours && entry.active_until < 0) members[entry.author.agent] = entry.author;
   }
   for (auto& [id, drive] : drives_) {
     if (!members.contains(id)) drive.author = {};
@@ -92,11 +129,15 @@ void Driver::on(const Command& command, const Arrival&) {
   if (halt) halt_robot(drive);
   if (command.header.tick > tick_ || command.header.tick <= drive.answered) return;
   drive.answered = command.header.tick;
+  const Timing& timing = me_.mission().timing;
+  const double age_s = static_cast<double>(tick_ - drive.answered) * timing.dt_s;
+  if (age_s > timing.command_hold_s) return halt_robot(drive);
   const Eigen::Vector3d allowed_mps =
       within_speed_limit(motion_of(me_.mission(), command.header.sender), command.velocity_mps);
   if (allowed_mps != command.velocity_mps) ++clamped_commands_;
   drive.commanded_mps = allowed_mps;
-  if (!guard_) drive.robot.drive(allowed_mps);
+  // Where a distance is kept, no other way than the commanded one is safe.
+  if (!guard_) drive.robot.drive(allowed_mps, me_.mission().separation.distance_m > 0);
 }
 
 /// With all places known, once a tick: what one robot may do depends on where the others are.
@@ -156,6 +197,10 @@ void Driver::say_where(Outbox& out) {
   const Box& domain = me_.mission().domain;
   const bool apart = me_.mission().separation.distance_m > 0;
   const auto parts = (drives_.size() + kMaxVehiclesPerState - 1) / kMaxVehiclesPerState;
+  // Each robot's driver says one part of what together is the state.
+  auto robots = static_cast<std::int32_t>(me_.mission().starts_m.size());
+  for (const RosterEntry& entry : follower().roster())
+    robots = std::max(robots, entry.author.agent + 1);
   auto drive = drives_.begin();
   for (std::size_t part = 0; part < parts; ++part) {
     WorldState state;
@@ -163,8 +208,9 @@ void Driver::say_where(Outbox& out) {
     state.missed_deadlines = missed_deadlines_;
     state.clamped_commands = clamped_commands_;
     state.uncounted_ticks = tick_ - me_.counted(tick_);
-    state.part = static_cast<std::int32_t>(part);
-    state.parts = static_cast<std::int32_t>(parts);
+    state.part = only_.value_or(static_cast<std::int32_t>(part));
+    state.parts = only_ ? robots : static_cast<std::int32_t>(parts);
+    state.skipped_ticks = skipped_ticks_;
     for (; drive != drives_.end() && state.vehicle_count < kMaxVehiclesPerState; ++drive) {
       Vehicle& vehicle = state.vehicles[static_cast<std::size_t>(state.vehicle_count++)];
       const auto& [id, one] = *drive;

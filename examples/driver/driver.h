@@ -7,7 +7,8 @@
 //   COMMAND_<id> → a velocity for one robot; it is held for `command_hold_s`, then the robot stops
 //
 // One driver speaks for all robots, from motion capture or from a gateway that collects their
-// positions. If it is started again it goes on at the tick that the coordinator names.
+// positions; or each robot has its own driver, which knows the place of that one alone. If it is
+// started again it goes on at the tick that the coordinator names.
 #pragma once
 
 #include <map>
@@ -28,7 +29,9 @@ class Driver {
 
   /// @param run              0: the first mission heard
   /// @param speed_limit_mps  of the robots
-  Driver(RunId run, Incarnation incarnation, double speed_limit_mps);
+  /// @param only  the one robot that it drives; nothing: all
+  Driver(RunId run, Incarnation incarnation, double speed_limit_mps,
+         std::optional<AgentId> only = {});
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
   void advance(Instant now, Outbox& out);
@@ -62,6 +65,9 @@ class Driver {
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const Command& command, const Arrival& arrival);
   void on(const Stop& over, const Arrival& arrival);
+  void on(const WorldState& other, const Arrival& arrival);
+  std::optional<std::string> why_not() const;
+  void catch_up(Tick team_tick);
   void take_roster();
   void pass_tick();
   void hold_apart();
@@ -73,14 +79,15 @@ class Driver {
 
   Participant me_;
   double speed_limit_mps_;
+  std::optional<AgentId> only_;
   std::map<AgentId, VehicleSlot> drives_;
   std::optional<SeparationFilter> guard_;
   bool running_ = false, said_ = false, finished_ = false, failed_ = false;
   bool emergency_stopped_ = false;  // by a STOP at once: the last state is still to be said
   std::string reason_;
   Tick tick_ = 0;
-  Instant next_tick_{};
-  std::int64_t missed_deadlines_ = 0, clamped_commands_ = 0;
+  Instant next_tick_{}, begun_{};
+  std::int64_t missed_deadlines_ = 0, clamped_commands_ = 0, skipped_ticks_ = 0;
 };
 
 }  // namespace ergocast::example

@@ -2,6 +2,9 @@
 // ergocast-example-driver: robots instead of the simulated world.
 #include <spdlog/spdlog.h>
 
+#include <optional>
+#include <string>
+
 #include "examples/driver/driver.h"
 #include "runtime/event_loop.h"
 #include "runtime/logging.h"
@@ -10,9 +13,9 @@
 namespace ergocast::example {
 namespace {
 
-int run(const NodeOptions& node, double speed_limit_mps) {
+int run(const NodeOptions& node, double speed_limit_mps, std::optional<AgentId> only) {
   StopSignals signals;
-  Driver driver(node.run, random_identity(), speed_limit_mps);
+  Driver driver(node.run, random_identity(), speed_limit_mps, only);
   auto opened =
       Transport::open(node.url, node.run, node.seal, subscriptions_of(Driver::kRole),
                       {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
@@ -49,11 +52,17 @@ int main(int argc, char** argv) {
                "ergocast-example-driver");
   NodeOptions node;
   double speed_limit_mps = 30;
+  std::optional<AgentId> only;
   add_node_options(app, node);
   app.add_option("--speed-limit", speed_limit_mps, "Of the robots [m/s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option(
+         "--id", only,
+         "Drive this robot alone, 0 to " + std::to_string(kMaxAgents - 1) + "; without: all robots")
+      ->check(CLI::Range(0, kMaxAgents - 1).description(""))
+      ->type_name("N");
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
-  set_up_logging("driver", node.log_level);
-  return example::run(node, speed_limit_mps);
+  set_up_logging(only ? "driver-" + std::to_string(*only) : "driver", node.log_level);
+  return example::run(node, speed_limit_mps, only);
 }

@@ -54,14 +54,14 @@ WRAPPED(Contribution, block, "_ZNK8ergocast13CoverageTable5blockERKNS_6AuthorEi"
 WRAPPED(void, average, "_ZNK8ergocast13CoverageTable7averageERN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", const CoverageTable*, Coefficients&)
 WRAPPED(void, make_forecast, "_ZN8ergocast8ForecastC1ERKNS_7MissionERKNS_6AuthorE", Forecast*, const Mission&, const Author&)
 WRAPPED(void, look_ahead, "_ZN8ergocast8Forecast10look_aheadERKNS_13CoverageTableERKSt6vectorINS_11RosterEntryESaIS5_EElRN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEE", Forecast*, const CoverageTable&, const std::vector<RosterEntry>&, Tick, Coefficients&)
-WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, hear, "_ZN8ergocast5Agent7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Agent*, const Message&, Bus, AgentId, Instant)
 WRAPPED(void, advance, "_ZN8ergocast5Agent7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Agent*, Instant, Outbox&)
 WRAPPED(Instant, next_wakeup, "_ZNK8ergocast5Agent11next_wakeupEv", const Agent*)
 WRAPPED(void, coordinate, "_ZN8ergocast11Coordinator7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", Coordinator*, Instant, Outbox&)
 WRAPPED(void, turn_world, "_ZN8ergocast5World7advanceENSt6chrono10time_pointINS_11PacingClockENS1_8durationIlSt5ratioILl1ELl1000000000EEEEEERSt6vectorINS_8OutgoingESaISA_EE", World*, Instant, Outbox&)
 WRAPPED(Instant, next_turn_of_world, "_ZNK8ergocast5World11next_wakeupEv", const World*)
-WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
-WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSH_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, tell_coordinator, "_ZN8ergocast11Coordinator7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", Coordinator*, const Message&, Bus, AgentId, Instant)
+WRAPPED(void, tell_world, "_ZN8ergocast5World7receiveERKSt7variantIJNS_5HelloENS_11MissionPartENS_12ContributionENS_11AgentStatusENS_10TeamStatusENS_4StopENS_10WorldStateENS_7CommandENS_9RecordAckENS_6DigestENS_5PauseENS_6BeaconEEENS_3BusEiNSt6chrono10time_pointINS_11PacingClockENSI_8durationIlSt5ratioILl1ELl1000000000EEEEEE", World*, const Message&, Bus, AgentId, Instant)
 WRAPPED(bool, is_held, "_ZN8ergocast7is_heldESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, counted_ticks, "_ZN8ergocast13counted_ticksESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
 WRAPPED(Tick, tick_after, "_ZN8ergocast10tick_afterESt4spanIKNS_4HoldELm18446744073709551615EEl", std::span<const Hold>, Tick)
@@ -70,6 +70,8 @@ WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm1844674407370955
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
 WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
+WRAPPED(void, hear_beacon, "_ZN8ergocast10BeaconBook4hearERKNS_6BeaconEbRKNS_6MomentE", BeaconBook*, const Beacon&, bool, const Moment&)
+WRAPPED(std::span<const Neighbour>, bodies, "_ZN8ergocast10BeaconBook6bodiesERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_6MomentE", BeaconBook*, const Eigen::Vector3d&, const Moment&)
 // clang-format on
 
 // ---- control and world
@@ -197,6 +199,38 @@ SafeVelocity bug_safe(SeparationFilter* self, const Mover& mover, const Eigen::V
     return real_safe(self, standing, wanted_mps, misjudged(self, mover, others));
   }
   return real_safe(self, mover, wanted_mps, misjudged(self, mover, others));
+}
+
+namespace {
+
+/// What a book's owner has been told.
+struct Overheard {
+  std::map<AgentId, Tick> heard;  // when the newest beacon came
+  std::map<AgentId, bool> known;  // ever
+  std::vector<Neighbour> told;
+};
+std::map<const BeaconBook*, Overheard> overheard;
+
+}  // namespace
+
+void bug_hear_beacon(BeaconBook* self, const Beacon& beacon, bool fresh, const Moment& now) {
+  if (fresh) overheard[self].heard[beacon.header.sender] = now.tick;
+  real_hear_beacon(self, beacon, fresh, now);
+}
+
+std::span<const Neighbour> bug_bodies(BeaconBook* self, const Eigen::Vector3d& x_m,
+                                      const Moment& now) {
+  const auto bodies = real_bodies(self, x_m, now);
+  Overheard& memory = overheard[self];
+  memory.told.assign(bodies.begin(), bodies.end());
+  for (Neighbour& body : memory.told) {
+    memory.known[body.id] = memory.known[body.id] || body.known;
+    if (bug("places of beacons are always new")) body.age_ticks = 0;
+    if (bug("a beacon's age counts from its arrival"))
+      body.age_ticks = std::min(body.age_ticks, now.tick - memory.heard[body.id]);
+    if (bug("nobody keeps to the lease")) body.known = memory.known[body.id];
+  }
+  return memory.told;
 }
 
 bool bug_filters_again(const Mission& mission) {

@@ -162,6 +162,21 @@ std::vector<Mistake> mistakes_between_fields() {
        "separation.disturbance_m: 1.898 is not below a quarter of a step"},
       {"time {", keeping("distance_m: 5 guard: false", "", "time { pace: REALTIME "),
        "time.command_hold_s: 0.5 is too long without separation.guard"},
+      {"time {",
+       keeping("distance_m: 20 lease_s: 2", "", "time { pace: REALTIME command_hold_s: 0.2 "),
+       "distance_m / (4 speed_limit_mps) - dt_s = 0.15"},
+      {"time {", keeping("distance_m: 5 lease_s: 2", "", "time { pace: REALTIME "),
+       "- dt_s, which is below 0 (write a greater distance_m, or a smaller dt_s"},
+      {"agents {", keeping("distance_m: 0.1 lease_s: 2", "", "agents { random_count: 256 "),
+       "separation.lease_s: is for at most 256 agents, not 257"},
+      {kLaw, keeping("distance_m: 5 lease_s: 0.2", ""),
+       "separation.lease_s: 0.2 is not between 0.5 and 1000"},
+      {kLaw, keeping("distance_m: 5 lease_s: 2 guard: true", ""),
+       "separation.lease_s: says that nobody knows all places"},
+      {kLaw, keeping("distance_m: 5 lease_s: 2", "radio_range_m: 50"),
+       "separation.lease_s: needs all agents to hear each other"},
+      {kLaw, keeping("distance_m: 5 lease_s: 2 disturbance_m: 0.1", ""),
+       "separation.lease_s: relies on bodies that stay where they stand"},
       {"agents {", keeping("distance_m: 12", "", "agents { random_count: 22 "),
        "separation.distance_m: 23 agents 12 m apart take up"},
       {"agents {", keeping("distance_m: 12", "", "agents { starts { x_m: 19 y_m: 20 } "),
@@ -653,7 +668,7 @@ agents {
 }
 world { speed_limit_mps: 100 }
 vehicle { kind: ACCELERATION max_acceleration_mps2: 1000 }
-separation { distance_m: 2 }
+separation { distance_m: 2 lease_s: 0 }
 )";
 
 /// What its kind of vehicles does not have.

@@ -44,6 +44,19 @@ const char* const kUnguardedCrowd =
     "separation { distance_m: 12 guard: false }\nworld { speed_limit_mps: 10 }\n"
     "goal_ergodic_metric: 1\ntime { command_hold_s: 0.3 }\n"
     "target { gaussians { mean_x_m: 0 mean_y_m: 0 sigma_m: 3 weight: 20 } }";
+/// Each of them knows its own place alone, and may not be heard.
+#define HEARSAY(lease)                                          \
+  "separation { distance_m: 6 lease_s: " lease                  \
+  " }\nworld { speed_limit_mps: 10 }\ngoal_ergodic_metric: 1\n" \
+  "time { command_hold_s: 0 }\n"                                \
+  "target { gaussians { mean_x_m: 50 mean_y_m: 50 sigma_m: 3 weight: 20 } }"
+const char* const kHearsayCrowd = HEARSAY("6");
+const char* const kBriefLease = HEARSAY("0.5");
+#undef HEARSAY
+const char* const kLateBeacons =
+    "delay_mean_s = 0.6\ndelay_max_s = 1.5\nswarm_bus_only = 1\nlasting_share = 1";
+const char* const kSilentLinks =
+    "clogging = 0.002\nclog_max_s = 60\nswarm_bus_only = 1\nlasting_share = 1";
 const char* const kCrowdWithInertia =
     "separation { distance_m: 20 }\nworld { speed_limit_mps: 20 }\ngoal_ergodic_metric: 1\n"
     "vehicle { kind: ACCELERATION max_acceleration_mps2: 10 }";
@@ -98,6 +111,10 @@ const Plant kPlants[] = {
     {Invariant::kDistanceKept, "a body that is not heard does not exist", "", kCrowd},
     {Invariant::kDistanceKept, "edges count afterwards", "", kCrowdInACorner},
     {Invariant::kDistanceKept, "no command is held", "loss = 0.3", kUnguardedCrowd},
+    {Invariant::kDistanceKept, "places of beacons are always new", kLateBeacons, kHearsayCrowd},
+    {Invariant::kDistanceKept, "a beacon's age counts from its arrival", kLateBeacons,
+     kHearsayCrowd},
+    {Invariant::kDistanceKept, "nobody keeps to the lease", kSilentLinks, kBriefLease},
     {Invariant::kDistanceKept, "a body needs no way to brake", "", kCrowdWithInertia},
     {Invariant::kDistanceKept, "a body looks everywhere at once", "", kCrowdOfUnicycles},
     {Invariant::kDistanceKept, "a body takes the whole gap", "", kCrowdOfUnicycles},

@@ -78,6 +78,10 @@ std::vector<Lie> lies_of_the_summary() {
        [=](const fs::path& run) { call_it_a_run(run, agent("active_until", 5)); }},
       {"covered did not count for a while", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("coverage_switched_at", 7)); }},
+      {"another program than ergocast-sim", 2,
+       [](const fs::path& run) {
+         call_it_a_run(run, [](Json& s) { s["processes"] = {{{"name", "world"}}}; });
+       }},
       {"joined at tick 3", 2,
        [=](const fs::path& run) { call_it_a_run(run, agent("active_from", 3)); }},
       {"is not one that ergocast wrote", 2,

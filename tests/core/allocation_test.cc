@@ -19,6 +19,7 @@
 #include "core/separation.h"
 #include "core/wall_following.h"
 #include "core/walls.h"
+#include "team/beacon_book.h"
 #include "tests/modes/rooms.h"
 #include "tests/support/team.h"
 
@@ -181,6 +182,38 @@ TEST(Allocations, KeepingADistanceMakesNone) {
     others.push_back({id, {500 + 30 * std::cos(id), 500 + 30 * std::sin(id), 0}, 40});
   const Mover self{0, 0, {500, 500, 0}, 40};
   EXPECT_EQ(allocations_in([&] { filter.safe(self, {30, 20, 0}, others); }), 0u);
+}
+
+TEST(Allocations, KnowingPlacesFromBeaconsMakesNone) {
+  Mission mission = test::small_mission(4);
+  mission.timing.pace = Pace::kRealtime;
+  mission.speed_limit_mps = 40;
+  mission.separation.distance_m = 30;
+  mission.separation.lease_s = 2;
+  std::vector<BeaconBook> books;
+  for (AgentId id = 0; id < 4; ++id) {
+    books.emplace_back(mission, test::author_of(id), 1);
+    books.back().note_roster(test::roster_of(4));
+  }
+  int known = 0;
+  const auto pass = [&](Tick tick) {
+    const Moment now{tick, test::at(tick * std::chrono::milliseconds(100))};
+    for (AgentId id = 0; id < 4; ++id) {
+      BeaconBook& book = books[static_cast<std::size_t>(id)];
+      book.measured(tick - 1, 1, {40.0 * id, 0, 0}, {0, 0, 0});
+      if (auto beacon = book.next(1, now)) {
+        beacon->header = {test::kRun, id, test::life_of(id), tick, tick};
+        for (BeaconBook& other : books) other.hear(*beacon, true, now);
+      }
+      for (const Neighbour& body : book.bodies({40.0 * id, 0, 0}, now)) known += body.known;
+      book.commands(now);
+    }
+  };
+  EXPECT_EQ(allocations_in([&] {
+              for (Tick tick = 0; tick < 20; ++tick) pass(tick);
+            }),
+            0u);
+  EXPECT_GT(known, 100);
 }
 
 TEST(Allocations, KeepingOutOfWallsMakesNone) {

@@ -223,6 +223,95 @@ TEST(ExampleDriver, RefusesVehiclesThatItsRobotsAreNot) {
   }
 }
 
+// ---- a driver of one robot
+// ---------------------------------------------------------------------
+
+Mission leased() {
+  Mission mission = apart();
+  mission.timing.command_hold_s = 0.5;
+  mission.separation.guard = false;
+  mission.separation.lease_s = 3;
+  return mission;
+}
+
+Driver driver_of(AgentId id, const Mission& mission, Incarnation life = kWorldLife) {
+  announce(mission);
+  Driver driver(kRun, life, kSpeedLimit_mps, id);
+  give(driver, mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
+  return driver;
+}
+
+WorldState said_by(Incarnation life, AgentId id, Tick tick) {
+  WorldState state = world_state(tick, {{100, 500, 0}});
+  state.header.incarnation = life;
+  state.vehicles[0].id = id;
+  return state;
+}
+
+TEST(DriverOfOneRobot, SaysItsPartOfTheState) {
+  Driver driver = driver_of(1, leased());
+  EXPECT_TRUE(advance(driver, at(999ms)).empty()) << "it listens first";
+  const WorldState state = state_at(driver, at(1s));
+  EXPECT_EQ(state.vehicle_count, 1);
+  EXPECT_EQ(state.vehicles[0].id, 1);
+  EXPECT_EQ(state.part, 1);
+  EXPECT_EQ(state.parts, 2);
+  give(driver, command_of(0, 0, {4, 0, 0}), at(1001ms));
+  EXPECT_EQ(state_at(driver, at(1100ms)).vehicles[0].velocity_mps.x(), 0) << "another's command";
+  give(driver, command_of(1, 1, {4, 0, 0}), at(1101ms));
+  EXPECT_EQ(state_at(driver, at(1200ms)).vehicles[0].velocity_mps.x(), 4);
+}
+
+TEST(DriverOfOneRobot, RefusesARobotThatAnotherOneDrives) {
+  Driver driver = driver_of(1, leased());
+  give(driver, said_by(77, 0, 5), at(500ms));
+  EXPECT_FALSE(driver.finished()) << "another robot";
+  give(driver, said_by(77, 1, 5), at(500ms));
+  EXPECT_TRUE(driver.failed());
+  EXPECT_NE(driver.reason().find("robot 1 is driven by another driver already"), std::string::npos);
+  EXPECT_TRUE(advance(driver, at(2s)).empty());
+}
+
+TEST(DriverOfOneRobot, WhoDrivesItAlreadyGoesOn) {
+  Driver driver = driver_of(1, leased());
+  for (int tick = 0; tick < 12; ++tick) state_at(driver, at(1s + tick * 100ms));
+  give(driver, said_by(1, 1, 5), at(2200ms));
+  EXPECT_FALSE(driver.finished());
+}
+
+TEST(DriverOfOneRobot, OfTwoThatBeginTogetherOneGivesWay) {
+  Driver less = driver_of(1, leased(), 5), greater = driver_of(1, leased(), 6);
+  const WorldState one = state_at(less, at(1s)), other = state_at(greater, at(1s));
+  give(less, other, at(1001ms));
+  give(greater, one, at(1001ms));
+  EXPECT_FALSE(less.finished());
+  EXPECT_TRUE(greater.failed());
+}
+
+TEST(DriverOfOneRobot, CatchesUpWithTheOthers) {
+  Driver driver = driver_of(1, leased());
+  const auto hears = [&](Tick tick, Instant now) {
+    MissionPart part = mission_part(1, MissionState::kRunning, roster_of(2));
+    part.header.tick = tick;
+    give(driver, part, now);
+  };
+  EXPECT_EQ(state_at(driver, at(1s)).header.tick, 0);
+  hears(1, at(1050ms));
+  EXPECT_EQ(state_at(driver, at(1100ms)).header.tick, 1) << "the others began a little earlier";
+  hears(9, at(1150ms));
+  const WorldState state = state_at(driver, at(1200ms));
+  EXPECT_EQ(state.header.tick, 10);
+  EXPECT_EQ(state.skipped_ticks, 8);
+  hears(1000000, at(1250ms));
+  EXPECT_LE(state_at(driver, at(1300ms)).header.tick, 400) << "the mission's end";
+}
+
+TEST(DriverOfOneRobot, RefusesAMissionInWhichItWouldHaveToKnowTheOthers) {
+  const Driver driver = driver_of(1, apart());
+  EXPECT_TRUE(driver.failed());
+  EXPECT_NE(driver.reason().find("lease_s"), std::string::npos);
+}
+
 TEST(ExampleRobot, TurnsBeforeItDrivesAndNeverExceedsItsSpeed) {
   Robot robot({0, 0, 0}, kSpeedLimit_mps);
   robot.drive({-100, 0, 0});

@@ -91,14 +91,20 @@ TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
   // Its time-out is no excuse: all are back long before.
   const Scenario crowded =
       team(Pace::kLockstep, "time {", "time { lockstep_timeout_s: 60", "crowded_team");
+  // Without beacons nobody moves there.
+  const Scenario hearsay = team(Pace::kRealtime, "time {",
+                                "separation { distance_m: 6 lease_s: 3 }\n"
+                                "world { speed_limit_mps: 10 }\ntime { command_hold_s: 0");
+  EXPECT_EQ(problem(fly(hearsay, 1, lab::drawn(1))), "");
   for (const Heard& heard : heard_in_the_laboratory()) {
     // A world is told of states only where bodies keep a distance.
     const bool of_bodies =
         heard.role == Role::kWorld && MessageTypes{1} << heard.type == kTypes<WorldState>;
     bool missed = false;
     for (std::uint64_t seed = 1; seed <= (never_missed(heard) ? 1 : 10) && !missed; ++seed) {
-      missed = fly(of_bodies ? crowded : real_time, seed, lab::drawn(seed), without(heard))
-                   .violation.has_value();
+      const bool of_places = MessageTypes{1} << heard.type == kTypes<Beacon>;
+      const Scenario& scenario = of_places ? hearsay : of_bodies ? crowded : real_time;
+      missed = fly(scenario, seed, lab::drawn(seed), without(heard)).violation.has_value();
     }
     EXPECT_EQ(missed, !never_missed(heard))
         << "role " << static_cast<int>(heard.role) << ", bus " << static_cast<int>(heard.bus)

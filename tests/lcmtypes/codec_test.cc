@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ergocast/agent_status_t.hpp>
 #include <ergocast/averages_t.hpp>
+#include <ergocast/beacon_t.hpp>
 #include <ergocast/command_t.hpp>
 #include <ergocast/contribution_t.hpp>
 #include <ergocast/digest_t.hpp>
@@ -43,6 +44,15 @@ void expect_header(const header_t& wire, AgentId sender) {
   EXPECT_EQ(static_cast<Incarnation>(wire.incarnation), 0x8000000000000123);
   EXPECT_EQ(wire.sequence, 4711);
   EXPECT_EQ(wire.tick, 123456789012);
+}
+
+/// docs/safety.md has what this costs on the air.
+TEST(Codec, ABeaconHasTwoBytesForEachTeammate) {
+  Beacon one = beacon();
+  for (const int team : {0, 1, 16, 64, kMaxEchoesPerMessage}) {
+    one.echo_count = team;
+    EXPECT_EQ(encoded(one).size(), static_cast<std::size_t>(122 + 2 * team));
+  }
 }
 
 TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
@@ -130,6 +140,17 @@ TEST(Codec, LcmsOwnTypesReadWhatWeWroteOfAgents) {
   EXPECT_EQ(digest_wire.entries[1].digest_incarnation, 5);
   EXPECT_EQ(digest_wire.entries[1].digest_steps, 4711);
   EXPECT_EQ(static_cast<std::uint64_t>(digest_wire.entries[1].digest_mark), 0xfedcba9876543210);
+
+  const auto beacon_wire = read_by_lcm<beacon_t>(encoded(beacon()));
+  expect_header(beacon_wire.header, 3);
+  EXPECT_EQ(beacon_wire.beacon_revision, 12);
+  EXPECT_EQ(beacon_wire.beacon_position_m[0], 1.0 / 3);
+  EXPECT_EQ(beacon_wire.beacon_velocity_mps[2], -6);
+  EXPECT_EQ(static_cast<std::uint16_t>(beacon_wire.beacon_number), 65535);
+  ASSERT_EQ(beacon_wire.echo_count, 3);
+  EXPECT_EQ(static_cast<std::uint16_t>(beacon_wire.echoes[0]), 40000);
+  EXPECT_EQ(beacon_wire.echoes[1], 0);
+  EXPECT_EQ(beacon_wire.echoes[2], 1);
 
   const auto command_wire = read_by_lcm<command_t>(encoded(command()));
   expect_header(command_wire.header, 2);

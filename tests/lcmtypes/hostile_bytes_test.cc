@@ -88,12 +88,16 @@ constexpr std::int64_t kHuge = std::numeric_limits<std::int64_t>::max();
 
 TEST(Codec, HostileCountsAreRefusedBeforeAnyDecoderSeesThem) {
   constexpr std::size_t kRosterCount = kSignatureEnd + 25, kPlanSize = kSignatureEnd + 29,
-                        kVehicleCount = kHeaderBytes + 49, kDigestCount = kHeaderBytes + 8;
+                        kVehicleCount = kHeaderBytes + 49, kDigestCount = kHeaderBytes + 8,
+                        kEchoCount = kHeaderBytes + 58;
   // The offsets are right: writing the true counts there changes nothing.
   ASSERT_EQ(with_count(mission_part(), kRosterCount, 2), encoded(mission_part()));
   ASSERT_EQ(with_count(mission_part(), kPlanSize, 300), encoded(mission_part()));
   ASSERT_EQ(with_count(world_state(), kVehicleCount, 2), encoded(world_state()));
   ASSERT_EQ(with_count(digest(), kDigestCount, 2), encoded(digest()));
+  ASSERT_EQ(with_count(beacon(), kEchoCount, 3), encoded(beacon()));
+  for (const std::int32_t count : {-1, 0, 2, 4, 256, 257, kMost, kLeast})
+    EXPECT_EQ(verdict(with_count(beacon(), kEchoCount, count)), "size") << count;
   for (const std::int32_t count :
        {-1, 0, 1, 3, 12, 13, 100, 0x01000000, 0x7fffff00, kMost, kLeast}) {
     EXPECT_EQ(verdict(with_count(mission_part(), kRosterCount, count)), "size") << count;
@@ -300,6 +304,12 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<Digest>(digest(), [](Digest& m) { m.entries[1].author.agent = -1; }),
       changed<Digest>(digest(), [](Digest& m) { m.entries[1].author.agent = kMaxAgents; }),
       changed<Digest>(digest(), [](Digest& m) { m.entries[1].steps = -1; }),
+      changed<Beacon>(beacon(), [](Beacon& m) { m.header.sender = kWorld; }),
+      changed<Beacon>(beacon(), [](Beacon& m) { m.header.tick = -1; }),
+      changed<Beacon>(beacon(), [](Beacon& m) { m.roster_revision = -1; }),
+      changed<Beacon>(beacon(), [](Beacon& m) { m.number = 0; }),
+      changed<Beacon>(beacon(), [](Beacon& m) { m.position_m.y() = kNan; }),
+      changed<Beacon>(beacon(), [](Beacon& m) { m.velocity_mps.x() = kInfinity; }),
   };
   for (std::size_t i = 0; i < std::size(lies); ++i)
     EXPECT_EQ(verdict(lies[i]), "range") << "lie " << i;

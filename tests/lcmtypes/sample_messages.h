@@ -176,10 +176,23 @@ inline Digest digest() {
   return m;
 }
 
+inline Beacon beacon() {
+  Beacon m;
+  m.header = header_of_sender(3);
+  m.roster_revision = 12;
+  m.position_m = {1.0 / 3, -2, 3};
+  m.velocity_mps = {4, 5, -6};
+  m.number = 65535;
+  m.echo_count = 3;
+  m.echoes[0] = 40000;
+  m.echoes[2] = 1;
+  return m;
+}
+
 inline std::vector<Message> every_message() {
   return {hello(), mission_part(), contribution(), agent_status(), team_status(),
           stop(),  world_state(),  command(),      record_ack(),   digest(),
-          pause(), averages(),     low_sums(),     low_averages()};
+          pause(), averages(),     low_sums(),     low_averages(), beacon()};
 }
 
 // ---- bytes

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The example driver in place of ergocast-sim; everything else is unchanged.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "tests/process/mission.h"
 #include "tests/process/record.h"
 
@@ -51,6 +55,83 @@ TEST_F(DrivenRobots, RefuseAMissionInLockstep) {
   EXPECT_EQ(wait_for(driver.child), 4) << driver.said();
   EXPECT_TRUE(driver.says("give it pace: REALTIME")) << driver.said();
   EXPECT_TRUE(coordinator.says("running")) << coordinator.said();
+}
+
+/// Each robot has a driver of its own, which knows no other place.
+class RobotsWithTheirOwnDrivers : public ByHand {
+ protected:
+  static constexpr double kDistance_m = 8, kStep_m = 1;
+
+  std::filesystem::path team_of_four() {
+    const auto file = folder_ / "four.textproto";
+    std::ofstream(file) << R"(
+      domain { size_x_m: 100 size_y_m: 100 }
+      target { gaussians { mean_x_m: 50 mean_y_m: 50 sigma_m: 12 } }
+      basis { modes_x: 8 modes_y: 8 }
+      law { u_max_mps: 10 anticipation: 0 }
+      time { dt_s: 0.1 duration_s: 1000000 pace: REALTIME command_hold_s: 0.1 admission_timeout_s: 600 }
+      agents {
+        starts { x_m: 10 y_m: 10 } starts { x_m: 90 y_m: 10 }
+        starts { x_m: 10 y_m: 90 } starts { x_m: 90 y_m: 90 }
+      }
+      world { speed_limit_mps: 10 }
+      separation { distance_m: 8 lease_s: 3 })";
+    return file;
+  }
+  /// Waits until, in the newest 30 rows, each of these robots has moved, or none has.
+  bool eventually_all(const std::vector<AgentId>& robots, bool move) {
+    return eventually([&] {
+      const auto rows = recorded_rows(out());
+      return rows.size() >= 30 && std::ranges::all_of(robots, [&](AgentId id) {
+               bool moved = false, heard = true;
+               for (auto tick = std::prev(rows.end(), 30); tick != rows.end(); ++tick) {
+                 const auto row = tick->second.find(id);
+                 heard = heard && row != tick->second.end();
+                 moved = moved || (heard && !row->second.stands());
+               }
+               return heard && moved == move;
+             });
+    });
+  }
+  double least_distance_m() {
+    double least_m = std::numeric_limits<double>::max();
+    for (const auto& [tick, rows] : recorded_rows(out())) {
+      for (auto one = rows.begin(); one != rows.end(); ++one) {
+        for (auto other = std::next(one); other != rows.end(); ++other) {
+          least_m = std::min(least_m, std::hypot(one->second.x_m - other->second.x_m,
+                                                 one->second.y_m - other->second.y_m));
+        }
+      }
+    }
+    return least_m;
+  }
+};
+
+TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver) {
+  std::filesystem::create_directory(out());
+  Program& logger = hand("ergocast-logger", {"--out", out()});
+  std::vector<Program*> drivers;
+  for (const char* id : {"0", "1", "2", "3"}) {
+    drivers.push_back(&hand("ergocast-example-driver", {"--id", id}));
+    hand("ergocast-agent", {"--id", id});
+  }
+  Program& coordinator = hand("ergocast-coordinator", {team_of_four()});
+  ASSERT_TRUE(eventually_all({0, 1, 2, 3}, true)) << coordinator.said() << drivers[2]->said();
+
+  Program& second = hand("ergocast-example-driver", {"--id", "2"});
+  EXPECT_EQ(wait_for(second.child), 4) << second.said();
+  EXPECT_TRUE(second.says("robot 2 is driven by another driver already")) << second.said();
+  EXPECT_TRUE(drivers[2]->child.running()) << drivers[2]->said();
+
+  drivers[2]->child.send(SIGKILL);
+  EXPECT_TRUE(eventually_all({0, 1, 3}, false)) << "nobody echoes for robot 2: the lease is over";
+  hand("ergocast-example-driver", {"--id", "2"});
+  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << "all are heard again";
+
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+  // The rows of a tick are as far apart in time as the drivers' ticks.
+  EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
 }
 
 }  // namespace

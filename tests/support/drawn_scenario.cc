@@ -246,6 +246,7 @@ const std::map<std::string, Rule>& rules() {
       {"Separation.position_error_m", may(either(0, number(0.01, 0.2)))},
       {"Separation.disturbance_m", may(spread(1e-4, 1e-2))},
       {"Separation.response_s", may(either(0, spread(0.01, 1)))},
+      {"Separation.lease_s", may(either(0, number(5, 50)))},
 
       {"Polygon.solid", may(kTrue)},
       {"World.walls", many(0, 2)},
@@ -362,6 +363,13 @@ void agree_on_distance(proto::Scenario& scenario) {
   if (scenario.separation().disturbance_m() >= step_m / 4)
     scenario.mutable_separation()->clear_disturbance_m();
   if (!scenario.separation().guard()) scenario.mutable_time()->clear_pace();
+  if (scenario.separation().lease_s() > 0) {
+    scenario.mutable_separation()->clear_guard();
+    scenario.mutable_separation()->clear_disturbance_m();
+    world.clear_disturbance_intensity();
+    scenario.mutable_time()->clear_pace();
+    world.clear_radio_range_m();
+  }
   proto::Agents& agents = *scenario.mutable_agents();
   for (int i = 0; i < agents.starts_size(); ++i) agents.mutable_starts(i)->set_x_m(5 + 20 * i);
 }

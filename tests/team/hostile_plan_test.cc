@@ -19,6 +19,7 @@ using test::rich_mission;
 using test::rich_mission_in_space;
 using test::with_free_domain;
 using test::with_inertia;
+using test::with_lease;
 using test::with_walls;
 using test::with_wings;
 using Bytes = std::vector<std::byte>;
@@ -311,6 +312,13 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) {
         m.starts_m.assign(kMaxAgents + 1, {17, 20, 0});
       },
+      [](Mission& m) { m = with_lease(m), m.separation.guard = true; },
+      [](Mission& m) { m = with_lease(m), m.radio_range_m = 60; },
+      [](Mission& m) { m = with_lease(m), m.separation.disturbance_m = 0.001; },
+      [](Mission& m) { m = with_lease(m), m.separation.lease_s = 0.04; },  // four ticks
+      [](Mission& m) { m = with_lease(m), m.separation.lease_s = 101; },
+      [](Mission& m) { m = with_lease(m), m.timing.command_hold_s = 0.02; },
+      [](Mission& m) { m = with_lease(m), m.separation = {}, m.separation.lease_s = 4; },
       [](Mission& m) { m.wall_clearance_m = 1; },  // of no walls
       [](Mission& m) { m = with_walls(rich_mission_in_space()); },
       [](Mission& m) { m = with_walls(m), m.wall_clearance_m = -1; },

@@ -19,6 +19,7 @@ using test::rich_mission;
 using test::rich_mission_in_space;
 using test::with_free_domain;
 using test::with_inertia;
+using test::with_lease;
 using test::with_walls;
 using test::with_wings;
 using Bytes = std::vector<std::byte>;
@@ -115,11 +116,12 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   const auto rich = Fields(mission).texts, plain = Fields(plain_mission).texts,
              moving = Fields(with_inertia(mission)).texts,
              flying = Fields(with_wings(mission)).texts, walled = Fields(with_walls(mission)).texts,
-             freed = Fields(with_free_domain(rich_mission())).texts;
+             freed = Fields(with_free_domain(rich_mission())).texts,
+             leased = Fields(with_lease(mission)).texts;
   ASSERT_EQ(rich.size(), plain.size());
   for (std::size_t i = 0; i < rich.size(); ++i)
     EXPECT_TRUE(rich[i] != plain[i] || moving[i] != plain[i] || flying[i] != plain[i] ||
-                walled[i] != plain[i] || freed[i] != plain[i])
+                walled[i] != plain[i] || freed[i] != plain[i] || leased[i] != plain[i])
         << "default: field " << i;
   expect_travels(mission);
   expect_travels(rich_mission());
@@ -127,6 +129,7 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   expect_travels(with_wings(rich_mission()));
   expect_travels(with_free_domain(rich_mission()));
   expect_travels(with_walls(rich_mission()));
+  expect_travels(with_lease(rich_mission()));
 }
 
 // Two swapped switches would not show if both are true.

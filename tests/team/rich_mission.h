@@ -79,8 +79,9 @@ inline Mission rich_mission() {
   mission.separation.position_error_m = 0.15;
   mission.separation.disturbance_m = 0.22;
   mission.separation.response_s = 1.1;
-  mission.wall_clearance_m = 0;  // of none: with_walls()
-  mission.vehicle = {};          // inertia allows none of these: with_inertia()
+  mission.separation.lease_s = 0;  // of bodies that hear each other: with_lease()
+  mission.wall_clearance_m = 0;    // of none: with_walls()
+  mission.vehicle = {};            // inertia allows none of these: with_inertia()
   mission.wait_for_logger = false;
   return mission;
 }
@@ -106,6 +107,18 @@ inline Mission with_inertia(Mission mission) {
   mission.separation = {};
   mission.separation.distance_m = 0.65;
   mission.separation.guard = true;
+  return mission;
+}
+
+/// Of bodies each of which knows its own place alone, and that hear each other everywhere.
+inline Mission with_lease(Mission mission) {
+  mission.radio_range_m = 0;
+  mission.separation.guard = false;
+  mission.separation.lease_s = 4.25;
+  mission.separation.position_error_m = 0.05;
+  mission.separation.disturbance_m = 0;
+  mission.timing.dt_s = 0.01;
+  mission.timing.command_hold_s = 0;
   return mission;
 }
 

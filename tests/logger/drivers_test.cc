@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The record of robots each of which has a driver of its own.
+#include <map>
+
+#include "tests/logger/record.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+Mission driven(int agents) {
+  Mission mission = small_mission(agents);
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.tick_count = 40;
+  mission.timing.command_hold_s = 0;
+  mission.speed_limit_mps = 40;
+  mission.separation.distance_m = 30;
+  mission.separation.lease_s = 2;
+  return mission;
+}
+
+/// What the driver of robot `id` says.
+WorldState part_of(AgentId id, int robots, Tick tick) {
+  WorldState state = world_state(tick, {{100.0 * (id + 1), 500 + static_cast<double>(tick), 0}});
+  state.header.incarnation = 100 + static_cast<Incarnation>(id);
+  state.vehicles[0].id = id;
+  state.part = id;
+  state.parts = robots;
+  return state;
+}
+
+TEST(RecordOfDrivers, JoinsWhatTheySay) {
+  Record record(driven(3));
+  for (Tick tick = 0; tick < 10; ++tick) {
+    for (const AgentId id : {2, 0, 1}) record.tell(part_of(id, 3, tick), at(tick * 100ms));
+  }
+  const auto rows = record.trajectory_rows();
+  ASSERT_EQ(rows.size(), 9u * 3);
+  EXPECT_EQ(number(rows[5], 0), 1);
+  EXPECT_EQ(number(rows[5], 2), 2);
+  EXPECT_EQ(number(rows[5], 3), 300);
+  EXPECT_EQ(number(rows[5], 4), 501);
+}
+
+TEST(RecordOfDrivers, HasTheOthersRowsWhereOneIsNotHeard) {
+  Record record(driven(3));
+  for (Tick tick = 0; tick < 40; ++tick) {
+    for (const AgentId id : {2, 0, 1}) {
+      if (id != 1 || tick < 10 || tick >= 20) record.tell(part_of(id, 3, tick), at(tick * 100ms));
+    }
+  }
+  record.recorder.stop("enough");
+  std::map<AgentId, int> rows;
+  for (const std::string& row : record.trajectory_rows())
+    ++rows[static_cast<AgentId>(number(row, 2))];
+  EXPECT_EQ(rows[0], 39);
+  EXPECT_EQ(rows[2], 39);
+  EXPECT_EQ(rows[1], 39 - 11) << "its last row before needs the state after, too";
+  EXPECT_EQ(record.recorder.facts().gaps, 0);
+}
+
+}  // namespace
+}  // namespace ergocast
