@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <type_traits>
 
 #include "core/free_gains.h"
 #include "core/require.h"
@@ -247,7 +248,7 @@ template <class Value, int kCount, std::size_t kTables>
 ERGOCAST_VECTORIZED_PART void contract_some(
     const std::array<const BasisAt::Table*, kTables>& along_z, const Basis& basis,
     const double* weights, int first, std::array<Slab, kTables>& slabs) {
-  constexpr int kWidth = sizeof(Value) / sizeof(double);
+  constexpr int kWidth = std::is_same_v<Value, double> ? 1 : 4;
   Value sums[kTables][kCount] = {};
   const double* slab = weights + first;
   for (int l = 0; l < basis.modes_z; ++l, slab += basis.modes_x * basis.modes_y) {

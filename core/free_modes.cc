@@ -29,11 +29,17 @@ int part_of(double scaled, int cells) {
   return std::clamp(part, 0, cells * kPartsPerCell - 1);
 }
 
+/// The middle of a place in the grid, in cells.
+Eigen::Vector2d middle_of(int place, int rows) {
+  const int column = place / rows, row = place % rows;
+  return {column + 0.5, row + 0.5};
+}
+
 }  // namespace
 
 Eigen::Vector2d FreeModes::center_m(int cell) const {
   const int at = place[static_cast<std::size_t>(cell)];
-  return origin_m + cell_m().cwiseProduct(Eigen::Vector2d(at / rows + 0.5, at % rows + 0.5));
+  return origin_m + cell_m().cwiseProduct(middle_of(at, rows));
 }
 
 FreePlace::FreePlace(const Eigen::Vector2d& x_m, const FreeModes& table) : modes(&table) {
@@ -48,8 +54,7 @@ FreePlace::FreePlace(const Eigen::Vector2d& x_m, const FreeModes& table) : modes
                    part_of(scaled.y(), table.rows);
   cell = table.owner[static_cast<std::size_t>(part)];
   const int at = table.place[static_cast<std::size_t>(cell)];
-  const Eigen::Vector2d middle(at / table.rows + 0.5, at % table.rows + 0.5);
-  offset = (scaled - middle).cwiseMax(-0.5).cwiseMin(0.5);
+  offset = (scaled - middle_of(at, table.rows)).cwiseMax(-0.5).cwiseMin(0.5);
   const int a = offset.x() < 0 ? -1 : 1, b = offset.y() < 0 ? -1 : 1;
   const double x = std::abs(offset.x()), y = std::abs(offset.y());
   const Around near = around(table, cell);

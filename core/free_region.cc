@@ -49,7 +49,8 @@ FreeRegion::FreeRegion(const Rings& walls, const Box& domain, double kept_m, int
 }
 
 Eigen::Vector2d FreeRegion::center_m(int cell) const {
-  const Eigen::Vector2d share((cell % columns_ + 0.5) / columns_, (cell / columns_ + 0.5) / rows_);
+  const int column = cell % columns_, row = cell / columns_;
+  const Eigen::Vector2d share((column + 0.5) / columns_, (row + 0.5) / rows_);
   return domain_.origin_m.head<2>() + share.cwiseProduct(domain_.size_m.head<2>());
 }
 

@@ -148,7 +148,7 @@ class Reader {
     number(value), holds(value >= least && value <= most);
   }
   void small(std::int32_t& value, std::int32_t most) {
-    value = static_cast<std::int8_t>(byte());
+    value = std::to_integer<std::int32_t>(byte());
     holds(value >= 0 && value <= most);
   }
   void vector(Eigen::Vector3d& value) {

@@ -19,6 +19,7 @@
 #include "lab/simulation.h"
 #include "scenario/scenario.h"
 #include "team/plan.h"
+#include "text/read_number.h"
 
 namespace ergocast::mujoco {
 namespace {
@@ -70,12 +71,12 @@ class Camera {
     if (model != model_) look_at(model);
     mjv_updateScene(model, data, &option_, nullptr, &camera_, mjCAT_ALL, &scene_);
     mjr_render(view_, &scene_, &context_);
-    const auto row = static_cast<std::size_t>(3 * view_.width);
-    std::vector<unsigned char> pixels(row * static_cast<std::size_t>(view_.height)), upright;
+    const std::ptrdiff_t row = 3 * std::ptrdiff_t{view_.width};
+    std::vector<unsigned char> pixels(static_cast<std::size_t>(row * view_.height)), upright;
     mjr_readPixels(pixels.data(), nullptr, view_, &context_);
     for (int y = view_.height - 1; y >= 0; --y) {
-      const auto from = pixels.begin() + static_cast<std::ptrdiff_t>(row) * y;
-      upright.insert(upright.end(), from, from + static_cast<std::ptrdiff_t>(row));
+      const auto from = pixels.begin() + row * y;
+      upright.insert(upright.end(), from, from + row);
     }
     return upright;
   }
@@ -149,6 +150,12 @@ int fly(const Mission& mission, const RobotDesign& design, const Film& film) {
   return 0;
 }
 
+bool read_whole(const char* text, int& number) {
+  const auto read = read_number<int>(text);
+  number = read.value_or(0);
+  return number > 0;
+}
+
 int run(int argc, char** argv) {
   if (argc < 5) {
     std::fprintf(stderr, "usage: %s SCENARIO discs|quadrotors WIDTH HEIGHT [STILL.ppm TICK]\n",
@@ -166,9 +173,12 @@ int run(int argc, char** argv) {
     return 3;
   }
   Film film;
-  film.width = std::atoi(argv[3]);
-  film.height = std::atoi(argv[4]);
-  if (argc > 6) film.still = argv[5], film.still_tick = std::atoi(argv[6]);
+  if (!read_whole(argv[3], film.width) || !read_whole(argv[4], film.height) ||
+      (argc > 6 && !read_whole(argv[6], film.still_tick))) {
+    std::fprintf(stderr, "%s: WIDTH, HEIGHT and TICK are whole numbers above 0\n", argv[0]);
+    return 2;
+  }
+  if (argc > 6) film.still = argv[5];
   const bool rolls = std::strcmp(argv[2], "discs") == 0;
   return fly(std::get<Scenario>(loaded).mission(), rolls ? kDiscs : kQuadrotors, film);
 }
