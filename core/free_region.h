@@ -41,6 +41,13 @@ class FreeRegion {
   /// The length of the shortest way from the centre of a cell to that of each, along neighbours: at
   /// most 8 % too long. Infinite where there is none.
   std::vector<double> ways_m(int from) const;
+  /// The neighbour through which the shortest of these ways leads; the cell itself at their end and
+  /// where there is none.
+  int nearer(const std::vector<double>& ways_m, int cell) const;
+  /// The free cell nearest to `x_m`, of those at most `kNiche` cells away along an axis; nothing if
+  /// all of them are solid.
+  std::optional<int> free_cell_near(const Eigen::Vector2d& x_m) const;
+  static constexpr int kNiche = 3;
 
  private:
   void join(const Rings& walls, double kept_m);
