@@ -150,18 +150,14 @@ int FreeRegion::nearer(const std::vector<double>& ways_m, int cell) const {
 }
 
 std::optional<int> FreeRegion::free_cell_near(const Eigen::Vector2d& x_m) const {
-  const int cell = cell_at(x_m), column = cell % columns_, row = cell / columns_;
   std::optional<int> best;
   double best_m2 = std::numeric_limits<double>::infinity();
-  for (int r = std::max(0, row - kNiche); r <= std::min(rows_ - 1, row + kNiche); ++r) {
-    for (int c = std::max(0, column - kNiche); c <= std::min(columns_ - 1, column + kNiche); ++c) {
-      const int near = r * columns_ + c;
-      const double apart_m2 = (center_m(near) - x_m).squaredNorm();
-      if (part_[static_cast<std::size_t>(near)] < 0 || apart_m2 >= best_m2) continue;
-      best_m2 = apart_m2;
-      best = near;
-    }
-  }
+  for_cells_near(x_m, [&](int cell) {
+    const double apart_m2 = (center_m(cell) - x_m).squaredNorm();
+    if (apart_m2 >= best_m2) return;
+    best_m2 = apart_m2;
+    best = cell;
+  });
   return best;
 }
 

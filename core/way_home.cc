@@ -23,8 +23,12 @@ constexpr double kCircles = 3;
 constexpr double kCorners = 3;
 /// Standard deviations of a way that is disturbed.
 constexpr double kWayDeviations = 4;
+/// Of a clearance, what rounding may take.
+constexpr double kRounded = 1e-9;
 /// The cosine of the angle beyond which a vehicle turns before it goes on.
-constexpr double kAhead = 0.9;
+constexpr double kAhead = 0.99;
+/// The same of a fixed wing, if it does not turn farther in a tick.
+constexpr double kAheadOfWings = 0.9;
 /// The speed that says where a unicycle is to look, as a share of its own.
 constexpr double kLookingShare = 1e-6;
 
@@ -44,13 +48,17 @@ WayHome::WayHome(const Mission& mission, AgentId id)
       rest_from_(rest_from(mission, id)),
       speed_mps_(home_speed_mps(mission, id)),
       slack_s_(slack_s(mission)),
+      ahead_(motion_.vehicle.min_speed_mps == 0
+                 ? kAhead
+                 : std::min(kAheadOfWings,
+                            std::cos(std::min(motion_.vehicle.max_turn_radps * motion_.dt_s,
+                                              std::numbers::pi / 2)))),
       drift_(kWayDeviations * mission.disturbance_intensity / speed_mps_),
       walls_(mission.walls) {
   if (walls_.empty()) return;
   const double kept_m = kept_from_walls_m(mission, motion_);
   region_.emplace(walls_, mission.domain, kept_m);
-  // The filter keeps the rest, and leads along a wall that is just in the way.
-  seen_m_ = kept_m / 2;
+  seen_m_ = kept_m * (1 - kRounded);
   if (const auto cell = region_->free_cell_near(home_m_.head<2>()))
     ways_m_ = region_->ways_m(*cell);
 }
@@ -97,12 +105,26 @@ bool WayHome::clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) con
   return clear;
 }
 
+/// Through which of the cells around it, of those that can be seen, the way is shortest.
+std::optional<int> WayHome::first_cell(const Eigen::Vector3d& x_m) const {
+  std::optional<int> best;
+  double best_m = std::numeric_limits<double>::infinity();
+  region_->for_cells_near(x_m.head<2>(), [&](int cell) {
+    const Eigen::Vector2d center_m = region_->center_m(cell);
+    const double way_m =
+        length_of(on_ground(center_m) - x_m) + ways_m_[static_cast<std::size_t>(cell)];
+    if (way_m >= best_m || !clear(x_m, center_m)) return;
+    best_m = way_m;
+    best = cell;
+  });
+  return best ? best : region_->free_cell_near(x_m.head<2>());
+}
+
 /// The station, or of the cells on the way to it the farthest that can be seen.
 Eigen::Vector3d WayHome::next_place_m(const Eigen::Vector3d& x_m) {
-  if (!region_ || clear(x_m, home_m_.head<2>())) return home_m_;
-  if (!cell_ || !clear(x_m, region_->center_m(*cell_)))
-    cell_ = region_->free_cell_near(x_m.head<2>());
-  if (!cell_ || ways_m_.empty()) return home_m_;
+  if (!region_ || ways_m_.empty() || clear(x_m, home_m_.head<2>())) return home_m_;
+  if (!cell_ || !clear(x_m, region_->center_m(*cell_))) cell_ = first_cell(x_m);
+  if (!cell_) return home_m_;
   for (int next = region_->nearer(ways_m_, *cell_);
        next != *cell_ && clear(x_m, region_->center_m(next));
        next = region_->nearer(ways_m_, *cell_))
@@ -137,7 +159,7 @@ Eigen::Vector3d WayHome::turning_mps(const Eigen::Vector3d& to_m, double way_m,
   const Eigen::Vector3d looks =
       now_mps > 0 ? Eigen::Vector3d(v_mps / now_mps) : Eigen::Vector3d(1, 0, 0);
   const double speed = std::max(slowest_mps, speed_mps(way_m));
-  if (looks.dot(to_m) >= kAhead * apart_m) return to_m * (speed / apart_m);
+  if (looks.dot(to_m) >= ahead_ * apart_m) return to_m * (speed / apart_m);
   if (slowest_mps > 0) return {0, 0, 0};
   return to_m * (kLookingShare * speed_mps_ / apart_m);
 }

@@ -48,6 +48,7 @@ class WayHome {
   double way_m(const Eigen::Vector3d& x_m) const;
   double slack_s(const Mission& mission) const;
   bool clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) const;
+  std::optional<int> first_cell(const Eigen::Vector3d& x_m) const;
   Eigen::Vector3d next_place_m(const Eigen::Vector3d& x_m);
   double speed_mps(double way_m) const;
   Eigen::Vector3d turning_mps(const Eigen::Vector3d& to_m, double way_m,
@@ -57,6 +58,7 @@ class WayHome {
   Eigen::Vector3d home_m_;
   Tick rest_from_;
   double speed_mps_, slack_s_;
+  double ahead_;  // the cosine of the angle within which it goes on
   double drift_;  // 4 σ / v: with √ of the way's time what disturbances cost
   Rings walls_;
   double seen_m_ = 0;                 // how far a straight way keeps from walls
