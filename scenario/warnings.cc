@@ -139,6 +139,25 @@ void warn_of_crowded_ways_home(const Mission& mission, Findings& findings) {
   }
 }
 
+/// Who is home stands in the way of who is not.
+void warn_of_tight_stations(const Mission& mission, Findings& findings) {
+  const auto team = static_cast<AgentId>(mission.starts_m.size());
+  for (AgentId one = 0; one < team && mission.separation.distance_m > 0; ++one) {
+    const auto home_m = station_of(mission, one);
+    const double passage_m = 2 * start_distance_m(mission, one, one);
+    for (AgentId other = 0; home_m && other < one; ++other) {
+      const auto their_m = station_of(mission, other);
+      if (!their_m || (*home_m - *their_m).norm() >= passage_m) continue;
+      return findings.add("agents.kind",
+                          "agents " + std::to_string(other) + " and " + std::to_string(one) +
+                              " have stations that nobody passes between: who comes home first "
+                              "may shut others out",
+                          "write stations at least " + shortest(rounded_up(passage_m)) +
+                              " m apart, or accept it for one row that all can reach from a side");
+    }
+  }
+}
+
 /// A vehicle that follows late needs room to stop.
 void warn_of_late_vehicles(const Mission& mission, Findings& findings) {
   if (mission.separation.distance_m == 0 || mission.separation.response_s == 0) return;
@@ -228,6 +247,7 @@ void warn(const Mission& mission, const DensityGrid& density, Findings& findings
   warn_of_coarse_steps(mission, findings);
   warn_of_packing(mission, findings);
   warn_of_crowded_ways_home(mission, findings);
+  warn_of_tight_stations(mission, findings);
   warn_of_late_vehicles(mission, findings);
   warn_of_footprints(mission, findings);
   warn_of_rare_modes(mission, findings);

@@ -231,6 +231,8 @@ const std::map<std::string, Rule>& rules() {
       {"Kind.band", may(draw_block)},
       {"Kind.vehicle", may(draw_block)},
       {"Kind.speed_limit_mps", may(spread(5, 20))},
+      {"Kind.station", many(0, 1)},  // in time of all: see agree()
+      {"Kind.reserve_s", may(number(0.01, 0.3))},
       {"Band.from", may(number(0, 4))},
       {"Band.to", may(number(5, 20))},
       {"Start.x_m", must(kPlace)},

@@ -127,6 +127,8 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   expect_travels(with_wings(rich_mission()));
   expect_travels(with_free_domain(rich_mission()));
   expect_travels(with_walls(rich_mission()));
+  expect_travels(with_stations(rich_mission()));
+  expect_travels(with_stations(rich_mission_in_space()));
 }
 
 // Two swapped switches would not show if both are true.
