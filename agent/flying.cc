@@ -204,7 +204,7 @@ Eigen::Vector3d Agent::wanted(InMission& flight) {
   }
   flight.controller.set_coverage(flight.foreseen);
   if (flight.way_home && flight.way_home->begun(step.counted, step.x_m))
-    return flight.way_home->velocity_mps(step.counted, step.body_m, step.body_mps);
+    return flight.way_home->velocity_mps(step.body_m, step.body_mps);
   return flight.controller.command(me_.id(), step.counted, step.x_m, *step.basis_at);
 }
 
@@ -221,7 +221,6 @@ Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& want
       flight.separation->safe({me_.id(), tick, x_m, limit_mps, flight.step.body_mps}, aim_mps,
                               flight.bodies.neighbours(mission()));
   if (flight.follower) flight.follower->note(safe.wall);
-  if (goes_home) flight.way_home->note(safe.blocked && !safe.wall);
   status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
   status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
   status_.blocked_ticks += safe.blocked ? 1 : 0;

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "core/geometry.h"
-#include "core/noise.h"
 #include "core/separation.h"
 #include "core/station.h"
 #include "core/walls.h"
@@ -22,8 +21,6 @@ constexpr double kTurnsRound = 3;
 constexpr double kCircles = 3;
 /// What turns cost among walls, where there are corners.
 constexpr double kCorners = 3;
-/// Of the way it could go: who gets less far is held up.
-constexpr double kHeldUpOnWay = 0.2;
 /// Standard deviations of a way that is disturbed.
 constexpr double kWayDeviations = 4;
 /// Of a clearance, what rounding may take.
@@ -57,10 +54,7 @@ WayHome::WayHome(const Mission& mission, AgentId id)
                             std::cos(std::min(motion_.vehicle.max_turn_radps * motion_.dt_s,
                                               std::numbers::pi / 2)))),
       drift_(kWayDeviations * mission.disturbance_intensity / speed_mps_),
-      walls_(mission.walls),
-      seed_(mission.seed),
-      id_(id),
-      window_ticks_(std::max<Tick>(1, std::llround(kWindow_s / mission.timing.dt_s))) {
+      walls_(mission.walls) {
   if (walls_.empty()) return;
   const double kept_m = kept_from_walls_m(mission, motion_);
   region_.emplace(walls_, mission.domain, kept_m);
@@ -146,27 +140,9 @@ double WayHome::speed_mps(double way_m) const {
   return std::min({speed_mps_, std::sqrt(a_mps2 * way_m), way_m / (2 * dt_s)});
 }
 
-void WayHome::look_back(Tick tick, const Eigen::Vector3d& x_m) {
-  const double way_m = this->way_m(x_m), could_m = speed_mps_ * kWindow_s;
-  const bool held_up = window_ >= 0 && 2 * blocked_ticks_ >= tick - window_ &&
-                       window_way_m_ - way_m < kHeldUpOnWay * could_m;
-  window_ = tick;
-  window_way_m_ = way_m;
-  blocked_ticks_ = 0;
-  if (!held_up || !motion_.domain.planar()) return;
-  const RandomBits bits = random_words(seed_, Purpose::kHand, static_cast<std::uint32_t>(id_),
-                                       static_cast<std::uint64_t>(tick));
-  side_ = bits.first >> 63 == 0 ? 1 : -1;
-  // Half a window to two.
-  aside_until_ = tick + window_ticks_ * (1 + static_cast<Tick>(bits.first & 3)) / 2;
-}
-
-Eigen::Vector3d WayHome::velocity_mps(Tick tick, const Eigen::Vector3d& x_m,
-                                      const Eigen::Vector3d& v_mps) {
+Eigen::Vector3d WayHome::velocity_mps(const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps) {
   const Eigen::Vector3d at_m = anchor_m(motion_, x_m, v_mps);
-  if (window_ < 0 || tick - window_ >= window_ticks_) look_back(tick, at_m);
-  Eigen::Vector3d to_m = next_place_m(at_m) - at_m;
-  if (tick < aside_until_) to_m = Eigen::Vector3d(-side_ * to_m.y(), side_ * to_m.x(), 0);
+  const Eigen::Vector3d to_m = next_place_m(at_m) - at_m;
   const double apart_m = length_of(to_m), way_m = length_of(home_m_ - at_m);
   if (apart_m == 0) return {0, 0, 0};
   if (motion_.vehicle.max_turn_radps > 0) return turning_mps(to_m, way_m, v_mps);

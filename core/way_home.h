@@ -12,10 +12,6 @@
 // loses: with inertia 3 v/A, to turn round and to brake; to turn on the spot π/ω and for a fixed
 // wing three circles, three times as much among walls; what disturbances, old commands in real time
 // and a late answer may cost. Detours around teammates are not in it: reserve_s is for those.
-//
-// In a plane an agent that teammates hold up goes aside: every kWindow_s it looks back, and if it
-// has got less than a fifth as far as it could and was blocked for half of the time, it goes at a
-// right angle to its way for 1 to 4 s, on a random side.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,18 +41,13 @@ class WayHome {
   bool begun() const { return begun_; }
 
   /// What to ask the filter for on the way, and at the station to stay there; ‖v‖ ≤
-  /// home_speed_mps(). A function of the seed and of the calls so far. Does not allocate.
-  Eigen::Vector3d velocity_mps(Tick tick, const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps);
-  /// Whether a teammate was in the way of that.
-  void note(bool blocked) { blocked_ticks_ += blocked ? 1 : 0; }
-
-  static constexpr double kWindow_s = 2;
+  /// home_speed_mps(). Does not allocate.
+  Eigen::Vector3d velocity_mps(const Eigen::Vector3d& x_m, const Eigen::Vector3d& v_mps);
 
  private:
   double way_m(const Eigen::Vector3d& x_m) const;
   double slack_s(const Mission& mission) const;
   bool clear(const Eigen::Vector3d& x_m, const Eigen::Vector2d& to_m) const;
-  void look_back(Tick tick, const Eigen::Vector3d& x_m);
   std::optional<int> first_cell(const Eigen::Vector3d& x_m) const;
   Eigen::Vector3d next_place_m(const Eigen::Vector3d& x_m);
   double speed_mps(double way_m) const;
@@ -75,14 +66,6 @@ class WayHome {
   std::vector<double> ways_m_;        // from its cells to that of the station
   std::optional<int> cell_;           // of the way, the farthest that can be seen
   bool begun_ = false;
-  std::uint64_t seed_;
-  AgentId id_;
-  Tick window_ticks_;
-  Tick window_ = -1;  // its first tick; −1: none yet
-  double window_way_m_ = 0;
-  Tick blocked_ticks_ = 0;  // in the window
-  Tick aside_until_ = 0;
-  double side_ = 1;  // 1: to the left
 };
 
 }  // namespace ergocast
