@@ -19,6 +19,7 @@ using test::rich_mission;
 using test::rich_mission_in_space;
 using test::with_free_domain;
 using test::with_inertia;
+using test::with_stations;
 using test::with_walls;
 using test::with_wings;
 using Bytes = std::vector<std::byte>;
