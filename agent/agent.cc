@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/require.h"
+#include "core/station.h"
 
 namespace ergocast {
 namespace {
@@ -49,6 +50,7 @@ Agent::InMission::InMission(const Mission& mission, const RosterEntry& self, Tic
   if (filters_commands(mission, self.author.agent))
     separation.emplace(mission, unguarded_hold_ticks(mission));
   if (follows_walls(mission)) follower.emplace(mission, self.author.agent);
+  if (station_of(mission, self.author.agent)) way_home.emplace(mission, self.author.agent);
   table.add_row(self.author);  // before any other incarnation could take its place
   table.set_quality(self.author, sensors.of(self.kind).quality);
   published.resize(static_cast<std::size_t>(table.block_count()));
@@ -308,6 +310,14 @@ AgentPhase Agent::phase() const {
   return flight->running_since ? AgentPhase::kRunning : AgentPhase::kWaiting;
 }
 
+/// What it says of itself: phase(), and whether it goes home or rests.
+AgentPhase Agent::phase_in(const InMission& flight) const {
+  const AgentPhase phase = this->phase();
+  if (phase != AgentPhase::kRunning || !flight.way_home) return phase;
+  if (rests(mission(), me_.id(), flight.step.counted)) return AgentPhase::kResting;
+  return flight.way_home->begun() ? AgentPhase::kReturning : phase;
+}
+
 bool Agent::failed() const {
   const auto* const end = std::get_if<Finished>(&state_);
   return end != nullptr && end->failed;
@@ -343,6 +353,7 @@ Tick Agent::oldest_news(const InMission& flight) const {
   Tick oldest = 0;
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(flight.step.tick)) continue;
+    if (rests(mission(), entry.author.agent, flight.step.counted)) continue;
     const Tick* const news = flight.news.find(entry.author);
     const Tick last = news == nullptr ? -1 : *news;
     const Tick joined = me_.counted(entry.active_from);
@@ -370,7 +381,7 @@ AgentStatus Agent::status_of(const InMission& flight, AgentPhase phase) {
 }
 
 void Agent::publish_status(InMission& flight, Instant now, Outbox& out) {
-  AgentStatus status = status_of(flight, phase());
+  AgentStatus status = status_of(flight, phase_in(flight));
   const auto since = flight.running_since;
   if (since && me_.silent(kWorld, now, *since)) status.waiting_for = kWorld;
   me_.publish(Bus::kSwarm, status, std::max<Tick>(flight.step.tick, 0), out);

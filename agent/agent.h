@@ -23,6 +23,7 @@
 #include "core/kinds.h"
 #include "core/separation.h"
 #include "core/wall_following.h"
+#include "core/way_home.h"
 #include "team/author_map.h"
 #include "team/beacon_book.h"
 #include "team/bodies.h"
@@ -153,6 +154,7 @@ class Agent {
     Bodies bodies;                               // then, of the newest tick
     std::optional<BeaconBook> beacons;           // where only agents know their places
     std::optional<WallFollower> follower;        // where there are walls
+    std::optional<WayHome> way_home;             // if it has a station
     std::vector<RosterEntry> held_roster;        // as counted_roster() says, once there are holds
     Coefficients foreseen;
     mutable Coefficients team_coverage;   // of when it was asked for last
@@ -197,6 +199,7 @@ class Agent {
   std::int64_t max_steps(const InMission& flight, const RosterEntry& author, Instant now) const;
   std::int64_t lost() const;
   Tick oldest_news(const InMission& flight) const;
+  AgentPhase phase_in(const InMission& flight) const;
   AgentStatus status_of(const InMission& flight, AgentPhase phase);
   void publish_status(InMission& flight, Instant now, Outbox& out);
   void finish(bool failed, std::string reason, bool send_zero_velocity = false);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "agent/agent.h"
+#include "core/station.h"
 
 namespace ergocast {
 namespace {
@@ -96,7 +97,9 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   if (flight.beacons) say_place(flight, view, out);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
   if (step.tick < flight.active_from || step.held) return true;
-  flight.table.add_sample(me_.author(), *step.basis_at, flight.sensors.of(flight.kind).footprint());
+  if (!rests(mission, me_.id(), step.counted))
+    flight.table.add_sample(me_.author(), *step.basis_at,
+                            flight.sensors.of(flight.kind).footprint());
   broadcast(flight, false, out);
   return true;
 }
@@ -165,6 +168,8 @@ bool Agent::may_answer(InMission& flight) const {
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;
     if (!radio_.hears(me_.id(), entry.author.agent)) continue;
+    // Who was admitted to rest never broadcasts.
+    if (rests(mission(), entry.author.agent, me_.counted(entry.active_from))) continue;
     if (!flight.table.holds_due(entry.author, step.counted)) {
       step.waiting_for = entry.author.agent;
       return false;
@@ -198,8 +203,8 @@ void Agent::forget_silent(InMission& flight) const {
   }
 }
 
-/// What the law says; nothing while the mission is paused, so that the vehicle brakes, then stands
-/// or loiters.
+/// What the law says, or the way home; nothing while the mission is paused, so that the vehicle
+/// brakes, then stands or loiters.
 Eigen::Vector3d Agent::wanted(InMission& flight) {
   const Step& step = flight.step;
   if (step.held) return {0, 0, 0};
@@ -210,15 +215,19 @@ Eigen::Vector3d Agent::wanted(InMission& flight) {
     table.average(flight.foreseen);
   }
   flight.controller.set_coverage(flight.foreseen);
+  if (flight.way_home && flight.way_home->begun(step.counted, step.x_m))
+    return flight.way_home->velocity_mps(step.body_m, step.body_mps);
   return flight.controller.command(me_.id(), step.counted, step.x_m, *step.basis_at);
 }
 
 /// The last step of a command.
 Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps) {
   if (!flight.separation) return wanted_mps;
+  const bool goes_home = flight.way_home && flight.way_home->begun();
   const Eigen::Vector3d aim_mps =
-      flight.follower ? flight.follower->aim(flight.step.tick, flight.step.body_m, wanted_mps)
-                      : wanted_mps;
+      flight.follower && !goes_home
+          ? flight.follower->aim(flight.step.tick, flight.step.body_m, wanted_mps)
+          : wanted_mps;
   const SafeVelocity safe = safe_velocity(flight, aim_mps);
   if (flight.follower) flight.follower->note(safe.wall);
   status_.blocked_by = safe.blocked ? safe.by : kUnassigned;

@@ -42,8 +42,8 @@ void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
 void MissionWatch::on(const AgentStatus& agent, const Arrival& arrival) {
   const Instant now = arrival.now;
   reach(agent.header.tick, now);
-  reach(agent.phase == AgentPhase::kRunning ? Stage::kFlying : Stage::kReady, now);
-  if (agent.phase == AgentPhase::kRunning) progress_.world_silent = agent.waiting_for == kWorld;
+  reach(flies(agent.phase) ? Stage::kFlying : Stage::kReady, now);
+  if (flies(agent.phase)) progress_.world_silent = agent.waiting_for == kWorld;
   if (progress_.coordinator_silent) progress_.ergodic_metric = agent.ergodic_metric;
   const bool at_the_end = me_.counted(agent.header.tick) >= timing_.tick_count;
   if (agent.phase == AgentPhase::kFinished && at_the_end) reach(Stage::kOver, now);

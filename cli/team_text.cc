@@ -212,7 +212,17 @@ std::string condition_text(const AgentRow& row) {
     return "blocked by " + (by < 0 ? "an edge" : "agent " + std::to_string(by)) +
            number(" for %.0f s", row.blocked_s);
   }
-  return row.status && row.status->phase == AgentPhase::kWaiting ? "ready" : "ok";
+  if (!row.status) return "ok";
+  switch (row.status->phase) {
+    case AgentPhase::kWaiting:
+      return "ready";
+    case AgentPhase::kReturning:
+      return "goes home";
+    case AgentPhase::kResting:
+      return "rests";
+    default:
+      return "ok";
+  }
 }
 
 std::string team_table(const TeamPicture& picture, bool colour) {

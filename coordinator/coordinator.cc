@@ -51,8 +51,8 @@ Coordinator::Coordinator(CoordinatorIdentity identity, std::vector<std::byte> pl
 void Coordinator::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (me_.run() == 0) {
     const auto* status = std::get_if<AgentStatus>(&message);
-    const bool flying = status != nullptr && (status->phase == AgentPhase::kWaiting ||
-                                              status->phase == AgentPhase::kRunning);
+    const bool flying =
+        status != nullptr && (status->phase == AgentPhase::kWaiting || flies(status->phase));
     if (looking() && flying) me_.set_run(status->header.run);
     // While it searches, it knows no run. The coordinator of any run here is the one that it would
     // disturb.

@@ -4,9 +4,11 @@
 #include "core/forecast.h"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "core/forecast_sums.h"
+#include "core/station.h"
 
 namespace ergocast {
 namespace {
@@ -48,7 +50,16 @@ Forecast::Forecast(const Mission& mission, const Author& self)
       gains_(nothing_),
       by_slot_(by_tables_ ? nothing_.size() : 0),
       earlier_(nothing_),
-      later_(nothing_) {}
+      later_(nothing_) {
+  if (!any_station(mission)) return;
+  for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id)
+    rest_from_.push_back(ergocast::rest_from(mission, id));
+}
+
+Tick Forecast::rest_from(AgentId id) const {
+  const auto at = static_cast<std::size_t>(id);
+  return at < rest_from_.size() ? rest_from_[at] : std::numeric_limits<Tick>::max();
+}
 
 void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   if (!reckons_ || agent == self_.agent || agent < 0 || agent >= kMaxAgents) return;
@@ -165,6 +176,7 @@ void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>
     while (entry < roster.size() && roster[entry].author < author) ++entry;
     if (entry == roster.size() || roster[entry].author != author || author == self_) continue;
     if (!table.counts(row) || !is_newest(roster, entry, tick)) continue;
+    if (tick >= rest_from(author.agent)) continue;
     flies_[row] = 1;
     if (reckons_) reckoned_[row] = reckon(table, row, roster[entry]);
   }
@@ -188,8 +200,17 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
 
 Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, int block) const {
   const CoverageTable::BlockView said = table.view(row, block);
-  Term term{nullptr, nullptr,   nullptr,     nullptr, said.steps,
-            0,       said.tick, said.period, 0,       table.quality(row)};
+  Term term{nullptr,
+            nullptr,
+            nullptr,
+            nullptr,
+            said.steps,
+            0,
+            said.tick,
+            said.period,
+            0,
+            table.quality(row),
+            rest_from(table.author(row).agent)};
   if (!flies_[row] || said.steps == 0) return term;
   Track* track = reckoned_[row];
   if (track == nullptr || track->newest_tick < said.tick) {
@@ -251,7 +272,9 @@ double Forecast::weigh_terms(const CoverageTable& table, int block, Tick tick) {
   for (Term& term : terms_) {
     if (term.gained_steps == 0) continue;
     const Tick age = std::max<Tick>(0, tick - term.tick);
-    const double weight_s = look_ahead_.weight_s(horizon_s, term.gained_steps, age, term.period);
+    const double till_rest_s = static_cast<double>(term.rest_from - tick) * dt_s_;
+    const double weight_s =
+        look_ahead_.weight_s(std::min(horizon_s, till_rest_s), term.gained_steps, age, term.period);
     covered_s += term.quality * weight_s;
     term.share = weight_s / (static_cast<double>(term.gained_steps) * dt_s_);
   }

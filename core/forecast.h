@@ -13,6 +13,8 @@
 // r_j is f at the newest place. The row then equals one that was said there. The table is not
 // changed, the forecast is never sent, and the next block replaces these additions.
 //
+// Who will rest (core/station.h) goes on until then at the longest: h of its w_j is at most that.
+//
 // Where kinds differ (core/kinds.h), each row's part has its quality q_j in both sums, and f at a
 // place of teammate j is g_j f.
 //
@@ -53,9 +55,9 @@ class Forecast {
   void see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m);
 
   /// ĉ at `tick`; entries of blocks without any samples are 0. A row has a forecast if its author
-  /// is active in the roster without a newer incarnation, the row counts, and its gains are
-  /// possible: n is 1 + the number of such rows, for each block. Allocates only for a teammate's
-  /// first place and first row.
+  /// is active in the roster without a newer incarnation and does not rest, the row counts, and
+  /// its gains are possible: n is 1 + the number of such rows, for each block. Allocates only for a
+  /// teammate's first place and first row.
   void look_ahead(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick,
                   Coefficients& coverage);
 
@@ -89,6 +91,7 @@ class Forecast {
     Tick tick, period;
     double share;  // of the gains
     double quality;
+    Tick rest_from;  // of its author, core/station.h
   };
 
   Track* reckon(const CoverageTable& table, std::size_t row, const RosterEntry& entry);
@@ -99,6 +102,7 @@ class Forecast {
   void gather(const CoverageTable& table, const std::vector<RosterEntry>& roster, Tick tick);
   bool blocks_alike(const CoverageTable& table) const;
   Term term_of(const CoverageTable& table, std::size_t row, int block) const;
+  Tick rest_from(AgentId id) const;
   double weigh_terms(const CoverageTable& table, int block, Tick tick);
   void point_terms(const CoverageTable& table, int block);
   void add_up(Modes modes, double per_second, double* coverage);
@@ -120,6 +124,7 @@ class Forecast {
   bool alike_;      // all of them, as most often they are
   bool by_tables_;  // slots are not modes: f is computed as a whole, not mode by mode
   std::size_t most_places_;
+  std::vector<Tick> rest_from_;  // by number, where any agent has a station
   std::map<AgentId, Track> tracks_;
   std::uint64_t looks_ = 0;        // calls of look_ahead()
   std::vector<Track*> reckoned_;   // per row of the table; null: by its blocks

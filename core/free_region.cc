@@ -135,6 +135,32 @@ std::vector<double> FreeRegion::ways_m(int from) const {
   return ways;
 }
 
+int FreeRegion::nearer(const std::vector<double>& ways_m, int cell) const {
+  int best = cell;
+  double best_m = std::numeric_limits<double>::infinity();
+  const double way_m = ways_m[static_cast<std::size_t>(cell)];
+  for_joined(cell, [&](int next) {
+    const double its_m = ways_m[static_cast<std::size_t>(next)];
+    const double through_m = its_m + (center_m(next) - center_m(cell)).norm();
+    if (its_m >= way_m || through_m >= best_m) return;
+    best_m = through_m;
+    best = next;
+  });
+  return best;
+}
+
+std::optional<int> FreeRegion::free_cell_near(const Eigen::Vector2d& x_m) const {
+  std::optional<int> best;
+  double best_m2 = std::numeric_limits<double>::infinity();
+  for_cells_near(x_m, [&](int cell) {
+    const double apart_m2 = (center_m(cell) - x_m).squaredNorm();
+    if (apart_m2 >= best_m2) return;
+    best_m2 = apart_m2;
+    best = cell;
+  });
+  return best;
+}
+
 /// The largest first, and those that are none become free of any part.
 void FreeRegion::sort_parts() {
   std::vector<int> order(sizes_.size());

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -41,6 +42,23 @@ class FreeRegion {
   /// The length of the shortest way from the centre of a cell to that of each, along neighbours: at
   /// most 8 % too long. Infinite where there is none.
   std::vector<double> ways_m(int from) const;
+  /// The neighbour through which the shortest of these ways leads; the cell itself at their end and
+  /// where there is none.
+  int nearer(const std::vector<double>& ways_m, int cell) const;
+  /// Calls `each(cell)` for the cells of any part that are at most kNiche cells away from `x_m`
+  /// along an axis.
+  void for_cells_near(const Eigen::Vector2d& x_m, auto&& each) const {
+    const int cell = cell_at(x_m), column = cell % columns_, row = cell / columns_;
+    for (int r = std::max(0, row - kNiche); r <= std::min(rows_ - 1, row + kNiche); ++r) {
+      for (int c = std::max(0, column - kNiche); c <= std::min(columns_ - 1, column + kNiche);
+           ++c) {
+        if (part_[static_cast<std::size_t>(r * columns_ + c)] >= 0) each(r * columns_ + c);
+      }
+    }
+  }
+  /// The free cell nearest to `x_m`, of those; nothing if none of them is free.
+  std::optional<int> free_cell_near(const Eigen::Vector2d& x_m) const;
+  static constexpr int kNiche = 3;
 
  private:
   void join(const Rings& walls, double kept_m);

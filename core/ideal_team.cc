@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/geometry.h"
+#include "core/station.h"
 #include "core/vectorized.h"
 #include "core/vehicle.h"
 
@@ -53,7 +54,7 @@ bool IdealTeam::stands_for(const Mission& mission) {
   const bool all_is_known = mission.law.anticipation > 0 && mission.dead_reckoning;
   const bool is_exact = timing.contribution_encoding == ContributionEncoding::kDouble;
   return is_exact && timing.pace == Pace::kLockstep && mission.radio_range_m == 0 &&
-         (all_is_told || all_is_known);
+         (all_is_told || all_is_known) && !any_station(mission);
 }
 
 void IdealTeam::step() {

@@ -32,7 +32,8 @@ class IdealTeam {
   explicit IdealTeam(Mission mission, Edges edges = Edges::kReflect);
 
   /// Whether a distributed team would compute the same: lockstep, every agent hears every other,
-  /// and all coverage is broadcast each tick or known by dead reckoning, without rounding.
+  /// all coverage is broadcast each tick or known by dead reckoning, without rounding, and nobody
+  /// goes home.
   static bool stands_for(const Mission& mission);
 
   /// One tick: samples, commands from the common c_k, motion. Does not allocate.

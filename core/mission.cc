@@ -8,6 +8,7 @@
 
 #include "core/noise.h"
 #include "core/separation.h"
+#include "core/station.h"
 #include "core/walls.h"
 
 namespace ergocast {
@@ -56,7 +57,10 @@ Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block) {
   // High modes go along with low ones.
   const Tick turn = id * period / team % period + id * factor / team % factor * period;
   const Tick between = period * factor;
-  return tick + between - (tick - turn + between) % between;
+  const Tick next = tick + between - (tick - turn + between) % between;
+  if (mission.kinds.empty()) return next;
+  const Tick last = rest_from(mission, id) - 1;
+  return tick < last ? std::min(next, last) : std::max(tick + 1, mission.timing.tick_count);
 }
 
 Eigen::Vector3d start_of(const Mission& mission, AgentId id) {

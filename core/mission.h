@@ -103,6 +103,9 @@ struct AgentKind {
   double band_from = 0, band_to = 0;  ///< of |k|, by which it steers; to 0: without an end
   std::optional<VehicleLimits> vehicle = std::nullopt;  ///< nothing: the mission's
   double speed_limit_mps = 0;                           ///< 0: the mission's
+  /// Where its agents are at the end: one for each, one for all, or none; core/station.h.
+  std::vector<Eigen::Vector3d> stations_m{};
+  double reserve_s = 0;  ///< so long before the end
 };
 
 struct Mission {
@@ -149,7 +152,8 @@ inline Tick longest_period_ticks(const Timing& timing) {
 }
 
 /// The first tick after `tick` at which agent `id` broadcasts a block: the planned agents take
-/// turns within the period, and with blocks of high modes within its multiple.
+/// turns within the period, and with blocks of high modes within its multiple. One that will rest
+/// (core/station.h) says all once more at its last tick before, and then nothing till the end.
 Tick next_broadcast(const Mission& mission, AgentId id, Tick tick, int block = 0);
 
 /// The start of agent `id`: as planned, or beyond the plan drawn from the seed, outside all walls.

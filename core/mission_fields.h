@@ -41,7 +41,8 @@ struct FieldVisitor {
   void duration(int, auto&) {}     ///< Timing::tick_count, which follows from a duration
   void target(int, auto&) {}       ///< μ: agents receive it, so only one processor rounds it
   void starts(int, int, auto&) {}  ///< x and y of each; z
-  void kinds(int, const char*, auto&) {}  ///< each as a part of its own
+  void stations(int, int, const char*, auto&) {}  ///< as starts(), of a kind; may be none
+  void kinds(int, const char*, auto&) {}          ///< each as a part of its own
   void kind_name(int, const char*, auto&) {}
   void own_vehicle(int, const char*, auto&) {}  ///< a part that may be absent
   void walls(int, const char*, auto&) {}        ///< rings
@@ -141,6 +142,8 @@ void list_fields(auto& io, MaybeConst<AgentKind> auto& kind) {
   io.own_vehicle(10, "vehicle", kind.vehicle);
   io.number(11, "speed_limit_mps", kind.speed_limit_mps, limits::above(0, 1e9),
             kind.speed_limit_mps != 0);
+  io.stations(12, 13, "station", kind.stations_m);
+  io.number_unless(14, "reserve_s", kind.reserve_s, limits::between(0, 1e7), 0);
 }
 
 /// Number 1 of the plan is the version of the program that wrote it.

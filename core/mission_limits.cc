@@ -8,6 +8,7 @@
 #include "core/kinds.h"
 #include "core/mission_fields.h"
 #include "core/separation.h"
+#include "core/station.h"
 #include "core/vehicle.h"
 #include "core/walls.h"
 
@@ -52,6 +53,9 @@ class EachWithinLimits : public FieldVisitor {
     if (vehicle) list_fields(*this, *vehicle);
   }
   void contraction_center(int, int, const Eigen::Vector3d& x_m) { ok = ok && is_place(x_m); }
+  void stations(int, int, const char*, const std::vector<Eigen::Vector3d>& places_m) {
+    ok = ok && std::ranges::all_of(places_m, is_place);
+  }
 };
 
 /// Of a plane the height is 0.
@@ -183,6 +187,7 @@ bool fits(const AgentKind& kind, const Mission& mission) {
   const bool ends_in_order = kind.band_to == 0 || kind.band_from <= kind.band_to;
   const ControlLaw law = law_of(mission, *kind_named(mission, kind.name));
   return kind.footprint_sigma_m <= mission.domain.size_m.maxCoeff() && ends_in_order &&
+         (kind.reserve_s == 0 || !kind.stations_m.empty()) &&
          covers_any_mode(kind, mission.basis) && fits(law) &&
          fit_together(law, mission.disturbance_intensity, mission.domain, mission.timing.dt_s);
 }
@@ -233,7 +238,7 @@ bool within_limits(const Mission& mission) {
          fit_together(mission.law, mission.disturbance_intensity, mission.domain,
                       mission.timing.dt_s) &&
          is_team(mission) && are_kinds(mission) && bodies_fit(mission) &&
-         fits(mission.separation, mission) && walls_fit(mission);
+         fits(mission.separation, mission) && walls_fit(mission) && stations_fit(mission);
 }
 
 }  // namespace ergocast

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/kinds.h"
+#include "core/station.h"
 #include "export/exports.h"
 #include "export/foxglove.h"
 #include "export/mcap_writer.h"
@@ -99,7 +100,9 @@ class McapExport {
         shown = 1 + static_cast<int>(std::floor(last_s / end_s * kCoveragePictures));
       }
       last_s = point.t_s;
-      if (!mission_.domain.contains(point.x_m)) return;
+      if (!mission_.domain.contains(point.x_m) ||
+          rests(mission_, agent, counted_ticks(record_.run.holds, point.tick)))
+        return;
       samples += sensors.of(planned_kind(mission_, agent))
                      .sample(BasisAt(point.x_m, mission_.domain, mission_.basis), mission_.basis, 1,
                              sums.data());

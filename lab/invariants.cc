@@ -44,7 +44,14 @@ Invariants::Invariants(const Mission& mission)
     : mission_(mission),
       weights_(sobolev_weights(mission.basis, mission.domain)),
       block_count_(block_count_of(mission)),
-      wire_modes_(modes_on_wire(mission)) {}
+      wire_modes_(modes_on_wire(mission)) {
+  const bool alone = mission.separation.distance_m == 0;
+  for (AgentId id = 0; id < std::ssize(mission.starts_m); ++id) {
+    const Tick until = covers_until(mission, id);
+    if (until <= mission.timing.tick_count)
+      home_from_[id] = alone ? until : mission.timing.tick_count;
+  }
+}
 
 void Invariants::violate(double t_s, Invariant invariant, const std::string& who,
                          std::string numbers) {
@@ -81,6 +88,7 @@ void Invariants::check(double t_s, const WorldState& world) {
   last_tick_ = std::max(last_tick_, world.header.tick);
   if (mission_.separation.distance_m > 0) check_distances(t_s, world);
   check_paused(t_s, world);
+  check_home(t_s, world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (!mission_.walls.empty()) check_wall(t_s, vehicle);
@@ -149,6 +157,8 @@ void Invariants::check(double t_s, const Command& command, const TableView& spea
   const double margin_mps =
       8 * 0x1p-53 * (v_mps.norm() + contraction_mps.norm() + noise_mps.norm());
   if (u_mps <= (law.u_max_mps + push_mps) * (1 + 1e-12) + margin_mps) return;
+  const bool may_go_home = home_from_.contains(command.header.sender);
+  if (may_go_home && v_mps.norm() <= law.u_max_mps * (1 + 1e-12)) return;
   violate(t_s, Invariant::kInputsBounded, "agent " + std::to_string(command.header.sender),
           text("|u| = ", u_mps, " m/s > ", law.u_max_mps, " m/s at tick ", command.header.tick));
 }

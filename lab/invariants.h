@@ -36,6 +36,7 @@ enum class Invariant : std::uint8_t {
   kInputsBounded,
   kDistanceKept,
   kWallsKept,
+  kHomeInTime,
   kSumsBounded,
   kRelaysAnswerDigests,
   kDigestsSayWhatIsHeld,
@@ -75,6 +76,7 @@ inline constexpr std::array<std::pair<Invariant, std::string_view>,
         {Invariant::kInputsBounded, "|u| <= u_max"},
         {Invariant::kDistanceKept, "bodies keep their distance"},
         {Invariant::kWallsKept, "bodies keep out of walls"},
+        {Invariant::kHomeInTime, "agents are home in time"},
         {Invariant::kSumsBounded, "|S_mn| <= S_00 = steps dt"},
         {Invariant::kRelaysAnswerDigests, "a relay answers a digest"},
         {Invariant::kDigestsSayWhatIsHeld, "a digest says what is held"},
@@ -148,9 +150,10 @@ class Invariants {
 
   /// A process sends: positions in the domain, in no wall, and as far from each as the mission
   /// says; bodies as far apart as it says, in each tick; |u| ≤ u_max, or |v| ≤ the speed limit
-  /// where a distance is kept; |S| ≤ S_00 = steps · dt; while the mission is paused nobody moves
-  /// once he has braked; a digest that says what its sender holds; at most one answer for each
-  /// entry of a digest heard.
+  /// where a distance is kept, or on the way home; in lockstep agents with a station are there from
+  /// the reserve before the end on, or where others may be in the way, at the last tick; |S| ≤ S_00
+  /// = steps · dt; while the mission is paused nobody moves once he has braked; a digest that says
+  /// what its sender holds; at most one answer for each entry of a digest heard.
   /// @param speaker  the agent, or null
   void sent(double t_s, const Outgoing& outgoing, const TableView* speaker);
   /// An agent has heard a digest.
@@ -232,6 +235,7 @@ class Invariants {
   void check_quiet(double t_s);
   void note_positions(double t_s, const WorldState& world);
   void check_wall(double t_s, const Vehicle& vehicle);
+  void check_home(double t_s, const WorldState& world);
   void check_distances(double t_s, const WorldState& world);
   void check_counted(double t_s, const TableView& holder, const std::vector<TableView>& living);
   void check_neighbours(double t_s, const std::vector<TableView>& living);
@@ -252,6 +256,7 @@ class Invariants {
   std::map<Author, std::int64_t> own_steps_;               // after the tick begun last
   std::map<Author, Shadow> shadows_;  // of each life of an agent, from its first admission on
   std::map<Author, std::int64_t> relays_allowed_;
+  std::map<AgentId, Tick> home_from_;               // where agents have stations
   Bodies bodies_;                                   // where a distance is kept
   std::map<AgentId, Eigen::Vector3d> positions_m_;  // with a radio range only, as what follows
   std::map<std::pair<AgentId, AgentId>, double> last_apart_t_s_;  // smaller id first

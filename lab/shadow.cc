@@ -158,9 +158,10 @@ bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, T
          });
 }
 
-bool flies(const TableView& agent, const RosterEntry& entry) {
+bool flies(const Mission& mission, const TableView& agent, const RosterEntry& entry) {
   return entry.author != agent.self && !is_forgotten(entry, agent) &&
-         is_newest(*agent.roster, entry, agent.counted);
+         is_newest(*agent.roster, entry, agent.counted) &&
+         agent.counted < covers_until(mission, entry.author.agent);
 }
 
 }  // namespace
@@ -225,7 +226,7 @@ void Shadow::answer(const Mission& mission, const TableView& agent) {
   if (!mission.dead_reckoning) return;
   for (auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
-    const bool reckoned = entry != nullptr && flies(agent, *entry);
+    const bool reckoned = entry != nullptr && flies(mission, agent, *entry);
     // Of the roster as it is now: an admission may be lost with its coordinator, and come anew.
     if (!reckoned || row.active_from != entry->active_from) {
       for (Block& block : row.blocks) block.since.clear();
@@ -296,6 +297,7 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     const Block& block = row.blocks[static_cast<std::size_t>(b)];
     Part& part = parts.emplace_back(said(mission, block));
     part.quality = quality_of(mission, entry);
+    if (entry != nullptr) part.until = covers_until(mission, entry->author.agent);
     if (!flies) part.gained_steps = 0;
     if (part.gained_steps == 0 || !row.newest || row.newest->tick < block.held.tick) continue;
     for (const Place& place : block.since) {
@@ -323,7 +325,8 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
   for (const auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
     if (entry != nullptr && is_forgotten(*entry, agent)) continue;
-    team.push_back(parts_of(mission, row, entry, entry != nullptr && flies(agent, *entry)));
+    team.push_back(
+        parts_of(mission, row, entry, entry != nullptr && flies(mission, agent, *entry)));
   }
   return team;
 }
@@ -345,8 +348,10 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
       const Part& part = parts[at];
       const double gained_s = static_cast<double>(part.gained_steps) * dt_s;
       const Tick age = std::max<Tick>(0, agent.counted - part.tick);
-      const double w_s =
-          gained_s > 0 ? weight_s(mission, h_s, part.gained_steps, age, part.period) : 0;
+      const double till_rest_s = static_cast<double>(part.until - agent.counted) * dt_s;
+      const double w_s = gained_s > 0 ? weight_s(mission, std::min(h_s, till_rest_s),
+                                                 part.gained_steps, age, part.period)
+                                      : 0;
       const double share = w_s > 0 ? w_s / gained_s : 0;
       time_s += part.quality * (static_cast<double>(part.steps) * dt_s + w_s);
       for (std::size_t k = 0; k < sums.size(); ++k) {

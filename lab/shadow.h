@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -65,6 +66,7 @@ class Shadow {
     std::int64_t steps = 0, gained_steps = 0;  ///< the latter 0: it has no forecast
     Tick tick = 0, period = 0;
     double quality = 1;
+    Tick until = std::numeric_limits<Tick>::max();  ///< its author rests from then on
   };
 
   void take(const TableView& agent, const Contribution& theirs);

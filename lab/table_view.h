@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <sstream>
 #include <string>
@@ -12,6 +13,7 @@
 #include "core/basis.h"
 #include "core/coverage_table.h"
 #include "core/ids.h"
+#include "core/mission.h"
 #include "team/messages.h"
 
 namespace ergocast::lab {
@@ -46,6 +48,23 @@ inline const RosterEntry* entry_of(const std::vector<RosterEntry>& roster, const
 /// Its own row an agent counts whatever others have heard of it.
 inline bool is_forgotten(const RosterEntry& entry, const TableView& by) {
   return entry.author != by.self && entry.forgotten_at(by.answered, by.roster_revision);
+}
+
+/// The first tick, of those that count, at which an agent with a station covers no more; the
+/// greatest number without one.
+inline Tick covers_until(const Mission& mission, AgentId id) {
+  for (const AgentKind& kind : mission.kinds) {
+    if (id < kind.count && kind.stations_m.empty()) break;
+    if (id < kind.count) {
+      Tick until = mission.timing.tick_count;
+      while (static_cast<double>(mission.timing.tick_count - until) * mission.timing.dt_s <
+             kind.reserve_s * (1 - 1e-9))
+        --until;
+      return until;
+    }
+    id -= kind.count;
+  }
+  return std::numeric_limits<Tick>::max();
 }
 
 inline std::string name_of(const Author& author) {

@@ -136,7 +136,7 @@ struct Fields<AgentStatus> {
   using Generated = agent_status_t;
   static void list(auto& io, auto& m) {
     io.holds(m.header.sender >= kUnassigned);
-    io.enumerator(m.phase, AgentPhase::kFinished);
+    io.enumerator(m.phase, AgentPhase::kResting);
     io.quantity(m.ergodic_metric);
     io.quantity(m.max_staleness_s);
     io.within(m.waiting_for, kOperator, kMaxAgents - 1);

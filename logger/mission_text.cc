@@ -8,10 +8,15 @@
 namespace ergocast {
 namespace {
 
+std::string place_text(const Eigen::Vector3d& x_m, bool planar) {
+  return "x_m: " + shortest(x_m.x()) + " y_m: " + shortest(x_m.y()) +
+         (planar ? "" : " z_m: " + shortest(x_m.z()));
+}
+
 /// A kind, with a line for each field.
 class KindWriter : public FieldVisitor {
  public:
-  explicit KindWriter(const AgentKind& kind) { list_fields(*this, kind); }
+  KindWriter(const AgentKind& kind, bool planar) : planar_(planar) { list_fields(*this, kind); }
 
   std::string text() {
     enter("");
@@ -31,6 +36,14 @@ class KindWriter : public FieldVisitor {
     list_fields(*this, *vehicle);
     part_.clear();
   }
+  void number_unless(int, const char* name, double value, const Limits&, double usual) {
+    if (value != usual) put(name, shortest(value));
+  }
+  void stations(int, int, const char* name, const std::vector<Eigen::Vector3d>& places_m) {
+    enter("");
+    for (const Eigen::Vector3d& x_m : places_m)
+      fields_ += "    " + std::string(name) + " { " + place_text(x_m, planar_) + " }\n";
+  }
 
  private:
   /// Closes the block that is open, and opens `block`, unless that is empty or open already.
@@ -48,6 +61,7 @@ class KindWriter : public FieldVisitor {
                (dot == std::string::npos ? path : path.substr(dot + 1)) + ": " + value + '\n';
   }
 
+  bool planar_;
   std::string fields_, part_, block_;
 };
 
@@ -82,7 +96,7 @@ class TextWriter : public FieldVisitor {
   void kinds(int, const char*, const std::vector<AgentKind>& kinds) {
     for (const AgentKind& kind : kinds) {
       enter("agents");
-      text_ += KindWriter(kind).text();
+      text_ += KindWriter(kind, mission_.domain.planar()).text();
     }
   }
   void part(int, const char* name, const auto& part) {
@@ -116,11 +130,8 @@ class TextWriter : public FieldVisitor {
   }
   void starts(int, int, const std::vector<Eigen::Vector3d>& starts_m) {
     enter("agents");
-    for (const Eigen::Vector3d& x_m : starts_m) {
-      text_ += "  starts { x_m: " + shortest(x_m.x()) + " y_m: " + shortest(x_m.y());
-      if (!mission_.domain.planar()) text_ += " z_m: " + shortest(x_m.z());
-      text_ += " }\n";
-    }
+    for (const Eigen::Vector3d& x_m : starts_m)
+      text_ += "  starts { " + place_text(x_m, mission_.domain.planar()) + " }\n";
     put("agents.random_count", "0");
   }
 

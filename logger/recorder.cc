@@ -10,6 +10,7 @@
 
 #include "core/require.h"
 #include "core/separation.h"
+#include "core/station.h"
 
 namespace ergocast {
 namespace {
@@ -395,7 +396,7 @@ const RosterEntry* Recorder::member(AgentId id) const {
 
 void Recorder::observe(AgentId id, const Eigen::Vector3d& x_m) {
   const RosterEntry* entry = member(id);
-  if (entry != nullptr && row_counts_) {
+  if (entry != nullptr && row_counts_ && !rests(mission(), id, counted())) {
     observer_.see(mission(), entry->kind, x_m);
     if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
   }

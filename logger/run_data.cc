@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "core/kinds.h"
+#include "core/station.h"
 #include "logger/recorder.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
@@ -227,6 +228,7 @@ Coefficients coverage_of(const RunData& run, const Mission& mission) {
     const Sensor& sensor = sensors.of(planned_kind(mission, agent));
     for (const TrackPoint& point : track) {
       if (!mission.domain.contains(point.x_m) || is_held(run.holds, point.tick)) continue;
+      if (rests(mission, agent, counted_ticks(run.holds, point.tick))) continue;
       samples += sensor.sample(BasisAt(point.x_m, mission.domain, mission.basis), mission.basis, 1,
                                sums.data());
     }

@@ -94,6 +94,15 @@ class BlockReader : public FieldVisitor {
     const auto [block, field] = find_field(block_, name);
     if (block.GetReflection()->HasField(block, &field)) part(0, name, vehicle.emplace());
   }
+  void stations(int, int, const char* name, std::vector<Eigen::Vector3d>& places_m) {
+    const auto [block, field] = find_field(block_, name);
+    const auto* fields = block.GetReflection();
+    for (int i = 0; i < fields->FieldSize(block, &field); ++i) {
+      const auto& place =
+          static_cast<const proto::Start&>(fields->GetRepeatedMessage(block, &field, i));
+      places_m.emplace_back(place.x_m(), place.y_m(), place.z_m());
+    }
+  }
   void part(int, const char* name, auto& part) {
     const auto [block, field] = find_field(block_, name);
     BlockReader inner(block.GetReflection()->GetMessage(block, &field));

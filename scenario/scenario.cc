@@ -17,6 +17,7 @@
 #include "scenario/scenario.pb.h"
 #include "scenario/text.h"
 #include "scenario/validate.h"
+#include "scenario/validate_stations.h"
 #include "scenario/validate_walls.h"
 #include "scenario/warnings.h"
 #include "text/regular_file.h"
@@ -103,6 +104,8 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   make_walls(scenario);
   const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
+  validate_ways_home(mission_of(scenario), checks);
+  if (!findings.empty()) return findings.take();
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
   state->polygon_files = std::move(polygon_files);
   if (auto problem = use_free_domain(state->target_density, state->mission)) {

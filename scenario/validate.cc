@@ -14,6 +14,7 @@
 #include "scenario/utf8.h"
 #include "scenario/validate_kinds.h"
 #include "scenario/validate_separation.h"
+#include "scenario/validate_stations.h"
 #include "scenario/validate_target.h"
 #include "scenario/validate_vehicle.h"
 #include "scenario/validate_walls.h"
@@ -50,6 +51,7 @@ class Validator {
     validate_vehicle(scenario_, checks_);
     if (scenario_.has_separation()) validate_separation(scenario_, checks_);
     validate_walls(scenario_, checks_);
+    validate_stations(scenario_, checks_);
   }
 
  private:

@@ -10,6 +10,7 @@
 #include "core/kinds.h"
 #include "core/perturbation.h"
 #include "core/separation.h"
+#include "core/station.h"
 #include "scenario/checks.h"
 #include "scenario/footprint_reach.h"
 #include "scenario/hidden_mass.h"
@@ -29,6 +30,9 @@ constexpr double kReachable = 0.01;
 
 /// Of a target that walls hide from itself, docs/targets.md.
 constexpr double kMostHidden = 0.1;
+
+/// What detours around others take: this times the way past all of them, side by side.
+constexpr double kDetours = 4;
 
 /// The law's noise as a formula of scenario fields.
 std::string noise_text(const ControlLaw& law, double dt_s) {
@@ -113,6 +117,45 @@ void warn_of_packing(const Mission& mission, Findings& findings) {
                    " % of the domain: above 10 % they often block each other",
                "write a smaller distance or fewer agents, or accept it: status and summary say how "
                "long agents are blocked");
+}
+
+/// The way home that is reckoned with leads around nobody.
+void warn_of_crowded_ways_home(const Mission& mission, Findings& findings) {
+  if (mission.separation.distance_m == 0 || mission.starts_m.size() < 2) return;
+  AgentId first = 0;
+  for (int kind = 0; kind < std::ssize(mission.kinds); ++kind) {
+    const AgentKind& its = mission.kinds[static_cast<std::size_t>(kind)];
+    const double around_m =
+        start_distance_m(mission, first, first) * static_cast<double>(mission.starts_m.size());
+    const double least_s = kDetours * around_m / home_speed_mps(mission, first);
+    first += its.count;
+    if (its.stations_m.empty() || its.reserve_s >= least_s) continue;
+    findings.add(indexed("agents.kind", kind) + ".reserve_s",
+                 shortest(its.reserve_s) + " is little for " +
+                     std::to_string(mission.starts_m.size()) +
+                     " agents that keep their distance: who gives way to others on the way home "
+                     "may come late",
+                 "write at least " + shortest(rounded_up(least_s)) + ", or accept it");
+  }
+}
+
+/// Who is home stands in the way of who is not.
+void warn_of_tight_stations(const Mission& mission, Findings& findings) {
+  const auto team = static_cast<AgentId>(mission.starts_m.size());
+  for (AgentId one = 0; one < team && mission.separation.distance_m > 0; ++one) {
+    const auto home_m = station_of(mission, one);
+    const double passage_m = 2 * start_distance_m(mission, one, one);
+    for (AgentId other = 0; home_m && other < one; ++other) {
+      const auto their_m = station_of(mission, other);
+      if (!their_m || (*home_m - *their_m).norm() >= passage_m) continue;
+      return findings.add("agents.kind",
+                          "agents " + std::to_string(other) + " and " + std::to_string(one) +
+                              " have stations that nobody passes between: who comes home first "
+                              "may shut others out",
+                          "write stations at least " + shortest(rounded_up(passage_m)) +
+                              " m apart, or accept it for one row that all can reach from a side");
+    }
+  }
 }
 
 /// A vehicle that follows late needs room to stop.
@@ -203,6 +246,8 @@ void warn(const Mission& mission, const DensityGrid& density, Findings& findings
   warn_of_speed_limits(mission, findings);
   warn_of_coarse_steps(mission, findings);
   warn_of_packing(mission, findings);
+  warn_of_crowded_ways_home(mission, findings);
+  warn_of_tight_stations(mission, findings);
   warn_of_late_vehicles(mission, findings);
   warn_of_footprints(mission, findings);
   warn_of_rare_modes(mission, findings);

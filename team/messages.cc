@@ -16,7 +16,8 @@ const char* to_string(MissionState state) {
 }
 
 const char* to_string(AgentPhase phase) {
-  constexpr const char* kNames[] = {"joining", "waiting", "running", "finished"};
+  constexpr const char* kNames[] = {"joining",  "waiting",   "running",
+                                    "finished", "returning", "resting"};
   return kNames[static_cast<int>(phase)];
 }
 

@@ -100,8 +100,13 @@ struct Digest {
   std::array<DigestEntry, kMaxDigestEntriesPerMessage> entries;
 };
 
-enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished };
+/// The last two are of one that has a station, core/station.h: it goes home, it rests.
+enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished, kReturning, kResting };
 const char* to_string(AgentPhase phase);
+/// Whether it answers ticks.
+inline bool flies(AgentPhase phase) {
+  return phase == AgentPhase::kRunning || phase >= AgentPhase::kReturning;
+}
 
 struct AgentStatus {
   Header header;

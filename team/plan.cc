@@ -73,6 +73,9 @@ class PlanWriter {
   void value_if_any(int field, const Coefficients& numbers) {
     if (numbers.size() > 0) value(field, numbers);
   }
+  void places_if_any(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
+    if (!places_m.empty()) places(xy, z, places_m);
+  }
   /// Heights are in no plan if all are 0.
   void places(int xy, int z, const std::vector<Eigen::Vector3d>& places_m) {
     std::string bytes, heights;
@@ -171,6 +174,9 @@ class PlanReader {
     coefficients = Eigen::Map<const Coefficients>(numbers.data(), std::ssize(numbers));
   }
   void value_if_any(int field, Coefficients& coefficients) const { value(field, coefficients); }
+  void places_if_any(int xy, int z, std::vector<Eigen::Vector3d>& places_m) const {
+    places(xy, z, places_m);
+  }
   void places(int xy, int z, std::vector<Eigen::Vector3d>& places_m) const {
     const std::vector<double> numbers = numbers_at(xy), heights = numbers_at(z);
     for (std::size_t i = 0; i < numbers.size() / 2; ++i) {
@@ -287,6 +293,9 @@ class PlanFields : public FieldVisitor {
     });
   }
   void starts(int xy, int z, auto& starts_m) { wire_.places(xy, z, starts_m); }
+  void stations(int xy, int z, const char*, auto& places_m) {
+    wire_.places_if_any(xy, z, places_m);
+  }
   void walls(int field, const char*, auto& walls) { wire_.rings(field, walls); }
   void hidden_flag(int field, auto& value) { wire_.value(field, value); }
   void hash(int field, auto& value) { wire_.value(field, value); }

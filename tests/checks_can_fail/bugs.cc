@@ -20,6 +20,7 @@
 #include "core/hold.h"
 #include "core/separation.h"
 #include "core/vehicle.h"
+#include "core/way_home.h"
 #include "lcmtypes/codec.h"
 #include "sim/world.h"
 
@@ -68,6 +69,7 @@ WRAPPED(Tick, tick_after, "_ZN8ergocast10tick_afterESt4spanIKNS_4HoldELm18446744
 using Decoded = std::variant<Message, Refusal>;
 WRAPPED(Decoded, decode, "_ZN8ergocast6decodeESt4spanIKSt4byteLm18446744073709551615EEmRKNS_20MessageAuthenticatorESt17basic_string_viewIcSt11char_traitsIcEEPNS_15KnownSignaturesE", std::span<const std::byte>, RunId, const MessageAuthenticator&, std::string_view, KnownSignatures*)
 WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", SeparationFilter*, const Mission&, Tick)
+WRAPPED(bool, goes_home, "_ZN8ergocast7WayHome5begunElRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", WayHome*, Tick, const Eigen::Vector3d&)
 WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
 WRAPPED(void, hear_beacon, "_ZN8ergocast10BeaconBook4hearERKNS_6BeaconEbRKNS_6MomentE", BeaconBook*, const Beacon&, bool, const Moment&)
@@ -278,6 +280,11 @@ Tick bug_tick_after(std::span<const Hold> holds, Tick count) {
   return bug("the end does not move") ? count : real_tick_after(holds, count);
 }
 
+/// A second and a half late.
+bool bug_goes_home(WayHome* self, Tick counted, const Eigen::Vector3d& x_m) {
+  return real_goes_home(self, bug("an agent goes home late") ? counted - 15 : counted, x_m);
+}
+
 // ---- coverage
 // ------------------------------------------------------------------------------------
 
@@ -410,6 +417,9 @@ void bug_make_forecast(Forecast* self, const Mission& mission, const Author& aut
   if (the_dead_are_foreseen()) changed.timing.broadcast_period_ticks = kForEver;
   if (bug("a footprint is not foreseen")) {
     for (AgentKind& kind : changed.kinds) kind.footprint_sigma_m = 0;
+  }
+  if (bug("the resting are foreseen")) {
+    for (AgentKind& kind : changed.kinds) kind.stations_m.clear();
   }
   real_make_forecast(self, changed, foresees_itself() ? Author{} : author);
 }

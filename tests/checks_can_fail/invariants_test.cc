@@ -100,6 +100,11 @@ const char* const kTwoKinds =
     "agents { kind { name: \"a\" count: 2 footprint_sigma_m: 20 quality: 0.5 } "
     "kind { name: \"b\" count: 2 footprint_sigma_m: 5 } }";
 
+/// Two of them, for whom the last 20 s are a reserve.
+const char* const kStations =
+    "agents { kind { name: \"a\" count: 2 station { x_m: 8 y_m: 50 } reserve_s: 20 } "
+    "kind { name: \"b\" count: 2 } }";
+
 const Plant kPlants[] = {
     {Invariant::kPositionsInTheDomain, "the edges push outwards"},
     {Invariant::kInputsBounded, "the input is not cut"},
@@ -131,6 +136,8 @@ const Plant kPlants[] = {
     {Invariant::kWallsKept, "held commands know no walls", "loss = 0.3", kWalled},
     {Invariant::kWallsKept, "nobody brakes before walls", "", kWalledWithInertia},
     {Invariant::kWallsKept, "a loiter circle may reach into walls", "", kWalledWithWings},
+    {Invariant::kHomeInTime, "an agent goes home late", "", kStations, "", "--lockstep"},
+    {Invariant::kForecastOfWhatIsKnown, "the resting are foreseen", "", kStations},
     {Invariant::kSumsBounded, "a sum runs away"},
     {Invariant::kRelaysAnswerDigests, "an agent repeats unasked"},
     {Invariant::kDigestsSayWhatIsHeld, "a digest exaggerates"},

@@ -45,6 +45,7 @@ class Count : public FieldVisitor {
   void duration(auto&&...) { ++fields; }
   void target(auto&&...) { ++fields; }
   void starts(auto&&...) { ++fields; }
+  void stations(auto&&...) { ++fields; }
   void kinds(auto&&...) { ++fields; }
   void kind_name(auto&&...) { ++fields; }
   void own_vehicle(auto&&...) { ++fields; }

@@ -231,6 +231,8 @@ const std::map<std::string, Rule>& rules() {
       {"Kind.band", may(draw_block)},
       {"Kind.vehicle", may(draw_block)},
       {"Kind.speed_limit_mps", may(spread(5, 20))},
+      {"Kind.station", many(0, 1)},  // in time of all: see agree()
+      {"Kind.reserve_s", may(number(0.01, 0.3))},
       {"Band.from", may(number(0, 4))},
       {"Band.to", may(number(5, 20))},
       {"Start.x_m", must(kPlace)},
@@ -469,6 +471,24 @@ void agree_on_free_domain(proto::Scenario& scenario) {
   }
 }
 
+/// In the few ticks of a draw only a point gets home that begins there and that nothing delays.
+void agree_on_stations(proto::Scenario& scenario) {
+  proto::Agents& agents = *scenario.mutable_agents();
+  proto::Time& time = *scenario.mutable_time();
+  const double dt_s = time.has_dt_s() ? time.dt_s() : 0.1;
+  const bool undelayed = time.pace() == proto::Time::LOCKSTEP && !scenario.has_separation() &&
+                         scenario.world().walls_size() == 0 && all_are_points(scenario);
+  for (int i = 0; i < agents.kind_size(); ++i) {
+    proto::Kind& kind = *agents.mutable_kind(i);
+    if (i > 0 || kind.count() > 1 || !undelayed) kind.clear_station();
+    if (kind.station_size() == 0) kind.clear_reserve_s();
+    if (kind.station_size() == 0) continue;
+    *kind.mutable_station(0) = agents.starts(0);
+    time.set_duration_s(std::max(time.duration_s(), 20 * dt_s));
+    if (kind.has_reserve_s()) kind.set_reserve_s(20 * dt_s * kind.reserve_s());
+  }
+}
+
 void agree(proto::Scenario& scenario) {
   agree(*scenario.mutable_target());
   const bool planar = !scenario.domain().has_size_z_m();
@@ -502,6 +522,7 @@ void agree(proto::Scenario& scenario) {
   agree_on_vehicles(scenario);
   if (scenario.has_separation()) agree_on_distance(scenario);
   agree_on_walls(scenario);
+  agree_on_stations(scenario);
 }
 
 void add_fields(const Descriptor& type, std::set<std::string>& names) {

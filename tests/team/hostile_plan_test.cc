@@ -20,6 +20,7 @@ using test::rich_mission_in_space;
 using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
+using test::with_stations;
 using test::with_walls;
 using test::with_wings;
 using Bytes = std::vector<std::byte>;
@@ -319,6 +320,20 @@ TEST(HostilePlan, ThatBreaksALimitIsRefused) {
       [](Mission& m) { m = with_lease(m), m.separation.lease_s = 101; },
       [](Mission& m) { m = with_lease(m), m.timing.command_hold_s = 0.02; },
       [](Mission& m) { m = with_lease(m), m.separation = {}, m.separation.lease_s = 4; },
+      [](Mission& m) { m.kinds[0].reserve_s = 1; },  // of no station
+      [](Mission& m) { m = with_stations(m), m.kinds[1].reserve_s = -1; },
+      [](Mission& m) { m = with_stations(m), m.kinds[1].reserve_s = 1e6; },  // than the mission
+      [](Mission& m) { m = with_stations(m), m.kinds[1].stations_m[0].x() = 1e6; },
+      [](Mission& m) { m = with_stations(m), m.kinds[1].stations_m[0].z() = 1; },  // of a plane
+      [](Mission& m) {
+        m = with_stations(m), m.kinds[1].stations_m.push_back({30, 30, 0});
+      },  // of one agent
+      [](Mission& m) {
+        m = with_stations(m), m.kinds[0].stations_m = {{25.5, 26, 0}};
+      },  // side by side
+      [](Mission& m) {
+        m = with_stations(with_walls(m)), m.kinds[1].stations_m[0] = {41, 31, 0};
+      },
       [](Mission& m) { m.wall_clearance_m = 1; },  // of no walls
       [](Mission& m) { m = with_walls(rich_mission_in_space()); },
       [](Mission& m) { m = with_walls(m), m.wall_clearance_m = -1; },

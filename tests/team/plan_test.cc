@@ -20,6 +20,7 @@ using test::rich_mission_in_space;
 using test::with_free_domain;
 using test::with_inertia;
 using test::with_lease;
+using test::with_stations;
 using test::with_walls;
 using test::with_wings;
 using Bytes = std::vector<std::byte>;
@@ -130,6 +131,8 @@ TEST(Plan, CarriesEveryFieldOfAMission) {
   expect_travels(with_free_domain(rich_mission()));
   expect_travels(with_walls(rich_mission()));
   expect_travels(with_lease(rich_mission()));
+  expect_travels(with_stations(rich_mission()));
+  expect_travels(with_stations(rich_mission_in_space()));
 }
 
 // Two swapped switches would not show if both are true.

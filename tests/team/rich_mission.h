@@ -131,6 +131,13 @@ inline Mission with_walls(Mission mission) {
   return mission;
 }
 
+/// Whose second agent goes home.
+inline Mission with_stations(Mission mission) {
+  mission.kinds[1].stations_m = {{25, 26, 0}};
+  mission.kinds[1].reserve_s = 1.5;
+  return mission;
+}
+
 /// One that steers by the modes of its free domain, by sensors that see points.
 inline Mission with_free_domain(Mission mission) {
   mission.basis.free_domain = true;
