@@ -3,9 +3,11 @@
 // or loiters.
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "core/kinds.h"
+#include "core/station.h"
 #include "core/vehicle.h"
 #include "lab/invariants.h"
 
@@ -67,12 +69,14 @@ void Invariants::began(double t_s, const TableView& holder) {
   if (is_first) return;
   // In lockstep all that was said of the mission decides, in real time what the agent knows of it.
   const bool exact = mission_.timing.pace == Pace::kLockstep;
-  const bool held = is_held(exact ? truth_.holds() : holder.holds, holder.answered);
-  if (held && steps > before) {
+  const std::span<const Hold> holds = exact ? std::span<const Hold>(truth_.holds()) : holder.holds;
+  const bool idle = is_held(holds, holder.answered) ||
+                    rests(mission_, holder.self.agent, counted_ticks(holds, holder.answered));
+  if (idle && steps > before) {
     violate(t_s, Invariant::kNothingCountsWhilePaused, name_of(holder.self),
             text("has ", steps - before, " more steps at tick ", holder.answered));
   }
-  if (!held && before > 0 && steps == before) {
+  if (!idle && before > 0 && steps == before) {
     violate(t_s, Invariant::kWhatIsNotPausedCounts, name_of(holder.self),
             text("has no step of tick ", holder.answered));
   }

@@ -409,6 +409,43 @@ std::vector<Mistake> mistakes_of_walls() {
   };
 }
 
+/// Stations where nobody can stay, or come in time.
+std::vector<Mistake> mistakes_of_stations() {
+  const std::string start = "starts { x_m: 10 y_m: 20 }", second = " random_count: 1";
+  const auto home = [&](const std::string& kind, const std::string& said,
+                        const std::string& blocks = "", bool has_line = true) {
+    return Mistake{start, start + " kind { name: \"a\" count: 1 " + kind + " } } " + blocks + " #{",
+                   said, has_line};
+  };
+  const std::string near = "station { x_m: 12 y_m: 20 } ";
+  const std::string block = "world { speed_limit_mps: 1000 wall_clearance_m: 2 " +
+                            wall("60 10 80 10 80 30 60 30", hole("65 15 75 15 75 25 65 25")) + "}";
+  // A slot in which a body just fits, too narrow for a way that a table of cells can lead.
+  const std::string slot = "world { speed_limit_mps: 1000 wall_clearance_m: 2 " +
+                           wall("60 10 80 10 80 40 72.3 40 72.3 15 68.2 15 68.2 40 60 40") + "}";
+  const std::string one = start + second + " kind { name: \"a\" count: 2 ";
+  return {
+      {start, start + " random_count: 2 kind { name: \"a\" count: 3 " + near + near + "}",
+       "agents.kind[0].station[1]: the kind has 3 agents and 2 stations"},
+      home("reserve_s: 5", "agents.kind[0].reserve_s: has no effect without a station"),
+      home(near + "reserve_s: 60", "agents.kind[0].reserve_s: 60 is no less than the mission's 60"),
+      home("station { x_m: 12 y_m: 51 }", "agents.kind[0].station[0]: is outside the domain"),
+      home("station { x_m: 2 y_m: 20 }", "agents.kind[0].station[0]: is nearer to an edge than",
+           wings("max_turn_radps: 0.5 min_speed_mps: 2", "")),
+      home("station { x_m: 62 y_m: 12 }", "agents.kind[0].station[0]: is in a wall", block),
+      home("station { x_m: 59 y_m: 20 }", "agents.kind[0].station[0]: is 1 m from a wall", block),
+      home("station { x_m: 70.25 y_m: 20 }",
+           "agents.kind[0].station[0]: cannot be reached from the start of agent 0", slot),
+      in_space("z_m: -3 }",
+               "z_m: -3 } kind { name: \"a\" count: 1 station { x_m: 9 y_m: 9 z_m: 9 } }",
+               "agents.kind[0].station[0]: is outside the domain"),
+      home("station { x_m: 100 y_m: 20 } reserve_s: 45",
+           "agents.kind[0].station[0]: is 18.2 s away from the start of agent 0"),
+      {start, one + near + "station { x_m: 13 y_m: 20 } } } " + keeping("distance_m: 5", "", "#{"),
+       "agents.kind[0].station[1]: agents 0 and 1 have stations 1 m apart"},
+  };
+}
+
 /// What the modes of a free domain do not go with.
 std::vector<Mistake> mistakes_of_free_domains() {
   const std::string few = "basis { modes_x: 5 modes_y: 4 free_domain: true";
@@ -664,6 +701,7 @@ agents {
     name: "all" count: 2 u_max_mps: 5 noise_intensity: 0.1 noise_ceiling: 2 footprint_sigma_m: 1 quality: 1
     band { from: 0 to: 9 } vehicle { kind: ACCELERATION max_acceleration_mps2: 900 }
     speed_limit_mps: 90
+    station { x_m: 20 y_m: 20 z_m: 20 } station { x_m: 60 y_m: 20 z_m: 20 } reserve_s: 20
   }
 }
 world { speed_limit_mps: 100 }
@@ -810,7 +848,7 @@ class CheckCanFail : public Scenarios {
     for (const auto& mistakes :
          {mistakes_of_the_text(), mistakes_between_fields(), mistakes_of_targets(),
           mistakes_of_maps(), mistakes_of_kinds(), mistakes_of_free_domains(), mistakes_of_walls(),
-          mistakes_in_space()}) {
+          mistakes_of_stations(), mistakes_in_space()}) {
       for (const Mistake& mistake : mistakes) expect_mistake(mistake);
     }
   }
@@ -930,7 +968,24 @@ class CheckCanFail : public Scenarios {
         << output();
   }
 
+  /// Of two agents with these stations 2 m apart.
+  void expect_warning_of_homes(const std::string& stations, const std::string& what) {
+    std::string text = kGood;
+    text.replace(text.find("} }\n", text.find("agents {")), 4,
+                 "} starts { x_m: 12 y_m: 20 } kind { name: \"a\" count: 2 " + stations +
+                     " } }\nworld { speed_limit_mps: 20 } separation { distance_m: 2 }\n");
+    write("s.textproto", text);
+    EXPECT_EQ(ergocast({"check", file_}), 0) << output();
+    note(output());
+    EXPECT_NE(output().find("warning: " + file_.string() + ":5:"), std::string::npos) << output();
+    EXPECT_NE(output().find(what), std::string::npos) << what << ":\n" << output();
+  }
+
   void plant_warnings() {
+    expect_warning_of_homes("station { x_m: 10 y_m: 9 } station { x_m: 20 y_m: 9 } reserve_s: 0.1",
+                            "agents.kind[0].reserve_s: 0.1 is little for 2 agents");
+    expect_warning_of_homes("station { x_m: 10 y_m: 9 } station { x_m: 13 y_m: 9 } reserve_s: 20",
+                            "agents.kind: agents 0 and 1 have stations that nobody passes between");
     expect_warning_of_hidden_mass();
     expect_warning_of_footprints();
     expect_warning("perturbation: CONSTANT", "3", "at most 3: even without noise");

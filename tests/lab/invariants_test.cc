@@ -256,9 +256,9 @@ TEST_F(InvariantsTest, ATickCountsUnlessTheMissionIsPausedAsFarAsTheAgentKnows) 
     return violated_by(team);
   };
   EXPECT_EQ(violated_by_steps({0, 0, 1, 1, 0, 0, 0, 1}), "") << "admitted at tick 2";
-  EXPECT_EQ(violated_by_steps({1, 1, 1, 1, 0, 0, 1}), "nothing counts while the mission is paused");
+  EXPECT_EQ(violated_by_steps({1, 1, 1, 1, 0, 0, 1}), "nothing counts while paused or at rest");
   EXPECT_EQ(violated_by_steps({1, 1, 1, 1, 0, 0, 0, 0}),
-            "every tick counts unless the mission is paused");
+            "every tick counts unless paused or at rest");
 }
 
 TEST_F(InvariantsTest, TheAverageIsWeightedByTime) {

@@ -255,7 +255,7 @@ TEST(Codec, NumbersOutsideTheirRangeAreRefused) {
       changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.header.sender = kCoordinator; }),
       changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.header.sender = kMaxAgents; }),
       changed<AgentStatus>(agent_status(),
-                           [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(4); }),
+                           [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(6); }),
       changed<AgentStatus>(agent_status(),
                            [](AgentStatus& m) { m.phase = static_cast<AgentPhase>(-1); }),
       changed<AgentStatus>(agent_status(), [](AgentStatus& m) { m.rate_offender = -2; }),

@@ -133,7 +133,7 @@ inline Mission with_walls(Mission mission) {
 
 /// Whose second agent goes home.
 inline Mission with_stations(Mission mission) {
-  mission.kinds[1].stations_m = {{25, 26, 0}};
+  mission.kinds[1].stations_m = {{25, 26, mission.domain.planar() ? 0.0 : 12.0}};
   mission.kinds[1].reserve_s = 1.5;
   return mission;
 }
