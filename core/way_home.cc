@@ -88,6 +88,7 @@ double WayHome::way_m(const Eigen::Vector3d& x_m) const {
 
 double WayHome::needed_s(const Eigen::Vector3d& x_m) const {
   const double flown_s = way_m(x_m) / speed_mps_;
+  if (std::isinf(flown_s)) return flown_s;  // 0 · ∞ is not a number
   return flown_s + drift_ * std::sqrt(flown_s) + slack_s_;
 }
 
