@@ -95,16 +95,13 @@ void Coordinator::on_question(const Hello& question, const Arrival& arrival) {
 
 void Coordinator::on(const WorldState& world, const Arrival& arrival) {
   const Instant now = arrival.now;
+  note_revision(world, now);
   if (looking()) {
     world_.tick = std::max(world_.tick, world.header.tick);
     return;
   }
   world_.heard = true;
   if (arrival.fresh) world_.left = world.last;
-  if (world.roster_revision > revisions_.current) {
-    world_.newest_revision = std::max(world_.newest_revision, world.roster_revision);
-    if (!world_.newer_since) world_.newer_since = now;
-  }
   if (world.header.tick < world_.tick) return;
   if (world.header.tick > world_.tick) world_.tick_since = now;
   world_.tick = world.header.tick;
@@ -119,6 +116,12 @@ void Coordinator::on(const WorldState& world, const Arrival& arrival) {
     answered = std::max(answered, vehicle.answered_tick);
   }
   if (world_.tick >= end_tick()) end(false, "mission complete", now);
+}
+
+void Coordinator::note_revision(const WorldState& world, Instant now) {
+  if (world.roster_revision <= revisions_.current) return;
+  world_.newest_revision = std::max(world_.newest_revision, world.roster_revision);
+  if (!world_.newer_since) world_.newer_since = now;
 }
 
 void Coordinator::on(const RecordAck& ack, const Arrival& arrival) {

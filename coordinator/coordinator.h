@@ -158,6 +158,7 @@ class Coordinator {
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const WorldState& world, const Arrival& arrival);
+  void note_revision(const WorldState& world, Instant now);
   void on(const RecordAck& ack, const Arrival& arrival);
   void on(const TeamStatus& theirs, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
@@ -179,6 +180,7 @@ class Coordinator {
   void look_for_mission(Instant now, Outbox& out);
   std::optional<std::string> not_ours(Instant now) const;
   void take_over(Instant now);
+  Instant end_of_search() const;
   Instant next_look() const;
   bool rival_lives(Instant now) const;
   bool rival_leads(Instant now) const;

@@ -16,6 +16,9 @@ constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 constexpr auto kQuestionPeriod = 250ms;
 /// After the first answer, waits for newer revisions from other agents.
 constexpr auto kSecondOpinions = 600ms;
+/// How long it asks for the newest revision that it has heard of. If nobody has it whole, nobody
+/// flies by it.
+constexpr auto kNewestPatience = 3s;
 constexpr auto kTakeoverPatience = 30s;
 /// The predecessor may have sent some revisions that no agent has repeated to us.
 constexpr std::int64_t kRevisionLead = 1000;
@@ -90,12 +93,12 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
     return;
   }
   if (!search_.since) search_.since = now;
-  if (search_.found && now - *search_.found >= kSecondOpinions) return take_over(now);
+  if (search_.found && now >= end_of_search()) return take_over(now);
   const auto looked = now - *search_.since;
   if (search_.takeover == Takeover::kIfRunning && me_.run() == 0 && looked >= kLookAround) {
     return rival_leads(now) ? leave(led_by_rival(), now) : begin_own();
   }
-  if (looked >= kTakeoverPatience) {
+  if (looked >= kTakeoverPatience && !search_.found) {
     leave("no agent on this URL knows a mission that could be taken over", now);
   }
   if (now < search_.next_question) return;
@@ -104,10 +107,17 @@ void Coordinator::look_for_mission(Instant now, Outbox& out) {
   me_.publish(Bus::kSwarm, Hello{}, -1, out);
 }
 
+/// The world and the agents may fly by a revision whose parts we lack. It may hold ticks that an
+/// older one does not.
+Instant Coordinator::end_of_search() const {
+  const MissionFollower& known = me_.follower();
+  const bool newer = std::max(known.newest_heard(), world_.newest_revision) > known.revision();
+  return *search_.found + (newer ? Instant::duration(kNewestPatience) : kSecondOpinions);
+}
+
 Instant Coordinator::next_look() const {
   if (!search_.since) return Instant{};
-  return std::min(search_.next_question,
-                  search_.found ? *search_.found + kSecondOpinions : Instant::max());
+  return search_.found ? std::min(search_.next_question, end_of_search()) : search_.next_question;
 }
 
 void Coordinator::begin_own() {

@@ -52,7 +52,8 @@ class FreeRegion {
     for (int r = std::max(0, row - kNiche); r <= std::min(rows_ - 1, row + kNiche); ++r) {
       for (int c = std::max(0, column - kNiche); c <= std::min(columns_ - 1, column + kNiche);
            ++c) {
-        if (part_[static_cast<std::size_t>(r * columns_ + c)] >= 0) each(r * columns_ + c);
+        const int near = r * columns_ + c;
+        if (part_[static_cast<std::size_t>(near)] >= 0) each(near);
       }
     }
   }

@@ -35,9 +35,9 @@ constexpr double kLookingShare = 1e-6;
 /// How long one that follows late takes to close up to an edge: 4 T for each e-fold, down to a
 /// tick.
 double closing_s(double response_s, double dt_s) {
-  double takes_s = response_s > 0 ? 4 * response_s : 0;
-  for (double left_s = 2 * response_s; left_s > dt_s; left_s /= 2) takes_s += 4 * response_s;
-  return takes_s;
+  if (response_s <= 0) return 0;
+  const double folds = std::ceil(std::log2(std::max(1.0, 2 * response_s / dt_s)));
+  return 4 * response_s * (1 + folds);
 }
 
 }  // namespace

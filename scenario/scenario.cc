@@ -105,7 +105,7 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   const int listed_starts = scenario.agents().starts_size();
   draw_starts(scenario);
   validate_ways_home(mission_of(scenario), checks);
-  if (!findings.empty()) return findings.take();
+  if (std::vector<Problem> unreachable = findings.take(); !unreachable.empty()) return unreachable;
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
   state->polygon_files = std::move(polygon_files);
   if (auto problem = use_free_domain(state->target_density, state->mission)) {

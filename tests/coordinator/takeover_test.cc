@@ -229,6 +229,60 @@ TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   }
 }
 
+/// A coordinator that knows revision 11 and has heard that the team may fly by revision 13.
+Coordinator that_lacks_the_newest(const Message& sign) {
+  Coordinator coordinator = successor(Takeover::kIfRunning);
+  advance(coordinator, at(0s));
+  give(coordinator, status_of(0, 1), at(0s));
+  give(coordinator, memory_of(11), at(0s));
+  std::visit([&](const auto& message) { give(coordinator, message, at(100ms)); }, sign);
+  advance(coordinator, at(1s));
+  EXPECT_FALSE(coordinator.took_over());
+  EXPECT_GT(coordinator.next_wakeup(), at(1s)) << "it sleeps meanwhile";
+  return coordinator;
+}
+
+WorldState world_by(std::int64_t revision) {
+  WorldState world = world_where(1, {1, 1});
+  world.roster_revision = revision;
+  return world;
+}
+
+TEST(Takeover, WaitsForTheRevisionThatTheWorldFliesBy) {
+  Coordinator coordinator = that_lacks_the_newest(world_by(13));
+  MissionPart newest = memory_of(13);
+  newest.holds = {{2, -1}};
+  give(coordinator, newest, at(1200ms));
+  EXPECT_LE(coordinator.next_wakeup(), at(1200ms));
+  advance(coordinator, at(1200ms));
+  ASSERT_TRUE(coordinator.took_over());
+  EXPECT_EQ(coordinator.holds(), newest.holds) << "agents may have gone by it";
+}
+
+TEST(Takeover, WaitsForTheRevisionOfWhichItHasAPart) {
+  MissionPart part = memory_of(13);
+  part.parts = 2;
+  Coordinator coordinator = that_lacks_the_newest(part);
+  part.part = 1;
+  part.plan = {};
+  part.roster = {};
+  part.holds = {{2, -1}};
+  give(coordinator, part, at(1200ms));
+  advance(coordinator, at(1200ms));
+  ASSERT_TRUE(coordinator.took_over());
+  EXPECT_EQ(coordinator.holds(), part.holds);
+}
+
+TEST(Takeover, GoesOnWithoutARevisionThatNobodyHasWhole) {
+  Coordinator coordinator = that_lacks_the_newest(world_by(13));
+  advance(coordinator, at(2900ms));
+  EXPECT_FALSE(coordinator.took_over());
+  EXPECT_EQ(coordinator.next_wakeup(), at(3s));
+  const MissionPart ours = said_by(advance(coordinator, at(3s)));
+  ASSERT_TRUE(coordinator.took_over());
+  EXPECT_GT(ours.revision, 13);
+}
+
 TEST(TakeoverMust, NeedsNoPlanOfItsOwn) {
   Coordinator coordinator = successor(Takeover::kMust, 0, {});
   EXPECT_EQ(coordinator.mission(), nullptr);
