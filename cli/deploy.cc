@@ -13,6 +13,7 @@
 #include "cli/key_pair.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
+#include "core/separation.h"
 #include "logger/run_record.h"
 #include "modes/table_file.h"
 #include "runtime/node.h"
@@ -119,6 +120,16 @@ int write_modes(const DeployMission& mission, const Basis& basis, const fs::path
   return kExitDone;
 }
 
+/// Where each robot has a driver of its own, it is the user's to start.
+void note_drivers(const Mission& mission, const std::vector<DeployHost>& hosts, const LcmUrl& url) {
+  const bool driven = std::ranges::any_of(hosts, &DeployHost::driver);
+  if (!driven || !tells_places(mission)) return;
+  std::fprintf(stderr,
+               "note: robots are driven by a program each, which is yours and which nothing here "
+               "starts: beside agent N start it as ergocast-example-driver --id N --lcm-url '%s'\n",
+               url.base().c_str());
+}
+
 int deploy(const DeployOptions& options) {
   const auto scenario = load_or_complain(options.scenario, {});
   if (!scenario) return kExitBadInput;
@@ -147,6 +158,7 @@ int deploy(const DeployOptions& options) {
                       : options.to == "systemd" ? systemd_files
                                                 : compose_files;
   const std::vector<TextFile> files = render(hosts, mission);
+  note_drivers(scenario->mission(), hosts, mission.url);
   if (options.out.empty()) return print(files);
   const int written = write_files(files, options.out);
   return written == kExitDone ? write_modes(mission, basis, options.out) : written;

@@ -13,6 +13,7 @@
 #include "logger/run_data.h"
 #include "logger/run_record.h"
 #include "logger/summary.h"
+#include "modes/table_file.h"
 #include "runtime/event_log.h"
 #include "runtime/event_loop.h"
 #include "runtime/logging.h"
@@ -169,7 +170,8 @@ class RunLogger {
     }
   }
 
-  /// Writes the plan as it was sent, and the scenario's text unless a launcher has written it.
+  /// Writes the plan as it was sent, and what a launcher may have written already: the scenario's
+  /// text, and the table of its modes, without which other computers may not read the record.
   std::optional<std::string> write_plan() {
     const std::vector<std::byte>& plan = recorder_.follower().plan();
     if (auto problem = write_file(record_.folder() / kPlanFile, text_of(plan))) return problem;
@@ -177,6 +179,9 @@ class RunLogger {
     if (!fs::exists(record_.folder() / kScenarioFile, ignored)) {
       const std::string text = mission_text(*recorder_.follower().mission());
       if (auto problem = write_file(record_.folder() / kScenarioFile, text)) return problem;
+    }
+    if (const auto& table = recorder_.follower().mission()->basis.table) {
+      if (auto problem = save_table(*table, record_.folder())) return problem;
     }
     plan_written_ = true;
     return std::nullopt;

@@ -414,9 +414,10 @@ void Recorder::write_due_metrics() {
   const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
   const bool last = counted() + 1 == mission.timing.tick_count;
   if (!observer_.has_seen_any() || !row_counts_ || (counted() % period != 0 && !last)) return;
+  // No table has it, so a resumed record computes it from the rows.
+  if (in_cosines_) facts_.cosine_metric_last = cosines_.metric(*in_cosines_);
   if (next_row_ <= former_.metrics.tick) return;
   write_metrics(observer_.metric(mission));
-  if (in_cosines_) facts_.cosine_metric_last = cosines_.metric(*in_cosines_);
 }
 
 Blocks Recorder::blocks() const {

@@ -39,9 +39,10 @@ struct RunFacts {
   Tick former_ticks = 0;  ///< of these, recorded before this recorder resumed
   double ergodic_metric_first = 0, ergodic_metric_last = 0;
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
-  double cosine_metric_last = 0;  ///< with basis.free_domain: φ² in cosines at the last row
-  Tick gaps = 0;                  ///< ticks without rows before the last row
-  bool halted = false;            ///< by an emergency stop: the last row stands still
+  /// With basis.free_domain: φ² in cosines at the last row of the metrics; NaN: there is none.
+  double cosine_metric_last = std::numeric_limits<double>::quiet_NaN();
+  Tick gaps = 0;        ///< ticks without rows before the last row
+  bool halted = false;  ///< by an emergency stop: the last row stands still
   /// Real time, as the world counts them; of several drivers the one with the most.
   std::int64_t missed_deadlines = 0, skipped_ticks = 0;
   std::int64_t clamped_commands = 0;  ///< by the speed limit, likewise

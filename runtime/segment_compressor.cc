@@ -2,6 +2,7 @@
 // Streams a file through libzstd in blocks, into a file that gets its name when it is complete.
 #include "runtime/segment_compressor.h"
 
+#include <unistd.h>
 #include <zstd.h>
 
 #include <system_error>
@@ -13,6 +14,9 @@ namespace {
 constexpr std::size_t kBlockBytes = 1 << 18;
 /// Sums change in all their digits, so a higher level costs more and gains nothing.
 constexpr int kLevel = 1;
+
+/// Writes all of it to the disk, so that it outlives a power failure.
+bool keep(std::FILE* file) { return std::fflush(file) == 0 && fsync(fileno(file)) == 0; }
 
 }  // namespace
 
@@ -68,12 +72,14 @@ bool SegmentCompressor::pass_on(std::size_t bytes, bool last) {
 
 void SegmentCompressor::end(bool done) {
   from_.reset();
-  const bool closed = to_ && std::fclose(to_.release()) == 0;
+  // The segment itself goes only when its copy is safe.
+  const bool kept = done && to_ && keep(to_.get());
+  to_.reset();
   std::error_code error, ignored;
   const std::filesystem::path file = waiting_.front(), written = part();
   waiting_.pop_front();
-  if (done && closed) std::filesystem::rename(written, file.string() + ".zst", error);
-  if (done && closed && !error) {
+  if (kept) std::filesystem::rename(written, file.string() + ".zst", error);
+  if (kept && !error) {
     std::filesystem::remove(file, ignored);
   } else {
     std::filesystem::remove(written, ignored);

@@ -14,12 +14,12 @@ bool World::knows_bodies() const {
   for (const auto& [id, slot] : vehicles_) {
     if (slot.author.incarnation != 0) newest = std::max(newest, slot.answered());
   }
-  return !keeps_distance() || question_.before.newest() >= newest;
+  return !begins_by_state() || question_.before.newest() >= newest;
 }
 
-/// Puts all bodies where they were in one state, so that they keep their distance; vehicles whose
-/// agents have left are in no other message. In lockstep they go on by the answers to that tick. In
-/// real time all stand: held commands were for other places.
+/// Puts all bodies where they were in one state, so that they keep their distance, and that to
+/// walls; vehicles whose agents have left are in no other message. In lockstep they go on by the
+/// answers to that tick. In real time all stand: held commands were for other places.
 void World::settle() {
   const bool realtime = mission().timing.pace == Pace::kRealtime;
   for (auto& [id, slot] : vehicles_) {
@@ -38,6 +38,7 @@ void World::settle() {
   for (Tick tick = question_.before.newest(); tick >= 0 && tick < tick_ && !realtime; ++tick) {
     for (auto& [id, slot] : vehicles_) {
       drive(id, slot, tick, false);
+      if (!mission().walls.empty() && driven(slot, tick, false)) keep_from_walls(id, slot, tick);
       move(id, slot, tick);
     }
   }
@@ -80,12 +81,11 @@ void World::recall(AgentId id, VehicleSlot& slot) {
   }
   for (Tick tick = slot.answered(); tick < tick_; ++tick) {
     drive(id, slot, tick, realtime);
-    if (!mission().walls.empty()) keep_from_walls(id, slot, tick);
     move(id, slot, tick);
   }
 }
 
-/// As filter_commands(), where no distance is kept.
+/// As filter_commands() in lockstep.
 void World::keep_from_walls(AgentId id, VehicleSlot& slot, Tick tick) {
   const double limit_mps = motion_of(mission(), id).speed_limit_mps;
   const Mover self{id, tick, slot.x_m, limit_mps, slot.applied_mps};
@@ -93,7 +93,7 @@ void World::keep_from_walls(AgentId id, VehicleSlot& slot, Tick tick) {
 }
 
 void World::on(const WorldState& before, const Arrival&) {
-  if (!question_.since || !keeps_distance()) return;
+  if (!question_.since || !begins_by_state()) return;
   if (before.header.tick <= me_.end_tick()) question_.before.see(before);
 }
 

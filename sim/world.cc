@@ -126,11 +126,11 @@ void World::begin(Instant now) {
   for (const RosterEntry& entry : follower().roster()) {
     tick_ = std::max({tick_, entry.active_from, entry.active_until});
   }
-  if (keeps_distance()) tick_ = std::max(tick_, question_.before.newest());
+  if (begins_by_state()) tick_ = std::max(tick_, question_.before.newest());
   tick_ = std::min(tick_, me_.end_tick());  // whatever the roster says
   begun_at_ = tick_;
   if (filters_again(mission()) || any_but_points(mission())) filter_.emplace(mission(), 0);
-  if (keeps_distance()) {
+  if (begins_by_state()) {
     settle();
   } else {
     for (auto& [id, slot] : vehicles_) recall(id, slot);

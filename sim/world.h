@@ -114,6 +114,9 @@ class World {
   Eigen::Vector3d place_for(AgentId id) const;
   void place(AgentId id, VehicleSlot& slot, const Eigen::Vector3d& x_m) const;
   bool keeps_distance() const { return mission().separation.distance_m > 0; }
+  /// Whether it begins by a state of all bodies: what they were commanded does not say how they
+  /// fly.
+  bool begins_by_state() const { return keeps_distance() || !mission().walls.empty(); }
   void drive(AgentId id, VehicleSlot& slot, Tick tick, bool hold_old_commands) const;
   void move(AgentId id, VehicleSlot& slot, Tick tick) const;
   bool make_physics();

@@ -82,7 +82,7 @@ const std::vector<Rule> kRules = {
     {"sim/main.cc", {"sim", "runtime"}, {kLog}},
     {"sim/world_process.h", {"sim", "runtime"}, {}},
     {"sim/world_process.cc", {"sim", "runtime"}, {kLog}},
-    {"logger/main.cc", {"team", "logger", "runtime", "lcmtypes"}, {kLog, kFiles, kSystem}},
+    {"logger/main.cc", {"modes", "team", "logger", "runtime", "lcmtypes"}, {kLog, kFiles, kSystem}},
     {"report", {"text", "core", "target", "team", "logger", "report"}, {kFiles, kJson}},
     {"export",
      {"text", "core", "target", "team", "logger", "report", "geo", "export"},

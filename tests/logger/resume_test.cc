@@ -3,12 +3,14 @@
 // no process can repeat are missing.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "core/noise.h"
 #include "logger/run_record.h"
+#include "modes/provide.h"
 #include "tests/logger/record.h"
 #include "tests/support/temp_folder.h"
 
@@ -399,6 +401,21 @@ TEST_F(Resume, ADiscardedSegmentLeavesNoTrace) {
   EXPECT_FALSE(fs::exists(dir / "trajectory-001.csv"));
   EXPECT_FALSE(fs::exists(dir / "metrics-001.csv"));
   EXPECT_EQ(read("trajectory.csv"), "rows\n");
+}
+
+// No table of the record has it.
+TEST_F(Resume, KnowsTheMetricInCosinesWithoutARowMore) {
+  Mission mission = small_mission(1);
+  mission.cosine_target = mission.target_coefficients;
+  mission.basis.free_domain = true;
+  mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;
+  Record lived(mission);
+  EXPECT_TRUE(std::isnan(lived.recorder.facts().cosine_metric_last)) << "nobody has moved yet";
+  for (Tick tick = 0; tick <= 100; ++tick) lived.tell(state_of(tick));
+  const double metric = lived.recorder.facts().cosine_metric_last;
+  EXPECT_GT(metric, 0);
+  Record resumed(mission, past(lived.trajectory.str(), lived.metrics.str()));
+  EXPECT_EQ(resumed.recorder.facts().cosine_metric_last, metric);
 }
 
 }  // namespace

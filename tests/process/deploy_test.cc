@@ -70,6 +70,19 @@ TEST_F(Deploy, HandsTheTableOfModesToEveryHost) {
   }
 }
 
+TEST_F(Deploy, SaysThatEachRobotNeedsItsOwnDriver) {
+  const std::string leased =
+      (std::filesystem::path(ERGOCAST_SOURCE_DIR) / "tests/lab/leased_team.textproto").string();
+  const auto deployed = [&](const std::string& roles) {
+    return ergocast({"deploy", leased, "--to", "ssh", "--hosts",
+                     hosts("ground coordinator\nrover agents=40 " + roles + "\n")});
+  };
+  ASSERT_EQ(deployed("driver"), 0) << output();
+  EXPECT_TRUE(said("beside agent N start it as ergocast-example-driver --id N")) << output();
+  ASSERT_EQ(deployed("sim"), 0) << output();
+  EXPECT_FALSE(said("ergocast-example-driver")) << output();
+}
+
 TEST_F(Deploy, NamesEveryProblemAtOnce) {
   EXPECT_EQ(
       deploy("ssh", "ground sim\nrover agents=4\n", {"--lcm-url", "udpm://239.1.2.3:7000?ttl=0"}),

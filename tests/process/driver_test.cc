@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/process/bus_observer.h"
 #include "tests/process/mission.h"
 #include "tests/process/record.h"
+#include "tests/process/stranger.h"
 
 namespace ergocast::test {
 namespace {
@@ -131,6 +133,30 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
   // The rows of a tick are as far apart in time as the drivers' ticks.
+  EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
+}
+
+// Somebody repeats what agent 1 has said, with another place.
+TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsThatComeOutOfOrder) {
+  std::filesystem::create_directory(out());
+  hand("ergocast-logger", {"--out", out()});
+  Program& first = hand("ergocast-agent", {"--id", "0"});
+  for (const char* id : {"1", "2", "3"}) hand("ergocast-agent", {"--id", id});
+  for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-example-driver", {"--id", id});
+  BusObserver observer(kUrl);
+  Program& coordinator = hand("ergocast-coordinator", {team_of_four()});
+  ASSERT_TRUE(eventually_all({0, 1, 2, 3}, true)) << coordinator.said();
+  ASSERT_TRUE(observer.hears([&] { return observer.said(observer.member(1)) > 0; }));
+  Beacon late;
+  late.header = observer.block(observer.member(1)).header;
+  late.position_m = {12, 12, 0};
+  late.echo_count = 4;
+  Stranger stranger(kUrl);
+  EXPECT_TRUE(eventually([&] {
+    stranger.say(Bus::kSwarm, late);
+    return first.said().find("beacons of teammates overtake each other") != std::string::npos;
+  })) << first.said();
+  EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << first.said();
   EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
 }
 

@@ -16,6 +16,10 @@
 #include "runtime/segment_compressor.h"
 #include "tests/support/temp_folder.h"
 
+/// A disk that does not keep what it was given: stands in for the system's call.
+static bool disk_fails = false;
+extern "C" int fsync(int) { return disk_fails ? -1 : 0; }
+
 namespace ergocast {
 namespace {
 
@@ -204,6 +208,22 @@ TEST_F(EventLogReaderTest, GivesBackEachEventOfAllSegmentsInOrder) {
   write({"A", "B", "C", "D", "E", "F"});
   EXPECT_TRUE(fs::exists(segment(1)));
   EXPECT_EQ(read_back(folder_), "A B C D E F ");
+}
+
+TEST_F(EventLogReaderTest, ASegmentStaysUntilTheDiskHasItsCompressedCopy) {
+  write({"A", "B", "C", "D", "E", "F"});
+  const auto compress = [&] {
+    SegmentCompressor compressor;
+    compressor.add(segment(0));
+    while (!compressor.idle()) compressor.work(1 << 20);
+  };
+  disk_fails = true;
+  compress();
+  disk_fails = false;
+  EXPECT_TRUE(fs::exists(segment(0)));
+  EXPECT_FALSE(fs::exists(segment(0).string() + ".zst"));
+  compress();
+  EXPECT_FALSE(fs::exists(segment(0)));
 }
 
 TEST_F(EventLogReaderTest, ReadsCompressedSegmentsAsTheyAre) {

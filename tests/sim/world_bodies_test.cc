@@ -153,5 +153,26 @@ TEST(RestartedWorld, BelievesNoStateOnceItHasBegun) {
   EXPECT_EQ(place(state, 0), Eigen::Vector3d(100, 500, 0));
 }
 
+/// A wing does not fly as it is commanded, so commands do not say how it goes on near a wall.
+TEST(RestartedWorld, TakesPlacesAndVelocitiesAmongWallsFromAState) {
+  Mission mission = small_mission(3);
+  mission.timing.pace = Pace::kRealtime;
+  mission.speed_limit_mps = 10;
+  mission.walls = {{{1000, 1000}, {1100, 1000}, {1100, 1100}, {1000, 1100}}};
+  mission.wall_clearance_m = 10;
+  World world = asking(mission);
+  WorldState before = state_before(8, 0);
+  before.vehicles[1].velocity_mps = {3, 4, 0};
+  for (const AgentId id : {0, 1}) {
+    for (const Tick tick : {7, 8}) give(world, answer(id, tick, 300), at(1ms));
+  }
+  EXPECT_TRUE(states_after(world, at(2ms)).empty()) << "nobody has said where all were";
+  give(world, before, at(3ms), 0);
+  const WorldState state = state_after(world, at(4ms));
+  EXPECT_EQ(state.header.tick, 8);
+  EXPECT_EQ(place(state, 1), before.vehicles[1].position_m);
+  EXPECT_EQ(applied(state, 1), Eigen::Vector3d(3, 4, 0));
+}
+
 }  // namespace
 }  // namespace ergocast
