@@ -52,6 +52,15 @@ std::string number_at(const Json& summary, const char* pointer, const char* form
   return text;
 }
 
+void print_stations(const Json& stations) {
+  std::printf("  stations  %s of %s agents home in time, at most %s m away",
+              text_at(stations, "/home").c_str(), text_at(stations, "/agents").c_str(),
+              number_at(stations, "/farthest_m", "%.2f", 1).c_str());
+  const Json late = stations.value("late", Json::array());
+  if (!late.empty()) std::printf("; not home: %s", late.dump().c_str());
+  std::printf("\n");
+}
+
 void print_summary(const Json& summary) {
   const auto text = [&](const char* pointer) { return text_at(summary, pointer); };
   const auto number = [&](const char* pointer, const char* format, double factor = 1) {
@@ -99,6 +108,7 @@ void print_summary(const Json& summary) {
         number("/separation/blocked_share", "%.1f", 100).c_str(),
         number("/separation/longest_block_s", "%.1f").c_str());
   }
+  if (summary.contains("stations")) print_stations(summary["stations"]);
 }
 
 }  // namespace

@@ -396,7 +396,10 @@ const RosterEntry* Recorder::member(AgentId id) const {
 
 void Recorder::observe(AgentId id, const Eigen::Vector3d& x_m) {
   const RosterEntry* entry = member(id);
-  if (entry != nullptr && row_counts_ && !rests(mission(), id, counted())) {
+  if (rests(mission(), id, counted())) {
+    double& farthest_m = facts_.from_home_m[id];
+    farthest_m = std::max(farthest_m, (x_m - *station_of(mission(), id)).norm());
+  } else if (entry != nullptr && row_counts_) {
     observer_.see(mission(), entry->kind, x_m);
     if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
   }

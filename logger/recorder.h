@@ -49,6 +49,9 @@ struct RunFacts {
   /// Where a distance is kept: the least of any two bodies at any recorded tick; none: the greatest
   /// number [m].
   double nearest_m = std::numeric_limits<double>::max();
+  /// Of each agent that has a station: the farthest that its vehicle was from there at any recorded
+  /// tick of its rest, core/station.h [m].
+  std::map<AgentId, double> from_home_m;
 };
 
 /// What the distance that bodies keep has cost, by the newest status of each incarnation.

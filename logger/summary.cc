@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/kinds.h"
+#include "core/station.h"
 #include "core/vehicle.h"
 #include "logger/run_record.h"
 #include "logger/slope.h"
@@ -21,6 +22,8 @@ using Json = nlohmann::ordered_json;
 
 /// Real time: the share of late commands that the summary mentions.
 constexpr double kNotableShare = 0.01;
+/// Of a distance, what rounding may take.
+constexpr double kRounding = 1e-9;
 
 /// JSON has no infinity and no NaN.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -116,6 +119,23 @@ Json separation(const Recorder& recorder, const Mission& mission) {
           {"longest_block_s", static_cast<double>(blocks.longest_ticks) * mission.timing.dt_s}};
 }
 
+/// Which agents were home in time: at their stations from the tick on from which they rest, in
+/// every row. Of a mission that ends before, nobody is judged.
+Json stations(const Recorder& recorder, const Mission& mission) {
+  Json late = Json::array();
+  double farthest_m = 0;
+  const auto& from_home_m = recorder.facts().from_home_m;
+  for (const auto& [id, apart_m] : from_home_m) {
+    farthest_m = std::max(farthest_m, apart_m);
+    if (!(apart_m <= home_m(mission, id) * (1 + kRounding))) late.push_back(id);
+  }
+  const std::size_t home = from_home_m.size() - late.size();
+  return {{"agents", from_home_m.size()},
+          {"home", home},
+          {"late", std::move(late)},
+          {"farthest_m", from_home_m.empty() ? Json(nullptr) : number(farthest_m)}};
+}
+
 void add_mission(const Mission& mission, const RunContext& context, Json& summary) {
   const bool lockstep = mission.timing.pace == Pace::kLockstep;
   summary["scenario"] = mission.name;
@@ -198,6 +218,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
     summary["speed_limit"] = speed_limit(*mission, facts.clamped_commands);
   if (mission && mission->separation.distance_m > 0)
     summary["separation"] = separation(recorder, *mission);
+  if (mission && any_station(*mission)) summary["stations"] = stations(recorder, *mission);
   return summary;
 }
 

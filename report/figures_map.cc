@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/station.h"
 #include "report/axes.h"
 #include "report/figures.h"
 #include "report/markup.h"
@@ -117,6 +118,14 @@ double stroke_width(double length, const Area& area) {
   return std::clamp(kInk * area.width * area.height / std::max(length, 1.0), 0.4, 1.6);
 }
 
+std::string square_at(const Eigen::Vector2d& center) {
+  constexpr double kArm = 9;
+  const Eigen::Vector2d across(kArm, 0), down(0, kArm);
+  return path_data({center - across - down, center + across - down, center + across + down,
+                    center - across + down}) +
+         'Z';
+}
+
 /// Lines along the edges, where classical agents are caught, are drawn in full.
 void draw_lines(Svg& svg, const DrawnTracks& tracks, const Area& area) {
   const std::string width = fixed(stroke_width(tracks.length, area), 2);
@@ -126,6 +135,17 @@ void draw_lines(Svg& svg, const DrawnTracks& tracks, const Area& area) {
              "class=\"curve\" stroke-width=\"" + width + "\" stroke=\"" + agent_color(agent) + '"');
   }
   svg.end_clip();
+}
+
+/// Open squares where agents are to be at the end.
+void draw_stations(Svg& svg, const RunData& run, const Mission& mission, const Plot& plot) {
+  for (const auto& [agent, track] : run.tracks) {
+    const auto station_m = station_of(mission, agent);
+    if (!station_m) continue;
+    const Eigen::Vector2d at = plot.at(station_m->head<2>());
+    svg.path(square_at(at), "fill=\"none\" stroke=\"#fff\" stroke-width=\"4.6\"");
+    svg.path(square_at(at), "fill=\"none\" stroke=\"#333\" stroke-width=\"1.6\"");
+  }
 }
 
 /// Crosses over open circles, so that an agent that never moved shows both.
@@ -160,8 +180,12 @@ void draw_numbers(Svg& svg, const RunData& run, const Plot& plot) {
   }
 }
 
-void draw_signs(Svg& svg, double right, double y) {
+void draw_signs(Svg& svg, double right, double y, bool stations) {
   const double x = right - 92;
+  if (stations) {
+    svg.path(square_at({x - 62, y + 8}), "class=\"mark\" fill=\"none\" stroke-width=\"1.6\"");
+    svg.text({x - 49, y + 12}, "class=\"tick\"", "station");
+  }
   svg.path(path_data({{x, y + 4}, {x + 8, y + 12}}) + path_data({{x, y + 12}, {x + 8, y + 4}}),
            "class=\"mark\" fill=\"none\" stroke-width=\"2\"");
   svg.text({x + 13, y + 12}, "class=\"tick\"", "start");
@@ -231,10 +255,11 @@ Figure trajectories_figure(const RunData& run, const Mission& mission, const Fie
   const DrawnTracks tracks = draw_tracks(run, plot);
   plot.frame();
   draw_lines(svg, tracks, area);
+  if (view.up == 1) draw_stations(svg, run, mission, plot);
   draw_ends(svg, run, plot);
   draw_numbers(svg, run, plot);
   agent_legend(svg, run, kRoomLeft, 4, area.width);
-  if (!run.empty()) draw_signs(svg, area.right() + kBar - 8, 4);
+  if (!run.empty()) draw_signs(svg, area.right() + kBar - 8, 4, any_station(mission));
   color_bar(svg, area, pencil(), range_axis("density, × uniform", "", 0, densest));
   return {"trajectories" + view.ending(), svg.str()};
 }

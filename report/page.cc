@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/kinds.h"
+#include "core/station.h"
 #include "report/base64.h"
 #include "report/markup.h"
 #include "report/track_grid.h"
@@ -191,6 +192,17 @@ Json rings_of(const Mission& mission) {
   return rings;
 }
 
+/// Where agents are to be at the end, from the domain's corner, by their numbers.
+Json stations_of(const Mission& mission) {
+  Json list = Json::array();
+  for (std::size_t id = 0; id < mission.starts_m.size(); ++id) {
+    const auto station_m = station_of(mission, static_cast<AgentId>(id));
+    if (station_m)
+      list.push_back(rounded_list((*station_m - mission.domain.origin_m).head<2>(), 9));
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string title_of(const Mission& mission) {
@@ -222,6 +234,7 @@ Json page_mission(const Mission& flown, const Field& density) {
                {"density", encoded_density(density)}};
   if (const Sensors sensors(mission); !sensors.alike()) page["seen"] = seen(mission, sensors);
   if (!mission.walls.empty()) page["walls"] = rings_of(mission);
+  if (domain.planar() && any_station(mission)) page["stations"] = stations_of(mission);
   return page;
 }
 

@@ -101,6 +101,19 @@ function paintWalls(g, run, view, colours) {
   g.restore();
 }
 
+// Open squares where agents are to be at the end.
+function paintStations(g, run, view, colours) {
+  const half = 8;
+  g.save();
+  for (const [colour, width] of [[colours.bg, 4], [colours.ink, 1.6]]) {
+    g.strokeStyle = colour;
+    g.lineWidth = width;
+    for (const [x, y] of run.mission.stations ?? [])
+      g.strokeRect(view.px(x) - half, view.py(y) - half, 2 * half, 2 * half);
+  }
+  g.restore();
+}
+
 export function paintShading(g, run, view, { layer, row, colours }) {
   const [lx, ly] = run.size;
   run.outline ??= outlineOf(run);
@@ -126,4 +139,5 @@ export function paintShading(g, run, view, { layer, row, colours }) {
   }
   g.globalAlpha = 1;
   paintWalls(g, run, view, colours);
+  paintStations(g, run, view, colours);
 }

@@ -78,13 +78,15 @@ Bytes with(std::size_t at, Number number) {
 TEST(Table, IsRefusedWithANumberThatNoneHas) {
   constexpr std::size_t kFormat = 8, kColumns = 12, kModes = 20, kWidth = 48, kVersion = 72,
                         kOwner = 104;
-  const FreeModes& read = *std::get<ModesTable>(decoded(good()));
+  const auto whole = std::get<ModesTable>(decoded(good()));
+  const FreeModes& read = *whole;
   const auto offset = [](const auto& numbers, const FreeModes& of) {
     return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(numbers.data()) -
                                     of.file.data());
   };
   const auto storage = std::make_shared<const Bytes>(good());
-  const FreeModes& at = *std::get<ModesTable>(decode_table(*storage, storage));
+  const auto table = std::get<ModesTable>(decode_table(*storage, storage));
+  const FreeModes& at = *table;
   const std::size_t around = offset(at.around, at), place = offset(at.place, at);
   const std::size_t nu = offset(at.eigenvalues_per_m2, at), squares = offset(at.mean_squares, at);
   const std::size_t values = offset(at.values, at);

@@ -174,7 +174,7 @@ TEST_F(Installed, ShippedScenariosAreKnownByName) {
 TEST_F(Installed, ANameThatNothingHasIsRefusedWithThoseThatAre) {
   EXPECT_EQ(installed({"check", "lake_serch"}), 2);
   EXPECT_TRUE(said("lake_serch") &&
-              said("harbour_patrol, lake_search, mixed_team, office, paper_fig1a"))
+              said("harbour_patrol, home_by_dusk, lake_search, mixed_team, office, paper_fig1a"))
       << output();
   EXPECT_EQ(installed({"check", "lake_serch.textproto"}), 2);
   EXPECT_TRUE(said("lake_serch.textproto: there is no such file")) << output();

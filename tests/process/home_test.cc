@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stations: real processes go home, rest there while the mission lasts, and people see both.
+#include "tests/process/mission.h"
+
+namespace ergocast::test {
+namespace {
+
+class AgentsWithAStation : public FlyingMission {
+ protected:
+  /// How many agents `ergocast status` shows with that word.
+  int shown(const std::string& word) {
+    ergocast({"status", "--lcm-url", kUrl});
+    int count = 0;
+    const std::string text = output();
+    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++count;
+    return count;
+  }
+};
+
+TEST_F(AgentsWithAStation, RestAtHomeAsStatusAndSummarySay) {
+  // From tick 2000 of 10^8 on they rest.
+  const auto file = scenario(
+      "", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } reserve_s: 9999800 }\n");
+  Child mission = launch_endless(file, {"--lcm-url", kUrl});
+  EXPECT_TRUE(eventually([&] { return shown("rests") == 4; })) << output() << said();
+  ASSERT_TRUE(moves_on());
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  const auto stations = summary()["stations"];
+  EXPECT_EQ(stations["agents"], 4);
+  EXPECT_EQ(stations["home"], 4) << stations;
+  EXPECT_TRUE(stations["late"].empty()) << stations;
+  EXPECT_TRUE(said("4 of 4 agents home in time")) << said();
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+}  // namespace
+}  // namespace ergocast::test
