@@ -103,7 +103,7 @@ function paintWalls(g, run, view, colours) {
 
 // Open squares where agents are to be at the end.
 function paintStations(g, run, view, colours) {
-  const half = 8;
+  const half = 12;
   g.save();
   for (const [colour, width] of [[colours.bg, 4], [colours.ink, 1.6]]) {
     g.strokeStyle = colour;
