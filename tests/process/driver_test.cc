@@ -136,8 +136,8 @@ TEST_F(RobotsWithTheirOwnDrivers, StandWhileOneIsNotHeardAndRefuseASecondDriver)
   EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
 }
 
-// Somebody repeats what agent 1 has said, with another place.
-TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsThatComeOutOfOrder) {
+// Somebody repeats what agent 1 has said, with another place, and echoes what nobody has sent.
+TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsOutOfOrderAndFromTheFuture) {
   std::filesystem::create_directory(out());
   hand("ergocast-logger", {"--out", out()});
   Program& first = hand("ergocast-agent", {"--id", "0"});
@@ -155,6 +155,16 @@ TEST_F(RobotsWithTheirOwnDrivers, FlyOnBesideBeaconsThatComeOutOfOrder) {
   EXPECT_TRUE(eventually([&] {
     stranger.say(Bus::kSwarm, late);
     return first.said().find("beacons of teammates overtake each other") != std::string::npos;
+  })) << first.said();
+  // It echoes what nobody has sent.
+  Beacon early = late;
+  early.roster_revision = std::int64_t{1} << 40;
+  early.echoes.fill(40000);
+  EXPECT_TRUE(eventually([&] {
+    early.header.sequence += 3;  // soon newer than the newest of agent 1
+    stranger.say(Bus::kSwarm, early);
+    return first.said().find("answers to one that this agent has not sent yet") !=
+           std::string::npos;
   })) << first.said();
   EXPECT_TRUE(eventually_all({0, 1, 2, 3}, true)) << first.said();
   EXPECT_GE(least_distance_m(), kDistance_m - 2 * kStep_m);
