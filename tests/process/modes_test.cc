@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of modes of a free domain: processes that were handed none compute it, the record has
-// it, and who computes another stays out.
+// The table of modes of a free domain: `ergocast run` hands it to its processes, those that were
+// handed none compute it, the record has it, and who computes another stays out.
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
@@ -38,6 +38,13 @@ class TablesOfModes : public ByHand {
     std::ofstream(folder_ / "other.bin", std::ios::binary) << bytes;
     return folder_ / "other.bin";
   }
+  /// Whether that agent reads the table from its file, as one that computes it does not.
+  bool shares_the_table(int id) const {
+    const auto process = pids(agent(id));
+    if (process.size() != 1) return false;
+    const std::string maps = text_of("/proc/" + std::to_string(process[0]) + "/maps");
+    return maps.find(table_in(out()).filename()) != std::string::npos;
+  }
 };
 
 TEST_F(TablesOfModes, ALoggerThatWasStartedByHandWritesItBesideTheRecord) {
@@ -50,6 +57,18 @@ TEST_F(TablesOfModes, ALoggerThatWasStartedByHandWritesItBesideTheRecord) {
   EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
   EXPECT_FALSE(table_in(out()).empty());
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+}
+
+TEST_F(TablesOfModes, ARestartedAgentIsHandedItAgain) {
+  Child mission = launch_endless(two_rooms());
+  ASSERT_FALSE(table_in(out()).empty());
+  EXPECT_TRUE(shares_the_table(1)) << said();
+  kill_next(agent(1));
+  ASSERT_TRUE(logs("agent-1", ": running", 2)) << said();
+  EXPECT_TRUE(shares_the_table(1)) << said();
+  ASSERT_TRUE(moves_on()) << said();
+  mission.send(SIGTERM);
+  EXPECT_EQ(wait_for(mission), 0) << said();
 }
 
 TEST_F(TablesOfModes, WhoComputesAnotherOneStaysOutAndSaysWhatToHandOver) {
