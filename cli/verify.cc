@@ -221,7 +221,7 @@ int verify(const fs::path& run_dir) {
   if (const auto* problem = std::get_if<std::string>(&read))
     return report_error(kExitBadInput, *problem);
   Json& summary = std::get<Json>(read);
-  Repetition repetition(*mission, holds_in(summary));
+  Repetition repetition(*mission, recorded_holds(run_dir, summary));
   if (!summary.is_object()) {
     tell(run_dir.string() + ": no " + kSummaryFile +
          ", so nothing is known of restarts; comparing all the same");

@@ -3,6 +3,7 @@
 // acknowledgements.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <span>
@@ -94,7 +95,7 @@ class RunLogger {
     if (is_original(bus, channel)) events_.write(channel, bytes);
   }
 
-  /// To be called every turn: times for the summary, and the plan once it is known.
+  /// To be called every turn: times for the summary, and what is new of the mission.
   void attend(Instant now) {
     const Tick rows = recorder_.facts().ticks - recorder_.facts().former_ticks;
     if (rows != seen_rows_) {
@@ -103,7 +104,7 @@ class RunLogger {
       if (!first_row_) first_row_ = now;
     }
     if (!stuck_ && !record_.good()) flush(now);
-    if (!stuck_ && !plan_written_ && recorder_.follower().mission()) note(write_plan());
+    if (!stuck_) note(write_mission());
   }
 
   /// Passes all data to the operating system, also data that it refused before.
@@ -114,7 +115,7 @@ class RunLogger {
     std::optional<std::string> problem = record_.flush();
     if (held_up && !problem) recorder_.go_on(now);
     if (auto lost = events_.flush(); !problem) problem = lost;
-    if (!problem && !plan_written_ && recorder_.follower().mission()) problem = write_plan();
+    if (!problem) problem = write_mission();
     note(problem);
     if (events_.removed() > 0 && !removal_said_) {
       removal_said_ = true;
@@ -149,6 +150,8 @@ class RunLogger {
     const auto problem =
         write_file(record_.folder() / kSummaryFile, to_text(summarize(recorder_, context)));
     if (problem) note(problem);
+    std::error_code ignored;
+    if (!problem) fs::remove(record_.folder() / kHoldsFile, ignored);
   }
 
  private:
@@ -168,6 +171,20 @@ class RunLogger {
     } else {
       spdlog::warn("the record can be written again and goes on at tick {}", recorder_.next_row());
     }
+  }
+
+  /// Writes the plan once it is known, and the holds before the rows of their ticks: without a
+  /// summary nobody else can tell which ticks count.
+  std::optional<std::string> write_mission() {
+    const MissionFollower& heard = recorder_.follower();
+    if (!heard.mission()) return std::nullopt;
+    if (!plan_written_) {
+      if (auto problem = write_plan()) return problem;
+    }
+    if (std::ranges::equal(heard.holds(), holds_written_)) return std::nullopt;
+    auto problem = write_file(record_.folder() / kHoldsFile, to_text(holds_json(heard.holds())));
+    if (!problem) holds_written_.assign(heard.holds().begin(), heard.holds().end());
+    return problem;
   }
 
   /// Writes the plan as it was sent, and what a launcher may have written already: the scenario's
@@ -193,6 +210,7 @@ class RunLogger {
   const bool resumed_;
   bool stuck_ = false, plan_written_ = false, removal_said_ = false;
   int interruptions_ = 0;
+  std::vector<Hold> holds_written_;
   std::vector<std::byte> plan_of_record_;  // of the record that it continues; empty: any
   Recorder recorder_;
   Tick seen_rows_ = 0;

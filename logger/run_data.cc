@@ -189,7 +189,8 @@ std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir
   RunData run;
   if (auto problem = read_up_to_damage(run_dir, run)) return *problem;
   const auto summary = read_summary(run_dir);
-  if (const auto* json = std::get_if<nlohmann::ordered_json>(&summary)) run.holds = holds_in(*json);
+  const auto* json = std::get_if<nlohmann::ordered_json>(&summary);
+  run.holds = recorded_holds(run_dir, json != nullptr ? *json : nlohmann::ordered_json());
   return run;
 }
 

@@ -42,7 +42,7 @@ struct MetricsRow {
 struct RunData {
   std::map<AgentId, Track> tracks;  ///< without empty ones
   std::vector<MetricsRow> metrics;
-  std::vector<Hold> holds;  ///< ticks that do not count, as summary.json names them
+  std::vector<Hold> holds;  ///< ticks that do not count, as holds.json or summary.json names them
 
   bool empty() const { return tracks.empty(); }
   double end_s() const;  ///< time of the last row, 0 if there is none
@@ -51,7 +51,7 @@ struct RunData {
 /// The mission of the record's plan.binpb, or an error that names the file.
 std::variant<Mission, std::string> read_mission(const std::filesystem::path& run_dir);
 
-/// Reads trajectory.csv and metrics.csv with all their segments, and what summary.json names, or
+/// Reads trajectory.csv and metrics.csv with all their segments, and which ticks do not count, or
 /// reports the file and line of an error with the remedy. A file's last line without its line break
 /// comes from a killed process and is ignored.
 std::variant<RunData, std::string> read_run(const std::filesystem::path& run_dir);

@@ -20,6 +20,8 @@ inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kScenarioFile = "scenario.textproto";
 /// The compiled plan as it was sent: what `ergocast verify` simulates again.
 inline constexpr const char* kPlanFile = "plan.binpb";
+/// The ticks that do not count, while no summary tells of them.
+inline constexpr const char* kHoldsFile = "holds.json";
 
 /// File `segment` of a table: trajectory.csv, trajectory-001.csv, trajectory-002.csv …
 std::filesystem::path segment_file(const std::filesystem::path& folder, const std::string& table,

@@ -147,14 +147,6 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
   summary["tick_count"] = mission.timing.tick_count;
 }
 
-/// The ticks that do not count: the first one, and the first one that counts again, if it is named.
-Json holds_of(std::span<const Hold> holds) {
-  Json list = Json::array();
-  for (const Hold& hold : holds)
-    list.push_back({hold.from, hold.open() ? Json(nullptr) : Json(hold.until)});
-  return list;
-}
-
 /// The recorder's reason, with important remarks on the result.
 std::string reason_of(const Recorder& recorder) {
   const RunFacts& facts = recorder.facts();
@@ -166,6 +158,31 @@ std::string reason_of(const Recorder& recorder) {
   std::snprintf(text, sizeof text, "; %.0f %% of the commands came too late for their tick",
                 std::min(100.0, 100 * share));
   return recorder.reason() + text;
+}
+
+/// Null if there is no such file.
+std::variant<Json, std::string> read_json(const std::filesystem::path& file) {
+  if (const auto why = why_not_regular(file)) return file.string() + ": " + *why;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return Json(nullptr);
+  try {
+    return Json::parse(in);
+  } catch (const Json::exception& error) {
+    return file.string() + ": is not JSON: " + error.what() +
+           ": copy it again from where the run was recorded, or remove it";
+  }
+}
+
+/// As holds_json() lists them; none if what it says cannot be.
+std::vector<Hold> holds_in(const Json& list) {
+  std::vector<Hold> holds;
+  if (!list.is_array()) return holds;
+  for (const Json& pair : list) {
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer()) return {};
+    if (!pair[1].is_null() && !pair[1].is_number_integer()) return {};
+    holds.push_back({pair[0].get<Tick>(), pair[1].is_null() ? -1 : pair[1].get<Tick>()});
+  }
+  return are_holds(holds) ? holds : std::vector<Hold>();
 }
 
 }  // namespace
@@ -181,7 +198,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
   summary["ticks"] = facts.ticks - facts.held_ticks;
   if (const auto holds = recorder.follower().holds(); !holds.empty()) {
     summary["held_ticks"] = facts.held_ticks;
-    summary["holds"] = holds_of(holds);
+    summary["holds"] = holds_json(holds);
   }
   const bool observed = !facts.t_s.empty();
   summary["ergodic_metric"] = {
@@ -223,28 +240,21 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
 }
 
 std::variant<Json, std::string> read_summary(const std::filesystem::path& run_dir) {
-  const auto file = run_dir / kSummaryFile;
-  if (const auto why = why_not_regular(file)) return file.string() + ": " + *why;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Json(nullptr);
-  try {
-    return Json::parse(in);
-  } catch (const Json::exception& error) {
-    return file.string() + ": is not JSON: " + error.what() +
-           ": copy it again from where the run was recorded, or remove it";
-  }
+  return read_json(run_dir / kSummaryFile);
 }
 
-std::vector<Hold> holds_in(const Json& summary) {
-  std::vector<Hold> holds;
-  if (!summary.is_object()) return holds;
-  const Json list = summary.value("holds", Json::array());
-  for (const Json& pair : list) {
-    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number_integer()) return {};
-    if (!pair[1].is_null() && !pair[1].is_number_integer()) return {};
-    holds.push_back({pair[0].get<Tick>(), pair[1].is_null() ? -1 : pair[1].get<Tick>()});
-  }
-  return are_holds(holds) ? holds : std::vector<Hold>();
+Json holds_json(std::span<const Hold> holds) {
+  Json list = Json::array();
+  for (const Hold& hold : holds)
+    list.push_back({hold.from, hold.open() ? Json(nullptr) : Json(hold.until)});
+  return list;
+}
+
+std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir, const Json& summary) {
+  const auto early = read_json(run_dir / kHoldsFile);
+  const Json* list = std::get_if<Json>(&early);
+  if (list != nullptr && list->is_array()) return holds_in(*list);
+  return summary.is_object() ? holds_in(summary.value("holds", Json())) : std::vector<Hold>();
 }
 
 std::string to_text(const Json& summary) {

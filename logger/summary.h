@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "logger/recorder.h"
 #include "team/messages.h"
@@ -31,8 +33,14 @@ struct RunContext {
 /// The summary as far as the record determines it. Keys are documented in docs/run_directory.md.
 nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& context);
 
-/// The ticks that a summary says do not count; none if what it says cannot be.
-std::vector<Hold> holds_in(const nlohmann::ordered_json& summary);
+/// Ticks that do not count, as JSON: of each pause the first one, and the first one that counts
+/// again or null.
+nlohmann::ordered_json holds_json(std::span<const Hold> holds);
+
+/// The ticks of a run directory that do not count: by holds.json, which its logger leaves until it
+/// writes a summary, else by `summary`. None if what they say cannot be.
+std::vector<Hold> recorded_holds(const std::filesystem::path& run_dir,
+                                 const nlohmann::ordered_json& summary);
 
 /// The text of the file. Bytes that are not UTF-8, which the network may bring, are replaced.
 std::string to_text(const nlohmann::ordered_json& summary);

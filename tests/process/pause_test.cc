@@ -73,6 +73,22 @@ TEST_F(PauseCommand, HoldsAMissionInRealTimeInWhichAnAgentRestarts) {
   expect_standing(holds[0][0].get<Tick>() + 10, holds[0][1]);
 }
 
+TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  ASSERT_EQ(say("pause"), 0) << output();
+  ASSERT_TRUE(moves_on(3000));
+  ASSERT_EQ(say("resume"), 0) << output();
+  ASSERT_TRUE(moves_on());
+  mission.send(SIGSTOP);  // it restarts nobody
+  kill_next({"ergocast-logger"});
+  mission.send(SIGKILL);
+  wait_for(mission);
+  ASSERT_FALSE(std::filesystem::exists(out() / "summary.json"));
+  EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
+  EXPECT_TRUE(answered("identical to its simulation")) << output();
+  EXPECT_EQ(ergocast({"report", out()}), 0) << output();
+}
+
 TEST_F(PauseCommand, SaysWhyThereIsNothingToPause) {
   EXPECT_EQ(say("pause"), 4);
   EXPECT_TRUE(answered("nobody of any run")) << output();
