@@ -14,7 +14,7 @@ import java.awt.image.BufferedImage;
 import java.util.Arrays;
 import java.util.Map;
 
-/** The target in grey, walls, and on them each agent with its track, seen along one axis. */
+/** The target in grey, walls, stations, and on them each agent with its track, seen along one axis. */
 final class MapView extends Picture {
   private static final String[] AXES = {"x", "y", "z"};
   private static final int CELLS = 200;
@@ -22,6 +22,7 @@ final class MapView extends Picture {
   private static final int MOST_POINTS = 24000; // drawn, of all tracks together
   private static final int RECENT = 200; // last points of a track, drawn strongly
   private static final float RADIUS = 6;
+  private static final int STATION = 10; // half a side
 
   private final int across, up; // the axes that are seen; x and y in a plane
   private Plan drawnPlan;
@@ -73,6 +74,7 @@ final class MapView extends Picture {
     int points = Math.max(100, MOST_POINTS / Math.max(1, team.agents.size()));
     team.agents.forEach((id, agent) -> drawTrack(g, axes, id, agent, points));
     g.setClip(all);
+    if (up == 1) drawStations(g, axes, plan);
     for (Map.Entry<Integer, Team.Agent> entry : team.agents.entrySet()) {
       drawAgent(g, axes, entry.getKey(), entry.getValue(), team.agents.size());
     }
@@ -123,6 +125,22 @@ final class MapView extends Picture {
     }
     g.setColor(Color.GRAY);
     g.fill(walls);
+  }
+
+  /** Open squares where agents are to be at the end. */
+  private static void drawStations(Graphics2D g, Axes axes, Plan plan) {
+    for (double[] places : plan.stations) {
+      for (int i = 0; i + 1 < places.length; i += 2) {
+        int x = (int) Math.round(axes.pixelX(places[i]));
+        int y = (int) Math.round(axes.pixelY(places[i + 1]));
+        g.setColor(Color.WHITE);
+        g.setStroke(new BasicStroke(4));
+        g.drawRect(x - STATION, y - STATION, 2 * STATION, 2 * STATION);
+        g.setColor(Colors.INK);
+        g.setStroke(new BasicStroke(1.6f));
+        g.drawRect(x - STATION, y - STATION, 2 * STATION, 2 * STATION);
+      }
+    }
   }
 
   private void drawTrack(Graphics2D g, Axes axes, int id, Team.Agent agent, int points) {

@@ -18,8 +18,8 @@ final class Plan {
   static final int MAX_MODES = 64; // along an axis
   static final int MAX_MODES_TOGETHER = 4096;
   static final long MAX_TICKS = 100000000;
-  static final int MAX_CORNERS = 1024;
-  private static final int WALLS = 21;
+  static final int MAX_PLACES = 1024; // corners of a ring, stations of a kind
+  private static final int KINDS = 20, WALLS = 21;
   static final int LOW_MODES = 64; // in the first block where the others are sent less often
 
   final String name;
@@ -31,6 +31,7 @@ final class Plan {
   final double[] target; // mu, (l * modes[0] + m) * modes[1] + n
   final double[] cosineTarget; // the same in cosines, which can be drawn
   final List<double[]> walls = new ArrayList<>(); // rings: x and y of each corner in turn [m]
+  final List<double[]> stations = new ArrayList<>(); // x and y of each kind's in turn [m]
   private final boolean separated; // low modes from others: they travel by ascending |k|
   private final int[] wire; // the modes in the order in which they travel
 
@@ -66,7 +67,11 @@ final class Plan {
     target = coefficients(plan.get(6), count);
     cosineTarget = freeDomain ? coefficients(plan.get(24), count) : target;
     each(ByteBuffer.wrap(bytes), (field, value) -> {
-      if (field == WALLS) walls.add(corners(fields(value).get(1)));
+      if (field == WALLS) walls.add(places(fields(value).get(1)));
+      if (field == KINDS) {
+        ByteBuffer ofKind = fields(value).get(12);
+        if (ofKind != null) stations.add(places(ofKind));
+      }
     });
     separated = timing.containsKey(12) && count > LOW_MODES;
     wire = inOrder();
@@ -118,12 +123,13 @@ final class Plan {
     return seen;
   }
 
-  private static double[] corners(ByteBuffer value) {
-    require(value != null && value.remaining() % 16 == 0 && value.remaining() <= 16 * MAX_CORNERS);
-    double[] corners = new double[value.remaining() / 8];
-    for (int i = 0; i < corners.length; ++i)
-      corners[i] = within(value.getDouble(), -1e13, 1e13);
-    return corners;
+  /** x and y of each in turn. */
+  private static double[] places(ByteBuffer value) {
+    require(value != null && value.remaining() % 16 == 0 && value.remaining() <= 16 * MAX_PLACES);
+    double[] places = new double[value.remaining() / 8];
+    for (int i = 0; i < places.length; ++i)
+      places[i] = within(value.getDouble(), -1e13, 1e13);
+    return places;
   }
 
   /** The values of a message's fields by number: the last of each, as bytes still to be read. */

@@ -42,6 +42,9 @@ public final class SpyProbe {
       case "map":
         map(rest[0], rest[1]);
         return;
+      case "ink":
+        ink(rest[0], Double.parseDouble(rest[1]), Double.parseDouble(rest[2]));
+        return;
       case "hostile":
         hostile(rest[0]);
         return;
@@ -154,6 +157,17 @@ public final class SpyProbe {
       }
     }
     System.out.printf(java.util.Locale.ROOT, "%s %.4f %.4f%n", what, x / count, y / count);
+  }
+
+  /** How many pixels of the map are drawn in ink near a place, by its shares of the map's sides. */
+  private static void ink(String planFile, double shareX, double shareY) throws Exception {
+    BufferedImage image = draw(new MapView(teamWith(Files.readAllBytes(Paths.get(planFile)))));
+    int x = 72 + (int) (400 * shareX), y = 58 + (int) (400 * (1 - shareY)), count = 0;
+    for (int i = x - 20; i <= x + 20; ++i) {
+      for (int j = y - 20; j <= y + 20; ++j)
+        count += (image.getRGB(i, j) & 0xffffff) == (Colors.INK.getRGB() & 0xffffff) ? 1 : 0;
+    }
+    System.out.println("ink " + count);
   }
 
   /** Draws the map at 400 x 400 pixels. */

@@ -176,6 +176,21 @@ TEST_F(SpyJar, TheMapHasXToTheRightAndYUpwards) {
   EXPECT_NEAR(found["agent"].second, 0.125, kPixels);
 }
 
+TEST_F(SpyJar, StationsAreOpenSquares) {
+  std::string text = text_of(scenario_file("quadrimodal_corners"));
+  text.replace(text.find("starts {"), 0,
+               "kind { name: \"robots\" count: 4 reserve_s: 60 station { x_m: 500 y_m: 1200 } } ");
+  std::ofstream(folder_ / "home.textproto") << text;
+  plan_of_file(folder_ / "home.textproto");
+  const auto ink_at = [&](const char* x, const char* y) {
+    const std::string said = ask({"ink", plan_file(), x, y});
+    return std::stoi("0" + said.substr(std::min(said.size(), said.find("ink ") + 4)));
+  };
+  EXPECT_GE(ink_at("0.25", "0.6"), 4 * 18) << output();
+  EXPECT_LE(ink_at("0.25", "0.6"), 4 * 50) << "it is open";
+  EXPECT_EQ(ink_at("0.25", "0.4"), 0);
+}
+
 TEST_F(SpyJar, ABoxIsSeenAlongEachAxis) {
   plan_of_bell("cube_corners", "mean_x_m: 300 mean_y_m: 800 mean_z_m: 400 sigma_m: 100");
   const std::map<char, std::pair<double, double>> expected = {
