@@ -6,93 +6,42 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/diagnose_silence.h"
 #include "cli/find_run.h"
-#include "cli/report_error.h"
 #include "cli/stop_request.h"
-#include "cli/team_monitor.h"
-#include "runtime/clock.h"
-#include "runtime/node.h"
-#include "runtime/signals.h"
-#include "runtime/transport.h"
+#include "cli/team_command.h"
 
 namespace ergocast::cli {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// Longer than any agent is silent, so that every other run on this URL is detected.
-constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
-/// How long to wait for any process, and for a coordinator.
-constexpr auto kListeningTime = 3s;
-/// How long a coordinator may take to end the mission; then how long the team may take to exit.
-constexpr auto kAnswerPatience = 5s;
+/// How long the team may take to exit.
 constexpr auto kLongest = 15s;
 /// An emergency stop is repeated at least so long, because a process may miss the first ones.
 constexpr auto kLeastInsistence = 1s;
-constexpr auto kStopTurn = 20ms;
-/// Runs beyond kMostRuns that get a STOP in one turn.
-constexpr std::size_t kMostInATurn = 256;
 constexpr const char* kAtOnce = "stopped at once by `ergocast stop --now` on ";
 
 struct StopOptions : BusOptions {
   bool at_once = false;
 };
 
-class Stopping {
+class Stopping : public TeamCommand {
  public:
-  Stopping(const StopOptions& options, StopSignals& signals)
-      : options_(options), signals_(signals) {}
+  explicit Stopping(const StopOptions& options) : TeamCommand(options), options_(options) {}
 
-  /// Nothing, or why LCM cannot be used.
-  std::optional<std::string> open() {
-    auto opened = listen_to_teams(
-        options_,
-        [this](const Message& message, Bus bus, AgentId transmitter) {
-          hear(message, bus, transmitter);
-        },
-        [this](const Message& message, Bus, AgentId) { replay_ = header_of(message).run; });
-    if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
-    transport_ = std::get<0>(std::move(opened));
-    since_ = now();
-    return std::nullopt;
-  }
-
-  /// Finds the run, stops it and reports the result; returns the exit code.
-  int stop() {
-    while (!found() && now() < since_ + kListeningTime) {
-      if (!listen()) return kExitFailed;
-    }
+ private:
+  int act() override {
+    // A run that is named is known, and an emergency must not wait.
+    if (options_.run == 0 && !look_around()) return interrupted();
     if (runs_.size() > 1 && !options_.at_once) return choose();
     if (runs_.empty() && options_.run == 0) return nobody();
     if (options_.run != 0) runs_.try_emplace(options_.run, options_.run);
     if (!options_.at_once) transport_->set_run(runs_.begin()->first);
     since_ = now();
     return insist();
-  }
-
- private:
-  void hear(const Message& message, Bus bus, AgentId transmitter) {
-    const RunId run = header_of(message).run;
-    if (run == 0) return;
-    if (runs_.size() < kMostRuns || runs_.contains(run)) {
-      runs_.try_emplace(run, run).first->second.receive(message, bus, transmitter, now());
-    } else if (crowd_.size() < kMostInATurn) {
-      crowd_.insert(run);
-    }
-  }
-  /// False if a signal came.
-  bool listen() {
-    transport_->deliver_until(now() + kStopTurn, signals_.fd());
-    return signals_.take() == 0;
-  }
-  bool found() const {
-    if (options_.run != 0) return true;  // the run is known, and an emergency must not wait
-    return runs_.size() > 1 || (!runs_.empty() && now() >= since_ + kLookAround);
   }
 
   /// Stops the selected run. In an emergency it stops all runs on the URL, also those received
@@ -105,8 +54,7 @@ class Stopping {
         if (!codes.contains(run)) say(run, team, words);
       }
       say_to_the_crowd();
-      if (!listen())
-        return report_error(kExitFailed, "interrupted before the team was seen to end");
+      if (!listen()) return interrupted();
       for (const auto& [run, word] : words) {
         if (codes.contains(run)) continue;
         if (const auto code = verdict(runs_.at(run))) codes[run] = *code;
@@ -150,7 +98,7 @@ class Stopping {
 
   /// The exit code, or nothing while it is unknown.
   std::optional<int> verdict(const MonitoredRun& team) const {
-    const auto waited = now() - since_;
+    const auto waited = this->waited();
     const auto left = team.still_there(now());
     const bool obeyed = options_.at_once ? waited >= kLeastInsistence : team.over();
     if (team.unheard()) return waited < kListeningTime ? std::nullopt : std::optional(nobody());
@@ -197,36 +145,9 @@ class Stopping {
     return kExitDone;
   }
 
-  int nobody() const {
-    if (replay_ != 0) {
-      return report_error(kExitFailed,
-                          "what is heard on " + options_.url.base() + " is a replay of run " +
-                              to_hex(replay_) +
-                              ": no team flies, and there is nothing to stop. Ctrl-C ends "
-                              "`ergocast replay` where it runs");
-    }
-    return report_error(kExitFailed, why_nobody(options_, *transport_));
-  }
-
-  int choose() const { return report_error(kExitBadInput, choice_of(runs_)); }
-
   const StopOptions& options_;
-  StopSignals& signals_;
-  std::unique_ptr<Transport> transport_;
-  std::map<RunId, MonitoredRun> runs_;
-  std::set<RunId> crowd_;  // beyond kMostRuns, received since the last turn
   bool crowded_ = false;
-  Instant since_{};
-  RunId replay_ = 0;  // of the newest message that `ergocast replay` sent; 0: none
 };
-
-int stop(const StopOptions& options) {
-  if (!options.seal.can_sign()) return report_error(kExitBadInput, cannot_sign(options.key_file));
-  StopSignals signals;
-  Stopping stopping(options, signals);
-  if (const auto problem = stopping.open()) return report_error(kExitUnavailable, *problem);
-  return stopping.stop();
-}
 
 }  // namespace
 
@@ -245,7 +166,7 @@ void add_stop(CLI::App& app, Action& action) {
   command->callback([&action, options, command] {
     action = [options, command] {
       if (const auto code = find_run(*command, *options)) return *code;
-      return stop(*options);
+      return Stopping(*options).carry_out();
     };
   });
 }

@@ -90,7 +90,7 @@ TEST_F(Replay, OfTheCommandIsShownAsAReplayAndNobodyJoinsOrStopsIt) {
     if (option == std::string("--now")) words.emplace_back(option);
     EXPECT_EQ(ergocast(words), 4);
     EXPECT_NE(output().find("is a replay of run "), std::string::npos) << output();
-    EXPECT_NE(output().find("there is nothing to stop"), std::string::npos) << output();
+    EXPECT_NE(output().find("no team flies, and nobody can obey"), std::string::npos) << output();
   }
   EXPECT_EQ(ergocast({"replay", out(), "--lcm-url", kUrl}), 2);
   EXPECT_NE(output().find("a team or another replay sends here"), std::string::npos) << output();

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `ergocast stop`, `pause` and `resume` share: they listen for the runs on a URL, speak to one
+// of them, and wait until they hear that it obeys.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "cli/report_error.h"
+#include "cli/team_monitor.h"
+#include "runtime/clock.h"
+#include "runtime/node.h"
+#include "runtime/signals.h"
+#include "runtime/transport.h"
+
+namespace ergocast::cli {
+
+class TeamCommand {
+ public:
+  /// @param options  outlives it
+  explicit TeamCommand(const BusOptions& options) : options_(options) {}
+  virtual ~TeamCommand() = default;
+
+  /// Opens the buses and acts; returns the exit code, after an error message.
+  int carry_out();
+
+ protected:
+  /// Finds the run, speaks to it and reports the result; returns the exit code.
+  virtual int act() = 0;
+
+  /// How long to wait for any process, and for a coordinator; how long a coordinator may take.
+  static constexpr std::chrono::seconds kListeningTime{3}, kAnswerPatience{5};
+
+  /// Listens until a run is heard, and any other on this URL would be. False if a signal came.
+  bool look_around();
+  /// Listens for one turn. False if a signal came.
+  bool listen();
+  auto waited() const { return now() - since_; }
+
+  int nobody() const;
+  int choose() const { return report_error(kExitBadInput, choice_of(runs_)); }
+  int interrupted() const {
+    return report_error(kExitFailed, "interrupted before the team was seen to obey");
+  }
+
+  std::unique_ptr<Transport> transport_;
+  std::map<RunId, MonitoredRun> runs_;
+  std::set<RunId> crowd_;  // beyond kMostRuns, received since somebody cleared it
+  Instant since_{};
+
+ private:
+  void hear(const Message& message, Bus bus, AgentId transmitter);
+
+  const BusOptions& options_;
+  StopSignals signals_;
+  RunId replay_ = 0;  // of the newest message that `ergocast replay` sent; 0: none
+};
+
+}  // namespace ergocast::cli
