@@ -68,18 +68,10 @@ class BeaconLog {
 int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) {
   StopSignals signals;
   Agent agent({node.run, requested_id, random_identity(), host_name(), version(), kind});
-  auto opened =
-      Transport::open(node.url, node.run, node.seal, subscriptions_of(Agent::kRole),
-                      {.on_message =
-                           [&agent](const Message& message, Bus bus, AgentId transmitter) {
-                             agent.receive(message, bus, transmitter, now());
-                           },
-                       .on_refused = [&agent](Refusal refusal) { agent.count_refused(refusal); }});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    spdlog::error("{}", *problem);
-    return kExitUnavailable;
-  }
-  Transport& transport = *std::get<0>(opened);
+  const auto connected = connect(
+      agent, node, {.on_refused = [&agent](Refusal refusal) { agent.count_refused(refusal); }});
+  if (!connected) return kExitUnavailable;
+  Transport& transport = *connected;
   TrafficWatch watch(transport);
   WaitingLog waiting;
   EncodingLog encodings;

@@ -109,16 +109,9 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
   StopSignals signals;
   Coordinator coordinator({node.run, random_identity(), host_name(), version()}, std::move(plan),
                           takeover);
-  auto opened =
-      Transport::open(node.url, node.run, node.seal, subscriptions_of(Coordinator::kRole),
-                      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
-                        coordinator.receive(message, bus, transmitter, now());
-                      }});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    spdlog::error("{}", *problem);
-    return kExitUnavailable;
-  }
-  Transport& transport = *std::get<0>(opened);
+  const auto connected = connect(coordinator, node);
+  if (!connected) return kExitUnavailable;
+  Transport& transport = *connected;
   TrafficWatch watch(transport);
   if (takeover != Takeover::kNever) spdlog::info("looking for a mission on {}", node.url.base());
 

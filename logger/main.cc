@@ -236,21 +236,16 @@ int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLi
     return refuse(kExitBadInput, *problem);
   RunLogger logger(node.run, *std::get<0>(created), std::move(past), limits);
   Recorder& recorder = logger.recorder();
-  auto opened = Transport::open(
-      node.url, node.run, node.seal, subscriptions_of(Recorder::kRole),
-      {.on_message =
-           [&](const Message& message, Bus bus, AgentId transmitter) {
-             recorder.receive(message, bus, transmitter, now());
-           },
-       .on_accepted =
-           [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
-             logger.keep_event(bus, channel, bytes);
-           }});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
+  const auto connected = connect(
+      recorder, node,
+      {.on_accepted = [&](Bus bus, std::string_view channel, std::span<const std::byte> bytes) {
+        logger.keep_event(bus, channel, bytes);
+      }});
+  if (!connected) {
     logger.discard();
-    return refuse(kExitUnavailable, *problem);
+    return kExitUnavailable;
   }
-  Transport& transport = *std::get<0>(opened);
+  Transport& transport = *connected;
   TrafficWatch watch(transport);
   spdlog::info("recording {} into {}", node.url.base(), folder.string());
 

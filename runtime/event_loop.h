@@ -1,21 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The main loop of every process: deliver messages, let the core act, publish its messages.
+// The connection and the main loop of every process: deliver messages, let the core act, publish
+// its messages.
 #pragma once
+
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <memory>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "runtime/clock.h"
 #include "runtime/loop_lag.h"
+#include "runtime/node.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
 #include "team/messages.h"
 
 namespace ergocast {
 
-/// Runs `core` until it has finished. A core has receive() (called by the transport's handler),
+/// The buses of `core`, which then receives what it subscribes to; null, after a line in the log,
+/// if LCM cannot be used.
+/// @param more  handlers besides that of messages
+template <class Core>
+std::unique_ptr<Transport> connect(Core& core, const NodeOptions& node,
+                                   Transport::Handlers more = {}) {
+  more.on_message = [&core](const Message& message, Bus bus, AgentId transmitter) {
+    core.receive(message, bus, transmitter, now());
+  };
+  auto opened = Transport::open(node.url, node.run, node.seal, subscriptions_of(Core::kRole),
+                                std::move(more));
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
+    spdlog::error("{}", *problem);
+    return nullptr;
+  }
+  return std::get<0>(std::move(opened));
+}
+
+/// Runs `core` until it has finished. A core has kRole, receive(), run by the transport's handler,
 /// advance(now, out), next_wakeup() and finished().
 /// @param on_signal  called for SIGINT or SIGTERM; it makes the core finish
 /// @param each_turn  called in every turn, for the work that only this process has

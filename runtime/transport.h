@@ -30,7 +30,7 @@ class Transport {
   /// The receivers of datagrams; all but the first are optional. `on_accepted` gets the bytes.
   /// `transmitter` is the message's sender, or the agent that relays it.
   struct Handlers {
-    std::function<void(const Message&, Bus, AgentId transmitter)> on_message;
+    std::function<void(const Message&, Bus, AgentId transmitter)> on_message = {};
     std::function<void(Refusal)> on_refused = {};
     std::function<void(Bus, std::string_view channel, std::span<const std::byte>)> on_accepted = {};
     /// Messages of `ergocast replay`, which nobody else receives.

@@ -16,16 +16,9 @@ namespace ergocast {
 int run_world(const NodeOptions& node, PhysicsMaker physics) {
   StopSignals signals;
   World world(node.run, random_identity(), std::move(physics));
-  auto opened =
-      Transport::open(node.url, node.run, node.seal, subscriptions_of(World::kRole),
-                      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
-                        world.receive(message, bus, transmitter, now());
-                      }});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    spdlog::error("{}", *problem);
-    return kExitUnavailable;
-  }
-  Transport& transport = *std::get<0>(opened);
+  const auto connected = connect(world, node);
+  if (!connected) return kExitUnavailable;
+  Transport& transport = *connected;
   TrafficWatch watch(transport);
   spdlog::info("waiting for a mission on {}", node.url.base());
 

@@ -16,16 +16,9 @@ namespace {
 int run(const NodeOptions& node, double speed_limit_mps, std::optional<AgentId> only) {
   StopSignals signals;
   Driver driver(node.run, random_identity(), speed_limit_mps, only);
-  auto opened =
-      Transport::open(node.url, node.run, node.seal, subscriptions_of(Driver::kRole),
-                      {.on_message = [&](const Message& message, Bus bus, AgentId transmitter) {
-                        driver.receive(message, bus, transmitter, now());
-                      }});
-  if (const auto* problem = std::get_if<std::string>(&opened)) {
-    spdlog::error("{}", *problem);
-    return kExitUnavailable;
-  }
-  Transport& transport = *std::get<0>(opened);
+  const auto connected = connect(driver, node);
+  if (!connected) return kExitUnavailable;
+  Transport& transport = *connected;
   spdlog::info("waiting for a mission on {}", node.url.base());
 
   live(
