@@ -1,0 +1,518 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small edits to a good scenario, block by block.
+#include "tests/checks_can_fail/scenario_mistakes.h"
+
+#include <sstream>
+
+namespace ergocast::test {
+namespace {
+
+std::string polygon(const std::string& corners, const std::string& more = "") {
+  std::istringstream numbers(corners);
+  std::string text = "regions { polygon { ";
+  for (std::string x, y; numbers >> x >> y;) text += "vertices { x_m: " + x + " y_m: " + y + " } ";
+  return text + more + " } } uniform_weight: 1";
+}
+
+std::string hole(const std::string& corners) {
+  const std::string text = polygon(corners);
+  const auto from = text.find("vertices"), to = text.rfind(" } }");
+  return "holes { " + text.substr(from, to - from) + "} ";
+}
+
+std::string map_of(const std::string& file, const std::string& more = "") {
+  const bool extent = more.empty() && !file.ends_with(".asc");
+  return "maps { file: \"" + file + "\" " + more +
+         (extent ? "origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50" : "") + " }";
+}
+
+const std::string kUniform = "uniform_weight: 1";
+const std::string kSquare = "10 10 40 10 40 40 10 40";
+
+std::vector<Mistake> mistakes_of_the_text() {
+  return {
+      {"size_x_m: 100", "size_x_m: 1,5", "domain.size_x_m: 1,5 has a comma"},
+      {"size_x_m: 100", "size_x_m: ten", "domain.size_x_m: ten is not a number"},
+      {"size_x_m: 100", "size_x_m 100", "domain.size_x_m: Expected \":\""},
+      {"size_x_m: 100", "size_x_m: 100 size_x_m: 1", "domain.size_x_m: is written more than once"},
+      {"size_x_m: 100", "size_x_m: 100 size_q_m: 1", "unknown field \"size_q_m\" in Domain"},
+      {kLaw, "law { modes_x: 5", "unknown field \"modes_x\" in Law"},
+      {kLaw, "law { nonsense: 5", "unknown field \"nonsense\" in Law"},
+      {kLaw, "[other.field]: 5 law {", "unknown extension"},
+      {kLaw, "law { regularization: BOTH", "law.regularization: unknown value \"BOTH\""},
+      {kLaw, "basis { normalized: yes } law {", "basis.normalized: yes is neither true nor false"},
+      {kLaw, "basis { modes_x: 4.5 } law {", "basis.modes_x: 4.5 is not a whole number"},
+      {kLaw, "seed: -1 law {", "seed: -1 is not 0 or above"},
+      {kLaw, "seed: 18446744073709551616 law {", "seed: 18446744073709551616 is out of range"},
+      {kLaw, "name: five law {", "name: five is not a quoted text"},
+      {"} }\n", "}\n", "this block is not closed"},
+      {kLaw, "# \xE9\nlaw {", "this is not UTF-8"},
+      {kLaw, repeated(20, "law {"), "blocks lie deeper than the limit"},
+      {kLaw, repeated(60, "seed: x ") + kLaw, "has more mistakes than these", false},
+      {kLaw, "#" + std::string(1 << 20, ' ') + "\nlaw {", "is longer than the limit", false},
+      {kLaw, "name: \"../x\" law {", "name: cannot name a folder"},
+      {kLaw, "description: \"\\xff\" law {", "description: is not UTF-8"},
+      {kLaw, "description: \"" + std::string(2001, 'x') + "\" law {", "description: 2001 bytes"},
+  };
+}
+
+/// A distance among vehicles of 20 m/s; then, unless it says otherwise, the law.
+std::string keeping(const std::string& separation, const std::string& world,
+                    const std::string& then = kLaw) {
+  return "separation { " + separation + " } world { speed_limit_mps: 20 " + world + " } " + then;
+}
+
+std::string wings(const std::string& limits, const std::string& then = kLaw) {
+  return "vehicle { kind: FIXED_WING " + limits + " } world { speed_limit_mps: 20 } " + then;
+}
+
+std::vector<Mistake> mistakes_between_fields() {
+  return {
+      {"size_x_m: 100", "size_x_m: 100 origin_x_m: 10000001", "domain.origin_x_m: "},
+      {"size_x_m: 100", "size_x_m: 100 origin_y_m: 10000001", "domain.origin_y_m: "},
+      {kLaw, "basis { modes_x: 1 modes_y: 1 } law {", "basis: a single mode"},
+      {"u_max_mps: 5", "u_max_mps: 501", "law.u_max_mps: 501 makes u_max_mps"},
+      {kLaw, "law { noise_intensity: 159", "law.noise_intensity: 159 makes"},
+      {kLaw, "law { noise_ceiling: 159", "law.noise_ceiling: 159 makes"},
+      {kLaw, "law { noise_intensity: 3 noise_ceiling: 2", "law.noise_ceiling: 2 is below"},
+      {kLaw, "law { perturbation: CONSTANT noise_ceiling: 2", "law.noise_ceiling: has no effect"},
+      {kLaw, "law { contraction_gain_per_s: 0.1", "law.u_max_mps: 5 is too weak"},
+      {"u_max_mps: 5", "u_max_mps: 500 contraction_gain_per_s: 11",
+       "law.contraction_gain_per_s: 11 makes"},
+      {kLaw, "law { contraction_center: POINT contraction_y_m: 3",
+       "law.contraction_x_m: is missing"},
+      {kLaw, "law { contraction_center: POINT contraction_x_m: 3",
+       "law.contraction_y_m: is missing"},
+      {kLaw, "law { contraction_x_m: 3", "law.contraction_x_m: has no effect"},
+      {kTime, "duration_s: 0.04", "time.duration_s: 0.04 is less than one step"},
+      {kTime, "duration_s: 1001 dt_s: 1e-5", "time.duration_s: 100100000 steps"},
+      {kTime, "duration_s: 60 dt_s: 0.001 pace: REALTIME realtime_factor: 20",
+       "time.realtime_factor: 20 makes a step last"},
+      {kTime, "duration_s: 60 broadcast_period_ticks: 30 high_mode_period_factor: 34",
+       "time.high_mode_period_factor: 34 makes 1020 ticks"},
+      {"starts { x_m: 10 y_m: 20 }", "", "agents: the team is empty"},
+      {"agents {", "agents { random_count: 1024", "agents: a team of 1025"},
+      {"agents {", "agents { quorum: 2", "agents.quorum: 2 is above"},
+      {"{ x_m: 10", "{ x_m: 101", "agents.starts[0].x_m: 101 is outside"},
+      {"y_m: 20", "y_m: -1", "agents.starts[0].y_m: -1 is outside"},
+      {"agents {", "world { disturbance_intensity: 1000 } agents {",
+       "world.disturbance_intensity: 1000"},
+      {kLaw, "separation { distance_m: 5 } law {",
+       "world.speed_limit_mps: is missing, and separation relies on it", false},
+      {kLaw, keeping("distance_m: 26", ""), "separation.distance_m: 26 is above a quarter"},
+      {kLaw, "vehicle { kind: ACCELERATION } law {", "vehicle.max_acceleration_mps2: is missing",
+       false},
+      {kLaw, "vehicle { max_acceleration_mps2: 5 } law {",
+       "vehicle.max_acceleration_mps2: has no effect"},
+      {kLaw, "vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } law {",
+       "world.speed_limit_mps: is missing, and all kinds but POINT rely on it", false},
+      {kLaw,
+       "world { speed_limit_mps: 20 } vehicle { kind: ACCELERATION max_acceleration_mps2: 5 } "
+       "law {",
+       "vehicle.max_acceleration_mps2: 5 stops a vehicle after"},
+      {kLaw, wings("max_turn_radps: 1"), "vehicle.min_speed_mps: is missing", false},
+      {kLaw, wings("min_speed_mps: 2"), "vehicle.max_turn_radps: is missing", false},
+      {kLaw, wings("min_speed_mps: 5 max_turn_radps: 1"), "vehicle.min_speed_mps: 5 is not below"},
+      {kLaw, wings("min_speed_mps: 2 max_turn_radps: 0.1"),
+       "vehicle.max_turn_radps: 0.1 turns a vehicle on a circle"},
+      {"agents {", wings("min_speed_mps: 2 max_turn_radps: 0.16", "agents {"),
+       "agents.starts[0]: is nearer to an edge than"},
+      {kLaw, wings("min_speed_mps: 2 max_turn_radps: 1 max_acceleration_mps2: 1"),
+       "vehicle.max_acceleration_mps2: has no effect with kind: FIXED_WING"},
+      {kLaw,
+       keeping("distance_m: 5 position_error_m: 0.1",
+               "} vehicle { kind: ACCELERATION max_acceleration_mps2: 50"),
+       "separation: allows errors, disturbances"},
+      {kLaw, keeping("distance_m: 5", "disturbance_intensity: 1"),
+       "separation.disturbance_m: 1.898 is not below a quarter of a step"},
+      {"time {", keeping("distance_m: 5 guard: false", "", "time { pace: REALTIME "),
+       "time.command_hold_s: 0.5 is too long without separation.guard"},
+      {"time {",
+       keeping("distance_m: 20 lease_s: 2", "", "time { pace: REALTIME command_hold_s: 0.2 "),
+       "distance_m / (4 speed_limit_mps) - dt_s = 0.15"},
+      {"time {", keeping("distance_m: 5 lease_s: 2", "", "time { pace: REALTIME "),
+       "- dt_s, which is below 0 (write a greater distance_m, or a smaller dt_s"},
+      {"agents {", keeping("distance_m: 0.1 lease_s: 2", "", "agents { random_count: 256 "),
+       "separation.lease_s: is for at most 256 agents, not 257"},
+      {kLaw, keeping("distance_m: 5 lease_s: 0.2", ""),
+       "separation.lease_s: 0.2 is not between 0.5 and 1000"},
+      {kLaw, keeping("distance_m: 5 lease_s: 2 guard: true", ""),
+       "separation.lease_s: says that nobody knows all places"},
+      {kLaw, keeping("distance_m: 5 lease_s: 2", "radio_range_m: 50"),
+       "separation.lease_s: needs all agents to hear each other"},
+      {kLaw, keeping("distance_m: 5 lease_s: 2 disturbance_m: 0.1", ""),
+       "separation.lease_s: relies on bodies that stay where they stand"},
+      {"agents {", keeping("distance_m: 12", "", "agents { random_count: 22 "),
+       "separation.distance_m: 23 agents 12 m apart take up"},
+      {"agents {", keeping("distance_m: 12", "", "agents { starts { x_m: 19 y_m: 20 } "),
+       "agents.starts[1]: is 9 m from starts[0]"},
+  };
+}
+
+std::vector<Mistake> mistakes_of_targets() {
+  const std::string bell = "gaussians { mean_x_m: 5 mean_y_m: 5 ";
+  std::string big = polygon(kSquare, hole("20 20 21 20 21 21"));
+  big.insert(big.find("vertices"), repeated(4200, "vertices { x_m: 1 y_m: 1 } "));
+  return {
+      {kUniform, "", "target: there is nothing to cover"},
+      {kUniform, bell + "}", "target.gaussians[0]: has no width"},
+      {kUniform, bell + "sigma_m: 5 covariance { xx_m2: 25 yy_m2: 25 } }",
+       "target.gaussians[0]: has both"},
+      {kUniform, bell + "sigma_m: 0.009 }", "target.gaussians[0].sigma_m: 0.009 is below"},
+      {kUniform, bell + "covariance { xx_m2: 9e-5 yy_m2: 25 } }",
+       "target.gaussians[0].covariance.xx_m2: 9e-05 is below"},
+      {kUniform, bell + "covariance { xx_m2: 25 yy_m2: 9e-5 } }",
+       "target.gaussians[0].covariance.yy_m2: 9e-05 is below"},
+      {kUniform, bell + "covariance { xx_m2: 25 yy_m2: 25 xy_m2: 25 } }",
+       "target.gaussians[0].covariance.xy_m2: 25 leaves too little"},
+      {kUniform, "gaussians { mean_x_m: 500 mean_y_m: 5 sigma_m: 5 }",
+       "target: only 0 of its weight"},
+      {kUniform,
+       "gaussians { mean_x_m: 100.047 mean_y_m: 25 covariance { xx_m2: 1e-4 yy_m2: 1e-4 xy_m2: "
+       "8.9999e-5 } }",
+       "target: its coefficients can be off by"},
+      {kUniform, repeated(65, bell + "sigma_m: 5 } "), "target: 65 Gaussians are above the limit"},
+      {kUniform, repeated(17, map_of("even.csv")), "target: 17 maps are above the limit"},
+      {kUniform, repeated(65, "regions { } "), "target: 65 regions are above the limit"},
+      {kUniform, repeated(65, "keep_outs { } "), "target: 65 keep-outs are above the limit"},
+      {kUniform, big, "target: 4207 vertices are above the limit"},
+
+      {kUniform, "regions { polygon { file: \"pier.geojson\" } }",
+       "target.regions[0].polygon.file: needs to know where on the earth"},
+      {kUniform, "regions { polygon { file: \"pier.geojson\" vertices { x_m: 1 y_m: 1 } } }",
+       "target.regions[0].polygon.file: stands beside vertices"},
+      {kUniform,
+       "regions { polygon { file: \"many.geojson\" } } } "
+       "origin { latitude_deg: 47.5 longitude_deg: 9.2",
+       "target.regions[0].polygon.file: "},
+      {kUniform,
+       "regions { polygon { file: \"line.geojson\" } } } "
+       "origin { latitude_deg: 47.5 longitude_deg: 9.2",
+       "target.regions[0].polygon.file: "},
+      {kUniform, kUniform + " keep_outs { file: \"square.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, kUniform + " keep_outs { file: \"many.svg\" }", "target.keep_outs[0].file: "},
+      {kUniform, "regions { polygon { " + repeated(2, "vertices { x_m: 1 y_m: 1 } ") + "} }",
+       "target.regions[0].polygon: 2 vertices enclose nothing"},
+      {kUniform, "uniform_weight: 1 keep_outs { vertices { x_m: 1 y_m: 1 } }",
+       "target.keep_outs[0]: 1 vertices enclose nothing"},
+      {kUniform, polygon("10 10 40 10 40 10 40 40"),
+       "target.regions[0].polygon: vertices[1] and vertices[2] are the same"},
+      {kUniform, polygon(kSquare + " 10 10"),
+       "target.regions[0].polygon: vertices[4] and vertices[0] are the same"},
+      {kUniform, polygon("10 10 40 40 40 10 10 40"),
+       "target.regions[0].polygon: the edges that begin at"},
+      {kUniform, polygon(kSquare, hole("50 10 60 10 60 20")),
+       "target.regions[0].polygon.holes[0]: the hole is outside"},
+      {kUniform, polygon(kSquare, hole("20 20 30 20 30 30 20 30") + hole("24 24 25 24 25 25")),
+       "target.regions[0].polygon.holes[1]: the hole is inside"},
+      {kUniform, polygon("10 10 10.001 10 10.001 10.001"), "target.regions[0].polygon: its area"},
+      {kUniform, polygon("200 10 300 10 300 20"), "target.regions[0]: nothing of it is left"},
+      {kUniform,
+       polygon("10 10 20 10 20 20") +
+           " keep_outs { vertices { x_m: 5 y_m: 5 } vertices { x_m: 45 y_m: 5 } vertices { x_m: 45 "
+           "y_m: 45 } vertices { x_m: 5 y_m: 45 } }",
+       "target.regions[0]: nothing of it is left"},
+  };
+}
+
+/// Mistakes of maps; `files` are written beside the scenario.
+std::vector<Mistake> mistakes_of_maps() {
+  const std::string at = "target.maps[0].file: ";
+  const std::string extent = "origin_x_m: 0 origin_y_m: 0 size_x_m: 100 size_y_m: 50";
+  const std::string file = "file: \"even.csv\" ";
+  std::vector<Mistake> all = {
+      {kUniform, "maps { " + extent + " }", at + "is missing"},
+      {kUniform, map_of("even.tif"), at},
+      {kUniform, map_of("good.asc", extent),
+       "target.maps[0].origin_x_m: an ESRI ASCII grid states"},
+      {kUniform, map_of("good.asc", "first_row: SOUTH"),
+       "target.maps[0].first_row: an ESRI ASCII grid"},
+      {kUniform, map_of("even.csv", "origin_x_m: 500 origin_y_m: 0 size_x_m: 1 size_y_m: 1"),
+       "target.maps[0]: nothing of it is left"},
+  };
+  for (const char* name : {"origin_x_m", "origin_y_m", "size_x_m", "size_y_m"}) {
+    std::string others = extent;
+    const auto begin = others.find(name),
+               end = std::min(others.find(' ', others.find(' ', begin) + 1), others.size());
+    others.erase(begin, end - begin);
+    all.push_back({kUniform, map_of("even.csv", others),
+                   std::string("target.maps[0].") + name + ": is missing"});
+    all.push_back({kUniform, map_of("good.asc", std::string(name) + ": 1"),
+                   std::string("target.maps[0].") + name + ": an ESRI ASCII grid states"});
+  }
+  for (const char* bad :
+       {"none.csv",   "folder.csv", "locked.csv", "empty.csv",    "wide.csv", "long.csv",
+        "ragged.csv", "zero.csv",   "words.csv",  "negative.csv", "huge.csv", "nan.csv",
+        "key.asc",    "twice.asc",  "bare.asc",   "lacks.asc",    "both.asc", "half.asc",
+        "flat.asc",   "short.asc",  "more.asc",   "text.png",     "cut.png",  "palette.png",
+        "colour.png", "bits.png",   "laced.png"}) {
+    all.push_back({kUniform, map_of(bad), at});
+  }
+  return all;
+}
+
+/// One mistake put into a scenario of a box; the scenario stands in the place of kGood.
+Mistake in_space(const std::string& from, const std::string& to, const std::string& said) {
+  std::string box = R"(domain { size_x_m: 800 size_y_m: 600 origin_z_m: -60 size_z_m: 60 }
+target { uniform_weight: 1 }
+law { u_max_mps: 5 }
+time { duration_s: 60 }
+agents { starts { x_m: 10 y_m: 20 z_m: -3 } }
+)";
+  return {kGood, box.replace(box.find(from), from.size(), to), said};
+}
+
+Mistake of_grid(const std::string& file, const std::string& said,
+                const std::string& choice = "time_index: 1") {
+  return in_space(kUniform, "voxels { file: \"" + file + "\" variable: \"chl\" " + choice + " }",
+                  "target.voxels[0]: " + said);
+}
+
+/// Mistakes in the kinds of a team of two.
+std::vector<Mistake> mistakes_of_kinds() {
+  const std::string from = "starts { x_m: 10 y_m: 20 }";
+  const auto kinds = [&](const std::string& first, const std::string& second,
+                         const std::string& said, bool has_line = true) {
+    return Mistake{from,
+                   from + " random_count: 1 kind { name: \"a\" count: 1 " + first + " } kind { " +
+                       second + " }",
+                   said, has_line};
+  };
+  const std::string good = "name: \"b\" count: 1";
+  return {
+      kinds("", "name: \"b\" count: 2",
+            "agents.kind: the counts add up to 3 agents, and the team has 2"),
+      kinds("", "name: \"a\" count: 1", "agents.kind[1].name: another kind is called \"a\", too"),
+      kinds("", "count: 1", "agents.kind[1].name: is missing"),
+      kinds("", "name: \"x y\" count: 1", "agents.kind[1].name: cannot name a kind"),
+      kinds("", "name: \"b\"", "agents.kind[1].count: is missing"),
+      kinds("quality: 0", good, "agents.kind[0].quality: 0 is not above 0"),
+      kinds("footprint_sigma_m: -1", good,
+            "agents.kind[0].footprint_sigma_m: -1 is below the limit 0"),
+      kinds("footprint_sigma_m: 101", good,
+            "agents.kind[0].footprint_sigma_m: 101 is larger than the domain"),
+      kinds("u_max_mps: 501", good, "agents.kind[0].u_max_mps: 501 makes a step of the input"),
+      kinds("u_max_mps: 0.001", good, "agents.kind[0].u_max_mps: 0.001 is too weak"),
+      kinds("noise_intensity: 2 noise_ceiling: 1", good,
+            "agents.kind[0].noise_ceiling: 1 is less than the kind's least noise"),
+      kinds("noise_intensity: 200 noise_ceiling: 200", good,
+            "agents.kind[0].noise_intensity: 200 makes a step of the least noise"),
+      kinds("noise_ceiling: 200", good,
+            "agents.kind[0].noise_ceiling: 200 makes a step of the greatest noise"),
+      kinds("band { from: 3 to: 2 }", good, "agents.kind[0].band: covers no mode"),
+      kinds("band { from: 100 }", good, "agents.kind[0].band: covers no mode"),
+      kinds("vehicle { kind: UNICYCLE }", good,
+            "agents.kind[0].vehicle.max_turn_radps: is missing"),
+      kinds("vehicle { min_speed_mps: 1 }", good,
+            "agents.kind[0].vehicle.min_speed_mps: has no effect with kind: POINT"),
+      kinds("vehicle { kind: UNICYCLE max_turn_radps: 1 }", good,
+            "world.speed_limit_mps: is missing, and all kinds but POINT rely on it", false),
+      kinds("speed_limit_mps: 20 vehicle { kind: ACCELERATION max_acceleration_mps2: 5 }", good,
+            "agents.kind[0].vehicle.max_acceleration_mps2: 5 stops a vehicle after"),
+      kinds("speed_limit_mps: 3 vehicle { kind: FIXED_WING max_turn_radps: 1 min_speed_mps: 4 }",
+            good, "agents.kind[0].vehicle.min_speed_mps: 4 is not below law.u_max_mps and agents"),
+      kinds(
+          "speed_limit_mps: 20 vehicle { kind: FIXED_WING max_turn_radps: 0.16 min_speed_mps: 2 }",
+          good, "agents.starts[0]: is nearer to an edge than"),
+      kinds("", good + " } " + repeated(15, "kind { name: \"c\" count: 1 } ") + " kind { " + good,
+            "agents.kind: 18 kinds are above the limit 16"),
+  };
+}
+
+/// Corners in turn as a wall's or keep-out's fields.
+std::string corners(const std::string& numbers) {
+  const std::string text = polygon(numbers);
+  const auto from = text.find("vertices"), to = text.rfind(" } }");
+  return text.substr(from, to - from);
+}
+std::vector<Mistake> mistakes_of_walls() {
+  const std::string block = "60 10 80 10 80 30 60 30", limit = "speed_limit_mps: 1000 ";
+  const auto world = [](const std::string& fields, const std::string& said, bool has_line = true) {
+    return Mistake{kLaw, "world { " + fields + " } law {", said, has_line};
+  };
+  const std::string block_and_limit = limit + wall(block);
+  std::string many;
+  for (int i = 0; i < 342; ++i) {
+    const std::string x = std::to_string(20 + i / 5.0);
+    many += wall(x + " 1 " + std::to_string(20.1 + i / 5.0) + " 1 " + x + " 2");
+  }
+  return {
+      world(limit + "wall_clearance_m: 1", "world.wall_clearance_m: has no effect without walls"),
+      world(limit + wall(block, "solid: true"), "world.walls[0].solid: is for keep-outs"),
+      {kUniform, "regions { polygon { " + corners(block) + " solid: true } }",
+       "target.regions[0].polygon.solid: is for keep-outs"},
+      world(limit + wall("60 10 80 10"), "world.walls[0]: 2 vertices enclose nothing"),
+      world(limit + wall(block, hole("90 10 95 10 95 20")),
+            "world.walls[0].holes[0]: the hole is outside"),
+      world(limit + wall("60 10 1101 10 80 30"), "world.walls[0]: has a vertex that is farther"),
+      world(limit + many, "world: 1026 vertices of walls are above the limit 1024", false),
+      world(block_and_limit + wall("70 20 90 20 90 40"),
+            "world.walls[1]: crosses, touches or overlaps world.walls[0]"),
+      world(block_and_limit + wall("65 15 70 15 70 20"),
+            "world.walls[1]: crosses, touches or overlaps world.walls[0]"),
+      {kUniform,
+       kUniform + " keep_outs { " + corners(block) + " solid: true } keep_outs { solid: true " +
+           corners("70 20 90 20 90 40") + " } } world { speed_limit_mps: 1000 ",
+       "target.keep_outs[1]: crosses, touches or overlaps target.keep_outs[0]"},
+      world(wall(block), "world.speed_limit_mps: is missing, and walls rely on it", false),
+      world(block_and_limit + "disturbance_intensity: 1 } vehicle { kind: UNICYCLE "
+                              "max_turn_radps: 10",
+            "world.disturbance_intensity: pushes vehicles that are no POINT", false),
+      world(block_and_limit + "} separation { distance_m: 2 position_error_m: 0.5",
+            "world.wall_clearance_m: 0 is too little", false),
+      world(limit + wall("5 15 15 15 15 25 5 25"), "agents.starts[0]: is in a wall", false),
+      world(block_and_limit + "wall_clearance_m: 51",
+            "agents.starts[0]: is 50 m from a wall, nearer than the 51", false),
+      world(limit + wall("50 -1 51 -1 51 51 50 51"),
+            "world.walls: cut the free domain in 2 parts: the one around x ", false),
+      world(limit + wall("20 -20 120 -20 120 70 -20 70 -20 32 20 32") + "wall_clearance_m: 9.9",
+            "world.walls: leave only", false),
+  };
+}
+
+/// Stations where nobody can stay, or come in time.
+std::vector<Mistake> mistakes_of_stations() {
+  const std::string start = "starts { x_m: 10 y_m: 20 }", second = " random_count: 1";
+  const auto home = [&](const std::string& kind, const std::string& said,
+                        const std::string& blocks = "", bool has_line = true) {
+    return Mistake{start, start + " kind { name: \"a\" count: 1 " + kind + " } } " + blocks + " #{",
+                   said, has_line};
+  };
+  const std::string near = "station { x_m: 12 y_m: 20 } ";
+  const std::string block = "world { speed_limit_mps: 1000 wall_clearance_m: 2 " +
+                            wall("60 10 80 10 80 30 60 30", hole("65 15 75 15 75 25 65 25")) + "}";
+  // A slot in which a body just fits, too narrow for a way that a table of cells can lead.
+  const std::string slot = "world { speed_limit_mps: 1000 wall_clearance_m: 2 " +
+                           wall("60 10 80 10 80 40 72.3 40 72.3 15 68.2 15 68.2 40 60 40") + "}";
+  const std::string one = start + second + " kind { name: \"a\" count: 2 ";
+  return {
+      {start, start + " random_count: 2 kind { name: \"a\" count: 3 " + near + near + "}",
+       "agents.kind[0].station[1]: the kind has 3 agents and 2 stations"},
+      home("reserve_s: 5", "agents.kind[0].reserve_s: has no effect without a station"),
+      home(near + "reserve_s: 60", "agents.kind[0].reserve_s: 60 is no less than the mission's 60"),
+      home("station { x_m: 12 y_m: 51 }", "agents.kind[0].station[0]: is outside the domain"),
+      home("station { x_m: 2 y_m: 20 }", "agents.kind[0].station[0]: is nearer to an edge than",
+           wings("max_turn_radps: 0.5 min_speed_mps: 2", "")),
+      home("station { x_m: 62 y_m: 12 }", "agents.kind[0].station[0]: is in a wall", block),
+      home("station { x_m: 59 y_m: 20 }", "agents.kind[0].station[0]: is 1 m from a wall", block),
+      home("station { x_m: 70.25 y_m: 20 }",
+           "agents.kind[0].station[0]: cannot be reached from the start of agent 0", slot),
+      in_space("z_m: -3 }",
+               "z_m: -3 } kind { name: \"a\" count: 1 station { x_m: 9 y_m: 9 z_m: 9 } }",
+               "agents.kind[0].station[0]: is outside the domain"),
+      home("station { x_m: 100 y_m: 20 } reserve_s: 45",
+           "agents.kind[0].station[0]: is 18.2 s away from the start of agent 0"),
+      {start, one + near + "station { x_m: 13 y_m: 20 } } } " + keeping("distance_m: 5", "", "#{"),
+       "agents.kind[0].station[1]: agents 0 and 1 have stations 1 m apart"},
+  };
+}
+
+/// What the modes of a free domain do not go with.
+std::vector<Mistake> mistakes_of_free_domains() {
+  const std::string few = "basis { modes_x: 5 modes_y: 4 free_domain: true";
+  const std::string start = "starts { x_m: 10 y_m: 20 }";
+  const auto kind = [&](const std::string& sees, const std::string& said) {
+    return Mistake{start, start + " kind { name: \"a\" count: 1 " + sees + " } } " + few, said};
+  };
+  const auto wall = [](double low_m, double high_m) {
+    const std::string low = std::to_string(low_m), high = std::to_string(high_m);
+    return "walls { vertices { x_m: 49 y_m: " + low + " } vertices { x_m: 51 y_m: " + low +
+           " } vertices { x_m: 51 y_m: " + high + " } vertices { x_m: 49 y_m: " + high + " } } ";
+  };
+  // A gap between two rows of cells, which are 0.88 m high.
+  const std::string gap = wall(-5, 24.3) + wall(24.9, 55);
+  return {
+      {kLaw, "basis { modes_x: 21 modes_y: 20 free_domain: true } law {",
+       "basis.free_domain: 420 modes are above the limit of a free domain"},
+      {kLaw, "world { speed_limit_mps: 100 " + gap + "} " + few + " } law {",
+       "basis.free_domain: the free domain has no modes"},
+      in_space(kLaw, few + " } law {", "basis.free_domain: needs a plane"),
+      kind("footprint_sigma_m: 3", "agents.kind[0].footprint_sigma_m: is a blur of cosines"),
+      kind("band { to: 3 }", "agents.kind[0].band: is of cosines"),
+  };
+}
+
+std::vector<Mistake> mistakes_in_space() {
+  const std::string bell = "gaussians { mean_x_m: 5 mean_y_m: 5 mean_z_m: -5 ";
+  const std::string prism =
+      " vertices { x_m: 10 y_m: 10 } vertices { x_m: 40 y_m: 10 } vertices { x_m: 40 y_m: 40 } } }";
+  const std::string map =
+      "maps { file: \"even.csv\" origin_x_m: 0 origin_y_m: 0 size_x_m: 100 "
+      "size_y_m: 50 layers { low_z_m: -9 high_z_m: -5 value: ";
+  return {
+      in_space(kLaw, "world { speed_limit_mps: 9 " + wall("60 10 80 10 80 30") + "} law {",
+               "world.walls[0]: walls belong to a plane"),
+      {"y_m: 20", "y_m: 20 z_m: 3", "agents.starts[0].z_m: the domain is a plane"},
+      in_space(kLaw, "basis { modes_x: 17 modes_y: 17 modes_z: 17 } law {",
+               "basis: 4913 modes are above the limit"),
+      in_space(kLaw,
+               "world { speed_limit_mps: 20 } vehicle { kind: UNICYCLE max_turn_radps: 1 } law {",
+               "vehicle.kind: UNICYCLE belongs to a plane"),
+      in_space(kUniform, bell + "sigma_z_m: 5 covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 } }",
+               "target.gaussians[0].sigma_z_m: has no effect with covariance"),
+      in_space(kUniform,
+               bell + "covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 xy_m2: 6 xz_m2: 6 yz_m2: -6 } }",
+               "target.gaussians[0].covariance: is not positive definite enough"),
+      in_space(kUniform, "regions { polygon { low_z_m: -10 high_z_m: -20" + prism,
+               "target.regions[0].polygon: its heights -10 to -20 m enclose nothing"),
+      in_space(kUniform, "regions { polygon { low_z_m: 10 high_z_m: 20" + prism,
+               "target.regions[0].polygon: its heights 10 to 20 m are outside"),
+      in_space(kUniform, map + "0 } }", "target.maps[0]: no layer has a value above 0"),
+      in_space(kUniform, map + "1 } layers { low_z_m: -6 high_z_m: -1 } }",
+               "target.maps[0].layers[1]: overlaps layers[0]"),
+      in_space(kUniform, map + "1 } " + repeated(256, "layers { low_z_m: -9 high_z_m: -5 } ") + "}",
+               "target.maps[0]: 257 layers are above the limit"),
+      in_space(kUniform, repeated(17, "voxels { file: \"a.nc\" variable: \"v\" } "),
+               "target: 17 grids are above the limit"),
+      in_space(kUniform, "voxels { variable: \"v\" }", "target.voxels[0].file: is missing"),
+      in_space(kUniform, "voxels { file: \"even.csv\" variable: \"v\" }",
+               "even.csv does not end in .nc"),
+      in_space(kUniform, "voxels { file: \"a.nc\" }", "target.voxels[0].variable: is missing"),
+      in_space(kUniform, bell + "covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 xz_m2: 9 } }",
+               "target.gaussians[0].covariance.xz_m2: 9 leaves too little"),
+      in_space(kUniform, bell + "covariance { xx_m2: 9 yy_m2: 9 zz_m2: 9 yz_m2: 9 } }",
+               "target.gaussians[0].covariance.yz_m2: 9 leaves too little"),
+      in_space("starts { x_m: 10 y_m: 20 z_m: -3 }", "", "agents: the team is empty"),
+      of_grid("sour.nc", ""),
+      of_grid("text.nc", ""),
+      of_grid("salt.nc", ""),
+      of_grid("words.nc", ""),
+      of_grid("good.nc", "", ""),
+      of_grid("good.nc", "", "time_index: 2"),
+      of_grid("good.nc", "", "time_index: 1 x_axis: \"lon\""),
+      of_grid("good.nc", "", "time_index: 1 x_axis: \"y\" y_axis: \"y\""),
+      of_grid("member.nc", ""),
+      of_grid("flat.nc", ""),
+      of_grid("billion.nc", ""),
+      of_grid("long.nc", ""),
+      of_grid("uneven.nc", ""),
+      of_grid("bare.nc", ""),
+      of_grid("degrees.nc", ""),
+      of_grid("unitless.nc", ""),
+      of_grid("single.nc", ""),
+      of_grid("shape.nc", ""),
+      of_grid("nan.nc", ""),
+      of_grid("tangled.nc", ""),
+      of_grid("zero.nc", ""),
+      of_grid("away.nc", ""),
+  };
+}
+
+}  // namespace
+
+std::string wall(const std::string& numbers, const std::string& more) {
+  return "walls { " + corners(numbers) + more + " } ";
+}
+
+std::vector<Mistake> scenario_mistakes() {
+  std::vector<Mistake> all;
+  for (const auto& mistakes :
+       {mistakes_of_the_text(), mistakes_between_fields(), mistakes_of_targets(),
+        mistakes_of_maps(), mistakes_of_kinds(), mistakes_of_free_domains(), mistakes_of_walls(),
+        mistakes_of_stations(), mistakes_in_space()}) {
+    all.insert(all.end(), mistakes.begin(), mistakes.end());
+  }
+  return all;
+}
+
+}  // namespace ergocast::test
