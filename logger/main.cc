@@ -173,8 +173,8 @@ class RunLogger {
     }
   }
 
-  /// Writes the plan once it is known, and the holds before the rows of their ticks: without a
-  /// summary nobody else can tell which ticks count.
+  /// Writes the plan once it is known, and the holds as soon as they are: without a summary nobody
+  /// else can tell which ticks count.
   std::optional<std::string> write_mission() {
     const MissionFollower& heard = recorder_.follower();
     if (!heard.mission()) return std::nullopt;

@@ -52,6 +52,7 @@ TEST_F(PauseCommand, HoldsAMissionInLockstepWhichItsSimulationRepeats) {
   const Tick from = holds[0][0], until = holds[0][1];
   EXPECT_LT(from, until);
   EXPECT_EQ(summary()["held_ticks"], until - from);
+  EXPECT_FALSE(std::filesystem::exists(out() / "holds.json")) << "the summary has them";
   expect_standing(from, until);
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
@@ -84,6 +85,7 @@ TEST_F(PauseCommand, IsKnownToARecordWithoutASummary) {
   mission.send(SIGKILL);
   wait_for(mission);
   ASSERT_FALSE(std::filesystem::exists(out() / "summary.json"));
+  ASSERT_TRUE(std::filesystem::exists(out() / "holds.json"));
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
   EXPECT_TRUE(answered("identical to its simulation")) << output();
   EXPECT_EQ(ergocast({"report", out()}), 0) << output();

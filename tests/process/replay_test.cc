@@ -92,6 +92,8 @@ TEST_F(Replay, OfTheCommandIsShownAsAReplayAndNobodyJoinsOrStopsIt) {
     EXPECT_NE(output().find("is a replay of run "), std::string::npos) << output();
     EXPECT_NE(output().find("no team flies, and nobody can obey"), std::string::npos) << output();
   }
+  EXPECT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 4);
+  EXPECT_NE(output().find("is a replay of run "), std::string::npos) << output();
   EXPECT_EQ(ergocast({"replay", out(), "--lcm-url", kUrl}), 2);
   EXPECT_NE(output().find("a team or another replay sends here"), std::string::npos) << output();
   EXPECT_GE(channels.take().size(), 15U);
