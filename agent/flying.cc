@@ -121,12 +121,14 @@ bool Agent::stalled(const InMission& flight, Instant now) const {
          now - std::max(flight.step.begun, flight.stalled_said) >= kStallPeriod;
 }
 
-/// The blocks that are due, or all.
+/// The blocks that are due, or all. Who learns late that the mission was paused has counted too
+/// many ticks, and what it announced then is too far ahead.
 void Agent::broadcast(InMission& flight, bool all, Outbox& out) {
   const Tick tick = flight.step.counted;
   for (int b = 0; b < flight.table.block_count(); ++b) {
     Contribution& published = flight.published[static_cast<std::size_t>(b)];
-    if (!all && tick < published.next_broadcast_tick) continue;
+    const bool counted_less = tick < published.header.tick;
+    if (!all && !counted_less && tick < published.next_broadcast_tick) continue;
     Contribution block = flight.table.block(me_.author(), b);
     if (block.encoding == ContributionEncoding::kFixed16) tell_gains(published, block);
     block.header.tick = tick;  // a repeat says it, too: forecasts count a block's age from it

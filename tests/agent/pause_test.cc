@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an agent says in real time while its ticks do not come, in a mission that is paused or not.
+// What an agent says in real time while its ticks do not come, in a mission that is paused or not,
+// and once it learns that it was.
 #include <gtest/gtest.h>
 
 #include "tests/agent/driven_agent.h"
@@ -34,6 +35,29 @@ TEST(AgentWithoutTicks, RepeatsOnceASecondWhatItHas) {
 TEST(AgentWithoutTicks, SaysNothingWhileTheMissionIsPaused) {
   // It joined in the pause and has covered nothing: others would refuse a row of no steps.
   EXPECT_TRUE(said_in_silence({{0, -1}}).empty());
+}
+
+TEST(AgentThatLearnsLateOfAPause, DoesNotWaitForTheTickThatItAnnouncedMeanwhile) {
+  Mission mission = small_mission(2);
+  mission.timing.pace = Pace::kRealtime;
+  announce(mission);
+  Agent agent(identity_of(0));
+  MissionPart part = mission_part(0, MissionState::kRunning, roster_of(2));
+  give(agent, part, at(0s));
+  const auto steps_said_at = [&](Tick tick) {
+    Outbox said;
+    give(agent, world_state(tick, {{100, 500, 0}, {200, 500, 0}}), at(tick * 100ms));
+    agent.advance(at(tick * 100ms), said);
+    std::vector<std::int64_t> steps;
+    for (const Contribution& one : only<Contribution>(said)) steps.push_back(one.steps);
+    return steps;
+  };
+  for (Tick tick = 0; tick < 20; ++tick) EXPECT_EQ(steps_said_at(tick).size(), 1u) << tick;
+  ++part.revision;
+  part.holds = {{2, 20}};
+  give(agent, part, at(2s));
+  EXPECT_EQ(steps_said_at(20), std::vector<std::int64_t>{21}) << "nobody else can say it";
+  EXPECT_EQ(steps_said_at(21), std::vector<std::int64_t>{22});
 }
 
 }  // namespace
