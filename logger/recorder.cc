@@ -302,7 +302,9 @@ bool Recorder::write_next_row() {
   if (!holds(next_row_) || !holds(next_row_ + 1)) return false;
   const State &now = states_.at(next_row_), &next = states_.at(next_row_ + 1);
   uncounted_ = now.uncounted;
-  row_counts_ = next.uncounted == now.uncounted;
+  row_counts_ = next.uncounted <= now.uncounted;
+  // A pause of which only the world has heard dies with its coordinator: its ticks count after all.
+  facts_.held_ticks = std::min(facts_.held_ticks, now.uncounted);
   write_trajectory(now, next);
   end_row();
   states_.erase(next_row_);
