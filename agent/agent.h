@@ -206,6 +206,7 @@ class Agent {
 
   void fly(InMission& flight, Instant now, Outbox& out);
   void note_places(InMission& flight, const WorldState& world);
+  bool may_begin(const InMission& flight) const;
   bool begin_tick(InMission& flight, Instant now, Outbox& out);
   void say_place(InMission& flight, const WorldView& view, Outbox& out);
   bool stalled(const InMission& flight, Instant now) const;

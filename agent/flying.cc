@@ -36,7 +36,7 @@ void tell_gains(const Contribution& before, Contribution& block) {
 }  // namespace
 
 void Agent::fly(InMission& flight, Instant now, Outbox& out) {
-  if (flight.pending && !begin_tick(flight, now, out)) return;
+  if (may_begin(flight) && !begin_tick(flight, now, out)) return;
   const Step& step = flight.step;
   if (step.repeat_wanted) repeat(flight, out);
   if (step.answered < step.tick && may_answer(flight)) answer(flight, out);
@@ -66,6 +66,14 @@ void Agent::note_places(InMission& flight, const WorldState& world) {
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
     flight.forecast->see(vehicle.id, me_.counted(tick), vehicle.position_m);
   }
+}
+
+/// Lockstep: the mission that the world names decides whether a tick counts, and who takes part. A
+/// restarted world may have gone on before all knew it.
+bool Agent::may_begin(const InMission& flight) const {
+  if (!flight.pending) return false;
+  return mission().timing.pace == Pace::kRealtime ||
+         follower().revision() >= flight.pending->roster_revision;
 }
 
 /// False if the mission is over for us; `flight` is no more then.
@@ -164,8 +172,6 @@ bool Agent::may_answer(InMission& flight) const {
     step.waiting_for = kWorld;
     return false;
   }
-  // The roster that the world names decides which agents take part in a tick.
-  if (follower().revision() < step.roster_revision) return false;
   if (step.held) return true;  // nobody broadcasts
   for (const RosterEntry& entry : follower().roster()) {
     if (entry.author == me_.author() || !entry.active_at(step.tick)) continue;

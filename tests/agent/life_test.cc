@@ -267,6 +267,21 @@ TEST(AgentInLockstep, WaitsForTheRosterThatTheWorldGoesBy) {
       only<Command>(tell(agent, mission_part(3, MissionState::kRunning, roster_of(1)))).size(), 1u);
 }
 
+TEST(AgentInLockstep, BeginsNoTickBeforeItKnowsTheMissionThatTheWorldGoesBy) {
+  Agent agent = running_agent(small_mission(1));
+  tell(agent, world_state(0, {{100, 500, 0}}));
+  WorldState world = world_state(1, {{100, 500, 0}});
+  world.roster_revision = 3;
+  EXPECT_TRUE(only<Contribution>(tell(agent, world)).empty());
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1) << "the tick may not count";
+  MissionPart paused = mission_part(3, MissionState::kRunning, roster_of(1));
+  paused.holds = {{1, -1}};
+  const auto answers = only<Command>(tell(agent, paused));
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_TRUE(answers[0].velocity_mps.isZero(0));
+  EXPECT_EQ(agent.coverage()->steps_held(author_of(0)), 1);
+}
+
 TEST(AgentRestarted, ItsFormerLifeIsARowOfItsOwn) {
   const Mission mission = small_mission(1);
   Agent agent = running_agent(mission);
