@@ -55,11 +55,14 @@ void Invariants::check_steps(double t_s, const TableView& holder) {
     before = steps;
     steps_of_id[author.agent] += steps;
   }
+  // In real time who does not know that the mission is paused covers on.
+  const bool exact = mission_.timing.pace == Pace::kLockstep;
+  const Tick counted = counted_ticks(truth_.holds(), last_tick_ + 1);
+  const Tick unknown = exact ? 0 : last_tick_ + 1 - counted;
   for (const auto& [id, steps] : steps_of_id) {
     // A process that is replaced within a tick may have sampled it, too.
-    const bool exact = mission_.timing.pace == Pace::kLockstep;
-    const Tick ticks = exact ? counted_ticks(truth_.holds(), last_tick_ + 1) : last_tick_ + 1;
-    const std::int64_t most = std::min(ticks, covers_until(mission_, id)) + lives_[id] - 1;
+    const std::int64_t most =
+        std::min(counted, covers_until(mission_, id)) + unknown + lives_[id] - 1;
     if (steps <= most) continue;
     violate(t_s, Invariant::kNoStepCountsTwice, name_of(holder.self),
             text("holds ", steps, " steps of agent ", id, " in all, ", most, " are possible"));
