@@ -10,6 +10,7 @@
 #include "core/vehicle.h"
 #include "runtime/node.h"
 #include "team/plan.h"
+#include "text/shortest.h"
 
 namespace ergocast::cli {
 
@@ -20,11 +21,16 @@ void tell_margins(const Mission& mission) {
   const Separation& rule = mission.separation;
   if (rule.distance_m == 0 || rule.response_s == 0) return;
   const double margin_m = rule.response_s * fastest_mps(mission);
+  const double from_edges_m = margin_m + 2 * rule.position_error_m;
+  const std::string from_walls =
+      mission.walls.empty()
+          ? ""
+          : " and " + shortest(mission.wall_clearance_m + from_edges_m) + " m from walls";
   std::printf(
       "bodies follow %g s late: they close %.3g %% of a gap in a tick, and keep %g m more, in all "
-      "%g m from each other and %g m from the edges\n",
+      "%g m from each other, %g m from the edges%s\n",
       rule.response_s, 100 * closing_gain(mission), margin_m,
-      SeparationFilter(mission, 0).contact_m(0, 0), margin_m + 2 * rule.position_error_m);
+      SeparationFilter(mission, 0).contact_m(0, 0), from_edges_m, from_walls.c_str());
 }
 
 }  // namespace

@@ -166,6 +166,20 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
   EXPECT_FALSE(summary().contains("holds"));
 }
 
+TEST_F(Keyed, TheCoordinatorsKeyPausesAMissionAndLetsItGoOn) {
+  Child mission = launch_endless(scenario(), {"--key-file", coordinator_, "--lcm-url", kUrl});
+  const auto say = [&](const std::string& command) {
+    return ergocast({command, "--lcm-url", kUrl, "--key-file", coordinator_});
+  };
+  ASSERT_EQ(say("pause"), 0) << output();
+  EXPECT_NE(output().find("paused from tick "), output().npos) << output();
+  ASSERT_EQ(say("resume"), 0) << output();
+  ASSERT_TRUE(moves_on()) << said();
+  ASSERT_EQ(say("stop"), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  EXPECT_EQ(summary()["holds"].size(), 1U);
+}
+
 TEST_F(Keyed, ProcessesByHandFlyWithTheirOwnFiles) {
   std::filesystem::create_directory(out());
   hand("ergocast-logger", {"--out", out(), "--key-file", team_});

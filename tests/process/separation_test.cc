@@ -75,8 +75,10 @@ TEST_F(CheckedScenario, SaysWhatBodiesThatFollowLateKeep) {
   ASSERT_EQ(ergocast({"check", scenario_file("crowded_team"), "--set", late}), 0) << output();
   EXPECT_TRUE(
       said("bodies follow 0.25 s late: they close 10 % of a gap in a tick, and keep 5 m "
-           "more, in all 13 m from each other and 5 m from the edges"))
+           "more, in all 13 m from each other, 5 m from the edges\n"))
       << output();
+  ASSERT_EQ(ergocast({"check", scenario_file("office")}), 0);
+  EXPECT_TRUE(said(" m from the edges and 0.55 m from walls\n")) << output();
   ASSERT_EQ(ergocast({"check", scenario_file("crowded_team")}), 0);
   EXPECT_FALSE(said("late")) << output();
 }
