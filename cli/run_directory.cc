@@ -82,7 +82,8 @@ void print_summary(const Json& summary) {
   }
   if (summary.contains("goal")) {
     const bool reached = summary["goal"].value("reached", false);
-    std::printf("  goal      %s, %s\n", number("/goal/ergodic_metric", "%.4g").c_str(),
+    std::printf("  goal      %s%s, %s\n", number("/goal/ergodic_metric", "%.4g").c_str(),
+                free_domain ? " in the modes of the free domain" : "",
                 reached ? "reached" : "not reached");
   }
   std::printf("  messages  %s sent, %s received, %s lost, %s dropped by the kernel\n",

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <sstream>
 
+#include "logger/summary.h"
+
 namespace ergocast::cli {
 namespace {
 
@@ -59,14 +61,15 @@ const char* result_of(const TrialReport& report) {
 
 }  // namespace
 
-std::string csv_header() {
+std::string csv_header(const Basis& basis) {
   std::string line =
       "seed,result,virtual_s,ergodic_metric,view_error,recovery_mean_s,recovery_max_s";
   for (const Count& count : kCounts) line += std::string(",") + count.column;
+  if (basis.free_domain) line += ",basis";
   return line;
 }
 
-std::string csv_row(const TrialReport& report) {
+std::string csv_row(const TrialReport& report, const Basis& basis) {
   TrialFigures figures = report.figures;
   std::ostringstream line;
   line.precision(17);
@@ -76,6 +79,7 @@ std::string csv_row(const TrialReport& report) {
     line << ',' << value;
   }
   for (const Count& count : kCounts) line << ',' << count.of(figures);
+  if (basis.free_domain) line << ',' << name_of_basis(basis);
   return line.str();
 }
 
@@ -93,7 +97,7 @@ void TrialTotals::add(const TrialReport& report) {
   worst_view_error = std::max(worst_view_error, figures.view_error);
 }
 
-std::string TrialTotals::describe(double wall_s) const {
+std::string TrialTotals::describe(double wall_s, const Basis& basis) const {
   std::string text;
   const auto row = [&text](const char* meaning, const char* format, double value) {
     char line[100];
@@ -108,7 +112,8 @@ std::string TrialTotals::describe(double wall_s) const {
       row(count.meaning, "%14.0f", static_cast<double>(count.of(figures)));
   }
   text += "What came of it:\n";
-  row("greatest phi^2 at the end", "%14.4g", worst_metric);
+  row("greatest phi^2 at the end",
+      basis.free_domain ? "%14.4g in modes of the free domain" : "%14.4g", worst_metric);
   row("greatest view error", "%14.4g", worst_view_error);
   if (sums.recoveries > 0) {
     row("mean recovery [s]", "%14.2f", recovery_sum_s / static_cast<double>(sums.recoveries));

@@ -17,8 +17,9 @@ struct TrialReport {
   char what[600] = "";  ///< the violation, or how the process ended
 };
 
-std::string csv_header();
-std::string csv_row(const TrialReport& report);
+/// With a column `basis` where φ² is not in cosines.
+std::string csv_header(const Basis& basis);
+std::string csv_row(const TrialReport& report, const Basis& basis);
 
 /// Sums over all trials so far.
 struct TrialTotals {
@@ -27,8 +28,8 @@ struct TrialTotals {
   double worst_metric = 0, worst_view_error = 0, recovery_sum_s = 0;
 
   void add(const TrialReport& report);
-  /// Several lines.
-  std::string describe(double wall_s) const;
+  /// Several lines; they name the basis that φ² is in, unless it is cosines.
+  std::string describe(double wall_s, const Basis& basis) const;
 };
 
 }  // namespace ergocast::cli

@@ -70,14 +70,15 @@ std::string replay_of(const TrialsOptions& options, std::uint64_t seed) {
 /// Processes the reports when they arrive: rows, totals, a line of progress.
 class Desk {
  public:
-  Desk(const TrialsOptions& options, std::ostream& csv) : options_(options), csv_(csv) {
-    csv_ << csv_header() << '\n';
+  Desk(const TrialsOptions& options, const Basis& basis, std::ostream& csv)
+      : options_(options), basis_(basis), csv_(csv) {
+    csv_ << csv_header(basis_) << '\n';
     next_row_ = options.seeds.first;
   }
 
   void take(const TrialReport& report) {
     totals_.add(report);
-    rows_[report.figures.seed] = csv_row(report);
+    rows_[report.figures.seed] = csv_row(report, basis_);
     // Rows are written in the order of the seeds, in whichever order the workers finish.
     for (auto first = rows_.begin(); first != rows_.end() && first->first == next_row_;
          first = rows_.erase(first), ++next_row_) {
@@ -112,6 +113,7 @@ class Desk {
 
  private:
   const TrialsOptions& options_;
+  const Basis& basis_;
   std::ostream& csv_;
   ProgressLine progress_;
   const ProgressLine::Clock::time_point since_ = ProgressLine::Clock::now();
@@ -147,7 +149,8 @@ int trials(const TrialsOptions& options) {
         lab::run_trial({encode_plan(mission), (*faults)(seed), version()}, nowhere, nowhere));
   };
   StopSignals signals;
-  Desk desk(options, path.empty() ? static_cast<std::ostream&>(nowhere) : csv);
+  const Basis basis = scenario->mission().basis;
+  Desk desk(options, basis, path.empty() ? static_cast<std::ostream&>(nowhere) : csv);
   const auto start = std::chrono::steady_clock::now();
   Jobs jobs = jobs_with_results<TrialReport>(
       run, [&](std::uint64_t, const TrialReport& report) { desk.take(report); });
@@ -167,7 +170,7 @@ int trials(const TrialsOptions& options) {
   const TrialTotals& totals = desk.close();
   std::printf("%lld of %llu missions flown in %.1f s\n%s", static_cast<long long>(totals.trials),
               static_cast<unsigned long long>(options.seeds.count()), wall_s,
-              totals.describe(wall_s).c_str());
+              totals.describe(wall_s, basis).c_str());
   if (!path.empty() && !csv)
     return report_error(kExitBadInput, path.string() + ": writing failed; rows are missing");
   return totals.failed > 0 ? kExitFailed : kExitDone;

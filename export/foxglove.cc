@@ -117,6 +117,7 @@ const Schema& metrics_schema() {
   static const Schema schema = schema_of("ergocast.Metrics", {{"tick", kInteger},
                                                               {"t_s", kNumber},
                                                               {"ergodic_metric", kNumber},
+                                                              {"basis", kText},
                                                               {"metric_spread", kNumber},
                                                               {"max_staleness_s", kNumber},
                                                               {"contributions_received", kNumber},
@@ -170,11 +171,12 @@ std::string log(const ExportedLine& line) {
                   {"line", 0}});
 }
 
-std::string metrics(std::uint64_t time_ns, const MetricsRow& row) {
+std::string metrics(std::uint64_t time_ns, const MetricsRow& row, const std::string& basis) {
   return text_of({{"timestamp", time_of(time_ns)},
                   {"tick", row.tick},
                   {"t_s", row.t_s},
                   {"ergodic_metric", row.ergodic_metric},
+                  {"basis", basis},
                   {"metric_spread", row.spread},
                   {"max_staleness_s", row.max_staleness_s},
                   {"contributions_received", row.received},

@@ -25,6 +25,7 @@ std::string pose(std::uint64_t time_ns, const TrackPoint& point);
 std::string location(std::uint64_t time_ns, const GeoPlace& place, double height_m);
 std::string grid(std::uint64_t time_ns, const DensityCells& cells, const Mission& mission);
 std::string log(const ExportedLine& line);
-std::string metrics(std::uint64_t time_ns, const MetricsRow& row);
+/// @param basis  what φ² is in
+std::string metrics(std::uint64_t time_ns, const MetricsRow& row, const std::string& basis);
 
 }  // namespace ergocast::foxglove

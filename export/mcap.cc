@@ -72,7 +72,7 @@ class McapExport {
     const auto topic = channel("/metrics", foxglove::metrics_schema());
     for (const MetricsRow& row : record_.run.metrics) {
       const std::uint64_t time_ns = record_.time_ns(row.t_s);
-      waiting_.push_back({time_ns, topic, foxglove::metrics(time_ns, row)});
+      waiting_.push_back({time_ns, topic, foxglove::metrics(time_ns, row, record_.metric_basis)});
     }
   }
 

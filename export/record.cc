@@ -93,6 +93,7 @@ std::variant<ExportRecord, std::string> read_export_record(const fs::path& run_d
                                                            const std::optional<GeoPlace>& origin) {
   ExportRecord record;
   record.mission = in_cosines(mission);  // its maps; φ² over time is as it was recorded
+  record.metric_basis = name_of_basis(mission.basis);
   record.origin = origin;
   auto run = read_run(run_dir);
   if (auto* problem = std::get_if<std::string>(&run)) return std::move(*problem);
@@ -109,8 +110,9 @@ std::variant<ExportRecord, std::string> read_export_record(const fs::path& run_d
   if (auto* problem = std::get_if<std::string>(&target)) return std::move(*problem);
   record.target = std::get<Field>(std::move(target));
   if (record.target.size() == 0) {
-    const auto [columns, rows] = coverage_cells(mission);
-    record.target = density_of(mission.target_coefficients, mission, columns, rows);
+    const Mission& cosines = record.mission;
+    const auto [columns, rows] = coverage_cells(cosines);
+    record.target = density_of(cosines.target_coefficients, cosines, columns, rows);
   }
   record.log = read_log(run_dir / "log", record.start_ns);
   return record;

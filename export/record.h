@@ -28,7 +28,8 @@ struct ExportedLine {
 using DensityCells = Eigen::MatrixXd;
 
 struct ExportRecord {
-  Mission mission;
+  Mission mission;           ///< in cosines, as maps are
+  std::string metric_basis;  ///< what φ² of the rows is in: name_of_basis()
   RunData run;
   nlohmann::ordered_json summary;  ///< null: there is none
   DensityCells target;

@@ -64,14 +64,14 @@ class Tables {
     table(
         "metrics.csv",
         "tick,t_s,ergodic_metric,metric_spread,max_staleness_s,contributions_received,"
-        "contributions_lost,blocked_share",
+        "contributions_lost,blocked_share,basis",
         [&](std::ostream& file) {
           for (const MetricsRow& row : record_.run.metrics) {
             file << row.tick;
             for (const double value : {row.t_s, row.ergodic_metric, row.spread, row.max_staleness_s,
                                        row.received, row.lost, row.blocked_share})
               file << ',' << shortest(value);
-            file << '\n';
+            file << ',' << record_.metric_basis << '\n';
           }
         });
   }

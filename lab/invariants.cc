@@ -276,7 +276,8 @@ void Invariants::ended(double t_s, const std::string& still_running, const std::
   const double goal = mission_.goal_ergodic_metric;
   if (goal > 0 && !(facts.ergodic_metric_last <= goal)) {
     violate(t_s, Invariant::kGoalReached, "the team",
-            text("phi^2 = ", facts.ergodic_metric_last, " > ", goal));
+            text("phi^2 = ", facts.ergodic_metric_last, " > ", goal,
+                 mission_.basis.free_domain ? " in modes of the free domain" : ""));
   }
 }
 

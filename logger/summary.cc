@@ -30,6 +30,7 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json agents(const Recorder& recorder) {
   Json list = Json::array();
+  const auto& mission = recorder.follower().mission();
   for (const RosterEntry& entry : recorder.follower().roster()) {
     Json agent{
         {"id", entry.author.agent},
@@ -38,13 +39,13 @@ Json agents(const Recorder& recorder) {
         {"active_until", entry.active_until < 0 ? Json(nullptr) : Json(entry.active_until)},
         {"forgotten", entry.forgotten},
         {"coverage_switched_at", entry.since_tick > 0 ? Json(entry.since_tick) : Json(nullptr)}};
-    if (const Mission& mission = *recorder.follower().mission(); !mission.kinds.empty())
-      agent["kind"] = name_of_kind(mission, entry.kind);
+    if (!mission->kinds.empty()) agent["kind"] = name_of_kind(*mission, entry.kind);
     const auto known = recorder.statuses().find(entry.author);
     if (known != recorder.statuses().end()) {
       const AgentStatus& status = known->second;
       agent["host"] = status.host;
       agent["ergodic_metric"] = number(status.ergodic_metric);
+      if (mission->basis.free_domain) agent["ergodic_metric_basis"] = name_of_basis(mission->basis);
       agent["max_staleness_s"] = number(status.max_staleness_s);
       agent["messages_sent"] = status.messages_sent;
       agent["messages_received"] = status.messages_received;
@@ -52,7 +53,7 @@ Json agents(const Recorder& recorder) {
       agent["contributions_lost"] = status.contributions_lost;
       agent["contributions_relayed"] = status.contributions_relayed;
       agent["missed_ticks"] = status.missed_ticks;
-      if (recorder.follower().mission()->separation.distance_m > 0) {
+      if (mission->separation.distance_m > 0) {
         agent["blocked_ticks"] = status.blocked_ticks;
         agent["longest_block_ticks"] = status.longest_block_ticks;
       }
@@ -90,7 +91,7 @@ Json conventions(const Basis& basis) {
   const std::string s = Json(basis.sobolev_exponent).dump();
   const bool squared = basis.sobolev_form == SobolevForm::kSquaredNorm;
   if (basis.free_domain) {
-    return {{"basis", "modes of the free domain"},
+    return {{"basis", name_of_basis(basis)},
             {"table", to_hex(basis.table_hash)},
             {"h_k", basis.normalized ? "f_k divided by h_k = sqrt(integral of f_k^2)" : "1"},
             {"lambda", (squared ? "(1 + nu_k L^2 / pi^2)^-" : "(1 + sqrt(nu_k) L / pi)^-") + s}};
@@ -205,7 +206,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
       {"first", observed ? number(facts.ergodic_metric_first) : Json(nullptr)},
       {"last", observed ? number(facts.ergodic_metric_last) : Json(nullptr)}};
   if (mission && mission->basis.free_domain) {
-    summary["ergodic_metric"]["basis"] = "modes of the free domain";
+    summary["ergodic_metric"]["basis"] = name_of_basis(mission->basis);
     summary["ergodic_metric_in_cosines"] = {
         {"last", observed ? number(facts.cosine_metric_last) : Json(nullptr)}};
   }
@@ -213,6 +214,7 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
     summary["goal"] = {
         {"ergodic_metric", mission->goal_ergodic_metric},
         {"reached", observed && facts.ergodic_metric_last <= mission->goal_ergodic_metric}};
+    if (mission->basis.free_domain) summary["goal"]["basis"] = name_of_basis(mission->basis);
   }
   const auto slope = log_log_slope(facts.t_s, facts.ergodic_metric);
   summary["log_log_slope"] = slope ? number(*slope) : Json(nullptr);
@@ -237,6 +239,10 @@ Json summarize(const Recorder& recorder, const RunContext& context) {
     summary["separation"] = separation(recorder, *mission);
   if (mission && any_station(*mission)) summary["stations"] = stations(recorder, *mission);
   return summary;
+}
+
+const char* name_of_basis(const Basis& basis) {
+  return basis.free_domain ? "modes of the free domain" : "cosines";
 }
 
 std::variant<Json, std::string> read_summary(const std::filesystem::path& run_dir) {

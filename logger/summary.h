@@ -33,6 +33,9 @@ struct RunContext {
 /// The summary as far as the record determines it. Keys are documented in docs/run_directory.md.
 nlohmann::ordered_json summarize(const Recorder& recorder, const RunContext& context);
 
+/// What φ² is in, as the summary and others name it: "cosines", "modes of the free domain".
+const char* name_of_basis(const Basis& basis);
+
 /// Ticks that do not count, as JSON: of each pause the first one, and the first one that counts
 /// again or null.
 nlohmann::ordered_json holds_json(std::span<const Hold> holds);

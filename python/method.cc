@@ -111,17 +111,25 @@ Its sides reflect. ValueError for sides outside 1e-3 … 1e7 m.)")
 
 void add_basis(py::module_& module) {
   py::class_<Basis>(module, "Basis",
-                    R"(The cosine basis (2), f_mn(x) = cos(mπx/Lx) cos(nπy/Ly), not divided by h_k.
+                    R"(What coefficients and φ² are in: cosines, or the modes of a free domain.
+
+The cosines (2) are f_mn(x) = cos(mπx/Lx) cos(nπy/Ly), not divided by h_k.
 
 Row m, column n of every array of coefficients belongs to f_mn. In a box with modes_z above 1
 there is a factor cos(lπz/Lz), and l is the first of three indices. The weights are
 λ = (1 + |k|²)^−s ("squared_norm") or (1 + |k|)^−s ("norm"), divided by h_k² if
-the basis is normalised. ValueError for modes outside 1 … 64.)")
+the basis is normalised. ValueError for modes outside 1 … 64.
+
+The basis of a mission with basis.free_domain has free_domain True. Its modes have no formula: f are
+the modes_x · modes_y lowest of the domain without walls, by ascending ν row by row, each divided by
+its greatest value, and λ is as docs/free_domain.md has it. One that is made here is of cosines.)")
       .def(py::init(&make_basis), "modes_x"_a, "modes_y"_a, "sobolev_form"_a = "squared_norm",
            "sobolev_exponent"_a = 1.5, "normalized"_a = py::bool_(false), "modes_z"_a = 1)
       .def_readonly("modes_x", &Basis::modes_x, "Modes along x.")
       .def_readonly("modes_y", &Basis::modes_y, "Modes along y.")
       .def_readonly("modes_z", &Basis::modes_z, "Modes along z; in a plane 1.")
+      .def_readonly("free_domain", &Basis::free_domain,
+                    "Whether the modes are those of the free domain, not cosines.")
       .def_readonly("sobolev_exponent", &Basis::sobolev_exponent, "s of λ.")
       .def_readonly("normalized", &Basis::normalized, "Whether f is divided by h_k.")
       .def_property_readonly(

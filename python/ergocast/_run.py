@@ -54,7 +54,7 @@ class Run:
 
     @property
     def mu(self) -> Floats:
-        """μ of the target, (3): shape (modes_x, modes_y)."""
+        """μ of the target in mission.basis, (3): shape (modes_x, modes_y)."""
         return self.mission.mu
 
     @cached_property
@@ -70,7 +70,8 @@ class Run:
         """metrics.csv with all its segments: a row for each mission second.
 
         Columns: tick, t_s [s], ergodic_metric (φ²), metric_spread, max_staleness_s [s],
-        contributions_received, contributions_lost, blocked_share.
+        contributions_received, contributions_lost, blocked_share. φ² is in the modes that agents
+        steer by: those of the free domain if mission.basis.free_domain, else cosines.
         """
         return pd.DataFrame(self._record.metrics())
 
@@ -113,7 +114,11 @@ class Run:
         return result
 
     def ergodic_metric(self, tick: int | None = None) -> float:
-        """φ² of coverage(tick) against the target."""
+        """φ² of coverage(tick) against the target, in mission.basis.
+
+        That is in modes of the free domain if mission.basis.free_domain, else in cosines;
+        summary["ergodic_metric_in_cosines"] compares missions with either basis.
+        """
         mission = self.mission
         return _native.ergodic_metric(
             self.coverage(tick), mission.mu, mission.basis, mission.domain

@@ -24,6 +24,25 @@ printf '%s\n' '2026-04-12T10:15:00.123 info agent-3: agent 3 of run 1: running' 
 "$ergocast" export "$work/run" --to mcap --out "$work/run.mcap"
 node "$here/read_mcap.cjs" "$reader" "$work/run.mcap" "$work/run"
 
+# φ² of a mission in other modes than cosines names them.
+cat >"$work/rooms.textproto" <<'END'
+origin { latitude_deg: 47.5 longitude_deg: 9.2 }
+domain { size_x_m: 100 size_y_m: 50 }
+target { gaussians { mean_x_m: 80 mean_y_m: 20 sigma_m: 5 } }
+basis { modes_x: 5 modes_y: 4 free_domain: true }
+law { u_max_mps: 5 }
+time { dt_s: 0.1 duration_s: 10 pace: LOCKSTEP }
+agents { starts { x_m: 10 y_m: 20 } starts { x_m: 90 y_m: 30 } }
+world {
+  speed_limit_mps: 20 wall_clearance_m: 1
+  walls { vertices { x_m: 49.8 y_m: 10 } vertices { x_m: 50.2 y_m: 10 }
+          vertices { x_m: 50.2 y_m: 60 } vertices { x_m: 49.8 y_m: 60 } }
+}
+END
+"$ergocast" simulate "$work/rooms.textproto" --out "$work/rooms" >/dev/null
+"$ergocast" export "$work/rooms" --to mcap --out "$work/rooms.mcap"
+node "$here/read_mcap.cjs" "$reader" "$work/rooms.mcap" "$work/rooms"
+
 # The reader finds what is wrong: a digit of a pose, and a file that was cut off.
 place=$(grep -abo '"position":{"x":' "$work/run.mcap" | sed -n '1s/:.*//p')
 cp "$work/run.mcap" "$work/spoiled.mcap"

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table of modes of a free domain: `ergocast run` hands it to its processes, those that were
-// handed none compute it, the record has it, and who computes another stays out.
+// handed none compute it, the record has it, and who computes another stays out. And φ² of such a
+// mission says what it is in, wherever it is shown.
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
 namespace {
 
+const std::string kFreeModes = "modes of the free domain";
+const std::string kInFreeModes = " in " + kFreeModes;
+
 class TablesOfModes : public ByHand {
  protected:
-  std::filesystem::path two_rooms() {
+  /// With more fields, and more agents at places drawn from the seed.
+  std::filesystem::path two_rooms(const std::string& more = "", int more_agents = 0) {
     const auto file = folder_ / "rooms.textproto";
     std::ofstream(file) << R"(
       domain { size_x_m: 100 size_y_m: 50 }
@@ -16,11 +21,12 @@ class TablesOfModes : public ByHand {
       basis { modes_x: 5 modes_y: 4 free_domain: true }
       law { u_max_mps: 5 }
       time { dt_s: 0.1 duration_s: 10 pace: LOCKSTEP lockstep_timeout_s: 600 admission_timeout_s: 600 }
-      agents { starts { x_m: 10 y_m: 20 } starts { x_m: 90 y_m: 30 } }
+      agents { starts { x_m: 10 y_m: 20 } starts { x_m: 90 y_m: 30 } random_count: )"
+                        << more_agents << R"( }
       world {
         speed_limit_mps: 20 wall_clearance_m: 1
         walls { vertices { x_m: 49.8 y_m: 10 } vertices { x_m: 50.2 y_m: 10 } vertices { x_m: 50.2 y_m: 60 } vertices { x_m: 49.8 y_m: 60 } }
-      })";
+      })" << more << '\n';
     return file;
   }
   /// The table in a folder, empty if there is none.
@@ -38,13 +44,27 @@ class TablesOfModes : public ByHand {
     std::ofstream(folder_ / "other.bin", std::ios::binary) << bytes;
     return folder_ / "other.bin";
   }
-  /// Whether that agent reads the table from its file, as one that computes it does not.
-  bool shares_the_table(int id) const {
-    const auto process = pids(agent(id));
+  /// Whether that process reads the table from its file, as one that computes it does not.
+  bool shares_the_table(const std::vector<std::string>& words) const {
+    const auto process = pids(words);
     if (process.size() != 1) return false;
     const std::string maps = text_of("/proc/" + std::to_string(process[0]) + "/maps");
     return maps.find(table_in(out()).filename()) != std::string::npos;
   }
+  /// As agent(), where numbers have several digits.
+  static std::vector<std::string> just_agent(int id) {
+    return {"ergocast-agent", "--id " + std::to_string(id) + ' '};
+  }
+  /// Starts the process again by killing it.
+  void restart(const std::vector<std::string>& words, const std::string& name) {
+    kill_next(words);
+    ASSERT_TRUE(eventually([&] { return said(name + ": restarted (1 of 3)"); })) << said();
+  }
+  void end(Child& mission) {
+    mission.send(SIGTERM);
+    EXPECT_EQ(wait_for(mission), 0) << said();
+  }
+  bool prints(const std::string& part) const { return output().find(part) != std::string::npos; }
 };
 
 TEST_F(TablesOfModes, ALoggerThatWasStartedByHandWritesItBesideTheRecord) {
@@ -62,13 +82,31 @@ TEST_F(TablesOfModes, ALoggerThatWasStartedByHandWritesItBesideTheRecord) {
 TEST_F(TablesOfModes, ARestartedAgentIsHandedItAgain) {
   Child mission = launch_endless(two_rooms());
   ASSERT_FALSE(table_in(out()).empty());
-  EXPECT_TRUE(shares_the_table(1)) << said();
+  EXPECT_TRUE(shares_the_table(agent(1))) << said();
   kill_next(agent(1));
   ASSERT_TRUE(logs("agent-1", ": running", 2)) << said();
-  EXPECT_TRUE(shares_the_table(1)) << said();
+  EXPECT_TRUE(shares_the_table(agent(1))) << said();
   ASSERT_TRUE(moves_on()) << said();
-  mission.send(SIGTERM);
-  EXPECT_EQ(wait_for(mission), 0) << said();
+  end(mission);
+}
+
+TEST_F(TablesOfModes, RestartedLoggersAndCoordinatorsAreHandedItAgain) {
+  Child mission = launch_endless(two_rooms());
+  for (const std::string name : {"logger", "coordinator"}) {
+    const std::vector<std::string> words{"ergocast-" + name};
+    EXPECT_TRUE(shares_the_table(words)) << name << '\n' << said();
+    restart(words, name);
+    EXPECT_TRUE(eventually([&] { return shares_the_table(words); })) << name << '\n' << said();
+    ASSERT_TRUE(moves_on()) << said();
+  }
+  end(mission);
+}
+
+TEST_F(TablesOfModes, SixtyFourAgentsOfAHostShareIt) {
+  constexpr int kAgents = 64;
+  Child mission = launch_endless(two_rooms("", kAgents - 2));
+  for (int id = 0; id < kAgents; ++id) EXPECT_TRUE(shares_the_table(just_agent(id))) << id;
+  end(mission);
 }
 
 TEST_F(TablesOfModes, WhoComputesAnotherOneStaysOutAndSaysWhatToHandOver) {
@@ -80,6 +118,68 @@ TEST_F(TablesOfModes, WhoComputesAnotherOneStaysOutAndSaysWhatToHandOver) {
   EXPECT_TRUE(bare.says("start it with --modes and that table's file, modes-")) << bare.said();
   EXPECT_TRUE(equipped.says("admitted")) << equipped.said();
   EXPECT_TRUE(equipped.child.running()) << equipped.said();
+}
+
+TEST_F(TablesOfModes, ALoggerWithTheTableOfAnotherComputerStaysOut) {
+  const auto other = table_of_another_computer();
+  const auto record = folder_ / "record";
+  std::filesystem::create_directory(record);
+  Program& logger = hand("ergocast-logger", {"--out", record, "--modes", other});
+  hand("ergocast-coordinator", {two_rooms()});
+  EXPECT_EQ(wait_for(logger.child), 4) << logger.said();
+  EXPECT_TRUE(logger.says("start it with --modes and that table's file, modes-")) << logger.said();
+  EXPECT_TRUE(std::filesystem::is_empty(record)) << logger.said();
+}
+
+TEST_F(TablesOfModes, ThePrintedAndRecordedMetricsNameTheirBasis) {
+  for (const std::string command : {"run", "simulate"}) {
+    std::filesystem::remove_all(out());
+    ASSERT_EQ(ergocast({command, two_rooms("goal_ergodic_metric: 0.125"), "--out", out()}), 0)
+        << output();
+    EXPECT_TRUE(prints(", in the modes of the free domain\n            ")) << output();
+    EXPECT_TRUE(prints(" in cosines\n")) << output();
+    EXPECT_TRUE(prints("  goal      0.125 in the modes of the free domain, not reached\n"))
+        << output();
+    const auto all = summary();
+    for (const char* key : {"ergodic_metric", "goal", "conventions"})
+      EXPECT_EQ(all[key]["basis"], kFreeModes) << key;
+    ASSERT_TRUE(all["ergodic_metric_in_cosines"]["last"].is_number());
+    EXPECT_NE(all["ergodic_metric_in_cosines"]["last"], all["ergodic_metric"]["last"]);
+    ASSERT_EQ(all["agents"].size(), 2U);
+    for (const auto& one : all["agents"]) EXPECT_EQ(one["ergodic_metric_basis"], kFreeModes) << one;
+    EXPECT_NE(text_of(out() / "figures" / "ergodic_metric.svg").find(kFreeModes),
+              std::string::npos);
+  }
+}
+
+TEST_F(TablesOfModes, StatusNamesTheBasis) {
+  Child mission = launch_endless(two_rooms());
+  ergocast({"status"});
+  EXPECT_TRUE(prints(" in modes of the free domain (median)")) << output();
+  end(mission);
+}
+
+TEST_F(TablesOfModes, TrialsNameTheBasis) {
+  const auto table = folder_ / "trials.csv";
+  ASSERT_EQ(ergocast({"simulate", two_rooms(), "--seeds", "1:2", "--out", table}), 0) << output();
+  const std::string rows = text_of(table);
+  EXPECT_TRUE(rows.substr(0, rows.find('\n')).ends_with(",basis")) << rows;
+  EXPECT_TRUE(rows.ends_with(',' + kFreeModes + '\n')) << rows;
+  const auto greatest = output().find("greatest phi^2 at the end");
+  ASSERT_NE(greatest, std::string::npos) << output();
+  EXPECT_TRUE(output().substr(0, output().find('\n', greatest)).ends_with(kInFreeModes))
+      << output();
+  const auto goal = two_rooms("goal_ergodic_metric: 0.125");
+  ASSERT_EQ(ergocast({"simulate", goal, "--seeds", "1"}), 4) << output();
+  EXPECT_TRUE(prints(" > 0.125" + kInFreeModes + '\n')) << output();
+}
+
+TEST_F(TablesOfModes, ExportedMetricsNameTheBasis) {
+  ASSERT_EQ(ergocast({"simulate", two_rooms(), "--out", out()}), 0) << output();
+  ASSERT_EQ(ergocast({"export", out(), "--to", "csv"}), 0) << output();
+  const std::string rows = text_of(out() / "export" / "metrics.csv");
+  EXPECT_TRUE(rows.substr(0, rows.find('\n')).ends_with(",basis")) << rows;
+  EXPECT_TRUE(rows.ends_with(',' + kFreeModes + '\n')) << rows;
 }
 
 }  // namespace

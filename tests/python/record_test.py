@@ -153,6 +153,39 @@ class Loaded(WithRecord):
         self.assertTrue(np.array_equal(bare.coverage(), self.run_.coverage()))
 
 
+class InTheModesOfTheFreeDomain(unittest.TestCase):
+    TWO_ROOMS = """
+        domain { size_x_m: 100 size_y_m: 50 }
+        target { gaussians { mean_x_m: 80 mean_y_m: 20 sigma_m: 5 } }
+        basis { modes_x: 5 modes_y: 4 free_domain: true }
+        law { u_max_mps: 5 }
+        time { dt_s: 0.1 duration_s: 10 pace: LOCKSTEP }
+        agents { starts { x_m: 10 y_m: 20 } starts { x_m: 90 y_m: 30 } }
+        world {
+          speed_limit_mps: 20 wall_clearance_m: 1
+          walls { vertices { x_m: 49.8 y_m: 10 } vertices { x_m: 50.2 y_m: 10 }
+                  vertices { x_m: 50.2 y_m: 60 } vertices { x_m: 49.8 y_m: 60 } }
+        }"""
+
+    def test_the_basis_says_so_and_the_metric_is_the_recorded_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scenario = Path(folder) / "rooms.textproto"
+            scenario.write_text(self.TWO_ROOMS)
+            run = ergocast.simulate(scenario)
+            cosines = ergocast.compile_mission(scenario, set={"basis.free_domain": False})
+        self.assertTrue(run.mission.basis.free_domain)
+        self.assertFalse(cosines.basis.free_domain)
+        self.assertFalse(ergocast.Basis(5, 4).free_domain)
+        recorded = run.summary["ergodic_metric"]
+        self.assertEqual(recorded["basis"], "modes of the free domain")
+        self.assertEqual(run.ergodic_metric(), recorded["last"])
+        self.assertEqual(run.metrics["ergodic_metric"].iloc[-1], recorded["last"])
+        self.assertNotEqual(run.summary["ergodic_metric_in_cosines"]["last"], recorded["last"])
+        self.assertFalse(np.array_equal(run.mu, cosines.mu))
+        for agent in run.summary["agents"]:
+            self.assertEqual(agent["ergodic_metric_basis"], recorded["basis"])
+
+
 class Refused(WithRecord):
     """What is wrong with a record or a scenario is one exception that says where, and what to do."""
 
