@@ -30,7 +30,7 @@ std::vector<Figure> draw_figures(const RunData& run, const Mission& flown, const
   add({metric_figure(run, flown)});
   add(fields);
   add(modes);
-  add({speeds_figure(run, mission), communication_figure(run, mission)});
+  add({speeds_figure(run, mission), communication_figure(run, flown)});
   return all;
 }
 

@@ -205,13 +205,15 @@ Figure communication_figure(const RunData& run, const Mission& mission) {
   constexpr double kWidth = 1130, kPanelWidth = 470, kPanelHeight = 150, kTop = 28, kRowGap = 84;
   const Polyline received = series(run, [](const MetricsRow& r) { return r.received; });
   const Polyline lost = series(run, [](const MetricsRow& r) { return r.lost; });
+  const std::string spread = std::string("Spread of φ²") +
+                             (mission.basis.free_domain ? " in modes of the free domain" : "") +
+                             " among the agents";
   const Panel panels[] = {
       {total("Contributions received", received), "", received},
       {total("Contributions lost", lost), "", lost},
       {"Age of the oldest teammate's contribution", "s",
        series(run, [](const MetricsRow& r) { return r.max_staleness_s; })},
-      {"Spread of φ² among the agents", "",
-       series(run, [](const MetricsRow& r) { return r.spread; })},
+      {spread, "", series(run, [](const MetricsRow& r) { return r.spread; })},
   };
   Svg svg(kWidth, kTop + 2 * kPanelHeight + kRowGap + kRoomBelow - 4, "communication",
           "Communication over time");

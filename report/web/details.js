@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The key figures under the map, and all that a record says besides.
 import { S } from './state.js';
-import { $, duration, element, grouped, readable } from './text.js';
+import { $, duration, element, grouped, ofModes, readable } from './text.js';
 
 function list(pairs, css) {
   const dl = element('dl', css);
@@ -34,7 +34,8 @@ export function showFacts(live) {
     ['authenticated', live.authenticated ? 'yes' : 'no'], ['ticks', `${grouped(mission.tick_count)} × ${mission.dt_s} s`],
     ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['run', (live.replay ? 'replay of ' : '') + live.run.slice(0, 8)],
   ] : [
-    ['result', said(summary, 'result') ?? 'no summary'], ['φ² first', readable(phi[0])], ['φ² last', readable(phi[phi.length - 1])],
+    ['result', said(summary, 'result') ?? 'no summary'], ...present([['φ² is', ofModes(mission).trim()]]),
+    ['φ² first', readable(phi[0])], ['φ² last', readable(phi[phi.length - 1])],
     ['slope, last decade', slopeText(run)], ['ticks', `${grouped(run.ticks)}${run.ticks < mission.tick_count ? ` of ${grouped(mission.tick_count)}` : ''} × ${mission.dt_s} s`],
     ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['mode', said(summary, 'mode') ?? '–'],
     ...present([['blocked share', said(summary, 'separation.blocked_share')], ['longest block [s]', said(summary, 'separation.longest_block_s')]]),
@@ -54,7 +55,7 @@ const AGENT_COLUMNS = [
 function table(columns, objects) {
   const box = element('div', 'scroll'), made = element('table'), head = element('tr'), body = element('tbody');
   const used = columns.filter(([, key]) => objects.some(object => said(object, key) !== undefined));
-  head.append(...used.map(([title]) => element('th', '', title)));
+  head.append(...used.map(([title, key]) => element('th', '', key === 'ergodic_metric' ? title + ofModes(S.run.mission) : title)));
   for (const object of objects) {
     const tr = element('tr');
     tr.append(...used.map(([, key]) => element('td', '', said(object, key) ?? '–')));

@@ -3,7 +3,7 @@
 import { S } from './state.js';
 import { QUANTITIES, readingAt } from './chart.js';
 import { showTeam } from './team.js';
-import { $, put, readable } from './text.js';
+import { $, ofModes, put, readable } from './text.js';
 
 let textAt = 0;
 
@@ -32,7 +32,7 @@ export function drawHeadline(now) {
   $('nowAlive').style.color = alive < all.length ? S.colours.bad : '';
   put($('state'), text);
   $('state').className = `pill ${css}`;
-  $('markers').setAttribute('aria-label', `Map of ${run.mission.name} at ${t.toFixed(1)} s: ${alive} of ${all.length} agents alive, φ² ${readable(run.metricAt(t))}`);
+  $('markers').setAttribute('aria-label', `Map of ${run.mission.name} at ${t.toFixed(1)} s: ${alive} of ${all.length} agents alive, φ²${ofModes(run.mission)} ${readable(run.metricAt(t))}`);
   $('chart').setAttribute('aria-label', `${QUANTITIES[S.quantity].title}: ${readingAt(run, S.quantity, t)}`);
   put($('nowEnd'), `of ${(S.live ? (run.mission.tick_count - 1) * run.mission.dt_s : run.end).toFixed(0)} s`);
 }

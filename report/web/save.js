@@ -7,13 +7,13 @@ import { paintChart } from './chart.js';
 import { download } from './download.js';
 import { SvgContext } from './svg.js';
 import { seek, setPlaying } from './timeline.js';
-import { $, element, put, readable } from './text.js';
+import { $, element, ofModes, put, readable } from './text.js';
 
 const GAP = 16, HEAD = 46;
 
 function title() {
   const { run, t } = S;
-  return `${run.mission.name}, ${run.tracks.length} agents, t = ${t.toFixed(1)} s, φ² = ${readable(run.metricAt(t))}`;
+  return `${run.mission.name}, ${run.tracks.length} agents, t = ${t.toFixed(1)} s, φ²${ofModes(run.mission)} = ${readable(run.metricAt(t))}`;
 }
 
 const save = (blob, ending) => download(blob, `${S.run.mission.name}-${S.t.toFixed(0)}s.${ending}`);

@@ -8,7 +8,7 @@ import { set, showLegend } from './legend.js';
 import { layout } from './screen.js';
 import { QUANTITIES } from './chart.js';
 import { beginSpace } from './space_controls.js';
-import { $, put } from './text.js';
+import { $, ofModes, put } from './text.js';
 
 const NO_KEY = 'The team has no key: any host on the network may have sent what is shown';
 
@@ -16,9 +16,10 @@ let runs = 0;
 
 // φ² over time is as it was recorded; the maps are of cosines.
 function nameBasis(run) {
-  const basis = run.mission.free_domain ? 'in modes of the free domain' : '';
-  QUANTITIES.phi.title = `Ergodic metric φ²${basis && `, ${basis}`}`;
-  $('nowMetric').title = basis;
+  const basis = ofModes(run.mission);
+  QUANTITIES.phi.title = `Ergodic metric φ²${basis}`;
+  QUANTITIES.spread.title = `Spread of own φ²${basis}`;
+  put($('metricName'), `φ²${basis}`);
   for (const option of $('quantity').options) option.text = QUANTITIES[option.value].title;
 }
 

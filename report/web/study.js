@@ -8,9 +8,9 @@ const escaped = key => point => point.escapes?.[key];
 
 // What can be asked of a point. `better`: −1 less is better, 1 more, 0 neither.
 export const QUANTITIES = {
-  metric: { title: 'φ² at the end', log: true, better: -1, text: readable, ...estimate('metric') },
-  ratio: { title: 'φ² against the first', log: true, better: -1, text: readable, ...estimate('ratio') },
-  slope: { title: 'Slope of φ²', log: false, better: -1, text: readable, ...plain(point => point.slope) },
+  metric: { title: 'φ² in cosines at the end', log: true, better: -1, text: readable, ...estimate('metric') },
+  ratio: { title: 'φ² in cosines against the first', log: true, better: -1, text: readable, ...estimate('ratio') },
+  slope: { title: 'Slope of φ² in cosines', log: false, better: -1, text: readable, ...plain(point => point.slope) },
   within15: { title: 'Escaped within 15 s', log: false, better: 1, text: share, ...plain(escaped('within_15_s')) },
   within60: { title: 'Escaped within 60 s', log: false, better: 1, text: share, ...plain(escaped('within_60_s')) },
   median: { title: 'Median of the escapes', log: false, better: -1, text: seconds, ...plain(escaped('median_s')) },

@@ -99,7 +99,7 @@ function press(id, value) {
 function showControls() {
   press('figure', S.figure);
   press('curve', S.curve);
-  put($('curveTitle'), S.curve === 'phi' ? 'φ² over time' : 'Agents that escaped');
+  put($('curveTitle'), S.curve === 'phi' ? 'φ² in cosines over time' : 'Agents that escaped');
   $('quantity').value = S.quantity;
   for (const id of ['across', 'up']) $(id).value = S[id].number;
   for (const select of $('filters').querySelectorAll('select')) {

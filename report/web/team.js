@@ -2,7 +2,7 @@
 // The agents: a table for eyes and screen readers, and a chip each for a large team.
 import { S, ask } from './state.js';
 import { stateOf } from './run.js';
-import { $, element, put, readable, grouped } from './text.js';
+import { $, element, ofModes, put, readable, grouped } from './text.js';
 
 const MOST_WITHOUT_CHIPS = 12;
 
@@ -20,7 +20,7 @@ const COLUMNS = [
   } },
   { head: 'Lag', title: 'The longest time in the last half second that its process woke up late', live: true, long: true,
     text: ({ said }) => own(said, 'loop_lag_s', v => `${(1000 * v).toFixed(0)} ms`) },
-  { head: 'Own φ²', title: 'φ² of the coverage that it knew at the end', record: true, text: ({ last }) => own(last, 'ergodic_metric') },
+  { head: 'Own φ²', title: 'φ² of the coverage that it knew at the end', metric: true, record: true, text: ({ last }) => own(last, 'ergodic_metric') },
   { head: 'Lost', title: 'Messages of others that it did not receive', text: ({ said, last }) => own(said ?? last, 'contributions_lost', grouped) },
   { head: 'Drops', title: 'Datagrams that the kernel dropped at its sockets', long: true, text: ({ said, last }) => own(said ?? last, 'kernel_drops', grouped) },
 ];
@@ -53,7 +53,7 @@ function row(id) {
 export function buildTeam() {
   const live = S.run.history.length > 0 || S.live;
   columns = COLUMNS.filter(column => (live ? !column.record : !column.live));
-  const heads = [['#'], ['State'], ...columns.map(c => [c.head, c.title, c.long])].map(([head, title, long]) => {
+  const heads = [['#'], ['State'], ...columns.map(c => [c.head, c.metric ? c.title + ofModes(S.run.mission) : c.title, c.long])].map(([head, title, long]) => {
     const th = element('th', long ? 'long' : '', head);
     th.scope = 'col';
     if (title) th.title = title;

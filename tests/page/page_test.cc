@@ -161,6 +161,33 @@ TEST_F(PageInABrowser, KeepOutsAreOutlined) {
   expect_no_errors();
 }
 
+TEST_F(PageInABrowser, TheMetricOfAFreeDomainNamesItsModes) {
+  open_report({"--duration", "20", "--set", "basis.free_domain=true", "--set", "basis.modes_x=6",
+               "--set", "basis.modes_y=6"},
+              "#theme=light", "two_rooms");
+  const auto shown = [&](const std::string& expression) {
+    return js("return " + expression).get<std::string>();
+  };
+  const auto text_of = [&](const std::string& id) {
+    return shown("document.getElementById('" + id + "').textContent");
+  };
+  EXPECT_EQ(text_of("metricName"), "φ² in modes of the free domain");
+  EXPECT_NE(text_of("quantity").find("Ergodic metric φ² in modes of the free domain"),
+            std::string::npos);
+  EXPECT_NE(text_of("quantity").find("Spread of own φ² in modes of the free domain"),
+            std::string::npos);
+  EXPECT_NE(text_of("facts").find("φ² isin modes of the free domain"), std::string::npos)
+      << text_of("facts");
+  EXPECT_NE(shown("document.getElementById('heads').innerHTML")
+                .find("it knew at the end in modes of the free domain"),
+            std::string::npos);
+  EXPECT_NE(
+      shown("document.getElementById('markers').ariaLabel").find("φ² in modes of the free domain"),
+      std::string::npos);
+  screenshot("free_domain");
+  expect_no_errors();
+}
+
 TEST_F(PageInABrowser, AStudyIsSortedFilteredAndItsBestCellNamed) {
   std::ofstream(folder_ / "mission.textproto") << R"(
 domain { size_x_m: 100 size_y_m: 100 }

@@ -169,6 +169,7 @@ TEST(StudyText, NamesEveryPoint) {
   EXPECT_NE(text.find("law.epsilon = 0.1, law.regularization = RELATIVE"), std::string::npos)
       << text;
   EXPECT_NE(text.find("0.5"), std::string::npos) << text;
+  EXPECT_NE(text.find("phi^2 in cosines [95 %]"), std::string::npos) << "by which all compare";
 }
 
 }  // namespace
