@@ -121,8 +121,9 @@ std::string study_page(const StudyFacts& facts, const Summaries& summaries) {
 }
 
 std::string study_text(const Study& study, const Summaries& summaries) {
-  std::vector<std::vector<std::string>> lines{
-      {"", "runs", "phi^2 in cosines [95 %]", "against the first [95 %]", "slope", "escaped in 60 s"}};
+  std::vector<std::vector<std::string>> lines{{"", "runs", "phi^2 in cosines [95 %]",
+                                               "against the first [95 %]", "slope",
+                                               "escaped in 60 s"}};
   for (std::size_t i = 0; i < study.points.size(); ++i) {
     lines.push_back({name_of(study.points[i], study)});
     for (std::string& cell : terminal_cells(summaries[i])) lines.back().push_back(std::move(cell));

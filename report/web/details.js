@@ -34,7 +34,7 @@ export function showFacts(live) {
     ['authenticated', live.authenticated ? 'yes' : 'no'], ['ticks', `${grouped(mission.tick_count)} × ${mission.dt_s} s`],
     ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['run', (live.replay ? 'replay of ' : '') + live.run.slice(0, 8)],
   ] : [
-    ['result', said(summary, 'result') ?? 'no summary'], ...present([['φ² is', ofModes(mission).trim()]]),
+    ['result', said(summary, 'result') ?? 'no summary'], ...present([['φ² in modes of', mission.free_domain ? 'the free domain' : '']]),
     ['φ² first', readable(phi[0])], ['φ² last', readable(phi[phi.length - 1])],
     ['slope, last decade', slopeText(run)], ['ticks', `${grouped(run.ticks)}${run.ticks < mission.tick_count ? ` of ${grouped(mission.tick_count)}` : ''} × ${mission.dt_s} s`],
     ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['mode', said(summary, 'mode') ?? '–'],

@@ -17,7 +17,7 @@ let runs = 0;
 // φ² over time is as it was recorded; the maps are of cosines.
 function nameBasis(run) {
   const basis = ofModes(run.mission);
-  QUANTITIES.phi.title = `Ergodic metric φ²${basis}`;
+  QUANTITIES.phi.title = basis ? `φ²${basis}` : 'Ergodic metric φ²';
   QUANTITIES.spread.title = `Spread of own φ²${basis}`;
   put($('metricName'), `φ²${basis}`);
   for (const option of $('quantity').options) option.text = QUANTITIES[option.value].title;

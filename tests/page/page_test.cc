@@ -172,11 +172,10 @@ TEST_F(PageInABrowser, TheMetricOfAFreeDomainNamesItsModes) {
     return shown("document.getElementById('" + id + "').textContent");
   };
   EXPECT_EQ(text_of("metricName"), "φ² in modes of the free domain");
-  EXPECT_NE(text_of("quantity").find("Ergodic metric φ² in modes of the free domain"),
-            std::string::npos);
+  EXPECT_NE(text_of("quantity").find("φ² in modes of the free domain"), std::string::npos);
   EXPECT_NE(text_of("quantity").find("Spread of own φ² in modes of the free domain"),
             std::string::npos);
-  EXPECT_NE(text_of("facts").find("φ² isin modes of the free domain"), std::string::npos)
+  EXPECT_NE(text_of("facts").find("φ² in modes ofthe free domain"), std::string::npos)
       << text_of("facts");
   EXPECT_NE(shown("document.getElementById('heads').innerHTML")
                 .find("it knew at the end in modes of the free domain"),
