@@ -80,13 +80,15 @@ void Driver::catch_up(Tick team_tick) {
 /// gives way; later nobody does, because that may be a recording.
 void Driver::on(const WorldState& other, const Arrival& arrival) {
   const bool begins = !running_ || arrival.now < begun_ + kListening;
-  if (!only_ || !arrival.fresh || !begins) return;
+  if (!arrival.fresh || !begins) return;
   if (said_ && other.header.incarnation > me_.incarnation()) return;
   for (int i = 0; i < other.vehicle_count; ++i) {
-    if (other.vehicles[static_cast<std::size_t>(i)].id != *only_) continue;
+    const AgentId id = other.vehicles[static_cast<std::size_t>(i)].id;
+    if (only_ && id != *only_) continue;
     failed_ = true;
-    return stop("robot " + std::to_string(*only_) +
-                " is driven by another driver already: end that one first, or choose another --id");
+    return stop("robot " + std::to_string(id) +
+                " is driven by another driver already: end that one first, or choose " +
+                (only_ ? "another --id" : "one robot by --id"));
   }
 }
 

@@ -272,6 +272,15 @@ TEST(DriverOfOneRobot, RefusesARobotThatAnotherOneDrives) {
   EXPECT_TRUE(advance(driver, at(2s)).empty());
 }
 
+TEST(DriverOfAllRobots, RefusesRobotsThatAnotherOneDrives) {
+  announce(leased());
+  Driver driver(kRun, kWorldLife, kSpeedLimit_mps, std::nullopt);
+  give(driver, mission_part(1, MissionState::kRunning, roster_of(2)), at(0s));
+  give(driver, said_by(77, 1, 5), at(500ms));
+  EXPECT_TRUE(driver.failed());
+  EXPECT_NE(driver.reason().find("robot 1 is driven by another driver already"), std::string::npos);
+}
+
 TEST(DriverOfOneRobot, WhoDrivesItAlreadyGoesOn) {
   Driver driver = driver_of(1, leased());
   for (int tick = 0; tick < 12; ++tick) state_at(driver, at(1s + tick * 100ms));
