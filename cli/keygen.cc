@@ -24,7 +24,8 @@ int make_keys(const std::string& name) {
   }
   std::printf(
       "%s: for every agent, world, driver, logger and whoever watches\n"
-      "%s: for who starts and ends missions: coordinator, ergocast run, ergocast stop\n"
+      "%s: for who starts, pauses and ends missions: coordinator, ergocast run, stop, pause, "
+      "resume\n"
       "Copy them over a channel you trust; each program takes its own as --key-file or in "
       "ERGOCAST_KEY_FILE.\n",
       team.c_str(), coordinator.c_str());

@@ -91,6 +91,7 @@ class MissionLog {
       spdlog::info("run {} of scenario {}{}: quorum of {} agents", to_hex(coordinator.run()),
                    mission->name, coordinator.took_over() ? ", taken over" : "", mission->quorum);
     }
+    look_at_holds(coordinator);
     if (coordinator.state() == state_) return;
     state_ = coordinator.state();
     const std::string& reason = coordinator.reason();
@@ -101,7 +102,18 @@ class MissionLog {
   }
 
  private:
+  void look_at_holds(const Coordinator& coordinator) {
+    const int changes = named_changes(coordinator.holds());
+    if (changes == changes_) return;
+    changes_ = changes;
+    if (changes == 0) return;
+    const Hold& newest = coordinator.holds().back();
+    spdlog::info("mission {} from tick {} on", newest.open() ? "is paused" : "counts",
+                 newest.open() ? newest.from : newest.until);
+  }
+
   MissionState state_ = MissionState::kWaiting;
+  int changes_ = 0;  // of the holds, that were logged
   bool announced_ = false;
 };
 

@@ -121,7 +121,7 @@ void add_key_option(CLI::App& app, MessageAuthenticator& seal, std::string* file
 
 std::string cannot_sign(const std::string& key_file) {
   return key_file +
-         ": cannot begin or end missions; take the file NAME.coordinator.key that "
+         ": cannot begin or end missions, nor pause them; take the file NAME.coordinator.key that "
          "`ergocast keygen` wrote together with it";
 }
 

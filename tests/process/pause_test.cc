@@ -39,6 +39,7 @@ TEST_F(PauseCommand, HoldsAMissionInLockstepWhichItsSimulationRepeats) {
   ASSERT_EQ(say("pause"), 0) << output();
   EXPECT_TRUE(answered("paused from tick ")) << output();
   EXPECT_TRUE(shown("paused, tick ")) << output();
+  EXPECT_TRUE(logs("coordinator", "mission is paused from tick ")) << said();
   EXPECT_EQ(say("pause"), 0) << output();
   EXPECT_TRUE(answered("paused already")) << output();
   signal_to({"ergocast-coordinator"}, SIGKILL);
