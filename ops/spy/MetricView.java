@@ -25,7 +25,7 @@ final class MetricView extends Picture {
       high = Math.max(high, metric.y(i));
     }
     boolean empty = high == 0;
-    double elapsed = team.tick * team.plan.dt;
+    double elapsed = team.elapsed();
     Axes axes = new Axes(new Rectangle(LEFT, TOP, Math.max(20, getWidth() - LEFT - RIGHT),
                              Math.max(20, getHeight() - TOP - BOTTOM)),
         new Axes.Scale(

@@ -43,6 +43,7 @@ final class Team {
   private final LongSupplier clock; // [ns]
   private long run;
   private long heardNs;
+  private long uncounted; // ticks so far in which the mission was paused
   private byte[][] parts = new byte[0][];
 
   Team() {
@@ -116,6 +117,11 @@ final class Team {
   }
 
   private void on(ergocast.world_state_t message) {
+    long held = message.uncounted_ticks;
+    if (message.header.tick >= tick && held >= 0 && held <= message.header.tick
+        && isOfThisRun(message.header)) {
+      uncounted = held;
+    }
     if (!isUnderWay(message.header)) return;
     for (ergocast.vehicle_t vehicle : message.vehicles) {
       Agent agent = agent(vehicle.vehicle_id);
@@ -142,7 +148,7 @@ final class Team {
                        .toArray();
     if (all.length > 0) {
       double median = (all[all.length / 2] + all[(all.length - 1) / 2]) / 2;
-      metric.add(message.header.tick, message.header.tick * plan.dt, median);
+      metric.add(message.header.tick, elapsed(), median);
     }
   }
 
@@ -172,7 +178,12 @@ final class Team {
 
   private boolean isUnderWay(ergocast.header_t header) {
     return isOfThisRun(header) && plan != null && header.tick >= 0
-        && header.tick <= plan.lastTick;
+        && header.tick - uncounted <= plan.lastTick;
+  }
+
+  /** Mission time [s]: while the mission is paused it stands. */
+  double elapsed() {
+    return (tick - uncounted) * plan.dt;
   }
 
   private boolean isSilent() {
@@ -190,6 +201,7 @@ final class Team {
     coverage = null;
     status = "";
     tick = 0;
+    uncounted = 0;
     parts = new byte[0][];
     return run != 0;
   }

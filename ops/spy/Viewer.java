@@ -72,7 +72,7 @@ final class Viewer extends AbstractAction {
       if (team.plan == null) return "waiting for the mission, which is said once a second";
       return String.format(Locale.ROOT, "%s%s: %.1f of %.0f s%s",
           team.replay ? "replay of " : "", team.plan.name,
-          team.tick * team.plan.dt, team.plan.duration,
+          team.elapsed(), team.plan.duration,
           team.status.isEmpty() ? "" : ", " + team.status);
     }
   }

@@ -22,7 +22,7 @@ function missionState(all) {
 
 export function drawHeadline(now) {
   const { run, t } = S;
-  put($('nowTime'), t.toFixed(1));
+  put($('nowTime'), run.counted(t).toFixed(1));
   put($('nowMetric'), readable(run.metricAt(t)));
   $('slider').value = run.rowAt(t);
   if (S.playing && now - textAt < 150) return;
@@ -34,5 +34,5 @@ export function drawHeadline(now) {
   $('state').className = `pill ${css}`;
   $('markers').setAttribute('aria-label', `Map of ${run.mission.name} at ${t.toFixed(1)} s: ${alive} of ${all.length} agents alive, φ²${ofModes(run.mission)} ${readable(run.metricAt(t))}`);
   $('chart').setAttribute('aria-label', `${QUANTITIES[S.quantity].title}: ${readingAt(run, S.quantity, t)}`);
-  put($('nowEnd'), `of ${(S.live ? (run.mission.tick_count - 1) * run.mission.dt_s : run.end).toFixed(0)} s`);
+  put($('nowEnd'), `of ${(S.live ? (run.mission.tick_count - 1) * run.mission.dt_s : run.counted(run.end)).toFixed(0)} s`);
 }

@@ -50,6 +50,11 @@ export class Run {
     this.holds = pairs;
     this.coverage.reset(0);
   }
+  // Mission time at `t`, without the ticks that do not count.
+  counted(t) {
+    const tick = t / this.mission.dt_s;
+    return t - this.mission.dt_s * this.holds.reduce((sum, [from, until]) => sum + Math.max(0, Math.min(tick, until ?? Infinity) - from), 0);
+  }
   rowAt(t) { return Math.max(0, Math.min(this.rows - 1, Math.round(t / this.step))); }
   track(id) {
     let track = this.byId.get(id);
