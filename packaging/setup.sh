@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Sourced by ./run, ./test and others (bash): installs what is missing of the packages in the lists
-# $packages of this folder (default packages.txt), and builds $target, if any, of build/release.
+# $packages of this folder (default packages.txt), and builds $target, if any, of build/release. After it,
+# `build_preset PRESET TARGET…` builds other presets.
 #   ERGOCAST_NO_INSTALL=1   never install anything
 #   ERGOCAST_CMAKE_ARGS     more arguments for the configuration, separated by spaces
 # All messages go to stderr. Exit code 3: the machine lacks something that only its owner can add.
@@ -75,25 +76,25 @@ optional_packages() {
     grep -xF -f <(sed 's/#.*//; /^$/d; s/$/ installed/' "$root/packaging/packages-test.txt") | cksum
 }
 
-build_release() {
-  local arguments stamp=$build/configured-with
+# build_preset PRESET TARGET…
+build_preset() {
+  local folder=$root/build/$1 arguments stamp=$root/build/$1/configured-with wanted
   read -r -a arguments <<<"${ERGOCAST_CMAKE_ARGS:-}"
-  local wanted
   wanted="$root ${arguments[*]}; $(optional_packages); presets $(cksum <"$root/CMakePresets.json")"
 
   # Other arguments or presets, a moved checkout, or packages that came or went: start from an empty
   # cache, so that no old option lingers, and nothing stays unseen.
-  if [ ! -f "$build/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
-    say "Configuring $build"
+  if [ ! -f "$folder/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
+    say "Configuring $folder"
     rm -f "$stamp"
-    quietly cmake --fresh -S "$root" --preset release "${arguments[@]}"
+    quietly cmake --fresh -S "$root" --preset "$1" "${arguments[@]}"
     printf '%s\n' "$wanted" >"$stamp"
   fi
-  if ! ninja -C "$build" -n "$target" 2>/dev/null | grep -q '^ninja: no work to do'; then
-    say "Building $build"
-    cmake --build "$build" --target "$target" >&2
+  if ! ninja -C "$folder" -n "${@:2}" 2>/dev/null | grep -q '^ninja: no work to do'; then
+    say "Building $folder"
+    cmake --build "$folder" --target "${@:2}" >&2
   fi
 }
 
 install_packages
-[ -z "$target" ] || build_release
+[ -z "$target" ] || build_preset release "$target"

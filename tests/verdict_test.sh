@@ -11,11 +11,12 @@ trap 'rm -rf "$work"' EXIT
 fail() { echo "FAILED: $*" >&2; cat "$work/said" >&2; exit 1; }
 
 # A tree whose set-up has nothing to do.
-mkdir -p "$work/packaging" "$work/tests" "$work/build/release"
+mkdir -p "$work/packaging" "$work/tests" "$work/build/release" "$work/build/asan"
 cp "$source/test" "$work"
 cp "$source/tests/verdict" "$work/tests"
 cat >"$work/packaging/setup.sh" <<'SETUP'
-root=$here build=$here/build/release
+root=$here
+build_preset() { :; }
 SETUP
 # shellcheck disable=SC2016  # ctest expands them
 cat >"$work/build/release/CTestTestfile.cmake" <<'TESTS'
@@ -33,6 +34,10 @@ says(planted_skip planted_script "skipped: dockerd is missing: packaging/package
 says(bad_one bad "")
 says(switched_off off "")
 set_tests_properties(switched_off PROPERTIES DISABLED TRUE)
+TESTS
+cat >"$work/build/asan/CTestTestfile.cmake" <<'TESTS'
+add_test(Good.Part /bin/true)
+set_tests_properties(Good.Part PROPERTIES LABELS part)
 add_test(not_there /nonexistent/program)
 set_tests_properties(not_there PROPERTIES LABELS missing)
 TESTS
@@ -50,6 +55,7 @@ says() { grep -qF -- "$1" "$work/said" || fail "no word of: $1"; }
 
 expect 0 '2 passed, 0 failed, 0 skipped' -L good
 expect 0 '1 passed, 0 failed, 0 skipped' -R Two
+expect 0 '3 passed, 0 failed, 0 skipped' -L '^good$|^part$'  # of both folders
 expect 0 '0 passed, 0 failed, 2 skipped' -L lacks
 says 'skipped: Lacks.Netem: this kernel has no netem'
 says 'skipped: lacks_root: skipped: networks of several hosts need root'
@@ -60,6 +66,6 @@ expect 1 '0 passed, 0 failed, 1 skipped' -L planted_script
 expect 1 '2 passed, 0 failed, 1 skipped' -L '^good$|^off$'
 expect 8 '0 passed, 1 failed, 0 skipped' -L missing
 expect 8 '2 passed, 1 failed, 1 skipped' -L '^(good|bad|planted)$'
-expect 0 'Total Tests: 9' -N
+expect 0 'Total Tests: 10' -N
 expect 8 'Errors while running CTest' -R no_such_test
 echo 'each ends as it should'

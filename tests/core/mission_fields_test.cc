@@ -7,12 +7,13 @@
 #include <utility>
 
 namespace ergocast {
-namespace {
-
+/// Only named where nothing is evaluated, so it is defined nowhere.
 struct Anything {
   template <class T>
   operator T() const;
 };
+
+namespace {
 
 /// How many values an aggregate can be made of: its members.
 template <class T, std::size_t... I>

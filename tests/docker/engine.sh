@@ -31,9 +31,9 @@ stop_engine() {
   wait "$engine" || true
 }
 
-# There is no registry: the bare system is the image to build on.
+# There is no registry: the bare system is the image to build on, with the packages that were fetched before.
 import_base() {
-  tar -C "$root" --one-file-system --exclude=./tmp/test --exclude='./var/cache/apt/*' \
+  tar -C "$root" --one-file-system --exclude=./tmp/test --exclude='./var/cache/apt/*.bin' \
     --exclude='./var/lib/apt/lists/*' -c . | docker import - debian-12 >/dev/null
 }
 

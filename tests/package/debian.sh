@@ -21,7 +21,7 @@ if [ "${ERGOCAST_IN_NAMESPACE:-}" != yes ]; then
   done
   unshare --mount true 2>/dev/null || skip 'this system allows no mount namespaces'
   mkdir -p "$root" "$cache/archives"
-  # Tests take turns with the cache.
+  # Tests take turns with the cache; for those of one ctest, their RESOURCE_LOCK sees to it.
   exec 9>"$cache/lock"
   flock 9
   status=0

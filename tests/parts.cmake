@@ -1,0 +1,238 @@
+# Tests of parts: of functions, and of simulated teams. ./test builds and runs them with
+# the address and undefined-behaviour sanitizers.
+ergocast_test(NAME modes_tests LABELS unit
+  SOURCES
+    modes/eigen_modes_test.cc
+    modes/free_grid_test.cc
+    modes/free_modes_test.cc
+    modes/provide_test.cc
+    modes/table_test.cc
+  LIBS ergocast::modes)
+ergocast_test(NAME core_tests LABELS unit
+  SOURCES
+    core/basis_in_space_test.cc
+    core/basis_test.cc
+    core/block_layout_test.cc
+    core/block_sums_test.cc
+    core/control_in_space_test.cc
+    core/control_test.cc
+    core/coverage_table_test.cc
+    core/forecast_order_test.cc
+    core/forecast_test.cc
+    core/geometry_test.cc
+    core/hold_test.cc
+    core/kinds_test.cc
+    core/look_ahead_test.cc
+    core/merge_property_test.cc
+    core/mission_fields_test.cc
+    core/noise_test.cc
+    core/perturbation_test.cc
+    core/potential_test.cc
+    core/separation_test.cc
+    core/speed_limit_test.cc
+    core/step_constraints_test.cc
+    core/vehicle_teams_test.cc core/vehicle_test.cc core/wall_following_test.cc core/walls_attack_test.cc
+    core/station_test.cc
+    core/walls_test.cc
+  LIBS ergocast::target ergocast::team)
+
+ergocast_test(NAME target_tests LABELS unit
+  SOURCES
+    target/cosine_integrals_test.cc
+    target/map_file_test.cc
+    target/map_memory_test.cc
+    target/polygon_target_test.cc
+    target/raster_integral_test.cc
+    target/target_in_space_test.cc
+    target/target_test.cc
+    target/trapezoids_test.cc
+  LIBS ergocast::target PNG::PNG)
+
+ergocast_test(NAME team_tests LABELS unit
+  SOURCES
+    team/beacon_book_test.cc
+    team/hostile_plan_test.cc
+    team/liveness_test.cc
+    team/mission_follower_test.cc
+    team/participant_test.cc
+    team/plan_test.cc
+    team/radio_range_test.cc
+    text/printable_test.cc
+  LIBS ergocast::team ergocast::text)
+
+ergocast_test(NAME lcmtypes_tests LABELS unit OWN_FLAGS
+  SOURCES
+    lcmtypes/channels_test.cc
+    lcmtypes/codec_test.cc
+    lcmtypes/fixed16_test.cc
+    lcmtypes/forged_coverage_test.cc
+    lcmtypes/hostile_bytes_test.cc
+    lcmtypes/message_authenticator_test.cc
+    lcmtypes/subscriptions_test.cc
+  LIBS ergocast::codec ${XXHASH_LIBRARY} ${SODIUM_LIBRARY})
+# lcm-gen's types read our bytes, too; they need the codec's include folders.
+target_include_directories(lcmtypes_tests SYSTEM PRIVATE
+  $<TARGET_PROPERTY:ergocast_codec,BINARY_DIR>/generated ${LCM_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR}
+  ${SODIUM_INCLUDE_DIR})
+target_compile_options(lcmtypes_tests PRIVATE -fno-strict-aliasing)
+
+ergocast_test(NAME process_logic_tests LABELS unit
+  SOURCES
+    agent/beacons_test.cc
+    agent/bodies_test.cc
+    agent/control_test.cc
+    agent/digest_test.cc
+    agent/divided_team_test.cc
+    agent/foresight_test.cc
+    agent/forgetting_test.cc
+    agent/hearing_test.cc
+    agent/life_test.cc
+    agent/mission_repeat_test.cc
+    agent/pause_test.cc
+    agent/radio_test.cc
+    agent/reckoning_test.cc
+    agent/repair_test.cc
+    coordinator/admission_test.cc
+    coordinator/coordinator_test.cc
+    coordinator/departure_test.cc
+    coordinator/farewell_test.cc
+    coordinator/mission_pages_test.cc
+    coordinator/takeover_test.cc
+    sim/world_resume_test.cc
+    sim/record_window_test.cc
+    sim/world_bodies_test.cc
+    sim/world_members_test.cc
+    sim/world_physics_test.cc
+    sim/world_realtime_test.cc
+    sim/world_safety_test.cc
+    sim/world_test.cc
+  LIBS ergocast_agent ergocast_coordinator ergocast_sim ergocast::codec)
+
+ergocast_test(NAME runtime_tests LABELS unit
+  SOURCES
+    runtime/key_file_test.cc
+    runtime/event_log_test.cc
+    runtime/gathering_test.cc
+    runtime/lcm_datagram_test.cc
+    runtime/logging_test.cc
+    runtime/loop_lag_test.cc
+    runtime/rate_limit_test.cc
+    runtime/repeat_guard_test.cc
+  LIBS ergocast::runtime ergocast::event_log lcm::lcm)
+
+ergocast_test(NAME cli_tests LABELS unit
+  SOURCES
+    cli/rate_test.cc
+    cli/workers_test.cc
+    ${CMAKE_SOURCE_DIR}/cli/progress_line.cc
+    ${CMAKE_SOURCE_DIR}/cli/workers.cc
+  LIBS ergocast::core ergocast::runtime)
+
+ergocast_test(NAME deploy_tests LABELS unit
+  SOURCES
+    ops/deploy/files_test.cc
+    ops/deploy/hosts_file_test.cc
+  LIBS ergocast_deploy)
+
+ergocast_test(NAME status_tests LABELS unit
+  SOURCES
+    cli/live_team_test.cc
+    cli/recorded_team_test.cc
+    cli/run_registry_test.cc
+    cli/team_text_test.cc
+    cli/team_view_test.cc
+  LIBS ergocast_registry ergocast_watch nlohmann_json::nlohmann_json)
+
+ergocast_test(NAME logger_tests LABELS unit
+  SOURCES
+    report/axes_test.cc
+    logger/drivers_test.cc
+    logger/farewell_test.cc
+    logger/full_disk_test.cc
+    logger/line_file_test.cc
+    logger/recorder_test.cc
+    report/projection_test.cc
+    report/report_test.cc
+    logger/resume_test.cc
+    report/statistics_test.cc
+    logger/summary_test.cc
+  LIBS ergocast::report ergocast::scenario)
+
+# team/plan.proto is for other programs; ours need no code of it.
+ergocast_messages(ergocast_plan_message team/plan.proto)
+
+ergocast_test(NAME geo_tests LABELS unit
+  SOURCES geo/svg_test.cc
+  LIBS ergocast::geo)
+
+ergocast_test(NAME scenario_tests LABELS unit
+  SOURCES
+    scenario/assign_test.cc
+    scenario/free_domain_test.cc
+    scenario/geojson_target_test.cc
+    scenario/map_target_test.cc
+    scenario/plan_proto_test.cc
+    scenario/plan_test.cc
+    scenario/polygon_flaw_test.cc
+    scenario/problems_test.cc
+    scenario/proto_comments_test.cc
+    scenario/scenario_test.cc
+    scenario/space_test.cc
+    scenario/svg_target_test.cc
+    scenario/warnings_test.cc
+    scenario/water_column_test.cc
+  LIBS ergocast::scenario ergocast_scenario_messages ergocast_plan_message ergocast_logger PNG::PNG)
+
+ergocast_test(NAME studies_tests LABELS unit
+  SOURCES
+    lab/studies/confidence_test.cc
+    lab/studies/encoding_test.cc
+    lab/studies/linearised_test.cc
+    lab/studies/plans_test.cc
+    lab/studies/rare_modes_test.cc
+    lab/studies/same_as_simulate_test.cc
+    lab/studies/study_run_test.cc
+    lab/studies/study_table_test.cc
+    lab/studies/table_test.cc
+    support/drawn_scenario.cc
+  LIBS ergocast_studies ergocast_theorems ergocast_plans ergocast_scenario_messages PNG::PNG)
+
+ergocast_test(NAME example_tests LABELS unit
+  SOURCES examples/driver_test.cc
+  LIBS ergocast_example_driver)
+
+if(TARGET ergocast_example_mujoco)
+  ergocast_test(NAME mujoco_tests LABELS unit
+    SOURCES examples/mujoco_test.cc
+    LIBS ergocast_example_mujoco ergocast_lab ergocast::scenario)
+endif()
+
+ergocast_test(NAME doctor_tests LABELS unit
+  SOURCES
+    ops/doctor/bus_listener_test.cc
+    ops/doctor/fragment_rule_test.cc
+    ops/doctor/kernel_limits_test.cc
+    ops/doctor/peer_findings_test.cc
+    ops/doctor/peer_ledger_test.cc
+    ops/doctor/ports_test.cc
+    ops/doctor/print_test.cc
+    ops/doctor/probe_test.cc
+    ops/doctor/programs_test.cc
+    ops/doctor/routing_test.cc
+    ops/doctor/socket_table_test.cc
+  LIBS ergocast_doctor nlohmann_json::nlohmann_json)
+
+ergocast_test(NAME layering_tests LABELS unit
+  SOURCES layering_test.cc
+  LIBS ergocast::core)
+
+ergocast_test(NAME lab_tests LABELS lab
+  SOURCES
+    lab/foresight_test.cc
+    lab/invariants_test.cc
+    lab/judgement_test.cc
+    lab/laboratory_test.cc
+    lab/large_team_test.cc
+    lab/message_loss_test.cc
+    lab/pause_test.cc
+  LIBS ergocast_lab ergocast::scenario)

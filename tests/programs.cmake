@@ -1,0 +1,203 @@
+# Tests of the programs as people use them, which ./test builds without sanitizers; and of what they compute
+# for long: sanitizers would make twelve of the paper's missions out of one.
+add_dependencies(all_lab ergocast)
+
+# Replaces the program's allocator, so it stays alone.
+ergocast_test(NAME allocation_tests LABELS unit
+  SOURCES core/allocation_test.cc
+  LIBS ergocast::core ergocast::modes ergocast::team)
+target_link_options(allocation_tests PRIVATE
+  -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
+
+ergocast_test(NAME paper_tests LABELS paper
+  SOURCES
+    paper/corollary1_test.cc
+    paper/cube_corners_test.cc
+    paper/fig1a_test.cc
+    paper/fig1b_test.cc
+    paper/fig2_test.cc
+    paper/law_test.cc
+    paper/looking_ahead_test.cc
+    paper/proposition1_test.cc
+    paper/quadrimodal_corners_test.cc
+    paper/same_as_simulation_test.cc
+    paper/theorem1_test.cc
+    paper/theorem2_test.cc
+    paper/theorems_in_space_test.cc
+    paper/uniform_square_test.cc
+  LIBS ergocast_lab ergocast_theorems ergocast::scenario)
+
+# Thousands of missions under faults.
+function(ergocast_trials NAME SCENARIO SEEDS PACE)
+  add_test(NAME ${NAME}
+    COMMAND ${CMAKE_COMMAND} -DERGOCAST=$<TARGET_FILE:ergocast> -DSOURCE_DIR=${CMAKE_SOURCE_DIR}
+      -DSCENARIO=${SCENARIO} -DSEEDS=${SEEDS} -DPACE=${PACE} -P ${CMAKE_CURRENT_SOURCE_DIR}/lab/trials.cmake)
+  set_tests_properties(${NAME} PROPERTIES LABELS lab PROCESSORS 2 TIMEOUT 900)
+endfunction()
+ergocast_trials(faulty_team_in_real_time scenarios/faulty_team.textproto 1:2000 --realtime)
+ergocast_trials(faulty_team_in_lockstep scenarios/faulty_team.textproto 1:300 --lockstep)
+ergocast_trials(rare_modes_in_real_time tests/lab/rare_modes.textproto 1:200 --realtime)
+ergocast_trials(rare_modes_in_lockstep tests/lab/rare_modes.textproto 1:100 --lockstep)
+ergocast_trials(blind_team_in_real_time tests/lab/blind_team.textproto 1:1000 --realtime)
+ergocast_trials(blind_team_in_lockstep tests/lab/blind_team.textproto 1:300 --lockstep)
+ergocast_trials(forgetful_team_in_real_time tests/lab/forgetful_team.textproto 1:1000 --realtime)
+ergocast_trials(forgetful_team_in_lockstep tests/lab/forgetful_team.textproto 1:300 --lockstep)
+ergocast_trials(faulty_box_in_real_time tests/lab/faulty_box.textproto 1:60 --realtime)
+ergocast_trials(faulty_box_in_lockstep tests/lab/faulty_box.textproto 1:20 --lockstep)
+ergocast_trials(crowded_team_in_real_time scenarios/crowded_team.textproto 1:150 --realtime)
+ergocast_trials(crowded_team_in_lockstep scenarios/crowded_team.textproto 1:50 --lockstep)
+ergocast_trials(leased_team_in_real_time tests/lab/leased_team.textproto 1:300 --realtime)
+ergocast_trials(home_by_dusk_in_real_time scenarios/home_by_dusk.textproto 1:100 --realtime)
+ergocast_trials(home_by_dusk_in_lockstep scenarios/home_by_dusk.textproto 1:50 --lockstep)
+ergocast_trials(free_rooms_in_real_time tests/lab/free_rooms.textproto 1:100 --realtime)
+ergocast_trials(free_rooms_in_lockstep tests/lab/free_rooms.textproto 1:50 --lockstep)
+ergocast_trials(walled_wings_in_real_time tests/lab/walled_wings.textproto 1:80 --realtime)
+ergocast_trials(walled_wings_in_lockstep tests/lab/walled_wings.textproto 1:40 --lockstep)
+
+# What tests preload into the programs they start.
+add_library(hold_at SHARED support/hold_at.cc)
+add_library(no_socket_filter SHARED support/no_socket_filter.cc)
+
+# Real programs and real LCM.
+ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
+  SOURCES
+    process/bad_input_test.cc
+    process/bus_reader_test.cc
+    process/by_hand_test.cc
+    process/datagram_filter_test.cc
+    process/deploy_test.cc
+    process/doctor_test.cc
+    process/driver_test.cc
+    process/fault_test.cc
+    process/flood_test.cc
+    process/found_test.cc
+    process/freeze_test.cc
+    process/full_disk_test.cc
+    process/gathering_test.cc
+    process/key_test.cc
+    process/kinds_test.cc
+    process/launch_test.cc
+    process/lcm_conformance_test.cc
+    process/libraries_test.cc
+    process/log_test.cc
+    process/modes_test.cc
+    process/logs_test.cc
+    process/replay_test.cc
+    process/restart_test.cc
+    process/run_test.cc
+    process/segments_test.cc
+    process/separation_test.cc
+    process/set_test.cc
+    process/status_test.cc
+    process/home_test.cc
+    process/pause_test.cc
+    process/stop_test.cc
+    process/study_test.cc
+    process/team_size_test.cc
+    process/trials_test.cc
+    process/typing_test.cc
+    process/verify_test.cc
+    process/versions_test.cc
+    process/watch_test.cc
+    process/world_safety_test.cc
+    support/http.cc
+  LIBS ergocast_doctor ergocast::event_log)
+if(TARGET ergocast-example-mujoco)
+  target_sources(process_tests PRIVATE process/mujoco_test.cc)
+  add_dependencies(process_tests ergocast-example-mujoco)
+endif()
+add_library(no_more_processes SHARED support/no_more_processes.cc)
+add_dependencies(process_tests ergocast-example-driver no_more_processes)
+target_compile_definitions(process_tests PRIVATE
+  ERGOCAST_NO_MORE_PROCESSES="$<TARGET_FILE:no_more_processes>")
+
+# The page in Chromium.
+ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
+  SOURCES
+    page/page_test.cc
+    page/space_test.cc
+    support/browser.cc
+    support/http.cc
+  LIBS ergocast::core)
+
+# A register of the findings of each check, as the programs report them.
+ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
+  SOURCES
+    checks_can_fail/check_test.cc
+    checks_can_fail/invariants_test.cc
+    checks_can_fail/refusals_test.cc
+    checks_can_fail/scenario_mistakes.cc
+    checks_can_fail/verify_test.cc
+    checks_can_fail/words.cc
+  LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
+# The real `ergocast` with selectable bugs. bugs.cc has the linker's names of the wrapped functions.
+set(bugs checks_can_fail/bugs.cc)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${bugs})
+file(STRINGS ${bugs} wrapped REGEX "^WRAPPED")
+list(TRANSFORM wrapped REPLACE [[^[^"]*"([^"]*)".*$]] [[LINKER:--wrap=\1]])
+add_executable(ergocast-with-bugs ${bugs} $<TARGET_OBJECTS:ergocast>)
+target_link_options(ergocast-with-bugs PRIVATE ${wrapped})
+target_link_libraries(ergocast-with-bugs PRIVATE $<TARGET_PROPERTY:ergocast,LINK_LIBRARIES>)
+add_dependencies(checks_can_fail_tests ergocast-with-bugs)
+
+# Scripts that need root; exit code 77 means skipped.
+function(ergocast_script_test NAME LABEL SCRIPT)
+  add_test(NAME ${NAME} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/${SCRIPT} ${ARGN})
+  set_tests_properties(${NAME} PROPERTIES LABELS ${LABEL} SKIP_RETURN_CODE 77 TIMEOUT 900)
+endfunction()
+# With `ctest -C nightly` only. They take turns with the bare Debian that they keep, and a test that waits for
+# its turn has not begun.
+function(ergocast_nightly_script_test NAME LABEL SCRIPT)
+  add_test(NAME ${NAME} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/${SCRIPT} ${ARGN} CONFIGURATIONS nightly)
+  set_tests_properties(${NAME} PROPERTIES LABELS ${LABEL} SKIP_RETURN_CODE 77 TIMEOUT 900
+    RESOURCE_LOCK debian)
+endfunction()
+ergocast_script_test(deployed_over_ssh hosts hosts/deploy_ssh_test.sh
+  ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR}/scenarios/quadrimodal_corners.textproto)
+add_test(NAME mcap_reference_reader COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/export/mcap_test.sh
+  $<TARGET_FILE:ergocast> ${CMAKE_BINARY_DIR}/mcap_reader)
+set_tests_properties(mcap_reference_reader PROPERTIES LABELS process TIMEOUT 300)
+ergocast_script_test(bash_completes process package/completion_test.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+# Slurm starts services where it is installed, so ./test does not install it.
+find_program(SLURMCTLD slurmctld PATHS /usr/sbin)
+if(SLURMCTLD)
+  ergocast_script_test(slurm_job_array hosts slurm/study_test.sh
+    ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${CMAKE_SOURCE_DIR})
+endif()
+ergocast_nightly_script_test(package_installs package package/install_test.sh ${CMAKE_BINARY_DIR})
+if(TARGET ergocast_python)
+  ergocast_nightly_script_test(package_libraries package package/libraries_test.sh ${CMAKE_BINARY_DIR})
+endif()
+ergocast_nightly_script_test(package_services package package/services_test.sh ${CMAKE_BINARY_DIR})
+ergocast_nightly_script_test(containers docker docker/docker_test.sh ${CMAKE_BINARY_DIR})
+
+# The same programs between several network stacks.
+ergocast_test(NAME hosts_tests LABELS hosts RUNS_PROGRAMS
+  SOURCES
+    hosts/doctor_test.cc
+    hosts/fragments_test.cc
+    hosts/lan_test.cc
+    hosts/loss_test.cc
+    hosts/partition_test.cc
+    hosts/takeover_test.cc
+    hosts/team_test.cc
+    hosts/wrong_network_test.cc
+    checks_can_fail/doctor_test.cc
+    checks_can_fail/words.cc
+    support/lan.cc
+  LIBS ergocast_doctor)
+add_library(unsynchronised_clock SHARED support/unsynchronised_clock.cc)
+add_dependencies(hosts_tests no_socket_filter unsynchronised_clock)
+target_compile_definitions(hosts_tests PRIVATE
+  ERGOCAST_NO_SOCKET_FILTER="$<TARGET_FILE:no_socket_filter>"
+  ERGOCAST_UNSYNCHRONISED_CLOCK="$<TARGET_FILE:unsynchronised_clock>")
+
+# ./test itself.
+add_test(NAME verdict
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/verdict_test.sh ${CMAKE_SOURCE_DIR})
+set_tests_properties(verdict PROPERTIES LABELS unit)
+
+if(TARGET ergocast_python)
+  add_subdirectory(python)
+endif()
+add_subdirectory(spy)
