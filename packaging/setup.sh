@@ -10,6 +10,7 @@
 [ -n "${packages+set}" ] || packages=(packages.txt)
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck disable=SC2034  # the scripts that source this use it
 build=$root/build/release
 
 say() { printf '%s\n' "$*" >&2; }

@@ -97,6 +97,7 @@ ergocast_test(NAME process_logic_tests LABELS unit
     coordinator/departure_test.cc
     coordinator/farewell_test.cc
     coordinator/mission_pages_test.cc
+    coordinator/pausing_test.cc
     coordinator/takeover_test.cc
     sim/world_resume_test.cc
     sim/record_window_test.cc

@@ -72,6 +72,7 @@ WRAPPED(void, make_filter, "_ZN8ergocast16SeparationFilterC1ERKNS_7MissionEl", S
 WRAPPED(bool, goes_home, "_ZN8ergocast7WayHome5begunElRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEE", WayHome*, Tick, const Eigen::Vector3d&)
 WRAPPED(bool, filters_again, "_ZN8ergocast13filters_againERKNS_7MissionE", const Mission&)
 WRAPPED(SafeVelocity, safe, "_ZN8ergocast16SeparationFilter4safeERKNS_5MoverERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEESt4spanIKNS_9NeighbourELm18446744073709551615EE", SeparationFilter*, const Mover&, const Eigen::Vector3d&, std::span<const Neighbour>)
+WRAPPED(void, make_book, "_ZN8ergocast10BeaconBookC1ERKNS_7MissionERKNS_6AuthorEl", BeaconBook*, const Mission&, const Author&, std::int64_t)
 WRAPPED(void, hear_beacon, "_ZN8ergocast10BeaconBook4hearERKNS_6BeaconEbRKNS_6MomentE", BeaconBook*, const Beacon&, bool, const Moment&)
 WRAPPED(std::span<const Neighbour>, bodies, "_ZN8ergocast10BeaconBook6bodiesERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_6MomentE", BeaconBook*, const Eigen::Vector3d&, const Moment&)
 // clang-format on
@@ -215,6 +216,12 @@ std::map<const BeaconBook*, Overheard> overheard;
 
 }  // namespace
 
+void bug_make_book(BeaconBook* self, const Mission& mission, const Author& author,
+                   std::int64_t revision) {
+  overheard[self] = {};  // the book of another mission may have stood here
+  real_make_book(self, mission, author, revision);
+}
+
 void bug_hear_beacon(BeaconBook* self, const Beacon& beacon, bool fresh, const Moment& now) {
   if (fresh) overheard[self].heard[beacon.header.sender] = now.tick;
   real_hear_beacon(self, beacon, fresh, now);
@@ -260,6 +267,7 @@ std::vector<Hold> misread(std::span<const Hold> holds) {
   std::vector<Hold> taken(holds.begin(), holds.end());
   if (!one_agent_acts) return taken;
   if (bug("one agent ignores pauses")) taken.clear();
+  if (bug("one agent misses the second pause") && taken.size() > 1) taken.erase(taken.begin() + 1);
   for (Hold& hold : taken) {
     if (bug("one agent goes on later") && !hold.open()) hold.until += kLate;
   }
@@ -297,7 +305,7 @@ void bug_add_sample(CoverageTable* self, const Author& author, const BasisAt& at
   if (bug("a backup is put back")) {
     static std::map<CoverageTable*, CoverageTable> backup;
     const auto steps = self->steps_held(author).value_or(0);
-    if (steps == kUnderWay) backup.emplace(self, *self);
+    if (steps == kUnderWay) backup.insert_or_assign(self, *self);
     if (steps == 2 * kUnderWay) *self = backup.at(self);
   }
   real_add_sample(self, author, at, footprint);
@@ -322,6 +330,16 @@ struct Told {
 };
 std::map<const CoverageTable*, Told> told_to;
 
+/// Whether another incarnation of this agent has sent a block after `tick`.
+bool is_replaced(const CoverageTable& table, const Author& author, Tick tick) {
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const Author& other = table.author(row);
+    if (other.agent == author.agent && other != author && table.view(row, 0).tick > tick)
+      return true;
+  }
+  return false;
+}
+
 void note(const CoverageTable* table, const Contribution& theirs, Merge merged) {
   Told::Blocks& blocks = told_to.at(table).blocks[{theirs.author(), theirs.block}];
   if (merged == Merge::kNewer) blocks = {blocks.held, theirs};
@@ -341,12 +359,22 @@ void bug_hear(Agent* self, const Message& message, Bus bus, AgentId transmitter,
   listener = self;
   is_relayed = transmitter != header_of(message).sender;
   const Acting acting(*self);
+  if (bug("digests are ignored") && std::holds_alternative<Digest>(message)) return;
+  if (const auto* state = std::get_if<WorldState>(&message);
+      state != nullptr && bug("a late state is taken for the newest")) {
+    WorldState taken = *state;
+    if (taken.header.tick < self->tick()) taken.header.tick = self->tick() + 1;
+    return real_hear(self, taken, bus, transmitter, now);
+  }
   real_hear(self, message, bus, transmitter, now);
 }
 
 Merge bug_merge(CoverageTable* self, const Contribution& theirs, std::int64_t max_steps) {
   if (bug("an honest block is refused") && theirs.steps > kUnderWay) return Merge::kRefusedRange;
   if (bug("one agent's rows are dropped") && theirs.author().agent == 0) return Merge::kStale;
+  if (bug("a replaced incarnation is ignored") &&
+      is_replaced(*self, theirs.author(), theirs.header.tick))
+    return Merge::kStale;
   Contribution changed = theirs;
   // Still within the rounding that a receiver allows.
   if (bug("a receiver rounds") && theirs.block == 0) changed.sums.edit()[0] *= 1 + 5e-10;
@@ -368,6 +396,14 @@ Contribution bug_block(const CoverageTable* self, const Author& author, int bloc
 }
 
 void bug_average(const CoverageTable* self, Coefficients& coverage) {
+  if (bug("a replaced incarnation counts twice")) {
+    CoverageTable other = *self;
+    for (std::size_t row = 0; row < other.row_count(); ++row) {
+      if (is_replaced(other, other.author(row), other.view(row, 0).tick))
+        real_set_quality(&other, other.author(row), 2 * other.quality(row));
+    }
+    return real_average(&other, coverage);
+  }
   real_average(self, coverage);
   if (bug("the average is off")) coverage[2] += 1e-6;
 }
@@ -523,6 +559,12 @@ void bug_tell_world(World* self, const Message& message, Bus bus, AgentId transm
                     Instant now) {
   if (bug("the world does not hear the logger") && std::holds_alternative<RecordAck>(message))
     return;
+  if (const auto* state = std::get_if<WorldState>(&message);
+      state != nullptr && bug("a restarted world takes bodies to stand")) {
+    WorldState taken = *state;
+    for (Vehicle& vehicle : taken.vehicles) vehicle.velocity_mps.setZero();
+    return real_tell_world(self, taken, bus, transmitter, now);
+  }
   real_tell_world(self, message, bus, transmitter, now);
 }
 

@@ -94,6 +94,17 @@ TEST(WayHome, IsInTimeForEachKindOfVehicle) {
   }
 }
 
+// A law may ask for more than the vehicle can do.
+TEST(WayHome, GoesByTheSpeedOfASlowVehicle) {
+  Mission mission = with_station();
+  mission.speed_limit_mps = 5;
+  EXPECT_EQ(home_speed_mps(mission, 0), 5);
+  EXPECT_NEAR(WayHome(mission, 0).needed_s({190, 90, 0}), std::hypot(160, 70) / 5 + 0.2, 1e-9);
+  for (AgentId id = 0; id < 3; ++id) {
+    EXPECT_LE(apart_when_due_m(mission, id, 5), home_m(mission, id)) << id;
+  }
+}
+
 TEST(WayHome, BeginsOnceAndBoundsTheTime) {
   const Mission mission = with_station();
   WayHome way(mission, 0);

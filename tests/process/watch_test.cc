@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast watch` and `run --watch` as other programs and other sites' pages attack them. What a
 // browser shows of them: tests/page.
+#include <unistd.h>
+
 #include <memory>
 
 #include "tests/process/mission.h"
@@ -65,6 +67,19 @@ TEST_F(WatchedPage, NamesThatAreNotOursAreRefused) {
   EXPECT_EQ(http(kPort, "GET", "/", {}).status, 421);
   EXPECT_EQ(http(kPort, "GET", "/", {host("127.0.0.1:8765"), host("evil.example")}).status, 421);
   EXPECT_EQ(http(kPort, "GET", "/", {host("localhost:8765")}).status, 200);
+  end_server();
+}
+
+// Another host of the network may answer for that name, and lead a browser here.
+TEST_F(WatchedPage, TheHostsNameIsRefusedWhereOnlyThisHostReachesThePage) {
+  ASSERT_EQ(sethostname("survey-desk", 11), 0);  // of this test's own host
+  serve_record();
+  EXPECT_EQ(http(kPort, "GET", "/", {host("survey-desk:8765")}).status, 421);
+  end_server();
+  serve({"watch", out(), "--listen", "127.0.0.2", "--port", "8801"});
+  const auto known =
+      http(8801, "GET", "/?token=" + token(), {host("survey-desk:8801")}, "", "127.0.0.2");
+  EXPECT_EQ(known.status, 303);
   end_server();
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From which tick on a mission in real time is paused: the team gets the whole notice, also when
+// the world's last message is old.
+#include <gtest/gtest.h>
+
+#include "tests/coordinator/driven_coordinator.h"
+
+namespace ergocast {
+namespace {
+
+using namespace test;
+
+/// `agents` fly in real time at twice the speed.
+Mission realtime_mission(int agents) {
+  Mission mission = small_mission(agents);
+  mission.timing.pace = Pace::kRealtime;
+  mission.timing.realtime_factor = 2;
+  mission.timing.dt_s = 0.1;
+  return mission;
+}
+
+/// The notice of 2 s, in ticks of realtime_mission().
+constexpr Tick kNotice = 40;
+
+Pause pause_after(int changes) { return {{kRun, kOperator, 1, next_sequence(), 0}, changes}; }
+
+TEST(Pausing, CountsTheTicksSinceTheWorldWasHeard) {
+  for (const auto& [since, ticks] : {std::pair{0ms, 0}, {425ms, 8}, {825ms, 16}}) {
+    Coordinator coordinator = running_coordinator(realtime_mission(2));
+    give(coordinator, world_where(10, {9, 9}), at(1s));
+    give(coordinator, pause_after(0), at(1s + since));
+    ASSERT_EQ(coordinator.holds().size(), 1U) << since.count();
+    EXPECT_EQ(coordinator.holds()[0].from, 10 + 1 + ticks + kNotice) << since.count();
+    give(coordinator, pause_after(1), at(1s + since));
+    EXPECT_EQ(coordinator.holds()[0].until, 10 + 1 + ticks + kNotice + 1) << since.count();
+  }
+}
+
+TEST(Pausing, GoesByTheNewestTickOfAnyAgent) {
+  Coordinator coordinator = running_coordinator(realtime_mission(2));
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  AgentStatus status = status_of(1, next_sequence(), 12);
+  status.header.tick = 13;
+  give(coordinator, status, at(1s));
+  give(coordinator, pause_after(0), at(1s));
+  ASSERT_EQ(coordinator.holds().size(), 1U);
+  EXPECT_EQ(coordinator.holds()[0].from, 13 + 1 + kNotice);
+}
+
+TEST(Pausing, NeedsAWorldThatIsHeard) {
+  Coordinator coordinator = running_coordinator(realtime_mission(2));
+  give(coordinator, pause_after(0), at(1s));
+  EXPECT_TRUE(coordinator.holds().empty());
+  give(coordinator, world_where(10, {9, 9}), at(1s));
+  give(coordinator, pause_after(0), at(60s));
+  EXPECT_TRUE(coordinator.holds().empty());
+}
+
+}  // namespace
+}  // namespace ergocast
