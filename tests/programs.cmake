@@ -87,6 +87,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/typing_test.cc
     process/verify_test.cc
     process/versions_test.cc
+    process/waiting_test.cc
     process/watch_test.cc
     process/world_safety_test.cc
     support/http.cc

@@ -6,14 +6,18 @@
 
 export DOCKER_HOST=unix://$work/engine.sock
 
-# Waits until a command succeeds. The time that it takes decides no success.
+# Waits until a command succeeds, or until the process $awaited has ended, or containers have
+# (nothing_comes_of_containers). The command has the last word. The time that it takes decides no success.
+awaited=
 eventually() {
-  local deadline=$((SECONDS + ${PATIENCE_S:-300}))
+  local deadline=$((SECONDS + ${PATIENCE_S:-300})) in_vain=
   until "$@" >/dev/null 2>&1; do
-    [ "$SECONDS" -lt "$deadline" ] || return 1
+    [ -z "$in_vain" ] && [ "$SECONDS" -lt "$deadline" ] || return 1
     sleep 0.2
+    if ! kill -0 "$awaited" 2>/dev/null || nothing_comes_of_containers; then in_vain=yes; fi
   done
 }
+nothing_comes_of_containers() { false; }
 
 # start_engine NETWORK_NAMESPACE [OPTION…]
 start_engine() {
@@ -22,7 +26,7 @@ start_engine() {
   nsenter --net="$network" dockerd --host "$DOCKER_HOST" --data-root "$work/data" \
     --exec-root "$work/exec" --pidfile "$work/engine.pid" --cgroup-parent "$ERGOCAST_CGROUP" "$@" \
     >>"$work/engine.log" 2>&1 &
-  engine=$!
+  engine=$! awaited=$!
   eventually docker info || { tail -n 5 "$work/engine.log" >&2; fail 'dockerd'; }
 }
 
@@ -52,7 +56,8 @@ the_image_is_built_from_the_package() {
 # A machine with nothing but the engine on it.
 start_isolated_engine() {
   unshare --net sleep infinity &
-  local network=/proc/$!/ns/net
+  awaited=$!
+  local network=/proc/$awaited/ns/net
   eventually test ! "$network" -ef /proc/self/ns/net || fail 'no network namespace'
   nsenter --net="$network" ip link set lo up
   nsenter --net="$network" ip route add 224.0.0.0/4 dev lo

@@ -30,7 +30,16 @@ complain() {
   fail "$*"
 }
 expect() { "$@" >"$work/output" 2>&1 || { cat "$work/output" >&2; complain "not so: $*"; }; }
-becomes() { eventually "$@" || complain "never: $*"; }
+# A wait for containers ends when none runs any more, and when one has failed by itself. Code 4: its mission
+# has failed, and the others end, too.
+becomes() {
+  nothing_comes_of_containers() { all_ended || [ -n "$(failed_containers)" ]; }
+  eventually "$@" || complain "never: $*"
+  nothing_comes_of_containers() { false; }
+}
+failed_containers() {
+  docker ps --all --filter status=exited --format '{{.Names}} {{.Status}}' | grep -vE ' Exited \((0|4|137)\)' || true
+}
 
 compose() {
   # shellcheck disable=SC2086  # two words, or none

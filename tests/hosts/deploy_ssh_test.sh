@@ -51,12 +51,14 @@ END
 chmod +x "$work/bin/ssh"
 export PATH="$work/bin:$PATH"
 
+# Waits until a command succeeds, or until all processes of the mission have ended. The command has the last word.
 patience_s=300
 eventually() {
-  local deadline=$((SECONDS + patience_s))
+  local deadline=$((SECONDS + patience_s)) in_vain=
   until "$@"; do
-    [ "$SECONDS" -lt "$deadline" ] || { "$script" status; fail "never: $*"; }
+    [ -z "$in_vain" ] && [ "$SECONDS" -lt "$deadline" ] || { "$script" status; fail "never: $*"; }
     sleep 0.2
+    if all_ended; then in_vain=yes; fi
   done
 }
 # No host but its own knows where the scenario lies.

@@ -65,6 +65,10 @@ class DoctorOnHosts : public OnHosts {
     for (int n = 1;; ++n) {
       Child first = start_on(0, url(ttl_of_0), {"--peer", "5"});
       Child second = start_on(1, url(1), {"--peer", "5"});
+      EXPECT_TRUE(eventually([&] {
+        const bool second_runs = second.running();  // whichever ends first may have found something
+        return !first.running() && !second_runs;
+      }));
       const Answer one = answer(0, first), two = answer(1, second);
       const double heard = std::max(one.lost("from_it", "probes"), two.lost("from_it", "probes"));
       const bool nothing_or_enough = heard < 0 || heard > 30;

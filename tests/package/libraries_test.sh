@@ -33,7 +33,7 @@ check_example() {
 cd /tmp/test
 ergocast-sim & ergocast-logger --out flown & ergocast-agent & ergocast-agent & ergocast-agent &
 embed/build/embed >embedded &
-ergocast-coordinator --duration 20 quadrimodal_corners
+ergocast-coordinator --duration 20 quadrimodal_corners || { kill $(jobs -p); exit 1; }
 wait
 END
   mkdir "$work/flown"

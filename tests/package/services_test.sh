@@ -34,13 +34,19 @@ fail() {
   exit 1
 }
 
+# Waits until a command succeeds, or until the system has ended or one of the services has failed. The command
+# has the last word.
 patience_s=300
 eventually() {
-  local deadline=$((SECONDS + patience_s))
+  local deadline=$((SECONDS + patience_s)) in_vain=
   until "$@"; do
-    [ "$SECONDS" -lt "$deadline" ] || fail "never: $*"
+    [ -z "$in_vain" ] && [ "$SECONDS" -lt "$deadline" ] || fail "never: $*"
     sleep 0.05
+    if ! kill -0 "$nspawn" 2>/dev/null || [ -n "$(failed_services)" ]; then in_vain=yes; fi
   done
+}
+failed_services() {
+  [ -z "${init:-}" ] || there systemctl list-units --failed --plain --no-legend 'ergocast-*' 2>/dev/null || true
 }
 
 boot() {
@@ -49,7 +55,7 @@ boot() {
   mount -t tmpfs tmpfs /run
   systemd-nspawn --register=no --keep-unit --private-network --resolv-conf=off --timezone=off \
     --link-journal=no --console=pipe --directory="$root" --boot </dev/null >"$work/boot.log" 2>&1 &
-  local nspawn=$!
+  nspawn=$!
   up() { kill -0 "$nspawn" 2>/dev/null || { cat "$work/boot.log"; fail 'systemd-nspawn'; }
          init=$(pgrep -x -o systemd) && there systemctl is-system-running 2>/dev/null | grep -qE 'running|degraded'; }
   eventually up

@@ -28,12 +28,7 @@ class BusObserver {
 
   /// Listens until `condition` holds; false if it never does.
   bool hears(const std::function<bool()>& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    while (!condition()) {
-      if (std::chrono::steady_clock::now() > deadline) return false;
-      listen();
-    }
-    return true;
+    return eventually(condition, [this] { listen(); });
   }
   /// Listens for a moment; for conditions on several witnesses.
   void listen() { transport_->deliver_until(now() + std::chrono::milliseconds(5), -1); }

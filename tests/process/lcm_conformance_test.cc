@@ -161,8 +161,7 @@ std::vector<Said> logged(const std::filesystem::path& file) {
 TEST_F(Conformance, LcmsLoggerRecordsUsAndItsPlayerReachesUs) {
   const auto log = folder_ / "log.lcm";
   setenv("LCM_DEFAULT_URL", url(Bus::kSwarm).c_str(), 1);
-  Child logger = std::get<Child>(Child::start(
-      {{"/usr/bin/lcm-logger", "--flush-interval=10", log}, folder_ / "logger", SIGKILL}));
+  Child logger = begin({"/usr/bin/lcm-logger", "--flush-interval=10", log});
   unsetenv("LCM_DEFAULT_URL");
   Heard expected;
   const auto has_all = [&expected](const Heard& heard) {
@@ -174,22 +173,20 @@ TEST_F(Conformance, LcmsLoggerRecordsUsAndItsPlayerReachesUs) {
   // keeps few messages that wait.
   for (const Message& message : under_every_name()) {
     expected.push_back(said(message));
-    ASSERT_TRUE(eventually([&] {
-      ours_->publish({Bus::kSwarm, message});
-      return has_all(logged(log));
-    })) << expected.back().channel
-        << text_of(folder_ / "logger");
+    ASSERT_TRUE(eventually(
+        [&] {
+          ours_->publish({Bus::kSwarm, message});
+          return has_all(logged(log));
+        },
+        logger.pid()))
+        << expected.back().channel << output();
   }
   logger.send(SIGTERM);
   wait_for(logger);
   EXPECT_TRUE(eventually([&] { return has_all(listen(Bus::kSwarm)); }));
   heard_.clear();
-  Child player = std::get<Child>(
-      Child::start({{"/usr/bin/lcm-logplayer", "--lcm-url=" + url(Bus::kSwarm), log},
-                    folder_ / "player",
-                    SIGKILL}));
-  EXPECT_TRUE(eventually([&] { return has_all(listen(Bus::kSwarm)); }))
-      << text_of(folder_ / "player");
+  Child player = begin({"/usr/bin/lcm-logplayer", "--lcm-url=" + url(Bus::kSwarm), log});
+  EXPECT_TRUE(eventually([&] { return has_all(listen(Bus::kSwarm)); }, player.pid())) << output();
   EXPECT_EQ(wait_for(player), 0);
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <thread>
 
 #include "core/ids.h"
 #include "tests/process/programs.h"
@@ -178,7 +179,7 @@ class ByHand : public FlyingMission {
     std::filesystem::path log;
     std::string said() const { return text_of(log); }
     bool says(const std::string& part) const {
-      return eventually([&] { return said().find(part) != std::string::npos; });
+      return eventually([&] { return said().find(part) != std::string::npos; }, child.pid());
     }
   };
 
@@ -199,6 +200,7 @@ class ByHand : public FlyingMission {
   }
 
   void TearDown() override {
+    forget_watched();
     for (Program& program : programs_) {
       // It may have been stopped. Not after SIGTERM: SIGCONT cancels the SIGSTOP by which the leak
       // sanitizer holds the threads of an ending process, which then waits for ever.

@@ -5,13 +5,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -21,14 +19,11 @@
 
 #include "runtime/child.h"
 #include "tests/process/logs.h"
+#include "tests/process/waiting.h"
 #include "tests/support/own_host.h"
 #include "tests/support/temp_folder.h"
 
 namespace ergocast::test {
-
-/// How long a test waits for a necessary event before it fails. It decides no success, also on a
-/// busy machine with a tenth of the speed.
-inline constexpr auto kPatience = std::chrono::seconds(300);
 
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -37,16 +32,6 @@ inline std::string text_of(const std::filesystem::path& file) {
 
 inline std::filesystem::path scenario_file(const std::string& name) {
   return std::filesystem::path(ERGOCAST_SCENARIO_DIR) / (name + ".textproto");
-}
-
-/// Waits for `condition`; false if it does not become true.
-inline bool eventually(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
 }
 
 /// The folder of our programs: that of this build, unless the environment names another.
@@ -66,6 +51,7 @@ class OwnHost : public ::testing::Test {
   /// A failed test may leave its mission running. The output of its processes is the only
   /// information on them; they are ended here.
   void TearDown() override {
+    forget_watched();
     if (HasFailure()) {
       tell_logs();
       eventually([] { return kill_all(), processes_on_own_host().empty(); });
@@ -81,7 +67,12 @@ class OwnHost : public ::testing::Test {
     log_ = folder_ / ("output-" + std::to_string(++started_));
     note_command(program, arguments);
     arguments.insert(arguments.begin(), (program_folder() / program).string());
-    return std::get<Child>(Child::start({arguments, log_, SIGKILL}));
+    return start_watched({arguments, log_, SIGKILL});
+  }
+  /// Starts a program of the system; its output goes to `log_`.
+  Child begin(const std::vector<std::string>& command) {
+    log_ = folder_ / ("tool-" + std::to_string(++begun_));
+    return start_watched({command, log_, SIGKILL});
   }
   /// Its exit code, or −signal.
   static int wait_for(Child& child) {
@@ -138,7 +129,7 @@ class OwnHost : public ::testing::Test {
     for (const std::string& process : processes_on_own_host()) kill(pid_of(process), SIGKILL);
   }
 
-  int started_ = 0;
+  int started_ = 0, begun_ = 0;
   std::map<std::string, std::string> commands_;  // by the name of the log
 };
 

@@ -23,11 +23,8 @@ TEST_F(Replay, ShowsTheWholeTeamAndItsEnd) {
       << output();
   Program& watch = hand("ergocast", {"status", "--watch"});
   ASSERT_TRUE(watch.says("nobody is heard on ")) << watch.said();
-  Child player =
-      std::get<Child>(Child::start({{"/usr/bin/lcm-logplayer", std::string("--lcm-url=") + kUrl,
-                                     (out() / "events-000.lcm").string()},
-                                    folder_ / "player",
-                                    SIGKILL}));
+  Child player = begin({"/usr/bin/lcm-logplayer", std::string("--lcm-url=") + kUrl,
+                        (out() / "events-000.lcm").string()});
   EXPECT_EQ(wait_for(watch.child), 0) << watch.said();
   const std::string said = watch.said();
   for (const char* process : {"coordinator  alive", "world        alive", "logger       alive"}) {

@@ -155,13 +155,9 @@ TEST_F(MissionRun, EventsReplayWithLcmLogplayer) {
   Child listener = start("ergocast-logger", {"--out", again, "--lcm-url", url, "--run-id", run_id});
   const auto log = log_;
   ASSERT_TRUE(eventually([&] { return text_of(log).find("recording") != std::string::npos; }));
-  const auto player =
-      std::get<Child>(Child::start({{"/usr/bin/lcm-logplayer", "--lcm-url=" + url, "--speed=0.5",
-                                     (out() / "events-000.lcm").string()},
-                                    folder_ / "player",
-                                    SIGKILL}));
-  Child playing = player;
-  EXPECT_EQ(wait_for(playing), 0) << text_of(folder_ / "player");
+  Child player = begin({"/usr/bin/lcm-logplayer", "--lcm-url=" + url, "--speed=0.5",
+                        (out() / "events-000.lcm").string()});
+  EXPECT_EQ(wait_for(player), 0) << output();
   listener.send(SIGTERM);
   EXPECT_EQ(wait_for(listener), 0) << text_of(log);
   const auto replayed = nlohmann::json::parse(text_of(again / "summary.json"));

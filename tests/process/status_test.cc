@@ -149,7 +149,8 @@ TEST_F(Status, OfSeveralRunsOnOneUrlAsksWhich) {
       team.header = {run, kCoordinator, run, 0, 7};
       stranger.say(Bus::kSwarm, team);
     }
-    return !undecided.child.running() && !decided.child.running();
+    const bool decided_runs = decided.child.running();
+    return !undecided.child.running() && !decided_runs;
   }));
   EXPECT_EQ(wait_for(undecided.child), 2) << undecided.said();
   EXPECT_TRUE(undecided.says("--run-id 00000000000000a1")) << undecided.said();

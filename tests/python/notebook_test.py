@@ -7,6 +7,7 @@ from pathlib import Path
 
 import nbformat
 from nbclient import NotebookClient
+from traitlets.config import Config
 
 NOTEBOOK = Path(sys.argv.pop())
 
@@ -17,7 +18,9 @@ class Notebook(unittest.TestCase):
         nbformat.validate(notebook)
         cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
         self.assertFalse(any(cell.outputs for cell in cells), "commit it without outputs")
-        NotebookClient(notebook, timeout=None, kernel_name="python3").execute()
+        # Over sockets in files: a TCP port that is free now may be another test's when the kernel takes it.
+        files = Config({"KernelManager": {"transport": "ipc"}})
+        NotebookClient(notebook, timeout=None, kernel_name="python3", config=files).execute()
         pictures = [
             output
             for cell in cells

@@ -57,8 +57,11 @@ PartitionName=all Nodes=node Default=YES State=UP
 CONF
 export SLURM_CONF=$work/slurm.conf
 slurmctld -D -i >"$work/slurmctld.out.log" 2>&1 &
+controller=$!
 slurmd -D -N node >"$work/slurmd.out.log" 2>&1 &
-until sinfo --noheader --format=%t 2>/dev/null | grep -q idle; do sleep 0.2; done
+node=$!
+slurm_runs() { kill -0 "$controller" && kill -0 "$node" || { echo 'Slurm has ended'; exit 1; }; }
+until sinfo --noheader --format=%t 2>/dev/null | grep -q idle; do slurm_runs; sleep 0.2; done
 
 cd "$work"
 study=("$source/scenarios/quadrimodal_corners.textproto" --duration 100
@@ -66,11 +69,15 @@ study=("$source/scenarios/quadrimodal_corners.textproto" --duration 100
 submit() {
   sbatch --parsable --array=1-3 "$@" "$source/examples/slurm/study.sbatch" study "${study[@]}"
 }
-ended() { until [ -z "$(squeue --noheader --jobs="$1" 2>/dev/null)" ]; do sleep 0.2; done; }
+queued() { squeue --noheader --jobs="$1" 2>/dev/null; }
+ended() { while [ -n "$(queued "$1")" ]; do slurm_runs; sleep 0.2; done; }
 rows() { cat study/shard-2/study.csv 2>/dev/null | wc -l; }
 
 job=$(submit --no-requeue)
-until [ "$(rows)" -gt 2 ]; do sleep 0.05; done
+until [ "$(rows)" -gt 2 ]; do
+  [ -n "$(queued "${job}_2")" ] || [ "$(rows)" -gt 2 ] || { cat slurm-*.out; echo 'the task has written no rows'; exit 1; }
+  sleep 0.05
+done
 scancel --signal=KILL --full "${job}_2"
 ended "$job"
 [ "$(rows)" -lt 41 ] || { echo "the task had ended before it was killed"; exit 1; }

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include "tests/process/mission.h"
@@ -85,11 +87,6 @@ class WithProbe : public FlyingMission {
     command.insert(command.end(), question.begin(), question.end());
     return command;
   }
-  /// A program of the system; its output goes to log_.
-  Child begin(const std::vector<std::string>& command) {
-    log_ = folder_ / ("tool-" + std::to_string(++begun_));
-    return std::get<Child>(Child::start({command, log_, SIGKILL}));
-  }
   /// Runs one to its end; returns its output.
   std::string said_by(const std::vector<std::string>& command) {
     Child child = begin(command);
@@ -99,9 +96,6 @@ class WithProbe : public FlyingMission {
   std::string ask(const std::vector<std::string>& question) {
     return said_by(probe_command(question));
   }
-
- private:
-  int begun_ = 0;
 };
 
 /// With a screen and a window manager.
@@ -110,10 +104,10 @@ class Desk : public WithProbe {
   void SetUp() override {
     const std::string missing = missing_for_spy(true);
     if (!missing.empty()) GTEST_SKIP() << "not installed:" << missing;
-    screen_ = begin({"/usr/bin/Xvfb", "-screen", "0", "1600x1000x24", "-nolisten", "tcp", "-fbdir",
-                     folder_, "-displayfd", "1"});
+    screen_ = begin(screen_command({"-displayfd", "1"}));
     const auto log = log_;
-    ASSERT_TRUE(eventually([&] { return text_of(log).find('\n') != std::string::npos; }));
+    ASSERT_TRUE(
+        eventually([&] { return text_of(log).find('\n') != std::string::npos; }, screen_->pid()));
     const std::string said = text_of(log);
     const auto end = said.rfind('\n');
     const auto begin_of_number = said.find_last_not_of("0123456789", end - 1) + 1;
@@ -121,6 +115,7 @@ class Desk : public WithProbe {
     manager_ = begin({"/usr/bin/openbox"});
   }
   void TearDown() override {
+    forget_watched();
     for (std::optional<Child>* child : {&manager_, &screen_}) {
       if (!*child) continue;
       (*child)->send(SIGTERM);
@@ -130,6 +125,15 @@ class Desk : public WithProbe {
     OwnHost::TearDown();
   }
 
+  /// Without a socket file and a lock file, which all tests of a machine would share, the only name
+  /// of a screen is the abstract socket in the network of the test.
+  std::vector<std::string> screen_command(const std::vector<std::string>& more) const {
+    std::vector<std::string> command{"/usr/bin/Xvfb", "-screen", "0",         "1600x1000x24",
+                                     "-nolisten",     "tcp",     "-nolisten", "unix",
+                                     "-nolock",       "-fbdir",  folder_};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
   Screenshot look() const { return Screenshot(folder_ / "Xvfb_screen0"); }
   std::string xdotool(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "/usr/bin/xdotool");
@@ -162,6 +166,7 @@ class Desk : public WithProbe {
     constexpr int kHeader = 24, kRow = 16, kMoreRows = 3;  // pixels; lcm-spy has fixed ones
     int tries = 0;
     return eventually([&] {
+      if (window("LCM Spy").empty()) return false;
       front("LCM Spy");
       const int y = kHeader + kRow * (row + tries++ % kMoreRows);
       xdotool({"mousemove", "--window", window("LCM Spy"), "60", std::to_string(y), "click",
@@ -174,8 +179,10 @@ class Desk : public WithProbe {
     });
   }
 
+  std::optional<Child> screen_;
+
  private:
-  std::optional<Child> screen_, manager_;
+  std::optional<Child> manager_;
 };
 
 }  // namespace ergocast::test

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast spy` beside a real mission, on a virtual screen.
+#include <gtest/gtest-spi.h>
+
 #include "tests/spy/spy_desk.h"
 
 namespace ergocast::test {
@@ -99,6 +101,33 @@ TEST_F(Spy, DebiansScriptTakesTheJarToo) {
   EXPECT_TRUE(eventually([&] { return look().pixels_by_color(map).contains(kAgentColors[0]); }));
   end(spy, kJavaInterrupted);
   end(mission, 0);
+}
+
+TEST_F(Spy, HasAScreenWithoutANameThatAnotherTestCouldTake) {
+  std::istringstream sockets(text_of("/proc/net/unix"));
+  int names = 0;
+  for (std::string line; std::getline(sockets, line);) {
+    if (line.find("/.X11-unix/") == line.npos) continue;
+    EXPECT_NE(line.find('@'), line.npos) << line;  // abstract
+    ++names;
+  }
+  EXPECT_GT(names, 0);
+  const std::string lock = "/tmp/.X" + std::string(std::getenv("DISPLAY")).substr(1) + "-lock";
+  EXPECT_NE(std::atoi(text_of(lock).c_str()), screen_->pid()) << lock;
+}
+
+TEST_F(Spy, WaitsNoLongerForAWindowOfAProgramWhoseScreenWasTaken) {
+  begin(screen_command({std::getenv("DISPLAY")}));
+  ::testing::TestPartResultArray failures;
+  {
+    using Reporter = ::testing::ScopedFakeTestPartResultReporter;
+    const Reporter reporter(Reporter::INTERCEPT_ONLY_CURRENT_THREAD, &failures);
+    EXPECT_FALSE(sees("LCM Spy"));
+  }
+  ASSERT_EQ(failures.size(), 1);
+  const std::string said = failures.GetTestPartResult(0).message();
+  EXPECT_NE(said.find("/usr/bin/Xvfb "), said.npos) << said;
+  EXPECT_NE(said.find("Cannot establish any listening sockets"), said.npos) << said;
 }
 
 TEST_F(Spy, PrintsTheCommandOfTheBusThatIsAskedFor) {

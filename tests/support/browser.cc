@@ -16,13 +16,14 @@ namespace {
 using nlohmann::json;
 using namespace std::chrono_literals;
 
-constexpr int kPort = 9515;
+constexpr int kPort = 9515;  // on the network of the test
 constexpr auto kPatience = 300s;
 
-bool waits_for(const auto& condition) {
+/// Waits for `condition`, or until the driver has ended.
+bool waits_for(const auto& condition, Child& driver) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
+    if (!driver.running() || std::chrono::steady_clock::now() > deadline) return condition();
     std::this_thread::sleep_for(20ms);
   }
   return true;
@@ -49,9 +50,11 @@ std::string bytes_of(const std::string& base64) {
 Browser::Browser(const std::filesystem::path& folder, bool webgl) {
   const std::vector<std::string> command{"/usr/bin/chromedriver",
                                          "--port=" + std::to_string(kPort)};
-  driver_ = std::get<Child>(Child::start({command, folder / "chromedriver.log", SIGKILL}));
-  if (!waits_for([] { return get(kPort, "/status").status == 200; })) {
-    throw std::runtime_error("chromedriver does not answer");
+  const auto log = folder / "chromedriver.log";
+  driver_ = std::get<Child>(Child::start({command, log, SIGKILL}));
+  if (!waits_for([] { return get(kPort, "/status").status == 200; }, *driver_)) {
+    throw std::runtime_error("chromedriver " + driver_->fate() + " and does not answer:\n" +
+                             last_lines(log, 25));
   }
   json options;
   options["args"] = {"--headless=new",
@@ -85,7 +88,7 @@ Browser::~Browser() {
   } catch (const std::exception&) {  // it ends all the same
   }
   driver_->send(SIGTERM);
-  waits_for([this] { return !driver_->running(); });
+  waits_for([this] { return !driver_->running(); }, *driver_);
 }
 
 json Browser::ask(const std::string& method, const std::string& path, const json& body) {
@@ -114,7 +117,7 @@ json Browser::run(const std::string& script) {
 }
 
 bool Browser::becomes(const std::string& script) {
-  return waits_for([&] { return run(script) == true; });
+  return waits_for([&] { return run(script) == true; }, *driver_);
 }
 
 void Browser::press(const std::string& key) {

@@ -29,9 +29,10 @@ void must_run(const char* command) {
   if (std::system(command) != 0) throw std::runtime_error(std::string("failed: ") + command);
 }
 
-std::string network_of(const fs::path& process) {
+/// @param kind  "net" or "mnt"
+std::string namespace_of(const fs::path& process, const char* kind) {
   std::error_code error;
-  return fs::read_symlink(process / "ns" / "net", error).string();
+  return fs::read_symlink(process / "ns" / kind, error).string();
 }
 
 /// The state letter and name of a process.
@@ -42,6 +43,20 @@ std::pair<char, std::string> state_of(const fs::path& process) {
   const auto open = stat.find('('), close = stat.rfind(')');
   if (open == stat.npos || close == stat.npos || close + 2 >= stat.size()) return {'Z', ""};
   return {stat[close + 2], stat.substr(open + 1, close - open - 1)};
+}
+
+std::vector<std::string> processes_in(const std::set<std::string>& namespaces, const char* kind) {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/proc", error)) {
+    const std::string pid = entry.path().filename();
+    if (pid.find_first_not_of("0123456789") != pid.npos || pid == std::to_string(getpid()))
+      continue;
+    if (namespaces.count(namespace_of(entry.path(), kind)) == 0) continue;
+    const auto [state, name] = state_of(entry.path());
+    if (state != 'Z' && state != 'X') found.push_back(name + " (pid " + pid + ")");
+  }
+  return found;
 }
 
 }  // namespace
@@ -71,21 +86,15 @@ bool is_root() { return root; }
 bool may_mount() { return mounts_are_private; }
 
 std::vector<std::string> processes_in(const std::set<std::string>& networks) {
-  std::vector<std::string> found;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator("/proc", error)) {
-    const std::string pid = entry.path().filename();
-    if (pid.find_first_not_of("0123456789") != pid.npos || pid == std::to_string(getpid()))
-      continue;
-    if (networks.count(network_of(entry.path())) == 0) continue;
-    const auto [state, name] = state_of(entry.path());
-    if (state != 'Z' && state != 'X') found.push_back(name + " (pid " + pid + ")");
-  }
-  return found;
+  return processes_in(networks, "net");
 }
 
 std::vector<std::string> processes_on_own_host() {
-  return processes_in({network_of("/proc/self")});
+  return processes_in({namespace_of("/proc/self", "net")});
+}
+
+std::vector<std::string> descendants() {
+  return processes_in({namespace_of("/proc/self", "mnt")}, "mnt");
 }
 
 }  // namespace ergocast::test

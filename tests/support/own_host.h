@@ -25,5 +25,7 @@ bool may_mount();
 std::vector<std::string> processes_in(const std::set<std::string>& networks);
 /// Those in this process's own.
 std::vector<std::string> processes_on_own_host();
+/// Those that this process has started since enter_own_host(), and theirs, on whichever network.
+std::vector<std::string> descendants();
 
 }  // namespace ergocast::test
