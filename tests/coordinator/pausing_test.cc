@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From which tick on a mission in real time is paused: the team gets the whole notice, also when
-// the world's last message is old.
+// From which tick on a mission is paused. In real time the team gets the whole notice, also when
+// the world's last message is old. In lockstep the world stands by first.
 #include <gtest/gtest.h>
 
 #include "tests/coordinator/driven_coordinator.h"
@@ -54,6 +54,25 @@ TEST(Pausing, NeedsAWorldThatIsHeard) {
   give(coordinator, world_where(10, {9, 9}), at(1s));
   give(coordinator, pause_after(0), at(60s));
   EXPECT_TRUE(coordinator.holds().empty());
+}
+
+TEST(Pausing, InLockstepBeginsWithTheTickAfterTheNextOnceTheWorldStands) {
+  Coordinator coordinator = running_coordinator(small_mission(2));
+  WorldState world = world_where(10, {9, 9});
+  for (const int changes : {0, 1}) {
+    give(coordinator, world, at(1s));
+    give(coordinator, pause_after(changes), at(1s));
+    const auto parts = only<MissionPart>(advance(coordinator, at(1s)));
+    ASSERT_FALSE(parts.empty());
+    ASSERT_GE(parts[0].stand_by_revision, 0);
+    ++world.header.tick;  // it has not heard yet that it is to stand by
+    give(coordinator, world, at(1s));
+    EXPECT_EQ(named_changes(coordinator.holds()), changes);
+    world.roster_revision = parts[0].stand_by_revision;
+    give(coordinator, world, at(1s));
+    ASSERT_EQ(named_changes(coordinator.holds()), changes + 1);
+  }
+  EXPECT_EQ(coordinator.holds(), (std::vector<Hold>{{11 + 2, 12 + 2}}));
 }
 
 }  // namespace
