@@ -84,6 +84,13 @@ TEST_F(TeamViewTest, NamesWhoseCoverageIsForgottenAndCallsThatTrouble) {
   hear_mission(at(200ms), roster, 1);
   EXPECT_TRUE(view_.picture(at(200ms)).forgotten.empty());
   EXPECT_FALSE(view_.picture(at(200ms)).trouble);
+  // An incarnation that has a successor is missed no more.
+  RosterEntry former{{2, 7}, 0, 1};
+  former.forgotten = true;
+  roster.insert(roster.begin() + 2, former);
+  hear_mission(at(300ms), roster, 2);
+  EXPECT_EQ(view_.picture(at(300ms)).forgotten, std::vector<AgentId>{2});
+  EXPECT_FALSE(view_.picture(at(300ms)).trouble);
 }
 
 TEST_F(TeamViewTest, OfATeamThatIsWellHasNoTrouble) {

@@ -302,6 +302,10 @@ TEST(Codec, StringsAreCutAtTheirLimitsAndAtANul) {
   const auto cut = decoded_as<Hello>(encoded(long_names));
   EXPECT_EQ(cut.host, std::string(kMaxHostLength, 'h'));
   EXPECT_EQ(cut.version, std::string(kMaxVersionLength, 'v'));
+  // Not within a character.
+  const std::string room(kMaxHostLength - 1, 'h');
+  const Hello accent{header_of_sender(-1), -1, room + "\u00e9", ""};
+  EXPECT_EQ(decoded_as<Hello>(encoded(accent)).host, room);
   const auto long_reason =
       decoded_as<Stop>(encoded(Stop{header_of_sender(kOperator), true, std::string(5000, 'r')}));
   EXPECT_EQ(long_reason.reason, std::string(kMaxReasonLength, 'r'));
