@@ -444,6 +444,17 @@ TEST(TakenOver, ACoordinatorSpeaksLouderThanTheDead) {
   EXPECT_GT(said_by(advance(coordinator, at(3s))).revision, 1000) << "or the team would not listen";
 }
 
+TEST(TakenOver, ACoordinatorAdoptsTheEndOfAPauseThatOnlyItsPredecessorHasNamed) {
+  MissionPart memory = memory_of(3);
+  memory.holds = {{2, -1}};
+  Coordinator coordinator = taken_over(memory);
+  ASSERT_EQ(coordinator.holds(), memory.holds);
+  MissionPart repeated = memory_of(said_by(advance(coordinator, at(2s))).revision + 1);
+  repeated.holds = {{2, 9}};
+  give(coordinator, repeated, at(3s));
+  EXPECT_EQ(coordinator.holds(), repeated.holds) << "agents may have gone by it";
+}
+
 TEST(TakenOver, ACoordinatorSpeaksLouderThanWhatTheWorldAloneHasHeardOfTheDead) {
   Coordinator coordinator = taken_over(memory_of(3));
   const std::int64_t before = said_by(advance(coordinator, at(2s))).revision;
