@@ -47,13 +47,14 @@ class TargetCompiler {
       : written_(scenario.target()),
         checks_(checks),
         domain_(domain_of(scenario.domain())),
-        base_(base_of(domain_)),
+        base_m_(domain_.size_m.head<2>()),
         basis_(cosines_of(scenario.basis())),
         target_(target_of(scenario)),
-        along_z_(domain_, basis_),
-        storeys_(storeys_of(domain_, target_.keep_outs)) {
+        from_corner_(from_corner(target_, domain_)),
+        along_z_(domain_.size_m.z(), basis_),
+        storeys_(storeys_of(domain_.size_m.z(), from_corner_.keep_outs)) {
     const Eigen::Vector2d cells =
-        (base_.size_m / base_.size_m.maxCoeff() * kMostCells).cwiseMax(kFewestCells);
+        (base_m_ / base_m_.maxCoeff() * kMostCells).cwiseMax(kFewestCells);
     maps_.resize(storeys_.size(),
                  DensityGrid::Zero(std::lround(cells.x()), std::lround(cells.y())));
   }
@@ -69,8 +70,8 @@ class TargetCompiler {
     }
     if (checks_.sound("target")) mass();
     if (!checks_.nothing_found()) return {};
-    const DensityGrid picture = density_picture(target_, maps_, domain_);
-    const double scale = base_.size_m.prod() / sum_.values[0];
+    const DensityGrid picture = density_picture(from_corner_, maps_, domain_.size_m);
+    const double scale = base_m_.prod() / sum_.values[0];
     return CompiledTarget{normalized(sum_).values, scale * picture};
   }
 
@@ -89,12 +90,12 @@ class TargetCompiler {
       return checks_.problem(field, problem->what, problem->remedy);
     }
     MapFile& file = *std::get<0>(opened);
-    const RasterGrid grid{file.extent() ? *file.extent() : extent_of(map), file.columns(),
-                          file.rows()};
+    const Rectangle extent = file.extent() ? *file.extent() : extent_of(map);
+    const RasterGrid grid{from_corner(extent, domain_), file.columns(), file.rows()};
     std::vector<RasterIntegral> integrals;
     for (const Storey& storey : storeys_)
-      integrals.emplace_back(grid, base_, basis_, storey.free(base_));
-    RasterPicture picture(grid, base_, static_cast<int>(maps_[0].rows()),
+      integrals.emplace_back(grid, base_m_, basis_, storey.free(base_m_));
+    RasterPicture picture(grid, base_m_, static_cast<int>(maps_[0].rows()),
                           static_cast<int>(maps_[0].cols()));
     std::vector<double> row(static_cast<std::size_t>(grid.columns));
     for (int i = 0; i < grid.rows; ++i) {
@@ -116,7 +117,7 @@ class TargetCompiler {
       add_product(map.weight(), shares, along_z, sum_);
       maps_[i] += map.weight() * along_z[0] * picture.density();
     }
-    if (!(left > 0)) return nothing_left(path, grid.extent);
+    if (!(left > 0)) return nothing_left(path, extent);
     weight_of_maps_ += map.weight();
   }
 
@@ -154,14 +155,16 @@ class TargetCompiler {
   /// Adds the integrals of one layer, and its mass to `whole`.
   std::optional<MapProblem> add_layer(NetcdfGrid& grid, int layer, TargetCoefficients& sum,
                                       std::vector<DensityGrid>& pictures, double& whole) const {
-    const Heights& heights = grid.layers()[static_cast<std::size_t>(layer)];
+    const Heights heights = above_floor(grid.layers()[static_cast<std::size_t>(layer)], domain_);
+    RasterGrid raster = grid.raster();
+    raster.extent = from_corner(raster.extent, domain_);
     std::vector<RasterIntegral> integrals;
     for (const Storey& storey : storeys_)
-      integrals.emplace_back(grid.raster(), base_, basis_, storey.free(base_));
-    RasterPicture picture(grid.raster(), base_, static_cast<int>(maps_[0].rows()),
+      integrals.emplace_back(raster, base_m_, basis_, storey.free(base_m_));
+    RasterPicture picture(raster, base_m_, static_cast<int>(maps_[0].rows()),
                           static_cast<int>(maps_[0].cols()));
-    std::vector<double> values(static_cast<std::size_t>(grid.raster().columns));
-    for (int row = 0; row < grid.raster().rows; ++row) {
+    std::vector<double> values(static_cast<std::size_t>(raster.columns));
+    for (int row = 0; row < raster.rows; ++row) {
       if (auto problem = grid.row(layer, row, values)) return problem;
       for (RasterIntegral& integral : integrals) integral.add_row(row, values);
       picture.add_row(row, values);
@@ -180,14 +183,14 @@ class TargetCompiler {
   std::string extents_of(const NetcdfGrid& grid) const {
     const Heights low = grid.layers().front(), high = grid.layers().back();
     return ": its extent is " + text_of(grid.raster().extent) + ", z " +
-           span_text(low.low_m, high.high_m - low.low_m) + ", the domain " + text_of(base_) +
-           ", z " + span_text(domain_.origin_m.z(), domain_.size_m.z());
+           span_text(low.low_m, high.high_m - low.low_m) + ", the domain " +
+           text_of(base_of(domain_)) + ", z " + span_text(domain_.origin_m.z(), domain_.size_m.z());
   }
 
   void nothing_left(const std::string& path, const Rectangle& extent) {
     checks_.problem(path,
                     "nothing of it is left" + cut_off() + ": its extent is " + text_of(extent) +
-                        ", the domain " + text_of(base_),
+                        ", the domain " + text_of(base_of(domain_)),
                     "move its extent over the domain");
   }
 
@@ -197,7 +200,7 @@ class TargetCompiler {
     double mass = 0;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(basis_.modes_z);
     for (const proto::Layer& layer : map.layers()) {
-      const Heights heights{layer.low_z_m(), layer.high_z_m()};
+      const Heights heights = above_floor({layer.low_z_m(), layer.high_z_m()}, domain_);
       mass += layer.value() * heights.length_m();
       sum += layer.value() * heights.length_m() * along_z_.uniform(heights, within);
     }
@@ -236,9 +239,9 @@ class TargetCompiler {
   const proto::Target& written_;
   Checks& checks_;
   const Box domain_;
-  const Rectangle base_;
+  const Eigen::Vector2d base_m_;
   const Basis basis_;
-  const TargetDensity target_;
+  const TargetDensity target_, from_corner_;
   const AlongZ along_z_;
   const std::vector<Storey> storeys_;
   TargetCoefficients sum_;

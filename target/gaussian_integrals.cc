@@ -13,26 +13,20 @@
 namespace ergocast {
 namespace {
 
-Interval side_of(const Rectangle& domain, int axis) {
-  return {domain.origin_m[axis], domain.origin_m[axis] + domain.size_m[axis]};
-}
-
-Eigen::MatrixXd cosines_at(const Eigen::VectorXd& x, double low, double length, int modes) {
+Eigen::MatrixXd cosines_at(const Eigen::VectorXd& x, double length, int modes) {
   Eigen::MatrixXd table(modes, x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     for (int m = 0; m < modes; ++m) {
-      table(m, i) = std::cos(m * std::numbers::pi * (x[i] - low) / length);
+      table(m, i) = std::cos(m * std::numbers::pi * x[i] / length);
     }
   }
   return table;
 }
 
-PlaneCoefficients correlated_at(const PlaneGaussian& g, const Rectangle& domain, const Basis& basis,
-                                int panels) {
-  const Interval over_x =
-      reached(g.mean_m.x(), std::sqrt(g.covariance_m2(0, 0)), side_of(domain, 0));
-  const Interval over_y =
-      reached(g.mean_m.y(), std::sqrt(g.covariance_m2(1, 1)), side_of(domain, 1));
+PlaneCoefficients correlated_at(const PlaneGaussian& g, const Eigen::Vector2d& size_m,
+                                const Basis& basis, int panels) {
+  const Interval over_x = reached(g.mean_m.x(), std::sqrt(g.covariance_m2(0, 0)), {0, size_m.x()});
+  const Interval over_y = reached(g.mean_m.y(), std::sqrt(g.covariance_m2(1, 1)), {0, size_m.y()});
   const Rule x = panel_rule(over_x, panels), y = panel_rule(over_y, panels);
   const GaussianDensity density(g);
   Eigen::MatrixXd mass(x.x.size(), y.x.size());
@@ -41,18 +35,19 @@ PlaneCoefficients correlated_at(const PlaneGaussian& g, const Rectangle& domain,
       mass(i, j) = x.weight[i] * y.weight[j] * density({x.x[i], y.x[j]});
     }
   }
-  return cosines_at(x.x, domain.origin_m.x(), domain.size_m.x(), basis.modes_x) * mass *
-         cosines_at(y.x, domain.origin_m.y(), domain.size_m.y(), basis.modes_y).transpose();
+  return cosines_at(x.x, size_m.x(), basis.modes_x) * mass *
+         cosines_at(y.x, size_m.y(), basis.modes_y).transpose();
 }
 
-PlaneIntegrals correlated(const PlaneGaussian& g, const Rectangle& domain, const Basis& basis) {
+PlaneIntegrals correlated(const PlaneGaussian& g, const Eigen::Vector2d& size_m,
+                          const Basis& basis) {
   constexpr int kMaxPanels = 128;
   constexpr double kTolerance = 1e-12;
   int panels = 8;
-  PlaneIntegrals result{correlated_at(g, domain, basis, panels), 1};
+  PlaneIntegrals result{correlated_at(g, size_m, basis, panels), 1};
   while (result.error_bound > kTolerance && panels < kMaxPanels) {
     panels *= 2;
-    PlaneCoefficients finer = correlated_at(g, domain, basis, panels);
+    PlaneCoefficients finer = correlated_at(g, size_m, basis, panels);
     result.error_bound = (finer - result.values).cwiseAbs().maxCoeff();
     result.values = std::move(finer);
   }
@@ -62,8 +57,8 @@ PlaneIntegrals correlated(const PlaneGaussian& g, const Rectangle& domain, const
 /// The Gaussian at one y: its marginal density there and its conditional density along x.
 class AcrossAt {
  public:
-  AcrossAt(const PlaneGaussian& g, const Eigen::Vector2d& mean_m)
-      : mean_m_(mean_m),
+  explicit AcrossAt(const PlaneGaussian& g)
+      : mean_m_(g.mean_m),
         deviation_y_(std::sqrt(g.covariance_m2(1, 1))),
         slope_(g.covariance_m2(0, 1) / g.covariance_m2(1, 1)),
         deviation_x_(std::sqrt(g.covariance_m2.determinant() / g.covariance_m2(1, 1))) {}
@@ -74,12 +69,11 @@ class AcrossAt {
   double density_x(double x, double y) const {
     return normal((x - mean_x(y)) / deviation_x_) / deviation_x_;
   }
-  // Intervals by their lengths, as those of a domain.
   Interval reached_y(double low, double high) const {
-    return reached(mean_m_.y(), deviation_y_, {low, low + (high - low)});
+    return reached(mean_m_.y(), deviation_y_, {low, high});
   }
   Interval reached_x(double y, double low, double high) const {
-    return reached(mean_x(y), deviation_x_, {low, low + (high - low)});
+    return reached(mean_x(y), deviation_x_, {low, high});
   }
   double deviation_x() const { return deviation_x_; }
 
@@ -99,11 +93,11 @@ class AcrossAt {
   double deviation_y_, slope_, deviation_x_;
 };
 
-void add_piece(const AcrossAt& across, const Trapezoid& piece, const Rectangle& domain,
+void add_piece(const AcrossAt& across, const Trapezoid& piece, const Eigen::Vector2d& size_m,
                int refinement, double width, PlaneCoefficients& sums) {
   const Interval over_y = across.reached_y(piece.low, piece.high);
   if (!(over_y.length() > 0)) return;
-  const Eigen::Vector2d wave = std::numbers::pi * domain.size_m.cwiseInverse();
+  const Eigen::Vector2d wave = std::numbers::pi * size_m.cwiseInverse();
   const double height = piece.high - piece.low;
   const double change_y = across.scale_y((piece.left_high - piece.left_low) / height,
                                          (piece.right_high - piece.right_low) / height);
@@ -139,23 +133,23 @@ double GaussianDensity::operator()(const Eigen::Vector2d& x_m) const {
 }
 
 PlaneCoefficients integrals_by(const PlaneGaussian& g, std::span<const Trapezoid> pieces,
-                               const Rectangle& domain, const Basis& basis, int refinement,
+                               const Eigen::Vector2d& size_m, const Basis& basis, int refinement,
                                double width) {
-  const AcrossAt across(g, g.mean_m - domain.origin_m);
+  const AcrossAt across(g);
   PlaneCoefficients sums = PlaneCoefficients::Zero(basis.modes_x, basis.modes_y);
-  for (const Trapezoid& piece : pieces) add_piece(across, piece, domain, refinement, width, sums);
+  for (const Trapezoid& piece : pieces) add_piece(across, piece, size_m, refinement, width, sums);
   return sums;
 }
 
 PlaneIntegrals integrals_over(const PlaneGaussian& g, std::span<const Trapezoid> pieces,
-                              const Rectangle& domain, const Basis& basis) {
+                              const Eigen::Vector2d& size_m, const Basis& basis) {
   constexpr int kMostRefined = 8;
   constexpr double kTolerance = 1e-12;
   int refinement = 1;
-  PlaneIntegrals result{integrals_by(g, pieces, domain, basis, refinement), 1};
+  PlaneIntegrals result{integrals_by(g, pieces, size_m, basis, refinement), 1};
   while (result.error_bound > kTolerance && refinement < kMostRefined) {
     refinement *= 2;
-    PlaneCoefficients finer = integrals_by(g, pieces, domain, basis, refinement);
+    PlaneCoefficients finer = integrals_by(g, pieces, size_m, basis, refinement);
     // The rules' agreement says nothing of the rounding that they share.
     result.error_bound = (finer - result.values).cwiseAbs().maxCoeff() + 1e-14;
     result.values = std::move(finer);
@@ -163,13 +157,12 @@ PlaneIntegrals integrals_over(const PlaneGaussian& g, std::span<const Trapezoid>
   return result;
 }
 
-PlaneIntegrals integrals_over_domain(const PlaneGaussian& g, const Rectangle& domain,
+PlaneIntegrals integrals_over_domain(const PlaneGaussian& g, const Eigen::Vector2d& size_m,
                                      const Basis& basis) {
-  if (g.covariance_m2(0, 1) != 0) return correlated(g, domain, basis);
+  if (g.covariance_m2(0, 1) != 0) return correlated(g, size_m, basis);
   const auto along = [&](int axis, int modes) {
     return integrals_along(g.mean_m[axis], std::sqrt(g.covariance_m2(axis, axis)),
-                           side_of(domain, axis), domain.origin_m[axis], domain.size_m[axis],
-                           modes);
+                           {0, size_m[axis]}, size_m[axis], modes);
   };
   const Eigen::VectorXd along_x = along(0, basis.modes_x), along_y = along(1, basis.modes_y);
   return {along_x * along_y.transpose(), 1e-14};

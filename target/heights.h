@@ -23,12 +23,22 @@ inline Heights heights_of(const Box& domain) {
   return {domain.origin_m.z(), domain.origin_m.z() + domain.size_m.z()};
 }
 
+/// From the domain's floor: its own floor and ceiling become exactly 0 and its height.
+inline Heights above_floor(const Heights& heights, const Box& domain) {
+  const double ceiling_m = heights_of(domain).high_m;
+  const auto above = [&](double z_m) {
+    return z_m == ceiling_m ? domain.size_m.z() : z_m - domain.origin_m.z();
+  };
+  return {above(heights.low_m), above(heights.high_m)};
+}
+
 /// Integrals of cos(lπz/H) times a density along z, l = 0 … modes_z − 1, over the part of the
-/// domain between two heights. Entry 0 is the share of the mass that lies there. In a plane each is
-/// {1}.
+/// domain between two heights, which are from the domain's floor. Entry 0 is the share of the mass
+/// that lies there. In a plane each is {1}.
 class AlongZ {
  public:
-  AlongZ(const Box& domain, const Basis& basis);
+  /// @param height_m  of the domain; 0 is a plane
+  AlongZ(double height_m, const Basis& basis);
 
   /// Of the density that is constant in `part` and has the mass 1.
   Eigen::VectorXd uniform(const Heights& part, const Heights& within) const;
@@ -36,8 +46,7 @@ class AlongZ {
   Eigen::VectorXd gaussian(double mean_m, double deviation_m, const Heights& within) const;
 
  private:
-  bool planar_;
-  Heights domain_;
+  double height_m_;
   int modes_;
 };
 

@@ -16,21 +16,21 @@ namespace {
 constexpr double kWidth = 2;
 
 TargetCoefficients integrals_by(const Gaussian& gaussian, std::span<const Trapezoid> pieces,
-                                const Interval& part, const Box& domain, const Basis& basis,
-                                int refinement) {
+                                const Interval& part, const Eigen::Vector3d& size_m,
+                                const Basis& basis, int refinement) {
   const GaussianAtHeight g(gaussian);
   TargetCoefficients sum{Coefficients::Zero(basis.mode_count()), 0};
   const Interval over = reached(g.mean_z_m(), g.deviation_z_m(), part);
   if (!(over.length() > 0)) return sum;
-  const double wave = std::numbers::pi / domain.size_m.z();
+  const double wave = std::numbers::pi / size_m.z();
   const Rule z =
       panels_on(over, panel_scale(kWidth * g.scale_z_m(), wave, basis.modes_z), refinement);
   Eigen::VectorXd along_z(basis.modes_z);
   for (Eigen::Index i = 0; i < z.x.size(); ++i) {
     along_z.setZero();
-    add_cosines(z.weight[i] * g.density_z(z.x[i]), wave * (z.x[i] - domain.origin_m.z()), along_z);
+    add_cosines(z.weight[i] * g.density_z(z.x[i]), wave * z.x[i], along_z);
     const PlaneIntegrals plane{
-        ergocast::integrals_by(g.at(z.x[i]), pieces, base_of(domain), basis, refinement, kWidth),
+        ergocast::integrals_by(g.at(z.x[i]), pieces, size_m.head<2>(), basis, refinement, kWidth),
         0};
     add_product(gaussian.weight, plane, along_z, sum);
   }
@@ -61,17 +61,16 @@ double GaussianAtHeight::scale_z_m() const {
 }
 
 void add_leaning(const Gaussian& gaussian, std::span<const Trapezoid> pieces,
-                 const Heights& between, const Box& domain, const Basis& basis,
+                 const Heights& between, const Eigen::Vector3d& size_m, const Basis& basis,
                  TargetCoefficients& sum) {
   constexpr int kMostRefined = 4;
   constexpr double kTolerance = 1e-10;
-  const Heights all = heights_of(domain);
-  const Interval part{std::max(between.low_m, all.low_m), std::min(between.high_m, all.high_m)};
+  const Interval part{std::max(between.low_m, 0.0), std::min(between.high_m, size_m.z())};
   int refinement = 1;
-  TargetCoefficients result = integrals_by(gaussian, pieces, part, domain, basis, refinement);
+  TargetCoefficients result = integrals_by(gaussian, pieces, part, size_m, basis, refinement);
   do {
     refinement *= 2;
-    TargetCoefficients finer = integrals_by(gaussian, pieces, part, domain, basis, refinement);
+    TargetCoefficients finer = integrals_by(gaussian, pieces, part, size_m, basis, refinement);
     // The rules' agreement says nothing of the rounding that they share.
     finer.error_bound =
         (finer.values - result.values).cwiseAbs().maxCoeff() + 1e-14 * gaussian.weight;

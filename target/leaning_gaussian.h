@@ -34,9 +34,9 @@ class GaussianAtHeight {
 
 /// sum += weight · ∫ f_lmn N over `pieces` of a domain with a height, between two heights. Panels
 /// along z, and at each of their nodes integrals_by(); all are doubled until two successive results
-/// agree to 1e-10, or have been doubled twice.
+/// agree to 1e-10, or have been doubled twice. Lengths are from the domain's lowest corner.
 void add_leaning(const Gaussian& gaussian, std::span<const Trapezoid> pieces,
-                 const Heights& between, const Box& domain, const Basis& basis,
+                 const Heights& between, const Eigen::Vector3d& size_m, const Basis& basis,
                  TargetCoefficients& sum);
 
 }  // namespace ergocast

@@ -69,8 +69,8 @@ void add_cosines(double mass, double angle, Eigen::VectorXd& sums) {
   }
 }
 
-Eigen::VectorXd integrals_along(double mean, double deviation, const Interval& part, double low,
-                                double length, int modes) {
+Eigen::VectorXd integrals_along(double mean, double deviation, const Interval& part, double length,
+                                int modes) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(modes);
   const Interval over = reached(mean, deviation, part);
   const int panels = panels_for(over, deviation, modes, length);
@@ -81,7 +81,7 @@ Eigen::VectorXd integrals_along(double mean, double deviation, const Interval& p
       const double x = over.low + half * (2 * panel + 1 + kNode[i]);
       const double z = (x - mean) / deviation;
       const double mass = half * kWeight[i] * scale * std::exp(-0.5 * z * z);
-      const double angle = std::numbers::pi * (x - low) / length;
+      const double angle = std::numbers::pi * x / length;
       for (int m = 0; m < modes; ++m) result[m] += mass * std::cos(m * angle);
     }
   }

@@ -32,9 +32,9 @@ double panel_scale(double bell, double wave, Eigen::Index modes);
 /// sums[k] += mass · cos(k·angle), by recurrence.
 void add_cosines(double mass, double angle, Eigen::VectorXd& sums);
 
-/// ∫ cos(mπ(x − low)/length) N(x; mean, deviation²) dx over `part` of the domain's side
-/// [low, low + length], m = 0 … modes − 1, exact to rounding.
-Eigen::VectorXd integrals_along(double mean, double deviation, const Interval& part, double low,
-                                double length, int modes);
+/// ∫ cos(mπx/length) N(x; mean, deviation²) dx over `part` of the domain's side [0, length],
+/// m = 0 … modes − 1, exact to rounding.
+Eigen::VectorXd integrals_along(double mean, double deviation, const Interval& part, double length,
+                                int modes);
 
 }  // namespace ergocast

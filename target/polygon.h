@@ -15,6 +15,9 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
+/// The same place from `corner_m`.
+Polygon from_corner(const Polygon& polygon, const Eigen::Vector2d& corner_m);
+
 /// Area without that of the holes [m²].
 /// @pre the holes lie inside the outline and apart from each other
 double area_m2(const Polygon& polygon);

@@ -41,20 +41,19 @@ Corners cut(const Corners& shape, double limit, double side) {
 
 }  // namespace
 
-RasterIntegral::RasterIntegral(const RasterGrid& grid, const Rectangle& domain, const Basis& basis,
-                               std::vector<Trapezoid> free)
+RasterIntegral::RasterIntegral(const RasterGrid& grid, const Eigen::Vector2d& size_m,
+                               const Basis& basis, std::vector<Trapezoid> free)
     : grid_(grid),
-      size_m_(domain.size_m),
+      size_m_(size_m),
       cell_m_(grid.extent.size_m.x() / grid.columns, grid.extent.size_m.y() / grid.rows),
-      origin_m_(grid.extent.origin_m - domain.origin_m),
       along_x_(Eigen::MatrixXd::Zero(
           (basis.modes_x + kModesAtOnce - 1) / kModesAtOnce * kModesAtOnce, grid.columns)),
       free_(std::move(free)),
       sums_(PlaneCoefficients::Zero(basis.modes_x, basis.modes_y)) {
   ERGOCAST_REQUIRE(grid.columns >= 1 && grid.rows >= 1);
   for (int column = 0; column < grid.columns; ++column) {
-    const double low = origin_m_.x() + column * cell_m_.x();
-    const double high = origin_m_.x() + (column + 1) * cell_m_.x();
+    const double low = grid_.extent.origin_m.x() + column * cell_m_.x();
+    const double high = grid_.extent.origin_m.x() + (column + 1) * cell_m_.x();
     low_.push_back(std::clamp(low, 0.0, size_m_.x()));
     high_.push_back(std::clamp(high, 0.0, size_m_.x()));
     along_x_.col(column).head(basis.modes_x) =
@@ -69,8 +68,8 @@ void RasterIntegral::add_row(int row, std::span<const double> values) {
   for (const double value : values) sum += value;
   if (sum == 0) return;
   whole_ += sum * cell_m_.x() * cell_m_.y();
-  const double low = origin_m_.y() + row * cell_m_.y();
-  const double high = origin_m_.y() + (row + 1) * cell_m_.y();
+  const double low = grid_.extent.origin_m.y() + row * cell_m_.y();
+  const double high = grid_.extent.origin_m.y() + (row + 1) * cell_m_.y();
   for (const Trapezoid& piece : free_) {
     const double from = std::max(low, piece.low), to = std::min(high, piece.high);
     if (from < to) add_piece(piece.between(from, to), values);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ∫ f_mn over the domain of a density that is constant in each cell of a raster.
+// ∫ f_mn over the domain of a density that is constant in each cell of a raster. All lengths are
+// from the domain's lower left corner.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +9,7 @@
 
 #include "core/basis.h"
 #include "target/plane_integrals.h"
+#include "target/rectangle.h"
 #include "target/trapezoids.h"
 
 namespace ergocast {
@@ -25,8 +27,9 @@ struct RasterGrid {
 /// the columns within a row, on every processor.
 class RasterIntegral {
  public:
-  /// @param free  free_area() of the domain
-  RasterIntegral(const RasterGrid& grid, const Rectangle& domain, const Basis& basis,
+  /// @param size_m  of the domain
+  /// @param free    free_area() of the domain
+  RasterIntegral(const RasterGrid& grid, const Eigen::Vector2d& size_m, const Basis& basis,
                  std::vector<Trapezoid> free);
 
   /// @param row     counted from the south, each row once; missing rows are zero
@@ -50,7 +53,6 @@ class RasterIntegral {
   RasterGrid grid_;
   Eigen::Vector2d size_m_;  // of the domain
   Eigen::Vector2d cell_m_;
-  Eigen::Vector2d origin_m_;        // of the grid, from the domain's lower left corner
   std::vector<double> low_, high_;  // of each column, clipped to the domain
   Eigen::MatrixXd along_x_;         // modes_x, and zeros to a round number, × columns
   std::vector<Trapezoid> free_;

@@ -19,4 +19,9 @@ inline Rectangle base_of(const Box& domain) {
   return {domain.origin_m.head<2>(), domain.size_m.head<2>()};
 }
 
+/// The same place from the domain's lower left corner.
+inline Rectangle from_corner(const Rectangle& place, const Box& domain) {
+  return {place.origin_m - domain.origin_m.head<2>(), place.size_m};
+}
+
 }  // namespace ergocast

@@ -19,9 +19,9 @@ Storey storey_of(const Heights& heights, bool planar, std::span<const KeepOut> k
 
 }  // namespace
 
-std::vector<Storey> storeys_of(const Box& domain, std::span<const KeepOut> keep_outs) {
-  const Heights all = heights_of(domain);
-  if (domain.planar()) return {storey_of(all, true, keep_outs)};
+std::vector<Storey> storeys_of(double height_m, std::span<const KeepOut> keep_outs) {
+  const Heights all{0, height_m};
+  if (height_m == 0) return {storey_of(all, true, keep_outs)};
   std::vector<double> levels_m{all.low_m, all.high_m};
   for (const KeepOut& keep_out : keep_outs) {
     for (const double z_m : {keep_out.heights.low_m, keep_out.heights.high_m})

@@ -17,16 +17,20 @@ struct KeepOut {
   Heights heights{};
 };
 
-/// A part of the domain's height. A plane is one storey.
+/// A part of the domain's height. A plane is one storey. Lengths are from the domain's lowest
+/// corner.
 struct Storey {
   Heights heights;
   std::vector<Polygon> keep_outs;  ///< those that stand in it
 
   /// The domain without them.
-  std::vector<Trapezoid> free(const Rectangle& base) const { return free_area(base, keep_outs); }
+  std::vector<Trapezoid> free(const Eigen::Vector2d& base_m) const {
+    return free_area(base_m, keep_outs);
+  }
 };
 
-/// The storeys of `domain`, ascending: one more than its keep-outs' heights cut it in.
-std::vector<Storey> storeys_of(const Box& domain, std::span<const KeepOut> keep_outs);
+/// The storeys of a domain of this height, ascending: the keep-outs' heights separate them. A
+/// height of 0 is a plane.
+std::vector<Storey> storeys_of(double height_m, std::span<const KeepOut> keep_outs);
 
 }  // namespace ergocast

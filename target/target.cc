@@ -18,28 +18,29 @@ PlaneIntegrals zero(const Basis& basis) {
 }
 
 PlaneIntegrals over_pieces(const std::vector<Trapezoid>& pieces, double density_per_m2,
-                           const Rectangle& base, const Basis& basis) {
+                           const Eigen::Vector2d& size_m, const Basis& basis) {
   PlaneIntegrals sum = zero(basis);
   for (const Trapezoid& piece : pieces)
-    sum.error_bound += add_polygon(piece.corners(), density_per_m2, base.size_m, sum.values);
+    sum.error_bound += add_polygon(piece.corners(), density_per_m2, size_m, sum.values);
   return sum;
 }
 
 /// What all parts have in common.
 class TargetIntegrals {
  public:
-  TargetIntegrals(const TargetDensity& target, const Box& domain, const Basis& basis)
+  /// @param target  from the domain's corner
+  TargetIntegrals(const TargetDensity& target, const Eigen::Vector3d& size_m, const Basis& basis)
       : target_(target),
-        domain_(domain),
-        base_(base_of(domain)),
+        size_m_(size_m),
+        base_m_(size_m.head<2>()),
         basis_(basis),
-        along_z_(domain, basis),
-        storeys_(storeys_of(domain, target.keep_outs)),
+        along_z_(size_m.z(), basis),
+        storeys_(storeys_of(size_m.z(), target.keep_outs)),
         sum_{Coefficients::Zero(basis.mode_count()), 0} {}
 
   void add_smooth_parts() {
     for (const Storey& storey : storeys_) {
-      const std::vector<Trapezoid> free = storey.free(base_);
+      const std::vector<Trapezoid> free = storey.free(base_m_);
       add_uniform(storey, free);
       for (const Gaussian& gaussian : target_.gaussians) add_gaussian(gaussian, storey, free);
     }
@@ -47,9 +48,9 @@ class TargetIntegrals {
 
   void add_region(const Region& region) {
     for (const Storey& storey : storeys_) {
-      const auto inside = free_area_within(region.polygon, base_, storey.keep_outs);
+      const auto inside = free_area_within(region.polygon, base_m_, storey.keep_outs);
       const Eigen::VectorXd along_z = along_z_.uniform(region.heights, storey.heights);
-      add_product(region.weight, over_pieces(inside, 1 / area_m2(region.polygon), base_, basis_),
+      add_product(region.weight, over_pieces(inside, 1 / area_m2(region.polygon), base_m_, basis_),
                   along_z, sum_);
     }
   }
@@ -58,12 +59,12 @@ class TargetIntegrals {
 
  private:
   void add_uniform(const Storey& storey, const std::vector<Trapezoid>& free) {
-    const Eigen::VectorXd along_z = along_z_.uniform(heights_of(domain_), storey.heights);
+    const Eigen::VectorXd along_z = along_z_.uniform({0, size_m_.z()}, storey.heights);
     PlaneIntegrals plane = zero(basis_);
     if (storey.keep_outs.empty()) {
       plane.values(0, 0) = target_.uniform_weight;
     } else {
-      plane = over_pieces(free, target_.uniform_weight / base_.size_m.prod(), base_, basis_);
+      plane = over_pieces(free, target_.uniform_weight / base_m_.prod(), base_m_, basis_);
     }
     add_product(1, plane, along_z, sum_);
   }
@@ -71,20 +72,20 @@ class TargetIntegrals {
   void add_gaussian(const Gaussian& gaussian, const Storey& storey,
                     const std::vector<Trapezoid>& free) {
     const GaussianAtHeight g(gaussian);
-    if (!domain_.planar() && g.leans())
-      return add_leaning(gaussian, free, storey.heights, domain_, basis_, sum_);
+    if (size_m_.z() > 0 && g.leans())
+      return add_leaning(gaussian, free, storey.heights, size_m_, basis_, sum_);
     const PlaneGaussian above{gaussian.mean_m.head<2>(),
                               gaussian.covariance_m2.topLeftCorner<2, 2>()};
     const PlaneIntegrals plane = storey.keep_outs.empty()
-                                     ? integrals_over_domain(above, base_, basis_)
-                                     : integrals_over(above, free, base_, basis_);
+                                     ? integrals_over_domain(above, base_m_, basis_)
+                                     : integrals_over(above, free, base_m_, basis_);
     add_product(gaussian.weight, plane,
                 along_z_.gaussian(g.mean_z_m(), g.deviation_z_m(), storey.heights), sum_);
   }
 
   const TargetDensity& target_;
-  const Box& domain_;
-  Rectangle base_;
+  Eigen::Vector3d size_m_;
+  Eigen::Vector2d base_m_;
   const Basis& basis_;
   AlongZ along_z_;
   std::vector<Storey> storeys_;
@@ -110,6 +111,21 @@ Gaussian plane_gaussian(double weight, const Eigen::Vector2d& mean_m,
   return gaussian;
 }
 
+TargetDensity from_corner(const TargetDensity& target, const Box& domain) {
+  const Eigen::Vector2d corner_m = domain.origin_m.head<2>();
+  TargetDensity moved = target;
+  for (Gaussian& gaussian : moved.gaussians) gaussian.mean_m -= domain.origin_m;
+  for (Region& region : moved.regions) {
+    region.polygon = from_corner(region.polygon, corner_m);
+    region.heights = above_floor(region.heights, domain);
+  }
+  for (KeepOut& keep_out : moved.keep_outs) {
+    keep_out.polygon = from_corner(keep_out.polygon, corner_m);
+    keep_out.heights = above_floor(keep_out.heights, domain);
+  }
+  return moved;
+}
+
 void add_product(double weight, const PlaneIntegrals& plane, const Eigen::VectorXd& along_z,
                  TargetCoefficients& sum) {
   const Eigen::Index modes = plane.values.size();
@@ -122,16 +138,19 @@ void add_product(double weight, const PlaneIntegrals& plane, const Eigen::Vector
 
 TargetCoefficients target_integrals(const TargetDensity& target, const Box& domain,
                                     const Basis& basis) {
-  TargetIntegrals integrals(target, domain, basis);
+  const TargetDensity moved = from_corner(target, domain);
+  TargetIntegrals integrals(moved, domain.size_m, basis);
   integrals.add_smooth_parts();
-  for (const Region& region : target.regions) integrals.add_region(region);
+  for (const Region& region : moved.regions) integrals.add_region(region);
   return integrals.take();
 }
 
 double free_share(const Region& region, const TargetDensity& target, const Box& domain) {
   const Basis one;
-  TargetIntegrals integrals(target, domain, one);
-  integrals.add_region({1, region.polygon, region.heights});
+  TargetDensity moved = from_corner({{}, 0, {region}, target.keep_outs}, domain);
+  moved.regions[0].weight = 1;
+  TargetIntegrals integrals(moved, domain.size_m, one);
+  integrals.add_region(moved.regions[0]);
   return integrals.take().values[0];
 }
 

@@ -4,6 +4,10 @@
 // A part of a target is seen from above: a density in the plane, times one along z. So its
 // coefficients are products, and a plane is the case of the factor 1. Keep-outs divide the height
 // into storeys (target/storeys.h), in each of which this holds.
+//
+// The functions here take any coordinates. What they call has lengths from the domain's lowest
+// corner alone, where the domain is exactly [0, size]: origin + size − origin may be another number
+// than size.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,6 +49,9 @@ struct TargetDensity {
   std::vector<Region> regions{};
   std::vector<KeepOut> keep_outs{};  ///< may overlap
 };
+
+/// The same target from the corner `domain.origin_m`.
+TargetDensity from_corner(const TargetDensity& target, const Box& domain);
 
 struct TargetCoefficients {
   Coefficients values;     ///< μ_k; values[0] = 1

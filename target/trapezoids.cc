@@ -20,24 +20,21 @@ struct Edge {
   }
 };
 
-void add_edges(const Ring& ring, const Eigen::Vector2d& origin_m, std::size_t polygon,
-               std::vector<Edge>& edges) {
+void add_edges(const Ring& ring, std::size_t polygon, std::vector<Edge>& edges) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d a = ring[i] - origin_m, b = ring[(i + 1) % ring.size()] - origin_m;
+    const Eigen::Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
     if (a.y() < b.y()) edges.push_back({a, b, polygon});
     if (b.y() < a.y()) edges.push_back({b, a, polygon});
   }
 }
 
-void add_edges(const Polygon& shape, const Eigen::Vector2d& origin_m, std::size_t polygon,
-               std::vector<Edge>& edges) {
-  add_edges(shape.outline, origin_m, polygon, edges);
-  for (const Ring& hole : shape.holes) add_edges(hole, origin_m, polygon, edges);
+void add_edges(const Polygon& shape, std::size_t polygon, std::vector<Edge>& edges) {
+  add_edges(shape.outline, polygon, edges);
+  for (const Ring& hole : shape.holes) add_edges(hole, polygon, edges);
 }
 
-Polygon outline_of(const Rectangle& domain) {
-  const Eigen::Vector2d low = domain.origin_m, high = low + domain.size_m;
-  return {{low, {high.x(), low.y()}, high, {low.x(), high.y()}}, {}};
+Polygon outline_of(const Eigen::Vector2d& size_m) {
+  return {{{0, 0}, {size_m.x(), 0}, size_m, {0, size_m.y()}}, {}};
 }
 
 /// y of every corner and crossing from 0 to `height`, ascending, each once.
@@ -88,10 +85,10 @@ Trapezoid piece(const Edge& left, const Edge& right, double low, double high) {
 
 /// @param shapes  a piece is inside the first `wanted` of them and outside the others
 std::vector<Trapezoid> cut_up(const std::vector<Polygon>& shapes, std::size_t wanted,
-                              const Rectangle& domain) {
+                              const Eigen::Vector2d& size_m) {
   std::vector<Edge> edges;
-  for (std::size_t i = 0; i < shapes.size(); ++i) add_edges(shapes[i], domain.origin_m, i, edges);
-  const std::vector<double> levels = levels_of(edges, domain.size_m.y());
+  for (std::size_t i = 0; i < shapes.size(); ++i) add_edges(shapes[i], i, edges);
+  const std::vector<double> levels = levels_of(edges, size_m.y());
 
   std::vector<Trapezoid> pieces;
   for (std::size_t slab = 1; slab < levels.size(); ++slab) {
@@ -137,17 +134,18 @@ std::array<Eigen::Vector2d, 4> Trapezoid::corners() const {
   return {{{left_low, low}, {right_low, low}, {right_high, high}, {left_high, high}}};
 }
 
-std::vector<Trapezoid> free_area(const Rectangle& domain, std::span<const Polygon> keep_outs) {
-  std::vector<Polygon> shapes{outline_of(domain)};
+std::vector<Trapezoid> free_area(const Eigen::Vector2d& size_m,
+                                 std::span<const Polygon> keep_outs) {
+  std::vector<Polygon> shapes{outline_of(size_m)};
   shapes.insert(shapes.end(), keep_outs.begin(), keep_outs.end());
-  return cut_up(shapes, 1, domain);
+  return cut_up(shapes, 1, size_m);
 }
 
-std::vector<Trapezoid> free_area_within(const Polygon& region, const Rectangle& domain,
+std::vector<Trapezoid> free_area_within(const Polygon& region, const Eigen::Vector2d& size_m,
                                         std::span<const Polygon> keep_outs) {
-  std::vector<Polygon> shapes{outline_of(domain), region};
+  std::vector<Polygon> shapes{outline_of(size_m), region};
   shapes.insert(shapes.end(), keep_outs.begin(), keep_outs.end());
-  return cut_up(shapes, 2, domain);
+  return cut_up(shapes, 2, size_m);
 }
 
 }  // namespace ergocast

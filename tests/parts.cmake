@@ -39,6 +39,7 @@ ergocast_test(NAME core_tests LABELS unit
 ergocast_test(NAME target_tests LABELS unit
   SOURCES
     target/cosine_integrals_test.cc
+    target/fractional_domains_test.cc
     target/map_file_test.cc
     target/map_memory_test.cc
     target/polygon_target_test.cc

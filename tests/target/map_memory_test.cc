@@ -41,11 +41,11 @@ TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
   if (!(std::ofstream("/proc/self/clear_refs") << 5 << std::flush)) GTEST_SKIP() << "no clear_refs";
   const double before = memory_mib("VmRSS");
 
-  const Rectangle domain{{0, 0}, {100, 100}};
+  const Eigen::Vector2d size_m(100, 100);
   OpenedMap opened = open_map(file);
   MapFile& map = *std::get<0>(opened);
-  RasterIntegral integral({domain, kSide, kSide}, domain, {.modes_x = 16, .modes_y = 16},
-                          free_area(domain, {}));
+  RasterIntegral integral({{{0, 0}, size_m}, kSide, kSide}, size_m, {.modes_x = 16, .modes_y = 16},
+                          free_area(size_m, {}));
   std::vector<double> row(kSide);
   for (int i = 0; i < kSide; ++i) {
     ASSERT_FALSE(map.next_row(row));

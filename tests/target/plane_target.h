@@ -2,6 +2,7 @@
 // What target/target.h says of a plane, in the numbers of a plane.
 #pragma once
 
+#include "target/density_picture.h"
 #include "target/target.h"
 
 namespace ergocast {
@@ -31,6 +32,15 @@ inline double mass_inside(const TargetDensity& target, const Rectangle& domain) 
 inline double density_unscaled(const TargetDensity& target, const Rectangle& domain,
                                const Eigen::Vector2d& x_m) {
   return density_unscaled(target, plane_of(domain), on_ground(x_m));
+}
+
+/// The picture of a target whose maps are empty.
+inline DensityGrid picture_of(const TargetDensity& target, const Box& domain, int cells_x,
+                              int cells_y) {
+  const TargetDensity moved = from_corner(target, domain);
+  const std::vector<DensityGrid> maps(storeys_of(domain.size_m.z(), moved.keep_outs).size(),
+                                      DensityGrid::Zero(cells_x, cells_y));
+  return density_picture(moved, maps, domain.size_m);
 }
 
 }  // namespace ergocast

@@ -138,8 +138,7 @@ TEST(DensityPicture, HasTheMassOfTheTarget) {
                              0.5,
                              {{1, {{{0, 100}, {900, 200}, {400, 800}}, {}}}},
                              {{{{{600, 400}, {1000, 700}, {500, 900}}, {}}}}};
-  const std::vector<DensityGrid> maps{DensityGrid::Zero(256, 154)};
-  const DensityGrid picture = density_picture(target, maps, plane_of(kDomain));
+  const DensityGrid picture = picture_of(target, plane_of(kDomain), 256, 154);
   EXPECT_NEAR(picture.mean() * 2000 * 1200, mass_inside(target, kDomain), 2e-3);
   EXPECT_EQ(picture(128, 77), 0);  // (700, 650), inside the keep-out
 }

@@ -21,9 +21,16 @@ const Basis kBasis{.modes_x = 13, .modes_y = 10};
 /// Values without any symmetry, some of them 0.
 double value_at(int column, int row) { return (3 + 7 * column + 13 * row + column * row) % 11; }
 
+RasterGrid seen_from_corner(const RasterGrid& grid) {
+  return {from_corner(grid.extent, plane_of(kDomain)), grid.columns, grid.rows};
+}
+
 PlaneIntegrals shares_of(const RasterGrid& grid, const std::vector<Polygon>& keep_outs = {},
                          const std::function<double(int, int)>& value = value_at) {
-  RasterIntegral integral(grid, kDomain, kBasis, free_area(kDomain, keep_outs));
+  std::vector<Polygon> moved;
+  for (const Polygon& polygon : keep_outs) moved.push_back(from_corner(polygon, kDomain.origin_m));
+  RasterIntegral integral(seen_from_corner(grid), kDomain.size_m, kBasis,
+                          free_area(kDomain.size_m, moved));
   std::vector<double> values(static_cast<std::size_t>(grid.columns));
   for (int row = 0; row < grid.rows; ++row) {
     for (int i = 0; i < grid.columns; ++i) values[static_cast<std::size_t>(i)] = value(i, row);
@@ -175,7 +182,7 @@ TEST(RasterIntegral, CellsThatKeepOutsCutCountByWhatIsLeft) {
 TEST(RasterPicture, HasTheMassOfTheMap) {
   const RasterGrid grid{{{-60, -20}, {270, 160}}, 31, 23};
   for (const auto& [cells_x, cells_y] : {std::pair(16, 10), {100, 60}, {1, 1}}) {
-    RasterPicture picture(grid, kDomain, cells_x, cells_y);
+    RasterPicture picture(seen_from_corner(grid), kDomain.size_m, cells_x, cells_y);
     for (int row = 0; row < grid.rows; ++row) {
       std::vector<double> values;
       for (int column = 0; column < grid.columns; ++column) values.push_back(value_at(column, row));
@@ -186,7 +193,7 @@ TEST(RasterPicture, HasTheMassOfTheMap) {
 }
 
 TEST(RasterPicture, OfEqualCellsIsTheMapItself) {
-  RasterPicture picture({kDomain, 4, 3}, kDomain, 4, 3);
+  RasterPicture picture({{{0, 0}, kDomain.size_m}, 4, 3}, kDomain.size_m, 4, 3);
   for (int row = 0; row < 3; ++row) {
     picture.add_row(row, std::vector<double>{1.0 * row, 2, 3, 4});
   }

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "target/density_picture.h"
-#include "target/target.h"
+#include "tests/target/plane_target.h"
 
 namespace ergocast {
 namespace {
@@ -121,8 +120,7 @@ TEST(TargetInSpace, FromAboveHasTheMassOfTheTarget) {
                              0.4,
                              {{1.5, square(-10, 25, 60), {-60, -35}}},
                              {{square(10, 45, 40), {-50, -20}}}};
-  const std::vector<DensityGrid> maps(3, DensityGrid::Zero(100, 60));  // in each storey
-  const DensityGrid picture = density_picture(target, maps, kBox);
+  const DensityGrid picture = picture_of(target, kBox, 100, 60);
   EXPECT_NEAR(picture.mean() * 200 * 120, mass_inside(target, kBox), 2e-3);
 }
 
