@@ -19,6 +19,8 @@ namespace {
 constexpr double kFewestCells = 16;
 constexpr double kLeastPart = 1e-3;
 constexpr int kNotFree = -1, kUnreached = -2;
+/// Of two ways that rounding alone makes different.
+constexpr double kSameWay = 1 + 1e-9;
 
 struct Offset {
   int column, row;
@@ -38,6 +40,10 @@ FreeRegion::FreeRegion(const Rings& walls, const Box& domain, double kept_m, int
   for (int cell = 0; cell < this->cells(); ++cell) {
     clearance_m_.push_back(ergocast::clearance_m(walls, center_m(cell)));
     part_.push_back(clearance_m_.back() >= kept_m ? kUnreached : kNotFree);
+  }
+  for (std::size_t i = 0; i < kNeighbours.size(); ++i) {
+    steps_m_[i] = std::hypot(kNeighbours[i].column * size_m.x() / columns_,
+                             kNeighbours[i].row * size_m.y() / rows_);
   }
   join(walls, kept_m);
   for (int cell = 0; cell < this->cells(); ++cell) {
@@ -92,7 +98,7 @@ void FreeRegion::join(const Rings& walls, double kept_m) {
 void FreeRegion::for_joined(int cell, auto&& each) const {
   for (std::size_t i = 0; i < kNeighbours.size(); ++i) {
     if ((joins_[static_cast<std::size_t>(cell)] >> i & 1) != 0)
-      each(cell + kNeighbours[i].row * columns_ + kNeighbours[i].column);
+      each(cell + kNeighbours[i].row * columns_ + kNeighbours[i].column, steps_m_[i]);
   }
 }
 
@@ -103,7 +109,7 @@ void FreeRegion::grow(int seed, int part) {
     const int cell = front.back();
     front.pop_back();
     ++sizes_[static_cast<std::size_t>(part)];
-    for_joined(cell, [&](int next) {
+    for_joined(cell, [&](int next, double) {
       int& its = part_[static_cast<std::size_t>(next)];
       if (its != kUnreached) return;
       its = part;
@@ -122,10 +128,9 @@ std::vector<double> FreeRegion::ways_m(int from) const {
     const auto [way_m, cell] = front.top();
     front.pop();
     if (way_m > ways[static_cast<std::size_t>(cell)]) continue;
-    const Eigen::Vector2d here_m = center_m(cell);
     const double so_far_m = way_m;
-    for_joined(cell, [&](int next) {
-      const double longer_m = so_far_m + (center_m(next) - here_m).norm();
+    for_joined(cell, [&](int next, double step_m) {
+      const double longer_m = so_far_m + step_m;
       double& its_m = ways[static_cast<std::size_t>(next)];
       if (longer_m >= its_m) return;
       its_m = longer_m;
@@ -137,13 +142,14 @@ std::vector<double> FreeRegion::ways_m(int from) const {
 
 int FreeRegion::nearer(const std::vector<double>& ways_m, int cell) const {
   int best = cell;
-  double best_m = std::numeric_limits<double>::infinity();
+  double best_m = std::numeric_limits<double>::infinity(), best_step_m = 0;
   const double way_m = ways_m[static_cast<std::size_t>(cell)];
-  for_joined(cell, [&](int next) {
-    const double its_m = ways_m[static_cast<std::size_t>(next)];
-    const double through_m = its_m + (center_m(next) - center_m(cell)).norm();
-    if (its_m >= way_m || through_m >= best_m) return;
+  for_joined(cell, [&](int next, double step_m) {
+    const double its_m = ways_m[static_cast<std::size_t>(next)], through_m = its_m + step_m;
+    if (its_m >= way_m || through_m >= kSameWay * best_m) return;
+    if (through_m * kSameWay > best_m && step_m <= best_step_m) return;
     best_m = through_m;
+    best_step_m = step_m;
     best = next;
   });
   return best;

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -43,7 +44,8 @@ class FreeRegion {
   /// most 8 % too long. Infinite where there is none.
   std::vector<double> ways_m(int from) const;
   /// The neighbour through which the shortest of these ways leads; the cell itself at their end and
-  /// where there is none.
+  /// where there is none. Ways that differ by rounding alone are equally short, and of them the one
+  /// with the longest first step is taken: so neither the domain's origin nor its axes decide.
   int nearer(const std::vector<double>& ways_m, int cell) const;
   /// Calls `each(cell)` for the cells of any part that are at most kNiche cells away from `x_m`
   /// along an axis.
@@ -64,13 +66,14 @@ class FreeRegion {
  private:
   void join(const Rings& walls, double kept_m);
   bool joined(const Rings& walls, int from, int to, double kept_m) const;
-  /// Calls `each(neighbour)` for those that a cell is joined with.
+  /// Calls `each(neighbour, length of the step)` for those that a cell is joined with.
   void for_joined(int cell, auto&& each) const;
   void grow(int seed, int part);
   void sort_parts();
 
   Box domain_;
   int columns_ = 1, rows_ = 1;
+  std::array<double, 8> steps_m_{};  // to each neighbour: the same from every cell, to the last bit
   std::vector<double> clearance_m_;  // of each cell's centre
   std::vector<std::uint8_t> joins_;  // of each cell, a bit for each neighbour
   std::vector<int> part_;            // of each cell; −1: none

@@ -44,7 +44,7 @@ class SvgWalk {
       fail({}, "is no SVG drawing", "name a file that a drawing program saved as SVG");
     Drawing result{view_box(root), {}};
     for (const pugi::xml_node& child : root.children())
-      element(child, to_plan_, property(root, "fill"), 0);
+      element(child, Eigen::Affine2d::Identity(), property(root, "fill"), 0);
     result.shapes = std::move(shapes_);
     if (result.shapes.empty()) {
       fail({}, "has no filled rect, polygon or path",
@@ -75,15 +75,23 @@ class SvgWalk {
     }
   }
 
-  /// Its size; sets how places become those of the plan, whose y is up.
+  /// Its size; sets where it begins.
   Eigen::Vector2d view_box(const pugi::xml_node& root) {
     const auto box = in(root, "viewBox", svg_numbers);
     if (box.size() != 4 || !(box[2] > 0) || !(box[3] > 0)) {
       fail(root, "has no viewBox of four numbers with a width and a height above 0",
            "set the document's size in the drawing program and save it anew");
     }
-    to_plan_.matrix() << 1, 0, -box[0], 0, -1, box[1] + box[3], 0, 0, 1;
-    return {box[2], box[3]};
+    begin_ = {box[0], box[1]};
+    size_ = {box[2], box[3]};
+    return size_;
+  }
+
+  /// A place of the drawing from the lower left corner of its viewBox, y up. The box's own edges
+  /// become exactly 0 and its height, wherever it begins.
+  Eigen::Vector2d in_plan(const Eigen::Vector2d& place) const {
+    const Eigen::Vector2d from_top = place - begin_;
+    return {from_top.x(), size_.y() - from_top.y()};
   }
 
   void element(const pugi::xml_node& node, const Eigen::Affine2d& outer, const std::string& fill,
@@ -94,24 +102,24 @@ class SvgWalk {
     if (node.type() != pugi::node_element || foreign || kSilent.contains(name)) return;
     if (property(node, "display") == "none") return;
     if (depth > kDeepest) fail(node, "is in more than 64 groups", "ungroup the drawing");
-    const Eigen::Affine2d to_plan = outer * in(node, "transform", svg_transform);
+    const Eigen::Affine2d to_drawing = outer * in(node, "transform", svg_transform);
     const std::string own_fill = property(node, "fill");
     const std::string& filled = own_fill.empty() ? fill : own_fill;
     if (name == "g") {
       for (const pugi::xml_node& child : node.children())
-        element(child, to_plan, filled, depth + 1);
+        element(child, to_drawing, filled, depth + 1);
     } else if (filled != "none") {
-      shape(node, name, to_plan);
+      shape(node, name, to_drawing);
     }
   }
 
-  void shape(const pugi::xml_node& node, std::string_view name, const Eigen::Affine2d& to_plan) {
+  void shape(const pugi::xml_node& node, std::string_view name, const Eigen::Affine2d& to_drawing) {
     if (name == "rect") {
-      add(node, {rectangle(node)}, to_plan);
+      add(node, {rectangle(node)}, to_drawing);
     } else if (name == "polygon") {
-      add(node, {corners(node)}, to_plan);
+      add(node, {corners(node)}, to_drawing);
     } else if (name == "path") {
-      add(node, in(node, "d", svg_path), to_plan);
+      add(node, in(node, "d", svg_path), to_drawing);
     } else {
       fail(node, "is no rect, polygon or path",
            "turn it into a path of straight lines, or give it fill=\"none\" to leave it out");
@@ -140,13 +148,13 @@ class SvgWalk {
 
   /// Corners that the transform puts at one place are one, as is a last one that closes the ring.
   void add(const pugi::xml_node& node, const std::vector<DrawnRing>& rings,
-           const Eigen::Affine2d& to_plan) {
+           const Eigen::Affine2d& to_drawing) {
     DrawnShape& shape = shapes_.emplace_back();
     shape.element = place_of(node);
     for (const DrawnRing& ring : rings) {
       DrawnRing& drawn = shape.rings.emplace_back();
       for (const Eigen::Vector2d& corner : ring) {
-        const Eigen::Vector2d place = to_plan * corner;
+        const Eigen::Vector2d place = in_plan(to_drawing * corner);
         if (!place.allFinite()) fail(node, "is infinitely large", "save it anew");
         if (drawn.empty() || drawn.back() != place) drawn.push_back(place);
       }
@@ -158,7 +166,7 @@ class SvgWalk {
   }
 
   std::string_view text_;
-  Eigen::Affine2d to_plan_;
+  Eigen::Vector2d begin_{0, 0}, size_{0, 0};  // of the viewBox
   std::vector<DrawnShape> shapes_;
 };
 

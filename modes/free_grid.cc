@@ -48,8 +48,7 @@ class GridBuilder {
     return at_m(column + 0.5, row + 0.5);
   }
   Eigen::Vector2d at_m(double column, double row) const {
-    return grid_.origin_m +
-           Eigen::Vector2d(column / grid_.columns, row / grid_.rows).cwiseProduct(grid_.size_m);
+    return Eigen::Vector2d(column / grid_.columns, row / grid_.rows).cwiseProduct(grid_.size_m);
   }
   /// The cell so far from another one; −1 outside of the grid.
   int beside(int at, int a, int b) const {

@@ -15,6 +15,7 @@
 namespace ergocast {
 
 /// Whether the straight way from one place to another is free; of a place to itself, whether it is.
+/// Places are from the domain's lower left corner.
 using Sees = std::function<bool(const Eigen::Vector2d&, const Eigen::Vector2d&)>;
 
 /// A grid of nearly square cells over a domain; its numbers are those of FreeModes.

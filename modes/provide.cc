@@ -5,6 +5,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <vector>
 
@@ -65,9 +66,24 @@ bool sees(const Rings& walls, const Eigen::Vector2d& from_m, const Eigen::Vector
   return free;
 }
 
+/// From the domain's corner, rounded to 2⁻⁴⁰ of its sides. Whether a wall's edge is on a cell's
+/// middle or beside it is then the same wherever the domain's origin is.
+Rings walls_from_corner(const Mission& mission) {
+  const Eigen::Array2d unit_m = std::ldexp(1.0, -40) * mission.domain.size_m.head<2>().array();
+  Rings walls = mission.walls;
+  for (Ring& wall : walls) {
+    for (Eigen::Vector2d& corner_m : wall) {
+      corner_m -= mission.domain.origin_m.head<2>();
+      corner_m = unit_m * (corner_m.array() / unit_m).round();
+    }
+  }
+  return walls;
+}
+
 std::variant<ModesTable, std::string> computed(const Mission& mission) {
+  const Rings walls = walls_from_corner(mission);
   auto grid = free_grid(mission.domain, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return sees(mission.walls, a, b);
+    return sees(walls, a, b);
   });
   if (auto* problem = std::get_if<std::string>(&grid)) return std::move(*problem);
   const FreeGrid& cells = std::get<FreeGrid>(grid);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "core/separation.h"
 #include "scenario/assign.h"
@@ -248,6 +249,29 @@ void put_flags_over(const Overrides& overrides, proto::Scenario& scenario, Findi
   }
 }
 
+/// A place on the upper edge, as a person writes it, may be a rounding of origin + size beyond it:
+/// 0.8 is, of a domain from 0.7 that is 0.1 long. It is on the edge.
+double on_edge(double place_m, double origin_m, double size_m) {
+  const double high_m = origin_m + size_m;
+  const double rounding_m =
+      4 * std::numeric_limits<double>::epsilon() * (std::abs(origin_m) + size_m);
+  return place_m > high_m && place_m <= high_m + rounding_m ? high_m : place_m;
+}
+
+void put_on_edge(const Box& domain, proto::Start& place) {
+  const Eigen::Vector3d &low_m = domain.origin_m, &size_m = domain.size_m;
+  if (place.has_x_m()) place.set_x_m(on_edge(place.x_m(), low_m.x(), size_m.x()));
+  if (place.has_y_m()) place.set_y_m(on_edge(place.y_m(), low_m.y(), size_m.y()));
+  if (place.has_z_m()) place.set_z_m(on_edge(place.z_m(), low_m.z(), size_m.z()));
+}
+
+void put_on_edges(const Box& domain, proto::Agents& agents) {
+  for (proto::Start& start : *agents.mutable_starts()) put_on_edge(domain, start);
+  for (proto::Kind& kind : *agents.mutable_kind()) {
+    for (proto::Start& station : *kind.mutable_station()) put_on_edge(domain, station);
+  }
+}
+
 }  // namespace
 
 void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
@@ -280,6 +304,7 @@ void fill_in(proto::Scenario& scenario, const std::string& file) {
     scenario.mutable_world()->set_wall_clearance_m(0);
   fill_law(domain, *scenario.mutable_law());
   proto::Agents& agents = *scenario.mutable_agents();
+  put_on_edges(domain, agents);
   fill_kinds(scenario.law(), agents);
   if (!agents.has_quorum()) {
     const std::int64_t size = std::int64_t{agents.starts_size()} + agents.random_count();

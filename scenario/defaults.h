@@ -13,7 +13,8 @@ namespace ergocast {
 /// line's.
 void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings);
 
-/// Gives every absent field that is not required its default, and maps their absolute paths. `file`
+/// Gives every absent field that is not required its default, and maps their absolute paths; puts
+/// starts and stations that rounding alone has beyond the domain's edge on it. `file`
 /// gives the scenario's name if the scenario has none; maps are in its folder.
 void fill_in(proto::Scenario& scenario, const std::string& file);
 

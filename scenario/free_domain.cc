@@ -8,7 +8,8 @@ namespace ergocast {
 namespace {
 
 /// The share of the mass that each free cell has: e_k at a place is a mean of at most four cells.
-Eigen::VectorXd masses_of_cells(const DensityGrid& density, const FreeModes& modes) {
+Eigen::VectorXd masses_of_cells(const DensityGrid& density, FreeModes modes) {
+  modes.origin_m.setZero();  // a density's places are from the domain's corner
   Eigen::VectorXd masses = Eigen::VectorXd::Zero(modes.cell_count);
   const Eigen::Vector2d count(static_cast<double>(density.rows()),
                               static_cast<double>(density.cols()));
@@ -16,7 +17,7 @@ Eigen::VectorXd masses_of_cells(const DensityGrid& density, const FreeModes& mod
   for (Eigen::Index j = 0; j < density.cols(); ++j) {
     for (Eigen::Index i = 0; i < density.rows(); ++i) {
       const Eigen::Vector2d middle(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
-      const FreePlace at(modes.origin_m + step_m.cwiseProduct(middle), modes);
+      const FreePlace at(step_m.cwiseProduct(middle), modes);
       for (std::size_t corner = 0; corner < 4; ++corner) {
         const auto cell = (at.corners[corner] - modes.values.data()) / modes.mode_count;
         masses[cell] += at.shares[corner] * density(i, j);

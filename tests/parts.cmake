@@ -236,5 +236,6 @@ ergocast_test(NAME lab_tests LABELS lab
     lab/laboratory_test.cc
     lab/large_team_test.cc
     lab/message_loss_test.cc
+    lab/moved_scenario_test.cc
     lab/pause_test.cc
-  LIBS ergocast_lab ergocast::scenario)
+  LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages)

@@ -131,6 +131,39 @@ TEST(FreeRegion, DoesNotLeapAThinWall) {
   EXPECT_EQ(FreeRegion(thin, kDomain, 1e-6).parts(), 2);
 }
 
+// In the open, many ways along cells are equally short but for rounding.
+TEST(FreeRegion, LeadsTheSameWayWhereverTheDomainIsAndWhateverItsAxesAreCalled) {
+  const auto way_of = [](const Eigen::Vector2d& by_m, bool exchanged) {
+    const auto place = [&](double x_m, double y_m) {
+      return Eigen::Vector2d(by_m +
+                             (exchanged ? Eigen::Vector2d(y_m, x_m) : Eigen::Vector2d(x_m, y_m)));
+    };
+    const Box domain{on_ground(by_m),
+                     on_ground(exchanged ? Eigen::Vector2d(60, 100) : Eigen::Vector2d(100, 60))};
+    const Rings walls = {{place(48, 20), place(52, 20), place(52, 61), place(48, 61)}};
+    const FreeRegion region(walls, domain, 2);
+    const auto ways_m = region.ways_m(region.cell_at(place(90.3, 50.1)));
+    std::vector<Eigen::Vector2d> way;
+    for (int cell = region.cell_at(place(7.7, 52.9)), last = -1; cell != last;
+         last = cell, cell = region.nearer(ways_m, cell)) {
+      const Eigen::Vector2d at_m = region.center_m(cell) - by_m;
+      way.push_back(exchanged ? Eigen::Vector2d(at_m.y(), at_m.x()) : at_m);
+    }
+    return way;
+  };
+  const auto here = way_of({0, 0}, false);
+  ASSERT_GT(here.size(), 200U);
+  for (const Eigen::Vector2d& by_m :
+       {Eigen::Vector2d(0, 0), {-15.6, 0.7}, {123.4, -1e4 / 3}, {0.1, 1e-3}}) {
+    for (const bool exchanged : {false, true}) {
+      const auto there = way_of(by_m, exchanged);
+      ASSERT_EQ(there.size(), here.size()) << by_m.transpose() << exchanged;
+      for (std::size_t i = 0; i < here.size(); ++i)
+        ASSERT_LT((there[i] - here[i]).norm(), 1e-9) << by_m.transpose() << exchanged << i;
+    }
+  }
+}
+
 TEST(FreeRegion, KnowsHowMuchIsFreeAndWhere) {
   const FreeRegion region(rooms(1), kDomain, 2);
   EXPECT_NEAR(region.free_share(), 0.92, 0.01);

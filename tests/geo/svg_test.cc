@@ -76,6 +76,16 @@ TEST(Svg, TransformsOfGroupsCount) {
   EXPECT_LT((leaning[2] - Eigen::Vector2d(6, 7)).norm(), 1e-12);
 }
 
+// −15.6 + 31.7 is 16.1, and 16.1 + 15.6 is more than 31.7.
+TEST(Svg, TheViewBoxHasItsOwnEdgesWhereverItBegins) {
+  const Drawing result = drawn(
+      "<svg viewBox='-15.6 -15.6 31.7 31.7'><rect x='-15.6' y='-15.6' width='2' "
+      "height='2'/></svg>");
+  ASSERT_EQ(result.shapes.size(), 1U);
+  const auto& ring = result.shapes.front().rings.front();
+  EXPECT_EQ(ring.front(), Eigen::Vector2d(0, 31.7));
+}
+
 TEST(Svg, SubpathsAreRingsOfOneShape) {
   const Drawing result = drawn(drawing(
       R"~(<path d="M0 0H20V10H0Z M1 1v8h18v-8z"/><rect x="4" y="4" width="1" height="1"/>)~"));

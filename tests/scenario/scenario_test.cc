@@ -379,5 +379,24 @@ TEST(ShippedValues, UniformSquareIsThePublishedCase) {
   EXPECT_EQ(mission.target_coefficients.cwiseAbs().sum(), 1);  // μ_00 alone
 }
 
+// 0.7 + 0.1 is less than 0.8.
+TEST(Scenario, APlaceOnTheUpperEdgeIsInTheDomainWhateverItsOriginIs) {
+  const std::string text = R"(
+    domain { origin_x_m: 0.7 origin_y_m: 0.7 size_x_m: 0.1 size_y_m: 0.1 }
+    target { uniform_weight: 1 }
+    law { u_max_mps: 0.01 }
+    time { duration_s: 60 }
+    agents {
+      starts { x_m: 0.8 y_m: 0.7 }
+      kind { name: "one" count: 1 station { x_m: 0.7 y_m: 0.8 } }
+    })";
+  const Mission mission = good(text).mission();
+  EXPECT_EQ(mission.starts_m.front(), Eigen::Vector3d(0.7 + 0.1, 0.7, 0));
+  EXPECT_EQ(mission.kinds.front().stations_m.front(), Eigen::Vector3d(0.7, 0.7 + 0.1, 0));
+  std::string beyond = text;
+  beyond.replace(beyond.find("x_m: 0.8 "), 9, "x_m: 0.800000001 ");
+  EXPECT_EQ(problems_of(beyond).size(), 1U);
+}
+
 }  // namespace
 }  // namespace ergocast
