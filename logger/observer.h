@@ -22,7 +22,7 @@ class Observer {
   /// A member of `kind` was at `x_m` for a tick. Places outside of the domain cover nothing.
   void see(const Mission& mission, int kind, const Eigen::Vector3d& x_m) {
     if (!mission.domain.contains(x_m)) return;
-    covered_s_ += sensors_.of(kind).sample(BasisAt(x_m, mission.domain, mission.basis),
+    covered_s_ += sensors_.of(kind).sample(CosinesAt(x_m, mission.domain, mission.basis),
                                            mission.basis, mission.timing.dt_s, sums_s_.data());
   }
   bool has_seen_any() const { return covered_s_ > 0; }

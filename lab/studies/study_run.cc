@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "core/block_layout.h"
-#include "core/control.h"
-#include "core/coverage_table.h"
 #include "core/ideal_team.h"
 #include "core/kinds.h"
+#include "core/station.h"
 #include "lab/simulation.h"
 #include "lab/studies/study_measure.h"
 #include "logger/null_buffer.h"
+#include "logger/observer.h"
 #include "team/plan.h"
 
 namespace ergocast::studies {
@@ -37,42 +37,21 @@ std::int64_t blocks_sent(const Mission& mission) {
   return count;
 }
 
-/// Adds up the coverage of all places as an ideal team does, and judges it.
+/// φ² as the logger computes it, by the same additions in the same order.
 class Judge {
  public:
   /// @param judged  outlives it
-  explicit Judge(const Mission& judged)
-      : mission_(judged),
-        controller_(judged),
-        table_(judged.basis, judged.timing.dt_s),
-        sensors_(judged),
-        coverage_(Coefficients::Zero(judged.basis.mode_count())) {
-    for (std::size_t i = 0; i < judged.starts_m.size(); ++i) {
-      table_.add_row(author(i));
-      table_.set_quality(author(i), sensor(i).quality);
-    }
-  }
+  explicit Judge(const Mission& judged) : mission_(judged) { observer_.begin(judged); }
 
-  void see(std::size_t agent, const Eigen::Vector3d& x_m) {
-    table_.add_sample(author(agent), BasisAt(x_m, mission_.domain, mission_.basis),
-                      sensor(agent).footprint());
+  void see(std::size_t agent, Tick tick, const Eigen::Vector3d& x_m) {
+    const auto id = static_cast<AgentId>(agent);
+    if (!rests(mission_, id, tick)) observer_.see(mission_, planned_kind(mission_, id), x_m);
   }
-  double metric() {
-    table_.average(coverage_);
-    return controller_.metric(coverage_);
-  }
+  double metric() const { return observer_.metric(mission_); }
 
  private:
-  static Author author(std::size_t agent) { return {static_cast<AgentId>(agent), 1}; }
-  const Sensor& sensor(std::size_t agent) const {
-    return sensors_.of(planned_kind(mission_, static_cast<AgentId>(agent)));
-  }
-
   const Mission& mission_;
-  Controller controller_;
-  CoverageTable table_;
-  Sensors sensors_;
-  Coefficients coverage_;
+  ergocast::Observer observer_;
 };
 
 /// Hears what the logger hears.
@@ -121,7 +100,7 @@ class Observer : public lab::SimulationObserver {
       if (ended) continue;
       const Eigen::Vector3d& x_m = vehicles_[i].position_m;
       measure_.position(i, tick, x_m);
-      judge_.see(i, x_m);
+      judge_.see(i, tick, x_m);
     }
     if (ended || !measure_.wants_metric(tick)) return;
     measure_.metric(tick, judge_.metric());
@@ -143,17 +122,16 @@ StudyFigures fly_without_messages(const Mission& mission) {
   const Mission judged = in_cosines(mission);
   StudyMeasure measure(judged);
   lab::IdealTeam team(mission);
-  std::optional<Judge> judge;  // where the team's own φ² is not in cosines
-  if (mission.basis.free_domain) judge.emplace(judged);
+  Judge judge(judged);
   for (Tick tick = 0; tick < mission.timing.tick_count; ++tick) {
     for (std::size_t i = 0; i < team.size(); ++i) {
       measure.position(i, tick, team.x_m(i));
-      if (judge) judge->see(i, team.x_m(i));
+      judge.see(i, tick, team.x_m(i));
     }
     team.step();
     for (std::size_t i = 0; i < team.size(); ++i) measure.command(team.v_mps(i));
     if (!measure.wants_metric(tick)) continue;
-    measure.metric(tick, judge ? judge->metric() : team.metric());
+    measure.metric(tick, judge.metric());
   }
   StudyFigures figures = measure.figures();
   figures.messages = blocks_sent(mission);

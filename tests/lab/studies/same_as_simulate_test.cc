@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <sstream>
 
 #include "core/ideal_team.h"
+#include "lab/simulation.h"
 #include "lab/studies/study_run.h"
 #include "scenario/scenario.h"
 #include "team/plan.h"
@@ -70,6 +72,15 @@ std::string difference(const StudyFigures& a, const StudyFigures& b) {
   return names;
 }
 
+/// φ² at the end as the logger of a simulation has it.
+double recorded_metric(const std::vector<std::byte>& plan, bool free_domain) {
+  std::ostringstream trajectory, metrics;
+  lab::Simulation simulation({.plan = plan}, trajectory, metrics);
+  simulation.run();
+  const RunFacts& facts = simulation.recorder().facts();
+  return free_domain ? facts.cosine_metric_last : facts.ergodic_metric_last;
+}
+
 TEST(SameAsSimulate, WhateverTheScenarioSays) {
   Drawn drawn;
   std::set<std::string> unused = all_fields();
@@ -80,6 +91,12 @@ TEST(SameAsSimulate, WhateverTheScenarioSays) {
     const auto plan = encode_plan(drawn.compiled->mission());
     const StudyFigures simulated = studies::fly_with_messages(plan);
     ASSERT_EQ(difference(studies::fly_study_run(plan), simulated), "") << text;
+    if (mission.timing.pace == Pace::kLockstep) {
+      const double recorded = recorded_metric(plan, mission.basis.free_domain);
+      ASSERT_EQ(std::memcmp(&recorded, &simulated.metric, sizeof recorded), 0)
+          << recorded << ", " << simulated.metric << '\n'
+          << text;
+    }
     if (lab::IdealTeam::stands_for(mission)) {
       ++stood_for;
       for (const std::string& field : fields_of(drawn.scenario)) unused.erase(field);
