@@ -53,6 +53,10 @@ std::string number_at(const Json& summary, const char* pointer, const char* form
 }
 
 void print_stations(const Json& stations) {
+  if (stations.value("agents", 0) == 0) {
+    std::printf("  stations  no agent had to be home yet\n");
+    return;
+  }
   std::printf("  stations  %s of %s agents home in time, at most %s m away",
               text_at(stations, "/home").c_str(), text_at(stations, "/agents").c_str(),
               number_at(stations, "/farthest_m", "%.2f", 1).c_str());

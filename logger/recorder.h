@@ -50,7 +50,7 @@ struct RunFacts {
   /// number [m].
   double nearest_m = std::numeric_limits<double>::max();
   /// Of each agent that has a station: the farthest that its vehicle was from there at any recorded
-  /// tick of its rest, core/station.h [m].
+  /// tick of its rest, core/station.h, and at the end of the mission [m].
   std::map<AgentId, double> from_home_m;
 };
 
@@ -155,6 +155,10 @@ class Recorder {
   bool has_drivers() const;
   /// The number of the next row's tick among those that count.
   Tick counted() const { return next_row_ - uncounted_; }
+  /// Whether the next row is the mission's last.
+  bool ends_after_row() const {
+    return row_counts_ && counted() + 1 == mission().timing.tick_count;
+  }
   bool all_rows_written() const {
     return me_.knows_mission() && counted() >= mission().timing.tick_count;
   }
@@ -171,6 +175,7 @@ class Recorder {
   void write_trajectory(const State& now, const State& next);
   /// Whether a member drives that vehicle at the row's tick: others stand still and cover nothing.
   const RosterEntry* member(AgentId id) const;
+  void note_home(AgentId id, const Eigen::Vector3d& x_m);
   void observe(AgentId id, const Eigen::Vector3d& x_m);
   void end_row();
   void write_due_metrics();

@@ -30,6 +30,7 @@ void Recorder::write_trajectory(const State& now, const State& next) {
     const auto after = next.vehicles.find(id);
     if (after == next.vehicles.end() || std::pair(next_row_, id) <= former_.end) continue;
     observe(id, vehicle.position_m);
+    if (ends_after_row()) note_home(id, after->second.position_m);
     line += std::to_string(next_row_) + ',';
     append_number(line, t_s);
     line += ',' + std::to_string(id);
@@ -53,11 +54,18 @@ const RosterEntry* Recorder::member(AgentId id) const {
   return at == roster.end() ? nullptr : &*at;
 }
 
+/// Where an agent is that has to be at home.
+void Recorder::note_home(AgentId id, const Eigen::Vector3d& x_m) {
+  const auto home_m = station_of(mission(), id);
+  if (!home_m) return;
+  double& farthest_m = facts_.from_home_m[id];
+  farthest_m = std::max(farthest_m, (x_m - *home_m).norm());
+}
+
 void Recorder::observe(AgentId id, const Eigen::Vector3d& x_m) {
   const RosterEntry* entry = member(id);
   if (rests(mission(), id, counted())) {
-    double& farthest_m = facts_.from_home_m[id];
-    farthest_m = std::max(farthest_m, (x_m - *station_of(mission(), id)).norm());
+    note_home(id, x_m);
   } else if (entry != nullptr && row_counts_) {
     observer_.see(mission(), entry->kind, x_m);
     if (in_cosines_) cosines_.see(*in_cosines_, entry->kind, x_m);
@@ -74,8 +82,8 @@ void Recorder::end_row() {
 void Recorder::write_due_metrics() {
   const Mission& mission = me_.mission();
   const auto period = std::max<Tick>(1, std::llround(kMetricsPeriod_s / mission.timing.dt_s));
-  const bool last = counted() + 1 == mission.timing.tick_count;
-  if (!observer_.has_seen_any() || !row_counts_ || (counted() % period != 0 && !last)) return;
+  if (!observer_.has_seen_any() || !row_counts_) return;
+  if (counted() % period != 0 && !ends_after_row()) return;
   // No table has it, so a resumed record computes it from the rows.
   if (in_cosines_) facts_.cosine_metric_last = cosines_.metric(*in_cosines_);
   if (next_row_ <= former_.metrics.tick) return;

@@ -121,7 +121,7 @@ Json separation(const Recorder& recorder, const Mission& mission) {
 }
 
 /// Which agents were home in time: at their stations from the tick on from which they rest, in
-/// every row. Of a mission that ends before, nobody is judged.
+/// every row and at the mission's end. Of a mission that ends before, nobody is judged.
 Json stations(const Recorder& recorder, const Mission& mission) {
   Json late = Json::array();
   double farthest_m = 0;

@@ -34,5 +34,25 @@ TEST_F(AgentsWithAStation, RestAtHomeAsStatusAndSummarySay) {
   EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
 }
 
+// Without a reserve the mission's end is when they have to be there, after its last row.
+TEST_F(AgentsWithAStation, AreJudgedAtTheEndWithoutAReserve) {
+  const auto file =
+      scenario("", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } }\n");
+  EXPECT_EQ(ergocast({"simulate", file, "--out", out()}), 0) << output();
+  EXPECT_NE(output().find("4 of 4 agents home in time"), std::string::npos) << output();
+  EXPECT_EQ(summary()["stations"]["home"], 4) << summary()["stations"];
+  EXPECT_LT(summary()["stations"]["farthest_m"], 10);
+}
+
+TEST_F(AgentsWithAStation, AreNotJudgedWhereTheMissionEndsBefore) {
+  const auto file =
+      scenario("", "kind { name: \"robots\" count: 4 station { x_m: 500 y_m: 400 } }\n");
+  Child mission = launch_endless(file, {"--lcm-url", kUrl});
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
+  EXPECT_TRUE(said("no agent had to be home yet")) << said();
+  EXPECT_EQ(summary()["stations"]["agents"], 0);
+}
+
 }  // namespace
 }  // namespace ergocast::test
