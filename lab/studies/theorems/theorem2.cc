@@ -46,9 +46,10 @@ std::vector<Case> cases() {
   return {
       {"paper", "Fig. 2(a) as printed, edges reflect", paper_mission(), Edges::kReflect},
       {"paper-free", "Fig. 2(a) as printed, no edges", paper_mission(), Edges::kNone},
-      {"loud", "paper's target, k = 0.05, σ = 200, edges reflect", strong(0.05, 200),
-       Edges::kReflect},
-      {"loud-free", "paper's target, k = 0.05, σ = 200, no edges", strong(0.05, 200), Edges::kNone},
+      {"loud", "paper's target about (1000, 1000), k = 0.05, σ = 200, edges reflect",
+       strong(0.05, 200), Edges::kReflect},
+      {"loud-free", "paper's target about (1000, 1000), k = 0.05, σ = 200, no edges",
+       strong(0.05, 200), Edges::kNone},
       {"outward-loud", "u outward, k = 0.05, σ = 100", outward(0.05, 100, 0.1, 150), Edges::kNone},
       {"outward-quiet", "u outward, k = 0.05, σ = 1", outward(0.05, 1, 0.1, 150), Edges::kNone},
       {"outward-one", "u outward, k·dt = 1, σ = 3", outward(10, 3, 0.1, 15), Edges::kNone}};
