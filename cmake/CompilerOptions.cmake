@@ -17,6 +17,8 @@ add_library(ergocast_warnings INTERFACE)
 add_library(ergocast::warnings ALIAS ergocast_warnings)
 target_compile_options(ergocast_warnings INTERFACE
   -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local> -Wnon-virtual-dtor $<$<BOOL:${ERGOCAST_WERROR}>:-Werror>)
+# The page is one string.
+target_compile_options(ergocast_warnings INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-overlength-strings>)
 # GCC 12 sees overlaps in "text" + std::string that are not there (its bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(ergocast_warnings INTERFACE -Wno-restrict)

@@ -35,7 +35,8 @@ void MapTransform(benchmark::State& state) {
   Basis basis;
   basis.modes_x = basis.modes_y = modes;
   for (auto _ : state) {
-    RasterIntegral integral({domain, side, side}, domain, basis, free_area(domain, {}));
+    RasterIntegral integral({domain, side, side}, domain.size_m, basis,
+                            free_area(domain.size_m, {}));
     for (int row = 0; row < side; ++row) integral.add_row(row, row_of(rows, side, row));
     benchmark::DoNotOptimize(integral.shares());
   }
