@@ -41,7 +41,6 @@ ergocast_test(NAME target_tests LABELS unit
     target/cosine_integrals_test.cc
     target/fractional_domains_test.cc
     target/map_file_test.cc
-    target/map_memory_test.cc
     target/polygon_target_test.cc
     target/raster_integral_test.cc
     target/target_in_space_test.cc
@@ -192,11 +191,9 @@ ergocast_test(NAME studies_tests LABELS unit
     lab/studies/linearised_test.cc
     lab/studies/plans_test.cc
     lab/studies/rare_modes_test.cc
-    lab/studies/same_as_simulate_test.cc
     lab/studies/study_run_test.cc
     lab/studies/study_table_test.cc
     lab/studies/table_test.cc
-    support/drawn_scenario.cc
   LIBS ergocast_studies ergocast_theorems ergocast_plans ergocast_scenario_messages PNG::PNG)
 
 ergocast_test(NAME example_tests LABELS unit
@@ -236,6 +233,5 @@ ergocast_test(NAME lab_tests LABELS lab
     lab/laboratory_test.cc
     lab/large_team_test.cc
     lab/message_loss_test.cc
-    lab/moved_scenario_test.cc
     lab/pause_test.cc
-  LIBS ergocast_lab ergocast::scenario ergocast_scenario_messages)
+  LIBS ergocast_lab ergocast::scenario)

@@ -1,5 +1,5 @@
-# Tests of the programs as people use them, which ./test builds without sanitizers; and of what they compute
-# for long: sanitizers would make twelve of the paper's missions out of one.
+# Tests of the programs as people use them, which ./test builds without sanitizers; of memory; and of what
+# takes long to compute, which sanitizers would make twelve times as long.
 add_dependencies(all_lab ergocast)
 
 # Replaces the program's allocator, so it stays alone.
@@ -9,6 +9,17 @@ ergocast_test(NAME allocation_tests LABELS unit
 target_link_options(allocation_tests PRIVATE
   -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
 
+# How much memory a map takes.
+ergocast_test(NAME memory_tests LABELS unit
+  SOURCES target/map_memory_test.cc
+  LIBS ergocast::target PNG::PNG)
+
+ergocast_test(NAME same_mission_tests LABELS lab
+  SOURCES
+    lab/moved_scenario_test.cc
+    lab/studies/same_as_simulate_test.cc
+    support/drawn_scenario.cc
+  LIBS ergocast_studies ergocast_lab ergocast::scenario ergocast_scenario_messages PNG::PNG)
 ergocast_test(NAME paper_tests LABELS paper
   SOURCES
     paper/corollary1_test.cc

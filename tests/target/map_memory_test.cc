@@ -9,12 +9,6 @@
 #include "tests/support/grey_png.h"
 #include "tests/support/temp_folder.h"
 
-#ifdef __has_feature  // clang's way to say what GCC says with __SANITIZE_ADDRESS__
-#define ERGOCAST_CLANG_SANITIZES __has_feature(address_sanitizer)
-#else
-#define ERGOCAST_CLANG_SANITIZES 0
-#endif
-
 namespace ergocast {
 namespace {
 
@@ -29,9 +23,6 @@ double memory_mib(const std::string& key) {
 }
 
 TEST(MapMemory, IsThatOfRowsAndNotOfTheMap) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || ERGOCAST_CLANG_SANITIZES
-  GTEST_SKIP() << "a sanitizer needs more than the program";
-#endif
   constexpr int kSide = 4096;
   const test::TempFolder folder;
   const auto file = folder.path() / "map_memory.png";
