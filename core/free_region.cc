@@ -19,7 +19,8 @@ namespace {
 constexpr double kFewestCells = 16;
 constexpr double kLeastPart = 1e-3;
 constexpr int kNotFree = -1, kUnreached = -2;
-/// Of two ways that rounding alone makes different.
+/// Two ways whose lengths differ by a smaller factor than this are equally short: rounding alone
+/// makes that difference.
 constexpr double kSameWay = 1 + 1e-9;
 
 struct Offset {

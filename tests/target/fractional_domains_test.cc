@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-/// Of the quadrature.
+/// How far a μ_k may be from its quadrature.
 constexpr double kTolerance = 1e-10;
 
 /// A number with three digits, as a person writes it.
