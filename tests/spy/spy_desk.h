@@ -127,10 +127,12 @@ class Desk : public WithProbe {
 
   /// Without a socket file and a lock file, which all tests of a machine would share, the only name
   /// of a screen is the abstract socket in the network of the test.
+  // Without -noreset the screen starts anew whenever its last client leaves, and refuses others
+  // meanwhile: xdotool may be its only client while the window manager still starts.
   std::vector<std::string> screen_command(const std::vector<std::string>& more) const {
-    std::vector<std::string> command{"/usr/bin/Xvfb", "-screen", "0",         "1600x1000x24",
-                                     "-nolisten",     "tcp",     "-nolisten", "unix",
-                                     "-nolock",       "-fbdir",  folder_};
+    std::vector<std::string> command{"/usr/bin/Xvfb", "-screen",  "0",         "1600x1000x24",
+                                     "-nolisten",     "tcp",      "-nolisten", "unix",
+                                     "-nolock",       "-noreset", "-fbdir",    folder_};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }
