@@ -13,6 +13,18 @@
 
 namespace ergocast {
 
+namespace {
+
+/// A box with all sides as long as the longest one. The gradient of a mode is steep across a short
+/// side, where it says little: an ε that counted it would stop agents from going along the others.
+Box cube_around(const Box& domain) {
+  Box cube = domain;
+  cube.size_m.head(domain.planar() ? 2 : 3).setConstant(domain.size_m.maxCoeff());
+  return cube;
+}
+
+}  // namespace
+
 Eigen::Vector3d smooth_input(const Eigen::Vector3d& spectral_gradient, double epsilon,
                              double u_max_mps) {
   // hypot, because B is 1e-4 and falling: its square would lose the smallest residuals.
@@ -33,7 +45,7 @@ Controller::Controller(const Mission& mission, int kind)
       push_ticks_(push_ticks(law_, mission.timing.dt_s)),
       target_(mission.target_coefficients),
       weights_(steering_weights(mission, kind)),
-      energies_(gradient_energies(mission.basis, mission.domain)),
+      energies_(gradient_energies(mission.basis, cube_around(mission.domain))),
       residual_(Coefficients::Zero(mission.basis.mode_count())) {
   ERGOCAST_REQUIRE(target_.size() == mission.basis.mode_count());
   if (!mission.kinds.empty()) metric_weights_ = sobolev_weights(mission.basis, mission.domain);

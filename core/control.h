@@ -51,8 +51,8 @@ class Controller {
   };
 
   Eigen::Vector3d push(AgentId agent, Tick stretch);
-  /// Sets the residual λ g (c − μ) in the kind's band; returns the RMS over the domain of ‖Σ λ g (c
-  /// − μ) ∇f‖ [1/m].
+  /// Sets the residual λ g (c − μ) in the kind's band; returns the RMS of ‖Σ λ g (c − μ) ∇f‖ over a
+  /// domain with all sides as long as the longest [1/m].
   double set_residual(const Coefficients& coverage);
 
   Box domain_;

@@ -147,9 +147,10 @@ Eigen::VectorXd free_weights(const FreeModes& modes, bool squared_norm, double e
   return weights;
 }
 
-double free_spread_m(const FreeModes& modes, const Eigen::VectorXd& target) {
-  double mass = 0, square_m2 = 0;
+Eigen::Matrix2d free_covariance_m2(const FreeModes& modes, const Eigen::VectorXd& target) {
+  double mass = 0;
   Eigen::Vector2d mean_m(0, 0);
+  Eigen::Matrix2d square_m2 = Eigen::Matrix2d::Zero();
   for (int cell = 0; cell < modes.cell_count; ++cell) {
     double density = 0;  // in multiples of the mean
     for (int k = 0; k < modes.mode_count; ++k) {
@@ -159,10 +160,12 @@ double free_spread_m(const FreeModes& modes, const Eigen::VectorXd& target) {
     const Eigen::Vector2d x_m = modes.center_m(cell) - modes.origin_m;
     mass += density;
     mean_m += density * x_m;
-    square_m2 += density * x_m.squaredNorm();
+    square_m2 += density * x_m * x_m.transpose();
   }
   mean_m /= mass;
-  return std::sqrt(std::max(0.0, square_m2 / mass - mean_m.squaredNorm()));
+  Eigen::Matrix2d covariance_m2 = square_m2 / mass - mean_m * mean_m.transpose();
+  covariance_m2.diagonal() = covariance_m2.diagonal().cwiseMax(0);
+  return covariance_m2;
 }
 
 }  // namespace ergocast

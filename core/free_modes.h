@@ -85,7 +85,7 @@ FreeField free_field(const FreePlace& at, const double* weights);
 Eigen::VectorXd free_weights(const FreeModes& modes, bool squared_norm, double exponent,
                              bool normalized);
 
-/// The RMS distance from its mean of a mass whose coefficients are `target`, over the free cells.
-double free_spread_m(const FreeModes& modes, const Eigen::VectorXd& target);
+/// The covariance [m²] of a mass whose coefficients are `target`, over the free cells.
+Eigen::Matrix2d free_covariance_m2(const FreeModes& modes, const Eigen::VectorXd& target);
 
 }  // namespace ergocast

@@ -2,18 +2,31 @@
 // How far ahead an agent looks: the weights of core/forecast.h.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "core/basis.h"
 #include "core/ids.h"
 #include "core/mission.h"
 
 namespace ergocast {
 
-/// The RMS distance of the target's mass from its mean, s = √(Var x + Var y + Var z) [m], from μ
-/// alone, with L the domain's size along an axis and μ_m the coefficients along it:
-///   E[x]/L = ½ − Σ_{m odd} 4 μ_m / (π² m²),   E[x²]/L² = ⅓ + Σ_{m ≥ 1} (−1)^m 4 μ_m / (π² m²)
-/// The sums end with the last mode; the rest of each is at most 4 / (π² (modes − ½)). In a free
-/// domain free_spread_m().
-double target_spread_m(const Coefficients& target, const Basis& basis, const Box& domain);
+/// The covariance of the target's mass [m²], from μ alone. With L the domain's size along an axis,
+/// μ_m the coefficients along it, and a_m = 4 / (π² m²):
+///   E[x]/L = ½ − Σ_{m odd} a_m μ_m,   E[x²]/L² = ⅓ + Σ_{m ≥ 1} (−1)^m a_m μ_m
+///   Cov[x, y] / (Lx Ly) = Σ_{m, n odd} a_m a_n (μ_mn − μ_m μ_n)
+/// The sums end with the last mode; the rest of each of the first two is at most 4 / (π² (modes −
+/// ½)). In a free domain free_covariance_m2(). Along z it is 0 in a plane.
+Eigen::Matrix3d target_covariance_m2(const Coefficients& target, const Basis& basis,
+                                     const Box& domain);
+
+/// The RMS distance of the target's mass from its mean, s = √tr C [m].
+double target_spread_m(const Eigen::Matrix3d& covariance_m2);
+
+/// In how many dimensions a team shares out a target with the covariance C:
+///   d = (tr C)² / tr C²,   2 at most
+/// It is 1 for a strip and 2 for a square. Cubes count as squares: a longer horizon was found to be
+/// worse there. @return 2 if C is 0
+double shared_dimensions(const Eigen::Matrix3d& covariance_m2);
 
 /// h and the weights of a teammate's gains, for one mission.
 class LookAhead {
@@ -23,8 +36,9 @@ class LookAhead {
   /// Whether the mission's law looks ahead at all.
   bool any() const { return alone_s_ > 0; }
 
-  /// h = a s / (u_max √n) [s] for a team of `n`; with ends_with_plan at most the time left at
-  /// `tick`, which is 0 after the end.
+  /// h = a s √(d/2) / (u_max n^(1/d)) [s] for a team of `n`, with d = shared_dimensions(): about
+  /// the time to cross an agent's share. With ends_with_plan at most the time left at `tick`, which
+  /// is 0 after the end.
   double horizon_s(int n, Tick tick) const;
 
   /// For how long [s] a teammate's rate over `span` ticks, last known `age` ticks ago, is assumed
@@ -37,9 +51,12 @@ class LookAhead {
   Tick longest_period() const { return longest_period_; }
 
  private:
+  LookAhead(const Mission& mission, const Eigen::Matrix3d& covariance_m2);
+
   double dt_s_;
-  double alone_s_;  // h of a team of one
-  Tick end_tick_;   // where h ends at the latest
+  double alone_s_;             // h of a team of one
+  double inverse_dimensions_;  // 1 / d
+  Tick end_tick_;              // where h ends at the latest
   Tick longest_period_;
 };
 

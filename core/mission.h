@@ -17,7 +17,7 @@ namespace ergocast {
 
 enum class Regularization {
   kAbsolute,  ///< ε as in (8), in the unit of B
-  kRelative,  ///< ε = epsilon · RMS over the domain of ‖Σ λ (c − μ) ∇f‖
+  kRelative,  ///< ε = epsilon · RMS of ‖Σ λ (c − μ) ∇f‖, see core/control.h
 };
 
 enum class Perturbation {

@@ -16,22 +16,46 @@ namespace {
 /// A teammate that is silent for so many announced periods has no forecast any more.
 constexpr Tick kPeriodsUntilDead = 8;
 
-/// The second moment about the mean of  (1 + 2 Σ_m μ_m cos(mπx/L)) / L  over [0, L], which is the
-/// target's marginal: the integrals of x cos and x² cos over it are known.
-template <class Mu>
-double marginal_variance(double length_m, int modes, const Mu& mu) {
-  double mean_m = length_m / 2, square_m2 = length_m * length_m / 3;
-  for (int m = 1; m < modes; ++m) {
-    const double sign = m % 2 == 0 ? 1 : -1, k_per_m = m * std::numbers::pi / length_m;
-    mean_m += 2 * mu(m) * (sign - 1) / (k_per_m * k_per_m * length_m);
-    square_m2 += 4 * mu(m) * sign / (k_per_m * k_per_m);
-  }
-  return std::max(0.0, square_m2 - mean_m * mean_m);
+/// ∫ (x/L)^power cos(mπx/L) dx / L over [0, L], for the powers 0, 1 and 2.
+double moment(int mode, int power) {
+  if (mode == 0) return 1.0 / (power + 1);
+  const double sign = mode % 2 == 0 ? 1 : -1, k = mode * std::numbers::pi;
+  return power == 0 ? 0 : power == 1 ? (sign - 1) / (k * k) : 2 * sign / (k * k);
 }
 
-/// The same of a target in the modes of a free domain, in x and y together: of Σ μ_k e_k / mean
-/// e_k² in each cell.
-double free_variance(const FreeModes& modes, const Coefficients& mu) {
+/// The mean of (x_a/L_a) (x_b/L_b) over the density Σ (2 where m > 0) (2 where n > 0) μ_mn cos cos,
+/// or of (x_a/L_a)^power for a single axis.
+struct Moments {
+  const Mission& mission;
+  int count(int axis) const {
+    const Basis& basis = mission.basis;
+    return axis == 0 ? basis.modes_x : axis == 1 ? basis.modes_y : basis.modes_z;
+  }
+  double mu(const Eigen::Vector3i& mode) const {
+    const Basis& basis = mission.basis;
+    return mission
+        .target_coefficients[(mode.z() * basis.modes_x + mode.x()) * basis.modes_y + mode.y()];
+  }
+  double of(int axis, int power) const {
+    double sum = 0;
+    for (int m = 0; m < count(axis); ++m)
+      sum += (m > 0 ? 2 : 1) * mu(m * Eigen::Vector3i::Unit(axis)) * moment(m, power);
+    return sum;
+  }
+  double of_both(int a, int b) const {
+    double sum = 0;
+    for (int m = 0; m < count(a); ++m) {
+      for (int n = 0; n < count(b); ++n) {
+        const Eigen::Vector3i mode = m * Eigen::Vector3i::Unit(a) + n * Eigen::Vector3i::Unit(b);
+        sum += (m > 0 ? 2 : 1) * (n > 0 ? 2 : 1) * mu(mode) * moment(m, 1) * moment(n, 1);
+      }
+    }
+    return sum;
+  }
+};
+
+/// The covariance of a target in the modes of a free domain: of Σ μ_k e_k / mean e_k² in each cell.
+Eigen::Matrix2d free_covariance(const FreeModes& modes, const Coefficients& mu) {
   Eigen::VectorXd shares(modes.cell_count);
   Eigen::Matrix2Xd places_m(2, modes.cell_count);
   for (int cell = 0; cell < modes.cell_count; ++cell) {
@@ -44,28 +68,39 @@ double free_variance(const FreeModes& modes, const Coefficients& mu) {
   }
   shares /= shares.sum();
   const Eigen::Vector2d mean_m = places_m * shares;
-  return std::max(0.0, (places_m.colwise() - mean_m).colwise().squaredNorm().dot(shares));
+  const Eigen::Matrix2Xd from_mean_m = places_m.colwise() - mean_m;
+  return from_mean_m * shares.asDiagonal() * from_mean_m.transpose();
 }
 
-/// The second moment of the target about its mean.
-double target_variance(const Mission& mission) {
-  const Coefficients& mu = mission.target_coefficients;
-  if (mission.basis.free_domain) return free_variance(*mission.basis.free_modes(), mu);
-  const auto [modes_x, modes_y, modes_z] =
-      std::tuple(mission.basis.modes_x, mission.basis.modes_y, mission.basis.modes_z);
-  // The modes along an axis are so far from each other in the order of the basis.
-  const auto variance_m2 = [&](int axis, int modes, int apart) {
-    return marginal_variance(mission.domain.size_m[axis], modes,
-                             [&](int mode) { return mu[mode * apart]; });
-  };
-  const double in_plane_m2 = variance_m2(0, modes_x, modes_y) + variance_m2(1, modes_y, 1);
-  return in_plane_m2 + variance_m2(2, modes_z, modes_x * modes_y);
+Eigen::Matrix3d target_covariance(const Mission& mission) {
+  Eigen::Matrix3d all_m2 = Eigen::Matrix3d::Zero();
+  if (mission.basis.free_domain) {
+    all_m2.topLeftCorner<2, 2>() =
+        free_covariance(*mission.basis.free_modes(), mission.target_coefficients);
+    return all_m2;
+  }
+  const Moments mean{mission};
+  const auto& size_m = mission.domain.size_m;
+  for (int a = 0; a < (mission.domain.planar() ? 2 : 3); ++a) {
+    for (int b = 0; b < (mission.domain.planar() ? 2 : 3); ++b) {
+      const double together = a == b ? mean.of(a, 2) : mean.of_both(a, b);
+      all_m2(a, b) = (together - mean.of(a, 1) * mean.of(b, 1)) * size_m[a] * size_m[b];
+    }
+  }
+  return all_m2;
 }
 
-/// h for a team of n: a s / (u_max √n), and at most what is left where the plan says so.
-double horizon_s(const Mission& mission, double variance_m2, int n, Tick tick) {
-  const double spread_m = std::sqrt(variance_m2);
-  const double h_s = mission.law.anticipation * spread_m / mission.law.u_max_mps / std::sqrt(n);
+/// h for a team of n: a s √(d/2) / (u_max n^(1/d)), and at most what is left where the plan says
+/// so.
+double horizon_s(const Mission& mission, const Eigen::Matrix3d& covariance_m2, int n, Tick tick) {
+  const double variance_m2 = std::max(0.0, covariance_m2.trace());
+  double dimensions = 2;
+  if (variance_m2 > 0) {
+    const Eigen::Matrix3d shares = covariance_m2 / variance_m2;
+    dimensions = std::min(2.0, 1 / (shares * shares).trace());
+  }
+  const double h_s = mission.law.anticipation * std::sqrt(variance_m2 * dimensions / 2) /
+                     mission.law.u_max_mps / std::pow(n, 1 / dimensions);
   if (!mission.law.ends_with_plan) return h_s;
   const Tick left = std::max<Tick>(0, mission.timing.tick_count - tick);
   return std::min(h_s, static_cast<double>(left) * mission.timing.dt_s);
@@ -334,14 +369,15 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
 Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) const {
   const double dt_s = mission.timing.dt_s;
   Coefficients c = Coefficients::Zero(mission.basis.mode_count());
-  if (!variance_m2_) variance_m2_ = target_variance(mission);
+  if (!covariance_m2_) covariance_m2_ = target_covariance(mission);
   const auto team = this->team(mission, agent);
   const int size = block_size(mission);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const auto at = static_cast<std::size_t>(b);
     const auto fly = std::count_if(team.begin(), team.end(),
                                    [at](const auto& parts) { return parts[at].gained_steps > 0; });
-    const double h_s = horizon_s(mission, *variance_m2_, 1 + static_cast<int>(fly), agent.counted);
+    const double h_s =
+        horizon_s(mission, *covariance_m2_, 1 + static_cast<int>(fly), agent.counted);
     double time_s = 0;
     std::vector<double> sums(static_cast<std::size_t>(size));
     for (const auto& parts : team) {

@@ -82,7 +82,7 @@ class Shadow {
   const WireModes& modes(const Mission& mission) const;
 
   mutable WireModes modes_;
-  mutable std::optional<double> variance_m2_;  // of the target
+  mutable std::optional<Eigen::Matrix3d> covariance_m2_;  // of the target
   Tick active_from_;
   std::map<Author, Row> rows_;
   std::map<AgentId, std::deque<Place>> places_;     // ascending by tick; the oldest go

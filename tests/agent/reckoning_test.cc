@@ -51,9 +51,7 @@ Coefficients sums_of(const Mission& mission, const Path& path_m) {
 Coefficients foreseen(const Mission& mission, Tick own_from, Tick tick, const Path& theirs,
                       std::size_t gained, Tick age) {
   const double dt_s = mission.timing.dt_s;
-  const double h_s = mission.law.anticipation *
-                     target_spread_m(mission.target_coefficients, mission.basis, mission.domain) /
-                     mission.law.u_max_mps / std::sqrt(2.0);
+  const double h_s = LookAhead(mission).horizon_s(2, 0);
   const double weight_s = h_s + static_cast<double>(static_cast<Tick>(gained) + age) * dt_s;
   Path own;
   for (Tick t = own_from; t <= tick; ++t) own.push_back(own_place(t));

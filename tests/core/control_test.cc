@@ -138,7 +138,8 @@ Eigen::Vector3d reference_gradient(const Mission& mission, const Eigen::Vector3d
   return b;
 }
 
-/// RMS over the domain of ‖Σ a ∇f‖ by midpoints, of which twice the highest mode are exact.
+/// RMS of ‖Σ a ∇f‖ over the domain stretched to a square, by midpoints, of which twice the highest
+/// mode are exact.
 double reference_rms(const Mission& mission, const Coefficients& coverage) {
   constexpr int kPoints = 24;
   double sum = 0;
@@ -147,10 +148,11 @@ double reference_rms(const Mission& mission, const Coefficients& coverage) {
       const Eigen::Vector3d share((i + 0.5) / kPoints, (j + 0.5) / kPoints, 0);
       const Eigen::Vector3d x_m =
           mission.domain.origin_m + share.cwiseProduct(mission.domain.size_m);
-      sum += reference_gradient(mission, x_m, coverage).squaredNorm();
+      const Eigen::Vector3d gradient = reference_gradient(mission, x_m, coverage);
+      sum += gradient.cwiseProduct(mission.domain.size_m).squaredNorm();
     }
   }
-  return std::sqrt(sum) / kPoints;
+  return std::sqrt(sum) / kPoints / mission.domain.size_m.maxCoeff();
 }
 
 Eigen::Vector3d reference_command(const Mission& mission, AgentId agent, Tick tick,

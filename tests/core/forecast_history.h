@@ -186,8 +186,10 @@ inline double weight_s(const Row& row, double horizon_s, Tick now) {
 }
 
 inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
-  const double spread_m =
-      target_spread_m(mission.target_coefficients, mission.basis, mission.domain);
+  const Eigen::Matrix3d covariance_m2 =
+      target_covariance_m2(mission.target_coefficients, mission.basis, mission.domain);
+  const double spread_m = target_spread_m(covariance_m2);
+  const double dimensions = shared_dimensions(covariance_m2);
   Coefficients foreseen = Coefficients::Zero(144);
   auto rows = rows_of(known);
   for (int b = 0; b < 2; ++b) {
@@ -204,8 +206,8 @@ inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
       flying.push_back(&row);
       ++n;
     }
-    const double horizon_s =
-        mission.law.anticipation * spread_m / (mission.law.u_max_mps * std::sqrt(n));
+    const double horizon_s = mission.law.anticipation * spread_m * std::sqrt(dimensions / 2) /
+                             (mission.law.u_max_mps * std::pow(n, 1 / dimensions));
     for (int k = b * kBlockSize; k < std::min((b + 1) * kBlockSize, 144); ++k) {
       const auto at = static_cast<std::size_t>(k - b * kBlockSize);
       double above = 0, below_s = 0;

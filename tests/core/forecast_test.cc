@@ -248,7 +248,8 @@ TEST(ForecastCounts, AGainThatIsJustPossible) {
 }
 
 TEST(ForecastCounts, WhoHasBeenSilentForTooLongInTheTeamsNumberOnly) {
-  const Mission mission = mission_of(false);
+  Mission mission = mission_of(false);
+  mission.law.anticipation *= 2;  // beyond the age of the last block of agent 1
   Known known = team_of(3, mission);
   std::erase_if(known.heard, [](const Contribution& block) {
     return block.header.sender == 1 && block.header.tick > 2;
@@ -263,7 +264,9 @@ TEST(ForecastCounts, WhoHasBeenSilentForTooLongInTheTeamsNumberOnly) {
   // 2 goes on with the horizon of a team of three.
   Known alone = without_hope_for_1(later);
   Mission longer = mission;
-  longer.law.anticipation *= std::sqrt(2.0 / 3);
+  const double dimensions = shared_dimensions(
+      target_covariance_m2(mission.target_coefficients, mission.basis, mission.domain));
+  longer.law.anticipation *= std::pow(2.0 / 3, 1 / dimensions);
   EXPECT_LT((foreseen(later, mission) - foreseen(alone, longer)).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_NE(foreseen(known, mission), foreseen(without_hope_for_1(known), longer))
       << "at first it counts";

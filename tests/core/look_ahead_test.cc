@@ -33,9 +33,11 @@ TargetDensity bells(const std::vector<Gaussian>& gaussians, double uniform_weigh
 
 Eigen::Matrix3d round(double sigma_m) { return sigma_m * sigma_m * Eigen::Matrix3d::Identity(); }
 
-double spread_m(const Mission& mission) {
-  return target_spread_m(mission.target_coefficients, mission.basis, mission.domain);
+Eigen::Matrix3d covariance_m2(const Mission& mission) {
+  return target_covariance_m2(mission.target_coefficients, mission.basis, mission.domain);
 }
+
+double spread_m(const Mission& mission) { return target_spread_m(covariance_m2(mission)); }
 
 /// From the definition: the density on a grid of 1000 × 1000 midpoints.
 double integrated_spread_m(const TargetDensity& target, const Box& domain) {
@@ -111,7 +113,7 @@ TEST(TargetSpread, InSpaceCountsEachAxis) {
   target[3] = 0.3 / 2;   // m = 1
   target[1] = -0.6 / 2;  // n = 1
   target[6] = 0.9 / 2;   // l = 1
-  EXPECT_NEAR(target_spread_m(target, basis, box),
+  EXPECT_NEAR(target_spread_m(target_covariance_m2(target, basis, box)),
               std::hypot(300 * deviation(0.3), 200 * deviation(0.6), 80 * deviation(0.9)), 1e-10);
 }
 
@@ -137,6 +139,61 @@ TEST(TargetSpread, OfOneModeIsTheUniformTargets) {
   EXPECT_NEAR(spread_m(mission), 2000 / std::sqrt(6), 1e-9);
 }
 
+// ---- d -----------------------------------------------------------------------------------------
+
+double dimensions(const Mission& mission) { return shared_dimensions(covariance_m2(mission)); }
+
+TEST(SharedDimensions, AreTwoOfASquareAndOneOfAStrip) {
+  EXPECT_NEAR(dimensions(mission_of(bells({}, 1), {{0, 0, 0}, {2000, 2000, 0}})), 2, 1e-12);
+  EXPECT_NEAR(dimensions(mission_of(bells({}, 1), {{7, 0, 0}, {20000, 200, 0}})), 1, 3e-4);
+  EXPECT_NEAR(dimensions(mission_of(bells({}, 1), {{0, 3, 0}, {200, 20000, 0}})), 1, 3e-4);
+  // (1 + ¼)² / (1 + 1/16)
+  EXPECT_NEAR(dimensions(mission_of(bells({}, 1), {{0, 0, 0}, {2000, 1000, 0}})), 25. / 17, 1e-12);
+}
+
+// Two peaks on a diagonal lie along a line, whatever the axes are called.
+TEST(SharedDimensions, FollowTheTargetAndNotTheDomain) {
+  const Box square{{-40, 3, 0}, {2000, 2000, 0}};
+  const auto two = [&](double y_m, double other_y_m) {
+    return dimensions(
+        mission_of(bells({{1, {300, y_m, 0}, round(100)}, {1, {1640, other_y_m, 0}, round(100)}}),
+                   square, 32));
+  };
+  EXPECT_NEAR(two(333, 1673), two(1003, 1003), 0.2);
+  EXPECT_NEAR(two(333, 1673), two(1673, 333), 1e-9);
+  EXPECT_LT(two(333, 1673), 1.1);
+}
+
+TEST(SharedDimensions, AreThoseOfTheCovarianceOnAGrid) {
+  for (const auto& [name, target, domain] : smooth_targets()) {
+    constexpr int kCells = 400;
+    double mass = 0;
+    Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d square_m2 = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < kCells; ++i) {
+      for (int j = 0; j < kCells; ++j) {
+        const Eigen::Vector3d at_m =
+            Eigen::Vector3d(i + 0.5, j + 0.5, 0).cwiseProduct(domain.size_m) / kCells;
+        const double here = density_unscaled(target, domain, domain.origin_m + at_m);
+        mass += here;
+        mean_m += here * at_m;
+        square_m2 += here * at_m * at_m.transpose();
+      }
+    }
+    mean_m /= mass;
+    const Eigen::Matrix3d expected_m2 = square_m2 / mass - mean_m * mean_m.transpose();
+    const Mission mission = mission_of(target, domain, 24);
+    EXPECT_LE((covariance_m2(mission) - expected_m2).norm(), 3e-3 * expected_m2.norm()) << name;
+    EXPECT_NEAR(dimensions(mission), shared_dimensions(expected_m2), 1e-2) << name;
+  }
+}
+
+TEST(SharedDimensions, OfACubeOrAPointAreTwo) {
+  EXPECT_EQ(shared_dimensions(Eigen::Matrix3d::Identity()), 2);
+  EXPECT_EQ(shared_dimensions(Eigen::Matrix3d::Zero()), 2);
+  EXPECT_NEAR(shared_dimensions(Eigen::Vector3d(1e-200, 1e-200, 0).asDiagonal()), 2, 1e-12);
+}
+
 // ---- h -----------------------------------------------------------------------------------------
 
 const Box kSquare{{0, 0, 0}, {2000, 2000, 0}};
@@ -154,6 +211,14 @@ TEST(Horizon, IsAnticipationTimesSOverSpeedAndRootOfN) {
     for (const int n : {1, 2, 4, 64}) {
       EXPECT_NEAR(look_ahead.horizon_s(n, 123), anticipation * kCrossing_s / std::sqrt(n), 1e-9);
     }
+  }
+}
+
+TEST(Horizon, OfAStripIsThatOfAShareOfItsLength) {
+  const LookAhead look_ahead(mission_of(bells({}, 1), {{0, 0, 0}, {1e6, 10, 0}}));
+  const double alone_s = 2 * 1e6 / std::sqrt(12) / 20 / std::sqrt(2);
+  for (const int n : {1, 2, 4, 64}) {
+    EXPECT_NEAR(look_ahead.horizon_s(n, 123), alone_s / n, 1e-6 * alone_s) << n;
   }
 }
 

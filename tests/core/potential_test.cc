@@ -132,11 +132,7 @@ class FreshTeam {
   double covered_s() const { return table_->covered_s(); }
   /// What each teammate's gains are taken to go on for: h, and the tick that they took.
   double weight_s() const {
-    const double spread_m =
-        target_spread_m(mission_.target_coefficients, mission_.basis, mission_.domain);
-    return mission_.law.anticipation * spread_m /
-               (mission_.law.u_max_mps * std::sqrt(static_cast<double>(size()))) +
-           kDt;
+    return LookAhead(mission_).horizon_s(static_cast<int>(size()), 0) + kDt;
   }
   double product(const Coefficients& a, const Coefficients& b) const {
     return (weights_.array() * a.array() * b.array()).sum();

@@ -222,9 +222,11 @@ TEST(FreeModes, SpreadIsThatOfTheMass) {
       target[k] += density * static_cast<double>(modes.values_of(cell)[k]);
   }
   target /= mass;
-  EXPECT_NEAR(target_spread_m(target, basis, test::square()), 150 * std::sqrt(2), 15);
-  EXPECT_NEAR(target_spread_m(Coefficients::Unit(60, 0), basis, test::square()),
-              test::kSide_m / std::sqrt(6), 5);
+  EXPECT_NEAR(target_spread_m(target_covariance_m2(target, basis, test::square())),
+              150 * std::sqrt(2), 15);
+  EXPECT_NEAR(
+      target_spread_m(target_covariance_m2(Coefficients::Unit(60, 0), basis, test::square())),
+      test::kSide_m / std::sqrt(6), 5);
 }
 
 }  // namespace

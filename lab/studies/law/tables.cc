@@ -289,6 +289,7 @@ void run(const fs::path& folder, const fs::path& images) {
                       {"sixteen", sized}});
   print_laws(folder, {{"sizes", sized}, {"crowd", timed}, {"starts", timed}});
   print_laws(folder, {{"targets", timed},
+                      {"long-domains", timed},
                       {"divided", sized},
                       {"far", timed},
                       {"modes", {"", " s", " modes along x", " along y"}}});
