@@ -18,7 +18,7 @@
 namespace ergocast::cli {
 namespace {
 
-constexpr int kWaiting = 128;  // connections that the kernel holds for the server
+constexpr int kWaiting = 1024;  // connections that the kernel holds for the server
 
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};

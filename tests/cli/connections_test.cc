@@ -41,8 +41,9 @@ class Client {
     pollfd connected{socket_.fd(), POLLOUT, 0};
     poll(&connected, 1, -1);
   }
-  void send(const std::string& bytes) const {
-    ::send(socket_.fd(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  /// Whether the connection is still open.
+  bool send(const std::string& bytes) const {
+    return ::send(socket_.fd(), bytes.data(), bytes.size(), MSG_NOSIGNAL) >= 0;
   }
   void look() {
     char bytes[65536];
@@ -51,6 +52,7 @@ class Client {
       if (count > 0) {
         text_.append(bytes, static_cast<std::size_t>(count));
       } else {
+        was_reset_ = was_reset_ || (count < 0 && errno == ECONNRESET);
         ended_ = ended_ || count == 0 || errno != EAGAIN;
         return;
       }
@@ -59,11 +61,12 @@ class Client {
   bool got(const std::string& part) const { return text_.find(part) != text_.npos; }
   const std::string& text() const { return text_; }
   bool ended() const { return ended_; }
+  bool was_reset() const { return was_reset_; }
 
  private:
   Socket socket_;
   std::string text_;
-  bool ended_ = false;
+  bool ended_ = false, was_reset_ = false;
 };
 
 constexpr const char* kHalf = "GET / HTTP/1.1\r\nX";
@@ -139,7 +142,9 @@ TEST_F(PageConnections, AWholeRequestIsAnsweredAndTheConnectionEnds) {
 
 TEST_F(PageConnections, WhatFollowsARequestDoesNotCostTheAnswer) {
   Client& user = client(kPage + std::string(100'000, 'x'));
-  EXPECT_TRUE(gets(user, "the page"));
+  EXPECT_TRUE(ends(user));
+  EXPECT_TRUE(user.got("the page"));
+  EXPECT_FALSE(user.was_reset());  // then a slower client would lose it
 }
 
 TEST_F(PageConnections, ALongHeadIsRefused) {
@@ -149,7 +154,8 @@ TEST_F(PageConnections, ALongHeadIsRefused) {
   Client& longer = client("GET / HTTP/1.1\r\nX: ");
   longer.send(std::string(Connections::kLongestHead - 22, 'x') + "\r\n\r\n");
   EXPECT_TRUE(gets(longer, "HTTP/1.1 431 "));
-  EXPECT_TRUE(ends(longer, 100ms));
+  EXPECT_TRUE(ends(longer));
+  EXPECT_TRUE(comes([&] { return !longer.send("x"); }, 100ms));  // it is not read for ever
 }
 
 TEST_F(PageConnections, AHeadThatTricklesInIsNotWaitedFor) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clients of `ergocast run --watch` that want to harm the mission, or to keep its page from the
 // user. None has the token.
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <sstream>
@@ -30,6 +31,16 @@ class AttackedPage : public FlyingMission {
     }
     return peak;
   }
+  /// How much a process may allocate, in bytes or "unlimited".
+  static std::string memory_limit(pid_t pid) {
+    const std::string limits = text_of("/proc/" + std::to_string(pid) + "/limits");
+    const std::string name = "Max data size";
+    std::istringstream values(limits.substr(std::min(limits.find(name), limits.size())));
+    values.ignore(static_cast<std::streamsize>(name.size()));
+    std::string soft;
+    values >> soft;
+    return soft;
+  }
   void end_in_order(Child& mission) {
     release();
     ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
@@ -56,7 +67,7 @@ bool shows_the_mission(HttpConnection& stream) {
 }
 
 TEST_F(AttackedPage, EndlessHeadersTakeNoMemory) {
-  Child mission = launch_held(scenario(), {"--watch"});
+  Child mission = launch_held(scenario("duration_s: 60"), {"--watch"});
   ASSERT_EQ(get(kPort, "/").status, 200);
   const double before_mib = peak_mib();
   std::string headers;
@@ -68,16 +79,28 @@ TEST_F(AttackedPage, EndlessHeadersTakeNoMemory) {
 }
 
 TEST_F(AttackedPage, IsBackWhenItsProcessWasKilledAndTheMissionGoesOn) {
-  Child mission = launch_held(scenario(), {"--watch"});
+  Child mission = launch_held(scenario("duration_s: 60"), {"--watch"});
   for (int i = 0; i < 3; ++i) {
     const auto watching = connected(kEvents);
     EXPECT_TRUE(shows_the_mission(*watching));
-    kill_next(page());
+    ASSERT_NO_FATAL_FAILURE(kill_next(page()));
     EXPECT_EQ(get(kPort, "/").status, 200);
   }
   EXPECT_TRUE(said("killed by SIGKILL, and is started again")) << said();
   end_in_order(mission);
   EXPECT_EQ(summary()["restarts"], 0);  // of the team's processes
+}
+
+TEST_F(AttackedPage, MayAllocateLittleUntilTheMissionEnds) {
+  Child mission = launch_held(scenario("duration_s: 60"), {"--watch"});
+  ASSERT_EQ(get(kPort, "/").status, 200);
+  const std::string own = memory_limit(mission.pid());
+  EXPECT_NE(memory_limit(pids(page()).front()), own);
+  release();
+  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  EXPECT_TRUE(eventually([&] { return memory_limit(pids(page()).front()) == own; }));
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
 }
 
 TEST_F(AttackedPage, IsBackAfterTheMissionToo) {
@@ -90,7 +113,8 @@ TEST_F(AttackedPage, IsBackAfterTheMissionToo) {
 }
 
 TEST_F(AttackedPage, KeepsItsAddressAndTokenAndDoesNotRevealIt) {
-  Child mission = launch_held(scenario(), {"--watch", "--listen", "127.0.0.2", "--port", "8801"});
+  Child mission = launch_held(scenario("duration_s: 60"),
+                              {"--watch", "--listen", "127.0.0.2", "--port", "8801"});
   const std::string text = said(), begin = "http://127.0.0.2:8801/?token=";
   const auto at = text.find(begin);
   ASSERT_NE(at, text.npos) << text;
@@ -117,7 +141,7 @@ TEST_F(AttackedPage, EndsWithARunThatIsKilled) {
 }
 
 TEST_F(AttackedPage, IdleClientsOfEventsDoNotKeepItFromTheUser) {
-  Child mission = launch_held(scenario(), {"--watch"});
+  Child mission = launch_held(scenario("duration_s: 60"), {"--watch"});
   std::vector<std::unique_ptr<HttpConnection>> idle;
   for (int i = 0; i < 118; ++i) idle.push_back(connected(kEvents));
   EXPECT_EQ(get(kPort, "/").status, 200);
@@ -127,7 +151,7 @@ TEST_F(AttackedPage, IdleClientsOfEventsDoNotKeepItFromTheUser) {
 }
 
 TEST_F(AttackedPage, RequestsThatNeverEndDoNotKeepItFromTheUser) {
-  Child mission = launch_held(scenario(), {"--watch"});
+  Child mission = launch_held(scenario("duration_s: 60"), {"--watch"});
   std::vector<std::unique_ptr<HttpConnection>> half;
   for (int i = 0; i < 191; ++i) half.push_back(connected("GET / HTTP/1.1\r\n" + kHost + "X: "));
   std::atomic<bool> done = false;
@@ -144,7 +168,7 @@ TEST_F(AttackedPage, RequestsThatNeverEndDoNotKeepItFromTheUser) {
 }
 
 TEST_F(AttackedPage, IsNotSentManyTimesAtOnce) {
-  Child mission = launch_held(scenario(), {"--watch"});
+  Child mission = launch_held(scenario("duration_s: 60"), {"--watch"});
   const HttpAnswer whole = get(kPort, "/");
   std::string ranges = "Range: bytes=0-";
   for (int i = 0; i < 500; ++i) ranges += ",0-";

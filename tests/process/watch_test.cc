@@ -204,10 +204,10 @@ TEST_F(WatchedPage, SixteenBrowsersWatchATeamAndMoreTakeTurns) {
 
   mission.send(SIGINT);
   EXPECT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  EXPECT_TRUE(shows(*events(kPort), "event: end"));
   const HttpAnswer record = get(kPort, "/record.json");
   EXPECT_EQ(record.status, 200);
   EXPECT_TRUE(nlohmann::json::parse(record.body)["tracks"].is_object());
-  EXPECT_TRUE(shows(*events(kPort), "event: end"));
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0);
 }
