@@ -39,7 +39,7 @@ struct MissionOptions {
   std::filesystem::path world;                ///< `run` only; empty: ergocast-sim
   std::vector<std::string> world_arguments;   ///< of that program
   bool watch = false;                         ///< `run` only: serves a page
-  PageServer::Options page;
+  PageOptions page;
 };
 
 /// Runs the mission as processes over LCM on this host.
@@ -103,9 +103,12 @@ void add_status(CLI::App& app, Action& action);
 /// `watch`: a record, or a running team, in a browser.
 void add_watch(CLI::App& app, Action& action);
 /// --port and --listen.
-void add_page_options(CLI::App& app, PageServer::Options& options);
-/// Waits for Ctrl-C or SIGTERM, or until the time is over (−1: for ever). Whether it came.
-bool wait_for_stop(StopSignals& signals, int timeout_ms = -1);
+void add_page_options(CLI::App& app, PageOptions& options);
+/// Serves until Ctrl-C or SIGTERM comes, at a low priority.
+/// @param wait  waits until the server, or what it shows, has something to do, at most 0.1 s
+void serve_until_stop(PageServer& server, StopSignals& signals, const std::function<void()>& wait);
+/// `run-page`: the page of `run --watch`, for that command alone.
+void add_run_page(CLI::App& app, Action& action);
 
 /// `export`: writes a record in the formats of other tools.
 void add_export(CLI::App& app, Action& action);

@@ -19,18 +19,12 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kMaxRestarts = 3;
-constexpr auto kFirstBackOff = 500ms, kLongestBackOff = 4000ms;
 /// A program that the system cannot execute for so long counts as lost.
 constexpr auto kLaunchPatience = 30s;
 /// How long processes may take to end by themselves, and then after SIGTERM.
 constexpr auto kEndPatience = 6s;
 constexpr auto kPoliteness = 2s;
 constexpr int kLinesOfExplanation = 5;
-
-/// 0.5, 1, 2, 4, 4 … s.
-std::chrono::nanoseconds back_off(int failures) {
-  return failures < 3 ? kFirstBackOff * (1 << failures) : kLongestBackOff;
-}
 
 }  // namespace
 
@@ -129,7 +123,7 @@ void Launcher::take_note(Process& process, Instant now, Stage stage) {
   if (gave_way || too_often) return give_up(process, stage);
   // The agent has reached the last tick, or left. Without a coordinator no successor is admitted.
   if (process.role == Role::kAgent && code == kExitDone && leaderless()) return;
-  process.restart_at = now + back_off(process.restarts);
+  process.restart_at = now + restart_delay(process.restarts);
 }
 
 /// The process's last messages may have been lost, or the launcher may have been suspended.
@@ -173,7 +167,7 @@ void Launcher::try_again(Process& process, Instant now, Stage stage, bool execut
   }
   if (process.refusals == 0)
     display_.say(process.name + ": is started as soon as that is possible");
-  process.restart_at = now + back_off(process.restarts + process.refusals++);
+  process.restart_at = now + restart_delay(process.restarts + process.refusals++);
 }
 
 void Launcher::give_up(Process& process, Stage stage) {

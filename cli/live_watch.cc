@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One thread listens and feeds the team's picture, those of the server read it; a lock between them
-// is held for the encoding of a bounded number of rows.
+// Feeds the team's picture with what it hears, and cuts it into frames for the browsers.
 #include "cli/live_watch.h"
 
-#include <atomic>
 #include <chrono>
-#include <mutex>
+#include <exception>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 #include <utility>
 
 #include "cli/live_team.h"
@@ -27,51 +25,66 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr auto kPollPeriod = 50ms;
+constexpr auto kPageTurn = 50ms;  // between two looks at the page's clients, at most
 constexpr auto kLook = 250ms;
 constexpr int kFramesAtOnce = 8;
 /// Agents report the end before the coordinator tells its reason.
 constexpr auto kLastFrame = 1s;
 
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+Connections::Text shared_text(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
+/// The page of a record, and the record for pages that were open before.
+struct RecordedPage {
+  Connections::Text page, record;
+};
+
+/// Nothing if the record cannot be read, also for want of memory.
+RecordedPage read_page(const std::filesystem::path& run_dir, const Mission& mission) {
+  try {
+    const auto read = recorded_page_data(run_dir, mission);
+    if (const auto* data = std::get_if<Json>(&read)) {
+      return {recorded_page(*data), shared_text(dumped((*data)["record"]))};
+    }
+  } catch (const std::exception&) {
+    // The page keeps what it has heard.
+  }
+  return {};
+}
+
 class Watch final : public LiveWatch {
  public:
-  explicit Watch(Source source) : source_(std::move(source)), logs_(source_.run_dir / "log") {
+  explicit Watch(Source source)
+      : source_(std::move(source)),
+        logs_(source_.run_dir / "log"),
+        page_(shared_text(html_file(run_web_page(), "live", Json{{"live", true}}))) {
     if (source_.bus.run != 0 && source_.mission) adopt(source_.bus.run, false);
   }
-  ~Watch() override {
-    stopping_ = true;
-    if (thread_.joinable()) thread_.join();
-    server_.reset();
-  }
 
-  std::optional<std::string> open(const PageServer::Options& options) {
+  std::optional<std::string> open() {
     auto opened = listen_to_teams(source_.bus, hear(false), hear(true));
     if (auto* problem = std::get_if<std::string>(&opened)) return std::move(*problem);
     transport_ = std::get<0>(std::move(opened));
-    auto started = PageServer::start(
-        options, {[this] { return page(); }, content_security_policy(run_web_page()),
-                  [this] { return record(); }, [this] { return stream(); }});
-    if (auto* problem = std::get_if<std::string>(&started)) return std::move(*problem);
-    server_ = std::get<0>(std::move(started));
-    thread_ = std::thread([this] { listen(); });
     return {};
   }
 
-  std::string url() const override { return server_->url(); }
-  bool over() const override { return over_; }
-  void say(const std::string& line) override {
-    const std::scoped_lock lock(mutex_);
-    if (team_) team_->log(line);
+  PageServer::Content content() override {
+    return {[this] { return page_; }, content_security_policy(run_web_page()),
+            [this] { return record_; }, [this] { return stream(); }};
   }
+  void listen(int wake_fd) override;
+  bool over() const override { return over_; }
   void finish() override {
-    Json data;
-    if (!source_.run_dir.empty() && source_.mission) {
-      auto read = recorded_page_data(source_.run_dir, *source_.mission);
-      if (auto* found = std::get_if<Json>(&read)) data = std::move(*found);
+    if (source_.run_dir.empty() || !source_.mission) {
+      finished_ = true;
+    } else if (!reading_.valid() && !finished_) {
+      reading_ = std::async(std::launch::async, read_page, source_.run_dir, *source_.mission);
     }
-    const std::scoped_lock lock(mutex_);
-    data_ = std::move(data);
-    finished_ = true;
   }
 
  private:
@@ -90,7 +103,6 @@ class Watch final : public LiveWatch {
   void hear(const Message& message, Bus bus, AgentId transmitter, bool replay) {
     const RunId run = header_of(message).run;
     if (run == 0) return;
-    const std::scoped_lock lock(mutex_);
     if (!team_) adopt(run, replay);
     if (run == team_->run()) {
       if (replay == replay_) team_->receive(message, bus, transmitter, now());
@@ -100,53 +112,18 @@ class Watch final : public LiveWatch {
     }
   }
 
-  void listen() {
-    lower_priority();
-    Instant next_look = now();
-    std::optional<Instant> over_since;
-    while (!stopping_) {
-      transport_->deliver_until(now() + kPollPeriod, -1);
-      if (now() < next_look) continue;
-      next_look = now() + kLook;
-      transport_->renew_membership();
-      const std::vector<std::string> lines =
-          source_.run_dir.empty() ? std::vector<std::string>() : logs_.take();
-      const std::scoped_lock lock(mutex_);
-      if (!team_) continue;
-      for (const std::string& line : lines) team_->log(line);
-      team_->look(now());
-      if (team_->over() && !over_since) over_since = now();
-      over_ = over_since && now() - *over_since >= kLastFrame;
-    }
-  }
-
-  std::string page() const {
-    const std::scoped_lock lock(mutex_);
-    const bool recorded = !data_.is_null();
-    const std::string title =
-        recorded ? data_["record"]["mission"]["name"].get<std::string>() : "live";
-    return html_file(run_web_page(), title, recorded ? data_ : Json{{"live", true}});
-  }
-
-  std::optional<std::string> record() const {
-    const std::scoped_lock lock(mutex_);
-    if (data_.is_null()) return {};
-    return data_["record"].dump(-1, ' ', true, Json::error_handler_t::replace);
-  }
-
-  PageServer::Stream stream() {
+  void look();
+  Connections::Stream stream() {
     return [this, cursor = LiveTeam::Cursor(),
             ended = false]() mutable -> std::optional<std::string> {
       if (ended) return {};
       std::string text;
-      const std::scoped_lock lock(mutex_);
       bool more = team_.has_value();
       for (int i = 0; more && i < kFramesAtOnce; ++i) text += team_->frame(cursor, more);
       if (finished_ && !more) {
         ended = true;
-        const Json end = {{"record", !data_.is_null()}, {"text", team_ ? team_->end_text() : ""}};
-        text +=
-            "event: end\ndata: " + end.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n\n";
+        const Json end = {{"record", record_ != nullptr}, {"text", team_ ? team_->end_text() : ""}};
+        text += "event: end\ndata: " + dumped(end) + "\n\n";
       }
       return text;
     };
@@ -155,24 +132,50 @@ class Watch final : public LiveWatch {
   Source source_;
   LogLines logs_;
   std::unique_ptr<Transport> transport_;
-  mutable std::mutex mutex_;
   std::optional<LiveTeam> team_;
   bool replay_ = false;
   std::set<RunId> others_;
-  Json data_;  // of the record; null: none yet
-  bool finished_ = false;
-  std::atomic<bool> stopping_ = false, over_ = false;
-  std::thread thread_;
-  std::unique_ptr<PageServer> server_;
+  Connections::Text page_, record_;
+  Instant next_look_{};
+  std::optional<Instant> over_since_;
+  bool over_ = false, finished_ = false;
+  std::future<RecordedPage> reading_;
 };
+
+void Watch::listen(int wake_fd) {
+  transport_->deliver_until(now() + kPageTurn, wake_fd);
+  if (now() < next_look_) return;
+  next_look_ = now() + kLook;
+  transport_->renew_membership();
+  look();
+  if (!reading_.valid() || reading_.wait_for(0s) != std::future_status::ready) return;
+  RecordedPage read = reading_.get();
+  if (read.page) page_ = std::move(read.page);
+  record_ = std::move(read.record);
+  finished_ = true;
+}
+
+void Watch::look() {
+  if (!team_) return;
+  if (!source_.run_dir.empty()) {
+    for (const std::string& line : logs_.take()) team_->log(line);
+  }
+  team_->look(now());
+  if (team_->over() && !over_since_) over_since_ = now();
+  over_ = over_since_ && now() - *over_since_ >= kLastFrame;
+}
 
 }  // namespace
 
-std::variant<std::unique_ptr<LiveWatch>, std::string> LiveWatch::start(
-    Source source, const PageServer::Options& options) {
+std::variant<std::unique_ptr<LiveWatch>, std::string> LiveWatch::open(Source source) {
   auto watch = std::make_unique<Watch>(std::move(source));
-  if (auto problem = watch->open(options)) return std::move(*problem);
+  if (auto problem = watch->open()) return std::move(*problem);
   return std::unique_ptr<LiveWatch>(std::move(watch));
+}
+
+Connections::Text recorded_page(const Json& data) {
+  const auto title = data["record"]["mission"]["name"].get<std::string>();
+  return shared_text(html_file(run_web_page(), title, data));
 }
 
 std::variant<Json, std::string> recorded_page_data(const std::filesystem::path& run_dir,

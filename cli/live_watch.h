@@ -16,8 +16,7 @@
 
 namespace ergocast::cli {
 
-/// Listens to the buses in a thread of its own, so that no browser keeps anybody waiting; sends
-/// nothing.
+/// Only listens to the buses. In one thread: the owner calls listen() and serves the page in turn.
 class LiveWatch {
  public:
   struct Source {
@@ -27,22 +26,26 @@ class LiveWatch {
     Field density = {};
   };
 
-  /// An error tells why LCM or the address cannot be used.
-  static std::variant<std::unique_ptr<LiveWatch>, std::string> start(
-      Source source, const PageServer::Options& options);
+  /// An error tells why LCM cannot be used.
+  static std::variant<std::unique_ptr<LiveWatch>, std::string> open(Source source);
   virtual ~LiveWatch() = default;
 
-  virtual std::string url() const = 0;
-  /// A line for the page's log.
-  virtual void say(const std::string& line) = 0;
+  /// What a server shows; valid as long as this object.
+  virtual PageServer::Content content() = 0;
+  /// Listens until messages come, `wake_fd` is readable, or a twentieth of a second is over.
+  virtual void listen(int wake_fd) = 0;
   /// Whether the mission's end has been heard.
   virtual bool over() const = 0;
-  /// From now on the page shows the record of `run_dir`, or what it has heard if there is none.
+  /// The page comes to show the record of `run_dir`, or what it has heard if there is none. The
+  /// record is read in a thread of its own, because a long one takes a while.
   virtual void finish() = 0;
 };
 
 /// What the page of a record has: {"record", "log"}; or the error.
 std::variant<nlohmann::ordered_json, std::string> recorded_page_data(
     const std::filesystem::path& run_dir, const Mission& mission);
+
+/// The page itself, of these data.
+Connections::Text recorded_page(const nlohmann::ordered_json& data);
 
 }  // namespace ergocast::cli

@@ -265,6 +265,7 @@ int parse_and_do(int argc, char** argv) {
   add_list(app, action);
   add_status(app, action);
   add_watch(app, action);
+  add_run_page(app, action);
   add_export(app, action);
   add_replay(app, action);
   add_pause(app, action);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast run`: prepares the run directory and the key, starts all processes, watches the
 // mission, and completes the summary.
+#include <poll.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -8,8 +9,8 @@
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
-#include "cli/live_watch.h"
 #include "cli/mission_watch.h"
+#include "cli/page_process.h"
 #include "cli/progress.h"
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
@@ -32,7 +33,8 @@ using namespace std::chrono_literals;
 constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
 
 /// Returns when all processes have ended.
-void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
+/// @param page  null: there is none
+void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, PageProcess* page,
                StopSignals& signals, ProgressDisplay& display) {
   int asked = 0;
   while (!launcher.all_ended()) {
@@ -47,6 +49,7 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
     }
     if (mission.stopping()) launcher.expect_end(now());
     launcher.attend(now(), mission.stage());
+    if (page != nullptr) page->attend(now());
     // Without a coordinator no other process detects an overdue tick.
     if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
       launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
@@ -129,22 +132,31 @@ LiveRun live_run(const Launcher::Setup& setup, const Scenario& scenario) {
 }
 
 /// The page of the mission, if it is wanted; an error if it cannot be served.
-std::variant<std::unique_ptr<LiveWatch>, std::string> begin_watch(const MissionOptions& options,
-                                                                  const Scenario& scenario,
-                                                                  const Launcher::Setup& setup,
-                                                                  ProgressDisplay& display) {
-  if (!options.watch) return std::unique_ptr<LiveWatch>();
-  BusOptions bus;
-  bus.url = setup.url;
-  bus.run = setup.run;
-  bus.seal = options.seal;
-  auto started = LiveWatch::start(
-      {bus, setup.run_dir, scenario.mission(), scenario.target_density()}, options.page);
-  if (auto* watch = std::get_if<0>(&started)) {
-    display.say("  page     " + (*watch)->url());
-    display.also_to([page = watch->get()](const std::string& line) { page->say(line); });
+std::variant<std::unique_ptr<PageProcess>, std::string> begin_page(const MissionOptions& options,
+                                                                   const Launcher::Setup& setup,
+                                                                   ProgressDisplay& display) {
+  if (!options.watch) return std::unique_ptr<PageProcess>();
+  auto started = PageProcess::start({.program = setup.programs / "ergocast",
+                                     .run_dir = setup.run_dir,
+                                     .url = setup.url,
+                                     .run = setup.run,
+                                     .key_file = setup.key_file,
+                                     .page = options.page},
+                                    display);
+  if (auto* page = std::get_if<0>(&started)) {
+    display.say("  page     " + (*page)->url());
+    display.also_to([page = page->get()](const std::string& line) { page->say(line); });
   }
   return started;
+}
+
+/// Shows the record on the page until Ctrl-C.
+void show_record(PageProcess& page, StopSignals& signals) {
+  constexpr int kAttend_ms = 100;
+  page.finish();
+  std::printf("  page      %s, until Ctrl-C\n", page.url().c_str());
+  std::fflush(stdout);
+  for (pollfd stop{signals.fd(), POLLIN, 0}; poll(&stop, 1, kAttend_ms) <= 0;) page.attend(now());
 }
 
 /// The program in the world's place; an error if there is none.
@@ -173,10 +185,11 @@ int fly(const MissionOptions& options, const Scenario& scenario, const Launcher:
     return report_error(kExitUnavailable, *problem);
   }
   announce(setup, scenario, display);
-  const auto watching = begin_watch(options, scenario, setup, display);
+  const auto watching = begin_page(options, setup, display);
   if (const auto* problem = std::get_if<std::string>(&watching)) {
     return report_error(kExitUnavailable, *problem);
   }
+  PageProcess* const page = std::get<0>(watching).get();
   auto entry = RunEntry::write(live_run(setup, scenario));
   if (const auto* problem = std::get_if<std::string>(&entry)) {
     display.say("warning: " + *problem + "; give the other commands --lcm-url");
@@ -186,19 +199,14 @@ int fly(const MissionOptions& options, const Scenario& scenario, const Launcher:
     launcher.escalate(2);
     return report_error(kExitFailed, *problem);
   }
-  supervise(launcher, mission, *std::get<0>(opened), signals, display);
+  supervise(launcher, mission, *std::get<0>(opened), page, signals, display);
   entry = std::string();
   display.end();
 
   const auto summary = amended_summary(scenario, setup, launcher, mission);
   const auto unwritten = write_file(setup.run_dir / kSummaryFile, to_text(summary));
   conclude(setup.run_dir, summary, scenario);
-  if (const auto& page = std::get<0>(watching)) {
-    page->finish();
-    std::printf("  page      %s, until Ctrl-C\n", page->url().c_str());
-    std::fflush(stdout);
-    wait_for_stop(signals);
-  }
+  if (page != nullptr) show_record(*page, signals);
   if (unwritten) return report_error(kExitFailed, *unwritten);
   return summary.value("result", "") == "failed" || launcher.record_broken() ? kExitFailed
                                                                              : kExitDone;

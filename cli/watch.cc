@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `ergocast watch`: a page for browsers, of a record or of a team that flies.
 #include <poll.h>
+#include <sys/resource.h>
 
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,6 +14,7 @@
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "report/web_page.h"
+#include "runtime/clock.h"
 #include "runtime/node.h"
 #include "runtime/signals.h"
 
@@ -23,9 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// Deadlines of the page's clients need a look so often.
+constexpr int kServeMs = 50;
+/// The team's processes are always preferred.
+constexpr int kPagePriority = 10;
+
 struct WatchOptions : BusOptions {
   fs::path run_dir;
-  PageServer::Options server;
+  PageOptions page;
 };
 
 void announce(const std::string& url) {
@@ -40,45 +46,51 @@ int watch_record(const WatchOptions& options, StopSignals& signals) {
   if (const auto* problem = std::get_if<std::string>(&data)) {
     return report_error(kExitBadInput, *problem);
   }
-  const Json& found = std::get<Json>(data);
-  const std::string page =
-      html_file(run_web_page(), found["record"]["mission"]["name"].get<std::string>(), found);
-  const auto started = PageServer::start(
-      options.server, {[&page] { return page; }, content_security_policy(run_web_page()), {}, {}});
-  if (const auto* problem = std::get_if<std::string>(&started)) {
+  const Connections::Text page = recorded_page(std::get<Json>(data));
+  auto socket = PageSocket::open(options.page);
+  if (const auto* problem = std::get_if<std::string>(&socket)) {
     return report_error(kExitUnavailable, *problem);
   }
-  announce(std::get<0>(started)->url());
-  wait_for_stop(signals);
+  announce(std::get<PageSocket>(socket).url());
+  const auto server =
+      PageServer::make(std::get<PageSocket>(std::move(socket)),
+                       {[&page] { return page; }, content_security_policy(run_web_page()), {}, {}});
+  pollfd waiting[]{{server->fd(), POLLIN, 0}, {signals.fd(), POLLIN, 0}};
+  serve_until_stop(*server, signals, [&waiting] { poll(waiting, std::size(waiting), kServeMs); });
   return kExitDone;
 }
 
 /// @param run_dir  of the team's run; empty: not known here
 int watch_team(const WatchOptions& options, const fs::path& run_dir, StopSignals& signals) {
-  auto started = LiveWatch::start({options, run_dir, {}, {}}, options.server);
-  if (const auto* problem = std::get_if<std::string>(&started)) {
+  auto opened = LiveWatch::open({options, run_dir, {}, {}});
+  if (const auto* problem = std::get_if<std::string>(&opened)) {
     return report_error(kExitUnavailable, *problem);
   }
-  LiveWatch& watch = *std::get<0>(started);
-  announce(watch.url());
-  for (bool finished = false; !wait_for_stop(signals, 100);) {
-    if (!finished && watch.over()) {
-      watch.finish();
-      finished = true;
-    }
+  LiveWatch& watch = *std::get<0>(opened);
+  auto socket = PageSocket::open(options.page);
+  if (const auto* problem = std::get_if<std::string>(&socket)) {
+    return report_error(kExitUnavailable, *problem);
   }
+  announce(std::get<PageSocket>(socket).url());
+  const auto server = PageServer::make(std::get<PageSocket>(std::move(socket)), watch.content());
+  serve_until_stop(*server, signals, [&] {
+    watch.listen(server->fd());
+    if (watch.over()) watch.finish();
+  });
   return kExitDone;
 }
 
 }  // namespace
 
-bool wait_for_stop(StopSignals& signals, int timeout_ms) {
-  pollfd waiting{signals.fd(), POLLIN, 0};
-  poll(&waiting, 1, timeout_ms);
-  return signals.take() > 0;
+void serve_until_stop(PageServer& server, StopSignals& signals, const std::function<void()>& wait) {
+  setpriority(PRIO_PROCESS, 0, kPagePriority);
+  while (signals.take() == 0) {
+    wait();
+    server.serve(now());
+  }
 }
 
-void add_page_options(CLI::App& app, PageServer::Options& options) {
+void add_page_options(CLI::App& app, PageOptions& options) {
   app.add_option("--port", options.port,
                  "Port of the page (default: 8765, or any if that is taken)")
       ->check(CLI::Range(1, 65535));
@@ -95,7 +107,7 @@ void add_watch(CLI::App& app, Action& action) {
   command->add_option("RUN_DIR", options->run_dir, "Run directory (default: a team that flies)")
       ->type_name("DIR");
   add_bus_options(*command, *options);
-  add_page_options(*command, options->server);
+  add_page_options(*command, options->page);
   command->footer(
       "Serves until Ctrl-C. Exit codes: 0 done; 2 no record, or it is damaged; 3 LCM or the\n"
       "address cannot be used.");

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ class Child {
     std::vector<std::string> command;  ///< path and arguments
     std::filesystem::path log;         ///< gets both output streams; lost if it cannot be opened
     int signal_if_orphaned;            ///< the kernel sends it when this process ends
+    std::vector<std::string> environment = {};  ///< "NAME=VALUE", besides this process's own
+    std::vector<int> descriptors = {};          ///< it has them as 3, 4, …, and no others
   };
 
   /// Starts the program in its own process group, so that Ctrl-C reaches only this process. An
@@ -43,6 +46,10 @@ class Child {
   pid_t pid_;
   std::optional<int> status_;  // as waitpid() gives it
 };
+
+/// How long to wait before a process is started again that has ended or could not be started so
+/// many times before: 0.5, 1, 2, 4, 4 … s.
+std::chrono::nanoseconds restart_delay(int failures);
 
 /// The last lines of a text file, to explain why a process ended.
 std::string last_lines(const std::filesystem::path& file, int count);

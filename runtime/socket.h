@@ -15,8 +15,13 @@ class Socket {
  public:
   Socket(int family, int type, int protocol = 0)
       : fd_(socket(family, type | SOCK_CLOEXEC, protocol)) {}
+  /// Takes over an open one.
+  explicit Socket(int fd) : fd_(fd) {}
   Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Socket& operator=(Socket&&) = delete;
+  Socket& operator=(Socket&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
   ~Socket() {
     if (fd_ >= 0) close(fd_);
   }

@@ -152,8 +152,8 @@ const std::vector<Kind> kKinds = {
                "stop_token", "random",    "ctime",        "csignal",
                "sys/*",      "netinet/*", "arpa/*",       "net/*",
                "linux/*",    "dirent.h",  "fcntl.h",      "ifaddrs.h",
-               "poll.h",     "pthread.h", "signal.h",     "spawn.h",
-               "time.h",     "unistd.h"}},
+               "netdb.h",    "poll.h",    "pthread.h",    "signal.h",
+               "spawn.h",    "time.h",    "unistd.h"}},
 };
 
 // The time or a random device needs no special #include: <chrono> is allowed everywhere.

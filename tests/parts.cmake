@@ -129,6 +129,11 @@ ergocast_test(NAME cli_tests LABELS unit
     ${CMAKE_SOURCE_DIR}/cli/workers.cc
   LIBS ergocast::core ergocast::runtime)
 
+ergocast_test(NAME page_server_tests LABELS unit
+  SOURCES
+    cli/connections_test.cc
+  LIBS ergocast_page_server)
+
 ergocast_test(NAME deploy_tests LABELS unit
   SOURCES
     ops/deploy/files_test.cc

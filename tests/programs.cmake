@@ -81,6 +81,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/libraries_test.cc
     process/log_test.cc
     process/modes_test.cc
+    process/page_attack_test.cc
     process/logs_test.cc
     process/replay_test.cc
     process/restart_test.cc

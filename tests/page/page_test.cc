@@ -345,6 +345,25 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
             true);
 }
 
+TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {
+  Child mission =
+      launch_endless(scenario("pace: REALTIME realtime_factor: 10"), {"--watch", "--port", "8813"});
+  browser_->open("http://127.0.0.1:8813/");
+  EXPECT_TRUE(
+      browser_->becomes("return Boolean(window.ergocast?.S.run) && ergocast.S.run.rows > 50"));
+  kill_next({"ergocast run-page"});
+  EXPECT_TRUE(browser_->becomes(
+      "return /page .* is started again/.test(document.getElementById('log').textContent)"));
+  const double end = js("return ergocast.S.run.end");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.end > " + std::to_string(end)));
+  mission.send(SIGINT);
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  EXPECT_LT(js("return ergocast.worstMetric()").get<double>(), 0.02);  // of the whole mission
+  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
 TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
                       out()}),

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The connections of browsers to a page: sockets in, whole request heads out, answers back.
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/ids.h"
+#include "runtime/socket.h"
+
+namespace ergocast::cli {
+
+/// Serves all of them in one thread without waiting: a connection costs bounded memory, and no
+/// other connection's time.
+///
+/// No client can lock out another. There are separate places for connections that have not sent
+/// their whole request yet, for those that take an answer, and for event streams. Where all are
+/// taken, a newcomer gets the place of another connection: of the address that holds most of them,
+/// the one that has been stuck or open for longest. (Refusing the newcomer instead would let 16
+/// idle streams close the page to everybody.)
+class Connections {
+ public:
+  static constexpr int kMostHeads = 32, kMostAnswers = 32, kMostStreams = 16;
+  /// Of a request line with all headers; a longer one gets 431.
+  static constexpr std::size_t kLongestHead = 16 << 10;
+  /// For the whole head, however it trickles in; then 408.
+  static constexpr auto kHeadPatience = std::chrono::seconds(5);
+  /// For a client that takes nothing of what waits for it.
+  static constexpr auto kTakePatience = std::chrono::seconds(5);
+
+  using Text = std::shared_ptr<const std::string>;
+  /// The next text of an event stream, empty if there is nothing new; nothing at its end.
+  using Stream = std::function<std::optional<std::string>()>;
+  struct Answer {
+    std::string head;  ///< up to the empty line, or with a short body
+    Text body;         ///< the rest, one copy for all clients; may be null
+    Stream stream;     ///< texts that follow until its end; none: the answer is complete
+  };
+  /// Answers the head of a request, which ends with the empty line.
+  using Handler = std::function<Answer(const std::string& head)>;
+
+  /// @param listener  a non-blocking socket that listens; remains the caller's
+  Connections(int listener, Handler handler);
+  Connections(const Connections&) = delete;
+  Connections& operator=(const Connections&) = delete;
+
+  /// Readable as soon as serve() has something to do. For streams and deadlines serve() is needed
+  /// ten times a second besides.
+  int fd() const { return epoll_.fd(); }
+  void serve(Instant now);
+
+ private:
+  enum class Phase { kHead, kAnswer, kStream, kLeaving };
+  /// Of a client; of IPv6 the network's half, because one host may have all addresses of it.
+  using Address = std::array<unsigned char, 16>;
+
+  struct Connection {
+    Connection(Socket owned, const Address& from) : socket(std::move(owned)), address(from) {}
+    /// What waits to be sent.
+    std::string_view unsent() const;
+
+    Socket socket;
+    Address address;
+    Phase phase = Phase::kHead;
+    Instant since{};   ///< in this phase
+    Instant moved{};   ///< when bytes were last sent, or the phase began
+    std::string head;  ///< as far as it was received
+    std::string out;   ///< the answer's head, or a stream's text
+    Text body;         ///< follows `out`
+    std::size_t sent = 0;
+    Stream stream;
+    Instant next_text{}, next_sign{};
+    bool deaf = false;  ///< the client has closed its side
+    std::uint32_t watched = 0;
+  };
+
+  void accept_some(Instant now);
+  void react(Connection& one, std::uint32_t events, Instant now);
+  void read_head(Connection& one, Instant now);
+  void discard(Connection& one);
+  void answer(Connection& one, Answer answer, Instant now);
+  void push(Connection& one, Instant now);
+  void tend(Connection& one, Instant now);
+  void take_text(Connection& one, Instant now);
+  void enter(Connection& one, Phase phase, Instant now);
+  void make_room(Phase phase);
+  void let_go(Connection& one);
+  void drop(Connection& one);
+  void watch(Connection& one);
+  Connection* find(int fd);
+
+  int listener_;
+  Handler handler_;
+  Socket epoll_;
+  std::map<int, Connection> open_;  // by descriptor
+};
+
+}  // namespace ergocast::cli
