@@ -61,8 +61,8 @@ class Pausing : public TeamCommand {
   /// In real time the tick comes two seconds later, and vehicles move until then.
   int wait_for_the_pause() {
     if (team().tick() < named()) {
-      std::printf("the coordinator pauses the mission %s; it is at %s\n",
-                  mission_time(named()).c_str(), mission_time(team().tick()).c_str());
+      std::printf("the coordinator pauses the mission at %s, in %.1f s\n",
+                  mission_time(named()).c_str(), team().seconds_until(named()));
       std::fflush(stdout);
     }
     while (team().tick() < named()) {
@@ -76,7 +76,8 @@ class Pausing : public TeamCommand {
 
   /// Nothing depends on when it comes, so nobody waits for it.
   int report_resumption() const {
-    std::printf("the mission goes on at %s\n", mission_time(named()).c_str());
+    std::printf("the mission goes on at %s, in %.1f s\n", mission_time(named()).c_str(),
+                team().seconds_until(named()));
     return kExitDone;
   }
 

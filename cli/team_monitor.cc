@@ -147,6 +147,12 @@ std::string MonitoredRun::mission_time(Tick tick) const {
   return text + time;
 }
 
+double MonitoredRun::seconds_until(Tick tick) const {
+  const Timing& timing = me_.timing();
+  if (timing.pace == Pace::kLockstep || tick <= tick_) return 0;
+  return static_cast<double>(tick - tick_) * timing.dt_s / timing.realtime_factor;
+}
+
 std::string choice_of(const std::map<RunId, MonitoredRun>& runs) {
   std::string text = "several runs are heard on this URL; choose one with --run-id:";
   for (const auto& [run, team] : runs) {

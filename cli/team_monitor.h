@@ -49,6 +49,8 @@ class MonitoredRun {
   Tick tick() const { return tick_; }
   /// "tick 517, t = 51.7 s": how many ticks before `tick` count, as people are told the time.
   std::string mission_time(Tick tick) const;
+  /// By the clock, until the world reaches `tick`; 0 in lockstep [s]. @pre knows_mission()
+  double seconds_until(Tick tick) const;
   RunId run() const { return me_.run(); }
   bool knows_mission() const { return me_.knows_mission(); }
   /// Whether the mission has begun, is known as a whole, and is not over.
