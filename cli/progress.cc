@@ -56,8 +56,8 @@ std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
 void ProgressDisplay::show(const MissionProgress& progress) {
   const auto now = ProgressLine::Clock::now();
   const auto count = static_cast<double>(progress.tick);
-  const double ticks_per_s =
-      progress.paused ? ticks_.interrupt(count, now) : ticks_.measure(count, now);
+  const bool stands = progress.paused || progress.tick == 0;
+  const double ticks_per_s = stands ? ticks_.interrupt(count, now) : ticks_.measure(count, now);
   warn_of_overload(progress);
   if (!line_.due(now)) return;
   const auto all = static_cast<double>(std::max<Tick>(1, progress.tick_count));
