@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 
+#include "cli/command_text.h"
 #include "cli/commands.h"
 #include "cli/key_pair.h"
 #include "cli/report_error.h"
@@ -18,6 +19,7 @@
 #include "modes/table_file.h"
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
+#include "scenario/override_options.h"
 #include "text/regular_file.h"
 
 namespace ergocast::cli {
@@ -31,6 +33,7 @@ constexpr std::size_t kMaxHostsBytes = std::size_t{1} << 18;
 struct DeployOptions {
   fs::path scenario, hosts, out;
   std::string to, keys;
+  Overrides overrides;
   std::optional<LcmUrl> url;
 };
 
@@ -44,16 +47,45 @@ bool is_plain(const std::string& path) {
          });
 }
 
-DeployMission mission_of(const Scenario& scenario, const fs::path& file,
+/// The options by which the coordinator changes the scenario as it was changed here. A service
+/// splits them at spaces.
+std::vector<std::string> overrides_of(const DeployOptions& options,
+                                      std::vector<Problem>& problems) {
+  std::vector<std::string> words = words_of(options.overrides);
+  if (options.overrides.seed) {
+    words.insert(words.end(), {"--seed", std::to_string(*options.overrides.seed)});
+  }
+  for (const std::string& word : words) {
+    const bool splits = word.find_first_of(" \t\n'\"\\$`") != word.npos;
+    if (!splits || options.to != "systemd") continue;
+    problems.push_back({word, "has a character that a service's settings cannot hold",
+                        "write the value into the scenario file"});
+  }
+  return words;
+}
+
+DeployMission mission_of(const Scenario& scenario, const DeployOptions& options,
                          std::vector<Problem>& problems) {
+  const fs::path& file = options.scenario;
   DeployMission mission;
   mission.name = scenario.name();
   mission.quorum = scenario.mission().quorum;
+  mission.lockstep = scenario.mission().timing.pace == Pace::kLockstep;
+  mission.overrides = overrides_of(options, problems);
   const fs::path whole = fs::absolute(file).lexically_normal();
   mission.folder = whole.parent_path();
   mission.files.push_back(whole.filename());
   for (const fs::path& map : scenario.map_files()) {
     mission.files.push_back(map.lexically_relative(mission.folder).string());
+  }
+  for (const fs::path& named : scenario.files_by_whole_path()) {
+    std::erase(mission.files, named.lexically_normal().lexically_relative(mission.folder).string());
+    problems.push_back({file.string(),
+                        "\"" + named.string() +
+                            "\" is a whole path, so it cannot be copied to "
+                            "another host",
+                        "keep the file in the scenario's folder or below, and name it relative to "
+                        "that folder"});
   }
   for (const std::string& name : mission.files) {
     if (is_plain(name)) continue;
@@ -130,8 +162,16 @@ void note_drivers(const Mission& mission, const std::vector<DeployHost>& hosts, 
                url.base().c_str());
 }
 
+/// Scripts take the table from beside themselves.
+void note_modes(const DeployOptions& options, const Basis& basis) {
+  if (!basis.free_domain || !options.out.empty()) return;
+  std::fprintf(stderr,
+               "note: the table of the free domain's modes is written only with --out DIR; without "
+               "it each host computes the table when the mission begins\n");
+}
+
 int deploy(const DeployOptions& options) {
-  const auto scenario = load_or_complain(options.scenario, {});
+  const auto scenario = load_or_complain(options.scenario, options.overrides);
   if (!scenario) return kExitBadInput;
   const auto read = read_hosts(options.hosts);
   if (const auto* problems = std::get_if<std::vector<Problem>>(&read))
@@ -139,7 +179,7 @@ int deploy(const DeployOptions& options) {
   const auto& hosts = std::get<std::vector<DeployHost>>(read);
 
   std::vector<Problem> problems;
-  DeployMission mission = mission_of(*scenario, options.scenario, problems);
+  DeployMission mission = mission_of(*scenario, options, problems);
   const bool apart = hosts.size() > 1 || options.to == "compose";
   if (apart) mission.url.ttl = 1;
   mission.url = options.url.value_or(mission.url);
@@ -158,6 +198,7 @@ int deploy(const DeployOptions& options) {
                       : options.to == "systemd" ? systemd_files
                                                 : compose_files;
   const std::vector<TextFile> files = render(hosts, mission);
+  note_modes(options, basis);
   note_drivers(scenario->mission(), hosts, mission.url);
   if (options.out.empty()) return print(files);
   const int written = write_files(files, options.out);
@@ -204,6 +245,7 @@ void add_deploy(CLI::App& app, Action& action) {
                    "The team's mission key, as given to `ergocast keygen`: NAME.key goes to every "
                    "host, NAME.coordinator.key to the coordinator's (default: no key)")
       ->type_name("NAME");
+  add_override_options(*command, options->overrides);
   command
       ->add_option("--out", options->out,
                    "Write into this folder (default: to the standard output)")

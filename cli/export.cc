@@ -74,10 +74,10 @@ int export_run(const ExportOptions& options) {
     origin = std::get<0>(read);
   }
   if (!origin && options.to == "geojson") {
-    return report_error(kExitBadInput,
-                        scenario.string() +
-                            ": has no origin, so nobody knows where on the earth it lies; give "
-                            "--origin LATITUDE,LONGITUDE, the place of (0, 0)");
+    tell(
+        "note: the scenario has no origin, so the place of (0, 0) is taken to be latitude 0, "
+        "longitude 0; --origin LATITUDE,LONGITUDE says where it is");
+    origin = GeoPlace{0, 0};
   }
   auto record = read_export_record(options.run_dir, *mission, origin);
   if (const auto* problem = std::get_if<std::string>(&record))
@@ -100,7 +100,8 @@ void add_export(CLI::App& app, Action& action) {
   command->add_option("RUN_DIR", options->run_dir, "Run directory")->required()->type_name("DIR");
   command
       ->add_option("--to", options->to,
-                   "mcap: one file for Foxglove; csv: a folder of tables; geojson: the tracks")
+                   "mcap: one file for Foxglove; csv: a folder of tables; geojson: tracks, "
+                   "walls and stations")
       ->required()
       ->check(CLI::IsMember({"mcap", "csv", "geojson"}).description(""))
       ->type_name("mcap|csv|geojson");

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the registry of live runs; `ergocast list` prints it.
+// Reads the registry of live runs.
 #include "cli/find_run.h"
 
-#include <cstdio>
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <utility>
 
-#include "cli/commands.h"
 #include "cli/report_error.h"
-#include "cli/run_registry.h"
 #include "runtime/key_file.h"
-#include "text/printable.h"
 
 namespace ergocast::cli {
 namespace {
@@ -19,15 +16,6 @@ std::vector<LiveRun> runs_here() {
   LiveRuns found = live_runs();
   for (const std::string& warning : found.warnings) tell("warning: " + warning);
   return std::move(found.runs);
-}
-
-int choose(const std::vector<LiveRun>& runs) {
-  std::string text = "several runs of this user are live; choose one with --run-id:";
-  for (const LiveRun& run : runs) {
-    text += "\n  --run-id " + to_hex(run.run) + "  " + run.scenario + ", since " + run.started +
-            ", on " + run.url.base();
-  }
-  return report_error(kExitBadInput, text);
 }
 
 /// Takes the key of the run, unless another one was given.
@@ -44,34 +32,8 @@ std::optional<int> take_key(const CLI::App& command, const LiveRun& run, BusOpti
   return std::nullopt;
 }
 
-void print_table(const std::vector<LiveRun>& runs) {
-  if (runs.empty()) std::printf("no run of this user is live on this host\n");
-  for (const LiveRun& run : runs) {
-    std::printf("%s  %s, since %s, %s\n  %s\n  %s\n", to_hex(run.run).c_str(), run.scenario.c_str(),
-                printable(run.started).c_str(),
-                run.key_file.empty() ? "without a key" : "with a key", run.url.base().c_str(),
-                printable(run.run_dir.string()).c_str());
-  }
-}
-
-void print_json(const std::vector<LiveRun>& runs) {
-  auto list = nlohmann::ordered_json::array();
-  for (const LiveRun& run : runs) list.push_back(nlohmann::ordered_json::parse(to_json_text(run)));
-  std::printf("%s\n", list.dump(2).c_str());
-}
-
-}  // namespace
-
-std::optional<int> find_run(const CLI::App& command, BusOptions& options,
-                            std::filesystem::path* run_dir) {
-  if (command.count("--lcm-url") > 0) return std::nullopt;
-  std::vector<LiveRun> runs = runs_here();
-  if (options.run != 0) {
-    std::erase_if(runs, [&options](const LiveRun& run) { return run.run != options.run; });
-  }
-  if (runs.empty()) return std::nullopt;
-  if (runs.size() > 1) return choose(runs);
-  const LiveRun& run = runs.front();
+/// Takes the URL, the run and its key; an exit code, after an error message, if it cannot be used.
+std::optional<int> take(const CLI::App& command, const LiveRun& run, BusOptions& options) {
   if (run.version != version()) {
     return report_error(kExitBadInput, "run " + to_hex(run.run) + " of " + run.scenario +
                                            " is flown by ergocast " + run.version + ", this is " +
@@ -79,25 +41,57 @@ std::optional<int> find_run(const CLI::App& command, BusOptions& options,
   }
   options.url = run.url;
   options.run = run.run;
-  if (run_dir != nullptr) *run_dir = run.run_dir;
   return take_key(command, run, options);
 }
 
-void add_list(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("list", "Name the live runs that this user started here");
-  auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "One JSON array");
-  command->footer(
-      "The runs of `ergocast run`; teams that were started by hand or on other hosts are not "
-      "listed.\nstatus, watch, spy, stop, pause and resume take the only one, or the one that "
-      "--run-id names.");
-  command->callback([&action, json] {
-    action = [json] {
-      const std::vector<LiveRun> runs = runs_here();
-      *json ? print_json(runs) : print_table(runs);
-      return kExitDone;
-    };
-  });
+}  // namespace
+
+std::vector<LiveRun> live_runs_named(RunId run) {
+  std::vector<LiveRun> runs = runs_here();
+  if (run != 0) std::erase_if(runs, [run](const LiveRun& one) { return one.run != run; });
+  return runs;
+}
+
+int choose(const std::vector<LiveRun>& runs) {
+  std::string text = "several runs of this user are live; choose one with --run-id:";
+  for (const LiveRun& run : runs) {
+    text += "\n  --run-id " + to_hex(run.run) + "  " + run.scenario + ", since " + run.started +
+            ", on " + run.url.base();
+  }
+  return report_error(kExitBadInput, text);
+}
+
+void describe_search(CLI::App& command) {
+  CLI::Option* url = command.get_option("--lcm-url");
+  const std::string by_hand = url->get_default_str();
+  url->default_str("")->description(
+      "Base URL: swarm, world and command buses are this port and the next two (default: that of "
+      "your live run on this host, which `ergocast list` names; if there is none, " +
+      by_hand + ")");
+  command.get_option("--run-id")->description("This run only; needed where several are live");
+}
+
+std::optional<int> find_run(const CLI::App& command, BusOptions& options,
+                            std::filesystem::path* run_dir) {
+  if (command.count("--lcm-url") > 0) return std::nullopt;
+  const std::vector<LiveRun> runs = live_runs_named(options.run);
+  if (runs.empty()) return std::nullopt;
+  if (runs.size() > 1) return choose(runs);
+  if (run_dir != nullptr) *run_dir = runs.front().run_dir;
+  return take(command, runs.front(), options);
+}
+
+FoundRuns find_runs(const CLI::App& command, const BusOptions& options) {
+  if (command.count("--lcm-url") > 0) return {{options}};
+  const std::vector<LiveRun> live = live_runs_named(options.run);
+  if (live.empty()) return {{options}};
+  FoundRuns found;
+  for (const LiveRun& run : live) {
+    BusOptions one = options;
+    const auto code = take(command, run, one);
+    code ? void(found.code = std::max(found.code, *code)) : found.runs.push_back(one);
+  }
+  return found;
 }
 
 }  // namespace ergocast::cli

@@ -74,6 +74,8 @@ void LiveTeam::look(Instant now) {
   const TeamPicture picture = notice(now);
   end_text_ = picture.reason;
   status_ = Json::parse(team_json(picture));
+  // The page's time goes on in a pause, as the record's does.
+  status_["t_s"] = static_cast<double>(picture.tick) * picture.dt_s;
   ++statuses_;
   if (me_.follower().revision() != roster_revision_) {
     roster_revision_ = me_.follower().revision();

@@ -30,7 +30,7 @@ void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
   if (!arrival.fresh) return;
   const Instant now = arrival.now;
   reach(team.header.tick, now);
-  progress_.paused = team.paused;
+  progress_.paused = team.paused || me_.is_held(tick_);
   // A restarted coordinator does not know the metric yet.
   if (team.ergodic_metric > 0) progress_.ergodic_metric = team.ergodic_metric;
   progress_.agents_alive = team.agents_alive;
@@ -75,6 +75,8 @@ void MissionWatch::reach(Tick tick, Instant now) {
   if (tick <= tick_) return;
   tick_ = tick;
   progress_.tick = me_.counted(tick);
+  progress_.world_tick = tick;
+  progress_.paused = me_.is_held(tick);
   tick_since_ = now;
 }
 

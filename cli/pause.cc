@@ -29,15 +29,18 @@ class Pausing : public TeamCommand {
     if (runs_.size() > 1) return choose();
     transport_->set_run(team().run());
     while (!team().flies() && !team().over() && waited() < kMissionPatience) {
+      ask_for_mission();
       if (!listen()) return interrupted();
     }
     if (!team().flies()) return refused();
     changes_ = named_changes(team().holds());
     since_ = now();
+    next_ = since_;
     return is_done() ? there_already() : insist();
   }
 
   const MonitoredRun& team() const { return runs_.begin()->second; }
+  std::string mission_time(Tick tick) const { return team().mission_time(tick); }
   /// Whether the tick is named.
   bool is_done() const { return is_open(team().holds()) == pauses_; }
   Tick named() const {
@@ -46,17 +49,49 @@ class Pausing : public TeamCommand {
   }
 
   int insist() {
-    while (!is_done() || team().tick() < named()) {
-      if (!is_done()) say();
+    while (!is_done()) {
+      say();
       if (!listen()) return interrupted();
-      if (team().over())
-        return report_error(kExitFailed, "the mission has ended before: " + team().reason());
+      if (team().over()) return ended_before();
       if (!is_done() && waited() >= kAnswerPatience) return report_error(kExitFailed, why_not());
     }
-    std::printf(pauses_ ? "paused from tick %lld on: `ergocast resume` lets the mission go on\n"
-                        : "the mission goes on from tick %lld on\n",
-                static_cast<long long>(named()));
+    return pauses_ ? wait_for_the_pause() : report_resumption();
+  }
+
+  /// In real time the tick comes two seconds later, and vehicles move until then.
+  int wait_for_the_pause() {
+    if (team().tick() < named()) {
+      std::printf("the coordinator pauses the mission at %s, in %.1f s\n",
+                  mission_time(named()).c_str(), team().seconds_until(named()));
+      std::fflush(stdout);
+    }
+    while (team().tick() < named()) {
+      if (!listen()) return interrupted();
+      if (team().over()) return ended_before();
+    }
+    std::printf("paused at %s: `ergocast resume` lets the mission go on\n",
+                mission_time(named()).c_str());
     return kExitDone;
+  }
+
+  /// Nothing depends on when it comes, so nobody waits for it.
+  int report_resumption() const {
+    std::printf("the mission goes on at %s, in %.1f s\n", mission_time(named()).c_str(),
+                team().seconds_until(named()));
+    return kExitDone;
+  }
+
+  int ended_before() const {
+    return report_error(kExitFailed, "the mission has ended before: " + team().reason());
+  }
+
+  /// The coordinator sends MISSION once a second; an agent repeats it at once.
+  void ask_for_mission() {
+    if (now() < next_) return;
+    next_ = now() + kPeriod;
+    Hello question;
+    question.header = {team().run(), kOperator, header_.incarnation, ++header_.sequence, -1};
+    transport_->publish({Bus::kSwarm, question});
   }
 
   void say() {
@@ -69,8 +104,7 @@ class Pausing : public TeamCommand {
 
   int there_already() const {
     if (pauses_) {
-      std::printf("the mission is paused already, from tick %lld on\n",
-                  static_cast<long long>(named()));
+      std::printf("the mission is paused already, at %s\n", mission_time(named()).c_str());
     } else {
       std::printf("the mission is not paused\n");
     }
@@ -103,6 +137,7 @@ void add(CLI::App& app, Action& action, bool pause) {
                         : app.add_subcommand("resume", "Let a paused mission go on");
   auto options = std::make_shared<BusOptions>();
   add_bus_options(*command, *options);
+  describe_search(*command);
   command->footer(std::string(pause
                                   ? "From a tick that the coordinator names, vehicles brake, then "
                                     "stand or loiter. No time of\n"

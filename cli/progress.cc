@@ -4,10 +4,17 @@
 #include "cli/progress.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "cli/overload.h"
 
 namespace ergocast::cli {
 namespace {
+
+bool overloaded(const MissionProgress& at) {
+  return overload_warning(at.missed_deadlines, at.world_tick, at.agents_expected).has_value();
+}
 
 /// The texts to show, the most important first.
 std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
@@ -18,6 +25,10 @@ std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
   if (at.paused) said.push_back("paused");
   if (at.world_silent) said.push_back("waiting for the world");
   if (at.coordinator_silent) said.push_back("no coordinator");
+  if (overloaded(at)) {
+    const double share = late_share(at.missed_deadlines, at.world_tick, at.agents_expected);
+    said.push_back("WARNING: " + std::to_string(std::lround(100 * share)) + " % of commands late");
+  }
   if (under_way) {
     said.push_back(clock_text(static_cast<double>(at.tick_count - at.tick) / ticks_per_s) +
                    " left");
@@ -29,7 +40,7 @@ std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
   if (at.silent_agent != kUnassigned && !at.coordinator_silent) {
     said.push_back("agent " + std::to_string(at.silent_agent) + " silent");
   }
-  if (at.missed_deadlines > 0) {
+  if (at.missed_deadlines > 0 && !overloaded(at)) {
     said.push_back(std::to_string(at.missed_deadlines) + " commands late");
   }
   if (!at.coordinator_silent) {
@@ -44,10 +55,22 @@ std::vector<std::string> facts(const MissionProgress& at, double ticks_per_s) {
 
 void ProgressDisplay::show(const MissionProgress& progress) {
   const auto now = ProgressLine::Clock::now();
-  const double ticks_per_s = ticks_.measure(static_cast<double>(progress.tick), now);
+  const auto count = static_cast<double>(progress.tick);
+  const bool stands = progress.paused || progress.tick == 0;
+  const double ticks_per_s = stands ? ticks_.interrupt(count, now) : ticks_.measure(count, now);
+  warn_of_overload(progress);
   if (!line_.due(now)) return;
   const auto all = static_cast<double>(std::max<Tick>(1, progress.tick_count));
   line_.show(static_cast<double>(progress.tick) / all, facts(progress, ticks_per_s));
+}
+
+/// Once: the line says it again and again.
+void ProgressDisplay::warn_of_overload(const MissionProgress& at) {
+  if (overload_said_) return;
+  const auto warning = overload_warning(at.missed_deadlines, at.world_tick, at.agents_expected);
+  if (!warning) return;
+  overload_said_ = true;
+  say("warning: " + *warning);
 }
 
 }  // namespace ergocast::cli

@@ -13,6 +13,7 @@ namespace ergocast::cli {
 
 struct MissionProgress {
   Tick tick = 0, tick_count = 0;  ///< of ticks that count
+  Tick world_tick = 0;            ///< goes on in a pause
   double dt_s = 0;
   double ergodic_metric = 0;
   int agents_alive = 0, agents_expected = 0;
@@ -35,8 +36,11 @@ class ProgressDisplay {
   void end() { line_.end(); }
 
  private:
+  void warn_of_overload(const MissionProgress& progress);
+
   ProgressLine line_;
   Rate ticks_;
+  bool overload_said_ = false;
   std::function<void(const std::string&)> also_;
 };
 

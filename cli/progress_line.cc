@@ -58,16 +58,18 @@ std::string text_of(const char* format, double value) {
 }
 
 double Rate::measure(double count, ProgressLine::Clock::time_point now) {
-  if (since_ == ProgressLine::Clock::time_point{} || count < from_) {
-    since_ = now;
-    from_ = count;
-    return per_s_;
-  }
+  if (since_ == ProgressLine::Clock::time_point{} || count < from_) return interrupt(count, now);
   const double elapsed_s = std::chrono::duration<double>(now - since_).count();
   if (elapsed_s < 0.5) return per_s_;
   const double newest_per_s = (count - from_) / elapsed_s;
   const double weight = per_s_ == 0 ? 1 : 1 - std::exp(-elapsed_s / kMemory_s);
   per_s_ += weight * (newest_per_s - per_s_);
+  since_ = now;
+  from_ = count;
+  return per_s_;
+}
+
+double Rate::interrupt(double count, ProgressLine::Clock::time_point now) {
   since_ = now;
   from_ = count;
   return per_s_;

@@ -39,6 +39,8 @@ class Rate {
  public:
   /// Counts per second; 0 until it is known.
   double measure(double count, ProgressLine::Clock::time_point now);
+  /// The same while the counting stands still on purpose: that time is left out.
+  double interrupt(double count, ProgressLine::Clock::time_point now);
 
  private:
   ProgressLine::Clock::time_point since_{};

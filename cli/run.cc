@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
+#include <thread>
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
@@ -30,6 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
+constexpr auto kNoteAfter = 500ms;
 constexpr auto kAttendPeriod = 50ms, kAttendPeriodAtEnd = 5ms;
 
 /// Returns when all processes have ended.
@@ -212,10 +216,30 @@ int fly(const MissionOptions& options, const Scenario& scenario, const Launcher:
                                                                              : kExitDone;
 }
 
+/// Reads the scenario; if that takes long, a line says why nothing happens.
+std::optional<Scenario> load_with_a_note(const MissionOptions& options) {
+  std::mutex mutex;
+  std::condition_variable read;
+  bool done = false;
+  std::jthread note([&] {
+    std::unique_lock lock(mutex);
+    if (read.wait_for(lock, kNoteAfter, [&] { return done; })) return;
+    tell("reading " + options.scenario.string() +
+         ": the modes of a free domain, or large maps, take some seconds");
+  });
+  auto scenario = load_or_complain(options.scenario, options.overrides);
+  {
+    const std::lock_guard lock(mutex);
+    done = true;
+  }
+  read.notify_one();
+  return scenario;
+}
+
 }  // namespace
 
 int run(const MissionOptions& options) {
-  const auto scenario = load_or_complain(options.scenario, options.overrides);
+  const auto scenario = load_with_a_note(options);
   if (!scenario) return kExitBadInput;
   if (!options.seal.can_sign()) return report_error(kExitBadInput, cannot_sign(options.key_file));
   StopSignals signals;

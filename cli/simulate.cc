@@ -12,14 +12,13 @@ namespace ergocast::cli {
 namespace {
 
 void show(const lab::Simulation& simulation, const Mission& mission, ProgressDisplay& display) {
-  const int agents = static_cast<int>(mission.starts_m.size());
   const Recorder& recorder = simulation.recorder();
-  MissionProgress at{recorder.next_row(),
-                     mission.timing.tick_count,
-                     mission.timing.dt_s,
-                     recorder.facts().ergodic_metric_last,
-                     agents,
-                     agents};
+  MissionProgress at;
+  at.tick = at.world_tick = recorder.next_row();
+  at.tick_count = mission.timing.tick_count;
+  at.dt_s = mission.timing.dt_s;
+  at.ergodic_metric = recorder.facts().ergodic_metric_last;
+  at.agents_alive = at.agents_expected = static_cast<int>(mission.starts_m.size());
   at.free_domain = mission.basis.free_domain;
   display.show(at);
 }

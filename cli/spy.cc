@@ -139,6 +139,7 @@ void add_spy(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SpyOptions>();
   add_url_option(*command, options->url);
   add_run_id_option(*command, options->run);
+  describe_search(*command);
   const std::map<std::string, Bus> buses{
       {"swarm", Bus::kSwarm}, {"world", Bus::kWorld}, {"command", Bus::kCommand}};
   command->add_option("--bus", options->bus, "The bus whose channels are listed")

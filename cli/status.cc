@@ -85,7 +85,8 @@ int choose(const Listener& listener) {
     const TeamPicture picture = view.picture(now());
     text += "\n  --run-id " + to_hex(key.first) + "  " + (key.second ? "replay of " : "") +
             (picture.scenario.empty() ? "a mission not heard yet" : picture.scenario) + ", " +
-            std::to_string(picture.agents_alive) + " agents, tick " + std::to_string(picture.tick);
+            std::to_string(picture.agents_alive) + " agents, tick " +
+            std::to_string(picture.counted);
   }
   return report_error(kExitBadInput, text);
 }
@@ -172,6 +173,7 @@ void add_status(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("status", "Show how a team is that is flying; only listens");
   auto options = std::make_shared<StatusOptions>();
   add_bus_options(*command, *options);
+  describe_search(*command);
   command->add_flag("--watch", options->watch,
                     "Again and again, until the mission's end or Ctrl-C");
   command->add_flag("--json", options->json, "One JSON object; with --watch one each second");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `ergocast stop`: ends a mission from any host on its buses, and reports whether the team obeyed.
+// `ergocast stop`: ends missions from any host on their buses, and reports whether the teams
+// obeyed.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -7,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/find_run.h"
@@ -20,7 +22,10 @@ using namespace std::chrono_literals;
 
 /// How long the team may take to exit.
 constexpr auto kLongest = 15s;
-/// An emergency stop is repeated at least so long, because a process may miss the first ones.
+/// What has been obeyed is reported after so long at the latest.
+constexpr auto kReportAfter = 250ms;
+/// Without a roster an emergency stop is repeated at least so long: a process that is not known may
+/// miss the first ones.
 constexpr auto kLeastInsistence = 1s;
 constexpr const char* kAtOnce = "stopped at once by `ergocast stop --now` on ";
 
@@ -28,48 +33,63 @@ struct StopOptions : BusOptions {
   bool at_once = false;
 };
 
+/// Stops one run on a URL in order, or all that are heard there at once.
 class Stopping : public TeamCommand {
  public:
   explicit Stopping(const StopOptions& options) : TeamCommand(options), options_(options) {}
 
- private:
-  int act() override {
-    // A run that is named is known, and an emergency must not wait.
-    if (options_.run == 0 && !look_around()) return interrupted();
-    if (runs_.size() > 1 && !options_.at_once) return choose();
-    if (runs_.empty() && options_.run == 0) return nobody();
-    if (options_.run != 0) runs_.try_emplace(options_.run, options_.run);
-    if (!options_.at_once) transport_->set_run(runs_.begin()->first);
-    since_ = now();
-    return insist();
+  /// Sends STOP to every run that is known, if it is due.
+  void speak() {
+    if (options_.run != 0) runs_.try_emplace(options_.run, options_.run, since_);
+    for (const auto& [run, team] : runs_) speak_to(run, team);
+    say_to_the_crowd();
+  }
+  /// Listens for a moment and judges; the exit code once all is known.
+  std::optional<int> hear() {
+    if (!listen()) return interrupted();
+    for (auto& [run, request] : requests_) {
+      const MonitoredRun& team = runs_.at(run);
+      if (!request.code) request.code = verdict(request, team);
+      if (!request.code) report_progress(request, team);
+    }
+    return result();
   }
 
-  /// Stops the selected run. In an emergency it stops all runs on the URL, also those received
-  /// later, because there is no time to choose.
-  int insist() {
-    std::map<RunId, StopRequest> words;
-    std::map<RunId, int> codes;
-    do {
-      for (const auto& [run, team] : runs_) {
-        if (!codes.contains(run)) say(run, team, words);
-      }
-      say_to_the_crowd();
-      if (!listen()) return interrupted();
-      for (const auto& [run, word] : words) {
-        if (codes.contains(run)) continue;
-        if (const auto code = verdict(runs_.at(run))) codes[run] = *code;
-      }
-    } while (codes.size() < runs_.size());
-    if (crowded_) {
-      return report_error(kExitFailed,
-                          "more than " + std::to_string(kMostRuns) +
-                              " runs were heard, recordings of former ones perhaps; all "
-                              "were told, but not all were seen to obey: say it again "
-                              "with --run-id");
+ private:
+  /// What one run is asked.
+  struct Request {
+    StopRequest word;
+    Instant since;
+    bool reported = false;  // what it has obeyed so far
+    std::optional<int> code = {};
+  };
+
+  int act() override {
+    if (!options_.at_once) {
+      if (options_.run == 0 && !look_around()) return interrupted();
+      if (runs_.size() > 1) return choose();
+      if (runs_.empty() && options_.run == 0) return nobody();
+      if (options_.run == 0) transport_->set_run(runs_.begin()->first);
     }
-    return std::max_element(codes.begin(), codes.end(),
-                            [](const auto& a, const auto& b) { return a.second < b.second; })
-        ->second;
+    while (true) {
+      speak();
+      if (const auto code = hear()) return *code;
+    }
+  }
+
+  void speak_to(RunId run, const MonitoredRun& team) {
+    const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
+    const auto [at, is_new] =
+        requests_.try_emplace(run, Request{StopRequest(run, false, how + host_name()), now()});
+    Request& request = at->second;
+    if (is_new) {
+      std::printf("run %s: %s\n", to_hex(run).c_str(),
+                  options_.at_once ? "telling everybody to stand still"
+                                   : "asking the coordinator to end the mission");
+      std::fflush(stdout);
+    }
+    const bool obeyed = request.code || (!options_.at_once && team.over());
+    if (!obeyed) request.word.repeat(*transport_, now(), options_.at_once);
   }
 
   /// Runs beyond kMostRuns must stop, too. Other runs, or recordings of them, may fill the table.
@@ -82,72 +102,143 @@ class Stopping : public TeamCommand {
     crowd_.clear();
   }
 
-  void say(RunId run, const MonitoredRun& team, std::map<RunId, StopRequest>& words) {
-    const char* how = options_.at_once ? kAtOnce : "stopped by `ergocast stop` on ";
-    const auto [word, is_new] = words.try_emplace(run, run, false, how + host_name());
-    if (is_new) {
-      std::printf("run %s: %s\n", to_hex(run).c_str(),
-                  options_.at_once ? "telling everybody to stand still"
-                                   : "asking the coordinator to end the mission");
-      std::fflush(stdout);
+  /// The exit code, or nothing while a run may still be heard for the first time, or has not
+  /// answered.
+  std::optional<int> result() const {
+    if (options_.run == 0 && waited() < (runs_.empty() ? kListeningTime : kLookAround))
+      return std::nullopt;
+    if (runs_.empty()) return nobody();
+    int worst = kExitDone;
+    for (const auto& [run, team] : runs_) {
+      const auto request = requests_.find(run);
+      if (request == requests_.end() || !request->second.code) return std::nullopt;
+      worst = std::max(worst, *request->second.code);
     }
-    if (options_.at_once || !team.over()) {
-      word->second.repeat(*transport_, now(), options_.at_once);
-    }
+    if (!crowded_) return worst;
+    return report_error(kExitFailed, "more than " + std::to_string(kMostRuns) +
+                                         " runs were heard, recordings of former ones perhaps; all "
+                                         "were told, but not all were seen to obey: say it again "
+                                         "with --run-id");
+  }
+
+  std::vector<std::string> awaited(const MonitoredRun& team) const {
+    return options_.at_once ? team.still_moving(now()) : team.still_there(now());
   }
 
   /// The exit code, or nothing while it is unknown.
-  std::optional<int> verdict(const MonitoredRun& team) const {
-    const auto waited = this->waited();
-    const auto left = team.still_there(now());
-    const bool obeyed = options_.at_once ? waited >= kLeastInsistence : team.over();
+  std::optional<int> verdict(const Request& request, const MonitoredRun& team) const {
+    const auto waited = now() - request.since;
     if (team.unheard()) return waited < kListeningTime ? std::nullopt : std::optional(nobody());
+    const bool world_due = options_.at_once && !team.world_heard() && team.tick() > 0;
+    if (world_due && waited < kListeningTime) return std::nullopt;
+    const auto left = awaited(team);
+    const bool obeyed =
+        options_.at_once ? team.knows_roster() || waited >= kLeastInsistence : team.over();
     if (obeyed && left.empty()) return conclude(team);
     if (waited >= kLongest) {
-      return report_error(kExitFailed,
-                          "still heard: " + listed(left) +
-                              (options_.at_once ? ": end them on their hosts"
-                                                : ": ergocast stop --now stops them at once"));
+      return fail(team, "still heard: " + listed(left) +
+                            (options_.at_once ? ": end them on their hosts"
+                                              : ": ergocast stop --now stops them at once"));
     }
     if (obeyed || options_.at_once) return std::nullopt;
+    return why_not_in_order(team, waited);
+  }
+
+  std::optional<int> why_not_in_order(const MonitoredRun& team, Instant::duration waited) const {
     if (!team.coordinator_heard() && waited >= kListeningTime) {
-      return report_error(kExitFailed,
-                          "no coordinator is heard, and nobody else ends a mission in order: "
-                          "ergocast stop --now stops the team at once");
+      return fail(team,
+                  "no coordinator is heard, and nobody else ends a mission in order: "
+                  "ergocast stop --now stops the team at once");
     }
     if (waited >= kAnswerPatience) {
-      return report_error(kExitFailed,
-                          "the coordinator does not end the mission: ergocast stop --now stops "
-                          "the team at once");
+      return fail(team,
+                  "the coordinator does not end the mission: ergocast stop --now stops "
+                  "the team at once");
     }
     return std::nullopt;
+  }
+
+  /// Says once what has been obeyed, where the rest takes longer.
+  void report_progress(Request& request, const MonitoredRun& team) const {
+    if (request.reported || now() - request.since < kReportAfter) return;
+    request.reported = true;
+    const bool at_once = options_.at_once;
+    const char* obeyed = !at_once ? (team.over() ? "the coordinator has ended the mission"
+                                                 : "the coordinator has not answered yet")
+                         : !team.world_heard() ? "no world or driver is heard yet"
+                         : team.stands_still() ? "all vehicles stand still"
+                                               : "vehicles still move";
+    const auto left = awaited(team);
+    std::printf("run %s: %s%s%s\n", to_hex(team.run()).c_str(), obeyed,
+                left.empty() ? "" : "; waiting for ", listed(left).c_str());
+    std::fflush(stdout);
   }
 
   int conclude(const MonitoredRun& team) const {
     // A mission that never started has moved no vehicle.
     if (options_.at_once && !team.world_heard() && team.tick() > 0) {
-      return report_error(kExitFailed,
-                          "nobody is heard any more, but no world or driver was heard "
-                          "before either: whether the vehicles stand still is not known: "
-                          "look at them");
+      return fail(team,
+                  "nobody is heard any more, but no world or driver was heard "
+                  "before either: whether the vehicles stand still is not known: "
+                  "look at them");
     }
     if (options_.at_once && !team.stands_still()) {
-      return report_error(kExitFailed, "the world is silent, and in its last state, of tick " +
-                                           std::to_string(team.tick()) +
-                                           ", vehicles still move: look at them");
+      return fail(team, "the world is silent, and in its last state, of " +
+                            team.mission_time(team.tick()) + ", vehicles still move: look at them");
     }
     const auto lost = team.lost(now());
     const std::string but = lost.empty() ? "" : "; " + listed(lost) + " did not say so";
-    std::printf("%s at tick %lld: %s%s\n", options_.at_once ? "stopped" : "the mission has ended",
-                static_cast<long long>(team.tick()),
-                options_.at_once ? "all stand still and have ended" : team.reason().c_str(),
-                but.c_str());
+    std::printf("run %s: %s at %s: %s%s\n", to_hex(team.run()).c_str(),
+                options_.at_once ? "stopped" : "the mission has ended",
+                team.mission_time(team.tick()).c_str(),
+                options_.at_once ? "all stand still" : team.reason().c_str(), but.c_str());
+    std::fflush(stdout);
     return kExitDone;
   }
 
+  static int fail(const MonitoredRun& team, const std::string& problem) {
+    return report_error(kExitFailed, "run " + to_hex(team.run()) + ": " + problem);
+  }
+
   const StopOptions& options_;
+  std::map<RunId, Request> requests_;
   bool crowded_ = false;
 };
+
+/// Stops the teams on several URLs at the same time: no team waits for another one.
+/// @param code  of runs that cannot be stopped, after an error message each
+int stop_at_once(const std::vector<StopOptions>& teams, int code) {
+  std::vector<std::unique_ptr<Stopping>> stoppings;
+  for (const StopOptions& team : teams) {
+    auto& one = stoppings.emplace_back(std::make_unique<Stopping>(team));
+    if (const auto failed = one->open()) {
+      code = std::max(code, *failed);
+      stoppings.pop_back();
+    }
+  }
+  bool interrupted = false;
+  while (!stoppings.empty() && !interrupted) {
+    for (const auto& one : stoppings) one->speak();
+    std::erase_if(stoppings, [&](const auto& one) {
+      const auto ended = one->hear();
+      code = std::max(code, ended.value_or(code));
+      interrupted = interrupted || one->was_interrupted();
+      return ended.has_value();
+    });
+  }
+  return code;
+}
+
+int stop_found(const CLI::App& command, StopOptions options) {
+  if (!options.at_once) {
+    if (const auto code = find_run(command, options)) return *code;
+    return Stopping(options).carry_out();
+  }
+  const FoundRuns found = find_runs(command, options);
+  std::vector<StopOptions> teams;
+  for (const BusOptions& team : found.runs) teams.push_back({team, true});
+  return stop_at_once(teams, found.code);
+}
 
 }  // namespace
 
@@ -155,19 +246,19 @@ void add_stop(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("stop", "End a mission that is flying, in order or at once");
   auto options = std::make_shared<StopOptions>();
   add_bus_options(*command, *options);
+  describe_search(*command);
   command->add_flag(
       "--now", options->at_once,
       "Emergency: agents and world stand still within a tick, also without a coordinator");
   command->footer(
-      "Without --now the coordinator ends the mission for all. With --now all runs that are heard\n"
-      "stop; with --run-id besides, it listens for nobody first.\n"
-      "Exit codes: 0 the team was seen to end; 2 several runs are heard; 3 LCM cannot be used;\n"
-      "4 nobody is heard, somebody goes on, or what the vehicles do is not known.");
+      "Without --now the coordinator ends the mission for all. With --now all live runs of this\n"
+      "user on this host stop, or with --lcm-url all runs that are heard on that URL; --run-id\n"
+      "chooses one.\n"
+      "Exit codes: 0 the teams were seen to end, or to stand still; 2 several runs are heard; 3 "
+      "LCM\n"
+      "cannot be used; 4 nobody is heard, somebody goes on, or what the vehicles do is not known.");
   command->callback([&action, options, command] {
-    action = [options, command] {
-      if (const auto code = find_run(*command, *options)) return *code;
-      return Stopping(*options).carry_out();
-    };
+    action = [options, command] { return stop_found(*command, *options); };
   });
 }
 

@@ -7,8 +7,6 @@
 namespace ergocast::cli {
 namespace {
 
-/// Longer than any agent is silent, so that every other run on this URL is detected.
-constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 constexpr auto kTurnTime = std::chrono::milliseconds(20);
 /// Runs beyond kMostRuns that are kept.
 constexpr std::size_t kMostInCrowd = 256;
@@ -16,6 +14,11 @@ constexpr std::size_t kMostInCrowd = 256;
 }  // namespace
 
 int TeamCommand::carry_out() {
+  if (const auto failed = open()) return *failed;
+  return act();
+}
+
+std::optional<int> TeamCommand::open() {
   if (!options_.seal.can_sign()) return report_error(kExitBadInput, cannot_sign(options_.key_file));
   auto opened = listen_to_teams(
       options_,
@@ -27,14 +30,14 @@ int TeamCommand::carry_out() {
     return report_error(kExitUnavailable, *problem);
   transport_ = std::get<0>(std::move(opened));
   since_ = now();
-  return act();
+  return std::nullopt;
 }
 
 void TeamCommand::hear(const Message& message, Bus bus, AgentId transmitter) {
   const RunId run = header_of(message).run;
   if (run == 0) return;
   if (runs_.size() < kMostRuns || runs_.contains(run)) {
-    runs_.try_emplace(run, run).first->second.receive(message, bus, transmitter, now());
+    runs_.try_emplace(run, run, since_).first->second.receive(message, bus, transmitter, now());
   } else if (crowd_.size() < kMostInCrowd) {
     crowd_.insert(run);
   }
@@ -53,7 +56,8 @@ bool TeamCommand::look_around() {
 
 bool TeamCommand::listen() {
   transport_->deliver_until(now() + kTurnTime, signals_.fd());
-  return signals_.take() == 0;
+  interrupted_ = interrupted_ || signals_.take() > 0;
+  return !interrupted_;
 }
 
 int TeamCommand::nobody() const {

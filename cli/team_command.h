@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "cli/report_error.h"
@@ -25,6 +26,10 @@ class TeamCommand {
 
   /// Opens the buses and acts; returns the exit code, after an error message.
   int carry_out();
+  /// Opens the buses alone; the exit code, after an error message, if they cannot be used.
+  std::optional<int> open();
+  /// Whether a signal came while it listened.
+  bool was_interrupted() const { return interrupted_; }
 
  protected:
   /// Finds the run, speaks to it and reports the result; returns the exit code.
@@ -32,6 +37,8 @@ class TeamCommand {
 
   /// How long to wait for any process, and for a coordinator; how long a coordinator may take.
   static constexpr std::chrono::seconds kListeningTime{3}, kAnswerPatience{5};
+  /// Longer than any agent is silent, so that every other run on this URL is detected.
+  static constexpr auto kLookAround = 3 * kAgentStatusPeriod / 2;
 
   /// Listens until a run is heard, and any other on this URL would be. False if a signal came.
   bool look_around();
@@ -55,6 +62,7 @@ class TeamCommand {
 
   const BusOptions& options_;
   StopSignals signals_;
+  bool interrupted_ = false;
   RunId replay_ = 0;  // of the newest message that `ergocast replay` sent; 0: none
 };
 

@@ -2,6 +2,7 @@
 // Writes the picture of a team as JSON, with null for unknown values.
 #include <nlohmann/json.hpp>
 
+#include "cli/overload.h"
 #include "cli/team_text.h"
 
 namespace ergocast {
@@ -23,7 +24,7 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
   const AgentStatus& status = *row.status;
   json["host"] = status.host;
   json["phase"] = to_string(status.phase);
-  json["tick"] = status.header.tick;
+  json["tick"] = row.tick;
   json["waiting_for"] = or_null(status.waiting_for != kUnassigned, name_of(status.waiting_for));
   json["ergodic_metric"] = or_null(status.answered_tick >= 0, status.ergodic_metric);
   json["max_staleness_s"] = status.max_staleness_s;
@@ -44,6 +45,7 @@ nlohmann::ordered_json json_of(const AgentRow& row) {
 }  // namespace
 
 std::string team_json(const TeamPicture& at) {
+  const auto warning = overload_warning(at.missed_deadlines, at.tick, at.agents_expected);
   nlohmann::ordered_json json = {
       {"run_id", to_hex(at.run)},
       {"replay", at.replay},
@@ -53,15 +55,17 @@ std::string team_json(const TeamPicture& at) {
       {"reason", at.reason},
       {"trouble", at.trouble},
       {"paused", at.paused},
-      {"tick", at.tick},
-      {"counted_ticks", at.counted},
+      {"tick", at.counted},
       {"tick_count", or_null(at.tick_count > 0, at.tick_count)},
-      {"t_s", or_null(at.dt_s > 0, static_cast<double>(at.tick) * at.dt_s)},
+      {"t_s", or_null(at.dt_s > 0, static_cast<double>(at.counted) * at.dt_s)},
+      {"world_tick", at.tick},
       {"ergodic_metric", or_null(at.ergodic_metric.has_value(), at.ergodic_metric.value_or(0))},
       {"free_domain", at.free_domain},
       {"agents_alive", at.agents_alive},
       {"agents_expected", at.agents_expected},
       {"missed_deadlines", at.missed_deadlines},
+      {"late_share", late_share(at.missed_deadlines, at.tick, at.agents_expected)},
+      {"warning", or_null(warning.has_value(), warning.value_or(""))},
       {"skipped_ticks", at.skipped_ticks},
       {"clamped_commands", at.clamped_commands},
       {"forgotten", at.forgotten}};

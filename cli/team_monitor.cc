@@ -4,6 +4,7 @@
 #include "cli/team_monitor.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <utility>
 
@@ -30,7 +31,8 @@ std::variant<std::unique_ptr<Transport>, std::string> listen_to_teams(const BusO
                          {.on_message = std::move(hear), .on_replayed = std::move(hear_replay)});
 }
 
-MonitoredRun::MonitoredRun(RunId run) : me_(kRole, {run, kUnassigned, 0}) {}
+MonitoredRun::MonitoredRun(RunId run, Instant since)
+    : me_(kRole, {run, kUnassigned, 0}), since_(since) {}
 
 void MonitoredRun::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   const auto arrival = me_.accept(message, bus, transmitter, now);
@@ -56,15 +58,27 @@ void MonitoredRun::on(const AgentStatus& status, const Arrival& arrival) {
   agents_[author] = status.phase == AgentPhase::kFinished;
 }
 
+/// Each robot may have a driver of its own, which keeps its own ticks.
 void MonitoredRun::on(const WorldState& world, const Arrival& arrival) {
-  const Tick tick = world.header.tick;
-  if (!arrival.fresh || tick < world_tick_) return;
-  if (tick > world_tick_) velocities_mps_.clear();
-  world_tick_ = tick;
+  if (!arrival.fresh) return;
+  note_end(arrival, world.last);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
-    velocities_mps_[vehicle.id] = vehicle.velocity_mps;
+    VehicleSeen& seen = vehicles_[vehicle.id];
+    if (world.header.tick >= seen.tick) seen = {world.header.tick, vehicle.velocity_mps};
   }
+}
+
+void MonitoredRun::on(const RecordAck& ack, const Arrival& arrival) {
+  if (arrival.fresh) note_end(arrival, ack.last);
+}
+
+/// The last message may be read before others that were sent earlier on another bus.
+void MonitoredRun::note_end(const Arrival& arrival, bool ended) {
+  const Author author{arrival.from.sender, arrival.from.incarnation};
+  if (processes_.size() >= kMostLives && !processes_.contains(author)) return;
+  bool& known = processes_[author];
+  known = known || ended;
 }
 
 bool MonitoredRun::unheard() const {
@@ -74,34 +88,76 @@ bool MonitoredRun::unheard() const {
 }
 
 bool MonitoredRun::stands_still() const {
-  return std::all_of(velocities_mps_.begin(), velocities_mps_.end(),
-                     [](const auto& one) { return one.second.isZero(0); });
+  return std::all_of(vehicles_.begin(), vehicles_.end(),
+                     [](const auto& one) { return one.second.velocity_mps.isZero(0); });
+}
+
+bool MonitoredRun::silent(const Author& agent, Instant now) const {
+  return me_.silent(agent, now) && now - since_ >= silence_of(agent.agent);
+}
+
+/// Whether it is heard and has not reported its end. A coordinator that has reported the mission's
+/// end leaves by itself.
+bool MonitoredRun::there(AgentId process, Instant now) const {
+  if (!heard(process) || me_.silent(process, now)) return false;
+  if (process == kCoordinator) return !over_;
+  return std::any_of(processes_.begin(), processes_.end(), [process](const auto& one) {
+    return one.first.agent == process && !one.second;
+  });
+}
+
+std::vector<std::string> MonitoredRun::agents_there(Instant now) const {
+  std::vector<std::string> names;
+  for (const auto& [author, finished] : agents_) {
+    if (!finished && !silent(author, now)) names.push_back(name_of(author.agent));
+  }
+  return names;
 }
 
 std::vector<std::string> MonitoredRun::still_there(Instant now) const {
-  std::vector<std::string> names;
-  for (const auto& [author, finished] : agents_) {
-    if (!finished && !me_.silent(author, now)) names.push_back(name_of(author.agent));
-  }
+  std::vector<std::string> names = agents_there(now);
   for (const AgentId process : kProcesses) {
-    if (heard(process) && !me_.silent(process, now)) names.push_back(name_of(process));
+    if (there(process, now)) names.push_back(name_of(process));
   }
+  return names;
+}
+
+std::vector<std::string> MonitoredRun::still_moving(Instant now) const {
+  std::vector<std::string> names = agents_there(now);
+  if (there(kWorld, now) && !stands_still()) names.push_back(name_of(kWorld));
+  if (there(kCoordinator, now)) names.push_back(name_of(kCoordinator));
   return names;
 }
 
 std::vector<std::string> MonitoredRun::lost(Instant now) const {
   std::vector<std::string> names;
   for (const auto& [author, finished] : agents_) {
-    if (!finished && me_.silent(author, now)) names.push_back(name_of(author.agent));
+    if (!finished && silent(author, now)) names.push_back(name_of(author.agent));
   }
   return names;
+}
+
+std::string MonitoredRun::mission_time(Tick tick) const {
+  const Tick counted = me_.counted(tick);
+  std::string text = "tick " + std::to_string(counted);
+  if (!knows_mission()) return text;
+  char time[32];
+  std::snprintf(time, sizeof time, ", t = %.1f s",
+                static_cast<double>(counted) * me_.timing().dt_s);
+  return text + time;
+}
+
+double MonitoredRun::seconds_until(Tick tick) const {
+  const Timing& timing = me_.timing();
+  if (timing.pace == Pace::kLockstep || tick <= tick_) return 0;
+  return static_cast<double>(tick - tick_) * timing.dt_s / timing.realtime_factor;
 }
 
 std::string choice_of(const std::map<RunId, MonitoredRun>& runs) {
   std::string text = "several runs are heard on this URL; choose one with --run-id:";
   for (const auto& [run, team] : runs) {
-    text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) +
-            " agents, tick " + std::to_string(team.tick());
+    text += "\n  --run-id " + to_hex(run) + "  " + std::to_string(team.agents()) + " agents, " +
+            team.mission_time(team.tick());
   }
   return text;
 }

@@ -36,14 +36,21 @@ class MonitoredRun {
  public:
   static constexpr Role kRole = Role::kMonitor;
 
-  explicit MonitoredRun(RunId run);
+  /// @param since  when the listening began: a member that was not heard yet counts as there for as
+  ///               long as it may be silent
+  MonitoredRun(RunId run, Instant since);
 
   void receive(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
   /// Whether a MISSION, from the coordinator or repeated by an agent, reported the mission's end.
   bool over() const { return over_; }
   const std::string& reason() const { return reason_; }
+  /// The newest of the world's ticks, which go on in a pause.
   Tick tick() const { return tick_; }
+  /// "tick 517, t = 51.7 s": how many ticks before `tick` count, as people are told the time.
+  std::string mission_time(Tick tick) const;
+  /// By the clock, until the world reaches `tick`; 0 in lockstep [s]. @pre knows_mission()
+  double seconds_until(Tick tick) const;
   RunId run() const { return me_.run(); }
   bool knows_mission() const { return me_.knows_mission(); }
   /// Whether the mission has begun, is known as a whole, and is not over.
@@ -54,12 +61,16 @@ class MonitoredRun {
   std::span<const Hold> holds() const { return me_.follower().holds(); }
   bool unheard() const;
   bool coordinator_heard() const { return heard(kCoordinator); }
-  bool world_heard() const { return world_tick_ >= 0; }
-  /// Whether no vehicle moved in the newest state of the world; true if none was received.
+  bool world_heard() const { return !vehicles_.empty(); }
+  /// Whether the whole roster is known.
+  bool knows_roster() const { return me_.follower().revision() >= 0; }
+  /// Whether no vehicle moved in the newest state that names it; true if none was received.
   bool stands_still() const;
 
-  /// Processes that are not silent and have not reported that they finished: "agent 2", "world".
+  /// Processes that are not silent and have not reported their end: "agent 2", "the world".
   std::vector<std::string> still_there(Instant now) const;
+  /// Those of them that may still move a vehicle: a world whose vehicles stand and a logger do not.
+  std::vector<std::string> still_moving(Instant now) const;
   /// Members that are silent and have not reported that they finished.
   std::vector<std::string> lost(Instant now) const;
   int agents() const { return static_cast<int>(agents_.size()); }
@@ -70,14 +81,26 @@ class MonitoredRun {
   void on(const MissionPart& part, const Arrival& arrival);
   void on(const AgentStatus& status, const Arrival& arrival);
   void on(const WorldState& world, const Arrival& arrival);
+  void on(const RecordAck& ack, const Arrival& arrival);
+  void note_end(const Arrival& arrival, bool ended);
   bool heard(AgentId process) const {
     return me_.liveness().last_sign_of_kind(process).has_value();
   }
+  bool silent(const Author& agent, Instant now) const;
+  bool there(AgentId process, Instant now) const;
+  std::vector<std::string> agents_there(Instant now) const;
+
+  struct VehicleSeen {
+    Tick tick = -1;
+    Eigen::Vector3d velocity_mps{0, 0, 0};
+  };
 
   Participant me_;
-  std::map<Author, bool> agents_;                      // whether it reported that it finished
-  std::map<AgentId, Eigen::Vector3d> velocities_mps_;  // in the newest state
-  Tick tick_ = 0, world_tick_ = -1;
+  Instant since_;
+  std::map<Author, bool> agents_;            // whether it reported that it finished
+  std::map<Author, bool> processes_;         // worlds and loggers: whether they reported their end
+  std::map<AgentId, VehicleSeen> vehicles_;  // in the newest state that names it
+  Tick tick_ = 0;
   bool over_ = false;  // the coordinator reported it
   std::string reason_;
 };

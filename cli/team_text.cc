@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 
+#include "cli/overload.h"
 #include "core/mission.h"
 
 namespace ergocast {
@@ -118,7 +119,7 @@ std::vector<Cell> cells_of(const AgentRow& row) {
   if (!row.status) return cells;
   const AgentStatus& status = *row.status;
   cells[2].text = shortened(status.host, kHostWidth);
-  cells[4].text = std::to_string(status.header.tick);
+  cells[4].text = std::to_string(row.tick);
   cells[5].text = status.answered_tick < 0 ? "-" : number("%.3g", status.ergodic_metric);
   cells[6].text = number("%.1f", status.max_staleness_s);
   const double lag_ms = 1000 * status.loop_lag_s;
@@ -227,6 +228,9 @@ std::string condition_text(const AgentRow& row) {
 
 std::string team_table(const TeamPicture& picture, bool colour) {
   std::string text = headline(picture) + '\n' + second_line(picture) + '\n';
+  const auto warning =
+      overload_warning(picture.missed_deadlines, picture.tick, picture.agents_expected);
+  if (warning) text += tinted("warning: " + *warning, Tint::kLook, colour) + '\n';
   if (!picture.reason.empty()) text += tinted(picture.reason, Tint::kLook, colour) + '\n';
   std::vector<std::vector<Cell>> rows;
   for (const AgentRow& row : picture.agents) rows.push_back(cells_of(row));

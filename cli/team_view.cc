@@ -119,10 +119,11 @@ Condition TeamView::condition_of(const Author& author, const Seen& seen, Instant
 }
 
 AgentRow TeamView::row_of(const Author& author, bool member, Instant now) const {
-  AgentRow row{author, Condition::kUnheard, to_s(now - since_), 0, {}};
+  AgentRow row{author, Condition::kUnheard, to_s(now - since_), 0, {}, 0};
   if (!replay_ && now - since_ >= silence_of(author.agent)) row.condition = Condition::kSilent;
   if (const auto seen = agents_.find(author); seen != agents_.end()) {
     row.status = seen->second.status;
+    row.tick = me_.counted(row.status->header.tick);
     row.silent_s = to_s(now - last_sign(author));
     row.condition = condition_of(author, seen->second, now);
     const double dt_s = follower().mission() ? follower().mission()->timing.dt_s : 0;
@@ -217,7 +218,7 @@ void TeamView::add_process(TeamPicture& picture, AgentId sender, Instant now) co
     row.heard = true;
     row.silent_s = to_s(now - me_.liveness().last_sign_of_kind(sender).value_or(since_));
     row.incarnation = heard->second.incarnation;
-    row.tick = heard->second.tick;
+    row.tick = me_.counted(heard->second.tick);
   }
   if (sender == kCoordinator) row.host = coordinator_host_;
   row.trouble = !replay_ && should_speak(sender) && me_.silent(sender, now, since_);

@@ -34,6 +34,7 @@ struct AgentRow {
   double silent_s = 0;  ///< since its last status, or since the listening began
   int restarts = 0;     ///< former incarnations in the roster
   std::optional<AgentStatus> status;
+  Tick tick = 0;         ///< of its last status, the number among those that count
   std::string kind{};    ///< empty: its team has no kinds
   double blocked_s = 0;  ///< without a break, by a teammate's body or an edge, in mission time
 };
@@ -46,7 +47,7 @@ struct ProcessRow {
   double silent_s = 0;
   Incarnation incarnation = 0;
   std::string host;  ///< empty: not known
-  Tick tick = 0;     ///< of its last message
+  Tick tick = 0;     ///< of its last message, the number among those that count
 };
 
 struct TeamPicture {
@@ -56,8 +57,8 @@ struct TeamPicture {
   std::string scenario;               ///< empty: MISSION was not received
   std::optional<MissionState> state;  ///< nothing: not received
   std::string reason;                 ///< why it ended, or why its plan cannot be read
-  Tick tick = 0, tick_count = 0;      ///< tick_count 0: not known
-  Tick counted = 0;                   ///< the number of `tick` among those that count
+  Tick tick = 0;                      ///< the world's, which goes on in a pause
+  Tick counted = 0, tick_count = 0;   ///< its number among those that count; 0: not known
   bool paused = false;                ///< `tick` does not count
   std::vector<Hold> holds;            ///< all that MISSION names
   double dt_s = 0;

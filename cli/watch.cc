@@ -107,6 +107,7 @@ void add_watch(CLI::App& app, Action& action) {
   command->add_option("RUN_DIR", options->run_dir, "Run directory (default: a team that flies)")
       ->type_name("DIR");
   add_bus_options(*command, *options);
+  describe_search(*command);
   add_page_options(*command, options->page);
   command->footer(
       "Serves until Ctrl-C. Exit codes: 0 done; 2 no record, or it is damaged; 3 LCM or the\n"

@@ -18,7 +18,7 @@ std::optional<std::string> write_mcap(const ExportRecord& record,
 std::optional<std::string> write_tables(const ExportRecord& record,
                                         const std::filesystem::path& folder);
 
-/// One FeatureCollection with the domain and each agent's track.
+/// One FeatureCollection with the domain, its walls, the stations and each agent's track.
 /// @pre the record has an origin
 std::optional<std::string> write_geojson(const ExportRecord& record,
                                          const std::filesystem::path& file);

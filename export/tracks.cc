@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GeoJSON (RFC 7946): longitude before latitude, outlines counter-clockwise.
+// GeoJSON (RFC 7946): longitude before latitude, outlines counter-clockwise, holes clockwise.
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 
+#include "core/rings.h"
+#include "core/station.h"
 #include "export/exports.h"
 
 namespace ergocast {
@@ -39,6 +42,51 @@ Json domain_feature(const LocalPlane& plane, const ExportRecord& record) {
   return feature({{"type", "Polygon"}, {"coordinates", Json::array({ring})}}, properties);
 }
 
+/// Twice the area, below 0 if the corners go clockwise [m²].
+double signed_area_m2(const Ring& ring) {
+  double sum = 0;
+  for_segments({ring}, [&sum](const Segment& edge) {
+    sum += edge.from_m.x() * edge.to_m.y() - edge.to_m.x() * edge.from_m.y();
+  });
+  return sum;
+}
+
+Json ring_json(const LocalPlane& plane, Ring ring, bool is_hole) {
+  if ((signed_area_m2(ring) < 0) != is_hole) std::reverse(ring.begin(), ring.end());
+  ring.push_back(ring.front());
+  Json places = Json::array();
+  for (const Eigen::Vector2d& corner : ring) places.push_back(position_of(plane, corner));
+  return places;
+}
+
+/// A polygon for each wall, with the rooms in it as its holes.
+void add_walls(const LocalPlane& plane, const Rings& walls, Json& features) {
+  const std::vector<int> depth = depths(walls);
+  for (std::size_t outer = 0; outer < walls.size(); ++outer) {
+    if (depth[outer] % 2 != 0) continue;
+    Json rings = Json::array({ring_json(plane, walls[outer], false)});
+    for (std::size_t room = 0; room < walls.size(); ++room) {
+      const bool within =
+          depth[room] == depth[outer] + 1 && contains(walls[outer], walls[room].front());
+      if (within) rings.push_back(ring_json(plane, walls[room], true));
+    }
+    features.push_back(
+        feature({{"type", "Polygon"}, {"coordinates", std::move(rings)}}, {{"kind", "wall"}}));
+  }
+}
+
+void add_stations(const LocalPlane& plane, const Mission& mission, Json& features) {
+  for (AgentId agent = 0; agent < static_cast<AgentId>(mission.starts_m.size()); ++agent) {
+    const auto station_m = station_of(mission, agent);
+    if (!station_m) continue;
+    Json place = position_of(plane, station_m->head<2>());
+    if (!mission.domain.planar()) place.push_back(station_m->z());
+    const double from_s = static_cast<double>(rest_from(mission, agent)) * mission.timing.dt_s;
+    features.push_back(feature({{"type", "Point"}, {"coordinates", std::move(place)}},
+                               {{"kind", "station"}, {"agent", agent}, {"rests_from_s", from_s}}));
+  }
+}
+
 Json track_feature(const LocalPlane& plane, const ExportRecord& record, AgentId agent,
                    const Track& track) {
   Json line = Json::array();
@@ -61,6 +109,8 @@ std::optional<std::string> write_geojson(const ExportRecord& record,
                                          const std::filesystem::path& file) {
   const LocalPlane plane(record.origin.value());
   Json features = Json::array({domain_feature(plane, record)});
+  add_walls(plane, record.mission.walls, features);
+  add_stations(plane, record.mission, features);
   for (const auto& [agent, track] : record.run.tracks)
     features.push_back(track_feature(plane, record, agent, track));
   std::ofstream out(file, std::ios::binary);

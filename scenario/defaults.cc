@@ -183,31 +183,12 @@ void fill_separation(proto::Scenario& scenario) {
       std::sqrt(std::max(0.0, scenario.time().dt_s())));
 }
 
-/// The name of a map or GeoJSON file is relative to the scenario's folder, not to the working
-/// directory.
+/// The name of a file is relative to the scenario's folder, not to the working directory.
 void make_absolute(const std::filesystem::path& file, proto::Scenario& scenario) {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::absolute(file, error).parent_path();
-  proto::Target& target = *scenario.mutable_target();
-  const auto whole = [&folder](const std::string& name) {
-    return name.empty() ? name : (folder / name).lexically_normal().string();
-  };
-  for (proto::Map& map : *target.mutable_maps()) {
-    if (map.has_file()) map.set_file(whole(map.file()));
-  }
-  for (proto::Voxels& voxels : *target.mutable_voxels()) {
-    if (voxels.has_file()) voxels.set_file(whole(voxels.file()));
-  }
-  for (proto::Region& region : *target.mutable_regions()) {
-    if (region.polygon().has_file())
-      region.mutable_polygon()->set_file(whole(region.polygon().file()));
-  }
-  for (proto::Polygon& keep_out : *target.mutable_keep_outs()) {
-    if (keep_out.has_file()) keep_out.set_file(whole(keep_out.file()));
-  }
-  if (!scenario.has_world()) return;
-  for (proto::Polygon& wall : *scenario.mutable_world()->mutable_walls()) {
-    if (wall.has_file()) wall.set_file(whole(wall.file()));
+  for (std::string* name : file_names(scenario)) {
+    if (!name->empty()) *name = (folder / *name).lexically_normal().string();
   }
 }
 
@@ -273,6 +254,26 @@ void put_on_edges(const Box& domain, proto::Agents& agents) {
 }
 
 }  // namespace
+
+std::vector<std::string*> file_names(proto::Scenario& scenario) {
+  std::vector<std::string*> names;
+  const auto add = [&names](auto& named) {
+    if (named.has_file()) names.push_back(named.mutable_file());
+  };
+  if (scenario.has_target()) {
+    proto::Target& target = *scenario.mutable_target();
+    for (proto::Map& map : *target.mutable_maps()) add(map);
+    for (proto::Voxels& voxels : *target.mutable_voxels()) add(voxels);
+    for (proto::Region& region : *target.mutable_regions()) {
+      if (region.has_polygon()) add(*region.mutable_polygon());
+    }
+    for (proto::Polygon& keep_out : *target.mutable_keep_outs()) add(keep_out);
+  }
+  if (scenario.has_world()) {
+    for (proto::Polygon& wall : *scenario.mutable_world()->mutable_walls()) add(wall);
+  }
+  return names;
+}
 
 void put_over(const Overrides& overrides, proto::Scenario& scenario, Findings& findings) {
   put_flags_over(overrides, scenario, findings);

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scenario/findings.h"
 #include "scenario/scenario.pb.h"
 
 namespace ergocast {
+
+/// The names of all other files that the scenario names, as they stand in it.
+std::vector<std::string*> file_names(proto::Scenario& scenario);
 
 /// Writes `overrides` over the values of the file. From now on their problems are the command
 /// line's.

@@ -58,7 +58,7 @@ struct Scenario::State {
   int listed_starts;  ///< the others were drawn
   Problems warnings;
 
-  std::vector<std::filesystem::path> polygon_files;
+  std::vector<std::filesystem::path> polygon_files, by_whole_path;
 
   State(proto::Scenario scenario, CompiledTarget target, int listed)
       : text(std::move(scenario)),
@@ -89,6 +89,10 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   proto::Scenario scenario;
   if (!read_text(text, scenario, findings)) return findings.take();
   put_over(overrides, scenario, findings);
+  std::vector<std::filesystem::path> by_whole_path;
+  for (const std::string* name : file_names(scenario)) {
+    if (name->starts_with('/')) by_whole_path.emplace_back(*name);
+  }
   fill_in(scenario, file);
   Checks checks(findings);
   auto polygon_files = read_polygon_files(scenario, checks, findings);
@@ -108,6 +112,7 @@ std::variant<Scenario, Problems> Scenario::parse(std::string_view text, const st
   if (std::vector<Problem> unreachable = findings.take(); !unreachable.empty()) return unreachable;
   auto state = std::make_shared<State>(std::move(scenario), std::move(*target), listed_starts);
   state->polygon_files = std::move(polygon_files);
+  state->by_whole_path = std::move(by_whole_path);
   if (auto problem = use_free_domain(state->target_density, state->mission)) {
     findings.add("basis.free_domain", "the free domain has no modes: " + *problem,
                  "widen the narrowest way, or write free_domain: false");
@@ -168,6 +173,9 @@ std::vector<std::filesystem::path> Scenario::map_files() const {
     files.emplace_back(voxels.file());
   files.insert(files.end(), state_->polygon_files.begin(), state_->polygon_files.end());
   return files;
+}
+const std::vector<std::filesystem::path>& Scenario::files_by_whole_path() const {
+  return state_->by_whole_path;
 }
 const DensityGrid& Scenario::target_density() const { return state_->target_density; }
 const Mission& Scenario::mission() const { return state_->mission; }

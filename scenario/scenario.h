@@ -80,6 +80,8 @@ class Scenario {
   /// Absolute paths of the other files that its target was made from: maps and GeoJSON. Only after
   /// load() and parse() the latter, whose polygons print() has.
   std::vector<std::filesystem::path> map_files() const;
+  /// Those of them, and files of walls, that the scenario names by their whole path.
+  const std::vector<std::filesystem::path>& files_by_whole_path() const;
 
   /// The target density in multiples of the uniform density, for people: at most 256 cells along
   /// the longer side of the domain.

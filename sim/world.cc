@@ -102,10 +102,19 @@ void World::ask_team(Instant now, Outbox& out) {
   const bool may_begin_without =
       mission().timing.pace == Pace::kRealtime && now - *question_.since >= kQuestionPatience;
   const AgentId unheard = first_unheard();
-  if (knows_bodies() && (unheard == kUnassigned || may_begin_without)) return begin(now);
+  if (now >= earliest_begin_ && knows_bodies() && (unheard == kUnassigned || may_begin_without))
+    return begin(now);
   if (now < question_.next) return;
   question_.next = now + kQuestionPeriod;
   ask(0, unheard, out);
+}
+
+std::optional<Tick> World::newest_answer() const {
+  std::optional<Tick> newest;
+  for (const auto& [id, slot] : vehicles_) {
+    if (slot.command) newest = std::max(newest, std::optional(slot.answered()));
+  }
+  return newest;
 }
 
 /// The first member that has not answered with its last two commands; kUnassigned: all have.

@@ -41,14 +41,25 @@ class World {
   /// Ends at once, as when its process is told to stop. A STOP with `now` does not end it at once:
   /// it sends a state in which all vehicles stand still, until that is recorded or 2 s have passed.
   void stop(std::string reason) { finish(std::move(reason)); }
+  /// The same, and it counts as failed(): it cannot take part, for a reason outside of it.
+  void fail(std::string reason) {
+    refused_ = true;
+    finish(std::move(reason));
+  }
+  /// From now on it moves nothing before `earliest`, and only asks the team.
+  void begin_not_before(Instant earliest) { earliest_begin_ = earliest; }
 
   bool finished() const { return finished_; }
   /// Whether it has finished because it cannot take part at all.
-  bool failed() const { return follower().plan_problem().has_value() || no_physics_; }
+  bool failed() const { return follower().plan_problem().has_value() || no_physics_ || refused_; }
   RunId run() const { return me_.run(); }
+  Incarnation incarnation() const { return me_.incarnation(); }
   const std::string& reason() const { return reason_; }
   const MissionFollower& follower() const { return me_.follower(); }
   Tick tick() const { return tick_; }
+  /// The newest tick that an agent has answered; −1 if they have answered none yet; nothing while
+  /// no agent has told it.
+  std::optional<Tick> newest_answer() const;
   /// The tick from which it goes on, once it moves; above 0 if another world began the mission.
   std::optional<Tick> begun_at() const { return begun_at_; }
   /// Real time: commands that were not there when their tick was over.
@@ -149,6 +160,7 @@ class World {
   std::map<AgentId, VehicleSlot> vehicles_;
   Question question_;
   std::optional<Tick> begun_at_;
+  Instant earliest_begin_{};
   Schedule schedule_;
   std::optional<Instant> over_since_;             // no vehicle moves any more
   std::optional<std::string> emergency_stopped_;  // by a STOP at once: why
@@ -160,6 +172,7 @@ class World {
   std::unique_ptr<Physics> physics_;  // null: core/vehicle.h
   std::vector<PhysicalBody> moved_;
   bool no_physics_ = false;  // that could move the bodies of this mission
+  bool refused_ = false;     // by fail()
 };
 
 }  // namespace ergocast

@@ -4,6 +4,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,6 +16,69 @@
 
 namespace ergocast {
 
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Detects another world, or a driver, that moves the same vehicles. The world itself does not
+/// listen to its own bus, whose every message would wake it. Two in lockstep cannot tell themselves
+/// apart from their own repeats, and drivers refuse lockstep.
+class RivalWatch {
+ public:
+  RivalWatch(World& world, const NodeOptions& node) : world_(world), node_(node) {}
+
+  void look(Instant now) {
+    const auto& mission = world_.follower().mission();
+    if (done_ || !mission) return;
+    done_ = mission->timing.pace == Pace::kLockstep;
+    if (!done_ && !listener_) listen();
+    if (done_) return;
+    listener_->deliver_until(now, -1);
+    if (!known_tick_) {
+      known_tick_ = world_.newest_answer();
+      heard_until_ = now + kListening;
+      world_.begin_not_before(heard_until_);
+    }
+    if (!world_.begun_at() || now < heard_until_ + kListening) return;
+    listener_.reset();
+    done_ = true;
+  }
+
+ private:
+  /// Before it begins; and as long after that, for one that began at the same time.
+  static constexpr auto kListening = 500ms;
+
+  void listen() {
+    auto opened = Transport::open(node_.url, world_.run(), node_.seal, {0, kTypes<WorldState>, 0},
+                                  {.on_message = [this](const Message& message, Bus, AgentId) {
+                                    meet(std::get<WorldState>(message));
+                                  }});
+    done_ = opened.index() != 0;
+    if (!done_) listener_ = std::get<0>(std::move(opened));
+  }
+
+  /// A tick beyond what the team had answered is no recording, and nothing that a world before us
+  /// has sent. Of two that began together, the one with the greater identity gives way.
+  void meet(const WorldState& state) {
+    const Header& other = state.header;
+    if (other.incarnation == world_.incarnation() || state.last || world_.finished()) return;
+    if (!known_tick_ || other.tick <= *known_tick_ + 1) return;
+    if (world_.begun_at() && other.incarnation > world_.incarnation()) return;
+    world_.fail("run " + to_hex(world_.run()) +
+                ": a driver, or another world, moves its vehicles already: end that one first, or "
+                "do not start this one");
+  }
+
+  World& world_;
+  const NodeOptions& node_;
+  std::unique_ptr<Transport> listener_;
+  std::optional<Tick> known_tick_;
+  Instant heard_until_{};
+  bool done_ = false;
+};
+
+}  // namespace
+
 int run_world(const NodeOptions& node, PhysicsMaker physics) {
   StopSignals signals;
   World world(node.run, random_identity(), std::move(physics));
@@ -20,6 +86,7 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
   if (!connected) return kExitUnavailable;
   Transport& transport = *connected;
   TrafficWatch watch(transport);
+  RivalWatch rivals(world, node);
   spdlog::info("waiting for a mission on {}", node.url.base());
 
   bool logger_lost = false, begun = false;
@@ -32,6 +99,7 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
       transport.let_gather(gathering_of(*mission, members));
     }
     watch.look(now());
+    rivals.look(now());
     if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());
     begun = world.begun_at().has_value();
     if (world.logger_lost() && !logger_lost) spdlog::warn("the logger is silent: going on without");

@@ -69,7 +69,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   // A replayed event log has the messages of all buses on the first, because LCM's player knows one
   // URL.
   hears(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);
-  hears(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState>);
+  hears(Role::kMonitor,     Bus::kWorld,   kTypes<WorldState, RecordAck>);
   hears(Role::kMonitor,     Bus::kCommand, kTypes<RecordAck>);
   return table;
 }();

@@ -124,8 +124,10 @@ ergocast_test(NAME runtime_tests LABELS unit
 ergocast_test(NAME cli_tests LABELS unit
   SOURCES
     cli/rate_test.cc
+    cli/team_monitor_test.cc
     cli/workers_test.cc
     ${CMAKE_SOURCE_DIR}/cli/progress_line.cc
+    ${CMAKE_SOURCE_DIR}/cli/team_monitor.cc
     ${CMAKE_SOURCE_DIR}/cli/workers.cc
   LIBS ergocast::core ergocast::runtime)
 

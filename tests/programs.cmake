@@ -68,6 +68,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/deploy_test.cc
     process/doctor_test.cc
     process/driver_test.cc
+    process/export_test.cc
     process/fault_test.cc
     process/flood_test.cc
     process/found_test.cc

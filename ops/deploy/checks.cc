@@ -65,6 +65,13 @@ std::vector<Problem> problems_of(const Hosts& hosts, const DeployMission& missio
                             std::to_string(mission.quorum) + " of " + mission.name,
                         "add agents, or lower agents.quorum in the scenario"});
   }
+  if (mission.lockstep && !names_with(hosts, &DeployHost::driver).empty()) {
+    problems.push_back(
+        {file,
+         mission.name + " is in lockstep, and robots follow the clock: their drivers refuse it",
+         "give --realtime, or write pace: REALTIME in the scenario, or give the role "
+         "sim in the place of driver"});
+  }
   if (apart && mission.url.ttl == 0) {
     LcmUrl wider = mission.url;
     wider.ttl = 1;

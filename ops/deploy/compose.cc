@@ -109,8 +109,9 @@ std::string compose_text(const DeployHost& host, const DeployMission& mission, b
   }
   if (host.coordinator) {
     // A restarted coordinator would begin a second mission.
-    text += service("coordinator", "\"no\"",
-                    {"ergocast-coordinator", "/mission/" + mission.files.front()},
+    std::vector<std::string> command{"ergocast-coordinator", "/mission/" + mission.files.front()};
+    command.insert(command.end(), mission.overrides.begin(), mission.overrides.end());
+    text += service("coordinator", "\"no\"", command,
                     mount(mission.folder.string(), "/mission") + modes +
                         (keyed ? mount(kCoordinatorKey, "/mission.key") : ""));
   }

@@ -38,6 +38,9 @@ struct DeployMission {
   std::vector<std::string>
       files;  ///< the scenario's file in `folder`, then its maps, relative to it
   int quorum = 1;
+  bool lockstep = false;
+  /// Options of the coordinator that change the scenario, as the words of a command.
+  std::vector<std::string> overrides;
   LcmUrl url;
   /// Whole path of the mission key, as `ergocast keygen` was given it; empty: none.
   std::filesystem::path keys;

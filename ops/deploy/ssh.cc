@@ -161,9 +161,11 @@ std::string process_table(const std::vector<DeployHost>& hosts, const DeployMiss
       text += process_line(host, process, mission);
     }
     if (!host.coordinator) continue;
-    last =
-        process_line(host, {"coordinator", {"ergocast-coordinator", "./" + mission.files.front()}},
-                     mission, "mission.coordinator.key");
+    DeployProcess coordinator{"coordinator",
+                              {"ergocast-coordinator", "./" + mission.files.front()}};
+    coordinator.command.insert(coordinator.command.end(), mission.overrides.begin(),
+                               mission.overrides.end());
+    last = process_line(host, coordinator, mission, "mission.coordinator.key");
   }
   return text + "  # The coordinator starts the mission.\n" + last + "}\n";
 }

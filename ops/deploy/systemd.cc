@@ -27,9 +27,10 @@ failed=no
 
 write_settings() {
   local table=${modes:+$'\n'ERGOCAST_MODES=/etc/ergocast/mission/$modes}
+  local options=${overrides:+$'\n'ERGOCAST_OVERRIDES=$overrides}
   ssh "$1" 'sudo tee /etc/ergocast/ergocast.env >/dev/null' <<END
 LCM_DEFAULT_URL=$url
-ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}$table
+ERGOCAST_SCENARIO=/etc/ergocast/mission/${scenario_files[0]}$options$table
 END
 }
 
@@ -115,6 +116,13 @@ std::string service_table(const std::vector<DeployHost>& hosts) {
   return text + "}\n";
 }
 
+/// The options of the coordinator's service, which splits them at spaces.
+std::string overrides_setting(const DeployMission& mission) {
+  std::string text;
+  for (const std::string& word : mission.overrides) text += (text.empty() ? "" : " ") + word;
+  return "overrides=" + shell_word(text) + '\n';
+}
+
 }  // namespace
 
 std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
@@ -122,7 +130,7 @@ std::vector<TextFile> systemd_files(const std::vector<DeployHost>& hosts,
   const std::string name = mission.name + "-systemd.sh";
   return {{name,
            script_head(kUnitHead, name, mission) + script_settings(hosts, mission) +
-               service_table(hosts) + kUnitBody,
+               overrides_setting(mission) + service_table(hosts) + kUnitBody,
            true}};
 }
 

@@ -39,5 +39,14 @@ TEST(Rate, IsKnownFromTheFirstMeasurementAndFollowsALastingChange) {
   EXPECT_NEAR(per_s, 10, 1);
 }
 
+TEST(Rate, LeavesOutTheTimeInWhichNothingIsCountedOnPurpose) {
+  Rate rate;
+  ProgressLine::Clock::time_point now{1h};
+  rate.measure(0, now);
+  ASSERT_EQ(rate.measure(100, now + 1s), 100);
+  for (int s = 1; s <= 60; ++s) EXPECT_EQ(rate.interrupt(100, now + s * 1s), 100);
+  EXPECT_EQ(rate.measure(200, now + 61s), 100);
+}
+
 }  // namespace
 }  // namespace ergocast::cli

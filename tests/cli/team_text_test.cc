@@ -24,6 +24,7 @@ AgentRow row_of(AgentId id, Condition condition) {
   status.loop_lag_s = 0.0012;
   status.host = "robot-12";
   row.status = status;
+  row.tick = 599999;
   return row;
 }
 
@@ -92,6 +93,24 @@ TEST(TeamTable, SaysEverythingInLinesThatFit) {
   }
 }
 
+TEST(TeamTable, WarnsOfLateCommandsWithTheRemedy) {
+  TeamPicture picture = flying_team();
+  picture.tick = 1000;
+  picture.agents_expected = 3;
+  picture.missed_deadlines = 29;
+  EXPECT_EQ(team_table(picture, false).find("warning"), std::string::npos);
+  picture.missed_deadlines = 360;
+  EXPECT_EQ(lines_of(team_table(picture, false))[2],
+            "warning: 12 % of the commands came too late for their tick, and vehicles went on with "
+            "older ones: this machine or the network is too slow. Choose a smaller --realtime "
+            "factor, a longer time.dt_s or fewer agents");
+  EXPECT_NE(team_table(picture, true).find("\x1b[33mwarning: 12 %"), std::string::npos);
+  const auto json = nlohmann::json::parse(team_json(picture));
+  EXPECT_EQ(json["late_share"], 0.12);
+  EXPECT_TRUE(json["warning"].get<std::string>().starts_with("12 % of the commands"));
+  EXPECT_EQ(nlohmann::json::parse(team_json(flying_team()))["warning"], nullptr);
+}
+
 TEST(TeamTable, ColourChangesNothingButColour) {
   std::string coloured = team_table(flying_team(), true);
   EXPECT_NE(coloured.find("\x1b[31;1msilent 4 s\x1b[0m"), std::string::npos) << coloured;
@@ -127,12 +146,25 @@ TEST(TeamTable, IsCutToTheTerminalsHeight) {
   EXPECT_EQ(cut_to_height("a\nb\nc\nd\n", 3), "a\nb\n… and 2 more\n");
 }
 
+TEST(TeamJson, HasOneClockAndTheWorldsTickBeside) {
+  TeamPicture picture = flying_team();
+  picture.tick = 700;
+  picture.counted = 500;
+  const auto json = nlohmann::json::parse(team_json(picture));
+  EXPECT_EQ(json["tick"], 500);
+  EXPECT_EQ(json["t_s"], 50);
+  EXPECT_EQ(json["world_tick"], 700);
+  EXPECT_EQ(json["agents"][0]["tick"], 599999);
+  EXPECT_NE(team_table(picture, false).find("tick 500 of"), std::string::npos);
+}
+
 TEST(TeamJson, IsOneLineWithNullForWhatIsNotKnown) {
   const std::string line = team_json(flying_team());
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const auto json = nlohmann::json::parse(line);
   EXPECT_EQ(json["run_id"], "0000000000001234");
   EXPECT_EQ(json["state"], "running");
+  EXPECT_EQ(json["tick"], 599999);
   EXPECT_EQ(json["agents"][0]["state"], "silent");
   EXPECT_EQ(json["agents"][0]["refused"]["tag"], 3);
   EXPECT_EQ(json["agents"][1]["restarts"], 1);

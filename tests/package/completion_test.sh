@@ -38,6 +38,8 @@ expect "ergocast st" status stop study
 refuse "ergocast st" run
 expect "ergocast run --" --set --out --seed --lockstep --key-file --watch
 refuse "ergocast run --" --vary
+expect "ergocast deploy --s" --set --seed
+expect "ergocast list --p" --pid
 expect "ergocast study --v" --vary --version
 expect "ergocast study me" merge
 expect "ergocast study merge --o" --out

@@ -131,6 +131,63 @@ TEST_F(Deploy, RefusesKeysThatWouldNotDo) {
   EXPECT_TRUE(said("chmod 600")) << output();
 }
 
+TEST_F(Deploy, RefusesAFileThatTheScenarioNamesByItsWholePath) {
+  std::ofstream(folder_ / "room.svg")
+      << R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">)"
+         R"(<path d="M 40 40 L 60 40 L 60 60 L 40 60 Z"/></svg>)";
+  const auto walled = [&](const std::string& file) {
+    std::ofstream(folder_ / "walled.textproto")
+        << "domain { size_x_m: 100 size_y_m: 100 } target { uniform_weight: 1 } "
+           "law { u_max_mps: 3 } time { duration_s: 60 } world { speed_limit_mps: 9 "
+           "wall_clearance_m: 2 walls { file: \"" +
+               file +
+               "\" } } "
+               "agents { starts { x_m: 10 y_m: 10 } }";
+    return ergocast({"deploy", folder_ / "walled.textproto", "--to", "ssh", "--hosts",
+                     hosts("ground coordinator logger sim agent 0\n")});
+  };
+  ASSERT_EQ(walled("room.svg"), 0) << output();
+  EXPECT_TRUE(said("scenario_files=(walled.textproto room.svg)")) << output();
+  EXPECT_EQ(walled((folder_ / "room.svg").string()), 2);
+  EXPECT_TRUE(said("room.svg\" is a whole path") && said("name it relative to that folder"))
+      << output();
+}
+
+TEST_F(Deploy, RefusesDriversOfAMissionInLockstep) {
+  const char* driven = "ground coordinator logger driver\nrover agents=5\n";
+  EXPECT_EQ(deploy("ssh", driven, {"--lockstep"}), 2);
+  EXPECT_TRUE(said("is in lockstep, and robots follow the clock") && said("give --realtime"))
+      << output();
+  EXPECT_EQ(deploy("ssh", driven, {"--realtime"}), 0) << output();
+}
+
+TEST_F(Deploy, TheCoordinatorChangesTheScenarioAsItWasChangedHere) {
+  const std::vector<std::string> changes{"--set", "law.epsilon=0.2", "--realtime", "--seed", "7"};
+  ASSERT_EQ(deploy("ssh", kTwoHosts, changes), 0) << output();
+  EXPECT_TRUE(
+      said("ergocast-coordinator ./lake_search.textproto '--realtime=1' --set "
+           "'law.epsilon=0.2' --seed 7"))
+      << output();
+  ASSERT_EQ(deploy("compose", kTwoHosts, changes), 0) << output();
+  EXPECT_TRUE(said(R"("--realtime=1", "--set", "law.epsilon=0.2", "--seed", "7"])")) << output();
+  ASSERT_EQ(deploy("systemd", kTwoHosts, changes), 0) << output();
+  EXPECT_TRUE(said("overrides='--realtime=1 --set law.epsilon=0.2 --seed 7'")) << output();
+  EXPECT_EQ(deploy("ssh", kTwoHosts, {"--set", "law.epsilom=0.2"}), 2);
+  EXPECT_TRUE(said("unknown field")) << output();
+  EXPECT_EQ(deploy("systemd", kTwoHosts, {"--set", "law.epsilon= 0.2"}), 2);
+  EXPECT_TRUE(said("a service's settings cannot hold")) << output();
+}
+
+TEST_F(Deploy, SaysThatOnlyFilesTakeTheTableOfModesAlong) {
+  const std::string office =
+      (std::filesystem::path(ERGOCAST_SOURCE_DIR) / "scenarios/office.textproto").string();
+  ASSERT_EQ(ergocast({"deploy", office, "--to", "ssh", "--hosts",
+                      hosts("ground coordinator logger sim\nrover agents=6\n")}),
+            0);
+  EXPECT_TRUE(said("note: the table of the free domain's modes is written only with --out DIR"))
+      << output();
+}
+
 TEST_F(Deploy, RefusesAMapThatLiesElsewhere) {
   const auto shipped = scenario_file("lake_search").parent_path();
   std::string text = text_of(scenario_file("lake_search"));

@@ -50,6 +50,23 @@ TEST_F(DrivenRobots, StandStillAtOnceWhenTheyAreToldToStop) {
   for (const auto& [id, row] : rows.rbegin()->second) EXPECT_TRUE(row.stands()) << id;
 }
 
+TEST_F(DrivenRobots, RefuseASimulatedWorldBesideThem) {
+  std::filesystem::create_directory(out());
+  Program& logger = hand("ergocast-logger", {"--out", out()});
+  Program& driver = hand("ergocast-example-driver");
+  for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});
+  hand("ergocast-coordinator", {realtime_scenario(kEndless)});
+  ASSERT_TRUE(recorded(30000)) << driver.said();
+  Program& sim = hand("ergocast-sim");
+  EXPECT_EQ(wait_for(sim.child), 4) << sim.said();
+  EXPECT_TRUE(sim.says("a driver, or another world, moves its vehicles already")) << sim.said();
+  EXPECT_FALSE(sim.says("moving from tick")) << "it has moved nothing";
+  ASSERT_TRUE(moves_on()) << driver.said();
+  ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
+  EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
+  EXPECT_EQ(wait_for(logger.child), 0) << logger.said();
+}
+
 TEST_F(DrivenRobots, RefuseAMissionInLockstep) {
   Program& driver = hand("ergocast-example-driver");
   for (const char* id : {"0", "1", "2", "3"}) hand("ergocast-agent", {"--id", id});

@@ -88,6 +88,79 @@ TEST_F(Found, OfTwoOneMustBeChosen) {
   EXPECT_EQ(wait_for(second), 0);
 }
 
+TEST_F(Found, AnEmergencyStopsAllLiveRunsOfThisUser) {
+  Child first = fly("one"), second = fly("two");
+  EXPECT_EQ(ergocast({"stop", "--now"}), 0) << output();
+  EXPECT_EQ(wait_for(first), 0);
+  EXPECT_EQ(wait_for(second), 0);
+  for (const char* name : {"one", "two"}) {
+    const auto summary = nlohmann::json::parse(text_of(folder_ / name / "summary.json"));
+    EXPECT_EQ(summary["emergency_stop"], true) << name;
+    const std::string id = summary["run_id"];
+    EXPECT_TRUE(said("run " + id + ": stopped at tick ")) << output();
+  }
+}
+
+TEST_F(Found, AnEmergencyStopsOnlyTheRunThatIsNamed) {
+  Child first = fly("one"), second = fly("two");
+  const auto runs = listed();
+  ASSERT_EQ(runs.size(), 2U);
+  const std::string named = runs[0]["run_id"], other = runs[1]["run_id"];
+  EXPECT_EQ(ergocast({"stop", "--now", "--run-id", named}), 0) << output();
+  EXPECT_FALSE(said(other)) << output();
+  EXPECT_EQ(wait_for(first), 0);
+  ASSERT_EQ(listed().size(), 1U);
+  EXPECT_TRUE(second.running());
+  EXPECT_EQ(ergocast({"stop", "--now"}), 0) << output();
+  EXPECT_TRUE(said(other)) << output();
+  EXPECT_EQ(wait_for(second), 0);
+}
+
+TEST_F(Found, AnEmergencyOfARunThatCannotBeTakenStopsTheOthers) {
+  Child first = fly("one"), second = fly("two");
+  const std::string id = listed()[0]["run_id"];
+  const auto file = registry() / (id + ".json");
+  std::string text = text_of(file);
+  const auto at = text.find("\"version\": \"") + 12;
+  text.replace(at, text.find('"', at) - at, "9.9.9");
+  std::ofstream(file) << text;  // the same file: its lock stays
+  EXPECT_EQ(ergocast({"stop", "--now"}), 2);
+  EXPECT_TRUE(said("is flown by ergocast 9.9.9, this is ")) << output();
+  EXPECT_EQ(wait_for(second), 0);
+  EXPECT_TRUE(first.running());
+  first.send(SIGINT);
+  EXPECT_EQ(wait_for(first), 0);
+}
+
+TEST_F(Found, ItsProcessesAreNamedWithTheirIds) {
+  Child run = fly("one");
+  EXPECT_EQ(ergocast({"list"}), 0);
+  EXPECT_TRUE(said("processes: run " + std::to_string(run.pid()) + ", logger ")) << output();
+  ASSERT_EQ(ergocast({"list", "--pid", "agent-2"}), 0) << output();
+  const std::string pid = output();
+  EXPECT_NE(text_of("/proc/" + pid.substr(0, pid.find('\n')) + "/cmdline").find("ergocast-agent"),
+            std::string::npos)
+      << pid;
+  EXPECT_EQ(std::to_string(listed()[0]["processes"]["agent-2"].get<int>()) + '\n', pid);
+  EXPECT_EQ(ergocast({"list", "--pid", "agent-9"}), 2);
+  EXPECT_TRUE(said("has no process agent-9 now; it has logger, sim, coordinator, agent-0"))
+      << output();
+  EXPECT_EQ(kill(std::stoi(pid), SIGKILL), 0);
+  ASSERT_TRUE(eventually([&] {
+    return ergocast({"list", "--pid", "agent-2"}) == 0 && output() != pid;
+  })) << "it is started again, with another id";
+  run.send(SIGINT);
+  EXPECT_EQ(wait_for(run), 0);
+}
+
+TEST_F(Found, HelpSaysWhereACommandLooks) {
+  for (const char* command : {"status", "watch", "stop", "pause", "resume"}) {
+    EXPECT_EQ(ergocast({command, "--help"}), 0);
+    EXPECT_TRUE(said("default: that of your live run on this host")) << command << output();
+    EXPECT_FALSE(said("URL=udpm")) << command << output();
+  }
+}
+
 TEST_F(Found, ARunThatWasKilledIsSaidAndNotTaken) {
   Child run = fly("one");
   run.send(SIGKILL);

@@ -172,7 +172,7 @@ TEST_F(Keyed, TheCoordinatorsKeyPausesAMissionAndLetsItGoOn) {
     return ergocast({command, "--lcm-url", kUrl, "--key-file", coordinator_});
   };
   ASSERT_EQ(say("pause"), 0) << output();
-  EXPECT_NE(output().find("paused from tick "), output().npos) << output();
+  EXPECT_NE(output().find("paused at tick "), output().npos) << output();
   ASSERT_EQ(say("resume"), 0) << output();
   ASSERT_TRUE(moves_on()) << said();
   ASSERT_EQ(say("stop"), 0) << output();

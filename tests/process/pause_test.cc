@@ -13,6 +13,23 @@ class PauseCommand : public FlyingMission {
  protected:
   int say(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }
+  /// What follows "at tick " in the output: the tick and the time.
+  std::string time_said() const {
+    const std::string said = output();
+    const auto at = said.find("at tick ") + 8, end = said.find(" s", at);
+    return said.substr(at, end - at);
+  }
+  /// `status --json` tells the time that counts, as `status` does, and the world's tick beside it.
+  void expect_one_clock() {
+    ergocast({"status", "--json", "--lcm-url", kUrl});
+    const auto json = nlohmann::json::parse(output());
+    Tick held = 0;
+    for (const auto& hold : json["holds"]) held += hold[1].get<Tick>() - hold[0].get<Tick>();
+    EXPECT_GT(held, 0);
+    EXPECT_EQ(json["tick"].get<Tick>() + held, json["world_tick"]) << output();
+    EXPECT_DOUBLE_EQ(json["t_s"], json["tick"].get<double>() * 0.1);
+    EXPECT_FALSE(json.contains("counted_ticks"));
+  }
   /// From the state of the team that `ergocast status` shows.
   bool shown(const std::string& part) {
     ergocast({"status", "--lcm-url", kUrl});
@@ -37,15 +54,19 @@ TEST_F(PauseCommand, HoldsAMissionInLockstepWhichItsSimulationRepeats) {
   EXPECT_EQ(say("resume"), 0) << output();
   EXPECT_TRUE(answered("is not paused")) << output();
   ASSERT_EQ(say("pause"), 0) << output();
-  EXPECT_TRUE(answered("paused from tick ")) << output();
-  EXPECT_TRUE(shown("paused, tick ")) << output();
+  EXPECT_TRUE(answered("paused at tick ")) << output();
+  const std::string paused_at = time_said();
+  EXPECT_TRUE(shown("paused, tick " + paused_at.substr(0, paused_at.find(',')) + " of "))
+      << output();
   EXPECT_TRUE(logs("coordinator", "mission is paused from tick ")) << said();
   EXPECT_EQ(say("pause"), 0) << output();
   EXPECT_TRUE(answered("paused already")) << output();
   signal_to({"ergocast-coordinator"}, SIGKILL);
   ASSERT_TRUE(eventually([&] { return say("resume") == 0; })) << output();
-  EXPECT_TRUE(answered("goes on from tick ")) << output();
+  EXPECT_TRUE(answered("goes on at tick ")) << output();
+  EXPECT_EQ(time_said(), paused_at) << "no mission time passes";
   ASSERT_TRUE(moves_on());
+  expect_one_clock();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   ASSERT_TRUE(eventually([&] { return !mission.running(); })) << said();
   const auto holds = summary()["holds"];

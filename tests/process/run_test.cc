@@ -52,6 +52,25 @@ TEST_F(MissionRun, RecordedScenarioRunsAgainToTheSameTrajectory) {
   EXPECT_TRUE(text_of(out() / "trajectory.csv") == text_of(folder_ / "again" / "trajectory.csv"));
 }
 
+TEST_F(MissionRun, WarnsOfLateCommandsWithTheRemedy) {
+  // No machine makes ten thousand ticks in a second without being late now and then.
+  Child mission =
+      start("ergocast", {"run", scenario_file("quadrimodal_corners"), "--out", out(),
+                         "--realtime=1000", "--duration", "10000000", "--event-log-limit", "128"});
+  const auto log = log_;
+  ASSERT_TRUE(eventually([&] { return text_of(log).find("warning: ") != std::string::npos; }))
+      << text_of(log);
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << text_of(log);
+  const std::string said = text_of(log);
+  EXPECT_NE(said.find(" % of the commands came too late for their tick, and vehicles went on with "
+                      "older ones: this machine or the network is too slow. Choose a smaller "
+                      "--realtime factor"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("warning: "), said.rfind("warning: ")) << "once";
+}
+
 // Agents get the coefficients with the plan, and the report a picture with the record.
 TEST_F(MissionRun, OfAMapIsVerifiedAndReportedWithoutTheMap) {
   const auto shipped = scenario_file("lake_search").parent_path();

@@ -34,6 +34,21 @@ TEST(WorldInRealTime, GoesByTheClockTimesAFactor) {
   }
 }
 
+TEST(WorldInRealTime, MovesNothingBeforeItMayBegin) {
+  World world = world_of(realtime_mission());
+  world.begin_not_before(at(700ms));
+  give(world, mission_part(0, MissionState::kRunning, roster_of(1)), at(0s));
+  EXPECT_EQ(world.newest_answer(), std::nullopt);
+  nobody_has_moved(world, 1, at(0s));
+  EXPECT_EQ(world.newest_answer(), std::optional<Tick>(-1));
+  for (const auto time : {0ms, 300ms, 699ms}) {
+    EXPECT_TRUE(states_after(world, at(time)).empty());
+    EXPECT_FALSE(world.begun_at().has_value());
+    EXPECT_LE(world.next_wakeup(), at(time + 100ms));
+  }
+  EXPECT_EQ(state_after(world, at(700ms)).header.tick, 0);
+}
+
 TEST(WorldInRealTime, CountsAndShowsEveryMissedDeadline) {
   World world = running_world(realtime_mission());
   advance(world, at(0s));
