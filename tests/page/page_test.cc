@@ -38,12 +38,13 @@ TEST_F(PageInABrowser, AReportFromDiskShowsAnyTick) {
 
   // The agent is drawn where it is.
   const auto drawn =
-      js("const v = ergocast.view, t = ergocast.S.run.track(2), r = ergocast.S.run.rowAt(30), s = "
-         "devicePixelRatio;"
+      js("const { head: [x, y], r } = ergocast.marker(2), s = devicePixelRatio;"
          "const g = document.getElementById('markers').getContext('2d');"
-         "return [...g.getImageData(Math.round((v.px(t.p[2 * r]) - 7) * s), Math.round(v.py(t.p[2 "
-         "* r + 1]) * s), 1, 1).data]");
+         "return [...g.getImageData(Math.round((x - 0.8 * r) * s), Math.round(y * s), 1, 1).data]");
   EXPECT_EQ(drawn, nlohmann::json::parse("[0, 112, 90, 255]"));  // its colour on a light page
+  EXPECT_EQ(js("const v = ergocast.view, t = ergocast.S.run.track(2), r = ergocast.S.run.rowAt(30);"
+               "return String(ergocast.marker(2).tip) === String(v.at(t, r))"),
+            true);
   screenshot("report");
   expect_no_errors();
 }
@@ -148,12 +149,14 @@ TEST_F(PageInABrowser, TextOfARecordIsTextOnly) {
 
 TEST_F(PageInABrowser, KeepOutsAreOutlined) {
   open_report({"--duration", "5"}, "#theme=light", "harbour_patrol");
-  // The middle of the first piece of an outline, in pixels of the map.
+  // The reddest pixel at the middle of the first piece of an outline.
   const auto drawn = js(
       "const { view, S } = ergocast, pieces = S.run.nowhere.outline, s = devicePixelRatio;"
       "const [a, b, c, d] = pieces[0], x = view.px((a + c) / 2) * s, y = view.py((b + d) / 2) * s;"
-      "return [pieces.length, ...document.getElementById('shading').getContext('2d')"
-      ".getImageData(Math.round(x), Math.round(y), 1, 1).data]");
+      "const { data } = document.getElementById('shading').getContext('2d').getImageData("
+      "Math.round(x) - 1, Math.round(y) - 1, 3, 3);"
+      "const pixels = Array.from({ length: 9 }, (_, i) => [...data.slice(4 * i, 4 * i + 3)]);"
+      "return [pieces.length, ...pixels.sort((p, q) => p[1] - q[1])[0]]");
   EXPECT_GT(drawn[0].get<int>(), 100);                       // pieces as long as a cell
   EXPECT_GT(drawn[1].get<int>(), drawn[2].get<int>() + 40);  // red
   EXPECT_GT(drawn[1].get<int>(), drawn[3].get<int>() + 40);
