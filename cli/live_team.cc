@@ -74,6 +74,7 @@ void LiveTeam::look(Instant now) {
   const TeamPicture picture = notice(now);
   end_text_ = picture.reason;
   status_ = Json::parse(team_json(picture));
+  history_.add(picture);
   ++statuses_;
   if (me_.follower().revision() != roster_revision_) {
     roster_revision_ = me_.follower().revision();
@@ -198,6 +199,7 @@ std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
     text += event("mission", {{"mission", mission_},
                               {"stride", grid_->stride()},
                               {"run_id", to_hex(run())},
+                              {"past", history_.json()},
                               {"authenticated", authenticated_},
                               {"replay", replay_}});
   }

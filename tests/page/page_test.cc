@@ -348,6 +348,37 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
             true);
 }
 
+// The page has no table of these modes, so it cannot compute the curve from positions.
+TEST_F(PageInABrowser, ALateBrowserGetsTheWholeCurveOfAFreeDomain) {
+  Child mission = launch_endless(scenario_file("two_rooms"),
+                                 {"--set", "basis.free_domain=true", "--set", "basis.modes_x=5",
+                                  "--set", "basis.modes_y=5", "--set", "time.pace=REALTIME",
+                                  "--set", "time.realtime_factor=10", "--watch", "--port", "8815"});
+  browser_->open("http://127.0.0.1:8815/");
+  EXPECT_TRUE(browser_->becomes(
+      "return Boolean(window.ergocast?.S.run) && ergocast.S.run.metrics.t.length > 5"));
+  const double first = js("return ergocast.S.run.metrics.t[0]");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.end > " + std::to_string(first + 30)));
+  const std::size_t rows = js("return ergocast.S.run.metrics.t.length");
+  browser_->open("about:blank");
+  browser_->open("http://127.0.0.1:8815/");
+  EXPECT_TRUE(browser_->becomes(
+      "return Boolean(window.ergocast?.S.run) && ergocast.S.run.metrics.t.length > 0"));
+  EXPECT_LE(js("return ergocast.S.run.metrics.t[0]").get<double>(), first);
+  EXPECT_GE(js("return ergocast.S.run.metrics.t.length").get<std::size_t>(), rows);
+  EXPECT_EQ(js("const { t, phi, age, spread, received } = ergocast.S.run.metrics;"
+               "return t.every((at, i) => (!i || at > t[i - 1]) && phi[i] > 0 && age[i] >= 0 && "
+               "spread[i] >= 0 && received[i] >= 0)"),
+            true);
+  screenshot("late_browser");
+  expect_no_errors();
+  mission.send(SIGINT);
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
+}
+
 TEST_F(PageInABrowser, AnotherSitesPageGetsNothing) {
   ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",
                       out()}),
