@@ -118,6 +118,7 @@ ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
     page/map_test.cc
     page/page_test.cc
     page/space_test.cc
+    page/words_test.cc
     support/browser.cc
     support/http.cc
   LIBS ergocast::core)

@@ -176,7 +176,7 @@ TEST_F(PageInABrowser, TheMetricOfAFreeDomainNamesItsModes) {
   };
   EXPECT_EQ(text_of("metricName"), "φ² in modes of the free domain");
   EXPECT_NE(text_of("quantity").find("φ² in modes of the free domain"), std::string::npos);
-  EXPECT_NE(text_of("quantity").find("Spread of own φ² in modes of the free domain"),
+  EXPECT_NE(text_of("quantity").find("Disagreement on φ² in modes of the free domain"),
             std::string::npos);
   EXPECT_NE(text_of("facts").find("φ² in modes ofthe free domain"), std::string::npos)
       << text_of("facts");
@@ -342,10 +342,11 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
             true);
   EXPECT_GT(js("return ergocast.S.run.history.length").get<int>(), 3);
   js("ergocast.draw(ergocast.S.run.end / 2)");
-  EXPECT_EQ(js("const heads = [...document.querySelectorAll('#heads th')].map(h => h.textContent),"
-               "row = document.querySelector('#rows tr');"
-               "return /^[0-9.]+ s$/.test(row.children[heads.indexOf('Knowledge')].textContent)"),
-            true);
+  EXPECT_EQ(
+      js("const heads = [...document.querySelectorAll('#heads th')].map(h => h.textContent),"
+         "row = document.querySelector('#rows tr');"
+         "return /^[0-9.]+ s$/.test(row.children[heads.indexOf('Oldest update')].textContent)"),
+      true);
 }
 
 // The page has no table of these modes, so it cannot compute the curve from positions.
