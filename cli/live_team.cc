@@ -76,6 +76,7 @@ void LiveTeam::look(Instant now) {
   status_ = Json::parse(team_json(picture));
   // The page's time goes on in a pause, as the record's does.
   status_["t_s"] = static_cast<double>(picture.tick) * picture.dt_s;
+  history_.add(picture);
   ++statuses_;
   if (me_.follower().revision() != roster_revision_) {
     roster_revision_ = me_.follower().revision();
@@ -200,6 +201,7 @@ std::string LiveTeam::frame(Cursor& cursor, bool& more) const {
     text += event("mission", {{"mission", mission_},
                               {"stride", grid_->stride()},
                               {"run_id", to_hex(run())},
+                              {"past", history_.json()},
                               {"authenticated", authenticated_},
                               {"replay", replay_}});
   }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/team_history.h"
 #include "cli/team_view.h"
 #include "core/mission.h"
 #include "report/raster.h"
@@ -92,6 +93,7 @@ class LiveTeam {
   bool authenticated_, replay_;
   std::optional<TrackGrid> grid_;
   nlohmann::ordered_json mission_, status_;  // as the page gets them
+  TeamHistory history_;
   std::map<AgentId, LastLook> last_looks_;
   std::map<std::string, bool> trouble_;  // of the processes, by name
   std::deque<Incident> incidents_;

@@ -30,6 +30,7 @@ constexpr auto kShortest = 50ms;       // between two of the looks that are kept
 constexpr auto kPause = 1s;            // the statuses of a team come twice a second
 constexpr std::size_t kMost = 20'000;  // rows of agents that are kept
 constexpr int kConditions = static_cast<int>(Condition::kGone) + 1;
+constexpr int kPhases = static_cast<int>(AgentPhase::kResting) + 1;
 
 struct Look {
   double t_s = 0;
@@ -119,7 +120,7 @@ void Listener::keep(const TeamPicture& picture) {
 Json& lists_of(Json& agents, AgentId id, std::size_t looks) {
   Json& lists = agents[std::to_string(id)];
   for (const char* key :
-       {"state", "silent_s", "metric", "age_s", "lag_s", "lost", "drops", "waits_for"}) {
+       {"state", "phase", "silent_s", "metric", "age_s", "lag_s", "lost", "drops", "waits_for"}) {
     Json& list = lists[key];
     if (list.is_null()) list = Json::array();
     while (list.size() < looks) list.push_back(nullptr);
@@ -132,6 +133,7 @@ void add(Json& lists, const AgentRow& row) {
   lists["silent_s"].push_back(page_number(row.silent_s, 3));
   if (!row.status) return;
   const AgentStatus& status = *row.status;
+  lists["phase"].push_back(static_cast<int>(status.phase));
   if (status.answered_tick >= 0) lists["metric"].push_back(page_number(status.ergodic_metric, 4));
   lists["age_s"].push_back(page_number(status.max_staleness_s, 4));
   lists["lag_s"].push_back(page_number(status.loop_lag_s, 2));
@@ -143,7 +145,8 @@ void add(Json& lists, const AgentRow& row) {
 
 Json Listener::json() const {
   if (looks_.empty()) return nullptr;
-  Json t = Json::array(), metric = Json::array(), agents = Json::object(), words = Json::array();
+  Json t = Json::array(), metric = Json::array(), agents = Json::object(), words = Json::array(),
+       phases = Json::array();
   for (std::size_t i = 0; i < looks_.size(); ++i) {
     t.push_back(page_number(looks_[i].t_s, 9));
     metric.push_back(looks_[i].metric ? page_number(*looks_[i].metric, 4) : Json());
@@ -151,15 +154,14 @@ Json Listener::json() const {
   }
   for (auto& [id, unused] : agents.items()) lists_of(agents, std::stoi(id), looks_.size());
   for (int i = 0; i < kConditions; ++i) words.push_back(to_string(static_cast<Condition>(i)));
+  for (int i = 0; i < kPhases; ++i) phases.push_back(to_string(static_cast<AgentPhase>(i)));
   Json incidents = Json::array();
   for (const Json& one : team_->incidents_json()) {
     if (!one["text"].get<std::string>().starts_with("logger ")) incidents.push_back(one);
   }
-  return {{"t", std::move(t)},
-          {"metric", std::move(metric)},
-          {"agents", std::move(agents)},
-          {"words", std::move(words)},
-          {"incidents", std::move(incidents)}};
+  return {{"t", std::move(t)},           {"metric", std::move(metric)},
+          {"agents", std::move(agents)}, {"words", std::move(words)},
+          {"phases", std::move(phases)}, {"incidents", std::move(incidents)}};
 }
 
 }  // namespace

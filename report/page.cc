@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/kinds.h"
 #include "core/station.h"
+#include "core/way_home.h"
 #include "report/base64.h"
 #include "report/markup.h"
 #include "report/track_grid.h"
@@ -192,13 +194,37 @@ Json rings_of(const Mission& mission) {
   return rings;
 }
 
-/// Where agents are to be at the end, from the domain's corner, by their numbers.
+/// Where agents are to be at the end, and from when on they rest there.
 Json stations_of(const Mission& mission) {
   Json list = Json::array();
-  for (std::size_t id = 0; id < mission.starts_m.size(); ++id) {
-    const auto station_m = station_of(mission, static_cast<AgentId>(id));
-    if (station_m)
-      list.push_back(rounded_list((*station_m - mission.domain.origin_m).head<2>(), 9));
+  const int axes = mission.domain.planar() ? 2 : 3;
+  for (std::size_t i = 0; i < mission.starts_m.size(); ++i) {
+    const auto id = static_cast<AgentId>(i);
+    const auto station_m = station_of(mission, id);
+    if (!station_m) continue;
+    list.push_back({{"id", id},
+                    {"at_m", rounded_list((*station_m - mission.domain.origin_m).head(axes), 9)},
+                    {"rest_from", rest_from(mission, id)}});
+  }
+  return list;
+}
+
+/// The first tick at which the track's places send the agent home; nothing if none does.
+std::optional<Tick> home_from(const RunData& run, const Mission& mission, AgentId id,
+                              const Track& track) {
+  WayHome way(mission, id);
+  const auto sends_home = [&](const TrackPoint& at) {
+    return !is_held(run.holds, at.tick) && way.begun(counted_ticks(run.holds, at.tick), at.x_m);
+  };
+  const auto first = std::ranges::find_if(track, sends_home);
+  return first == track.end() ? std::nullopt : std::optional(first->tick);
+}
+
+Json homes_from(const RunData& run, const Mission& mission) {
+  Json list = Json::object();
+  for (const auto& [id, track] : run.tracks) {
+    if (!station_of(mission, id)) continue;
+    if (const auto tick = home_from(run, mission, id, track)) list[std::to_string(id)] = *tick;
   }
   return list;
 }
@@ -234,7 +260,8 @@ Json page_mission(const Mission& flown, const Field& density) {
                {"density", encoded_density(density)}};
   if (const Sensors sensors(mission); !sensors.alike()) page["seen"] = seen(mission, sensors);
   if (!mission.walls.empty()) page["walls"] = rings_of(mission);
-  if (domain.planar() && any_station(mission)) page["stations"] = stations_of(mission);
+  if (mission.separation.distance_m > 0) page["body_radius_m"] = mission.separation.distance_m / 2;
+  if (any_station(mission)) page["stations"] = stations_of(mission);
   return page;
 }
 
@@ -247,15 +274,17 @@ Json page_record(const RunData& run, const Mission& mission, const Json& summary
     for (const TrackPoint& point : track) grid.put(agent, point.tick, point.x_m);
   }
   const auto law = fit_last_decade(run);
-  return {{"mission", page_mission(mission, density)},
-          {"summary", summary},
-          {"metrics", metrics(run)},
-          {"slope", law ? page_number(law->slope, 3) : Json(nullptr)},
-          {"ticks", ticks},
-          {"stride", grid.stride()},
-          {"rows", grid.rows()},
-          {"tracks", grid.encode(0, grid.rows())},
-          {"team", team}};
+  Json record = {{"mission", page_mission(mission, density)},
+                 {"summary", summary},
+                 {"metrics", metrics(run)},
+                 {"slope", law ? page_number(law->slope, 3) : Json(nullptr)},
+                 {"ticks", ticks},
+                 {"stride", grid.stride()},
+                 {"rows", grid.rows()},
+                 {"tracks", grid.encode(0, grid.rows())},
+                 {"team", team}};
+  if (team.is_null() && any_station(mission)) record["home_from"] = homes_from(run, mission);
+  return record;
 }
 
 std::string report_page(const RunData& run, const Mission& mission, const Json& summary,

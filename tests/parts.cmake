@@ -147,6 +147,7 @@ ergocast_test(NAME status_tests LABELS unit
     cli/live_team_test.cc
     cli/recorded_team_test.cc
     cli/run_registry_test.cc
+    cli/team_history_test.cc
     cli/team_text_test.cc
     cli/team_view_test.cc
   LIBS ergocast_registry ergocast_watch nlohmann_json::nlohmann_json)

@@ -117,8 +117,11 @@ target_compile_definitions(process_tests PRIVATE
 # The page in Chromium.
 ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
   SOURCES
+    page/layout_test.cc
+    page/map_test.cc
     page/page_test.cc
     page/space_test.cc
+    page/words_test.cc
     support/browser.cc
     support/http.cc
   LIBS ergocast::core)

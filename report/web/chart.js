@@ -14,9 +14,9 @@ function ratePerSecond({ t, received }) {
 
 export const QUANTITIES = {
   phi: { title: 'Ergodic metric φ²', log: true, of: m => m.phi, text: readable },
-  spread: { title: 'Spread of own φ²', log: true, of: m => m.spread, text: readable },
-  age: { title: 'Oldest knowledge', log: false, of: m => m.age, text: v => `${readable(v)} s` },
-  rate: { title: 'Messages each s', log: false, of: ratePerSecond, text: v => `${readable(v)} /s` },
+  spread: { title: 'Disagreement on φ²', log: true, of: m => m.spread, text: readable },
+  age: { title: 'Oldest update', log: false, of: m => m.age, text: v => `${readable(v)} s` },
+  rate: { title: 'Messages per second', log: false, of: ratePerSecond, text: v => `${readable(v)} /s` },
 };
 
 // The scales of a chart of that size.

@@ -7,8 +7,8 @@ export const HUES = {
 
 // From little to much, and from too little over as wanted to too much.
 export const STOPS = {
-  light: { heat: ['#eef1f5', '#5f9bd3', '#0a4f9c'], amount: ['#ffffff', '#a7b2bf'], difference: ['#b98a5e', '#fbfbfb', '#6f90bd'] },
-  dark: { heat: ['#1d2630', '#2f6aa5', '#7cc0ff'], amount: ['#0f151b', '#536170'], difference: ['#96653a', '#12181f', '#436a9c'] },
+  light: { heat: ['#eef1f5', '#5f9bd3', '#0a4f9c'], amount: ['#ffffff', '#f8d899', '#e9b457', '#da9a3a'], difference: ['#b98a5e', '#fbfbfb', '#6f90bd'] },
+  dark: { heat: ['#1d2630', '#2f6aa5', '#7cc0ff'], amount: ['#0f151b', '#3d301b', '#66491d', '#80591f'], difference: ['#96653a', '#12181f', '#436a9c'] },
 };
 
 const linear = v => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);

@@ -12,13 +12,15 @@ import { fit, turn, zoom } from './map_pointer.js';
 import { nextView, toggleSlice } from './space_controls.js';
 import { view } from './screen.js';
 import { $ } from './text.js';
+import { explainLabels, listWords } from './words.js';
 
 const toggle = (dialog, open) => { if (!dialog.open) open(); };
-const showKeys = () => toggle($('keys'), () => $('keys').showModal());
+const showHelp = () => S.run && toggle($('keys'), () => { listWords(); $('keys').showModal(); $('keys').scrollTop = 0; });
 const openDetails = () => S.run && toggle($('details'), showDetails);
 const closeMenu = () => { $('saveMenu').hidden = true; $('saveButton').setAttribute('aria-expanded', 'false'); };
 
 export function connectButtons() {
+  explainLabels();
   for (const [value, { title }] of Object.entries(QUANTITIES)) $('quantity').append(new Option(title, value));
   for (const speed of SPEEDS) $('speed').append(new Option(`${speed}×`, speed, speed === S.speed, speed === S.speed));
   $('quantity').onchange = e => set('quantity', e.target.value);
@@ -35,7 +37,7 @@ export function connectButtons() {
   $('radio').checked = S.radio;
   $('radio').onchange = e => set('radio', e.target.checked);
   $('theme').onclick = () => setTheme(S.theme === 'dark' ? 'light' : 'dark');
-  $('help').onclick = showKeys;
+  $('help').onclick = showHelp;
   $('detailsButton').onclick = openDetails;
   $('showAll').onclick = () => pin(-1);
   $('fit').onclick = fit;
@@ -65,7 +67,7 @@ const KEYS = {
   l: () => S.live && follow(), '+': () => zoom(1.4), '=': () => zoom(1.4), '-': () => zoom(1 / 1.4), 0: fit,
   v: nextView, q: () => turn(-TURN, 0), e: () => turn(TURN, 0), r: () => turn(0, TURN), f: () => turn(0, -TURN),
   x: () => toggleSlice(0), y: () => toggleSlice(1), z: () => toggleSlice(2),
-  Escape: () => { closeMenu(); pin(-1); }, '?': showKeys,
+  Escape: () => { closeMenu(); pin(-1); }, '?': showHelp,
 };
 
 export function connectKeys() {

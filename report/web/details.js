@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The key figures under the map, and all that a record says besides.
 import { S } from './state.js';
+import { NOTABLE, lateCommands, lateText } from './notices.js';
 import { $, duration, element, grouped, ofModes, readable } from './text.js';
+import { meaningOf } from './words.js';
 
 function list(pairs, css) {
   const dl = element('dl', css);
@@ -28,9 +30,9 @@ function slopeText(run) {
 
 // `live`: {rate, lost, authenticated, …} of a team that flies, or null.
 export function showFacts(live) {
-  const { run } = S, { mission, summary, metrics } = run, { phi } = metrics;
+  const { run } = S, { mission, summary, metrics } = run, { phi } = metrics, late = lateCommands();
   const pairs = live ? [
-    ['messages each s', readable(live.rate)], ['messages lost', grouped(live.lost)], ['late commands', grouped(live.missed)],
+    ['messages per second', readable(live.rate)], ['messages lost', grouped(live.lost)], ['late commands', lateText(late)],
     ['authenticated', live.authenticated ? 'yes' : 'no'], ['ticks', `${grouped(mission.tick_count)} × ${mission.dt_s} s`],
     ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['run', (live.replay ? 'replay of ' : '') + live.run.slice(0, 8)],
   ] : [
@@ -40,22 +42,37 @@ export function showFacts(live) {
     ['modes', mission.modes.join(' × ')], ['seed', mission.seed], ['mode', said(summary, 'mode') ?? '–'],
     ...present([['blocked share', said(summary, 'separation.blocked_share')], ['longest block [s]', said(summary, 'separation.longest_block_s')]]),
     ['messages', said(summary, 'messages.sent') ?? '–'], ['lost', said(summary, 'messages.lost') ?? '–'],
-    ['ticks missing', said(summary, 'gaps') ?? '–'], ['run', (said(summary, 'run_id') ?? '–').slice(0, 8)],
+    ...present([['late commands', late.missed > 0 ? lateText(late) : '']]), ['ticks missing', said(summary, 'gaps') ?? '–'], ['run', (said(summary, 'run_id') ?? '–').slice(0, 8)],
   ];
-  $('facts').replaceChildren(...list(pairs).children);
+  const boxes = [...list(pairs).children];
+  boxes.forEach((box, i) => { box.title = meaningOf('FIGURES', pairs[i][0]); });
+  if (Math.max(late.share, late.lately) >= NOTABLE) boxes.find((_, i) => pairs[i][0] === 'late commands')?.lastChild.classList.add('late');
+  $('facts').replaceChildren(...boxes);
 }
 
 const AGENT_COLUMNS = [
-  ['agent', 'id'], ['host', 'host'], ['incarnation', 'incarnation'], ['from tick', 'active_from'], ['until', 'active_until'],
-  ['messages sent', 'messages_sent'], ['received', 'messages_received'], ['contributions', 'contributions_received'],
-  ['lost', 'contributions_lost'], ['missed ticks', 'missed_ticks'], ['blocked ticks', 'blocked_ticks'], ['longest block', 'longest_block_ticks'], ['oldest knowledge [s]', 'max_staleness_s'],
-  ['kernel drops', 'kernel_drops'], ['own φ²', 'ergodic_metric'],
+  ['agent', 'id', 'Its number'], ['host', 'host', 'The machine that its process ran on'],
+  ['incarnation', 'incarnation', 'Which process it was: a restarted one has another'],
+  ['from tick', 'active_from', 'The first tick at which its coverage counts'], ['until', 'active_until', 'The first tick at which its coverage no longer counts'],
+  ['messages sent', 'messages_sent', 'On all buses'], ['received', 'messages_received', 'On all buses'],
+  ['contributions', 'contributions_received', 'Messages with coverage of teammates that it received'],
+  ['lost', 'contributions_lost', 'Messages that teammates sent and it did not receive'],
+  ['missed ticks', 'missed_ticks', 'Ticks of the world that passed without its command'],
+  ['blocked ticks', 'blocked_ticks', 'Ticks in which a body or an edge left less than a tenth of its command'],
+  ['longest block', 'longest_block_ticks', 'The most such ticks without a break'],
+  ['oldest update [s]', 'max_staleness_s', 'The mission time since it last received coverage of the teammate that it knows least of'],
+  ['dropped', 'kernel_drops', 'Datagrams that the kernel dropped before it read them'],
+  ['own φ²', 'ergodic_metric', 'φ² of the coverage that it knew at the end'],
 ];
 
 function table(columns, objects) {
   const box = element('div', 'scroll'), made = element('table'), head = element('tr'), body = element('tbody');
   const used = columns.filter(([, key]) => objects.some(object => said(object, key) !== undefined));
-  head.append(...used.map(([title, key]) => element('th', '', key === 'ergodic_metric' ? title + ofModes(S.run.mission) : title)));
+  head.append(...used.map(([title, key, means = '']) => {
+    const th = element('th', '', key === 'ergodic_metric' ? title + ofModes(S.run.mission) : title);
+    th.title = means;
+    return th;
+  }));
   for (const object of objects) {
     const tr = element('tr');
     tr.append(...used.map(([, key]) => element('td', '', said(object, key) ?? '–')));

@@ -4,6 +4,7 @@
 import { clamp } from './text.js';
 
 const CONTOUR = 64;           // of 255: the target's outline over the other shadings
+const LEVELS = [64, 128, 192];  // of its own: what is under trails can be read from its lines
 
 // Pieces of the line on which `value` of a cell is `level`, in metres: marching squares.
 function contour({ width, height }, [lx, ly], step, value, level) {
@@ -22,7 +23,7 @@ function contour({ width, height }, [lx, ly], step, value, level) {
   return pieces;
 }
 
-const outlineOf = ({ density, size }) => contour(density, size, Math.max(1, density.width >> 7), k => density.cells[k], CONTOUR);
+const outlineOf = ({ density, size }, level) => contour(density, size, Math.max(1, density.width >> 7), k => density.cells[k], level);
 
 // Where the target is 0, unless that is most of the domain: rectangles of cells, and their outline.
 function nowhereOf({ density, size: [lx, ly] }) {
@@ -103,20 +104,21 @@ function paintWalls(g, run, view, colours) {
 
 // Open squares where agents are to be at the end.
 function paintStations(g, run, view, colours) {
-  const half = 12;
+  const half = 12, [a, b] = run.axes;
   g.save();
   for (const [colour, width] of [[colours.bg, 4], [colours.ink, 1.6]]) {
     g.strokeStyle = colour;
     g.lineWidth = width;
-    for (const [x, y] of run.mission.stations ?? [])
-      g.strokeRect(view.px(x) - half, view.py(y) - half, 2 * half, 2 * half);
+    for (const { at_m: at } of run.mission.stations ?? [])
+      g.strokeRect(view.px(run.stretch[0] * at[a]) - half, view.py(run.stretch[1] * at[b]) - half, 2 * half, 2 * half);
   }
   g.restore();
 }
 
 export function paintShading(g, run, view, { layer, row, colours }) {
   const [lx, ly] = run.size;
-  run.outline ??= outlineOf(run);
+  run.outline ??= outlineOf(run, CONTOUR);
+  run.levels ??= LEVELS.map(level => outlineOf(run, level));
   run.nowhere ??= nowhereOf(run);
   g.fillStyle = colours.bg;
   g.fillRect(0, 0, view.width, view.height);
@@ -132,11 +134,9 @@ export function paintShading(g, run, view, { layer, row, colours }) {
   g.lineWidth = 1;
   g.globalAlpha = 0.6;
   g.strokeRect(view.px(0), view.py(ly), lx * view.scale, ly * view.scale);
-  if (layer !== 'target') {
-    g.strokeStyle = colours.ink;
-    g.globalAlpha = 0.38;
-    stroke(g, view, run.outline);
-  }
+  g.strokeStyle = colours.ink;
+  g.globalAlpha = layer === 'target' ? 0.2 : 0.38;
+  for (const pieces of layer === 'target' ? run.levels : [run.outline]) stroke(g, view, pieces);
   g.globalAlpha = 1;
   paintWalls(g, run, view, colours);
   paintStations(g, run, view, colours);

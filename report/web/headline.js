@@ -3,6 +3,7 @@
 import { S } from './state.js';
 import { QUANTITIES, readingAt } from './chart.js';
 import { showTeam } from './team.js';
+import { showNotices } from './notices.js';
 import { $, ofModes, put, readable } from './text.js';
 
 let textAt = 0;
@@ -30,6 +31,7 @@ export function drawHeadline(now) {
   const { all, alive } = showTeam(), [text, css] = missionState(all);
   put($('nowAlive'), `${alive}/${Math.max(all.length, S.facts?.state?.agents_expected ?? 0)}`);
   $('nowAlive').style.color = alive < all.length ? S.colours.bad : '';
+  showNotices();
   put($('state'), text);
   $('state').className = `pill ${css}`;
   $('markers').setAttribute('aria-label', `Map of ${run.mission.name} at ${t.toFixed(1)} s: ${alive} of ${all.length} agents alive, φ²${ofModes(run.mission)} ${readable(run.metricAt(t))}`);

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The map over its ground: trails and markers. Each draws on a canvas, or on anything with the same
 // methods (svg.js).
-import { inkOn } from './colours.js';
 import { clamp } from './text.js';
-import { stateOf } from './run.js';
+import { many, paintAgents } from './markers.js';
 import { axisName, farthestFirst, paintSpaceMarks } from './space_marks.js';
 
 export const TAILS = [0, 10, 30, 60, 120, 300, 600, Infinity];  // s
-const MANY = 12;              // more agents than these are drawn smaller
-
-const many = run => run.tracks.length > MANY;
 
 // Rows that a piece of a line spans: 1.6 pixels, of the history of many agents 4.
 export function rowsPerPiece(run, view, plain) {
@@ -70,7 +66,7 @@ export function paintTracks(g, run, view, { from, to, bands, strength, colours, 
 // The whole history is faint; a bounded tail fades.
 export function trailOf(run, { row, tail, colours, focus }) {
   const seconds = TAILS[tail], crowd = many(run);
-  if (seconds === Infinity) return { from: 0, to: row, bands: 1, strength: focus ? 0.7 : crowd ? 0.16 : 0.4, colours, focus };
+  if (seconds === Infinity) return { from: 0, to: row, bands: 1, strength: focus ? 0.8 : crowd ? 0.2 : 0.65, colours, focus };
   return { from: Math.max(0, row - Math.round(seconds / run.step)), to: row, bands: crowd ? 4 : 8, strength: 1, colours, focus };
 }
 
@@ -136,45 +132,6 @@ function paintRadio(g, run, view, { row, colours, focus }) {
   g.globalAlpha = 1;
 }
 
-function paintMarker(g, run, view, track, { row, t, colours, focus }) {
-  const at = track.rowAt(row);
-  if (at < 0) return;
-  const hot = focus?.(track.id), crowd = many(run), small = view.width < 500;
-  const radius = (crowd ? (small ? 6.5 : 8) : 10.5) * (hot ? 1.25 : 1) * view.nearness(track, at), [x, y] = view.at(track, at);
-  const { kind } = stateOf(run, track, t), away = kind === 'silent' || kind === 'gone';
-  const back = Math.max(track.first, at - Math.max(1, Math.round(1 / run.step))), ahead = Math.min(track.last, at + 1);
-  const [x0, y0] = view.at(track, back), [x1, y1] = view.at(track, ahead), heading = Math.atan2(y1 - y0, x1 - x0), moves = x0 !== x1 || y0 !== y1;
-  const fill = away ? colours.panel : colours.agent(track.id), rim = kind === 'gone' ? colours.gone : colours.bad;
-  g.globalAlpha = focus && !hot ? 0.35 : 1;
-  g.fillStyle = fill;
-  g.strokeStyle = away ? rim : colours.panel;
-  g.lineWidth = 1.5;
-  if (away) g.setLineDash([3, 2]);
-  g.beginPath();
-  if (away || !moves || heading !== heading) {
-    g.arc(x, y, radius, 0, 2 * Math.PI);
-  } else {                                              // a drop whose tip shows where it goes
-    g.arc(x, y, radius, heading + 0.62, heading - 0.62 + 2 * Math.PI);
-    g.lineTo(x + Math.cos(heading) * radius * 1.65, y + Math.sin(heading) * radius * 1.65);
-    g.closePath();
-  }
-  g.fill();
-  g.stroke();
-  g.setLineDash([]);
-  if (kind === 'late') {
-    g.strokeStyle = colours.warn;
-    g.lineWidth = 2;
-    g.beginPath();
-    g.arc(x, y, radius + 4, 0, 2 * Math.PI);
-    g.stroke();
-  }
-  g.fillStyle = away ? rim : inkOn(fill);
-  g.font = `700 ${(crowd ? (small ? 8 : 9.5) : 11.5) * (hot ? 1.25 : 1)}px system-ui, sans-serif`;
-  g.textAlign = 'center';
-  g.textBaseline = 'middle';
-  g.fillText(String(track.id), x, y + 0.5);
-}
-
 export function paintMarkers(g, run, view, state) {
   const { row, tail, colours, focus, radio } = state;
   if (state.inSpace) paintSpaceMarks(g, run, view, state); else paintScaleBar(g, run, view, colours);
@@ -184,8 +141,5 @@ export function paintMarkers(g, run, view, state) {
     paintTracks(g, run, view, { from: Math.max(0, row - Math.round(30 / run.step)), to: row, bands: many(run) ? 4 : 6, strength: 1, colours, focus });
   }
   if (radio && run.mission.radio_range_m > 0) paintRadio(g, run, view, state);
-  const tracks = state.inSpace ? farthestFirst(run, view, row) : run.tracks;
-  for (const track of tracks) if (!focus?.(track.id)) paintMarker(g, run, view, track, state);
-  for (const track of tracks) if (focus?.(track.id)) paintMarker(g, run, view, track, state);
-  g.globalAlpha = 1;
+  paintAgents(g, run, view, state, state.inSpace ? farthestFirst(run, view, row) : run.tracks);
 }

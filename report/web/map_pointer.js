@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pointer, wheel and fingers on the map: zoom, move, choose an agent, read a place.
-import { S, inSpace, shown } from './state.js';
+import { S, inSpace, mapState, shown } from './state.js';
+import { markersOf } from './markers.js';
 import { coordinate, nameOf } from './places.js';
 import { stateOf } from './run.js';
 import { hover, pin } from './team.js';
@@ -25,11 +26,11 @@ export function turn(right, up) {
   redraw();
 }
 
+// The agent whose place, body or pin is nearest.
 function nearest(x, y) {
-  const row = S.run.rowAt(S.t);
   let best = -1, least = 18;
-  for (const track of shown().tracks) {
-    const at = track.rowAt(row), [px, py] = at < 0 ? [Infinity, 0] : view.at(track, at), d = Math.hypot(px - x, py - y);
+  for (const { track, x: px, y: py, head, body } of markersOf(shown(), view, mapState())) {
+    const d = Math.min(Math.max(0, Math.hypot(px - x, py - y) - Math.min(...body)), Math.hypot(head[0] - x, head[1] - y));
     if (d < least) { least = d; best = track.id; }
   }
   return best;

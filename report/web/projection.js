@@ -20,7 +20,7 @@ export function projected(run, name) {
   const axes = axesOf(name), hidden = 3 - axes[0] - axes[1], { mission } = run, { modes } = mission, [a, b] = axes, tracks = new Map();
   const pick = list => axes.map(axis => list[axis]), stretch = axes.map(axis => (axis === 2 ? stretchOf(mission.size_m) : 1));
   const size = pick(mission.size_m).map((l, i) => l * stretch[i]);
-  const seen = Object.assign(Object.create(run), { axes, size, stretch, outline: undefined, nowhere: undefined, pace: undefined,
+  const seen = Object.assign(Object.create(run), { axes, size, stretch, outline: undefined, levels: undefined, nowhere: undefined, pace: undefined,
     mission: { ...mission, size_m: size, box_m: mission.size_m, origin_m: pick(mission.origin_m) },
     // From above the record has the density itself.
     density: hidden === 2 ? run.density : targetOfModes(averageOf(mission.target, modes, hidden), modes[a], modes[b], size),

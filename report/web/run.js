@@ -5,6 +5,7 @@ import { Coverage } from './coverage.js';
 import { Track, addTracks, bytesOf } from './tracks.js';
 
 const TOLERANCE_S = 1e-6;
+const LONG_BLOCK_S = 1;       // bodies that pass each other have shorter ones
 
 // The last index with list[i] ≤ t; −1: none.
 export function indexAt(list, t) {
@@ -34,6 +35,8 @@ export class Run {
     this.holds = [];                        // [first tick that does not count, first that counts again or null]
     this.history = [];                      // {t, team} as live statuses came
     this.times = [];                        // their t
+    this.restFrom = new Map((mission.stations ?? []).map(station => [station.id, station.rest_from]));  // ticks that count
+    this.homeFrom = new Map();              // tick from which an agent goes home, where no status says it
     this.summary = null;
     this.coverage = new Coverage(this);
     // The modes of the wire begin with those without waves along z.
@@ -55,6 +58,8 @@ export class Run {
     const tick = t / this.mission.dt_s;
     return t - this.mission.dt_s * this.holds.reduce((sum, [from, until]) => sum + Math.max(0, Math.min(tick, until ?? Infinity) - from), 0);
   }
+  rests(id, row) { return Math.round(this.counted(row * this.step) / this.mission.dt_s) >= (this.restFrom.get(id) ?? Infinity); }
+  goesHome(id, row) { return row * this.stride >= (this.homeFrom.get(id) ?? Infinity); }
   rowAt(t) { return Math.max(0, Math.min(this.rows - 1, Math.round(t / this.step))); }
   track(id) {
     let track = this.byId.get(id);
@@ -143,12 +148,14 @@ export function recordedRun(record) {
   run.metrics = record.metrics;
   run.summary = record.summary && typeof record.summary === 'object' && !Array.isArray(record.summary) ? record.summary : null;
   run.setHolds(run.summary?.holds);
+  run.homeFrom = new Map(Object.entries(record.home_from ?? {}).map(([id, tick]) => [Number(id), tick]));
   run.slope = record.slope;
   run.ticks = record.ticks;
   const agents = Array.isArray(run.summary?.agents) ? run.summary.agents.filter(a => a && typeof a === 'object') : [];
   run.setRoster(agents);
   const roster = rosterIncidents(agents, run.mission.dt_s, run.end);
-  run.incidents = withMore(record.team?.incidents ?? [], roster);
+  const heard = record.team?.incidents ?? [];
+  run.incidents = withMore([...heard, ...(heard.some(one => one.kind === 'paused') ? [] : pauses(run))], roster);
   if (record.team) recordHistory(run, record.team);
   return run;
 }
@@ -160,14 +167,20 @@ export function withMore(heard, roster) {
 }
 
 // How the agents were, as cli/recorded_team.h writes it, in the shape of live statuses.
-function recordHistory(run, { t, metric, agents, words }) {
+function recordHistory(run, { t, metric, agents, words, phases }) {
   run.times = t;
   run.history = t.map((at, i) => {
     const list = Object.entries(agents).filter(([, own]) => own.state[i] !== null).map(([id, own]) => ({
-      id: Number(id), state: words[own.state[i]], silent_s: own.silent_s[i], waiting_for: own.waits_for[i], ergodic_metric: own.metric[i],
+      id: Number(id), state: words[own.state[i]], phase: phases[own.phase[i]], silent_s: own.silent_s[i], waiting_for: own.waits_for[i], ergodic_metric: own.metric[i],
       max_staleness_s: own.age_s[i], loop_lag_s: own.lag_s[i], contributions_lost: own.lost[i], kernel_drops: own.drops[i] }));
     return { t: at, team: { ergodic_metric: metric[i], agents: list, byId: new Map(list.map(agent => [agent.id, agent])) } };
   });
+}
+
+// The pauses of which no status tells.
+function pauses(run) {
+  const { mission: { dt_s: dt }, end } = run;
+  return run.holds.map(([from, until]) => ({ t: from * dt, kind: 'paused', sign: '‖', text: 'paused by an operator', until: Math.min(end, (until ?? Infinity) * dt) }));
 }
 
 // What the roster tells of departures and returns.
@@ -201,10 +214,20 @@ export function stateOf(run, track, t) {
   const row = run.rowAt(t), team = run.teamAt(t), said = team?.byId.get(track.id);
   if (row < track.first) return { kind: 'gone', text: 'not there yet', rank: 5, said };
   if (!track.isMember(row)) return { kind: 'gone', text: 'left', rank: 4, said };
-  if (!said) return { kind: 'ok', text: 'ok', rank: 6 };
+  if (!said || said.state === 'ok') return { ...dutyOf(run, track, row, said), rank: 6, said };
   const kinds = { silent: 'silent', waiting: 'late', late: 'late', 'not heard': 'gone', gone: 'gone' };
   const kind = kinds[said.state] ?? 'ok';
-  const text = said.state === 'silent' ? `silent ${said.silent_s.toFixed(0)} s`
+  const text = said.state === 'silent' ? `silent ${said.silent_s.toFixed(0)} s` : said.state === 'not heard' ? 'not heard yet'
     : said.state === 'waiting' && said.waiting_for ? `waits for ${said.waiting_for}` : said.state;
   return { kind, text, rank: { silent: 0, waiting: 1, late: 2, 'not heard': 3, gone: 4 }[said.state] ?? 6, said };
+}
+
+// What an agent does with which all is well. It says so itself, or the plan and its track do.
+function dutyOf(run, track, row, said) {
+  if (run.heldAt(row)) return { kind: 'idle', text: 'paused' };
+  const phase = said?.phase ?? (run.rests(track.id, row) ? 'resting' : run.goesHome(track.id, row) ? 'returning' : 'running');
+  if (phase === 'resting') return { kind: 'idle', text: 'rests' };
+  if (phase === 'returning') return { kind: 'ok', text: 'goes home' };
+  if (said?.blocked_s >= LONG_BLOCK_S) return { kind: 'ok', text: `blocked by ${typeof said.blocked_by === 'number' ? said.blocked_by : 'an edge'}` };
+  return { kind: 'ok', text: phase === 'waiting' ? 'ready' : 'ok' };
 }

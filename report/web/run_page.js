@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page of a run: brings data, drawing and controls together.
-import { S, ask, focusOf, onFrame, shown } from './state.js';
+import { S, ask, focusOf, mapState, onFrame, shown } from './state.js';
 import { TAILS } from './map.js';
+import { markersOf } from './markers.js';
 import { recordedRun } from './run.js';
 import { advance, seek } from './timeline.js';
 import { hover, pin } from './team.js';
@@ -60,6 +61,7 @@ if (wishes.has('t') && S.run) seek(Number(wishes.get('t')) || 0);
 window.ergocast = {
   S, seek, set, shown, showView, pin, hover, setTheme, svgText: () => svgText(view), focus: focusOf,
   get view() { return view; },
+  marker: id => markersOf(shown(), view, mapState()).find(({ track }) => track.id === id),
   frames: () => frames,
   clearFrames: () => { frames = []; },
   // Draws a tick at once; the time until its pixels can be read [ms].

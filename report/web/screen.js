@@ -10,6 +10,7 @@ import { paintChart, readingAt } from './chart.js';
 import { buildStrip } from './timeline.js';
 import { $, clamp, put } from './text.js';
 
+const SIDE = 508;             // pixels that the table of agents needs
 const LAYERS = ['shading', 'trails', 'markers', 'chart'];
 
 const flat = new View(), turning = new SpaceView();
@@ -107,7 +108,7 @@ export function layout() {
   main.classList.toggle('wide', lx / ly > 1.2);
   if (!narrow) {
     const wanted = clamp(((main.clientHeight - 42) * lx) / ly, 420, main.clientWidth * 0.68);
-    main.style.setProperty('--mapWidth', `${Math.round(Math.min(wanted, main.clientWidth - 430))}px`);
+    main.style.setProperty('--mapWidth', `${Math.round(Math.min(wanted, main.clientWidth - Math.min(SIDE, main.clientWidth / 2)))}px`);
   }
   scale = Math.min(devicePixelRatio || 1, 2);
   view.resize($('stage').clientWidth, $('stage').clientHeight);

@@ -18,7 +18,7 @@ let runs = 0;
 function nameBasis(run) {
   const basis = ofModes(run.mission);
   QUANTITIES.phi.title = basis ? `φ²${basis}` : 'Ergodic metric φ²';
-  QUANTITIES.spread.title = `Spread of own φ²${basis}`;
+  QUANTITIES.spread.title = `Disagreement on φ²${basis}`;
   put($('metricName'), `φ²${basis}`);
   for (const option of $('quantity').options) option.text = QUANTITIES[option.value].title;
 }

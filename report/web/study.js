@@ -8,18 +8,18 @@ const escaped = key => point => point.escapes?.[key];
 
 // What can be asked of a point. `better`: −1 less is better, 1 more, 0 neither.
 export const QUANTITIES = {
-  metric: { title: 'φ² in cosines at the end', log: true, better: -1, text: readable, ...estimate('metric') },
-  ratio: { title: 'φ² in cosines against the first', log: true, better: -1, text: readable, ...estimate('ratio') },
-  slope: { title: 'Slope of φ² in cosines', log: false, better: -1, text: readable, ...plain(point => point.slope) },
-  within15: { title: 'Escaped within 15 s', log: false, better: 1, text: share, ...plain(escaped('within_15_s')) },
-  within60: { title: 'Escaped within 60 s', log: false, better: 1, text: share, ...plain(escaped('within_60_s')) },
-  median: { title: 'Median of the escapes', log: false, better: -1, text: seconds, ...plain(escaped('median_s')) },
-  late: { title: '99th percentile of the escapes', log: false, better: -1, text: seconds, ...plain(escaped('late_s')) },
-  offset: { title: 'Mean ‖x − centre‖²', unit: 'm²', log: false, better: 0, text: readable, ...plain(point => point.offset2_mean_m2) },
-  farthest: { title: 'Greatest ‖x − centre‖²', unit: 'm²', log: false, better: 0, text: readable, ...plain(point => point.offset2_max_m2) },
-  edge: { title: 'Time at the edge', log: false, better: 0, text: share, ...plain(point => point.edge_share) },
-  speed: { title: 'Mean speed', unit: 'm/s', log: false, better: 0, text: readable, ...plain(point => point.speed_mean_mps) },
-  messages: { title: 'Contributions a run', log: false, better: 0, text: readable, ...plain(point => point.messages) },
+  metric: { title: 'φ² in cosines at the end', means: 'How far coverage is from the target at the last tick: median of the seeds, and its 95 % interval', log: true, better: -1, text: readable, ...estimate('metric') },
+  ratio: { title: 'φ² in cosines against the first', means: 'φ² over that of the first point with the same seed: geometric mean, and its 95 % interval', log: true, better: -1, text: readable, ...estimate('ratio') },
+  slope: { title: 'Slope of φ² in cosines', means: 'The power of t that fits φ² over the last tenfold of time; −1 falls like 1/t', log: false, better: -1, text: readable, ...plain(point => point.slope) },
+  within15: { title: 'Escaped within 15 s', means: 'Share of the agents on a line of symmetry that have left it 15 s after the start', log: false, better: 1, text: share, ...plain(escaped('within_15_s')) },
+  within60: { title: 'Escaped within 60 s', means: 'Share of the agents on a line of symmetry that have left it 60 s after the start', log: false, better: 1, text: share, ...plain(escaped('within_60_s')) },
+  median: { title: 'Median of the escapes', means: 'When half of the agents on a line of symmetry have left it', log: false, better: -1, text: seconds, ...plain(escaped('median_s')) },
+  late: { title: '99th percentile of the escapes', means: 'When 99 % of the agents on a line of symmetry have left it', log: false, better: -1, text: seconds, ...plain(escaped('late_s')) },
+  offset: { title: 'Mean ‖x − centre‖²', means: 'Squared distance of agents from the point to which the contraction pulls them', unit: 'm²', log: false, better: 0, text: readable, ...plain(point => point.offset2_mean_m2) },
+  farthest: { title: 'Greatest ‖x − centre‖²', means: 'The same where it was greatest', unit: 'm²', log: false, better: 0, text: readable, ...plain(point => point.offset2_max_m2) },
+  edge: { title: 'Time at the edge', means: 'Share of all agents’ ticks closer to an edge than 0.1 % of the shorter side', log: false, better: 0, text: share, ...plain(point => point.edge_share) },
+  speed: { title: 'Mean speed', means: 'Of all agents over all ticks', unit: 'm/s', log: false, better: 0, text: readable, ...plain(point => point.speed_mean_mps) },
+  messages: { title: 'Contributions per run', means: 'Broadcasts of coverage that all agents sent in a mission', log: false, better: 0, text: readable, ...plain(point => point.messages) },
 };
 export const isKnown = v => typeof v === 'number' && !Number.isNaN(v);
 

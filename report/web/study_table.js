@@ -6,9 +6,12 @@ import { $, element, grouped, put } from './text.js';
 
 let rows = new Map(), order = '', columns = [];
 
-function head({ title, number, by }, sort) {
-  const th = element('th', number ? 'number' : ''), button = element('button', '', title);
+// A field's name may be broken before its parts.
+function head({ title, means, number, by }, sort) {
+  const th = element('th', number ? 'number' : ''), button = element('button');
+  title.split(/(?=[._])/).forEach((part, i) => button.append(...(i ? [element('wbr')] : []), part));
   th.scope = 'col';
+  th.title = means ?? '';
   th.append(button);
   button.onclick = () => sort(by);
   return th;
@@ -27,8 +30,10 @@ function toggleCommand(tr, point) {
 function row(point, { pin, hover }) {
   const tr = element('tr', point.runs ? '' : 'none');
   for (const { number, text } of columns) tr.append(element('td', number ? 'number' : '', text(point)));
-  const last = element('td'), button = element('button', '', 'Command');
-  button.title = 'What flies this point';
+  const last = element('td'), button = element('button', 'command', 'Command'), sign = element('span', '', '$');
+  sign.setAttribute('aria-hidden', 'true');
+  button.append(sign);
+  button.title = 'The command that runs this point';
   button.onclick = e => { e.stopPropagation(); toggleCommand(tr, point); };
   last.append(button);
   tr.append(last);
@@ -45,8 +50,8 @@ export function buildTable(study, actions) {
   const fields = study.varied.length ? study.varied : study.dimensions.slice(0, 1);
   columns = [
     ...fields.map(by => ({ by, title: by.name, number: false, text: point => point.all[by.number] })),
-    { by: { key: 'runs' }, title: 'Runs', number: true, text: point => grouped(point.runs) },
-    ...study.quantities.map(key => ({ by: { key }, title: QUANTITIES[key].title + (QUANTITIES[key].unit ? ` [${QUANTITIES[key].unit}]` : ''), number: true, text: point => intervalText(point, key) })),
+    { by: { key: 'runs' }, title: 'Runs', means: 'Missions of this point, one for each seed', number: true, text: point => grouped(point.runs) },
+    ...study.quantities.map(key => ({ by: { key }, means: QUANTITIES[key].means, title: QUANTITIES[key].title + (QUANTITIES[key].unit ? ` [${QUANTITIES[key].unit}]` : ''), number: true, text: point => intervalText(point, key) })),
   ];
   const last = element('th');
   last.append(element('span', 'hidden', 'Command'));

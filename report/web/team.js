@@ -3,6 +3,7 @@
 import { S, ask } from './state.js';
 import { stateOf } from './run.js';
 import { $, element, ofModes, put, readable, grouped } from './text.js';
+import { meaningOf } from './words.js';
 
 const MOST_WITHOUT_CHIPS = 12;
 
@@ -10,19 +11,17 @@ const own = (said, key, text = readable) => (typeof said?.[key] === 'number' ? t
 
 // A live team says how it is; a record has what each agent said last.
 const COLUMNS = [
-  { head: 'Speed', title: 'Over the last second', text: ({ speed }) => (speed === null ? '–' : `${speed.toFixed(1)} m/s`) },
-  { head: 'Way', title: 'Gone since the start', record: true, text: ({ way }) => (way === null ? '–' : `${grouped(Math.round(way))} m`) },
-  { head: 'Knowledge', title: 'Mission time since it last received coverage of its stalest teammate', live: true,
-    text: ({ said }) => own(said, 'max_staleness_s', v => `${v.toFixed(1)} s`) },
-  { head: 'View', title: 'How far its own φ² is from the median of the team', live: true, text: ({ said, median }) => {
+  { head: 'Speed', text: ({ speed }) => (speed === null ? '–' : `${speed.toFixed(1)} m/s`) },
+  { head: 'Distance', record: true, text: ({ way }) => (way === null ? '–' : `${grouped(Math.round(way))} m`) },
+  { head: 'Oldest update', live: true, text: ({ said }) => own(said, 'max_staleness_s', v => `${v.toFixed(1)} s`) },
+  { head: 'φ² vs team', live: true, text: ({ said, median }) => {
     const mine = said?.ergodic_metric;
     return typeof mine === 'number' && median > 0 ? `${mine < median ? '−' : '+'}${Math.abs((100 * (mine - median)) / median).toFixed(1)} %` : '–';
   } },
-  { head: 'Lag', title: 'The longest time in the last half second that its process woke up late', live: true, long: true,
-    text: ({ said }) => own(said, 'loop_lag_s', v => `${(1000 * v).toFixed(0)} ms`) },
-  { head: 'Own φ²', title: 'φ² of the coverage that it knew at the end', metric: true, record: true, text: ({ last }) => own(last, 'ergodic_metric') },
-  { head: 'Lost', title: 'Messages of others that it did not receive', text: ({ said, last }) => own(said ?? last, 'contributions_lost', grouped) },
-  { head: 'Drops', title: 'Datagrams that the kernel dropped at its sockets', long: true, text: ({ said, last }) => own(said ?? last, 'kernel_drops', grouped) },
+  { head: 'Lag', live: true, long: true, text: ({ said }) => own(said, 'loop_lag_s', v => `${(1000 * v).toFixed(0)} ms`) },
+  { head: 'Own φ²', metric: true, record: true, text: ({ last }) => own(last, 'ergodic_metric') },
+  { head: 'Lost', text: ({ said, last }) => own(said ?? last, 'contributions_lost', grouped) },
+  { head: 'Dropped', long: true, text: ({ said, last }) => own(said ?? last, 'kernel_drops', grouped) },
 ];
 
 let rows = new Map(), columns = [], order = '';
@@ -53,10 +52,10 @@ function row(id) {
 export function buildTeam() {
   const live = S.run.history.length > 0 || S.live;
   columns = COLUMNS.filter(column => (live ? !column.record : !column.live));
-  const heads = [['#'], ['State'], ...columns.map(c => [c.head, c.metric ? c.title + ofModes(S.run.mission) : c.title, c.long])].map(([head, title, long]) => {
+  const heads = [{ head: '#' }, { head: 'State' }, ...columns].map(({ head, metric, long }) => {
     const th = element('th', long ? 'long' : '', head);
     th.scope = 'col';
-    if (title) th.title = title;
+    th.title = meaningOf('AGENTS', head) + (metric ? ofModes(S.run.mission) : '');
     return th;
   });
   $('heads').replaceChildren(...heads);

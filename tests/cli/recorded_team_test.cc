@@ -53,6 +53,7 @@ class RecordedTeam : public ::testing::Test {
         status.header.tick = tick_;
         status.ergodic_metric = 0.25 + id;
         status.max_staleness_s = 1.5;
+        status.phase = now_ < begin_ + 2s ? AgentPhase::kRunning : AgentPhase::kReturning;
         log(status);
       }
     }
@@ -70,7 +71,8 @@ class RecordedTeam : public ::testing::Test {
   test::TempFolder folder_;
   Mission mission_ = test::small_mission(2);
   MessageAuthenticator seal_;
-  std::chrono::microseconds now_ = 1000h;
+  const std::chrono::microseconds begin_ = 1000h;
+  std::chrono::microseconds now_ = begin_;
   std::uint64_t count_ = 0;
   Tick tick_ = 0;
   std::string events_;
@@ -94,6 +96,10 @@ TEST_F(RecordedTeam, SaysWhenAnAgentWasSilentAndWhatEachKnew) {
   EXPECT_EQ(state_at(14.5), "ok");
   EXPECT_EQ(one["metric"].back(), 1.25);
   EXPECT_EQ(team["agents"]["0"]["age_s"].back(), 1.5);
+  const Json& phase = team["agents"]["0"]["phase"];
+  ASSERT_EQ(phase.size(), team["t"].size());
+  EXPECT_EQ(team["phases"][phase.front().get<std::size_t>()], "running");
+  EXPECT_EQ(team["phases"][phase.back().get<std::size_t>()], "returning");
 }
 
 TEST_F(RecordedTeam, APauseOfTheLoggerIsNoSilence) {

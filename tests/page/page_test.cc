@@ -38,12 +38,13 @@ TEST_F(PageInABrowser, AReportFromDiskShowsAnyTick) {
 
   // The agent is drawn where it is.
   const auto drawn =
-      js("const v = ergocast.view, t = ergocast.S.run.track(2), r = ergocast.S.run.rowAt(30), s = "
-         "devicePixelRatio;"
+      js("const { head: [x, y], r } = ergocast.marker(2), s = devicePixelRatio;"
          "const g = document.getElementById('markers').getContext('2d');"
-         "return [...g.getImageData(Math.round((v.px(t.p[2 * r]) - 7) * s), Math.round(v.py(t.p[2 "
-         "* r + 1]) * s), 1, 1).data]");
+         "return [...g.getImageData(Math.round((x - 0.8 * r) * s), Math.round(y * s), 1, 1).data]");
   EXPECT_EQ(drawn, nlohmann::json::parse("[0, 112, 90, 255]"));  // its colour on a light page
+  EXPECT_EQ(js("const v = ergocast.view, t = ergocast.S.run.track(2), r = ergocast.S.run.rowAt(30);"
+               "return String(ergocast.marker(2).tip) === String(v.at(t, r))"),
+            true);
   screenshot("report");
   expect_no_errors();
 }
@@ -148,12 +149,14 @@ TEST_F(PageInABrowser, TextOfARecordIsTextOnly) {
 
 TEST_F(PageInABrowser, KeepOutsAreOutlined) {
   open_report({"--duration", "5"}, "#theme=light", "harbour_patrol");
-  // The middle of the first piece of an outline, in pixels of the map.
+  // The reddest pixel at the middle of the first piece of an outline.
   const auto drawn = js(
       "const { view, S } = ergocast, pieces = S.run.nowhere.outline, s = devicePixelRatio;"
       "const [a, b, c, d] = pieces[0], x = view.px((a + c) / 2) * s, y = view.py((b + d) / 2) * s;"
-      "return [pieces.length, ...document.getElementById('shading').getContext('2d')"
-      ".getImageData(Math.round(x), Math.round(y), 1, 1).data]");
+      "const { data } = document.getElementById('shading').getContext('2d').getImageData("
+      "Math.round(x) - 1, Math.round(y) - 1, 3, 3);"
+      "const pixels = Array.from({ length: 9 }, (_, i) => [...data.slice(4 * i, 4 * i + 3)]);"
+      "return [pieces.length, ...pixels.sort((p, q) => p[1] - q[1])[0]]");
   EXPECT_GT(drawn[0].get<int>(), 100);                       // pieces as long as a cell
   EXPECT_GT(drawn[1].get<int>(), drawn[2].get<int>() + 40);  // red
   EXPECT_GT(drawn[1].get<int>(), drawn[3].get<int>() + 40);
@@ -173,7 +176,7 @@ TEST_F(PageInABrowser, TheMetricOfAFreeDomainNamesItsModes) {
   };
   EXPECT_EQ(text_of("metricName"), "φ² in modes of the free domain");
   EXPECT_NE(text_of("quantity").find("φ² in modes of the free domain"), std::string::npos);
-  EXPECT_NE(text_of("quantity").find("Spread of own φ² in modes of the free domain"),
+  EXPECT_NE(text_of("quantity").find("Disagreement on φ² in modes of the free domain"),
             std::string::npos);
   EXPECT_NE(text_of("facts").find("φ² in modes ofthe free domain"), std::string::npos)
       << text_of("facts");
@@ -339,10 +342,42 @@ TEST_F(PageInABrowser, AnAgentThatIsKilledComesBackAndTheTeamBecomesARecord) {
             true);
   EXPECT_GT(js("return ergocast.S.run.history.length").get<int>(), 3);
   js("ergocast.draw(ergocast.S.run.end / 2)");
-  EXPECT_EQ(js("const heads = [...document.querySelectorAll('#heads th')].map(h => h.textContent),"
-               "row = document.querySelector('#rows tr');"
-               "return /^[0-9.]+ s$/.test(row.children[heads.indexOf('Knowledge')].textContent)"),
+  EXPECT_EQ(
+      js("const heads = [...document.querySelectorAll('#heads th')].map(h => h.textContent),"
+         "row = document.querySelector('#rows tr');"
+         "return /^[0-9.]+ s$/.test(row.children[heads.indexOf('Oldest update')].textContent)"),
+      true);
+}
+
+// The page has no table of these modes, so it cannot compute the curve from positions.
+TEST_F(PageInABrowser, ALateBrowserGetsTheWholeCurveOfAFreeDomain) {
+  Child mission = launch_endless(scenario_file("two_rooms"),
+                                 {"--set", "basis.free_domain=true", "--set", "basis.modes_x=5",
+                                  "--set", "basis.modes_y=5", "--set", "time.pace=REALTIME",
+                                  "--set", "time.realtime_factor=10", "--watch", "--port", "8815"});
+  browser_->open("http://127.0.0.1:8815/");
+  EXPECT_TRUE(browser_->becomes(
+      "return Boolean(window.ergocast?.S.run) && ergocast.S.run.metrics.t.length > 5"));
+  const double first = js("return ergocast.S.run.metrics.t[0]");
+  EXPECT_TRUE(browser_->becomes("return ergocast.S.run.end > " + std::to_string(first + 30)));
+  const std::size_t rows = js("return ergocast.S.run.metrics.t.length");
+  browser_->open("about:blank");
+  browser_->open("http://127.0.0.1:8815/");
+  EXPECT_TRUE(browser_->becomes(
+      "return Boolean(window.ergocast?.S.run) && ergocast.S.run.metrics.t.length > 0"));
+  EXPECT_LE(js("return ergocast.S.run.metrics.t[0]").get<double>(), first);
+  EXPECT_GE(js("return ergocast.S.run.metrics.t.length").get<std::size_t>(), rows);
+  EXPECT_EQ(js("const { t, phi, age, spread, received } = ergocast.S.run.metrics;"
+               "return t.every((at, i) => (!i || at > t[i - 1]) && phi[i] > 0 && age[i] >= 0 && "
+               "spread[i] >= 0 && received[i] >= 0)"),
             true);
+  screenshot("late_browser");
+  expect_no_errors();
+  mission.send(SIGINT);
+  EXPECT_TRUE(browser_->becomes("return !ergocast.S.live && Boolean(ergocast.S.run.summary)"));
+  ASSERT_TRUE(eventually([&] { return said("until Ctrl-C"); })) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0);
 }
 
 TEST_F(PageInABrowser, ConnectsAgainWhenTheProcessOfThePageHasEnded) {

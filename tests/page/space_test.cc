@@ -8,6 +8,10 @@
 namespace ergocast::test {
 namespace {
 
+/// A place of agent 5's pin that has its colour.
+constexpr const char* kBesideNumber =
+    "(({ head, r }) => [head[0] - 0.8 * r, head[1]])(ergocast.marker(5))";
+
 class BoxInABrowser : public PageInABrowser {
  protected:
   /// The cube's record in a browser with or without WebGL.
@@ -60,10 +64,11 @@ TEST_F(BoxInABrowser, ABoxHasItsAgentsTailsAndSlices) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(shown[axis].get<double>(), place[axis], 0.05);
   }
-  // Its marker is where the eye sees this place: beside the number, in the agent's colour.
-  const std::string marker =
-      "(p => [p[0] - 6, p[1]])(view.project(view.placeAt(S.run.track(5), 100)))";
-  EXPECT_EQ(pixel("markers", marker), (std::array{0x5a, 0x48, 0xb8}));
+  // The tip of its pin is where the eye sees this place; beside the number is the agent's colour.
+  EXPECT_EQ(js("const { view, S, marker } = ergocast, at = view.placeAt(S.run.track(5), 100);"
+               "return String(marker(5).tip) === String(view.project(at).slice(0, 2))"),
+            true);
+  EXPECT_EQ(pixel("markers", kBesideNumber), (std::array{0x5a, 0x48, 0xb8}));
 
   // The slices meet at the densest place of the target: one of the eight peaks, darker than
   // between them.
@@ -175,9 +180,13 @@ TEST_F(BoxInABrowser, WithoutWebGlThereAreProjections) {
            "return [t.p[200], t.p[201]]");
     EXPECT_NEAR(at[0].get<double>(), place[a], 0.05) << name;
     EXPECT_NEAR(at[1].get<double>(), place[b], 0.05) << name;
-    const std::string marker = "(p => [p[0] - 7, p[1]])([view.px(" + std::to_string(place[a]) +
-                               "), view.py(" + std::to_string(place[b]) + ")])";
-    EXPECT_EQ(pixel("markers", marker), (std::array{0x5a, 0x48, 0xb8})) << name;
+    const auto off =
+        js("const { view, marker } = ergocast, [x, y] = marker(5).tip;"
+           "return [x - view.px(" +
+           std::to_string(place[a]) + "), y - view.py(" + std::to_string(place[b]) + ")]");
+    EXPECT_NEAR(off[0].get<double>(), 0, 0.1) << name;
+    EXPECT_NEAR(off[1].get<double>(), 0, 0.1) << name;
+    EXPECT_EQ(pixel("markers", kBesideNumber), (std::array{0x5a, 0x48, 0xb8})) << name;
     // Four pairs of peaks, one behind the other.
     js("ergocast.set('tail', 0)");
     EXPECT_GT(distance(pixel("shading", "[view.px(250), view.py(750)]"),

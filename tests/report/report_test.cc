@@ -188,6 +188,29 @@ TEST_F(Report, HasWhatTheSummarySaysAndNoTextEndsTheData) {
   EXPECT_EQ(found["mission"]["seed"], "18446744073709551615");
 }
 
+TEST_F(Report, SaysHowLargeBodiesAreAndWhoGoesHomeWhen) {
+  mission.starts_m.assign(2, {500, 500, 0});
+  record(2, 1000);
+  ASSERT_EQ(report(), std::nullopt);
+  for (const char* key : {"body_radius_m", "stations"})
+    EXPECT_FALSE(data()["record"]["mission"].contains(key)) << key;
+  EXPECT_FALSE(data()["record"].contains("home_from"));
+
+  mission.separation.distance_m = 3;
+  mission.kinds = {{.name = "robots", .count = 1, .u_max_mps = 10}};
+  mission.kinds[0].stations_m = {{600, 500, 0}};
+  mission.kinds[0].reserve_s = 20;
+  ASSERT_EQ(report(), std::nullopt);
+  const auto record = data()["record"];
+  EXPECT_EQ(record["mission"]["body_radius_m"], 1.5);
+  EXPECT_EQ(record["mission"]["stations"],
+            nlohmann::json::parse(R"([{"id": 0, "at_m": [600, 500], "rest_from": 800}])"));
+  // It circles 330 to 610 m away, and goes at 10 m/s: 33 to 61 s before tick 800.
+  ASSERT_EQ(record["home_from"].size(), 1U);
+  EXPECT_GT(record["home_from"]["0"], 190);
+  EXPECT_LT(record["home_from"]["0"], 480);
+}
+
 TEST_F(Report, ToleratesASummaryOfOtherTypesOrWithoutKeys) {
   record(1, 100);
   for (const char* summary :
