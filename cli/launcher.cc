@@ -103,9 +103,21 @@ void Launcher::attend(Instant now, Stage stage) {
       if (!end_expected_) restart(process, now, stage);
     }
   }
+  note_forgetting(stage);
   if (!end_expected_) return;
   if (escalated_ < 1 && now - *end_expected_ > kEndPatience) escalate(1);
   if (escalated_ < 2 && now - *end_expected_ > kEndPatience + kPoliteness) escalate(2);
+}
+
+/// What a team has covered is in its agents alone. If all have stopped at once, the law begins
+/// anew; the record still has the whole mission.
+void Launcher::note_forgetting(Stage stage) {
+  if (stage != Stage::kFlying || end_expected_ || failure_ || forgot_) return;
+  forgot_ = std::none_of(processes_.begin(), processes_.end(), [](Process& process) {
+    const bool lives_or_left = !process.end_noted || process.child->exit_code() == kExitDone;
+    return process.role == Role::kAgent && lives_or_left;
+  });
+  if (forgot_) display_.say("no agent is left: those that follow do not know what was covered");
 }
 
 void Launcher::take_note(Process& process, Instant now, Stage stage) {
@@ -250,6 +262,7 @@ std::string Launcher::losses() const {
   for (const Process& process : processes_) {
     if (process.given_up && failure_ != loss_of(process)) losses += "; " + loss_of(process);
   }
+  if (forgot_) losses += "; all agents had stopped at once and forgot what was covered before";
   return losses;
 }
 

@@ -65,7 +65,8 @@ class Launcher {
   bool leaderless() const;
   /// Whether a coordinator process runs.
   bool led() { return runs(Role::kCoordinator); }
-  /// "; coordinator was killed by SIGSEGV after 3 restarts": the processes that the team lost.
+  /// "; coordinator was killed by SIGSEGV after 3 restarts": the processes that the team lost, and
+  /// whether it lost its memory.
   std::string losses() const;
 
   /// Ends the remaining processes: 1 by SIGTERM, 2 by SIGKILL.
@@ -90,6 +91,7 @@ class Launcher {
 
   void plan(Role role, std::string name, const std::filesystem::path& program,
             std::vector<std::string> arguments);
+  void note_forgetting(Stage stage);
   std::optional<std::string> launch(Process& process, bool resume = false);
   bool runs(Role role);
   void take_note(Process& process, Instant now, Stage stage);
@@ -106,6 +108,7 @@ class Launcher {
   std::vector<Process> processes_;
   std::optional<std::string> failure_;
   std::optional<Instant> end_expected_;
+  bool forgot_ = false;  // all agents had stopped at once
   int escalated_ = 0;
 };
 

@@ -51,8 +51,12 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport,
     if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
       launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
     }
+    if (mission.deserted(now()) && launcher.leaderless()) {
+      launcher.fail("no agent flies any more, and no coordinator is left to admit one");
+    }
     if (launcher.failure()) mission.stop(true, *launcher.failure());
     mission.repeat(transport, now(), launcher.led());
+    mission.answer(transport, now());
   }
   launcher.attend(now(), mission.stage());
 }
