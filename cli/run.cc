@@ -77,20 +77,29 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
           {"tick_count", timing.tick_count}};
 }
 
+/// The summary that this run's logger has written. Whatever else stands in the folder is none.
+std::optional<nlohmann::ordered_json> loggers_summary(const Launcher::Setup& setup) {
+  auto read = read_summary(setup.run_dir);
+  auto* const summary = std::get_if<nlohmann::ordered_json>(&read);
+  if (summary == nullptr || !summary->is_object()) return std::nullopt;
+  for (const char* key : {"run_id", "result", "reason"}) {
+    if (!summary->contains(key) || !(*summary)[key].is_string()) return std::nullopt;
+  }
+  if ((*summary)["run_id"] != to_hex(setup.run)) return std::nullopt;
+  return std::move(*summary);
+}
+
 /// The logger's summary with the values that only the launcher knows.
 nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher::Setup& setup,
                                        const Launcher& launcher, const MissionWatch& mission) {
-  auto read = read_summary(setup.run_dir);
-  const auto* written = std::get_if<nlohmann::ordered_json>(&read);
-  auto summary = written != nullptr && written->is_object()
-                     ? *written
-                     : makeshift_summary(scenario, setup.run);
+  const auto written = loggers_summary(setup);
+  auto summary = written ? *written : makeshift_summary(scenario, setup.run);
   const auto fail = [&summary](const std::string& reason) {
     summary["result"] = "failed";
     summary["reason"] = reason;
   };
   const bool complete = mission.complete() && !mission.failed() && !mission.stopping();
-  const bool cut_short = complete && summary.value("result", "") != "done";
+  const bool cut_short = complete && (!written || summary["result"] == "stopped");
   if (cut_short) {
     const char* why = launcher.record_broken() ? "" : ": the logger fell behind";
     fail(std::string("the mission is complete, but its record is not") + why);
