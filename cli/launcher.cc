@@ -12,6 +12,7 @@
 
 #include "cli/progress.h"
 #include "runtime/node.h"
+#include "text/printable.h"
 
 namespace ergocast::cli {
 namespace {
@@ -40,13 +41,10 @@ void Launcher::plan(Role role, std::string name, const std::filesystem::path& pr
   process.role = role;
   process.program.command = {(setup_.programs / program).string(), "--lcm-url", setup_.url.base(),
                              "--run-id", to_hex(setup_.run)};
+  hand_key(process);
+  if (role == Role::kLogger || role == Role::kCoordinator) hand(process, "--plan", setup_.plan);
+  if (role == Role::kLogger || role == Role::kAgent) hand(process, "--modes", setup_.modes);
   auto& command = process.program.command;
-  if (!setup_.key_file.empty()) {
-    command.insert(command.end(), {"--key-file", setup_.key_file.string()});
-  }
-  // A world computes no mode.
-  if (!setup_.modes.empty() && role != Role::kWorld)
-    command.insert(command.end(), {"--modes", setup_.modes.string()});
   command.insert(command.end(), arguments.begin(), arguments.end());
   process.program.log = setup_.run_dir / "log" / (name + ".log");
   // The logger still closes its files if the launcher dies; the others have nothing to save.
@@ -55,15 +53,29 @@ void Launcher::plan(Role role, std::string name, const std::filesystem::path& pr
   processes_.push_back(std::move(process));
 }
 
+/// Gives the process a file under that option, unless there is none.
+void Launcher::hand(Process& process, const char* option, const std::optional<SealedFile>& file) {
+  if (!file) return;
+  process.program.command.insert(process.program.command.end(), {option, file->path()});
+  process.program.files.push_back(file->descriptor());
+}
+
+/// A program in the world's place may start another one, which gets no descriptor of ours.
+void Launcher::hand_key(Process& process) const {
+  if (process.role != Role::kWorld || is_simulated())
+    return hand(process, "--key-file", setup_.key);
+  if (setup_.key_file.empty()) return;
+  process.program.command.insert(process.program.command.end(),
+                                 {"--key-file", setup_.key_file.string()});
+}
+
 std::optional<std::string> Launcher::start() {
   plan(Role::kLogger, "logger", "ergocast-logger",
        {"--out", setup_.run_dir.string(), "--event-log-limit",
         std::to_string(setup_.event_log_mib)});
   if (setup_.event_log_zstd) processes_.back().program.command.push_back("--event-log-zstd");
-  const bool simulated = setup_.world.filename() == "ergocast-sim";
-  plan(Role::kWorld, simulated ? "sim" : "world", setup_.world, setup_.world_arguments);
-  plan(Role::kCoordinator, "coordinator", "ergocast-coordinator",
-       {(setup_.run_dir / "scenario.textproto").string()});
+  plan(Role::kWorld, is_simulated() ? "sim" : "world", setup_.world, setup_.world_arguments);
+  plan(Role::kCoordinator, "coordinator", "ergocast-coordinator", {});
   for (int id = 0; id < setup_.agents; ++id) {
     plan(Role::kAgent, "agent-" + std::to_string(id), "ergocast-agent",
          {"--id", std::to_string(id)});
@@ -212,7 +224,7 @@ void Launcher::explain(const Process& process) {
                process.child->fate() + "; the end of " + process.program.log.string() + ":");
   std::string tail = last_lines(process.program.log, kLinesOfExplanation);
   if (!tail.empty()) tail.pop_back();
-  display_.say(tail.empty() ? "    (nothing was logged)" : tail);
+  display_.say(tail.empty() ? "    (nothing was logged)" : printable(tail));
 }
 
 void Launcher::fail(std::string reason) {

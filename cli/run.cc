@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <span>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
@@ -18,7 +20,9 @@
 #include "logger/summary.h"
 #include "modes/table_file.h"
 #include "runtime/clock.h"
+#include "runtime/key_file.h"
 #include "runtime/node.h"
+#include "runtime/sealed_file.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
 #include "team/plan.h"
@@ -170,6 +174,28 @@ std::variant<fs::path, std::string> world_program(const fs::path& wanted,
          " (name one that takes --lcm-url and --run-id, with its folder)";
 }
 
+/// What the processes are handed, from what this process has read or computed; an error if there is
+/// no memory for it.
+/// @pre options.seal can sign
+std::optional<std::string> seal_files(const MissionOptions& options, const Mission& mission,
+                                      Launcher::Setup& setup) {
+  std::optional<std::string> problem;
+  const auto keep = [&problem](const std::string& name, std::span<const std::byte> bytes,
+                               std::optional<SealedFile>& file) {
+    auto made = SealedFile::make(name, bytes);
+    if (auto* sealed = std::get_if<SealedFile>(&made)) file = std::move(*sealed);
+    if (auto* why = std::get_if<std::string>(&made)) problem = std::move(*why);
+  };
+  keep(kPlanFile, encode_plan(mission), setup.plan);
+  if (const auto& table = mission.basis.table)
+    keep(table_file_name(table->hash), table->file, setup.modes);
+  if (const MissionKey* key = options.seal.key()) {
+    const std::string text = key_text(*key, true);
+    keep("key", std::as_bytes(std::span(text)), setup.key);
+  }
+  return problem;
+}
+
 /// Runs the mission. LCM works and the run directory is ready.
 int fly(const MissionOptions& options, const Scenario& scenario, const Launcher::Setup& setup,
         StopSignals& signals) {
@@ -252,8 +278,8 @@ int run(const MissionOptions& options) {
     return report_error(kExitBadInput, *problem);
   }
   setup.run_dir = std::get<fs::path>(prepared);
-  const Basis& basis = scenario->mission().basis;
-  if (basis.free_domain) setup.modes = setup.run_dir / table_file_name(basis.table_hash);
+  if (const auto problem = seal_files(options, scenario->mission(), setup))
+    return report_error(kExitFailed, *problem);
   return fly(options, *scenario, setup, signals);
 }
 

@@ -7,11 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <deque>
 #include <fstream>
+#include <span>
 
 #include "runtime/signals.h"
 
@@ -21,15 +23,26 @@ namespace {
 /// The code that a shell returns, too; our programs do not use it.
 constexpr int kCannotExecute = 127;
 
+/// Closes all descriptors but the standard streams and `kept`, which ascend.
+void close_all_but(std::span<const int> kept) {
+  unsigned first = STDERR_FILENO + 1;
+  for (const int descriptor : kept) {
+    const auto next = static_cast<unsigned>(descriptor);
+    if (next > first) close_range(first, next - 1, 0);
+    first = next + 1;
+  }
+  close_range(first, ~0U, 0);
+}
+
 /// Opens the standard streams: otherwise the program's first sockets would take their numbers.
-void take_streams(const char* log) {
+void take_streams(const char* log, std::span<const int> kept) {
   const int nothing = open("/dev/null", O_RDWR);
   const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
   if (nothing < 0) _exit(kCannotExecute);
   dup2(nothing, STDIN_FILENO);
   dup2(output < 0 ? nothing : output, STDOUT_FILENO);
   dup2(output < 0 ? nothing : output, STDERR_FILENO);
-  close_range(STDERR_FILENO + 1, ~0U, 0);
+  close_all_but(kept);
 }
 
 void say(const char* text) {
@@ -38,14 +51,15 @@ void say(const char* text) {
 
 /// Runs between fork and exec, so it calls only async-signal-safe functions.
 [[noreturn]] void become(char* const* arguments, const char* log, int signal_if_orphaned,
-                         pid_t parent) {
+                         std::span<const int> kept, pid_t parent) {
   setpgid(0, 0);
   // The child inherits nothing else. This also frees a descriptor for the log, even if the parent
   // has none left.
-  close_range(STDERR_FILENO + 1, ~0U, 0);
+  close_all_but(kept);
+  for (const int descriptor : kept) fcntl(descriptor, F_SETFD, 0);
   prctl(PR_SET_PDEATHSIG, signal_if_orphaned);
   if (getppid() != parent) _exit(kCannotExecute);  // the parent ended before prctl()
-  take_streams(log);
+  take_streams(log, kept);
   StopSignals::restore_in_child();
   execv(arguments[0], arguments);
   const char* reason = strerrordesc_np(errno);
@@ -61,10 +75,13 @@ std::variant<Child, std::string> Child::start(const Program& program) {
   std::vector<char*> arguments;
   for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  std::vector<int> kept = program.files;
+  std::ranges::sort(kept);
 
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(arguments.data(), program.log.c_str(), program.signal_if_orphaned, parent);
+  if (pid == 0)
+    become(arguments.data(), program.log.c_str(), program.signal_if_orphaned, kept, parent);
   if (pid < 0) return command.front() + ": " + std::strerror(errno);
   return Child(pid);
 }

@@ -18,6 +18,7 @@ class Child {
     std::vector<std::string> command;  ///< path and arguments
     std::filesystem::path log;         ///< gets both output streams; lost if it cannot be opened
     int signal_if_orphaned;            ///< the kernel sends it when this process ends
+    std::vector<int> files{};          ///< descriptors that the child keeps, under their numbers
   };
 
   /// Starts the program in its own process group, so that Ctrl-C reaches only this process. An

@@ -81,6 +81,7 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/lcm_conformance_test.cc
     process/libraries_test.cc
     process/log_test.cc
+    process/lost_files_test.cc
     process/modes_test.cc
     process/logs_test.cc
     process/no_metric_test.cc
