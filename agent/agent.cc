@@ -132,8 +132,7 @@ void Agent::on(const Hello& hello, const Arrival& arrival) {
   if (!me_.knows_mission() || !arrival.fresh) return;
   InMission* const flight = in_mission();
   if (hello.header.sender == kWorld && flight) flight->world_asks = hello.header.incarnation;
-  const bool knows_no_mission = hello.header.sender < kUnassigned && hello.header.tick < 0;
-  if (knows_no_mission) mission_repeat_.asked(arrival.now, me_.received());
+  if (asks_for_mission(hello)) mission_repeat_.asked(arrival.now, me_.received());
 }
 
 void Agent::on(const AgentStatus& status, const Arrival& arrival) {

@@ -4,7 +4,8 @@
 // Messages only update tables; the control step reads them. In lockstep a tick is answered once
 // every block due by it is held; in real time at once, with what is there. What teammates lack it
 // repeats to them (anti_entropy.h), and the mission itself on request
-// (mission_repeat.h). Its life until and after the mission is in agent.cc, the tick in flying.cc.
+// (team/mission_repeat.h). Its life until and after the mission is in agent.cc, the tick in
+// flying.cc.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,6 @@
 #include <vector>
 
 #include "agent/anti_entropy.h"
-#include "agent/mission_repeat.h"
 #include "agent/state_parts.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
@@ -29,6 +29,7 @@
 #include "team/bodies.h"
 #include "team/deadline.h"
 #include "team/messages.h"
+#include "team/mission_repeat.h"
 #include "team/participant.h"
 #include "team/radio_range.h"
 

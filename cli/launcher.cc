@@ -12,6 +12,7 @@
 
 #include "cli/progress.h"
 #include "runtime/node.h"
+#include "text/printable.h"
 
 namespace ergocast::cli {
 namespace {
@@ -34,13 +35,10 @@ void Launcher::plan(Role role, std::string name, const std::filesystem::path& pr
   process.role = role;
   process.program.command = {(setup_.programs / program).string(), "--lcm-url", setup_.url.base(),
                              "--run-id", to_hex(setup_.run)};
+  hand_key(process);
+  if (role == Role::kLogger || role == Role::kCoordinator) hand(process, "--plan", setup_.plan);
+  if (role == Role::kLogger || role == Role::kAgent) hand(process, "--modes", setup_.modes);
   auto& command = process.program.command;
-  if (!setup_.key_file.empty()) {
-    command.insert(command.end(), {"--key-file", setup_.key_file.string()});
-  }
-  // A world computes no mode.
-  if (!setup_.modes.empty() && role != Role::kWorld)
-    command.insert(command.end(), {"--modes", setup_.modes.string()});
   command.insert(command.end(), arguments.begin(), arguments.end());
   process.program.log = setup_.run_dir / "log" / (name + ".log");
   // The logger still closes its files if the launcher dies; the others have nothing to save.
@@ -49,15 +47,29 @@ void Launcher::plan(Role role, std::string name, const std::filesystem::path& pr
   processes_.push_back(std::move(process));
 }
 
+/// Gives the process a file under that option, unless there is none.
+void Launcher::hand(Process& process, const char* option, const std::optional<SealedFile>& file) {
+  if (!file) return;
+  const std::string path = process.program.hand(file->descriptor());
+  process.program.command.insert(process.program.command.end(), {option, path});
+}
+
+/// A program in the world's place may start another one, which gets no descriptor of ours.
+void Launcher::hand_key(Process& process) const {
+  if (process.role != Role::kWorld || is_simulated())
+    return hand(process, "--key-file", setup_.key);
+  if (setup_.key_file.empty()) return;
+  process.program.command.insert(process.program.command.end(),
+                                 {"--key-file", setup_.key_file.string()});
+}
+
 std::optional<std::string> Launcher::start() {
   plan(Role::kLogger, "logger", "ergocast-logger",
        {"--out", setup_.run_dir.string(), "--event-log-limit",
         std::to_string(setup_.event_log_mib)});
   if (setup_.event_log_zstd) processes_.back().program.command.push_back("--event-log-zstd");
-  const bool simulated = setup_.world.filename() == "ergocast-sim";
-  plan(Role::kWorld, simulated ? "sim" : "world", setup_.world, setup_.world_arguments);
-  plan(Role::kCoordinator, "coordinator", "ergocast-coordinator",
-       {(setup_.run_dir / "scenario.textproto").string()});
+  plan(Role::kWorld, is_simulated() ? "sim" : "world", setup_.world, setup_.world_arguments);
+  plan(Role::kCoordinator, "coordinator", "ergocast-coordinator", {});
   for (int id = 0; id < setup_.agents; ++id) {
     plan(Role::kAgent, "agent-" + std::to_string(id), "ergocast-agent",
          {"--id", std::to_string(id)});
@@ -97,9 +109,21 @@ void Launcher::attend(Instant now, Stage stage) {
       if (!end_expected_) restart(process, now, stage);
     }
   }
+  note_forgetting(stage);
   if (!end_expected_) return;
   if (escalated_ < 1 && now - *end_expected_ > kEndPatience) escalate(1);
   if (escalated_ < 2 && now - *end_expected_ > kEndPatience + kPoliteness) escalate(2);
+}
+
+/// What a team has covered is in its agents alone. If all have stopped at once, the law begins
+/// anew; the record still has the whole mission.
+void Launcher::note_forgetting(Stage stage) {
+  if (stage != Stage::kFlying || end_expected_ || failure_ || forgot_) return;
+  forgot_ = std::none_of(processes_.begin(), processes_.end(), [](Process& process) {
+    const bool lives_or_left = !process.end_noted || process.child->exit_code() == kExitDone;
+    return process.role == Role::kAgent && lives_or_left;
+  });
+  if (forgot_) display_.say("no agent is left: those that follow do not know what was covered");
 }
 
 void Launcher::take_note(Process& process, Instant now, Stage stage) {
@@ -194,7 +218,7 @@ void Launcher::explain(const Process& process) {
                process.child->fate() + "; the end of " + process.program.log.string() + ":");
   std::string tail = last_lines(process.program.log, kLinesOfExplanation);
   if (!tail.empty()) tail.pop_back();
-  display_.say(tail.empty() ? "    (nothing was logged)" : tail);
+  display_.say(tail.empty() ? "    (nothing was logged)" : printable(tail));
 }
 
 void Launcher::fail(std::string reason) {
@@ -244,6 +268,7 @@ std::string Launcher::losses() const {
   for (const Process& process : processes_) {
     if (process.given_up && failure_ != loss_of(process)) losses += "; " + loss_of(process);
   }
+  if (forgot_) losses += "; all agents had stopped at once and forgot what was covered before";
   return losses;
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/child.h"
 #include "runtime/event_log.h"
 #include "runtime/lcm_url.h"
+#include "runtime/sealed_file.h"
 
 namespace ergocast::cli {
 
@@ -34,7 +35,11 @@ class Launcher {
     LcmUrl url;
     RunId run = 0;
     std::filesystem::path key_file;  ///< the key file that can sign; empty: no key
-    std::filesystem::path modes;     ///< the file of the mission's table of modes; empty: none
+    /// What the processes are handed. So a file that is removed or overwritten under way harms none
+    /// that is started again.
+    std::optional<SealedFile> plan;   ///< compiled; needed
+    std::optional<SealedFile> modes;  ///< the mission's table of modes, if it has one
+    std::optional<SealedFile> key;    ///< what key_file held, if there is one
     int agents = 0;
     std::vector<std::string> kinds;  ///< that of each agent; of a team whose agents are alike none
     std::int64_t event_log_mib = kEventLogMib;
@@ -65,7 +70,8 @@ class Launcher {
   bool leaderless() const;
   /// Whether a coordinator process runs.
   bool led() { return runs(Role::kCoordinator); }
-  /// "; coordinator was killed by SIGSEGV after 3 restarts": the processes that the team lost.
+  /// "; coordinator was killed by SIGSEGV after 3 restarts": the processes that the team lost, and
+  /// whether it lost its memory.
   std::string losses() const;
 
   /// Ends the remaining processes: 1 by SIGTERM, 2 by SIGKILL.
@@ -90,7 +96,11 @@ class Launcher {
 
   void plan(Role role, std::string name, const std::filesystem::path& program,
             std::vector<std::string> arguments);
+  static void hand(Process& process, const char* option, const std::optional<SealedFile>& file);
+  void hand_key(Process& process) const;
+  void note_forgetting(Stage stage);
   std::optional<std::string> launch(Process& process, bool resume = false);
+  bool is_simulated() const { return setup_.world.filename() == "ergocast-sim"; }
   bool runs(Role role);
   void take_note(Process& process, Instant now, Stage stage);
   bool tells_the_end(const Process& process);
@@ -106,6 +116,7 @@ class Launcher {
   std::vector<Process> processes_;
   std::optional<std::string> failure_;
   std::optional<Instant> end_expected_;
+  bool forgot_ = false;  // all agents had stopped at once
   int escalated_ = 0;
 };
 

@@ -14,6 +14,8 @@ using namespace std::chrono_literals;
 
 /// How long a coordinator may take to end the mission in order.
 constexpr auto kCoordinatorPatience = 2s;
+/// Agents report twice a second. A person may start a coordinator meanwhile.
+constexpr auto kDesertedAfter = 10s;
 
 }  // namespace
 
@@ -24,6 +26,11 @@ void MissionWatch::receive(const Message& message, Bus bus, AgentId transmitter,
   const bool heard = me_.liveness().last_sign_of_kind(kCoordinator).has_value();
   progress_.coordinator_silent = heard && me_.silent(kCoordinator, now);
   if (stage_ >= Stage::kFlying) display_.show(progress_);
+}
+
+void MissionWatch::on(const Hello& hello, const Arrival& arrival) {
+  const bool asked = arrival.fresh && asks_for_mission(hello) && me_.follower().revision() >= 0;
+  if (asked) mission_repeat_.asked(arrival.now, me_.received());
 }
 
 void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
@@ -43,7 +50,10 @@ void MissionWatch::on(const AgentStatus& agent, const Arrival& arrival) {
   const Instant now = arrival.now;
   reach(agent.header.tick, now);
   reach(flies(agent.phase) ? Stage::kFlying : Stage::kReady, now);
-  if (flies(agent.phase)) progress_.world_silent = agent.waiting_for == kWorld;
+  if (flies(agent.phase)) {
+    progress_.world_silent = agent.waiting_for == kWorld;
+    flown_ = now;
+  }
   if (progress_.coordinator_silent) progress_.ergodic_metric = agent.ergodic_metric;
   const bool at_the_end = me_.counted(agent.header.tick) >= timing_.tick_count;
   if (agent.phase == AgentPhase::kFinished && at_the_end) reach(Stage::kOver, now);
@@ -51,6 +61,7 @@ void MissionWatch::on(const AgentStatus& agent, const Arrival& arrival) {
 
 void MissionWatch::on(const MissionPart& part, const Arrival& arrival) {
   const Instant now = arrival.now;
+  mission_repeat_.overheard(part.revision, me_.follower().revision(), now, me_.received());
   failed_ = failed_ || part.state == MissionState::kFailed;
   if (!part.reason.empty()) reason_ = part.reason;
   reach(part.header.tick, now);
@@ -84,6 +95,20 @@ std::optional<std::string> MissionWatch::overdue(Instant now) const {
   const bool waiting = timing_.pace == Pace::kLockstep && stage_ == Stage::kFlying;
   if (!waiting || now - tick_since_ < seconds(timing_.lockstep_timeout_s)) return std::nullopt;
   return "tick " + std::to_string(tick_) + " was not answered in time";
+}
+
+bool MissionWatch::deserted(Instant now) const {
+  return stage_ == Stage::kFlying && now - flown_ >= kDesertedAfter;
+}
+
+void MissionWatch::answer(Transport& transport, Instant now) {
+  if (!mission_repeat_.due(now)) return;
+  mission_repeat_.done(now);
+  Outbox out;
+  for (const MissionPart& part : me_.follower().parts()) {
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) out.push_back({bus, part});
+  }
+  transport.publish(out);
 }
 
 void MissionWatch::stop(bool failed, std::string reason) {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `ergocast run` receives of its mission and shows of it; its only message is STOP.
+// What `ergocast run` receives of its mission and shows of it.
+//
+// It sends STOP, and repeats MISSION to a process that asks: agents do so, too, but all of them may
+// have stopped, and a coordinator that is started then finds the mission nowhere else.
 #pragma once
 
 #include <optional>
@@ -12,6 +15,7 @@
 #include "runtime/transport.h"
 #include "scenario/scenario.h"
 #include "team/messages.h"
+#include "team/mission_repeat.h"
 #include "team/participant.h"
 
 namespace ergocast::cli {
@@ -30,7 +34,10 @@ class MissionWatch {
   static constexpr Role kRole = Role::kLauncher;
 
   MissionWatch(RunId run, const Timing& timing, ProgressDisplay& display, bool free_domain = false)
-      : me_(kRole, {run, kUnassigned, 0}), timing_(timing), display_(display) {
+      : me_(kRole, {run, kUnassigned, 0}),
+        mission_repeat_(run),
+        timing_(timing),
+        display_(display) {
     progress_.tick_count = timing.tick_count;
     progress_.dt_s = timing.dt_s;
     progress_.free_domain = free_domain;
@@ -49,6 +56,11 @@ class MissionWatch {
 
   /// Lockstep: the error text of a tick that has not been answered in time.
   std::optional<std::string> overdue(Instant now) const;
+  /// Whether the mission flies and no agent has flown for so long that none is left.
+  bool deserted(Instant now) const;
+
+  /// Repeats the mission, as its coordinator sent it, to a process that has asked for it.
+  void answer(Transport& transport, Instant now);
 
   /// From now on repeat() sends STOP; only the first call has an effect.
   void stop(bool failed, std::string reason);
@@ -59,6 +71,7 @@ class MissionWatch {
  private:
   template <class M>
   void on(const M&, const Arrival&) {}  // the other types need no action
+  void on(const Hello& hello, const Arrival& arrival);
   void on(const TeamStatus& team, const Arrival& arrival);
   void on(const AgentStatus& agent, const Arrival& arrival);
   void on(const MissionPart& part, const Arrival& arrival);
@@ -67,6 +80,7 @@ class MissionWatch {
   void reach(Tick tick, Instant now);
 
   Participant me_;
+  MissionRepeat mission_repeat_;
   Timing timing_;
   ProgressDisplay& display_;
   MissionProgress progress_;
@@ -75,6 +89,7 @@ class MissionWatch {
   std::string reason_;
   Tick tick_ = 0;         // the newest, whether it counts or not
   Instant tick_since_{};  // when the last tick or stage was reached
+  Instant flown_{};       // when an agent was last heard that flies
 
   std::optional<StopRequest> stop_;
   std::optional<Instant> stopping_since_;

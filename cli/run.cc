@@ -8,7 +8,9 @@
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
+#include <span>
 #include <thread>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/launcher.h"
@@ -22,7 +24,9 @@
 #include "logger/summary.h"
 #include "modes/table_file.h"
 #include "runtime/clock.h"
+#include "runtime/key_file.h"
 #include "runtime/node.h"
+#include "runtime/sealed_file.h"
 #include "runtime/signals.h"
 #include "runtime/transport.h"
 #include "team/plan.h"
@@ -58,8 +62,12 @@ void supervise(Launcher& launcher, MissionWatch& mission, Transport& transport, 
     if (const auto overdue = mission.overdue(now()); overdue && launcher.leaderless()) {
       launcher.fail(*overdue + ", and no coordinator is left to end or mend it");
     }
+    if (mission.deserted(now()) && launcher.leaderless()) {
+      launcher.fail("no agent flies any more, and no coordinator is left to admit one");
+    }
     if (launcher.failure()) mission.stop(true, *launcher.failure());
     mission.repeat(transport, now(), launcher.led());
+    mission.answer(transport, now());
   }
   launcher.attend(now(), mission.stage());
 }
@@ -80,20 +88,29 @@ nlohmann::ordered_json makeshift_summary(const Scenario& scenario, RunId run) {
           {"tick_count", timing.tick_count}};
 }
 
+/// The summary that this run's logger has written. Whatever else stands in the folder is none.
+std::optional<nlohmann::ordered_json> loggers_summary(const Launcher::Setup& setup) {
+  auto read = read_summary(setup.run_dir);
+  auto* const summary = std::get_if<nlohmann::ordered_json>(&read);
+  if (summary == nullptr || !summary->is_object()) return std::nullopt;
+  for (const char* key : {"run_id", "result", "reason"}) {
+    if (!summary->contains(key) || !(*summary)[key].is_string()) return std::nullopt;
+  }
+  if ((*summary)["run_id"] != to_hex(setup.run)) return std::nullopt;
+  return std::move(*summary);
+}
+
 /// The logger's summary with the values that only the launcher knows.
 nlohmann::ordered_json amended_summary(const Scenario& scenario, const Launcher::Setup& setup,
                                        const Launcher& launcher, const MissionWatch& mission) {
-  auto read = read_summary(setup.run_dir);
-  const auto* written = std::get_if<nlohmann::ordered_json>(&read);
-  auto summary = written != nullptr && written->is_object()
-                     ? *written
-                     : makeshift_summary(scenario, setup.run);
+  const auto written = loggers_summary(setup);
+  auto summary = written ? *written : makeshift_summary(scenario, setup.run);
   const auto fail = [&summary](const std::string& reason) {
     summary["result"] = "failed";
     summary["reason"] = reason;
   };
   const bool complete = mission.complete() && !mission.failed() && !mission.stopping();
-  const bool cut_short = complete && summary.value("result", "") != "done";
+  const bool cut_short = complete && (!written || summary["result"] == "stopped");
   if (cut_short) {
     const char* why = launcher.record_broken() ? "" : ": the logger fell behind";
     fail(std::string("the mission is complete, but its record is not") + why);
@@ -171,6 +188,28 @@ std::variant<fs::path, std::string> world_program(const fs::path& wanted,
   if (access(program.c_str(), X_OK) == 0 && fs::is_regular_file(program)) return program;
   return "--world " + wanted.string() + ": there is no program " + program.string() +
          " (name one that takes --lcm-url and --run-id, with its folder)";
+}
+
+/// What the processes are handed, from what this process has read or computed; an error if there is
+/// no memory for it.
+/// @pre options.seal can sign
+std::optional<std::string> seal_files(const MissionOptions& options, const Mission& mission,
+                                      Launcher::Setup& setup) {
+  std::optional<std::string> problem;
+  const auto keep = [&problem](const std::string& name, std::span<const std::byte> bytes,
+                               std::optional<SealedFile>& file) {
+    auto made = SealedFile::make(name, bytes);
+    if (auto* sealed = std::get_if<SealedFile>(&made)) file = std::move(*sealed);
+    if (auto* why = std::get_if<std::string>(&made)) problem = std::move(*why);
+  };
+  keep(kPlanFile, encode_plan(mission), setup.plan);
+  if (const auto& table = mission.basis.table)
+    keep(table_file_name(table->hash), table->file, setup.modes);
+  if (const MissionKey* key = options.seal.key()) {
+    const std::string text = key_text(*key, true);
+    keep("key", std::as_bytes(std::span(text)), setup.key);
+  }
+  return problem;
 }
 
 /// Runs the mission. LCM works and the run directory is ready.
@@ -271,8 +310,8 @@ int run(const MissionOptions& options) {
     return report_error(kExitBadInput, *problem);
   }
   setup.run_dir = std::get<fs::path>(prepared);
-  const Basis& basis = scenario->mission().basis;
-  if (basis.free_domain) setup.modes = setup.run_dir / table_file_name(basis.table_hash);
+  if (const auto problem = seal_files(options, scenario->mission(), setup))
+    return report_error(kExitFailed, *problem);
   return fly(options, *scenario, setup, signals);
 }
 

@@ -48,7 +48,8 @@ std::variant<SimulatedRecord, std::string> simulate_into(
 
   SimulatedRecord result{summary_of(simulation.recorder(), scenario, started, wall_time.count(),
                                     events ? events->removed() : 0),
-                         simulation.coordinator().state() == MissionState::kFailed};
+                         simulation.coordinator().state() == MissionState::kFailed ||
+                             simulation.recorder().facts().no_metric_from.has_value()};
   auto error = record.flush();
   if (!error && events) error = events->flush();
   if (!error) error = write_file(record.folder() / kSummaryFile, to_text(result.summary));

@@ -3,6 +3,7 @@
 // makes the table and the page.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <utility>
@@ -81,6 +82,7 @@ class StudyRunner {
 
   void take(const Run& run, const studies::StudyFigures& figures) {
     if (!figures.complete) return fail(run, "the mission did not come to its last tick");
+    if (!std::isfinite(figures.metric)) return fail(run, "phi^2 is not a number");
     ++flown_;
     if (!problem_) problem_ = directory_.add({run.first, figures});
   }

@@ -2,6 +2,7 @@
 // `ergocast simulate --seeds`: simulates each seed in a worker process, prints failures with the
 // command that repeats them.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -47,6 +48,9 @@ TrialReport report_of(const lab::TrialResult& result) {
   if (result.violation) {
     report.verdict = Verdict::kViolated;
     std::snprintf(report.what, sizeof report.what, "%s", to_string(*result.violation).c_str());
+  } else if (!std::isfinite(report.figures.ergodic_metric)) {
+    report.verdict = Verdict::kViolated;
+    std::snprintf(report.what, sizeof report.what, "phi^2 is not a number");
   }
   return report;
 }

@@ -168,6 +168,8 @@ int main(int argc, char** argv) {
                      "Scenario file, or the name of a shipped one; not needed with --resume")
           ->transform(shipped_scenario())
           ->type_name("FILE");
+  std::vector<std::byte> plan;
+  add_plan_option(app, plan)->excludes(scenario);
   Overrides overrides;
   add_override_options(app, overrides);
   app.add_flag(
@@ -184,7 +186,7 @@ int main(int argc, char** argv) {
     return kExitBadInput;
   }
   if (scenario->count() == 0) {
-    if (resume) return run(node, {}, Takeover::kMust);
+    if (resume || !plan.empty()) return run(node, std::move(plan), takeover_of(node, resume));
     spdlog::error("no SCENARIO: name a scenario file, or take a mission over with --resume");
     return kExitBadInput;
   }

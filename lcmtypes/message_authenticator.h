@@ -65,6 +65,8 @@ class MessageAuthenticator {
   explicit MessageAuthenticator(const MissionKey& key);
 
   bool keyed() const { return key_ != nullptr; }
+  /// The secret itself, for a process that hands it to others; null without a key.
+  const MissionKey* key() const { return key_.get(); }
   /// Lets two hosts compare their keys without revealing them; 0 without a key.
   std::uint64_t fingerprint() const;
   /// Whether it can sign as a coordinator or operator: always, if there is no key.

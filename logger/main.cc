@@ -7,6 +7,7 @@
 #include <chrono>
 #include <fstream>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "logger/mission_text.h"
@@ -40,12 +41,16 @@ struct Past {
 };
 
 /// The readable rows of the record. An error if the mission of the record is unknown.
-std::variant<Past, std::string> read_past(const fs::path& folder) {
+/// @param plan  of the record, whatever its folder says; empty: that of the folder
+std::variant<Past, std::string> read_past(const fs::path& folder, std::vector<std::byte> plan) {
   Past past;
+  past.plan = std::move(plan);
   if (segment_count(folder) == 0) return past;
   const auto damage = read_up_to_damage(folder, past.rows);
-  std::ifstream plan(folder / kPlanFile, std::ios::binary);
-  for (char c = 0; plan.get(c);) past.plan.push_back(static_cast<std::byte>(c));
+  if (past.plan.empty()) {
+    std::ifstream file(folder / kPlanFile, std::ios::binary);
+    for (char c = 0; file.get(c);) past.plan.push_back(static_cast<std::byte>(c));
+  }
   const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
   const bool known = std::holds_alternative<Mission>(decode_plan(past.plan));
   if (!known && (begun || !past.plan.empty())) {
@@ -222,11 +227,12 @@ int refuse(ExitCode code, const std::string& problem) {
   return code;
 }
 
-int run(const NodeOptions& node, const fs::path& folder, bool resume, EventLogLimits limits) {
+int run(const NodeOptions& node, const fs::path& folder, bool resume, std::vector<std::byte> plan,
+        EventLogLimits limits) {
   StopSignals signals;
   std::optional<Past> past;
   if (resume) {
-    auto read = read_past(folder);
+    auto read = read_past(folder, std::move(plan));
     if (const auto* problem = std::get_if<std::string>(&read))
       return refuse(kExitBadInput, *problem);
     past = std::get<Past>(std::move(read));
@@ -296,11 +302,13 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingDirectory);
   app.add_flag("--resume", resume,
                "Go on with the record of this mission in the folder, if there is one");
+  std::vector<std::byte> plan;
+  add_plan_option(app, plan);
   EventLogLimits limits;
   std::int64_t event_log_mib = kEventLogMib;
   add_event_log_options(app, event_log_mib, limits.compressed);
   if (const int code = parse_command_line(app, argc, argv); code >= 0) return code;
   set_up_logging("logger", node.log_level);
   limits.total_bytes = event_log_mib << 20;
-  return run(node, folder, resume, limits);
+  return run(node, folder, resume, std::move(plan), limits);
 }

@@ -281,7 +281,7 @@ void Recorder::close() {
 }
 
 const char* Recorder::result() const {
-  if (ending_.failed) return "failed";
+  if (ending_.failed || facts_.no_metric_from) return "failed";
   return all_rows_written() ? "done" : "stopped";
 }
 

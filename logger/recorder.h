@@ -41,6 +41,9 @@ struct RunFacts {
   std::vector<double> t_s, ergodic_metric;  ///< the rows of metrics.csv
   /// With basis.free_domain: φ² in cosines at the last row of the metrics; NaN: there is none.
   double cosine_metric_last = std::numeric_limits<double>::quiet_NaN();
+  /// The first tick of a row whose φ² is not a number: from there on the record says nothing of the
+  /// coverage.
+  std::optional<Tick> no_metric_from;
   Tick gaps = 0;        ///< ticks without rows before the last row
   bool halted = false;  ///< by an emergency stop: the last row stands still
   /// Real time, as the world counts them; of several drivers the one with the most.
@@ -92,7 +95,8 @@ class Recorder {
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   const MissionFollower& follower() const { return me_.follower(); }
-  /// "done" (its last tick is recorded), "failed" or "stopped" (an operator ended it), and why.
+  /// "done" (its last tick is recorded), "failed" (also if φ² is not a number) or "stopped" (an
+  /// operator ended it), and why.
   const char* result() const;
   const std::string& reason() const { return ending_.reason; }
   const RunFacts& facts() const { return facts_; }

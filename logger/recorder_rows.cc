@@ -133,6 +133,7 @@ void Recorder::write_metrics(double metric) {
   metrics_ << line << '\n';
   if (facts_.t_s.empty()) facts_.ergodic_metric_first = metric;
   facts_.ergodic_metric_last = metric;
+  if (!std::isfinite(metric) && !facts_.no_metric_from) facts_.no_metric_from = next_row_;
   facts_.t_s.push_back(static_cast<double>(counted()) * mission().timing.dt_s);
   facts_.ergodic_metric.push_back(metric);
 }

@@ -151,6 +151,10 @@ void add_mission(const Mission& mission, const RunContext& context, Json& summar
 /// The recorder's reason, with important remarks on the result.
 std::string reason_of(const Recorder& recorder) {
   const RunFacts& facts = recorder.facts();
+  if (facts.no_metric_from) {
+    return recorder.reason() + ", but phi^2 is not a number from tick " +
+           std::to_string(*facts.no_metric_from) + " on";
+  }
   const auto agents = static_cast<double>(recorder.follower().roster().size());
   const double share = static_cast<double>(facts.missed_deadlines) /
                        std::max(1.0, static_cast<double>(facts.ticks) * agents);

@@ -20,7 +20,8 @@ namespace {
 /// The tables of this process. Missions may be prepared in several threads.
 struct Shelf {
   std::mutex access;
-  std::vector<ModesTable> tables;
+  std::vector<ModesTable> tables;    // handed over or computed
+  std::vector<ModesTable> computed;  // by this process
 };
 
 Shelf& shelf() {
@@ -28,12 +29,13 @@ Shelf& shelf() {
   return the_one;
 }
 
+/// One of those `tables` of the shelf; null: none fits.
 template <class Fits>
-ModesTable known_table(const Fits& fits) {
+ModesTable known_table(const Fits& fits, std::vector<ModesTable> Shelf::*tables = &Shelf::tables) {
   Shelf& all = shelf();
   const std::lock_guard lock(all.access);
-  const auto at = std::ranges::find_if(all.tables, fits);
-  return at == all.tables.end() ? nullptr : *at;
+  const auto at = std::ranges::find_if(all.*tables, fits);
+  return at == (all.*tables).end() ? nullptr : *at;
 }
 
 /// Of what a table is computed from.
@@ -99,6 +101,21 @@ std::variant<ModesTable, std::string> computed(const Mission& mission) {
   return decode_table(*bytes, bytes);
 }
 
+/// As this process computes it, whatever it was handed; it does so once.
+std::variant<ModesTable, std::string> own_table(const Mission& mission) {
+  const std::uint64_t key = key_of(mission);
+  const auto fits = [=](const ModesTable& table) { return table->key == key; };
+  if (ModesTable known = known_table(fits, &Shelf::computed)) return known;
+  auto table = computed(mission);
+  if (const auto* made = std::get_if<ModesTable>(&table)) {
+    keep_table(*made);
+    Shelf& all = shelf();
+    const std::lock_guard lock(all.access);
+    all.computed.push_back(*made);
+  }
+  return table;
+}
+
 }  // namespace
 
 void keep_table(ModesTable table) {
@@ -112,9 +129,7 @@ std::variant<ModesTable, std::string> table_of(const Mission& mission) {
   const std::uint64_t key = key_of(mission);
   const auto fits = [=](const ModesTable& table) { return table->key == key; };
   if (ModesTable known = known_table(fits)) return known;
-  auto table = computed(mission);
-  if (const auto* made = std::get_if<ModesTable>(&table)) keep_table(*made);
-  return table;
+  return own_table(mission);
 }
 
 std::optional<std::string> provide_table(Mission& mission) {
@@ -124,7 +139,8 @@ std::optional<std::string> provide_table(Mission& mission) {
   const auto fits = [=](const ModesTable& table) { return table->hash == hash; };
   ModesTable table = known_table(fits);
   if (table == nullptr) {
-    auto made = table_of(mission);
+    // Not one that was handed over: its file may be of another computer, or no more what it was.
+    auto made = own_table(mission);
     if (auto* problem = std::get_if<std::string>(&made))
       return "the modes of the free domain cannot be computed: " + *problem;
     table = std::get<ModesTable>(std::move(made));

@@ -24,7 +24,8 @@ void keep_table(ModesTable table);
 /// @pre mission.basis.free_domain, kMostFreeModes modes at most
 std::variant<ModesTable, std::string> table_of(const Mission& mission);
 
-/// Sets mission.basis.table to the table of its hash.
+/// Sets mission.basis.table to the table of its hash: one that was handed over, or the one that
+/// this program computes.
 /// @return  why this program has none of this hash, as a sentence; nothing for a mission without
 ///          free domain
 std::optional<std::string> provide_table(Mission& mission);

@@ -101,12 +101,15 @@ bool all_between(std::span<const std::int32_t> numbers, std::int32_t end) {
 bool is_sound(const FreeModes& modes) {
   const auto& nu = modes.eigenvalues_per_m2;
   const auto positive = [](double number) { return std::isfinite(number) && number > 0; };
+  // Somewhere |e_k| is 1. Half of that is for rounding.
+  const double least = 0.5 / modes.cell_count;
+  const auto mean_square = [=](double number) { return number >= least && number <= 1; };
   const auto bounded = [](float value) { return std::abs(value) <= 1; };
   bool sound = all_between(modes.owner, modes.cell_count) &&
                all_between(modes.around, modes.cell_count) &&
                all_between(modes.place, modes.columns * modes.rows) && nu[0] == 0 &&
                std::all_of(nu.begin() + 1, nu.end(), positive) && std::ranges::is_sorted(nu) &&
-               std::ranges::all_of(modes.mean_squares, positive) &&
+               std::ranges::all_of(modes.mean_squares, mean_square) &&
                std::ranges::all_of(modes.values, bounded);
   for (int cell = 0; cell < modes.cell_count; ++cell) sound = sound && *modes.values_of(cell) == 1;
   return sound;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Maps files of tables into memory, and writes them under another name first.
+// Reads files of tables, or maps those that cannot change, and writes them under another name
+// first.
 #include "modes/table_file.h"
 
 #include <fcntl.h>
@@ -7,8 +8,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include <cerrno>
 #include <fstream>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/ids.h"
 
@@ -18,20 +23,53 @@ namespace {
 /// Far above any table: 102400 cells of 4096 modes would be more, but take hours to compute.
 constexpr off_t kMostBytes = off_t{1} << 30;
 
-/// The bytes of a file as they are on the disk; null if it is none.
-std::shared_ptr<const void> mapped(const std::filesystem::path& file, std::size_t& size) {
+/// Bytes, and what they stay valid with; null: there are none.
+struct Loaded {
+  std::shared_ptr<const void> storage;
+  std::span<const std::byte> bytes;
+};
+
+/// Whether nobody can shorten or overwrite the file: a process that maps another one is killed when
+/// somebody shortens it, and its numbers change under its hands.
+bool is_sealed(int opened) {
+  constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_WRITE;
+  const int seals = fcntl(opened, F_GET_SEALS);
+  return seals >= 0 && (seals & kSeals) == kSeals;
+}
+
+Loaded mapped(int opened, std::size_t size) {
+  void* const begin = mmap(nullptr, size, PROT_READ, MAP_SHARED, opened, 0);
+  if (begin == MAP_FAILED) return {};
+  return {{begin, [size](const void* at) { munmap(const_cast<void*>(at), size); }},
+          {static_cast<const std::byte*>(begin), size}};
+}
+
+/// As many bytes as there are, if the file becomes shorter meanwhile.
+Loaded copied(int opened, std::size_t size) {
+  const auto bytes = std::make_shared<std::vector<std::byte>>(size);
+  std::size_t got = 0;
+  while (got < size) {
+    const ssize_t some = read(opened, bytes->data() + got, size - got);
+    if (some < 0 && errno == EINTR) continue;
+    if (some <= 0) break;
+    got += static_cast<std::size_t>(some);
+  }
+  return {bytes, std::span(*bytes).first(got)};
+}
+
+Loaded loaded(const std::filesystem::path& file) {
   const int opened = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (opened < 0) return nullptr;
+  if (opened < 0) return {};
   struct stat status {};
-  void* begin = MAP_FAILED;
-  // Of what is no file the size is 0, or it cannot be mapped.
-  if (fstat(opened, &status) == 0 && status.st_size > 0 && status.st_size <= kMostBytes) {
-    size = static_cast<std::size_t>(status.st_size);
-    begin = mmap(nullptr, size, PROT_READ, MAP_SHARED, opened, 0);
+  Loaded loaded;
+  const bool usable = fstat(opened, &status) == 0 && S_ISREG(status.st_mode) &&
+                      status.st_size > 0 && status.st_size <= kMostBytes;
+  if (usable) {
+    const auto size = static_cast<std::size_t>(status.st_size);
+    loaded = is_sealed(opened) ? mapped(opened, size) : copied(opened, size);
   }
   close(opened);
-  if (begin == MAP_FAILED) return nullptr;
-  return {begin, [size](const void* at) { munmap(const_cast<void*>(at), size); }};
+  return loaded;
 }
 
 }  // namespace
@@ -39,13 +77,11 @@ std::shared_ptr<const void> mapped(const std::filesystem::path& file, std::size_
 std::string table_file_name(std::uint64_t hash) { return "modes-" + to_hex(hash) + ".bin"; }
 
 std::variant<ModesTable, std::string> load_table(const std::filesystem::path& file) {
-  std::size_t size = 0;
-  const std::shared_ptr<const void> begin = mapped(file, size);
-  if (begin == nullptr) return file.string() + ": cannot be read as a table of modes";
-  auto table = decode_table({static_cast<const std::byte*>(begin.get()), size}, begin);
-  if (const auto* problem = std::get_if<std::string>(&table)) {
-    return file.string() + ": " + *problem + ": leave it out, and the table is computed anew";
-  }
+  Loaded found = loaded(file);
+  if (found.storage == nullptr) return file.string() + ": cannot be read as a table of modes";
+  auto table = decode_table(found.bytes, std::move(found.storage));
+  if (const auto* problem = std::get_if<std::string>(&table))
+    return file.string() + ": " + *problem;
   return table;
 }
 

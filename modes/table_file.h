@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of modes in files: each is named by its hash, and processes share one copy in memory.
+// Tables of modes in files: each is named by its hash.
+//
+// No change of a file reaches a process that has loaded it. A file that is sealed against changes
+// is mapped, so that processes share one copy in memory; any other is copied first, then checked.
 #pragma once
 
 #include <filesystem>

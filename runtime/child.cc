@@ -90,6 +90,11 @@ struct Start {
 
 }  // namespace
 
+std::string Child::Program::hand(int descriptor) {
+  descriptors.push_back(descriptor);
+  return "/proc/self/fd/" + std::to_string(kFirst - 1 + std::ssize(descriptors));
+}
+
 std::variant<Child, std::string> Child::start(const Program& program) {
   std::vector<std::string> command = program.command, environment;
   for (char** variable = environ; *variable != nullptr; ++variable) {

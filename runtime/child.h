@@ -21,6 +21,9 @@ class Child {
     int signal_if_orphaned;            ///< the kernel sends it when this process ends
     std::vector<std::string> environment = {};  ///< "NAME=VALUE", besides this process's own
     std::vector<int> descriptors = {};          ///< it has them as 3, 4, …, and no others
+
+    /// Adds a descriptor. @return the path under which the program can open the file again
+    std::string hand(int descriptor);
   };
 
   /// Starts the program in its own process group, so that Ctrl-C reaches only this process. An

@@ -28,6 +28,8 @@ namespace ergocast {
 template <class Core>
 std::unique_ptr<Transport> connect(Core& core, const NodeOptions& node,
                                    Transport::Handlers more = {}) {
+  if (!node.modes_problem.empty())
+    spdlog::warn("{}; it is computed if need be", node.modes_problem);
   more.on_message = [&core](const Message& message, Bus bus, AgentId transmitter) {
     core.receive(message, bus, transmitter, now());
   };

@@ -12,14 +12,21 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
+#include <iterator>
+#include <span>
 #include <sstream>
+#include <utility>
+#include <variant>
 
 #include "modes/provide.h"
 #include "modes/table_file.h"
 #include "runtime/key_file.h"
 #include "runtime/logging.h"
+#include "team/plan.h"
 #include "text/likeness.h"
 #include "text/printable.h"
+#include "text/regular_file.h"
 
 namespace ergocast {
 namespace {
@@ -85,6 +92,18 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
   return "";
 }
 
+/// The bytes of a plan that this program can fly, or why the file has none.
+std::variant<std::vector<std::byte>, std::string> read_plan(const std::string& file) {
+  if (const auto why = why_not_regular(file)) return *why;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::string("cannot be opened");
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  const auto bytes = std::as_bytes(std::span(text));
+  const auto decoded = decode_plan(bytes);
+  if (const auto* problem = std::get_if<std::string>(&decoded)) return *problem;
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
 }  // namespace
 
 void add_url_option(CLI::App& app, LcmUrl& url) {
@@ -146,17 +165,33 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->type_name("LEVEL");
   app.add_option_function<std::string>(
          "--modes",
-         [](const std::string& file) {
+         [&options](const std::string& file) {
            auto table = load_table(file);
-           if (const auto* problem = std::get_if<std::string>(&table))
-             throw CLI::ValidationError("--modes", *problem);
-           keep_table(std::get<ModesTable>(std::move(table)));
+           if (auto* problem = std::get_if<std::string>(&table)) {
+             options.modes_problem = std::move(*problem);
+           } else {
+             keep_table(std::get<ModesTable>(std::move(table)));
+           }
          },
-         "Table of the modes of a mission with basis.free_domain; without: computed in a second or "
-         "more")
+         "Table of the modes of a mission with basis.free_domain; without, or if it is damaged: "
+         "computed in a second or more")
       ->envname("ERGOCAST_MODES")
       ->type_name("FILE");
   app.set_version_flag("--version", version_text());
+}
+
+CLI::Option* add_plan_option(CLI::App& app, std::vector<std::byte>& plan) {
+  return app
+      .add_option_function<std::string>(
+          "--plan",
+          [&plan](const std::string& file) {
+            auto read = read_plan(file);
+            if (const auto* problem = std::get_if<std::string>(&read))
+              throw CLI::ValidationError("--plan", file + ": " + *problem);
+            plan = std::get<0>(std::move(read));
+          },
+          "The compiled plan of the mission, as plan.binpb of a record; no option changes it")
+      ->type_name("FILE");
 }
 
 void add_event_log_options(CLI::App& app, std::int64_t& mib, bool& compressed) {

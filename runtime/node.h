@@ -3,8 +3,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/ids.h"
 #include "lcmtypes/message_authenticator.h"
@@ -47,11 +49,16 @@ void add_bus_options(CLI::App& app, BusOptions& options);
 /// The options of the programs that take part in a mission.
 struct NodeOptions : BusOptions {
   std::string log_level = "info";
+  std::string modes_problem;  ///< why --modes gave no table; empty: nothing is wrong
 };
 
 /// Adds --log-level (default: $ERGOCAST_LOG_LEVEL, or info), --modes, which keeps the table in this
-/// process, and --version to those.
+/// process, and --version to those. A file that is no table is no error: the table is computed.
 void add_node_options(CLI::App& app, NodeOptions& options);
+
+/// --plan: the compiled plan of a mission, as plan.binpb of its record holds it. Checked; `plan`
+/// gets its bytes.
+CLI::Option* add_plan_option(CLI::App& app, std::vector<std::byte>& plan);
 
 /// --event-log-limit, for programs that write an event log. @param mib  its default
 void add_event_log_options(CLI::App& app, std::int64_t& mib, bool& compressed);

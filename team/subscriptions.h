@@ -65,7 +65,7 @@ inline constexpr SubscriptionTable kSubscriptions = [] {
   hears(Role::kDriver,      Bus::kWorld,   kTypes<WorldState>);
   hears(Role::kDriver,      Bus::kCommand, kTypes<MissionPart, Command, Stop>);
   for (const Bus bus : {Bus::kSwarm, Bus::kWorld, Bus::kCommand}) hears(Role::kLogger, bus, kEveryType);
-  hears(Role::kLauncher,    Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, Stop>);
+  hears(Role::kLauncher,    Bus::kSwarm,   kTypes<Hello, MissionPart, AgentStatus, TeamStatus, Stop>);
   // A replayed event log has the messages of all buses on the first, because LCM's player knows one
   // URL.
   hears(Role::kMonitor,     Bus::kSwarm,   kTypes<MissionPart, AgentStatus, TeamStatus, WorldState, RecordAck>);

@@ -119,6 +119,7 @@ ergocast_test(NAME runtime_tests LABELS unit
     runtime/loop_lag_test.cc
     runtime/rate_limit_test.cc
     runtime/repeat_guard_test.cc
+    runtime/sealed_file_test.cc
   LIBS ergocast::runtime ergocast::event_log lcm::lcm)
 
 ergocast_test(NAME cli_tests LABELS unit

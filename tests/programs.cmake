@@ -56,6 +56,7 @@ endforeach()
 
 # What tests preload into the programs they start.
 add_library(hold_at SHARED support/hold_at.cc)
+add_library(no_number SHARED support/no_number.cc)
 add_library(no_socket_filter SHARED support/no_socket_filter.cc)
 
 # Real programs and real LCM.
@@ -81,9 +82,11 @@ ergocast_test(NAME process_tests LABELS process RUNS_PROGRAMS
     process/lcm_conformance_test.cc
     process/libraries_test.cc
     process/log_test.cc
+    process/lost_files_test.cc
     process/modes_test.cc
     process/page_attack_test.cc
     process/logs_test.cc
+    process/no_metric_test.cc
     process/replay_test.cc
     process/restart_test.cc
     process/run_test.cc
@@ -110,9 +113,10 @@ if(TARGET ergocast-example-mujoco)
   add_dependencies(process_tests ergocast-example-mujoco)
 endif()
 add_library(no_more_processes SHARED support/no_more_processes.cc)
-add_dependencies(process_tests ergocast-example-driver no_more_processes)
+add_dependencies(process_tests ergocast-example-driver no_more_processes no_number)
 target_compile_definitions(process_tests PRIVATE
-  ERGOCAST_NO_MORE_PROCESSES="$<TARGET_FILE:no_more_processes>")
+  ERGOCAST_NO_MORE_PROCESSES="$<TARGET_FILE:no_more_processes>"
+  ERGOCAST_NO_NUMBER="$<TARGET_FILE:no_number>")
 
 # The page in Chromium.
 ergocast_test(NAME page_tests LABELS page RUNS_PROGRAMS
@@ -131,6 +135,7 @@ ergocast_test(NAME checks_can_fail_tests LABELS process RUNS_PROGRAMS
   SOURCES
     checks_can_fail/check_test.cc
     checks_can_fail/invariants_test.cc
+    checks_can_fail/no_metric_test.cc
     checks_can_fail/refusals_test.cc
     checks_can_fail/scenario_mistakes.cc
     checks_can_fail/verify_test.cc

@@ -13,6 +13,7 @@
 
 #include "agent/agent.h"
 #include "coordinator/coordinator.h"
+#include "core/basis.h"
 #include "core/control.h"
 #include "core/coverage_table.h"
 #include "core/forecast.h"
@@ -46,6 +47,7 @@ constexpr Tick kUnderWay = 100;
 
 // clang-format off
 WRAPPED(Eigen::Vector3d, command, "_ZN8ergocast10Controller7commandEilRKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_7BasisAtE", Controller*, AgentId, Tick, const Eigen::Vector3d&, const BasisAt&)
+WRAPPED(double, ergodic_metric, "_ZN8ergocast14ergodic_metricERKN5Eigen6MatrixIdLin1ELi1ELi0ELin1ELi1EEES4_S4_", const Coefficients&, const Coefficients&, const Coefficients&)
 WRAPPED(Eigen::Vector3d, reflect, "_ZN8ergocast7reflectERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_3BoxE", const Eigen::Vector3d&, const Box&)
 WRAPPED(void, make_table, "_ZN8ergocast13CoverageTableC1ERKNS_5BasisEdl", CoverageTable*, const Basis&, double, Tick)
 WRAPPED(void, add_sample, "_ZN8ergocast13CoverageTable10add_sampleERKNS_6AuthorERKNS_7BasisAtEPKd", CoverageTable*, const Author&, const BasisAt&, const double*)
@@ -84,6 +86,11 @@ Eigen::Vector3d bug_command(Controller* self, AgentId agent, Tick tick, const Ei
                             const BasisAt& at) {
   const Eigen::Vector3d v_mps = real_command(self, agent, tick, x_m, at);
   return bug("the input is not cut") ? 20 * v_mps : v_mps;
+}
+
+double bug_ergodic_metric(const Coefficients& coverage, const Coefficients& target,
+                          const Coefficients& weights) {
+  return bug("phi^2 is no number") ? std::nan("") : real_ergodic_metric(coverage, target, weights);
 }
 
 Eigen::Vector3d bug_reflect(const Eigen::Vector3d& x_m, const Box& domain) {

@@ -87,6 +87,22 @@ TEST(Provide, UsesWhatIsHandedOverInPlaceOfWhatItWouldCompute) {
   EXPECT_EQ(mission.basis.table.get(), theirs.get());
 }
 
+// As of a file that has changed since it was named.
+TEST(Provide, ComputesTheTableOfTheHashWhereItWasHandedAnotherOne) {
+  Mission mission = mission_of(95);
+  const FreeGrid grid = test::grid_of(mission.domain, test::sees_all);
+  auto modes = *eigen_modes(grid, 12);
+  const auto encoded = [&](const EigenModes& of) {
+    auto bytes = std::make_shared<const std::vector<std::byte>>(encode_table(grid, of, 54321));
+    return std::get<ModesTable>(decode_table(*bytes, bytes));
+  };
+  const std::uint64_t ours = std::get<ModesTable>(table_of(mission))->hash;
+  modes.values.col(5) *= 1 - 1e-6;
+  keep_table(encoded(modes));
+  mission.basis.table_hash = ours;
+  EXPECT_EQ(provide_table(mission), std::nullopt);
+}
+
 TEST(Provide, RefusesATableOfAnotherDomainOrOfOtherModes) {
   Mission mission = mission_of(100);
   mission.basis.table_hash = std::get<ModesTable>(table_of(mission))->hash;

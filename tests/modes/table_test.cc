@@ -2,12 +2,17 @@
 // A table's bytes are read back as they were, or refused: nothing that reads a table looks again.
 #include "modes/table.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <random>
+#include <string>
 
 #include "core/basis.h"
 #include "modes/table_file.h"
@@ -91,15 +96,27 @@ TEST(Table, IsRefusedWithANumberThatNoneHas) {
   const std::size_t nu = offset(at.eigenvalues_per_m2, at), squares = offset(at.mean_squares, at);
   const std::size_t values = offset(at.values, at);
   const float nan = std::nanf("");
-  for (const Bytes& bad :
-       {with<std::uint32_t>(kFormat, 2), with<std::uint32_t>(kColumns, 0),
-        with<std::uint32_t>(kColumns, 1000000), with<std::uint32_t>(kModes, 0),
-        with<double>(kWidth - 8, nan), with<double>(kWidth, 0.0), with<char>(kVersion, 'x'),
-        with<std::int32_t>(kOwner, -1), with<std::int32_t>(kOwner, read.cell_count),
-        with<std::int32_t>(around + 8, read.cell_count), with<std::int32_t>(place, 6400),
-        with<double>(nu, 1e-9), with<double>(nu + 8, 0.0), with<double>(nu + 8, 1.0),
-        with<double>(squares + 8, 0.0), with<double>(squares, std::nan("")),
-        with<float>(values, 0.5F), with<float>(values + 4, 1.5F), with<float>(values + 4, nan)}) {
+  for (const Bytes& bad : {with<std::uint32_t>(kFormat, 2),
+                           with<std::uint32_t>(kColumns, 0),
+                           with<std::uint32_t>(kColumns, 1000000),
+                           with<std::uint32_t>(kModes, 0),
+                           with<double>(kWidth - 8, nan),
+                           with<double>(kWidth, 0.0),
+                           with<char>(kVersion, 'x'),
+                           with<std::int32_t>(kOwner, -1),
+                           with<std::int32_t>(kOwner, read.cell_count),
+                           with<std::int32_t>(around + 8, read.cell_count),
+                           with<std::int32_t>(place, 6400),
+                           with<double>(nu, 1e-9),
+                           with<double>(nu + 8, 0.0),
+                           with<double>(nu + 8, 1.0),
+                           with<double>(squares + 8, 0.0),
+                           with<double>(squares, std::nan("")),
+                           with<double>(squares + 8, 1e-300),
+                           with<double>(squares + 8, 1.5),
+                           with<float>(values, 0.5F),
+                           with<float>(values + 4, 1.5F),
+                           with<float>(values + 4, nan)}) {
     EXPECT_TRUE(std::holds_alternative<std::string>(decoded(bad)));
   }
 }
@@ -141,7 +158,44 @@ TEST(TableFile, IsNamedByItsHashAndReadBack) {
   EXPECT_TRUE(std::ranges::equal(std::get<ModesTable>(read)->values, table->values));
 }
 
-TEST(TableFile, ThatIsNoneIsNamedWithARemedy) {
+/// Whether this process maps a file of that name.
+bool maps(const std::string& name) {
+  std::ifstream in("/proc/self/maps");
+  const std::string all((std::istreambuf_iterator<char>(in)), {});
+  return all.find(name) != std::string::npos;
+}
+
+// A process that had mapped it would be killed.
+TEST(TableFile, ThatIsCutOrOverwrittenAfterwardsHarmsNoReader) {
+  const test::TempFolder folder;
+  const ModesTable table = std::get<ModesTable>(decoded(good()));
+  ASSERT_FALSE(save_table(*table, folder.path()));
+  const auto file = folder.path() / table_file_name(table->hash);
+  const auto read = std::get<ModesTable>(load_table(file));
+  EXPECT_FALSE(maps(file));
+  std::fstream(file, std::ios::in | std::ios::out) << std::string(good().size(), 'x');
+  EXPECT_TRUE(std::ranges::equal(read->file, table->file));
+  std::filesystem::resize_file(file, 0);
+  EXPECT_TRUE(std::ranges::equal(read->file, table->file));
+}
+
+TEST(TableFile, ThatNobodyCanChangeIsShared) {
+  const std::string name = "sealed-table";
+  const int sealed = memfd_create(name.c_str(), MFD_ALLOW_SEALING);
+  ASSERT_GE(sealed, 0);
+  ASSERT_EQ(write(sealed, good().data(), good().size()), static_cast<ssize_t>(good().size()));
+  const std::string file = "/proc/self/fd/" + std::to_string(sealed);
+  ASSERT_TRUE(std::holds_alternative<ModesTable>(load_table(file)));
+  EXPECT_FALSE(maps(name)) << "it can still change";
+  ASSERT_EQ(fcntl(sealed, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_WRITE), 0);
+  const auto read = load_table(file);
+  ASSERT_TRUE(std::holds_alternative<ModesTable>(read)) << std::get<std::string>(read);
+  EXPECT_TRUE(maps(name));
+  EXPECT_TRUE(std::ranges::equal(std::get<ModesTable>(read)->file, good()));
+  close(sealed);
+}
+
+TEST(TableFile, ThatIsNoneIsNamed) {
   const test::TempFolder folder;
   std::ofstream(folder.path() / "text") << "no table";
   for (const auto& file : {folder.path() / "missing", folder.path(), folder.path() / "text",

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table of modes of a free domain: `ergocast run` hands it to its processes, those that were
-// handed none compute it, the record has it, and who computes another stays out. And φ² of such a
-// mission says what it is in, wherever it is shown.
+// handed none, or another one, compute it, the record has it, and a process that computes another
+// one stays out. And φ² of such a mission says what it is in, wherever it is shown.
+#include "tests/process/free_rooms.h"
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
@@ -12,22 +13,8 @@ const std::string kInFreeModes = " in " + kFreeModes;
 
 class TablesOfModes : public ByHand {
  protected:
-  /// With more fields, and more agents at places drawn from the seed.
   std::filesystem::path two_rooms(const std::string& more = "", int more_agents = 0) {
-    const auto file = folder_ / "rooms.textproto";
-    std::ofstream(file) << R"(
-      domain { size_x_m: 100 size_y_m: 50 }
-      target { gaussians { mean_x_m: 80 mean_y_m: 20 sigma_m: 5 } }
-      basis { modes_x: 5 modes_y: 4 free_domain: true }
-      law { u_max_mps: 5 }
-      time { dt_s: 0.1 duration_s: 10 pace: LOCKSTEP lockstep_timeout_s: 600 admission_timeout_s: 600 }
-      agents { starts { x_m: 10 y_m: 20 } starts { x_m: 90 y_m: 30 } random_count: )"
-                        << more_agents << R"( }
-      world {
-        speed_limit_mps: 20 wall_clearance_m: 1
-        walls { vertices { x_m: 49.8 y_m: 10 } vertices { x_m: 50.2 y_m: 10 } vertices { x_m: 50.2 y_m: 60 } vertices { x_m: 49.8 y_m: 60 } }
-      })" << more << '\n';
-    return file;
+    return free_rooms(folder_, more, more_agents);
   }
   /// The table in a folder, empty if there is none.
   static std::filesystem::path table_in(const std::filesystem::path& folder) {
@@ -44,7 +31,7 @@ class TablesOfModes : public ByHand {
     std::ofstream(folder_ / "other.bin", std::ios::binary) << bytes;
     return folder_ / "other.bin";
   }
-  /// Whether that process reads the table from its file, as one that computes it does not.
+  /// Whether that process reads the table that it was handed, as one that computes it does not.
   bool shares_the_table(const std::vector<std::string>& words) const {
     const auto process = pids(words);
     if (process.size() != 1) return false;
@@ -90,15 +77,13 @@ TEST_F(TablesOfModes, ARestartedAgentIsHandedItAgain) {
   end(mission);
 }
 
-TEST_F(TablesOfModes, RestartedLoggersAndCoordinatorsAreHandedItAgain) {
+TEST_F(TablesOfModes, ARestartedLoggerIsHandedItAgain) {
+  const std::vector<std::string> logger{"ergocast-logger"};
   Child mission = launch_endless(two_rooms());
-  for (const std::string name : {"logger", "coordinator"}) {
-    const std::vector<std::string> words{"ergocast-" + name};
-    EXPECT_TRUE(shares_the_table(words)) << name << '\n' << said();
-    restart(words, name);
-    EXPECT_TRUE(eventually([&] { return shares_the_table(words); })) << name << '\n' << said();
-    ASSERT_TRUE(moves_on()) << said();
-  }
+  EXPECT_TRUE(shares_the_table(logger)) << said();
+  restart(logger, "logger");
+  EXPECT_TRUE(eventually([&] { return shares_the_table(logger); })) << said();
+  ASSERT_TRUE(moves_on()) << said();
   end(mission);
 }
 
@@ -120,15 +105,31 @@ TEST_F(TablesOfModes, WhoComputesAnotherOneStaysOutAndSaysWhatToHandOver) {
   EXPECT_TRUE(equipped.child.running()) << equipped.said();
 }
 
-TEST_F(TablesOfModes, ALoggerWithTheTableOfAnotherComputerStaysOut) {
+TEST_F(TablesOfModes, ALoggerThatComputesAnotherOneStaysOut) {
   const auto other = table_of_another_computer();
   const auto record = folder_ / "record";
   std::filesystem::create_directory(record);
-  Program& logger = hand("ergocast-logger", {"--out", record, "--modes", other});
-  hand("ergocast-coordinator", {two_rooms()});
+  Program& logger = hand("ergocast-logger", {"--out", record});
+  hand("ergocast-coordinator", {two_rooms(), "--modes", other});
   EXPECT_EQ(wait_for(logger.child), 4) << logger.said();
   EXPECT_TRUE(logger.says("start it with --modes and that table's file, modes-")) << logger.said();
   EXPECT_TRUE(std::filesystem::is_empty(record)) << logger.said();
+}
+
+// Its file may have been lost, or have changed, since it was named.
+TEST_F(TablesOfModes, AProcessThatIsHandedAnotherOneOrNoneComputesIt) {
+  const auto other = table_of_another_computer(), damaged = folder_ / "damaged.bin";
+  std::ofstream(damaged) << text_of(other).substr(0, 5000);
+  Program& missing = hand("ergocast-agent", {"--id", "0", "--modes", folder_ / "missing.bin"});
+  Program& cut = hand("ergocast-agent", {"--id", "1", "--modes", damaged});
+  Program& wrong = hand("ergocast-agent", {"--id", "2", "--modes", other});
+  hand("ergocast-coordinator", {two_rooms("", 1)});
+  EXPECT_TRUE(missing.says("missing.bin: cannot be read as a table of modes; it is computed"))
+      << missing.said();
+  EXPECT_TRUE(cut.says("damaged.bin: it is no table of modes, or a damaged one; it is computed"))
+      << cut.said();
+  for (const Program* agent : {&missing, &cut, &wrong})
+    EXPECT_TRUE(agent->says("admitted")) << agent->said();
 }
 
 TEST_F(TablesOfModes, ThePrintedAndRecordedMetricsNameTheirBasis) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kill -9: the death of one process never ends a mission, and a restarted process continues where
-// it was.
+// kill -9: the death of one process never ends a mission, nor that of several at once, and a
+// restarted process continues where it was.
 #include <lcm/lcm-cpp.hpp>
+#include <tuple>
 
 #include "tests/process/bus_observer.h"
 #include "tests/process/mission.h"
@@ -35,6 +36,16 @@ class Restart : public FlyingMission {
     EXPECT_EQ(ergocast({"verify", out()}), 0) << output();
     EXPECT_NE(output().find("identical"), std::string::npos) << output();
     EXPECT_TRUE(!complete || output().find("missing") == std::string::npos) << output();
+  }
+  /// Kills all of them before any is started again.
+  static void kill_at_once(const std::vector<std::vector<std::string>>& processes) {
+    std::vector<pid_t> victims;
+    for (const auto& words : processes) {
+      ASSERT_TRUE(eventually([&] { return pids(words).size() == 1; }))
+          << ::testing::PrintToString(words);
+      victims.push_back(pids(words).front());
+    }
+    for (const pid_t victim : victims) kill(victim, SIGKILL);
   }
   /// Kills it once more than it is restarted.
   void kill_for_good(const std::vector<std::string>& words) {
@@ -99,6 +110,74 @@ TEST_P(RestartInEitherPace, KilledAgentGetsBackWhatItHasSaid) {
     EXPECT_TRUE(!lockstep || block.steps == ticks) << block.steps << " of " << ticks;
     EXPECT_NEAR(block.sums[0], 0.1 * static_cast<double>(block.steps), 1e-9 * block.sums[0]);
   }
+}
+
+/// All agents, and others of the team, die at once: nobody is left to ask for the mission but
+/// `ergocast run`.
+struct Victims {
+  const char* name;
+  std::vector<std::string> programs;  // besides the agents
+};
+class AllAgentsAtOnce : public Restart,
+                        public ::testing::WithParamInterface<std::tuple<Victims, const char*>> {};
+INSTANTIATE_TEST_SUITE_P(
+    And, AllAgentsAtOnce,
+    ::testing::Combine(::testing::Values(Victims{"NobodyElse", {}},
+                                         Victims{"Coordinator", {"coordinator"}},
+                                         Victims{"CoordinatorAndWorld", {"coordinator", "sim"}},
+                                         Victims{"Everybody", {"coordinator", "sim", "logger"}}),
+                       ::testing::Values("--lockstep", "--realtime=5")),
+    [](const auto& of) {
+      return std::string(std::get<0>(of.param).name) +
+             (std::string(std::get<1>(of.param)) == "--lockstep" ? "Lockstep" : "Realtime");
+    });
+
+TEST_P(AllAgentsAtOnce, AreReplacedAndTheMissionGoesOn) {
+  const auto& [victims, pace] = GetParam();
+  Child mission = launch_endless(scenario(), {pace});
+  std::vector<std::vector<std::string>> processes;
+  for (int id = 0; id < 4; ++id) processes.push_back(agent(id));
+  for (const std::string& program : victims.programs) processes.push_back({"ergocast-" + program});
+  kill_at_once(processes);
+  for (const std::string& program : victims.programs) {
+    ASSERT_TRUE(eventually([&] { return said(program + ": restarted (1 of 3)"); })) << said();
+    ASSERT_TRUE(program != "coordinator" || logs(program, "taken over")) << said();
+  }
+  for (int id = 0; id < 4; ++id) {
+    ASSERT_TRUE(logs("agent-" + std::to_string(id), ": running", 2)) << said();
+  }
+  ASSERT_TRUE(moves_on()) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["restarts"], processes.size());
+  EXPECT_EQ(summary()["record_complete"], true);
+  EXPECT_EQ(summary()["agents"].size(), 8U) << "the roster of before is still known";
+  const std::string reason = summary()["reason"];
+  EXPECT_NE(reason.find("all agents had stopped at once"), reason.npos) << reason;
+  EXPECT_EQ(ergocast({"report", out()}), 0) << output();
+}
+
+TEST_F(Restart, AMissionWhoseCoordinatorAndAgentsDieAtOnceComesToItsEnd) {
+  Child mission = launch_held(scenario("duration_s: 20"));
+  kill_at_once({kCoordinatorProcess, agent(0), agent(1), agent(2), agent(3)});
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["result"], "done");
+  EXPECT_EQ(summary()["ticks"], summary()["tick_count"]);
+  EXPECT_EQ(summary()["gaps"], 0);
+}
+
+TEST_F(Restart, APausedMissionWhoseCoordinatorAndAgentsDieAtOnceStaysPaused) {
+  Child mission = launch_endless(scenario(), {"--lcm-url", kUrl});
+  ASSERT_EQ(ergocast({"pause", "--lcm-url", kUrl}), 0) << output();
+  kill_at_once({kCoordinatorProcess, agent(0), agent(1), agent(2), agent(3)});
+  ASSERT_TRUE(logs("coordinator", "taken over")) << said();
+  ASSERT_TRUE(logs("coordinator", "mission is paused", 2)) << said();
+  ASSERT_TRUE(eventually([&] { return ergocast({"resume", "--lcm-url", kUrl}) == 0; })) << output();
+  EXPECT_NE(output().find("goes on from tick "), output().npos) << output();
+  ASSERT_TRUE(moves_on()) << said();
+  mission.send(SIGINT);
+  EXPECT_EQ(wait_for(mission), 0) << said();
+  EXPECT_EQ(summary()["holds"].size(), 1U);
 }
 
 TEST_F(Restart, KilledWorldGoesOnWhereTheAgentsWere) {
@@ -189,6 +268,18 @@ TEST_F(Restart, WithoutACoordinatorATickThatStaysUnansweredFailsTheMission) {
   const std::string reason = summary()["reason"];
   EXPECT_NE(reason.find("was not answered in time, and no coordinator is left"), std::string::npos)
       << reason;
+}
+
+TEST_F(Restart, WithoutACoordinatorAndAnyAgentTheMissionFailsInRealTime) {
+  Child mission = launch_endless(scenario(), {"--realtime=5"});
+  kill_for_good(kCoordinatorProcess);
+  ASSERT_TRUE(eventually([this] { return said("the team goes on to the plan's last tick"); }))
+      << said();
+  kill_at_once({agent(0), agent(1), agent(2), agent(3)});
+  EXPECT_EQ(wait_for(mission), 4) << said();
+  EXPECT_EQ(std::string(summary()["reason"]).find("no agent flies any more, and no coordinator"),
+            0U)
+      << summary()["reason"];
 }
 
 TEST_F(Restart, AMissionThatNobodyKnowsYetIsBegunByTheNextCoordinator) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When an agent repeats the mission on request: after a random moment, unless a teammate is
-// faster, and not too often.
+// When a process that knows the mission repeats it on request: after a random moment, unless
+// another one is faster, and not too often. Agents do so, and `ergocast run`, which outlives them.
 #pragma once
 
 #include <chrono>
@@ -8,13 +8,19 @@
 
 #include "core/ids.h"
 #include "core/noise.h"
+#include "team/messages.h"
 
 namespace ergocast {
 
+/// Whether a coordinator or a world asks for the mission because it does not know it.
+inline bool asks_for_mission(const Hello& hello) {
+  return hello.header.sender < kUnassigned && hello.header.tick < 0;
+}
+
 class MissionRepeat {
  public:
-  /// @param incarnation  seeds the delays
-  explicit MissionRepeat(Incarnation incarnation) : incarnation_(incarnation) {}
+  /// @param seed  of the delays
+  explicit MissionRepeat(std::uint64_t seed) : seed_(seed) {}
 
   /// A process requests the mission.
   /// @param draw  other than at all other times
@@ -22,7 +28,7 @@ class MissionRepeat {
 
   /// A process has sent a part of `revision`, where we hold `ours`.
   void overheard(std::int64_t revision, std::int64_t ours, Instant now, std::int64_t draw) {
-    // A teammate was faster. That is believed twice only: it may be a recording of one part.
+    // Another one was faster. That is believed twice only: it may be a recording of one part.
     if (revision >= ours && due_ && ++left_to_others_ <= 2) due_.reset();
     // One who has not heard of what came later, or a recording.
     if (revision < ours) plan(now, kCorrectionGap, draw);
@@ -48,11 +54,11 @@ class MissionRepeat {
   void plan(Instant now, PacingClock::duration gap, std::int64_t draw) {
     if (due_ || (last_ && now - *last_ < gap)) return;
     const double share =
-        uniform_pair(incarnation_, Purpose::kAnswer, 0, static_cast<std::uint64_t>(draw)).x();
+        uniform_pair(seed_, Purpose::kAnswer, 0, static_cast<std::uint64_t>(draw)).x();
     due_ = now + std::chrono::duration_cast<PacingClock::duration>(share * kLongestDelay);
   }
 
-  Incarnation incarnation_;
+  std::uint64_t seed_;
   std::optional<Instant> due_, last_;
   int left_to_others_ = 0;
 };

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A file in memory that nobody can change any more, not even this process: what a launcher hands to
+// the processes that it starts. No change of a file on the disk reaches them then.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+
+namespace ergocast {
+
+/// Copies share one file, which lasts as long as one of them or any process that has opened it.
+class SealedFile {
+ public:
+  /// An error if the system has no memory or no descriptor for it. Only its owner may read it.
+  /// @param name  shown in /proc/PID/maps
+  static std::variant<SealedFile, std::string> make(const std::string& name,
+                                                    std::span<const std::byte> bytes);
+
+  /// Child::Program::hand() gives it to a program.
+  int descriptor() const { return *descriptor_; }
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor()); }
+
+ private:
+  explicit SealedFile(int descriptor);
+
+  std::shared_ptr<const int> descriptor_;  // closed with the last copy
+};
+
+}  // namespace ergocast
