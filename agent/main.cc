@@ -90,7 +90,7 @@ int run(const NodeOptions& node, AgentId requested_id, const std::string& kind) 
           transport.limit_agents(allowance_of(*mission, members), agent.tick());
           transport.let_gather(gathering_of(*mission, members));
         }
-        if (watch.look(now())) {
+        if (watch.look(now(), agent.refused()[static_cast<std::size_t>(Refusal::kLate)])) {
           agent.set_kernel_drops(watch.kernel_drops());
           agent.note_rate_offender(transport.rate_offender());
           waiting.look(agent, now());

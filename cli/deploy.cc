@@ -20,7 +20,7 @@
 #include "runtime/node.h"
 #include "runtime/shipped_scenarios.h"
 #include "scenario/override_options.h"
-#include "text/regular_file.h"
+#include "text/input_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -97,21 +97,10 @@ DeployMission mission_of(const Scenario& scenario, const DeployOptions& options,
 }
 
 std::variant<std::vector<DeployHost>, std::vector<Problem>> read_hosts(const fs::path& file) {
-  if (const auto why = why_not_regular(file)) {
-    return std::vector<Problem>{{file.string(), *why, "name a file"}};
-  }
-  std::ifstream in(file, std::ios::binary);
-  std::string text(kMaxHostsBytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > kMaxHostsBytes) {
-    return std::vector<Problem>{
-        {file.string(), "is longer than the limit, " + std::to_string(kMaxHostsBytes) + " bytes",
-         "is it a list of hosts?"}};
-  }
-  if (!in.is_open() || in.bad())
-    return std::vector<Problem>{{file.string(), "cannot be read", "check the name and the folder"}};
-  return parse_hosts(text, file.string());
+  const auto read = read_whole(file, kMaxHostsBytes);
+  if (const auto* problem = std::get_if<FileProblem>(&read))
+    return std::vector<Problem>{{file.string(), problem->what, problem->remedy}};
+  return parse_hosts(std::get<std::string>(read), file.string());
 }
 
 int print(const std::vector<TextFile>& files) {

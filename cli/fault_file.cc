@@ -3,13 +3,15 @@
 #include "cli/fault_file.h"
 
 #include <CLI/CLI.hpp>
-#include <fstream>
+#include <sstream>
 
+#include "text/input_file.h"
 #include "text/read_number.h"
-#include "text/regular_file.h"
 
 namespace ergocast::cli {
 namespace {
+
+constexpr std::size_t kMostFaultBytes = std::size_t{1} << 20;
 
 std::string known_names() {
   std::string names;
@@ -41,11 +43,11 @@ std::string take(const CLI::ConfigItem& item, lab::Faults& faults) {
 
 std::variant<lab::Faults, std::vector<std::string>> read_faults(const std::filesystem::path& file) {
   const std::string where = file.string() + ": ";
-  if (const auto why = why_not_regular(file)) return std::vector{where + *why};
-  std::ifstream stream(file);
-  if (!stream) {
-    return std::vector{where + "cannot be read (give the name of a file, or \"swarm\")"};
+  const auto read = read_whole(file, kMostFaultBytes);
+  if (const auto* problem = std::get_if<FileProblem>(&read)) {
+    return std::vector{where + problem->what + " (give the name of a file, or \"swarm\")"};
   }
+  std::istringstream stream(std::get<std::string>(read));
   lab::Faults faults;
   std::vector<std::string> problems;
   try {

@@ -3,8 +3,9 @@
 #include "cli/log_lines.h"
 
 #include <algorithm>
-#include <fstream>
 #include <string_view>
+
+#include "text/input_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -32,7 +33,7 @@ std::vector<std::string> LogLines::take() {
     if (error || size <= read) continue;
     if (size - read > kMostBytes) read = size - kMostBytes;
     std::string text(size - read, '\0');
-    std::ifstream file(entry.path(), std::ios::binary);
+    InputFile file(entry.path());
     file.seekg(static_cast<std::streamoff>(read));
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));

@@ -83,6 +83,7 @@ void MissionWatch::reach(Stage stage, Instant now) {
 }
 
 void MissionWatch::reach(Tick tick, Instant now) {
+  me_.note_tick(tick);
   if (tick <= tick_) return;
   tick_ = tick;
   progress_.tick = me_.counted(tick);
@@ -120,7 +121,7 @@ void MissionWatch::repeat(Transport& transport, Instant now, bool led) {
   if (!stopping_since_) stopping_since_ = now;
   // A coordinator that has exited or hangs does not end the mission.
   const bool heard = stage_ == Stage::kOver || now - *stopping_since_ < kCoordinatorPatience;
-  stop_->repeat(transport, now, !led || !heard);
+  stop_->repeat(transport, now, !led || !heard, tick_);
 }
 
 }  // namespace ergocast::cli

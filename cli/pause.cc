@@ -99,6 +99,7 @@ class Pausing : public TeamCommand {
     next_ = now() + kPeriod;
     ++header_.sequence;
     header_.run = team().run();
+    header_.tick = team().tick();
     transport_->publish({Bus::kSwarm, Pause{header_, changes_, {}}});
   }
 

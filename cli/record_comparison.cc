@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string_view>
@@ -20,7 +19,7 @@
 #include "report/target_density.h"
 #include "runtime/node.h"
 #include "team/plan.h"
-#include "text/regular_file.h"
+#include "text/input_file.h"
 
 namespace ergocast::cli {
 namespace {
@@ -28,11 +27,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::optional<std::string> file_content(const fs::path& file) {
-  if (why_not_regular(file)) return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(in), {});
+/// A recorded file may be longer than its source by so much, and is still read to show where.
+constexpr std::size_t kMostSurplusBytes = std::size_t{1} << 20;
+
+std::string why_left_out(const FileProblem& problem) {
+  return problem.kind == FileProblem::Kind::kMissing ? "is not there" : problem.what;
 }
 
 /// Line `number`, from 1, of `text`; a text for people if `text` is shorter.
@@ -62,9 +61,16 @@ std::string text_difference(const fs::path& file, const std::string& recorded,
 
 FileComparison compare_text(const fs::path& run_dir, const std::string& name,
                             const std::string& expected, const char* compared) {
-  const auto recorded = file_content(run_dir / name);
-  if (!recorded) return {name, "", "is not there", ""};
-  return {name, compared, "", text_difference(run_dir / name, *recorded, expected)};
+  const fs::path file = run_dir / name;
+  const auto read = read_whole(file, expected.size() + kMostSurplusBytes);
+  if (const auto* recorded = std::get_if<std::string>(&read))
+    return {name, compared, "", text_difference(file, *recorded, expected)};
+  const auto& problem = std::get<FileProblem>(read);
+  if (problem.kind == FileProblem::Kind::kTooLarge)
+    return {name, compared, "",
+            file.string() + " is longer than what it should hold, " +
+                std::to_string(expected.size()) + " bytes\n"};
+  return {name, "", why_left_out(problem), ""};
 }
 
 /// Whether all problems are maps that no longer exist.
@@ -171,9 +177,10 @@ std::vector<FileComparison> compare_sources(const fs::path& run_dir, const Missi
                         expected + "\" of " + (run_dir / kPlanFile).string() + '\n';
     }
   }
-  const auto text = file_content(run_dir / kScenarioFile);
-  if (!text) return {hash, {kScenarioFile, "", "is not there", ""}};
-  if (*text == mission_text(mission))
+  const auto read = read_whole(run_dir / kScenarioFile, kMaxScenarioBytes);
+  if (const auto* problem = std::get_if<FileProblem>(&read))
+    return {hash, {kScenarioFile, "", why_left_out(*problem), ""}};
+  if (std::get<std::string>(read) == mission_text(mission))
     return {hash, {kScenarioFile, "all but the target, which it lacks", "", ""}};
   const auto loaded = Scenario::load(run_dir / kScenarioFile);
   if (const auto* problems = std::get_if<std::vector<Problem>>(&loaded)) {

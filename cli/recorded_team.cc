@@ -166,7 +166,8 @@ Json Listener::json() const {
 
 }  // namespace
 
-Json recorded_team(const std::filesystem::path& run_dir, const Mission& mission) {
+Json recorded_team(const std::filesystem::path& run_dir, const Mission& mission,
+                   std::string* problem) {
   auto opened = EventLogReader::open(run_dir);
   auto* log = std::get_if<EventLogReader>(&opened);
   if (!log) return nullptr;
@@ -174,6 +175,7 @@ Json recorded_team(const std::filesystem::path& run_dir, const Mission& mission)
   while (const LoggedEvent* event = log->next()) {
     if (listener.wants(event->channel, event->time_us)) listener.hear(*event);
   }
+  if (problem != nullptr) *problem = log->problem().value_or("");
   return listener.json();
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "core/mission.h"
 
@@ -17,6 +18,8 @@ namespace ergocast::cli {
 ///
 /// A pause of all messages is one of the logger. It is left out, and so are the logger's own
 /// absences: its log cannot tell them.
-nlohmann::ordered_json recorded_team(const std::filesystem::path& run_dir, const Mission& mission);
+/// @param problem  set to what ended the reading before the log's end, if something did
+nlohmann::ordered_json recorded_team(const std::filesystem::path& run_dir, const Mission& mission,
+                                     std::string* problem = nullptr);
 
 }  // namespace ergocast::cli

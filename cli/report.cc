@@ -9,14 +9,20 @@
 #include "cli/report_error.h"
 #include "cli/run_directory.h"
 #include "runtime/node.h"
+#include "text/printable.h"
 
 namespace ergocast::cli {
 
 int report(const std::filesystem::path& run_dir) {
   const auto mission = recorded_mission_or_complain(run_dir);
   if (!mission) return kExitBadInput;
-  if (const auto problem = write_report(run_dir, *mission, recorded_team(run_dir, *mission))) {
+  std::string log_problem;
+  const auto team = recorded_team(run_dir, *mission, &log_problem);
+  if (const auto problem = write_report(run_dir, *mission, team))
     return report_error(kExitBadInput, *problem);
+  if (!log_problem.empty()) {
+    std::fprintf(stderr, "the report lacks the rest of the event log: %s\n",
+                 printable(log_problem).c_str());
   }
   std::printf("%s\n", (std::filesystem::absolute(run_dir) / "report.html").c_str());
   return kExitDone;

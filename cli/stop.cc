@@ -89,14 +89,14 @@ class Stopping : public TeamCommand {
       std::fflush(stdout);
     }
     const bool obeyed = request.code || (!options_.at_once && team.over());
-    if (!obeyed) request.word.repeat(*transport_, now(), options_.at_once);
+    if (!obeyed) request.word.repeat(*transport_, now(), options_.at_once, team.tick());
   }
 
   /// Runs beyond kMostRuns must stop, too. Other runs, or recordings of them, may fill the table.
   void say_to_the_crowd() {
     if (!options_.at_once) return;
-    for (const RunId run : crowd_) {
-      StopRequest(run, false, kAtOnce + host_name()).repeat(*transport_, now(), true);
+    for (const auto& [run, tick] : crowd_) {
+      StopRequest(run, false, kAtOnce + host_name()).repeat(*transport_, now(), true, tick);
     }
     crowded_ = crowded_ || !crowd_.empty();
     crowd_.clear();
@@ -253,7 +253,8 @@ void add_stop(CLI::App& app, Action& action) {
   command->footer(
       "Without --now the coordinator ends the mission for all. With --now all live runs of this\n"
       "user on this host stop, or with --lcm-url all runs that are heard on that URL; --run-id\n"
-      "chooses one.\n"
+      "chooses one. A team obeys once this host has heard it, because the command names the\n"
+      "mission's tick.\n"
       "Exit codes: 0 the teams were seen to end, or to stand still; 2 several runs are heard; 3 "
       "LCM\n"
       "cannot be used; 4 nobody is heard, somebody goes on, or what the vehicles do is not known.");

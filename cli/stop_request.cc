@@ -20,9 +20,12 @@ StopRequest::StopRequest(RunId run, bool failed, std::string reason) {
   stop_.reason = std::move(reason);
 }
 
-void StopRequest::repeat(Transport& transport, Instant now, bool at_once) {
-  if (now < next_ && stop_.now == at_once) return;
+void StopRequest::repeat(Transport& transport, Instant now, bool at_once, Tick newest) {
+  // The first tick that is heard may be the first that the team obeys.
+  const bool knows_now = stop_.header.tick == 0 && newest > 0;
+  if (now < next_ && stop_.now == at_once && !knows_now) return;
   next_ = now + kPeriod;
+  stop_.header.tick = newest;
   stop_.now = at_once;
   for (const Bus bus : {Bus::kCommand, Bus::kSwarm}) {  // the vehicles first
     ++stop_.header.sequence;

@@ -10,14 +10,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "core/mission_limits.h"
 #include "logger/run_record.h"
-#include "text/regular_file.h"
+#include "text/input_file.h"
+#include "text/json_bounds.h"
 
 namespace ergocast::cli {
 namespace {
@@ -28,11 +27,10 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kIdentityFile = "study.json";
 constexpr const char* kTableFile = "study.csv";
 
-std::string content_of(const fs::path& file) {
-  if (why_not_regular(file)) return "";
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+/// Far above any study: a row has some 400 bytes.
+constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
+constexpr std::size_t kMostIdentityBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostIdentityValues = 4'000'000;
 
 std::string said(const fs::path& path, const std::string& problem) {
   return "--out " + path.string() + ": " + problem;
@@ -172,10 +170,16 @@ std::variant<StudyIdentity, std::string> read_identity(const fs::path& folder) {
   const fs::path file = folder / kIdentityFile;
   std::error_code error;
   if (!fs::exists(file, error)) return "is no study: there is no study.json";
-  const Json json = Json::parse(content_of(file), nullptr, false);
+  const auto read = read_whole(file, kMostIdentityBytes);
+  if (const auto* problem = std::get_if<FileProblem>(&read))
+    return "its study.json " + problem->what;
   try {
+    const Json json =
+        Json::parse(std::get<std::string>(read), JsonBounds(kMostIdentityValues), false);
     StudyIdentity identity = identity_from(json);
     if (is_sound(identity)) return identity;
+  } catch (const JsonTooLarge& problem) {
+    return std::string("its study.json ") + problem.what();
   } catch (const Json::exception&) {  // a key is missing, or its value is of another type
   }
   return "its study.json is damaged";
@@ -191,7 +195,7 @@ std::variant<std::unique_ptr<StudyDirectory>, std::string> StudyDirectory::open(
     if (auto problem = write_file(folder / kIdentityFile, to_json(identity).dump(2) + '\n'))
       return *problem;
   }
-  const int lock = ::open((folder / kIdentityFile).c_str(), O_RDONLY | O_CLOEXEC);
+  const int lock = ::open((folder / kIdentityFile).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (lock < 0 || flock(lock, LOCK_EX | LOCK_NB) != 0) {
     if (lock >= 0) close(lock);
     return said(folder, "another ergocast study is at work there; wait for it");
@@ -211,7 +215,12 @@ StudyDirectory::~StudyDirectory() {
 
 std::optional<std::string> StudyDirectory::read_rows() {
   const fs::path path = folder_ / kTableFile;
-  std::string text = content_of(path);
+  auto read = read_whole(path, kMostTableBytes);
+  const auto* problem = std::get_if<FileProblem>(&read);
+  // What cannot be read is not written over.
+  if (problem != nullptr && problem->kind != FileProblem::Kind::kMissing)
+    return problem->sentence(path);
+  std::string text = problem == nullptr ? std::get<std::string>(std::move(read)) : "";
   text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
   if (text.empty()) text = table_.header() + '\n';
   std::string_view rest = text;
@@ -224,7 +233,7 @@ std::optional<std::string> StudyDirectory::read_rows() {
     return path.string() + ':' + std::to_string(number) +
            ": is no row of this study; remove the line";
   }
-  if (auto problem = write_file(path, text)) return problem;
+  if (auto failure = write_file(path, text)) return failure;
   file_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file_ < 0) return path.string() + ": " + std::strerror(errno);
   return std::nullopt;

@@ -2,6 +2,8 @@
 // Keeps a MonitoredRun for each run that is heard, up to a number.
 #include "cli/team_command.h"
 
+#include <algorithm>
+
 #include "cli/diagnose_silence.h"
 
 namespace ergocast::cli {
@@ -38,8 +40,9 @@ void TeamCommand::hear(const Message& message, Bus bus, AgentId transmitter) {
   if (run == 0) return;
   if (runs_.size() < kMostRuns || runs_.contains(run)) {
     runs_.try_emplace(run, run, since_).first->second.receive(message, bus, transmitter, now());
-  } else if (crowd_.size() < kMostInCrowd) {
-    crowd_.insert(run);
+  } else if (crowd_.size() < kMostInCrowd || crowd_.contains(run)) {
+    Tick& tick = crowd_[run];
+    tick = std::max(tick, header_of(message).tick);
   }
 }
 

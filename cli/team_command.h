@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "cli/report_error.h"
 #include "cli/team_monitor.h"
@@ -54,7 +53,8 @@ class TeamCommand {
 
   std::unique_ptr<Transport> transport_;
   std::map<RunId, MonitoredRun> runs_;
-  std::set<RunId> crowd_;  // beyond kMostRuns, received since somebody cleared it
+  /// Beyond kMostRuns, received since somebody cleared it, each with its newest tick.
+  std::map<RunId, Tick> crowd_;
   Instant since_{};
 
  private:

@@ -63,7 +63,10 @@ void Coordinator::receive(const Message& message, Bus bus, AgentId transmitter, 
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
 }
 
+/// While it looks for the mission it does not know yet which ticks are old. The operator says it
+/// again.
 void Coordinator::on(const Stop& stop, const Arrival& arrival) {
+  if (looking()) return;
   end(stop.failed, stop.reason, arrival.now);
 }
 

@@ -94,6 +94,8 @@ class Coordinator {
     return newcomers_.unknown_kinds;
   }
   Tick tick() const { return world_.tick; }
+  /// Commands of the operator that it refused for their ticks.
+  std::int64_t late_commands() const { return me_.refused(Refusal::kLate); }
 
  private:
   struct Name {

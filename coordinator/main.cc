@@ -137,7 +137,7 @@ int run(const NodeOptions& node, std::vector<std::byte> plan, Takeover takeover)
     if (const Mission* flown = coordinator.mission()) {
       transport.limit_agents(allowance_of(*flown, coordinator.roster().size()), coordinator.tick());
     }
-    watch.look(now());
+    watch.look(now(), coordinator.late_commands());
     roster.look(coordinator, now());
     version_mismatches.look(coordinator);
     unknown_kinds.look(coordinator);

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 
 #include "logger/run_record.h"
 #include "logger/summary.h"
 #include "report/target_density.h"
+#include "text/input_file.h"
 #include "text/read_number.h"
 
 namespace ergocast {
@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kQuarter_ns = 900 * kSecond_ns;
 constexpr std::int64_t kFarthestZone_ns = 15 * 3600 * kSecond_ns;
 constexpr double kCoverageCells = 64;
+/// Of a log; a longer one becomes several.
+constexpr std::size_t kLongestLine = 1 << 16;
 
 /// "2026-01-31T12:00:00", with milliseconds if they follow, as if it were UTC.
 std::optional<std::int64_t> time_in(std::string_view text) {
@@ -64,8 +66,9 @@ std::vector<ExportedLine> read_log(const fs::path& folder, std::uint64_t start_n
   std::vector<ExportedLine> log;
   for (const fs::path& path : files) {
     std::vector<ExportedLine> lines;
-    std::ifstream file(path, std::ios::binary);
-    for (std::string line; std::getline(file, line);) add_line(line, lines);
+    InputFile file(path);
+    for (std::string line; next_line(file, line, kLongestLine) != LineEnd::kNone;)
+      add_line(line, lines);
     log.insert(log.end(), lines.begin(), lines.end());
   }
   std::stable_sort(log.begin(), log.end(),

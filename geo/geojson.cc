@@ -4,12 +4,18 @@
 
 #include <nlohmann/json.hpp>
 
+#include "text/json_bounds.h"
 #include "text/shortest.h"
 
 namespace ergocast {
 namespace {
 
 using Json = nlohmann::json;
+
+/// A position has three: a list of two numbers. In 16 MiB there is room for fewer, as programs
+/// write them.
+constexpr std::size_t kMostValues = 4'000'000;
+constexpr const char* kSimplify = "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson";
 
 struct Failure {
   PolygonFileProblem problem;
@@ -139,8 +145,10 @@ class Walk {
 std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
   try {
     Walk walk;
-    walk.file(Json::parse(text));
+    walk.file(Json::parse(text, JsonBounds(kMostValues)));
     return std::move(walk.polygons);
+  } catch (const JsonTooLarge& problem) {
+    return PolygonFileProblem{"", problem.what(), kSimplify};
   } catch (const Failure& failure) {
     return failure.problem;
   } catch (const Json::exception& error) {
@@ -150,8 +158,7 @@ std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::str
 
 std::variant<std::vector<GeoPolygon>, PolygonFileProblem> read_geojson(
     const std::filesystem::path& file) {
-  const auto text = text_of_polygon_file(
-      file, ".geojson", "simplify it: ogr2ogr -simplify 0.0001 out.geojson in.geojson");
+  const auto text = text_of_polygon_file(file, ".geojson", kSimplify);
   if (const auto* problem = std::get_if<PolygonFileProblem>(&text)) return *problem;
   return parse_geojson(std::get<std::string>(text));
 }

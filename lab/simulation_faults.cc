@@ -122,7 +122,7 @@ void Simulation::tell_coordinator() {
   if (!up(node) || finished(node) || coordinator().looking() || mission_over()) return;
   const auto& holds = coordinator().holds();
   if (is_open(holds) == paused_until_.has_value()) return;
-  const Pause pause{{run_, kOperator, 1, ++told_, 0}, named_changes(holds), {}};
+  const Pause pause{{run_, kOperator, 1, ++told_, coordinator().tick()}, named_changes(holds), {}};
   deliver(node, pause, Delivery{Bus::kSwarm, kOperator, {}, nullptr});
 }
 

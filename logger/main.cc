@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,6 +21,7 @@
 #include "runtime/node.h"
 #include "runtime/traffic_watch.h"
 #include "team/plan.h"
+#include "text/input_file.h"
 
 namespace ergocast {
 namespace {
@@ -48,8 +48,11 @@ std::variant<Past, std::string> read_past(const fs::path& folder, std::vector<st
   if (segment_count(folder) == 0) return past;
   const auto damage = read_up_to_damage(folder, past.rows);
   if (past.plan.empty()) {
-    std::ifstream file(folder / kPlanFile, std::ios::binary);
-    for (char c = 0; file.get(c);) past.plan.push_back(static_cast<std::byte>(c));
+    const auto file = read_whole(folder / kPlanFile, kMaxPlanBytes);
+    if (const auto* bytes = std::get_if<std::string>(&file)) {
+      const auto all = std::as_bytes(std::span(*bytes));
+      past.plan.assign(all.begin(), all.end());
+    }
   }
   const bool begun = damage || !past.rows.empty() || !past.rows.metrics.empty();
   const bool known = std::holds_alternative<Mission>(decode_plan(past.plan));

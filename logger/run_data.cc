@@ -7,9 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -24,7 +22,7 @@
 #include "modes/provide.h"
 #include "modes/table_file.h"
 #include "team/plan.h"
-#include "text/regular_file.h"
+#include "text/input_file.h"
 
 namespace ergocast {
 namespace {
@@ -152,11 +150,13 @@ double RunData::end_s() const {
 std::variant<Mission, std::string> read_mission(const std::filesystem::path& run_dir) {
   const auto file = run_dir / kPlanFile;
   const std::string name = file.string() + ": ";
-  if (const auto why = why_not_regular(file)) return name + *why;
-  std::ifstream in(file, std::ios::binary);
-  const std::string plan((std::istreambuf_iterator<char>(in)), {});
-  if (!in.is_open()) return name + "missing or not readable: is this a run directory?";
-  auto read = decode_plan(std::as_bytes(std::span(plan)));
+  const auto plan = read_whole(file, kMaxPlanBytes);
+  if (const auto* problem = std::get_if<FileProblem>(&plan)) {
+    const bool missing = problem->kind == FileProblem::Kind::kMissing;
+    return name + (missing ? "missing or not readable" : problem->what) +
+           ": is this a run directory?";
+  }
+  auto read = decode_plan(std::as_bytes(std::span(std::get<std::string>(plan))));
   if (const auto* problem = std::get_if<std::string>(&read)) return name + *problem;
   Mission& mission = std::get<Mission>(read);
   if (mission.basis.free_domain) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 
 #include "core/kinds.h"
@@ -13,7 +12,8 @@
 #include "core/vehicle.h"
 #include "logger/run_record.h"
 #include "logger/slope.h"
-#include "text/regular_file.h"
+#include "text/input_file.h"
+#include "text/json_bounds.h"
 
 namespace ergocast {
 namespace {
@@ -24,6 +24,9 @@ using Json = nlohmann::ordered_json;
 constexpr double kNotableShare = 0.01;
 /// Of a distance, what rounding may take.
 constexpr double kRounding = 1e-9;
+/// Of a file that is read again: several times what the largest roster makes.
+constexpr std::size_t kMostSummaryBytes = std::size_t{16} << 20;
+constexpr std::size_t kMostSummaryValues = 1'000'000;
 
 /// JSON has no infinity and no NaN.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -167,11 +170,15 @@ std::string reason_of(const Recorder& recorder) {
 
 /// Null if there is no such file.
 std::variant<Json, std::string> read_json(const std::filesystem::path& file) {
-  if (const auto why = why_not_regular(file)) return file.string() + ": " + *why;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Json(nullptr);
+  const auto read = read_whole(file, kMostSummaryBytes);
+  if (const auto* problem = std::get_if<FileProblem>(&read)) {
+    if (problem->kind == FileProblem::Kind::kMissing) return Json(nullptr);
+    return problem->sentence(file);
+  }
   try {
-    return Json::parse(in);
+    return Json::parse(std::get<std::string>(read), JsonBounds(kMostSummaryValues));
+  } catch (const JsonTooLarge& problem) {
+    return file.string() + ": " + problem.what() + "; remove it";
   } catch (const Json::exception& error) {
     return file.string() + ": is not JSON: " + error.what() +
            ": copy it again from where the run was recorded, or remove it";

@@ -3,12 +3,18 @@
 #include "logger/table_lines.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "logger/recorder.h"
 #include "logger/run_record.h"
-#include "text/regular_file.h"
 
 namespace ergocast {
+namespace {
+
+/// Nine numbers have fewer bytes.
+constexpr std::size_t kLongestRow = 4096;
+
+}  // namespace
 
 TableLines::TableLines(std::filesystem::path run_dir, std::string table,
                        std::vector<std::string> headers)
@@ -25,35 +31,43 @@ bool TableLines::open_next() {
   file_ = segment_file(run_dir_, table_, opened_++);
   line_ = 0;
   torn_ = false;
-  if (const auto why = why_not_regular(file_)) {
-    problem_ = file_.string() + ": " + *why;
-    return false;
-  }
-  in_ = std::ifstream(file_, std::ios::binary);
-  if (in_) return true;
-  problem_ = file_.string() +
-             ": cannot be opened: give the directory of a run, with trajectory.csv "
+  in_.emplace(file_);
+  const auto& problem = in_->problem();
+  if (!problem) return true;
+  const bool other = problem->kind == FileProblem::Kind::kNoFile;
+  problem_ = file_.string() + ": " + (other ? problem->what : "cannot be opened") +
+             ": give the directory of a run, with trajectory.csv "
              "and metrics.csv readable in it";
   return false;
 }
 
 bool TableLines::next(std::string& line) {
   while (!problem_) {
-    const bool some = static_cast<bool>(std::getline(in_, line));
-    if (some && !in_.eof()) {
-      if (++line_ > 1) return true;
-      if (std::ranges::find(headers_, line) != headers_.end()) {
-        header_ = line;
-        continue;
-      }
+    LineEnd end = next_line(*in_, line, kLongestRow);
+    if (end == LineEnd::kMore) end = skip_line();
+    if (end == LineEnd::kFile) torn_ = true;
+    if (end == LineEnd::kFile || end == LineEnd::kNone) {
+      if (!open_next()) return false;
+    } else if (++line_ > 1) {
+      if (!problem_) return true;
+    } else if (std::ranges::find(headers_, line) != headers_.end()) {
+      header_ = line;
+    } else if (!problem_) {
       problem_ = place() + "the header is " + in_quotes(line) + ", not \"" + headers_.front() +
                  "\": use the version of ergocast that recorded the run";
-    } else {
-      if (some) torn_ = true;
-      if (!open_next()) return false;
     }
   }
   return false;
+}
+
+/// What is longer than any row, unless the file ends in it: after a power failure that may be zeros
+/// by the million.
+LineEnd TableLines::skip_line() {
+  in_->ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  if (in_->eof()) return LineEnd::kFile;
+  problem_ = file_.string() + ':' + std::to_string(line_ + 1) + ": is longer than any row, " +
+             std::to_string(kLongestRow) + " bytes: copy the file again from where it was recorded";
+  return LineEnd::kBreak;
 }
 
 bool TableLines::skip_segment() {

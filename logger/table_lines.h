@@ -3,10 +3,11 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "text/input_file.h"
 
 namespace ergocast {
 
@@ -32,6 +33,7 @@ class TableLines {
 
  private:
   bool open_next();
+  LineEnd skip_line();
 
   std::filesystem::path run_dir_;
   std::string table_;
@@ -39,7 +41,7 @@ class TableLines {
   std::string header_;
   int segments_, opened_ = 0;
   std::filesystem::path file_;
-  std::ifstream in_;
+  std::optional<InputFile> in_;
   std::int64_t line_ = 0;
   bool torn_ = false;
   std::optional<std::string> problem_;

@@ -3,8 +3,6 @@
 #include "runtime/event_log_reader.h"
 
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <map>
 #include <span>
 #include <utility>
@@ -60,11 +58,13 @@ std::variant<EventLogReader, std::string> EventLogReader::open(
 bool EventLogReader::open_next() {
   if (next_segment_ == segments_.size()) return false;
   const auto& path = segments_[next_segment_++];
-  file_.emplace(path);
-  if (file_->good()) return true;
-  problem_ = path.string() + ": " + std::strerror(errno);
-  file_.reset();
-  return false;
+  auto opened = SegmentFile::open(path);
+  if (auto* problem = std::get_if<FileProblem>(&opened)) {
+    problem_ = problem->sentence(path);
+    return false;
+  }
+  file_.emplace(std::get<SegmentFile>(std::move(opened)));
+  return true;
 }
 
 std::string EventLogReader::place() const {

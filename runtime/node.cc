@@ -12,8 +12,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -24,9 +22,9 @@
 #include "runtime/key_file.h"
 #include "runtime/logging.h"
 #include "team/plan.h"
+#include "text/input_file.h"
 #include "text/likeness.h"
 #include "text/printable.h"
-#include "text/regular_file.h"
 
 namespace ergocast {
 namespace {
@@ -94,11 +92,9 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
 
 /// The bytes of a plan that this program can fly, or why the file has none.
 std::variant<std::vector<std::byte>, std::string> read_plan(const std::string& file) {
-  if (const auto why = why_not_regular(file)) return *why;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::string("cannot be opened");
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  const auto bytes = std::as_bytes(std::span(text));
+  const auto text = read_whole(file, kMaxPlanBytes);
+  if (const auto* problem = std::get_if<FileProblem>(&text)) return problem->what;
+  const auto bytes = std::as_bytes(std::span(std::get<std::string>(text)));
   const auto decoded = decode_plan(bytes);
   if (const auto* problem = std::get_if<std::string>(&decoded)) return *problem;
   return std::vector<std::byte>(bytes.begin(), bytes.end());

@@ -73,7 +73,7 @@ std::string version_text();
 std::string build_text();
 /// Whether this processor has fused multiply-add, which changes the results of glibc's sin and cos.
 bool cpu_has_fma();
-/// "0.2.0": must be equal in a team.
+/// "0.3.0": must be equal in a team.
 std::string version();
 
 /// 64 random bits from the operating system, not 0.

@@ -4,11 +4,19 @@
 
 #include <zstd.h>
 
+#include <utility>
+
 namespace ergocast {
 
-SegmentFile::SegmentFile(const std::filesystem::path& file)
-    : file_(std::fopen(file.c_str(), "rb"), &std::fclose),
-      context_(file.extension() == ".zst" ? ZSTD_createDCtx() : nullptr,
+std::variant<SegmentFile, FileProblem> SegmentFile::open(const std::filesystem::path& file) {
+  auto opened = open_input(file);
+  if (auto* problem = std::get_if<FileProblem>(&opened)) return std::move(*problem);
+  return SegmentFile(std::get<StdioFile>(std::move(opened)), file.extension() == ".zst");
+}
+
+SegmentFile::SegmentFile(StdioFile opened, bool compressed)
+    : file_(std::move(opened)),
+      context_(compressed ? ZSTD_createDCtx() : nullptr,
                [](ZSTD_DCtx* context) { ZSTD_freeDCtx(context); }) {
   if (context_) in_.resize(ZSTD_DStreamInSize());
 }

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <variant>
 #include <vector>
+
+#include "text/input_file.h"
 
 struct ZSTD_DCtx_s;
 
@@ -16,10 +18,8 @@ namespace ergocast {
 class SegmentFile {
  public:
   /// A name that ends with .zst is that of a compressed segment.
-  /// @throws nothing; good() tells whether it is open, errno why not
-  explicit SegmentFile(const std::filesystem::path& file);
+  static std::variant<SegmentFile, FileProblem> open(const std::filesystem::path& file);
 
-  bool good() const { return file_ != nullptr; }
   /// False if the segment ends before so many bytes.
   bool read(void* to, std::size_t bytes);
   /// Whether it ended because what follows is no whole compressed segment.
@@ -28,9 +28,10 @@ class SegmentFile {
   std::uint64_t position() const { return position_; }
 
  private:
+  SegmentFile(StdioFile opened, bool compressed);
   std::size_t decompress(void* to, std::size_t bytes);
 
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  StdioFile file_;
   std::unique_ptr<ZSTD_DCtx_s, void (*)(ZSTD_DCtx_s*)> context_;  // null: not compressed
   std::vector<char> in_;
   std::size_t in_size_ = 0, in_used_ = 0;

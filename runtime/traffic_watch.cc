@@ -44,13 +44,14 @@ TrafficWatch::TrafficWatch(Transport& transport) : transport_(transport) {
   }
 }
 
-bool TrafficWatch::look(Instant now) {
+bool TrafficWatch::look(Instant now, std::int64_t late_commands) {
   if (now < next_look_) return false;
   next_look_ = now + 1s;
   if (transport_.renew_membership())
     spdlog::warn("listening on another network interface from now on");
   kernel_drops_ = transport_.kernel_drops();
   warn_of_unknown_format(now);
+  warn_of_late_commands(late_commands, now);
   const RefusalCounts& refused = transport_.refused();
   if (now < next_log_ || (refused == logged_ && kernel_drops_ == logged_drops_)) return true;
   next_log_ = now + 10s;
@@ -88,6 +89,17 @@ bool TrafficWatch::look(Instant now) {
   logged_ = refused;
   logged_drops_ = kernel_drops_;
   return true;
+}
+
+void TrafficWatch::warn_of_late_commands(std::int64_t count, Instant now) {
+  if (count == warned_late_ || now < next_late_warning_) return;
+  warned_late_ = count;
+  next_late_warning_ = now + 10s;
+  spdlog::warn(
+      "late={}: a command to stop, pause or resume names a tick that has passed long ago, and is "
+      "ignored: it was delayed, or somebody repeats a recording of it; an operator who still wants "
+      "it says it again",
+      count);
 }
 
 void TrafficWatch::warn_of_unknown_format(Instant now) {

@@ -3,7 +3,6 @@
 // finds problems.
 #include "scenario/scenario.h"
 
-#include <fstream>
 #include <utility>
 
 #include "scenario/checks.h"
@@ -20,7 +19,7 @@
 #include "scenario/validate_stations.h"
 #include "scenario/validate_walls.h"
 #include "scenario/warnings.h"
-#include "text/regular_file.h"
+#include "text/input_file.h"
 
 namespace ergocast {
 namespace {
@@ -29,24 +28,13 @@ using Problems = std::vector<Problem>;
 
 /// The contents of `file`, or why it cannot be read.
 std::variant<std::string, Problem> read_file(const std::filesystem::path& file) {
+  auto read = read_whole(file, kMaxScenarioBytes);
+  if (auto* text = std::get_if<std::string>(&read)) return std::move(*text);
+  auto& problem = std::get<FileProblem>(read);
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) {
-    return Problem{file.string(), "there is no such file", "check the name and the folder"};
-  }
-  if (std::filesystem::is_directory(status)) {
-    return Problem{file.string(), "is a folder, not a file",
-                   "name a file, such as " + (file / "scenario.textproto").string()};
-  }
-  if (const auto why = why_not_regular(file)) return Problem{file.string(), *why, "name a file"};
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(kMaxScenarioBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.is_open() || stream.bad()) {
-    return Problem{file.string(), "cannot be read", "check its permissions"};
-  }
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
+  if (std::filesystem::is_directory(file, error))
+    problem.remedy = "name a file, such as " + (file / "scenario.textproto").string();
+  return Problem{file.string(), std::move(problem.what), std::move(problem.remedy)};
 }
 
 }  // namespace

@@ -70,6 +70,8 @@ class World {
   std::int64_t clamped_commands() const { return counted_.clamped_commands; }
   /// Messages that came through the wire's checks and had no effect because they cannot be true.
   std::int64_t refused() const { return me_.refused(Refusal::kRange); }
+  /// Commands of the operator that it refused for their ticks.
+  std::int64_t late_commands() const { return me_.refused(Refusal::kLate); }
   /// Of the physics, if there is one.
   std::string physics_summary() const { return physics_ ? physics_->summary() : ""; }
   /// True once a silent logger has been given up.

@@ -98,7 +98,7 @@ int run_world(const NodeOptions& node, PhysicsMaker physics) {
       transport.limit_agents(allowance_of(*mission, members), world.tick());
       transport.let_gather(gathering_of(*mission, members));
     }
-    watch.look(now());
+    watch.look(now(), world.late_commands());
     rivals.look(now());
     if (world.begun_at() && !begun) spdlog::info("moving from tick {} on", *world.begun_at());
     begun = world.begun_at().has_value();

@@ -3,10 +3,10 @@
 #include "target/csv_map.h"
 
 #include <cstdio>
-#include <fstream>
 #include <string_view>
 
 #include "target/map_text.h"
+#include "text/input_file.h"
 
 namespace ergocast {
 namespace {
@@ -31,10 +31,11 @@ std::string in_line(const fs::path& file, long long line) {
 class Shape {
  public:
   explicit Shape(const fs::path& file) : file_(file) {
-    std::filebuf buffer;
-    buffer.open(file, std::ios::in | std::ios::binary);
-    constexpr int kEnd = std::filebuf::traits_type::eof();
-    for (int c = buffer.sgetc(); c != kEnd && !problem_; c = buffer.snextc()) take(c);
+    InputFile in(file);
+    constexpr int kEnd = InputFile::traits_type::eof();
+    if (std::streambuf* const bytes = in.rdbuf()) {
+      for (int c = bytes->sgetc(); c != kEnd && !problem_; c = bytes->snextc()) take(c);
+    }
     if (!problem_) end_line();
     if (!problem_) problem_ = check_dimensions(file, columns_, rows_);
   }
@@ -77,7 +78,7 @@ class Shape {
 
 class CsvMap : public MapFile {
  public:
-  CsvMap(const fs::path& file, const Shape& shape) : file_(file), stream_(file, std::ios::binary) {
+  CsvMap(const fs::path& file, const Shape& shape) : file_(file), stream_(file) {
     columns_ = shape.columns();
     rows_ = shape.rows();
   }
@@ -86,7 +87,7 @@ class CsvMap : public MapFile {
     std::string line;
     do {
       ++line_;
-      if (!std::getline(stream_, line)) {
+      if (next_line(stream_, line, kMaxLineBytes + 1) == LineEnd::kNone) {
         return MapProblem{file_.string() + " changed while it was read", "try again"};
       }
     } while (trimmed(line).empty());
@@ -105,7 +106,7 @@ class CsvMap : public MapFile {
 
  private:
   fs::path file_;
-  std::ifstream stream_;
+  InputFile stream_;
   long long line_ = 0;
 };
 

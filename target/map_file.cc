@@ -3,32 +3,28 @@
 #include "target/map_file.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "target/ascii_grid.h"
 #include "target/csv_map.h"
 #include "target/png_map.h"
-#include "text/regular_file.h"
+#include "text/input_file.h"
 
 namespace ergocast {
 namespace fs = std::filesystem;
 
 std::optional<MapProblem> why_unreadable(const fs::path& file) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) {
-    return MapProblem{file.string() + ": there is no such file",
-                      "check the name; it counts from the scenario file's folder"};
+  InputFile in(file);
+  if (const auto& problem = in.problem()) {
+    if (problem->kind == FileProblem::Kind::kMissing) {
+      return MapProblem{file.string() + ": there is no such file",
+                        "check the name; it counts from the scenario file's folder"};
+    }
+    const bool other = problem->kind == FileProblem::Kind::kNoFile;
+    return MapProblem{file.string() + ' ' + problem->what,
+                      other ? "name the map itself" : problem->remedy};
   }
-  if (const auto why = why_not_regular(file)) {
-    return MapProblem{file.string() + ' ' + *why, "name the map itself"};
-  }
-  if (!std::ifstream(file).is_open()) {
-    return MapProblem{file.string() + " cannot be read", "check its permissions"};
-  }
-  if (fs::file_size(file, error) == 0) {
+  if (in.peek() == InputFile::traits_type::eof())
     return MapProblem{file.string() + " is empty", "write the map again"};
-  }
   return {};
 }
 

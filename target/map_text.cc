@@ -43,18 +43,16 @@ std::variant<double, MapProblem> density_in(std::string_view text, const std::st
   return *value;
 }
 
-WordReader::WordReader(const std::filesystem::path& file) {
-  file_.open(file, std::ios::in | std::ios::binary);
-}
-
 std::string_view WordReader::next() {
   constexpr std::size_t kMost = 64;
-  constexpr int kEnd = std::filebuf::traits_type::eof();
+  constexpr int kEnd = InputFile::traits_type::eof();
+  if (file_.rdbuf() == nullptr) return {};  // somebody has taken it away meanwhile
+  std::streambuf& bytes = *file_.rdbuf();
   const auto is_space = [](int c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
   word_.clear();
-  int c = file_.sgetc();
-  for (; is_space(c); c = file_.snextc()) line_ += c == '\n' ? 1 : 0;
-  for (; c != kEnd && !is_space(c); c = file_.snextc()) {
+  int c = bytes.sgetc();
+  for (; is_space(c); c = bytes.snextc()) line_ += c == '\n' ? 1 : 0;
+  for (; c != kEnd && !is_space(c); c = bytes.snextc()) {
     if (word_.size() < kMost) word_ += static_cast<char>(c);
   }
   return word_;

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "target/map_file.h"
+#include "text/input_file.h"
 
 namespace ergocast {
 
@@ -22,7 +22,7 @@ std::optional<MapProblem> check_density(double value, const std::string& where);
 /// Words between white space, with their line numbers.
 class WordReader {
  public:
-  explicit WordReader(const std::filesystem::path& file);
+  explicit WordReader(const std::filesystem::path& file) : file_(file) {}
 
   /// The next word, empty at the end of the file; only the beginning of a very long one.
   std::string_view next();
@@ -30,7 +30,7 @@ class WordReader {
   long long line() const { return line_; }
 
  private:
-  std::filebuf file_;
+  InputFile file_;
   std::string word_;
   long long line_ = 1;
 };

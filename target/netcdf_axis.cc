@@ -67,7 +67,8 @@ class AxisReader {
  private:
   std::optional<MapProblem> by_centres(Variable variable) {
     std::vector<double> center(dimension_.length);
-    if (file_.dimensions(variable).size() != 1) return unusable(dimension_.name);
+    const auto shape = file_.dimensions(variable);
+    if (shape.size() != 1 || shape[0].name != dimension_.name) return unusable(dimension_.name);
     if (auto problem = numbers(variable, center)) return problem;
     if (center.size() < 2) {
       return MapProblem{place_ + " has one value, and no bounds",
@@ -104,10 +105,15 @@ class AxisReader {
   /// Reads a whole variable, in metres and upwards.
   std::optional<MapProblem> numbers(Variable variable, std::vector<double>& values) const {
     std::vector<std::size_t> start, count;
+    std::size_t room = values.size();
     for (const auto& dimension : file_.dimensions(variable)) {
       start.push_back(0);
       count.push_back(dimension.length);
+      room /= std::max<std::size_t>(1, dimension.length);
     }
+    // Two dimensions of a file may have one name, in groups.
+    if (room == 0) return unusable(dimension_.name);
+    if (auto problem = file_.objection(variable)) return problem;
     if (auto problem = file_.read(variable, start, count, values)) return problem;
     for (double& value : values) {
       value *= scale_;

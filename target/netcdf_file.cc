@@ -11,6 +11,7 @@ namespace {
 constexpr int kReadOnly = 0, kText = 2, kLastNumber = 11;  // NC_NOWRITE, NC_CHAR, NC_UINT64
 constexpr std::size_t kLongestName = 256;                  // NC_MAX_NAME
 constexpr std::size_t kLongestText = 1000;
+constexpr std::size_t kMostChunkBytes = std::size_t{64} << 20;
 
 using Name = std::array<char, kLongestName + 1>;
 
@@ -24,12 +25,17 @@ std::variant<std::shared_ptr<NetcdfFile>, MapProblem> NetcdfFile::open(
     return MapProblem{file.string() + " needs libnetcdf, which this machine does not have",
                       "apt install libnetcdf19"};
   }
+  auto header = read_netcdf_header(file);
+  if (!header) {
+    return MapProblem{file.string() + ": its header announces more than the file holds",
+                      "write the file again, or copy it anew"};
+  }
   int opened = 0;
   if (const int error = library->nc_open(file.c_str(), kReadOnly, &opened); error != 0) {
     return MapProblem{file.string() + ": " + library->nc_strerror(error),
                       "is it a NetCDF file? ncdump -h shows one"};
   }
-  return std::shared_ptr<NetcdfFile>(new NetcdfFile(file, *library, opened));
+  return std::shared_ptr<NetcdfFile>(new NetcdfFile(file, *std::move(header), *library, opened));
 }
 
 NetcdfFile::~NetcdfFile() { library_.nc_close(file_); }
@@ -45,10 +51,15 @@ std::vector<std::string> NetcdfFile::variables() const {
   if (library_.nc_inq_nvars(file_, &count) != 0) return {};
   std::vector<std::string> names;
   for (int i = 0; i < count; ++i) {
-    Name name{};
-    if (library_.nc_inq_varname(file_, i, name.data()) == 0) names.emplace_back(name.data());
+    std::string name = name_of(i);
+    if (!name.empty()) names.push_back(std::move(name));
   }
   return names;
+}
+
+std::string NetcdfFile::name_of(Variable variable) const {
+  Name name{};
+  return library_.nc_inq_varname(file_, variable, name.data()) == 0 ? name.data() : "";
 }
 
 std::vector<NetcdfFile::Dimension> NetcdfFile::dimensions(Variable variable) const {
@@ -72,6 +83,22 @@ bool NetcdfFile::holds_numbers(Variable variable) const {
          type <= kLastNumber;
 }
 
+std::optional<MapProblem> NetcdfFile::objection(Variable variable) const {
+  const std::string name = name_of(variable), place = name_.string() + ": " + name;
+  const auto announced = header_.bytes_up_to.find(name);
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(name_, error);
+  if (announced != header_.bytes_up_to.end() && !error && announced->second > bytes) {
+    return MapProblem{place + " ends at byte " + std::to_string(announced->second) +
+                          ", and the file has " + std::to_string(bytes),
+                      "write the file again, or copy it anew"};
+  }
+  if (chunk_bytes(variable) <= kMostChunkBytes) return std::nullopt;
+  return MapProblem{place + " is stored in parts of more than 64 MiB",
+                    "write it in smaller chunks: nccopy -c"};
+}
+
+/// Of the smallest part that can be read by itself; 0 if rows can.
 std::size_t NetcdfFile::chunk_bytes(Variable variable) const {
   constexpr int kChunked = 0;
   std::vector<std::size_t> lengths(dimensions(variable).size());

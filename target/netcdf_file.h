@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "target/map_file.h"
+#include "target/netcdf_header.h"
 #include "target/netcdf_library.h"
 
 namespace ergocast {
@@ -36,8 +37,8 @@ class NetcdfFile {
   std::vector<std::string> variables() const;
   std::vector<Dimension> dimensions(Variable variable) const;
   bool holds_numbers(Variable variable) const;
-  /// Of the smallest part that can be read by itself; 0 if rows can.
-  std::size_t chunk_bytes(Variable variable) const;
+  /// Why read() would take too much memory, or read what is not there. To be asked first.
+  std::optional<MapProblem> objection(Variable variable) const;
 
   std::string text(Variable variable, const char* attribute) const;
   std::optional<double> number_said(Variable variable, const char* attribute) const;
@@ -48,10 +49,14 @@ class NetcdfFile {
                                  std::span<double> values) const;
 
  private:
-  NetcdfFile(std::filesystem::path name, const NetcdfLibrary& library, int file)
-      : name_(std::move(name)), library_(library), file_(file) {}
+  NetcdfFile(std::filesystem::path name, NetcdfHeader header, const NetcdfLibrary& library,
+             int file)
+      : name_(std::move(name)), header_(std::move(header)), library_(library), file_(file) {}
+  std::string name_of(Variable variable) const;
+  std::size_t chunk_bytes(Variable variable) const;
 
   std::filesystem::path name_;
+  NetcdfHeader header_;
   const NetcdfLibrary& library_;
   int file_;
 };

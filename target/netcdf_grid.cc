@@ -14,7 +14,6 @@ namespace {
 
 /// What libnetcdf writes where a program wrote nothing: NC_FILL_FLOAT, NC_FILL_DOUBLE.
 constexpr double kUnwritten = 9.9692099683868690e+36;
-constexpr std::size_t kMostChunkBytes = std::size_t{64} << 20;
 
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 12;
@@ -169,11 +168,7 @@ class Grid : public NetcdfGrid {
     if (cells > kMostVoxels) {
       return too_many(cells, " cells", kMostVoxels);
     }
-    if (file_->chunk_bytes(variable_) > kMostChunkBytes) {
-      return MapProblem{place_ + " is stored in parts of more than 64 MiB",
-                        "write it in smaller chunks: nccopy -c"};
-    }
-    return std::nullopt;
+    return file_->objection(variable_);
   }
 
   /// x or y: equal cells.

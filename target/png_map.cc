@@ -6,7 +6,10 @@
 
 #include <csetjmp>
 #include <cstdio>
+#include <utility>
 #include <vector>
+
+#include "text/input_file.h"
 
 namespace ergocast {
 namespace {
@@ -19,13 +22,10 @@ class PngMap : public MapFile {
  public:
   explicit PngMap(const fs::path& file)
       : file_(file),
-        stream_(std::fopen(file.c_str(), "rb")),
+        stream_(opened(file)),
         png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, &on_error, &on_warning)),
         info_(png_ == nullptr ? nullptr : png_create_info_struct(png_)) {}
-  ~PngMap() override {
-    png_destroy_read_struct(&png_, &info_, nullptr);
-    if (stream_ != nullptr) std::fclose(stream_);
-  }
+  ~PngMap() override { png_destroy_read_struct(&png_, &info_, nullptr); }
 
   std::optional<MapProblem> open() {
     if (stream_ == nullptr || info_ == nullptr) {
@@ -67,17 +67,25 @@ class PngMap : public MapFile {
     png_longjmp(png, 1);
   }
   static void on_warning(png_structp, png_const_charp) {}
+  static StdioFile opened(const fs::path& file) {
+    auto opened = open_input(file);
+    if (auto* stream = std::get_if<StdioFile>(&opened)) return std::move(*stream);
+    return {nullptr, &std::fclose};
+  }
 
   bool has_signature() {
     png_byte bytes[8];
-    const bool read = std::fread(bytes, 1, sizeof bytes, stream_) == sizeof bytes;
+    const bool read = std::fread(bytes, 1, sizeof bytes, stream_.get()) == sizeof bytes;
     return read && png_sig_cmp(bytes, 0, sizeof bytes) == 0;
   }
 
   // libpng reports errors by a jump. NOLINTBEGIN(cert-err52-cpp)
   bool read_header() {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
-    png_init_io(png_, stream_);
+    png_init_io(png_, stream_.get());
+    // Texts and profiles are skipped: each may unpack to megabytes, and we need none. All chunks
+    // but those that the pixels need are meant.
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_set_sig_bytes(png_, 8);
     png_read_info(png_, info_);
     return true;
@@ -127,7 +135,7 @@ class PngMap : public MapFile {
   }
 
   fs::path file_;
-  std::FILE* stream_;
+  StdioFile stream_;
   png_structp png_;
   png_infop info_;
   std::vector<png_byte> line_;

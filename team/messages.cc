@@ -5,8 +5,9 @@
 namespace ergocast {
 
 const char* to_string(Refusal refusal) {
-  constexpr const char* kNames[kRefusalKinds] = {"size", "type",  "tag",   "unkeyed",  "unsigned",
-                                                 "run",  "range", "limit", "encoding", "rate"};
+  constexpr const char* kNames[kRefusalKinds] = {"size",     "type", "tag",   "unkeyed",
+                                                 "unsigned", "run",  "range", "limit",
+                                                 "encoding", "rate", "late"};
   return kNames[static_cast<int>(refusal)];
 }
 

@@ -23,6 +23,7 @@ inline constexpr int kMaxRosterEntriesPerMessage = 8;
 inline constexpr int kMaxDigestEntriesPerMessage = 40;
 inline constexpr int kMaxPlanBytesPerMessage = 512;
 inline constexpr int kMaxPlanParts = 512;
+inline constexpr std::size_t kMaxPlanBytes = std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage;
 inline constexpr int kMaxHoldsPerMessage = 1;
 inline constexpr int kMaxEchoesPerMessage = kMostLeasedAgents;
 inline constexpr int kMaxReasonLength = 150;
@@ -41,8 +42,9 @@ enum class Refusal {
   kLimit,     ///< a table is full
   kEncoding,  ///< a contribution in another encoding than the plan says
   kRate,      ///< its sender exceeds its rate budget
+  kLate,      ///< a command of the operator that names an old tick; see team/command_window.h
 };
-inline constexpr int kRefusalKinds = 10;
+inline constexpr int kRefusalKinds = 11;
 const char* to_string(Refusal refusal);
 using RefusalCounts = std::array<std::int64_t, kRefusalKinds>;
 
@@ -143,9 +145,9 @@ struct TeamStatus {
 };
 
 /// Ends a run for good. Without `now` only the coordinator obeys, and ends the mission in order;
-/// with `now` every process that receives it obeys.
+/// with `now` every process that receives it obeys. Nobody obeys one whose tick is old.
 struct Stop {
-  Header header;
+  Header header;        ///< header.tick: the newest that the operator knows; 0 if none
   bool failed = false;  ///< whether the mission failed, or was only ended
   std::string reason;
   bool now = false;  ///< emergency: all vehicles stand still at once
@@ -153,9 +155,9 @@ struct Stop {
 };
 
 /// Pauses a mission, or lets a paused one go on. Only the coordinator obeys, once: a recording of
-/// it names a change that was made.
+/// it names a change that was made, or an old tick.
 struct Pause {
-  Header header;
+  Header header;  ///< header.tick: the newest that the operator knows
   /// So many beginnings and ends of holds are named (named_changes(), core/hold.h): the next is
   /// wanted. An even number pauses, an odd one resumes.
   std::int32_t changes = 0;

@@ -16,6 +16,10 @@ std::optional<Arrival> Participant::accept(const Message& message, Bus bus, Agen
     count_refused(Refusal::kRun);
     return std::nullopt;
   }
+  if (too_late(message, now)) {
+    count_refused(Refusal::kLate);
+    return std::nullopt;
+  }
   ++received_;
   Arrival arrival{from, transmitter, now};
   const auto* part = std::get_if<MissionPart>(&message);
@@ -30,7 +34,17 @@ std::optional<Arrival> Participant::accept(const Message& message, Bus bus, Agen
   return arrival;
 }
 
+/// By the ticks that we have said, because an operator who listens knows them; until then by those
+/// of MISSION, which are signed.
+bool Participant::too_late(const Message& message, Instant now) {
+  window_.note(std::max(own_tick_, mission_tick_), own_tick_ >= 0, now);
+  const bool is_command =
+      std::holds_alternative<Stop>(message) || std::holds_alternative<Pause>(message);
+  return is_command && !window_.admits(header_of(message).tick);
+}
+
 void Participant::follow(const MissionPart& part, Arrival& arrival) {
+  mission_tick_ = std::max(mission_tick_, part.header.tick);
   if (self_.run == 0) self_.run = part.header.run;
   const std::int64_t foreign_plans = follower_.foreign_plans();
   arrival.mission_changed = follower_.receive(part);

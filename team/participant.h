@@ -11,10 +11,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "core/ids.h"
+#include "team/command_window.h"
 #include "team/liveness.h"
 #include "team/messages.h"
 #include "team/mission_follower.h"
@@ -46,8 +48,9 @@ class Participant {
   }
 
   /// The checks that all processes share. Returns nothing if our role has no subscription to the
-  /// message on `bus`, if the message is our own, or if it is of another run, which counts as
-  /// Refusal::kRun. While our run is 0, all runs pass, and the first MISSION sets it. An accepted
+  /// message on `bus`, if the message is our own, if it is of another run, which counts as
+  /// Refusal::kRun, or if it is a command of the operator that names an old tick, which counts as
+  /// Refusal::kLate. While our run is 0, all runs pass, and the first MISSION sets it. An accepted
   /// message updates liveness and, if it is a MISSION, the follower; a foreign plan counts as
   /// Refusal::kRange.
   std::optional<Arrival> accept(const Message& message, Bus bus, AgentId transmitter, Instant now);
@@ -108,12 +111,16 @@ class Participant {
   void set_incarnation(Incarnation incarnation) { self_.incarnation = incarnation; }
   Author author() const { return {self_.id, self_.incarnation}; }
 
+  /// We know that the mission has reached `tick`. What we publish says so, too.
+  void note_tick(Tick tick) { own_tick_ = std::max(own_tick_, tick); }
+
   /// Appends `message` under our header and with the next sequence of `bus`.
   template <class M>
   void publish(Bus bus, const M& message, Tick tick, Outbox& out) {
     // Copies the message once, in place: a contribution is a kilobyte.
     Outgoing& outgoing = out.emplace_back();
     outgoing.bus = bus;
+    if (!std::is_same_v<M, Hello>) note_tick(tick);  // who asks may not know the tick
     outgoing.message.emplace<M>(message).header = {
         self_.run, self_.id, self_.incarnation, ++sequences_[static_cast<std::size_t>(bus)], tick};
   }
@@ -132,12 +139,16 @@ class Participant {
  private:
   CoordinatorSign coordinator_sign() const;
   void follow(const MissionPart& part, Arrival& arrival);
+  bool too_late(const Message& message, Instant now);
 
   Role role_;
   Identity self_;
   MissionFollower follower_;
   Instant mission_heard_{};  // from any transmitter
   Liveness liveness_;
+  Tick own_tick_ = -1;      // the newest that we have said
+  Tick mission_tick_ = -1;  // the newest that a MISSION named
+  CommandWindow window_;
   std::array<std::int64_t, kBusCount> sequences_{};
   RefusalCounts refused_{};
   std::int64_t received_ = 0;

@@ -18,8 +18,6 @@
 namespace ergocast {
 namespace {
 
-constexpr std::size_t kMaxPlanBytes = std::size_t{kMaxPlanParts} * kMaxPlanBytesPerMessage;
-
 constexpr const char* kRemedy = ": install the same version on every host";
 
 /// The error for bytes without a readable version.

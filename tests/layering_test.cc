@@ -51,6 +51,7 @@ struct Rule {
 
 const std::vector<Rule> kRules = {
     {"text", {"text"}, {kFiles}},
+    {"text/input_file.cc", {"text"}, {kFiles, kSystem}},
     {"core", {"core"}, {kGenerator}},
     {"target", {"text", "core", "target"}, {kPng, kFiles}},
     {"target/netcdf_library.cc", {"target"}, {kLoader}},
@@ -82,7 +83,9 @@ const std::vector<Rule> kRules = {
     {"sim/main.cc", {"sim", "runtime"}, {kLog}},
     {"sim/world_process.h", {"sim", "runtime"}, {}},
     {"sim/world_process.cc", {"sim", "runtime"}, {kLog}},
-    {"logger/main.cc", {"modes", "team", "logger", "runtime", "lcmtypes"}, {kLog, kFiles, kSystem}},
+    {"logger/main.cc",
+     {"text", "modes", "team", "logger", "runtime", "lcmtypes"},
+     {kLog, kFiles, kSystem}},
     {"report", {"text", "core", "target", "team", "logger", "report"}, {kFiles, kJson}},
     {"export",
      {"text", "core", "target", "team", "logger", "report", "geo", "export"},

@@ -51,12 +51,14 @@ ergocast_test(NAME target_tests LABELS unit
 ergocast_test(NAME team_tests LABELS unit
   SOURCES
     team/beacon_book_test.cc
+    team/command_window_test.cc
     team/hostile_plan_test.cc
     team/liveness_test.cc
     team/mission_follower_test.cc
     team/participant_test.cc
     team/plan_test.cc
     team/radio_range_test.cc
+    text/input_file_test.cc
     text/printable_test.cc
   LIBS ergocast::team ergocast::text)
 

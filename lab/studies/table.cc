@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+
+#include "text/input_file.h"
 
 namespace ergocast::studies {
 namespace {
@@ -29,8 +30,9 @@ Cells cells_of(const std::string& line) {
 
 void for_each_row(const std::filesystem::path& file,
                   const std::function<void(const Cells& columns, const Cells& cells)>& visit) {
-  std::ifstream in(file);
+  InputFile in(file);
   std::string line;
+  if (in.problem()) complain(file, in.problem()->what);
   if (!std::getline(in, line)) complain(file, "cannot be read");
   const Cells columns = cells_of(line);
   bool any = false;

@@ -141,6 +141,13 @@ TEST_F(RefusalsCanBeSeen, ForEachOfTheirReasons) {
          say(seal(team_), block);
        }},
       {Refusal::kRate, [this] { exceed_rate(); }},
+      // Before the mission's first tick.
+      {Refusal::kLate,
+       [this] {
+         Stop old{from(kOperator, run()), false, "a recording"};
+         old.header.tick = -1;
+         say(seal(coordinator_), old);
+       }},
       {Refusal::kLimit, [this] { crowd(); }},
   };
   // In the order of the program's own list; the last one changes the roster, and so comes last.

@@ -56,6 +56,28 @@ TEST(Pausing, NeedsAWorldThatIsHeard) {
   EXPECT_TRUE(coordinator.holds().empty());
 }
 
+TEST(Pausing, ARecordingOfAPauseThatNobodyObeyedHasNoEffect) {
+  Mission mission = realtime_mission(2);
+  mission.timing.tick_count = 10000;
+  Coordinator coordinator = running_coordinator(mission);
+  give(coordinator, world_where(10, {9, 9}), at(500ms));
+  advance(coordinator, at(500ms));
+  Pause pause = pause_after(0);
+  pause.header.tick = 10;
+  give(coordinator, pause, at(10s));  // it has not heard of the world for so long
+  ASSERT_TRUE(coordinator.holds().empty());
+  for (int second = 11; second < 31; ++second) {
+    give(coordinator, world_where(second * 20, {9, 9}), at(second * 1s));
+    advance(coordinator, at(second * 1s));
+  }
+  give(coordinator, pause, at(31s));
+  EXPECT_TRUE(coordinator.holds().empty()) << "somebody else chooses the moment";
+  EXPECT_EQ(coordinator.late_commands(), 1);
+  pause.header.tick = coordinator.tick();
+  give(coordinator, pause, at(31s));
+  EXPECT_EQ(coordinator.holds().size(), 1U);
+}
+
 TEST(Pausing, InLockstepBeginsWithTheTickAfterTheNextOnceTheWorldStands) {
   Coordinator coordinator = running_coordinator(small_mission(2));
   WorldState world = world_where(10, {9, 9});

@@ -128,5 +128,63 @@ TEST_F(BadInput, ReportAndVerifyNameWhatIsMissing) {
   EXPECT_TRUE(said("plan.binpb")) << output();
 }
 
+/// Files of at most 16 MB that would take gigabytes, read by programs that may have half of one.
+class LittleMemory : public BadInput {
+ protected:
+  /// Its output is in output().
+  int in_half_a_gigabyte(const std::vector<std::string>& arguments) {
+    std::string command =
+        "ulimit -v 524288; exec '" + (program_folder() / "ergocast").string() + "'";
+    for (const std::string& argument : arguments) command += " '" + argument + "'";
+    Child child = begin({"sh", "-c", command});
+    return wait_for(child);
+  }
+  void expect_refused(const std::string& name, const std::string& content, const std::string& part,
+                      const std::string& why) {
+    write(name, content);
+    std::string text = "origin { latitude_deg: 47 longitude_deg: 9 }\n" +
+                       text_of(scenario_file("quadrimodal_corners"));
+    text.insert(text.find("target {") + 8, ' ' + part + ' ');
+    EXPECT_EQ(in_half_a_gigabyte({"check", write("s.textproto", text)}), 2) << name;
+    EXPECT_TRUE(said(name) && said(why)) << output().substr(0, 1000);
+  }
+};
+
+TEST_F(LittleMemory, IsEnoughToReadAScenario) {
+  EXPECT_EQ(in_half_a_gigabyte({"check", scenario_file("harbour_patrol")}), 0) << output();
+}
+
+TEST_F(LittleMemory, IsEnoughToRefuseGeoJsonThatIsNestedOrHasMoreValuesThanAnyPolygon) {
+  const std::string part = "keep_outs { file: \"m.geojson\" }";
+  constexpr std::size_t kBytes = (std::size_t{16} << 20) - 10;
+  expect_refused("m.geojson", std::string(kBytes, '['), part, "nested in more than 64 levels");
+  std::string objects = "[";
+  while (objects.size() < kBytes) objects += "{},";
+  expect_refused("m.geojson", objects, part, "has more than 4000000 values");
+}
+
+TEST_F(LittleMemory, IsEnoughToRefuseADrawingOfMillionsOfTags) {
+  std::string text = "<svg>";
+  while (text.size() < (std::size_t{16} << 20) - 10) text += "<g>";
+  expect_refused("m.svg", text, "keep_outs { file: \"m.svg\" }", "has more than 1 000 000 tags");
+}
+
+TEST_F(LittleMemory, IsEnoughToRefuseARecordThatIsDamaged) {
+  ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "3", "--out",
+                      out()}),
+            0);
+  const auto precious = text_of(out() / "summary.json");
+  write("run/summary.json", std::string(16000000, '['));
+  EXPECT_EQ(in_half_a_gigabyte({"verify", out()}), 2);
+  EXPECT_TRUE(said("summary.json") && said("nested in more than 64 levels")) << output();
+  write("run/summary.json", precious);
+  const auto rows = out() / "trajectory.csv";
+  std::filesystem::resize_file(rows, std::filesystem::file_size(rows) + (std::uintmax_t{1} << 30));
+  EXPECT_EQ(in_half_a_gigabyte({"report", out()}), 0) << "as after a power failure: " << output();
+  std::ofstream(rows, std::ios::app) << "\n";
+  EXPECT_EQ(in_half_a_gigabyte({"report", out()}), 2);
+  EXPECT_TRUE(said("trajectory.csv") && said("longer than any row")) << output();
+}
+
 }  // namespace
 }  // namespace ergocast::test

@@ -142,7 +142,8 @@ TEST_F(Keyed, OnlyTheCoordinatorsKeyEndsAMission) {
   Child mission = launch_endless(scenario(), {"--key-file", coordinator_, "--lcm-url", kUrl});
   const RunId run = run_id();
   const auto stop = [run](const std::string& why) {
-    return Stop{{run, kOperator, 1, 0, 0}, false, why};
+    constexpr Tick kNotLate = Tick{1} << 40;
+    return Stop{{run, kOperator, 1, 0, kNotLate}, false, why};
   };
   Stranger outsider(kUrl), member(kUrl, seal(team_)), coordinator(kUrl, seal(coordinator_));
   for (int i = 0; i < 20; ++i) {

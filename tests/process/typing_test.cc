@@ -106,6 +106,60 @@ TEST_F(Typing, PipesInARunDirectoryAreRefused) {
   }
 }
 
+TEST_F(Typing, APipeAmongTheEventLogsHoldsNobody) {
+  ASSERT_EQ(ergocast({"simulate", scenario_file("quadrimodal_corners"), "--duration", "3",
+                      "--event-log", "--out", out()}),
+            0);
+  for (const char* name : {"events-000.lcm", "events-001.lcm", "events-001.lcm.zst"}) {
+    const auto path = out() / name, aside = folder_ / "aside";
+    const bool first = std::filesystem::exists(path);
+    if (first) std::filesystem::rename(path, aside);
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    EXPECT_EQ(ergocast({"replay", out(), "--rate", "1000"}), 2) << name;
+    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+    EXPECT_EQ(ergocast({"report", out()}), 0) << name;
+    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+    std::filesystem::remove(path);
+    if (first) std::filesystem::rename(aside, path);
+  }
+}
+
+TEST_F(Typing, PipesAmongTheMapsOfAScenarioAreRefused) {
+  std::string plane = text_of(scenario_file("quadrimodal_corners"));
+  std::string box = text_of(scenario_file("water_column"));
+  const auto with = [](std::string text, const std::string& part) {
+    return text.insert(text.find("target {") + 8, ' ' + part + ' ');
+  };
+  const std::string area = " origin_x_m: 0 origin_y_m: 0 size_x_m: 9 size_y_m: 9 } ";
+  const std::map<std::string, std::string> parts = {
+      {"m.png", with(plane, "maps { file: \"m.png\"" + area)},
+      {"m.csv", with(plane, "maps { file: \"m.csv\"" + area)},
+      {"m.asc", with(plane, "maps { file: \"m.asc\" }")},
+      {"m.svg", with(plane, "keep_outs { file: \"m.svg\" }")},
+      {"m.geojson", "origin { latitude_deg: 47 longitude_deg: 9 }\n" +
+                        with(plane, "keep_outs { file: \"m.geojson\" }")},
+      {"m.nc", with(box, "voxels { file: \"m.nc\" variable: \"chl\" }")}};
+  for (const auto& [name, scenario] : parts) {
+    ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);
+    EXPECT_EQ(ergocast({"check", write("piped.textproto", scenario)}), 2) << name;
+    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+  }
+}
+
+TEST_F(Typing, PipesInAStudyAreRefusedAndNotWrittenOver) {
+  const std::vector<std::string> study = {
+      "study", scenario_file("quadrimodal_corners"), "--seeds", "1", "--duration", "3", "--out",
+      out()};
+  ASSERT_EQ(ergocast(study), 0) << output();
+  for (const char* name : {"study.csv", "study.json"}) {
+    std::filesystem::remove(out() / name);
+    ASSERT_EQ(mkfifo((out() / name).c_str(), 0600), 0);
+    EXPECT_EQ(ergocast(study), 2) << name;
+    EXPECT_TRUE(said(name) && said("not a regular file")) << output();
+    EXPECT_TRUE(std::filesystem::is_fifo(out() / name));
+  }
+}
+
 TEST_F(Typing, WhatFilesContainNeverSteersTheTerminal) {
   const std::string evil = "\x1b]0;owned\x07\x1b[2J\xc2\x9b\xff";
   const std::string scenario = scenario_file("quadrimodal_corners");

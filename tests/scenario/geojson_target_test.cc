@@ -178,6 +178,11 @@ TEST_F(GeoJsonTarget, RefusesWhatIsNoPolygonWithItsMember) {
          "has 5000 vertices, above the limit 4096 (simplify it: ogr2ogr -simplify");
 }
 
+// Each bracket would take a hundred bytes. tests/process/bad_input_test.cc has larger ones.
+TEST_F(GeoJsonTarget, RefusesWhatIsNestedDeeperThanAnyPolygon) {
+  expect(std::string(1000, '['), "is nested in more than 64 levels (simplify it");
+}
+
 TEST_F(GeoJsonTarget, NeedsAnOriginThatIsAPlace) {
   const std::string text = collection({polygon(box_ring(10, 10, 30))});
   EXPECT_EQ(said_of(text), "");

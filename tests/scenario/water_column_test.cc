@@ -2,6 +2,7 @@
 // Targets from NetCDF grids: exact against the same cells as prisms, and each mistake refused.
 #include "tests/scenario/water_column.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include "target/target.h"
@@ -174,6 +175,109 @@ TEST_F(WaterColumnTest, OfABillionCellsIsRefused) {
   column.grow(1000);
   const std::string said = said_of_column(column, "");
   EXPECT_NE(said.find("1000000000 cells, above the limit"), std::string::npos) << said;
+}
+
+// libnetcdf would take the announced memory, and read zeros where the file has ended.
+TEST_F(WaterColumnTest, ThatAnnouncesMoreThanItsFileHoldsIsRefused) {
+  const auto file = folder_.path() / "column.nc";
+  WaterColumn().write(file);
+  std::ifstream in(file, std::ios::binary);
+  const std::string sound(std::istreambuf_iterator<char>(in), {});
+  const auto said_of_bytes = [&](const std::string& bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+    const Loaded result =
+        Scenario::parse(water_column_scenario(), (folder_.path() / "column.textproto").string());
+    if (std::holds_alternative<Scenario>(result)) return std::string("nothing");
+    return to_string(std::get<1>(result)[0]);
+  };
+  ASSERT_EQ(said_of_bytes(sound), "nothing");
+  // A name, the numbers of dimensions and of global attributes, the length of a text. Each is three
+  // gigabytes.
+  for (const std::size_t at :
+       {sound.find("time") - 4, std::size_t{12}, sound.find("standard_name") + 20}) {
+    std::string damaged = sound;
+    damaged.replace(at, 4, "\xb2\xd0\x5e\x00", 4);
+    EXPECT_NE(said_of_bytes(damaged).find("its header announces more than the file holds"),
+              std::string::npos)
+        << at << ": " << said_of_bytes(damaged);
+  }
+  const std::string cut = said_of_bytes(sound.substr(0, sound.size() - 40));
+  EXPECT_NE(cut.find("chl ends at byte " + std::to_string(sound.size())), std::string::npos) << cut;
+}
+
+TEST_F(WaterColumnTest, WhoseCoordinatesHaveAnotherDimensionIsRefused) {
+  WaterColumn column;
+  column.dimensions.emplace_back("long", 4096);
+  column.at("x").dimensions = {"long"};
+  column.at("x").values.resize(4096);
+  const std::string said = said_of_column(column);
+  EXPECT_NE(said.find("x: x does not have the shape of its values"), std::string::npos) << said;
+}
+
+/// Writes a file in HDF5, whose x is stored in one compressed part of `chunk` numbers.
+class Hdf5Column {
+ public:
+  Hdf5Column(const std::filesystem::path& file, std::size_t chunk)
+      : library_(dlopen("libnetcdf.so.19", RTLD_NOW)) {
+    constexpr int kHdf5 = 0x1000;
+    expect(function<int(const char*, int, int*)>("nc_create")(file.c_str(), kHdf5, &file_));
+    const std::size_t lengths[] = {2, 2, 0};  // the last one grows
+    const char* const names[] = {"depth", "y", "x"};
+    const double values[] = {0, 100};
+    int dimensions[3], axes[3], chl = 0;
+    for (int i = 0; i < 3; ++i) {
+      expect(function<int(int, const char*, std::size_t, int*)>("nc_def_dim")(
+          file_, names[i], lengths[i], &dimensions[i]));
+      axes[i] = variable(names[i], 1, &dimensions[i]);
+      expect(function<int(int, int, const char*, std::size_t, const char*)>("nc_put_att_text")(
+          file_, axes[i], "units", 1, "m"));
+    }
+    chl = variable("chl", 3, dimensions);
+    expect(function<int(int, int, int, const std::size_t*)>("nc_def_var_chunking")(file_, axes[2],
+                                                                                   0, &chunk));
+    expect(function<int(int, int, int, int, int)>("nc_def_var_deflate")(file_, axes[2], 0, 1, 1));
+    for (const int axis : axes) put(axis, values);
+    const std::vector<double> ones(8, 1);
+    put(chl, ones.data());
+  }
+  ~Hdf5Column() {
+    expect(function<int(int)>("nc_close")(file_));
+    dlclose(library_);
+  }
+
+ private:
+  template <class Type>
+  Type* function(const char* name) const {
+    return reinterpret_cast<Type*>(dlsym(library_, name));
+  }
+  static void expect(int error) { ASSERT_EQ(error, 0); }
+  int variable(const char* name, int count, const int* dimensions) const {
+    constexpr int kDouble = 6;
+    int made = 0;
+    expect(function<int(int, const char*, int, int, const int*, int*)>("nc_def_var")(
+        file_, name, kDouble, count, dimensions, &made));
+    return made;
+  }
+  void put(int variable, const double* values) const {
+    const std::size_t start[] = {0, 0, 0}, count[] = {2, 2, 2};
+    expect(function<int(int, int, const std::size_t*, const std::size_t*, const double*)>(
+        "nc_put_vara_double")(file_, variable, start, count, values));
+  }
+
+  void* library_;
+  int file_ = 0;
+};
+
+TEST_F(WaterColumnTest, WhoseCoordinatesUnpackToMoreThanAChunkMayHaveIsRefused) {
+  const auto said_with = [&](std::size_t chunk) {
+    Hdf5Column(folder_.path() / "column.nc", chunk);
+    const Loaded result =
+        Scenario::parse(water_column_scenario(""), (folder_.path() / "column.textproto").string());
+    return std::holds_alternative<Scenario>(result) ? "nothing" : to_string(std::get<1>(result)[0]);
+  };
+  EXPECT_EQ(said_with(1000), "nothing");
+  const std::string said = said_with(9'000'000);
+  EXPECT_NE(said.find("x is stored in parts of more than 64 MiB"), std::string::npos) << said;
 }
 
 TEST_F(WaterColumnTest, OfNoNetcdfFileIsRefused) {

@@ -193,6 +193,55 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
   EXPECT_TRUE(agent.silent(kWorld, at(22s)));
 }
 
+// ---- commands of the operator
+// -------------------------------------------------------------------------
+
+Stop stop_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, false, "enough"}; }
+Pause pause_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, 0}; }
+
+TEST(Participant, RefusesACommandThatNamesATickWhichItSaidLongAgo) {
+  for (const Role role :
+       {Role::kAgent, Role::kCoordinator, Role::kWorld, Role::kDriver, Role::kLogger}) {
+    Participant one = participant(role);
+    Outbox out;
+    for (Tick tick = 0; tick <= 200; ++tick) {
+      one.publish(Bus::kSwarm, AgentStatus{}, tick, out);
+      accept(one, mission_part(tick, MissionState::kRunning, {}), at(tick * 100ms));
+    }
+    EXPECT_TRUE(accept(one, stop_at(200), at(20s)));
+    EXPECT_TRUE(accept(one, stop_at(150), at(20s))) << "on a slow network";
+    EXPECT_FALSE(accept(one, stop_at(90), at(20s))) << "a recording";
+    EXPECT_EQ(one.refused(Refusal::kLate), 1);
+    const bool pauses = role == Role::kCoordinator || role == Role::kLogger;
+    EXPECT_EQ(accept(one, pause_at(150), at(20s)).has_value(), pauses);
+    EXPECT_FALSE(accept(one, pause_at(90), at(20s)));
+    EXPECT_EQ(one.refused(Refusal::kLate), pauses ? 2 : 1);
+  }
+}
+
+TEST(Participant, RefusesByMissionACommandFromBeforeItTookPart) {
+  Participant agent = participant(Role::kAgent);
+  Outbox out;
+  agent.publish(Bus::kSwarm, Hello{}, 0, out);
+  EXPECT_TRUE(accept(agent, stop_at(0))) << "it knows of no tick";
+  MissionPart part = mission_part(0, MissionState::kRunning, roster_of(1));
+  part.header.tick = 5000;
+  accept(agent, part);
+  EXPECT_FALSE(accept(agent, stop_at(4999)));
+  EXPECT_TRUE(accept(agent, stop_at(5000)));
+  agent.publish(Bus::kSwarm, AgentStatus{}, 0, out);
+  EXPECT_FALSE(accept(agent, stop_at(4999), at(1s))) << "its own first tick is no older one";
+}
+
+TEST(Participant, ARefusedCommandTakesNoPlaceAmongTheLiving) {
+  Participant agent = participant(Role::kAgent);
+  Outbox out;
+  agent.publish(Bus::kSwarm, AgentStatus{}, 1, out);
+  EXPECT_FALSE(accept(agent, stop_at(0)));
+  EXPECT_EQ(agent.received(), 0);
+  EXPECT_FALSE(agent.liveness().last_sign_of_kind(kOperator).has_value());
+}
+
 // ---- cut off
 // -------------------------------------------------------------------------------------
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which of an operator's commands are recent enough to be obeyed: by their ticks, without a common
+// clock.
+//
+// The signature of STOP or PAUSE is valid for ever. So an outsider who recorded a command that
+// nobody obeyed could send it again later, and choose the moment. A command therefore names the
+// newest tick that its sender knew. A receiver refuses it if it knew of a later tick some time ago,
+// by its own clock. The alternative, a time of day in the command, would need hosts with equal
+// clocks.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "core/ids.h"
+
+namespace ergocast {
+
+class CommandWindow {
+ public:
+  /// A command is obeyed for at least so long after its tick has passed, and at most for twice as
+  /// long.
+  static constexpr std::chrono::seconds kLength{5};
+
+  /// The receiver knows at `now` that the mission has reached `tick`. Before it takes part it may
+  /// know old ticks alone, and so a command must name the newest of them or a later one.
+  /// @param takes_part  whether it has sent a tick of its own
+  void note(Tick tick, bool takes_part, Instant now) {
+    newest_ = std::max(newest_, tick);
+    if (!since_) {
+      oldest_ = next_oldest_ = newest_;
+      if (takes_part) since_ = now;
+    } else if (now - *since_ >= kLength) {
+      oldest_ = next_oldest_;
+      next_oldest_ = newest_;
+      since_ = now;
+    }
+  }
+
+  /// Whether a command that names `tick` is recent.
+  bool admits(Tick tick) const { return tick >= oldest_; }
+
+ private:
+  Tick newest_ = -1;
+  Tick oldest_ = -1;              // that is admitted
+  Tick next_oldest_ = -1;         // the newest at since_
+  std::optional<Instant> since_;  // the window began to move
+};
+
+}  // namespace ergocast

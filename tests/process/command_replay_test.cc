@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An outsider without the key recorded a signed command that nobody obeyed, and sends it again
+// later.
+#include <lcm/lcm-cpp.hpp>
+
+#include "runtime/key_file.h"
+#include "team/command_window.h"
+#include "tests/process/mission.h"
+#include "tests/process/stranger.h"
+
+namespace ergocast::test {
+namespace {
+
+/// Records the operator's commands on a URL, byte by byte.
+class Tape {
+ public:
+  explicit Tape(const std::string& url) {
+    const LcmUrl buses = std::get<LcmUrl>(LcmUrl::parse(url));
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
+      Ear& ear =
+          ears_.emplace_back(Ear{bus, std::make_unique<lcm::LCM>(buses.of(bus)), &recorded_});
+      ear.lcm->subscribe("ERGOCAST_(PAUSE|STOP)", &Ear::hear, &ear)->setQueueCapacity(0);
+    }
+  }
+  /// Takes in what has arrived; how much there is.
+  std::size_t size() {
+    for (Ear& ear : ears_) {
+      while (ear.lcm->handleTimeout(0) > 0) {
+      }
+    }
+    return recorded_.size();
+  }
+  /// Sends all of it.
+  void play(const std::string& url) const {
+    const LcmUrl buses = std::get<LcmUrl>(LcmUrl::parse(url));
+    for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
+      lcm::LCM out(buses.of(bus));
+      for (const auto& one : recorded_) {
+        if (one.bus == bus)
+          out.publish(one.channel, one.bytes.data(), static_cast<unsigned>(one.bytes.size()));
+      }
+    }
+  }
+
+ private:
+  struct Recorded {
+    Bus bus;
+    std::string channel;
+    std::vector<std::uint8_t> bytes;
+  };
+  struct Ear {
+    Bus bus;
+    std::unique_ptr<lcm::LCM> lcm;
+    std::vector<Recorded>* recorded;
+    void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      const auto* data = static_cast<const std::uint8_t*>(buffer->data);
+      recorded->push_back({bus, channel, {data, data + buffer->data_size}});
+    }
+  };
+  std::deque<Ear> ears_;
+  std::vector<Recorded> recorded_;
+};
+
+class CommandReplay : public ByHand {
+ protected:
+  static constexpr RunId kRun = 0xab;
+
+  CommandReplay() {
+    const MissionKey key = make_mission_key();
+    EXPECT_EQ(write_key_file(coordinator_key_, key_text(key, true)), std::nullopt);
+    EXPECT_EQ(write_key_file(team_key_, key_text(key, false)), std::nullopt);
+  }
+
+  /// A keyed team that flies until the test ends it.
+  void fly() {
+    std::filesystem::create_directory(out());
+    hand("ergocast-logger", {"--out", out(), "--key-file", team_key_});
+    world_ = &hand("ergocast-sim", {"--key-file", team_key_});
+    coordinator_ =
+        &hand("ergocast-coordinator", {scenario(std::string("duration_s: ") + kEndless), "--run-id",
+                                       to_hex(kRun), "--key-file", coordinator_key_});
+    for (const char* id : {"0", "1", "2", "3"})
+      hand("ergocast-agent", {"--id", id, "--key-file", team_key_});
+    ASSERT_TRUE(recorded(30000)) << coordinator_->said();
+  }
+  /// The operator's command, as a person gives it.
+  int say(const std::string& command, std::vector<std::string> more = {}, const char* url = kUrl) {
+    more.insert(more.begin(), {command, "--lcm-url", url, "--key-file", coordinator_key_});
+    return ergocast(more);
+  }
+  void stop_coordinator() const {
+    signal_to({"ergocast-coordinator"}, SIGKILL);
+    ASSERT_TRUE(eventually([] { return pids({"ergocast-coordinator"}).empty(); }));
+  }
+  /// Another one takes the mission over, some ticks later.
+  void resume_coordinator() {
+    ASSERT_TRUE(moves_on());
+    coordinator_ = &hand("ergocast-coordinator", {"--resume", "--key-file", coordinator_key_});
+    ASSERT_TRUE(coordinator_->says("taken over")) << coordinator_->said();
+  }
+  /// Plays the tape until `program` says that it ignores that, or does something else.
+  void play_until_ignored(const Tape& tape, const Program& program) const {
+    EXPECT_TRUE(eventually(
+        [&] {
+          tape.play(kUrl);
+          return ignores(program) || program.said().find("mission is paused") != std::string::npos;
+        },
+        program.child.pid()))
+        << program.said();
+    EXPECT_TRUE(ignores(program)) << program.said();
+  }
+  static bool ignores(const Program& program) {
+    return program.said().find("late=") != std::string::npos;
+  }
+  /// Until the world refuses a command that names the mission's first tick; and longer, for those
+  /// that began later. The world leaves a stop in order to the coordinator, which does not hear it.
+  void pass_the_first_tick() const {
+    Stranger operator_(kUrl,
+                       MessageAuthenticator(std::get<MissionKey>(read_key_file(coordinator_key_))));
+    ASSERT_TRUE(eventually([&] {
+      operator_.say(Bus::kCommand, Stop{{kRun, kOperator, 1, 0, 0}, false, "of the first tick"});
+      return ignores(*world_);
+    })) << world_->said();
+    std::this_thread::sleep_for(CommandWindow::kLength);
+  }
+  /// The team still obeys its operator.
+  void expect_obedience() {
+    ASSERT_TRUE(moves_on()) << coordinator_->said();
+    EXPECT_EQ(say("pause"), 0) << output();
+    EXPECT_EQ(say("resume"), 0) << output();
+    EXPECT_EQ(say("stop"), 0) << output();
+    EXPECT_EQ(wait_for(coordinator_->child), 0) << coordinator_->said();
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(out() / "summary.json"); }));
+    EXPECT_EQ(summary()["holds"].size(), 1U) << coordinator_->said();
+    EXPECT_TRUE(summary()["reason"].get<std::string>().starts_with("stopped by `ergocast stop`"));
+  }
+
+  const std::filesystem::path coordinator_key_ = folder_ / "c.key", team_key_ = folder_ / "t.key";
+  Program* world_ = nullptr;
+  Program* coordinator_ = nullptr;
+};
+
+TEST_F(CommandReplay, APauseThatNoCoordinatorObeyedDoesNotPauseLater) {
+  fly();
+  Tape tape(kUrl);
+  hold_next("ERGOCAST_PAUSE", 0);  // the operator's command, once it knows the mission
+  Program& pause = hand("ergocast", {"pause", "--key-file", coordinator_key_});
+  hold_none();
+  ASSERT_TRUE(eventually([&] { return stopped({pause.child.pid()}); })) << pause.said();
+  stop_coordinator();
+  pause.child.send(SIGCONT);
+  EXPECT_EQ(wait_for(pause.child), 4) << pause.said();
+  ASSERT_GT(tape.size(), 0U);
+  resume_coordinator();
+  play_until_ignored(tape, *coordinator_);
+  EXPECT_EQ(coordinator_->said().find("mission is paused"), std::string::npos)
+      << coordinator_->said();
+  expect_obedience();
+}
+
+TEST_F(CommandReplay, AStopThatNoCoordinatorObeyedDoesNotEndTheMissionLater) {
+  fly();
+  Tape tape(kUrl);
+  stop_coordinator();
+  EXPECT_EQ(say("stop"), 4) << output();
+  EXPECT_NE(output().find("no coordinator is heard"), output().npos) << output();
+  ASSERT_GT(tape.size(), 0U);
+  resume_coordinator();
+  play_until_ignored(tape, *coordinator_);
+  expect_obedience();
+}
+
+TEST_F(CommandReplay, AStopAtOnceThatTheTeamDidNotHearDoesNotStopItLater) {
+  constexpr const char* kElsewhere = "udpm://239.255.76.67:24800?ttl=0";
+  fly();
+  Tape tape(kElsewhere);
+  EXPECT_EQ(say("stop", {"--now", "--run-id", to_hex(kRun)}, kElsewhere), 4) << output();
+  ASSERT_GT(tape.size(), 0U);
+  pass_the_first_tick();
+  play_until_ignored(tape, *coordinator_);
+  EXPECT_TRUE(world_->child.running()) << world_->said();
+  ASSERT_TRUE(moves_on()) << coordinator_->said();
+  EXPECT_EQ(say("stop", {"--now", "--run-id", to_hex(kRun)}), 0) << output();
+  EXPECT_EQ(wait_for(world_->child), 0) << world_->said();
+  EXPECT_TRUE(world_->says("stopped at once by `ergocast stop --now`")) << world_->said();
+}
+
+}  // namespace
+}  // namespace ergocast::test

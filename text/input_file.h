@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one way by which files that somebody names are opened for reading.
+//
+// Only regular files are opened, and opening never waits. A pipe without a writer would hold the
+// program, a device may never end, and opening one may change it.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace ergocast {
+
+/// Why a file is not read, without its name.
+struct FileProblem {
+  enum class Kind { kMissing, kNoFile, kUnreadable, kTooLarge };
+  Kind kind;
+  std::string what;    ///< "is a folder, not a file"
+  std::string remedy;  ///< "name a file"
+
+  /// "FILE: what; remedy"
+  std::string sentence(const std::filesystem::path& file) const {
+    return file.string() + ": " + what + "; " + remedy;
+  }
+};
+
+/// Why `file` is not one that this module would open; nothing if it is, or if it is missing.
+std::optional<FileProblem> why_not_regular(const std::filesystem::path& file);
+
+using StdioFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+/// The file for the functions of C.
+std::variant<StdioFile, FileProblem> open_input(const std::filesystem::path& file);
+
+/// All bytes of a file that has at most so many. A larger one is refused before it takes memory.
+std::variant<std::string, FileProblem> read_whole(const std::filesystem::path& file,
+                                                  std::size_t most_bytes);
+
+/// The file as a stream, which is bad() if there is a problem().
+class InputFile : public std::istream {
+ public:
+  explicit InputFile(const std::filesystem::path& file);
+
+  const std::optional<FileProblem>& problem() const { return problem_; }
+
+ private:
+  std::unique_ptr<std::filebuf> buffer_;
+  std::optional<FileProblem> problem_;
+};
+
+/// What follows the text that next_line() returns.
+enum class LineEnd {
+  kBreak,  ///< a line break, which was read, too
+  kMore,   ///< more of the same line
+  kFile,   ///< the end of the file: the line has no line break
+  kNone,   ///< there is no text, because the file has ended before
+};
+
+/// The next line, or a piece of one that is longer than about `most_bytes`.
+LineEnd next_line(std::istream& in, std::string& line, std::size_t most_bytes);
+
+}  // namespace ergocast
