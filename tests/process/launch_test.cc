@@ -170,13 +170,5 @@ TEST_F(DamagedRecord, GoesOnWithoutAReadablePlanWhichIsThenWrittenAgain) {
   EXPECT_EQ(summary()["gaps"], 0) << said();
 }
 
-// A logger that a person starts is told by nobody else whose record it is.
-TEST_F(DamagedRecord, WithoutAReadablePlanIsNobodysToALoggerByHand) {
-  ASSERT_EQ(ergocast({"simulate", scenario(), "--duration", "10", "--out", out()}), 0) << output();
-  write("plan.binpb", "no plan");
-  EXPECT_EQ(run("ergocast-logger", {"--out", out(), "--resume"}), 2) << output();
-  EXPECT_NE(output().find("plan.binpb: missing or not readable"), output().npos) << output();
-}
-
 }  // namespace
 }  // namespace ergocast::test

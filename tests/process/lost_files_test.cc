@@ -46,13 +46,13 @@ class LostFiles : public FlyingMission {
 };
 
 class HarmedFiles : public LostFiles, public ::testing::WithParamInterface<Harm> {};
-std::string name_of(const ::testing::TestParamInfo<Harm>& how) {
+std::string harm_name(const ::testing::TestParamInfo<Harm>& how) {
   constexpr const char* kNames[] = {"Removed", "Cut", "Overwritten"};
   return kNames[static_cast<int>(how.param)];
 }
 INSTANTIATE_TEST_SUITE_P(Of, HarmedFiles,
                          ::testing::Values(Harm::kRemoved, Harm::kCut, Harm::kOverwritten),
-                         name_of);
+                         harm_name);
 
 TEST_P(HarmedFiles, AreAllThatIsLostWhicheverProcessStartsAgain) {
   Child mission = launch_endless(free_rooms(folder_), {"--lcm-url", kUrl});

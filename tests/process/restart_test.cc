@@ -118,6 +118,7 @@ struct Victims {
   const char* name;
   std::vector<std::string> programs;  // besides the agents
 };
+void PrintTo(const Victims& victims, std::ostream* out) { *out << victims.name; }
 class AllAgentsAtOnce : public Restart,
                         public ::testing::WithParamInterface<std::tuple<Victims, const char*>> {};
 INSTANTIATE_TEST_SUITE_P(
