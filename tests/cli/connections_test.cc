@@ -69,6 +69,7 @@ class Client {
   bool ended_ = false, was_reset_ = false;
 };
 
+constexpr auto kPatience = std::chrono::seconds(60);
 constexpr const char* kHalf = "GET / HTTP/1.1\r\nX";
 constexpr const char* kPage = "GET / HTTP/1.1\r\n\r\n";
 constexpr const char* kEvents = "GET /events HTTP/1.1\r\n\r\n";
@@ -102,7 +103,7 @@ class PageConnections : public ::testing::Test {
   /// but the server's.
   template <class Condition>
   bool comes(Condition condition, std::chrono::milliseconds step = 0ms) {
-    const auto patience = std::chrono::steady_clock::now() + 60s;
+    const auto patience = std::chrono::steady_clock::now() + kPatience;
     while (!condition()) {
       if (std::chrono::steady_clock::now() > patience) return false;
       now_ += step;
