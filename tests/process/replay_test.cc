@@ -8,6 +8,7 @@
 #include <set>
 
 #include "lcmtypes/codec.h"
+#include "runtime/lcm_url.h"
 #include "tests/process/mission.h"
 
 namespace ergocast::test {
