@@ -174,8 +174,7 @@ std::variant<StudyIdentity, std::string> read_identity(const fs::path& folder) {
   if (const auto* problem = std::get_if<FileProblem>(&read))
     return "its study.json " + problem->what;
   try {
-    const Json json =
-        Json::parse(std::get<std::string>(read), JsonBounds(kMostIdentityValues), false);
+    const Json json = parse_bounded<Json>(std::get<std::string>(read), kMostIdentityValues);
     StudyIdentity identity = identity_from(json);
     if (is_sound(identity)) return identity;
   } catch (const JsonTooLarge& problem) {

@@ -145,7 +145,7 @@ class Walk {
 std::variant<std::vector<GeoPolygon>, PolygonFileProblem> parse_geojson(std::string_view text) {
   try {
     Walk walk;
-    walk.file(Json::parse(text, JsonBounds(kMostValues)));
+    walk.file(parse_bounded<Json>(text, kMostValues));
     return std::move(walk.polygons);
   } catch (const JsonTooLarge& problem) {
     return PolygonFileProblem{"", problem.what(), kSimplify};

@@ -176,7 +176,7 @@ std::variant<Json, std::string> read_json(const std::filesystem::path& file) {
     return problem->sentence(file);
   }
   try {
-    return Json::parse(std::get<std::string>(read), JsonBounds(kMostSummaryValues));
+    return parse_bounded<Json>(std::get<std::string>(read), kMostSummaryValues);
   } catch (const JsonTooLarge& problem) {
     return file.string() + ": " + problem.what() + "; remove it";
   } catch (const Json::exception& error) {

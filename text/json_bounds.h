@@ -2,12 +2,16 @@
 // Bounds for the memory that a JSON text takes once it is parsed.
 //
 // A value of one byte, such as "[", takes a hundred bytes in memory. So a limit of the file's size
-// is none of the memory. This counts values and levels while a parser makes them.
+// is none of the memory. The text is read twice: first its values and levels are counted, which
+// takes no memory. The parser's callback could count them in one pass, but takes a time that grows
+// with the square of a list's length.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace ergocast {
 
@@ -16,26 +20,66 @@ struct JsonTooLarge : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A callback for nlohmann::json::parse(), which throws JsonTooLarge.
+/// Counts what nlohmann::json::sax_parse() tells of a text, and stops it above a limit.
 class JsonBounds {
  public:
   static constexpr int kDeepest = 64;
 
   explicit JsonBounds(std::size_t most_values) : most_values_(most_values) {}
 
-  template <class Event, class Json>
-  bool operator()(int depth, Event, Json&) {
-    if (depth > kDeepest)
-      throw JsonTooLarge("is nested in more than " + std::to_string(kDeepest) + " levels");
-    // The end of a list or an object comes here, too.
-    if (++events_ > 2 * most_values_)
-      throw JsonTooLarge("has more than " + std::to_string(most_values_) + " values");
-    return true;
+  /// What there is too much of; empty: nothing.
+  const std::string& problem() const { return problem_; }
+
+  bool null() { return count(); }
+  bool boolean(bool) { return count(); }
+  bool number_integer(std::int64_t) { return count(); }
+  bool number_unsigned(std::uint64_t) { return count(); }
+  bool number_float(double, const std::string&) { return count(); }
+  bool string(std::string&) { return count(); }
+  template <class Bytes>
+  bool binary(Bytes&) {
+    return count();
+  }
+  bool key(std::string&) { return true; }
+  bool start_object(std::size_t) { return open(); }
+  bool start_array(std::size_t) { return open(); }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
+  /// Whoever parses the text says so.
+  template <class Error>
+  bool parse_error(std::size_t, const std::string&, const Error&) {
+    return false;
   }
 
  private:
+  bool count() {
+    if (++values_ > most_values_)
+      problem_ = "has more than " + std::to_string(most_values_) + " values";
+    return problem_.empty();
+  }
+  bool open() {
+    if (++depth_ > kDeepest)
+      problem_ = "is nested in more than " + std::to_string(kDeepest) + " levels";
+    return count();
+  }
+  bool close() {
+    --depth_;
+    return true;
+  }
+
   std::size_t most_values_;
-  std::size_t events_ = 0;
+  std::size_t values_ = 0;
+  int depth_ = 0;
+  std::string problem_;
 };
+
+/// @throws JsonTooLarge, and what Json::parse() throws
+template <class Json>
+Json parse_bounded(std::string_view text, std::size_t most_values) {
+  JsonBounds bounds(most_values);
+  Json::sax_parse(text, &bounds);
+  if (!bounds.problem().empty()) throw JsonTooLarge(bounds.problem());
+  return Json::parse(text);
+}
 
 }  // namespace ergocast

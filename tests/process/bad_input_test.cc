@@ -136,7 +136,7 @@ class LittleMemory : public BadInput {
     std::string command =
         "ulimit -v 524288; exec '" + (program_folder() / "ergocast").string() + "'";
     for (const std::string& argument : arguments) command += " '" + argument + "'";
-    Child child = begin({"sh", "-c", command});
+    Child child = begin({"/bin/sh", "-c", command});
     return wait_for(child);
   }
   void expect_refused(const std::string& name, const std::string& content, const std::string& part,
