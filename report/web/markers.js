@@ -77,7 +77,7 @@ function paintArrow(g, { x, y, r, body }, heading, colour, colours) {
   g.closePath();
   g.fillStyle = colour;
   g.strokeStyle = colours.panel;
-  g.lineWidth = 1.2;
+  g.lineWidth = 2;
   g.stroke();
   g.fill();
 }
@@ -119,7 +119,6 @@ function paintBody(g, { x, y, body }, { fill, rim, away }) {
 
 function paintHead(g, run, view, marker, looks, colours) {
   const heading = looks.away ? null : headingOf(run, view, marker), { head: [x, y], r, body, inside } = marker;
-  if (heading !== null) paintArrow(g, marker, heading, looks.fill, colours);
   if (!inside) {
     paintPin(g, marker);
     g.fillStyle = looks.fill;
@@ -136,6 +135,7 @@ function paintHead(g, run, view, marker, looks, colours) {
     g.lineWidth = 2;
     g.stroke();
   }
+  if (heading !== null) paintArrow(g, marker, heading, looks.fill, colours);
   paintNumber(g, marker, looks.ink);
 }
 

@@ -5,7 +5,7 @@ import { $, grouped, put } from './text.js';
 
 export const NOTABLE = 0.01;  // of the commands
 
-const CAUSE = 'The machine or the network is too slow for the pace. Use a smaller realtime_factor, a longer dt_s, or fewer agents on a host.';
+const CAUSE = 'Unless an agent was away, the machine or the network is too slow for the pace. Use a smaller realtime_factor, a longer dt_s, or fewer agents on a host.';
 const percent = share => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 
 // Commands that came too late: how many, which share of all, and which of the latest while a team runs.
