@@ -17,7 +17,11 @@ FUZZ_TARGET(hosts_file) {
     ERGOCAST_REQUIRE(host.name.find('/') == std::string::npos && host.name.front() != '.');
     for (const int id : host.agents) ERGOCAST_REQUIRE(id >= 0 && id < kMaxAgents);
   }
-  const DeployMission mission{"mission", "/missions", {"mission.textproto"}, 2, {}, {}, {}};
+  DeployMission mission;
+  mission.name = "mission";
+  mission.folder = "/missions";
+  mission.files = {"mission.textproto"};
+  mission.quorum = 2;
   if (!problems_of(hosts, mission, "hosts", true).empty()) return;
   ERGOCAST_REQUIRE(!ssh_files(hosts, mission).empty());
   ERGOCAST_REQUIRE(!systemd_files(hosts, mission).empty());

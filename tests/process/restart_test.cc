@@ -174,7 +174,7 @@ TEST_F(Restart, APausedMissionWhoseCoordinatorAndAgentsDieAtOnceStaysPaused) {
   ASSERT_TRUE(logs("coordinator", "taken over")) << said();
   ASSERT_TRUE(logs("coordinator", "mission is paused", 2)) << said();
   ASSERT_TRUE(eventually([&] { return ergocast({"resume", "--lcm-url", kUrl}) == 0; })) << output();
-  EXPECT_NE(output().find("goes on from tick "), output().npos) << output();
+  EXPECT_NE(output().find("goes on at tick "), output().npos) << output();
   ASSERT_TRUE(moves_on()) << said();
   mission.send(SIGINT);
   EXPECT_EQ(wait_for(mission), 0) << said();
