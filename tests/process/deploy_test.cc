@@ -99,7 +99,7 @@ TEST_F(Deploy, NamesEveryProblemAtOnce) {
   EXPECT_EQ(ergocast({"deploy", scenario_file("lake_search"), "--to", "ssh", "--hosts",
                       folder_ / "none"}),
             2);
-  EXPECT_TRUE(said("cannot be read")) << output();
+  EXPECT_TRUE(said("there is no such file")) << output();
 }
 
 TEST_F(Deploy, RefusesKeysThatWouldNotDo) {

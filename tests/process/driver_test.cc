@@ -60,7 +60,7 @@ TEST_F(DrivenRobots, RefuseASimulatedWorldBesideThem) {
   Program& sim = hand("ergocast-sim");
   EXPECT_EQ(wait_for(sim.child), 4) << sim.said();
   EXPECT_TRUE(sim.says("a driver, or another world, moves its vehicles already")) << sim.said();
-  EXPECT_FALSE(sim.says("moving from tick")) << "it has moved nothing";
+  EXPECT_EQ(sim.said().find("moving from tick"), std::string::npos) << "it has moved nothing";
   ASSERT_TRUE(moves_on()) << driver.said();
   ASSERT_EQ(ergocast({"stop", "--lcm-url", kUrl}), 0) << output();
   EXPECT_EQ(wait_for(driver.child), 0) << driver.said();
