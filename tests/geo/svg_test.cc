@@ -179,7 +179,7 @@ TEST(Svg, FilesThatAreNoDrawingsAreNamed) {
 TEST(Svg, FilesAreReadToTheirLimit) {
   const test::TempFolder folder;
   const auto file = folder.path() / "floor.svg";
-  EXPECT_EQ(std::get<PolygonFileProblem>(read_svg(file)).what, "cannot be read");
+  EXPECT_EQ(std::get<PolygonFileProblem>(read_svg(file)).what, "there is no such file");
   std::ofstream(file) << drawing(R"~(<rect x="2" y="1" width="3" height="3"/>)~");
   EXPECT_EQ(std::get<Drawing>(read_svg(file)).shapes.size(), 1U);
   std::ofstream(file) << drawing(std::string(kMaxPolygonFileBytes, ' '));

@@ -197,7 +197,7 @@ TEST_F(GeoJsonTarget, NeedsAnOriginThatIsAPlace) {
       said_of(text, kWhere, "regions { polygon { file: \"a.geojson\" " + vertices(1, 1, 5) + "} }"),
       "stands beside vertices or holes (keep one of them)"));
   EXPECT_TRUE(has(said_of(text, kWhere, "regions { polygon { file: \"b.geojson\" } }"),
-                  "b.geojson: cannot be read (check the name"));
+                  "b.geojson: there is no such file (check the name"));
 }
 
 TEST_F(GeoJsonTarget, AProblemOfALaterPolygonNamesItsMember) {
