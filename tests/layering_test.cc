@@ -149,7 +149,7 @@ const std::vector<Kind> kKinds = {
     {kEarth, {"proj.h"}},
     {kXml, {"pugixml.hpp"}},
     {kPhysics, {"mujoco/*", "EGL/*"}},
-    {kFiles, {"fstream", "filesystem", "iostream", "syncstream"}},
+    {kFiles, {"fstream", "filesystem", "iostream", "syncstream", "ext/stdio_filebuf.h"}},
     {kSystem, {"thread",     "mutex",     "shared_mutex", "condition_variable",
                "future",     "semaphore", "latch",        "barrier",
                "stop_token", "random",    "ctime",        "csignal",
