@@ -147,6 +147,11 @@ std::vector<Lie> lies_of_the_tables() {
        [](const fs::path& run) {
          edit_lines(run / "metrics.csv", [](Lines& lines) { lines[0] = "time"; });
        }},
+      {"is longer than any row", 1,
+       [](const fs::path& run) {
+         edit_lines(run / "metrics.csv",
+                    [](Lines& lines) { lines.insert(lines.begin() + 3, std::string(5000, '1')); });
+       }},
       {"cannot be opened", 2, [](const fs::path& run) { fs::remove(run / "trajectory.csv"); }},
   };
 }
@@ -190,6 +195,11 @@ std::vector<Lie> lies_of_the_sources() {
       {"(the file has ended)", 1,
        [](const fs::path& run) {
          edit_lines(run / "target_density.csv", [](Lines& lines) { lines.pop_back(); });
+       }},
+      {"is longer than what it should hold", 1,
+       [](const fs::path& run) {
+         edit(run / "target_density.csv",
+              [](std::string& text) { text.append(std::size_t{2} << 20, ' '); });
        }},
       {"report.html:", 1,
        [](const fs::path& run) {

@@ -54,7 +54,8 @@ class RecordedTeam : public ::testing::Test {
         status.header.tick = tick_;
         status.ergodic_metric = 0.25 + id;
         status.max_staleness_s = 1.5;
-        status.phase = now_ < begin_ + 2s ? AgentPhase::kRunning : AgentPhase::kReturning;
+        status.phase =
+            now_ < begin_ + std::chrono::seconds(2) ? AgentPhase::kRunning : AgentPhase::kReturning;
         log(status);
       }
     }
