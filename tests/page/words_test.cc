@@ -95,10 +95,10 @@ TEST_F(WordsInABrowser, ALiveTeamPausesAndRests) {
   EXPECT_EQ(wait_for(mission), 0);
 }
 
-// 160 000 commands a second are too many for every machine.
+// 80 000 commands a second are too many for every machine.
 TEST_F(WordsInABrowser, LateCommandsAreAWarning) {
   Child mission =
-      launch_endless(scenario("pace: REALTIME realtime_factor: 1000", "random_count: 12\n"),
+      launch_endless(scenario("pace: REALTIME realtime_factor: 1000", "random_count: 4\n"),
                      {"--watch", "--port", "8814"});
   browser_->open("http://127.0.0.1:8814/");
   EXPECT_TRUE(browser_->becomes("return !document.getElementById('overload')?.hidden"));
