@@ -17,8 +17,8 @@ class Tape {
   explicit Tape(const std::string& url) {
     const LcmUrl buses = std::get<LcmUrl>(LcmUrl::parse(url));
     for (const Bus bus : {Bus::kSwarm, Bus::kCommand}) {
-      Ear& ear =
-          ears_.emplace_back(Ear{bus, std::make_unique<lcm::LCM>(buses.of(bus)), &recorded_});
+      ears_.push_back({bus, std::make_unique<lcm::LCM>(buses.of(bus)), &recorded_});
+      Ear& ear = ears_.back();
       ear.lcm->subscribe("ERGOCAST_(PAUSE|STOP)", &Ear::hear, &ear)->setQueueCapacity(0);
     }
   }

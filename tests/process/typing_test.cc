@@ -128,7 +128,8 @@ TEST_F(Typing, PipesAmongTheMapsOfAScenarioAreRefused) {
   std::string plane = text_of(scenario_file("quadrimodal_corners"));
   std::string box = text_of(scenario_file("water_column"));
   const auto with = [](std::string text, const std::string& part) {
-    return text.insert(text.find("target {") + 8, ' ' + part + ' ');
+    text.insert(text.find("target {") + 8, ' ' + part + ' ');
+    return text;
   };
   const std::string area = " origin_x_m: 0 origin_y_m: 0 size_x_m: 9 size_y_m: 9 } ";
   const std::map<std::string, std::string> parts = {
