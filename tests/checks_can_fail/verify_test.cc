@@ -150,7 +150,7 @@ std::vector<Lie> lies_of_the_tables() {
       {"is longer than any row", 1,
        [](const fs::path& run) {
          edit_lines(run / "metrics.csv",
-                    [](Lines& lines) { lines.insert(lines.begin() + 3, std::string(5000, '1')); });
+                    [](Lines& lines) { lines.insert(lines.begin() + 3, std::string(20000, '1')); });
        }},
       {"cannot be opened", 2, [](const fs::path& run) { fs::remove(run / "trajectory.csv"); }},
   };
