@@ -25,7 +25,7 @@ class Rate {
 // The share of commands that came too late, of those of the last ten seconds of wall time.
 class Lateness {
   constructor() { this.points = []; }
-  add({ counted_ticks: ticks, missed_deadlines: missed, agents }) {
+  add({ tick: ticks, missed_deadlines: missed, agents }) {
     const now = performance.now();
     this.points.push([now, ticks, missed]);
     while (this.points.length > 2 && now - this.points[0][0] > LATELY_MS) this.points.shift();

@@ -11,7 +11,7 @@ const percent = share => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 // Commands that came too late: how many, which share of all, and which of the latest while a team runs.
 export function lateCommands() {
   if (S.facts) {
-    const { missed, late, state } = S.facts, all = (state?.counted_ticks ?? 0) * (state?.agents?.length ?? 0);
+    const { missed, late, state } = S.facts, all = (state?.tick ?? 0) * (state?.agents?.length ?? 0);
     return { missed, share: all > 0 ? Math.min(1, missed / all) : 0, lately: late };
   }
   const { summary } = S.run, missed = summary?.missed_deadlines, all = summary?.ticks * summary?.agents?.length;
