@@ -21,7 +21,8 @@ TEST(CommandWindow, AdmitsEveryTickBeforeTheMissionHasBegun) {
 TEST(CommandWindow, IsBetweenOneAndTwoLengthsWide) {
   CommandWindow window;
   const auto ticks_at = [](std::chrono::milliseconds time) { return Tick{time.count()}; };
-  for (auto time = 0ms; time <= 60s; time += 100ms) {
+  for (int tenths = 0; tenths <= 600; ++tenths) {
+    const std::chrono::milliseconds time(100 * tenths);
     window.note(ticks_at(time), true, at(time));
     EXPECT_TRUE(window.admits(ticks_at(time)));
     EXPECT_TRUE(window.admits(std::max(Tick{0}, ticks_at(time - CommandWindow::kLength))))
@@ -33,7 +34,8 @@ TEST(CommandWindow, IsBetweenOneAndTwoLengthsWide) {
 TEST(CommandWindow, AdmitsTheTickAtWhichTheMissionStands) {
   CommandWindow window;
   window.note(7, true, at(0s));
-  for (auto time = 1s; time <= 600s; time += 1s) window.note(7, true, at(time));
+  for (int seconds = 1; seconds <= 600; ++seconds)
+    window.note(7, true, at(std::chrono::seconds(seconds)));
   EXPECT_TRUE(window.admits(7)) << "the team is slow, and nothing has happened since";
   EXPECT_FALSE(window.admits(6));
 }
