@@ -32,7 +32,7 @@ namespace ergocast::cli {
 class Connections {
  public:
   static constexpr int kMostHeads = 32, kMostAnswers = 32, kMostStreams = 16;
-  /// Of a request line with all headers; a longer one gets 431.
+  /// The longest request line with all its headers. A longer one gets 431.
   static constexpr std::size_t kLongestHead = 16 << 10;
   /// For the whole head, however it trickles in; then 408.
   static constexpr auto kHeadPatience = std::chrono::seconds(5);
@@ -62,7 +62,8 @@ class Connections {
 
  private:
   enum class Phase { kHead, kAnswer, kStream, kLeaving };
-  /// Of a client; of IPv6 the network's half, because one host may have all addresses of it.
+  /// A client's address. IPv6 addresses keep their network half alone, because one host may have
+  /// all the others.
   using Address = std::array<unsigned char, 16>;
 
   struct Connection {

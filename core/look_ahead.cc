@@ -24,7 +24,7 @@ struct AxisModes {
         count{basis.modes_x, basis.modes_y, basis.modes_z},
         step{basis.modes_y, 1, basis.modes_x * basis.modes_y} {}
 
-  /// Of a length of 1.
+  /// The variance along an axis whose length is 1.
   double variance(int axis) const {
     double mean = 0.5, square = 1.0 / 3;
     for (int m = 1; m < count[axis]; ++m) {

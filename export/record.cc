@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kQuarter_ns = 900 * kSecond_ns;
 constexpr std::int64_t kFarthestZone_ns = 15 * 3600 * kSecond_ns;
 constexpr double kCoverageCells = 64;
-/// Of a log; a longer one becomes several.
+/// The longest line of a log in one message. A longer line becomes several.
 constexpr std::size_t kLongestLine = 1 << 16;
 
 /// "2026-01-31T12:00:00", with milliseconds if they follow, as if it were UTC.

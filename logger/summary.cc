@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kNotableShare = 0.01;
 /// Of a distance, what rounding may take.
 constexpr double kRounding = 1e-9;
-/// Of a file that is read again: several times what the largest roster makes.
+/// The limits of a summary that is read again: several times what the largest roster makes.
 constexpr std::size_t kMostSummaryBytes = std::size_t{16} << 20;
 constexpr std::size_t kMostSummaryValues = 1'000'000;
 

@@ -98,7 +98,7 @@ std::optional<MapProblem> NetcdfFile::objection(Variable variable) const {
                     "write it in smaller chunks: nccopy -c"};
 }
 
-/// Of the smallest part that can be read by itself; 0 if rows can.
+/// The size of the smallest part that can be read by itself; 0 if rows can.
 std::size_t NetcdfFile::chunk_bytes(Variable variable) const {
   constexpr int kChunked = 0;
   std::vector<std::size_t> lengths(dimensions(variable).size());

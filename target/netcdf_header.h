@@ -14,7 +14,7 @@
 namespace ergocast {
 
 struct NetcdfHeader {
-  /// Of each variable, how many bytes the file must have to hold it. Empty for other formats, such
+  /// How many bytes the file must have to hold each variable. Empty for other formats, such
   /// as HDF5, in which libnetcdf looks for every part before it reads it.
   std::map<std::string, std::uint64_t> bytes_up_to;
 };

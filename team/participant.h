@@ -120,7 +120,7 @@ class Participant {
     // Copies the message once, in place: a contribution is a kilobyte.
     Outgoing& outgoing = out.emplace_back();
     outgoing.bus = bus;
-    if (!std::is_same_v<M, Hello>) note_tick(tick);  // who asks may not know the tick
+    if (!std::is_same_v<M, Hello>) note_tick(tick);  // a process that asks may not know it
     outgoing.message.emplace<M>(message).header = {
         self_.run, self_.id, self_.incarnation, ++sequences_[static_cast<std::size_t>(bus)], tick};
   }

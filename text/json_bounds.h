@@ -45,7 +45,7 @@ class JsonBounds {
   bool start_array(std::size_t) { return open(); }
   bool end_object() { return close(); }
   bool end_array() { return close(); }
-  /// Whoever parses the text says so.
+  /// The parser of the text reports it.
   template <class Error>
   bool parse_error(std::size_t, const std::string&, const Error&) {
     return false;

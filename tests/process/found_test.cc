@@ -43,7 +43,7 @@ class Found : public OwnHost {
     const std::string text = output();
     return nlohmann::json::parse(text.substr(text.find('[')));
   }
-  /// Of the run with this folder. Runs that began in one second are listed in any order.
+  /// The id of the run with this folder. Runs that began in one second are listed in any order.
   std::string id_of(const std::string& name) {
     for (const auto& run : listed()) {
       if (run["run_dir"] == (folder_ / name).string()) return run["run_id"];

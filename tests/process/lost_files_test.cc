@@ -108,7 +108,7 @@ TEST_F(LostFiles, WithoutTheKeyFileTheKilledComeBackWithTheKey) {
   const fs::path key = folder_ / "c.key";
   ASSERT_EQ(write_key_file(key, key_text(make_mission_key(), true)), std::nullopt);
   Child mission = launch_endless(scenario(), {"--key-file", key});
-  // Whoever changes the key means the next mission.
+  // A changed key is meant for the next mission.
   fs::remove(key);
   ASSERT_EQ(write_key_file(key, key_text(make_mission_key(), true)), std::nullopt);
   restart({"ergocast-coordinator"}, "coordinator");
