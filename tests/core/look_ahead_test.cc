@@ -40,21 +40,23 @@ Eigen::Matrix3d covariance_m2(const Mission& mission) {
 double spread_m(const Mission& mission) { return target_spread_m(covariance_m2(mission)); }
 
 /// From the definition: the density on a grid of 1000 × 1000 midpoints.
-double integrated_spread_m(const TargetDensity& target, const Box& domain) {
+Eigen::Matrix3d integrated_covariance_m2(const TargetDensity& target, const Box& domain) {
   constexpr int kCells = 1000;
-  double mass = 0, square_m2 = 0;
-  Eigen::Vector3d first_m = Eigen::Vector3d::Zero();
+  double mass = 0;
+  Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d square_m2 = Eigen::Matrix3d::Zero();
   for (int i = 0; i < kCells; ++i) {
     for (int j = 0; j < kCells; ++j) {
       const Eigen::Vector3d at_m =
           Eigen::Vector3d(i + 0.5, j + 0.5, 0).cwiseProduct(domain.size_m) / kCells;
       const double here = density_unscaled(target, domain, domain.origin_m + at_m);
       mass += here;
-      first_m += here * at_m;
-      square_m2 += here * at_m.squaredNorm();
+      mean_m += here * at_m;
+      square_m2 += here * at_m * at_m.transpose();
     }
   }
-  return std::sqrt(square_m2 / mass - (first_m / mass).squaredNorm());
+  mean_m /= mass;
+  return square_m2 / mass - mean_m * mean_m.transpose();
 }
 
 // ---- s -----------------------------------------------------------------------------------------
@@ -90,7 +92,7 @@ std::vector<Case> smooth_targets() {
 TEST(TargetSpread, IsTheRmsDistanceFromTheMean) {
   for (const auto& [name, target, domain] : smooth_targets()) {
     const Mission mission = mission_of(target, domain, 24);
-    const double expected_m = integrated_spread_m(target, domain);
+    const double expected_m = target_spread_m(integrated_covariance_m2(target, domain));
     EXPECT_NEAR(spread_m(mission), expected_m, 1e-3 * expected_m) << name;
   }
 }
@@ -166,22 +168,7 @@ TEST(SharedDimensions, FollowTheTargetAndNotTheDomain) {
 
 TEST(SharedDimensions, AreThoseOfTheCovarianceOnAGrid) {
   for (const auto& [name, target, domain] : smooth_targets()) {
-    constexpr int kCells = 400;
-    double mass = 0;
-    Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d square_m2 = Eigen::Matrix3d::Zero();
-    for (int i = 0; i < kCells; ++i) {
-      for (int j = 0; j < kCells; ++j) {
-        const Eigen::Vector3d at_m =
-            Eigen::Vector3d(i + 0.5, j + 0.5, 0).cwiseProduct(domain.size_m) / kCells;
-        const double here = density_unscaled(target, domain, domain.origin_m + at_m);
-        mass += here;
-        mean_m += here * at_m;
-        square_m2 += here * at_m * at_m.transpose();
-      }
-    }
-    mean_m /= mass;
-    const Eigen::Matrix3d expected_m2 = square_m2 / mass - mean_m * mean_m.transpose();
+    const Eigen::Matrix3d expected_m2 = integrated_covariance_m2(target, domain);
     const Mission mission = mission_of(target, domain, 24);
     EXPECT_LE((covariance_m2(mission) - expected_m2).norm(), 3e-3 * expected_m2.norm()) << name;
     EXPECT_NEAR(dimensions(mission), shared_dimensions(expected_m2), 1e-2) << name;
