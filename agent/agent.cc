@@ -81,8 +81,7 @@ const Agent::InMission* Agent::flight() const {
   return end->mission ? &*end->mission : nullptr;
 }
 
-// ---- the mission
-// ---------------------------------------------------------------------------------
+// ---- the mission ----
 
 void Agent::on(const MissionPart& part, const Arrival& arrival) {
   mission_repeat_.overheard(part.revision, follower().revision(), arrival.now, me_.received());
@@ -153,8 +152,7 @@ void Agent::on(const Stop& stop, const Arrival&) {
   finish(stop.failed, stop.reason, phase() == AgentPhase::kRunning && tick() >= 0);
 }
 
-// ---- what teammates and the world say
-// ------------------------------------------------------------
+// ---- what teammates and the world say ----
 
 std::int64_t Agent::max_steps(const InMission& flight, const RosterEntry& author,
                               Instant now) const {
@@ -240,8 +238,7 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
   }
 }
 
-// ---- acting
-// --------------------------------------------------------------------------------------
+// ---- acting ----
 
 void Agent::advance(Instant now, Outbox& out) {
   ask_for_admission(now, out);
@@ -299,8 +296,7 @@ void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   state_ = std::move(end);
 }
 
-// ---- what it says of itself
-// ----------------------------------------------------------------------
+// ---- what it says of itself ----
 
 AgentPhase Agent::phase() const {
   if (finished()) return AgentPhase::kFinished;

@@ -153,7 +153,7 @@ void accumulate_basis(const CosinesAt& at, const Basis& basis, double dt_s, cons
                [=](double& sum, double value) { sum += value * share[&sum - sums]; });
 }
 
-// ---- the field: sums over the modes of a plane, which space uses three times --------------------
+// ---- the field: sums over the modes of a plane, which space uses three times ----
 
 namespace {
 

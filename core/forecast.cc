@@ -74,7 +74,7 @@ void Forecast::see(AgentId agent, Tick tick, const Eigen::Vector3d& x_m) {
   places.push_back({tick, x_m});
 }
 
-// ---- dead reckoning -----------------------------------------------------------------------------
+// ---- dead reckoning ----
 
 /// Brings the track of a row's vehicle up to what is known; null if that is no more than the row.
 Forecast::Track* Forecast::reckon(const CoverageTable& table, std::size_t row,
@@ -164,7 +164,7 @@ void Forecast::set_gains_in_slots(Track& track) {
   layout_.to_slots(gains_.data(), track.gains.data());
 }
 
-// ---- the forecast -------------------------------------------------------------------------------
+// ---- the forecast ----
 
 void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                       Tick tick) {

@@ -34,7 +34,7 @@ inline constexpr std::size_t kMaxHolds = 32;
 /// has no end, and there are not too many.
 bool are_holds(std::span<const Hold> holds);
 
-// ---- of holds that are are_holds() --------------------------------------------------------------
+// ---- of holds that are are_holds() ----
 
 bool is_held(std::span<const Hold> holds, Tick tick);
 

@@ -186,8 +186,7 @@ SafeVelocity SeparationFilter::stopped(const Mover& self, const Neighbour& other
   return {executed(motion_of(self.id), self.velocity_mps, {0, 0, 0}), true, other.id, false, true};
 }
 
-// ---- points
-// ----------------------------------------------------------------------------------------
+// ---- points ----
 
 /// Across the wanted step, and a little along it.
 Eigen::Vector3d SeparationFilter::sideways(const Mover& self,

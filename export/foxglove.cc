@@ -35,7 +35,7 @@ std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// ---- JSON Schemas
+// ---- JSON Schemas ----
 
 const Json kText = {{"type", "string"}}, kNumber = {{"type", "number"}},
            kInteger = {{"type", "integer"}};

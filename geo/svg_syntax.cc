@@ -21,7 +21,7 @@ bool is_separator(char c) {
 
 }  // namespace
 
-// ---- numbers -----------------------------------------------------------------------------------
+// ---- numbers ----
 
 void SvgReader::skip_separators() {
   while (!rest_.empty() && is_separator(rest_.front())) rest_.remove_prefix(1);
@@ -83,7 +83,7 @@ std::vector<double> svg_numbers(std::string_view text) {
   return numbers;
 }
 
-// ---- paths -------------------------------------------------------------------------------------
+// ---- paths ----
 
 namespace {
 
@@ -158,7 +158,7 @@ class Pen {
 
 std::vector<DrawnRing> svg_path(std::string_view d) { return Pen(d).rings(); }
 
-// ---- transforms --------------------------------------------------------------------------------
+// ---- transforms ----
 
 namespace {
 

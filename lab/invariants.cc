@@ -64,8 +64,7 @@ void Invariants::born(const Author& author) {
   ++lives_[author.agent];
 }
 
-// ---- safety: what is said
-// ------------------------------------------------------------------------
+// ---- safety: what is said ----
 
 void Invariants::sent(double t_s, const Outgoing& outgoing, const TableView* speaker) {
   if (const auto* world = std::get_if<WorldState>(&outgoing.message)) return check(t_s, *world);
@@ -234,8 +233,7 @@ void Invariants::gave_up_logger(double t_s, std::optional<Tick> acknowledged, Ti
                " has reached it"));
 }
 
-// ---- liveness
-// ------------------------------------------------------------------------------------
+// ---- liveness ----
 
 void Invariants::coordinated(double t_s, const Coordinator& coordinator, Instant now,
                              const std::vector<TableView>& living) {

@@ -14,8 +14,7 @@ constexpr Tick kTicksBetweenAverages = 11;
 
 }  // namespace
 
-// ---- safety: what is known
-// -----------------------------------------------------------------------
+// ---- safety: what is known ----
 
 void Invariants::received(const TableView& listener, const Message& message) {
   if (listener.table == nullptr) return;
@@ -95,8 +94,7 @@ void Invariants::check_forecast(double t_s, const TableView& holder) {
           text("differs by ", error, " at tick ", holder.answered));
 }
 
-// ---- liveness
-// ------------------------------------------------------------------------------------
+// ---- liveness ----
 
 /// The newest of each author's blocks that any agent holds. Forgotten rows do not count any more.
 std::map<Author, std::vector<Invariants::Best>> Invariants::best_of(

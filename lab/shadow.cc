@@ -201,7 +201,7 @@ bool flies(const Mission& mission, const TableView& agent, const RosterEntry& en
 
 }  // namespace
 
-// ---- what was heard -----------------------------------------------------------------------------
+// ---- what was heard ----
 
 void Shadow::hear(const Mission& mission, const TableView& agent, const Message& message) {
   if (const auto* block = std::get_if<Contribution>(&message)) take(agent, *block);
@@ -255,7 +255,7 @@ bool Shadow::in_range(const Mission& mission, AgentId one, AgentId other) const 
   return (here->second - there->second).norm() <= mission.radio_range_m;
 }
 
-// ---- where teammates have been ------------------------------------------------------------------
+// ---- where teammates have been ----
 
 void Shadow::answer(const Mission& mission, const TableView& agent) {
   if (!mission.dead_reckoning) return;
@@ -293,7 +293,7 @@ void Shadow::reckon(const RosterEntry& entry, Row& row) const {
   if (entry.active_at(places.back().tick)) row.newest = places.back();
 }
 
-// ---- the equation -------------------------------------------------------------------------------
+// ---- the equation ----
 
 /// By its blocks alone.
 Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {

@@ -107,8 +107,7 @@ SimulationCounts Simulation::counts() const {
   return counts;
 }
 
-// ---- time
-// ----------------------------------------------------------------------------------------
+// ---- time ----
 
 void Simulation::run(PacingClock::duration limit) {
   while (now_.time_since_epoch() < limit && step()) {
@@ -156,8 +155,7 @@ void Simulation::advance(NodeId id) {
   (observer_ != nullptr ? *observer_ : nobody).advanced(id, next <= local);
 }
 
-// ---- messages
-// ------------------------------------------------------------------------------------
+// ---- messages ----
 
 void Simulation::publish(NodeId from) {
   if (outbox_.empty()) return;

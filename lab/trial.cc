@@ -89,8 +89,7 @@ class Trial : SimulationObserver {
   TrialFigures figures_;
 };
 
-// ---- what happens
-// --------------------------------------------------------------------------------
+// ---- what happens ----
 
 void Trial::started(NodeId node, Incarnation incarnation, bool again) {
   if (is_agent(node)) {
@@ -179,8 +178,7 @@ void Trial::healed() {
                                     (1 - faults_.clock_rate_error));
 }
 
-// ---- who is back
-// ---------------------------------------------------------------------------------
+// ---- who is back ----
 
 void Trial::expect_back(NodeId node) {
   Recovery recovery{simulation_.now(), {}};
@@ -234,8 +232,7 @@ std::vector<TableView> Trial::views(bool also_finished) const {
   return views;
 }
 
-// ---- judgement
-// -----------------------------------------------------------------------------------
+// ---- judgement ----
 
 void Trial::check_coordinator() {
   const NodeId node = simulation_.coordinator_node();

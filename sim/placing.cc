@@ -115,8 +115,7 @@ void World::filter_commands() {
   }
 }
 
-// ---- a physics in the place of core/vehicle.h
-// ------------------------------------------------------------
+// ---- a physics in the place of core/vehicle.h ----
 
 /// Once a mission is known. False: there is none for it.
 bool World::make_physics() {

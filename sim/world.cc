@@ -70,8 +70,7 @@ void World::on(const Stop& stop, const Arrival&) {
   emergency_stopped_ = stop.reason;
 }
 
-// ---- beginning
-// -----------------------------------------------------------------------------------
+// ---- beginning ----
 
 void World::start(Instant now) {
   started_ = true;

@@ -52,8 +52,7 @@ class BeaconBook {
   /// Who takes part. Another incarnation under a number has heard nothing of us.
   void note_roster(const std::vector<RosterEntry>& roster);
 
-  // ---- what teammates say
-  // --------------------------------------------------------------------------
+  // ---- what teammates say ----
   /// Takes in a beacon. One of nobody in the roster has no effect. One that came after a later one,
   /// or that echoes a number which was never sent, has none either, and is counted.
   /// @param fresh  no later message of its sender came before
@@ -63,8 +62,7 @@ class BeaconBook {
   /// Beacons that echo what was not sent yet.
   std::int64_t from_the_future() const { return from_the_future_; }
 
-  // ---- what we say
-  // ---------------------------------------------------------------------------------
+  // ---- what we say ----
   /// Called before a command for `now.tick` is sent.
   void commands(const Moment& now);
   /// Takes the newest place of the own body.
@@ -77,8 +75,7 @@ class BeaconBook {
   /// @param revision  of the roster that is known
   std::optional<Beacon> next(std::int64_t revision, const Moment& now);
 
-  // ---- what the filter needs
-  // -----------------------------------------------------------------------
+  // ---- what the filter needs ----
   /// All other bodies, in ascending order of their numbers. Where one is not known, or its agent
   /// is not known to hear us, `known` is false: we must stand.
   std::span<const Neighbour> bodies(const Eigen::Vector3d& own_position_m, const Moment& now);

@@ -55,8 +55,7 @@ class Participant {
   /// Refusal::kRange.
   std::optional<Arrival> accept(const Message& message, Bus bus, AgentId transmitter, Instant now);
 
-  // ---- the mission, as far as it is known
-  // ----------------------------------------------------------
+  // ---- the mission, as far as it is known ----
   const MissionFollower& follower() const { return follower_; }
   /// From now on accepts only this plan.
   /// @pre no part of the mission has been received
@@ -75,8 +74,7 @@ class Participant {
   /// The sender's roster entry if it is a present or former member under its own number; else null.
   const RosterEntry* member(const Header& from) const;
 
-  // ---- the others
-  // --------------------------------------------------------------------------------
+  // ---- the others ----
   const Liveness& liveness() const { return liveness_; }
   /// Counts an incarnation as alive at `now`; see Liveness.
   void presume_alive(const Author& life, Instant now) { liveness_.presume_alive(life, now); }
@@ -99,8 +97,7 @@ class Participant {
     });
   }
 
-  // ---- ourselves
-  // ---------------------------------------------------------------------------------
+  // ---- ourselves ----
   Role role() const { return role_; }
   RunId run() const { return self_.run; }
   void set_run(RunId run) { self_.run = run; }

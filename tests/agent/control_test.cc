@@ -13,8 +13,7 @@ namespace {
 
 using namespace test;
 
-// ---- the control step
-// ----------------------------------------------------------------------------
+// ---- the control step ----
 
 TEST(AgentTick, FirstSampleIsWhereItStandsAtTheStart) {
   const Mission mission = small_mission(1);
@@ -203,8 +202,7 @@ TEST(AgentTick, EndsByItselfAtThePlansLastTick) {
   EXPECT_TRUE(only<Contribution>(out).empty());
 }
 
-// ---- lockstep
-// ------------------------------------------------------------------------------------
+// ---- lockstep ----
 
 TEST(AgentInLockstep, WaitsForHighModesOnlyWhenTheyAreDue) {
   Mission mission = two_block_mission(2);
@@ -371,8 +369,7 @@ TEST(AgentInLockstep, LateOldBlocksChangeNothing) {
   EXPECT_EQ(status_after(agent, at(0s)).refused, RefusalCounts{}) << "stale is not refused";
 }
 
-// ---- real time
-// -----------------------------------------------------------------------------------
+// ---- real time ----
 
 TEST(AgentInRealTime, AnswersWithWhatItHas) {
   Mission mission = small_mission(4);

@@ -49,7 +49,7 @@ void hear(Agent& agent, const std::vector<Contribution>& said) {
   for (const Contribution& block : said) give(agent, block, at(0s));
 }
 
-// ---- what it answers to ------------------------------------------------------------------------
+// ---- what it answers to ----
 
 TEST(AgentForesees, ItsCommandAnswersToWhatItForeseesAndItsStatusTellsWhatItKnows) {
   for (const bool dead_reckoning : {false, true}) {
@@ -98,7 +98,7 @@ TEST(AgentForesees, NothingWithoutAnticipation) {
   EXPECT_EQ(commands.at(0).velocity_mps, controller.command(0, 1, whereabouts(0, 1), here));
 }
 
-// ---- the tick of a block -----------------------------------------------------------------------
+// ---- the tick of a block ----
 
 TEST(AgentForesees, TheSameOfARepeatAsOfTheBroadcast) {
   // A repeated block carries the tick of its broadcast, so that an agent that receives only the
@@ -149,7 +149,7 @@ TEST(AgentForesees, NothingFromWhatATeammateHasGainedSinceBeforeItTookPart) {
   EXPECT_EQ(foreseen(true), foreseen(false));
 }
 
-// ---- places ------------------------------------------------------------------------------------
+// ---- places ----
 
 /// A team in lockstep that broadcasts each `period` ticks: the commands of all agents at each tick.
 std::vector<Eigen::Vector3d> commands_in_lockstep(Mission mission, int period, int ticks) {
@@ -251,7 +251,7 @@ TEST(AgentReckons, AndSaysNothingOfItToAnybody) {
   for (const Digest& digest : only<Digest>(said)) EXPECT_EQ(digest.entries[1].steps, 3);
 }
 
-// ---- when a tick may be answered ---------------------------------------------------------------
+// ---- when a tick may be answered ----
 
 /// The two parts of the state of a team of twenty.
 std::vector<WorldState> parts_of_twenty(Tick tick) {
@@ -308,8 +308,7 @@ TEST(AgentInLockstep, WaitsForNoPartThatItDoesNotNeed) {
   }
 }
 
-// ---- teammates that died
-// -------------------------------------------------------------------------
+// ---- teammates that died ----
 
 TEST(AgentForesees, NothingOfATeammateThatHasBeenSilentForLongerThanItLooksAhead) {
   for (const bool dead_reckoning : {false, true}) {

@@ -12,8 +12,7 @@ namespace {
 
 using namespace test;
 
-// ---- what is refused
-// -----------------------------------------------------------------------------
+// ---- what is refused ----
 
 /// Sends one false contribution and expects: no row, no block, one more refusal for `why`.
 void expect_refused(const Contribution& lie, Refusal why) {
@@ -116,8 +115,7 @@ TEST(AgentRefuses, ItsOwnEcho) {
   EXPECT_EQ(agent.coverage()->row_count(), 1u);
 }
 
-// ---- what the status counts
-// ----------------------------------------------------------------------
+// ---- what the status counts ----
 
 TEST(AgentStatusReport, CountsGapsInATeammatesSequenceAsLost) {
   const Mission mission = small_mission(2);

@@ -12,8 +12,7 @@ namespace {
 
 using namespace test;
 
-// ---- joining
-// -------------------------------------------------------------------------------------
+// ---- joining ----
 
 TEST(AgentJoining, AsksFourTimesASecondUntilTheRosterNamesIt) {
   announce(small_mission(4));
@@ -220,8 +219,7 @@ TEST(Agent, TellsTheWorstLagOfItsLoopSinceItsLastStatusOnce) {
   EXPECT_EQ(only<AgentStatus>(advance(agent, at(20s))).at(0).loop_lag_s, 0);
 }
 
-// ---- restarts and the end
-// ------------------------------------------------------------------------
+// ---- restarts and the end ----
 
 TEST(AgentHears, CoverageOfMembersOnly) {
   const Mission mission = small_mission(2);

@@ -153,8 +153,7 @@ TEST(MissionRepeat, ComesToWhoAsksAlsoJustAfterAnOldOneWasCorrected) {
   EXPECT_EQ(only<MissionPart>(advance(agent, at(10s + 201ms))).size(), 4u);
 }
 
-// ---- where it was
-// --------------------------------------------------------------------------------
+// ---- where it was ----
 
 TEST(WorldQuestion, GetsTheLastTwoCommandsWithTheirTicksAndPlaces) {
   Mission mission = small_mission(1);
@@ -191,8 +190,7 @@ TEST(WorldQuestion, IsNotForTheCoordinatorToAsk) {
   EXPECT_TRUE(only<Command>(tell(agent, question_of(kCoordinator, 0))).empty());
 }
 
-// ---- lost from the roster
-// ------------------------------------------------------------------------
+// ---- lost from the roster ----
 
 TEST(LostFromTheRoster, AnAgentAsksAgainUnderItsNumberAndGoesOn) {
   Mission mission = small_mission(2);

@@ -67,8 +67,7 @@ class Repair : public ::testing::Test {
   const std::vector<Author> two{author_of(2)};
 };
 
-// ---- digests
-// -------------------------------------------------------------------------------------
+// ---- digests ----
 
 TEST_F(Repair, ADigestNamesEverybodyInTheRosterWithNothingForWhatIsNotHeld) {
   const Author former{3, 33};
@@ -123,8 +122,7 @@ TEST(AgentDigests, AndEachMissionSecondHoweverFastTheClockOfTheMission) {
   EXPECT_EQ(digests, 4) << "40 ticks of 0.1 s";
 }
 
-// ---- which gap is worth an answer
-// ----------------------------------------------------------------
+// ---- which gap is worth an answer ----
 
 TEST_F(Repair, AnswersTheSecondOfTwoDigestsInARow) {
   hold(author_of(2), 20);
@@ -204,8 +202,7 @@ TEST_F(Repair, WhoKnowsNoMoreIsSilent) {
   EXPECT_EQ(answered(at(3s)), nobody) << "the other knows more";
 }
 
-// ---- which agent answers, and when
-// ---------------------------------------------------------------
+// ---- which agent answers, and when ----
 
 TEST_F(Repair, AnAnswerIsEveryBlockOfTheRow) {
   mission = two_block_mission(5);
@@ -286,8 +283,7 @@ TEST_F(Repair, SaysWhatItHoldsWhenItSpeaksNotWhenItDecided) {
   EXPECT_EQ(blocks[0].steps, 25);
 }
 
-// ---- digests that cannot be true
-// -----------------------------------------------------------------
+// ---- digests that cannot be true ----
 
 TEST_F(Repair, StrangersInADigestAreNobody) {
   const Author stranger{2, 4711};

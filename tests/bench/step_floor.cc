@@ -25,7 +25,7 @@ using Waves = StepFloor::Waves;
 
 constexpr int kLanes = 4;
 
-// ---- any processor ---------------------------------------------------------------------------
+// ---- any processor ----
 
 void waves_anywhere(double x_m, double wave_number, int modes, Waves& out) {
   const double first_cos = std::cos(wave_number * x_m), first_sin = std::sin(wave_number * x_m);
@@ -82,7 +82,7 @@ Totals pass_anywhere(const Tables& tables, const Waves& along_x, const Waves& al
   return totals;
 }
 
-// ---- AVX2 and FMA ------------------------------------------------------------------------------
+// ---- AVX2 and FMA ----
 
 #if defined(__x86_64__)
 #define ERGOCAST_AVX2 __attribute__((target("avx2,fma")))

@@ -79,8 +79,7 @@ WRAPPED(void, hear_beacon, "_ZN8ergocast10BeaconBook4hearERKNS_6BeaconEbRKNS_6Mo
 WRAPPED(std::span<const Neighbour>, bodies, "_ZN8ergocast10BeaconBook6bodiesERKN5Eigen6MatrixIdLi3ELi1ELi0ELi3ELi1EEERKNS_6MomentE", BeaconBook*, const Eigen::Vector3d&, const Moment&)
 // clang-format on
 
-// ---- control and world
-// ---------------------------------------------------------------------------
+// ---- control and world ----
 
 Eigen::Vector3d bug_command(Controller* self, AgentId agent, Tick tick, const Eigen::Vector3d& x_m,
                             const BasisAt& at) {
@@ -253,8 +252,7 @@ bool bug_filters_again(const Mission& mission) {
   return real_filters_again(mission) && !bug("held commands know no walls");
 }
 
-// ---- pauses
-// --------------------------------------------------------------------------------------
+// ---- pauses ----
 
 namespace {
 
@@ -300,8 +298,7 @@ bool bug_goes_home(WayHome* self, Tick counted, const Eigen::Vector3d& x_m) {
   return real_goes_home(self, bug("an agent goes home late") ? counted - 15 : counted, x_m);
 }
 
-// ---- coverage
-// ------------------------------------------------------------------------------------
+// ---- coverage ----
 
 void bug_set_quality(CoverageTable* self, const Author& author, double quality) {
   real_set_quality(self, author, bug("a quality does not count") ? 1 : quality);
@@ -415,8 +412,7 @@ void bug_average(const CoverageTable* self, Coefficients& coverage) {
   if (bug("the average is off")) coverage[2] += 1e-6;
 }
 
-// ---- forecasts
-// -----------------------------------------------------------------------------------
+// ---- forecasts ----
 
 namespace {
 
@@ -476,8 +472,7 @@ void bug_look_ahead(Forecast* self, const CoverageTable& table,
   real_look_ahead(self, mistaken(table, tick), roster, tick, coverage);
 }
 
-// ---- agents
-// --------------------------------------------------------------------------------------
+// ---- agents ----
 
 namespace {
 
@@ -543,8 +538,7 @@ Instant bug_next_wakeup(const Agent* self) {
   return now ? Instant{} : real_next_wakeup(self);
 }
 
-// ---- coordinator and world
-// -----------------------------------------------------------------------
+// ---- coordinator and world ----
 
 void bug_coordinate(Coordinator* self, Instant now, Outbox& out) {
   const bool due = self->state() == MissionState::kRunning && self->tick() > kUnderWay;
@@ -603,8 +597,7 @@ Instant bug_next_turn_of_world(const World* self) {
   return hangs(*self) ? Instant::max() : real_next_turn_of_world(self);
 }
 
-// ---- codec
-// ---------------------------------------------------------------------------------------
+// ---- codec ----
 
 Decoded bug_decode(std::span<const std::byte> bytes, RunId run, const MessageAuthenticator& seal,
                    std::string_view channel, KnownSignatures* known) {

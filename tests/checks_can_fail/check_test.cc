@@ -156,8 +156,7 @@ class Scenarios : public OwnHost {
   std::vector<std::string> said_, said_of_flags_;
 };
 
-// ---- fields by themselves
-// ------------------------------------------------------------------------
+// ---- fields by themselves ----
 
 /// A scenario with every block, and every number that other fields determine or limit.
 constexpr const char* kRich = R"(

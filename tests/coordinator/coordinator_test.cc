@@ -13,8 +13,7 @@ namespace {
 
 using namespace test;
 
-// ---- what it repeats
-// -----------------------------------------------------------------------------
+// ---- what it repeats ----
 
 TEST(CoordinatorRepeats, TheWholeMissionOnceASecondOnBothBuses) {
   Coordinator coordinator = running_coordinator(small_mission(1));
@@ -109,8 +108,7 @@ TEST(CoordinatorRepeats, HowTheTeamIs) {
   EXPECT_TRUE(teams[0].ergodic_metric == 3 || teams[0].ergodic_metric == 5) << "a median";
 }
 
-// ---- time-outs
-// -----------------------------------------------------------------------------------
+// ---- time-outs ----
 
 Mission impatient(int agents, OnTimeout on_timeout = OnTimeout::kEndMission) {
   Mission mission = small_mission(agents);
@@ -307,8 +305,7 @@ TEST(CoordinatorTimeOut, DoesNotExistInRealTime) {
   EXPECT_EQ(coordinator.state(), MissionState::kRunning);
 }
 
-// ---- the end
-// -------------------------------------------------------------------------------------
+// ---- the end ----
 
 TEST(CoordinatorEnds, WhenTheWorldHasReachedTheLastTick) {
   Coordinator coordinator = running_coordinator(small_mission(1));

@@ -24,8 +24,7 @@ std::optional<std::int64_t> said_revision(Coordinator& coordinator, Instant now)
   return parts.empty() ? std::nullopt : std::optional(parts[0].revision);
 }
 
-// ---- leaving
-// -------------------------------------------------------------------------------------
+// ---- leaving ----
 
 AgentStatus farewell_of(AgentId id, Tick tick) {
   AgentStatus status = status_of(id, 1000);
@@ -71,8 +70,7 @@ TEST(Leaving, AFormerLifesFarewellDoesNotConcernItsSuccessor) {
   EXPECT_EQ(entry_of(coordinator, {1, 99}).active_until, -1);
 }
 
-// ---- forgetting
-// ----------------------------------------------------------------------------------
+// ---- forgetting ----
 
 Mission forgetful(Pace pace = Pace::kRealtime) {
   Mission mission = small_mission(2);

@@ -56,8 +56,7 @@ const MissionPart& said_by(const Outbox& out) {
   return nothing;
 }
 
-// ---- listening
-// -----------------------------------------------------------------------------------
+// ---- listening ----
 
 TEST(TakeoverNever, SpeaksAtOnce) {
   Coordinator coordinator = coordinator_of(small_mission(2));
@@ -144,7 +143,7 @@ TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
   EXPECT_EQ(coordinator.state(), MissionState::kFailed);
 }
 
-// ---- a living predecessor -----------------------------------------------------------------------
+// ---- a living predecessor ----
 
 constexpr const char* kLedByAnother =
     "run 0000000000001234 is led by the coordinator on there: leave it to that one, choose another "
@@ -194,8 +193,7 @@ TEST(TakeoverMust, TakesOverFromALivingOneToo) {
   EXPECT_TRUE(coordinator.took_over());
 }
 
-// ---- what it takes over
-// --------------------------------------------------------------------------
+// ---- what it takes over ----
 
 TEST(Takeover, AdoptsTheNewestThatAnybodyRemembers) {
   auto roster = roster_of(3);
@@ -343,8 +341,7 @@ TEST(Takeover, OfAMissionThatIsOverSaysSoForASecondAndIsDone) {
   EXPECT_TRUE(coordinator.finished());
 }
 
-// ---- afterwards
-// ----------------------------------------------------------------------------------
+// ---- afterwards ----
 
 TEST(TookOver, EverybodyHasTimeToSpeakAndTheTickHasItsTimeAnew) {
   Coordinator coordinator = taken_over(memory_of(3, roster_of(2), 7));
@@ -418,8 +415,7 @@ TEST(TookOver, EndsTheMissionAtItsLastTickLikeItsPredecessor) {
   EXPECT_EQ(coordinator.reason(), "mission complete");
 }
 
-// ---- the one that was taken over
-// -----------------------------------------------------------------
+// ---- the one that was taken over ----
 
 TEST(TakenOver, ACoordinatorYieldsToANewerOneWithoutAWord) {
   Coordinator coordinator = running_coordinator(small_mission(2));

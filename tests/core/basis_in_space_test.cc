@@ -163,8 +163,7 @@ TEST(BasisInSpace, EnergiesGiveTheMeanSquareOfTheGradientByParseval) {
   EXPECT_NEAR(mean / a.cwiseAbs2().dot(gradient_energies(basis, kBox)), 1, 1e-12);
 }
 
-// ---- a plane is a box with one mode along z
-// ------------------------------------------------------
+// ---- a plane is a box with one mode along z ----
 
 /// The two-dimensional sums, in the order in which they have always been added up.
 struct InThePlane {

@@ -112,7 +112,7 @@ TEST(BlockLayout, GivesBackWhatItTook) {
   EXPECT_EQ(back, modes);
 }
 
-// ---- tables -------------------------------------------------------------------------------------
+// ---- tables ----
 
 CoverageTable table_of(const Mission& mission) {
   CoverageTable table(mission.basis, kDt);
@@ -225,7 +225,7 @@ TEST(RareModes, HighOnesAreWeighedByTheTimeThatTheyCover) {
   }
 }
 
-// ---- forecasts ----------------------------------------------------------------------------------
+// ---- forecasts ----
 
 TEST(RareModes, WhatIsReckonedNeedsNoTellingBitForBit) {
   for (const int modes_z : {1, 2}) {

@@ -60,8 +60,7 @@ Eigen::Vector3d command_at(Controller& controller, const Mission& mission,
   return controller.command(agent, tick, x_m, BasisAt(x_m, mission.domain, mission.basis));
 }
 
-// ---- (8) by itself
-// -------------------------------------------------------------------------------
+// ---- (8) by itself ----
 
 TEST(SmoothInput, IsEquation8) {
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -112,8 +111,7 @@ TEST(SmoothInput, NeverExceedsItsLimit) {
   }
 }
 
-// ---- the command, (6), (8) and (10), written out
-// ---------------------------------------------------
+// ---- the command, (6), (8) and (10), written out ----
 
 /// B, term by term, with the library's cosines and sines.
 Eigen::Vector3d reference_gradient(const Mission& mission, const Eigen::Vector3d& x_m,
@@ -272,8 +270,7 @@ TEST(Command, LowersPhiSquaredOfTheNextSample) {
   EXPECT_GT(metric_after(x_m - step), metric_after(x_m));
 }
 
-// ---- where the gradient vanishes
-// -----------------------------------------------------------------
+// ---- where the gradient vanishes ----
 
 TEST(Command, OfTheClassicalLawIsExactlyZeroAtTheOriginsCorner) {
   // Every slope is exactly 0 there; 0/0 would poison the team.
@@ -314,8 +311,7 @@ TEST(Command, NextToAnEdgeIsFiniteHoweverClose) {
   }
 }
 
-// ---- relative regularization
-// ---------------------------------------------------------------------
+// ---- relative regularization ----
 
 TEST(RelativeEpsilon, IsAShareOfTheResidualGradientsRms) {
   for (Mission mission : every_law()) {
@@ -355,8 +351,7 @@ TEST(AbsoluteEpsilon, IsWhatTheScenarioSays) {
   EXPECT_EQ(controller.epsilon(), 1.5e-3);
 }
 
-// ---- noise and contraction
-// -----------------------------------------------------------------------
+// ---- noise and contraction ----
 
 TEST(Command, AddsTheNoiseOfItsAgentAndTickAsAVelocity) {
   Mission mission = uneven_mission();
@@ -407,8 +402,7 @@ TEST(Command, PullsTowardsTheCentreOfContraction) {
             Eigen::Vector3d(-40, -250, 0));
 }
 
-// ---- symmetry
-// ------------------------------------------------------------------------------------
+// ---- symmetry ----
 
 /// Four agents, mirrored in both midlines, under a target that is mirrored too.
 using Team = std::array<Eigen::Vector3d, 4>;

@@ -89,8 +89,7 @@ Held held_after(const std::vector<Contribution>& said) {
   return held(table, kTeam);
 }
 
-// ---- a state-based CRDT
-// --------------------------------------------------------------------------
+// ---- a state-based CRDT ----
 
 TEST(CoverageTable, OrderAndRepetitionOfMessagesDoNotMatter) {
   std::vector<Contribution> said = everything_said();
@@ -175,8 +174,7 @@ TEST(CoverageTable, LivesOfOneAgentAreRowsOfTheirOwn) {
   EXPECT_EQ(table.block({0, 9}, 0).steps, 2);
 }
 
-// ---- c_k
-// -----------------------------------------------------------------------------------------
+// ---- c_k ----
 
 TEST(CoverageTable, OneSampleGivesTheLimitOf4AtTheStart) {
   CoverageTable table = table_of();
@@ -259,8 +257,7 @@ TEST(CoverageTable, HasAsManyBlocksAsTheModesNeed) {
   EXPECT_EQ(blocks(64, 64), 32);
 }
 
-// ---- what lockstep asks
-// --------------------------------------------------------------------------
+// ---- what lockstep asks ----
 
 TEST(CoverageTable, HoldsADueBlockUntilTheNextIsDue) {
   CoverageTable table = table_of();
@@ -283,8 +280,7 @@ TEST(CoverageTable, KnowsNothingOfAStranger) {
   EXPECT_EQ(table.block({4, 4}, 1).elapsed_s, 0);
 }
 
-// ---- limits
-// --------------------------------------------------------------------------------------
+// ---- limits ----
 
 void expect_refused(const Contribution& lie, std::int64_t max_steps = kManySteps) {
   CoverageTable table = table_of();

@@ -111,7 +111,7 @@ inline Coefficients foreseen(const Known& known, const Mission& mission) {
   return coverage;
 }
 
-// ---- the formula, again ------------------------------------------------------------------------
+// ---- the formula, again ----
 
 struct Row {
   std::int64_t steps = 0, gained_steps = 0;
@@ -226,8 +226,7 @@ inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
   return foreseen;
 }
 
-// ---- teams
-// ---------------------------------------------------------------------------------------
+// ---- teams ----
 
 inline RosterEntry entry_of(const Author& author, Tick from, Tick until = -1) {
   return {author, from, until};

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-// ---- random histories --------------------------------------------------------------------------
+// ---- random histories ----
 
 /// Changes one sum of a broadcast block to another value that its range still allows.
 void forge(Contribution& block, Dice& dice) {
@@ -144,7 +144,7 @@ TEST_P(Foreseen, IsWhatIsKnownWhereTheLawDoesNotLookAhead) {
   });
 }
 
-// ---- which agents count ------------------------------------------------------------------------
+// ---- which agents count ----
 
 /// The same without anything to expect of agent 1; its coverage counts all the same.
 Known without_hope_for_1(Known known) {

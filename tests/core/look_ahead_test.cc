@@ -59,7 +59,7 @@ Eigen::Matrix3d integrated_covariance_m2(const TargetDensity& target, const Box&
   return square_m2 / mass - mean_m * mean_m.transpose();
 }
 
-// ---- s -----------------------------------------------------------------------------------------
+// ---- s ----
 
 struct Case {
   const char* name;
@@ -141,7 +141,7 @@ TEST(TargetSpread, OfOneModeIsTheUniformTargets) {
   EXPECT_NEAR(spread_m(mission), 2000 / std::sqrt(6), 1e-9);
 }
 
-// ---- d -----------------------------------------------------------------------------------------
+// ---- d ----
 
 double dimensions(const Mission& mission) { return shared_dimensions(covariance_m2(mission)); }
 
@@ -181,7 +181,7 @@ TEST(SharedDimensions, OfACubeOrAPointAreTwo) {
   EXPECT_NEAR(shared_dimensions(Eigen::Vector3d(1e-200, 1e-200, 0).asDiagonal()), 2, 1e-12);
 }
 
-// ---- h -----------------------------------------------------------------------------------------
+// ---- h ----
 
 const Box kSquare{{0, 0, 0}, {2000, 2000, 0}};
 /// s / u_max of a uniform target on kSquare at 20 m/s.
@@ -229,7 +229,7 @@ TEST(Horizon, EndsWithThePlanOnlyIfTheScenarioSaysSo) {
   EXPECT_EQ(look_ahead.horizon_s(4, 7000), 0) << "after the end";
 }
 
-// ---- w -----------------------------------------------------------------------------------------
+// ---- w ----
 
 /// The longest period that the plan allows; eight of them are 4 s.
 constexpr Tick kPeriod = 5;

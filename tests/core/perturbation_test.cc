@@ -179,8 +179,7 @@ TEST(Perturbation, SpreadsLikeItsCeilingOverManyPushes) {
   EXPECT_NEAR(square_m2, kCeiling * kCeiling * kTicks * kDt_s, 0.12 * square_m2);
 }
 
-// ---- in space
-// --------------------------------------------------------------------------------------
+// ---- in space ----
 
 /// A field with these principal directions, the columns of `turn`, curvatures and parts of B.
 FieldAt field_along(const Eigen::Matrix3d& turn, const Eigen::Vector3d& curvatures,

@@ -120,7 +120,7 @@ TEST(Separation, HoldsUnderRandomDisturbances) {
   EXPECT_LT(spare_m(attack, Flaw::kNoMargin), -0.5);
 }
 
-// ---- the function itself
+// ---- the function itself ----
 
 const std::vector<Neighbour> kFar = {{1, {900, 500, 0}, 40}, {2, {500, 900, 0}, 40}};
 

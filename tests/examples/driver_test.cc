@@ -223,8 +223,7 @@ TEST(ExampleDriver, RefusesVehiclesThatItsRobotsAreNot) {
   }
 }
 
-// ---- a driver of one robot
-// ---------------------------------------------------------------------
+// ---- a driver of one robot ----
 
 Mission leased() {
   Mission mission = apart();

@@ -24,7 +24,7 @@ Scenario scenario_of(const std::string& text, const Overrides& overrides = {}) {
   return std::get<Scenario>(Scenario::parse(text, "foresight", overrides));
 }
 
-// ---- lockstep ----------------------------------------------------------------------------------
+// ---- lockstep ----
 
 struct Telling {
   const char* name;
@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Laboratory, LockstepForesight,
                                            Telling{"ReckoningSeldom", true, 6}),
                          [](const auto& telling) { return std::string(telling.param.name); });
 
-// ---- a dead teammate ---------------------------------------------------------------------------
+// ---- a dead teammate ----
 
 /// φ² at 600 s as agent 0 knows it, where agent 3 is heard no more from 150 s on, nor its vehicle.
 double metric_after_a_death(const std::string& law, const std::string& agents, std::uint64_t seed) {

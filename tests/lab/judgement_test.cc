@@ -112,8 +112,7 @@ TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
   }
 }
 
-// ---- radio range
-// ---------------------------------------------------------------------------------
+// ---- radio range ----
 
 TEST(RadioRange, IsNoFault) {
   for (const char* range : {"30", "50", "80"}) {
@@ -150,8 +149,7 @@ TEST(RadioRange, ExcusesNobodyFromPassingOnWhatItHears) {
   EXPECT_EQ(broken(fly(chain, 1, {}, without(digests))), Invariant::kEverybodyLearnsEveryRow);
 }
 
-// ---- time-outs and evictions
-// ---------------------------------------------------------------------
+// ---- time-outs and evictions ----
 
 Scenario evicting() {
   return team(Pace::kLockstep, "admission_timeout_s: 3600",

@@ -107,7 +107,7 @@ TEST(PausedLockstep, StandsStillInEveryHeldTick) {
   EXPECT_EQ(held, 4 * 85);
 }
 
-// ---- an operator pauses it, under faults --------------------------------------------------------
+// ---- an operator pauses it, under faults ----
 
 struct Case {
   const char* name;

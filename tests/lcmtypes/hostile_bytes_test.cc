@@ -14,8 +14,7 @@ namespace {
 
 using namespace test;
 
-// ---- damaged bytes
-// -------------------------------------------------------------------------------
+// ---- damaged bytes ----
 
 TEST(Codec, EveryTruncationIsRefused) {
   for (const Message& message : every_message()) {
@@ -78,8 +77,7 @@ TEST(Codec, UnknownTypesAreRefusedEvenWithACorrectTag) {
   }
 }
 
-// ---- lying bytes: a correct tag over numbers that are not true
-// -----------------------------------
+// ---- lying bytes: a correct tag over numbers that are not true ----
 
 constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();

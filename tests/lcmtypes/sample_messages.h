@@ -25,8 +25,7 @@ inline constexpr std::size_t kSignatureEnd = 124;
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// ---- honest messages, every field with a value of its own
-// ----------------------------------------
+// ---- honest messages, every field with a value of its own ----
 
 inline Header header_of_sender(AgentId sender) {
   return {kRun, sender, 0x8000000000000123, 4711, 123456789012};
@@ -195,8 +194,7 @@ inline std::vector<Message> every_message() {
           pause(), averages(),     low_sums(),     low_averages(), beacon()};
 }
 
-// ---- bytes
-// ---------------------------------------------------------------------------------------
+// ---- bytes ----
 
 inline Bytes encoded(const Message& message) {
   Bytes bytes;

@@ -15,8 +15,7 @@ namespace {
 
 using namespace test;
 
-// ---- trajectory.csv
-// ------------------------------------------------------------------------------
+// ---- trajectory.csv ----
 
 TEST(Trajectory, RowNHoldsThePlaceOfTickNAndTheCommandAppliedThere) {
   Record record(small_mission(1));
@@ -115,8 +114,7 @@ TEST(Trajectory, DoesNotHoardStatesFromAnImpossibleFuture) {
   EXPECT_EQ(record.trajectory_rows().size(), 1u);
 }
 
-// ---- acknowledgements
-// ----------------------------------------------------------------------------
+// ---- acknowledgements ----
 
 TEST(Acknowledgement, FirstSaysThatTheRecordIsReady) {
   std::ostringstream trajectory, metrics;
@@ -152,8 +150,7 @@ TEST(Acknowledgement, NeverNamesATickThatIsNotWritten) {
   EXPECT_EQ(acks(advance(record.recorder, at(51s))), (std::vector<Tick>{38}));
 }
 
-// ---- gaps
-// ----------------------------------------------------------------------------------------
+// ---- gaps ----
 
 TEST(Gap, InLockstepTheRecordWaitsForTheMissingStateBecauseItIsRepeated) {
   Record record(small_mission(1));
@@ -231,8 +228,7 @@ TEST(Gap, ShortlyBeforeTheEndCostsNoOtherRow) {
   }
 }
 
-// ---- metrics.csv
-// ---------------------------------------------------------------------------------
+// ---- metrics.csv ----
 
 TEST(Metrics, ArePhiSquaredOfTheTruePlacesEverySecondAndAtTheLastTick) {
   Mission mission = small_mission(1);
@@ -337,7 +333,6 @@ TEST(Metrics, ShowWhatTheWorldMissedAndSkipped) {
   EXPECT_EQ(record.recorder.facts().skipped_ticks, 2);
 }
 
-// ---- the end
 TEST(Metrics, TicksOfAPauseThatIsTakenBackCountAfterAll) {
   // The coordinator that named a second pause died, and no agent had heard of it.
   Record record(small_mission(1));
@@ -357,7 +352,7 @@ TEST(Metrics, TicksOfAPauseThatIsTakenBackCountAfterAll) {
   EXPECT_EQ(record.recorder.facts().held_ticks, 2) << "those of the pause before it";
 }
 
-// -------------------------------------------------------------------------------------
+// ---- the end ----
 
 TEST(RecordEnd, ComesASecondAfterTheLastTickSoThatLastStatusesCount) {
   Mission mission = small_mission(1);

@@ -88,8 +88,7 @@ class Resume : public testing::Test {
   const fs::path& dir = own.path();
 };
 
-// ---- the same record as without a kill
-// -----------------------------------------------------------
+// ---- the same record as without a kill ----
 
 TEST_F(Resume, WhereverTheFilesAreCutTheRecordIsThatOfARecorderThatLived) {
   Mission mission = small_mission(3);
@@ -184,8 +183,7 @@ TEST_F(Resume, WhatIsAcknowledgedIsInTheFile) {
   EXPECT_EQ(seen, 4);
 }
 
-// ---- gaps in lockstep
-// ----------------------------------------------------------------------------
+// ---- gaps in lockstep ----
 
 TEST_F(Resume, AStateThatIsRepeatedInTimeIsNoGap) {
   Record resumed(small_mission(1), ten_rows());
@@ -327,8 +325,7 @@ TEST_F(Resume, PartsOfTwoWorldsMakeNoState) {
   EXPECT_EQ(record.trajectory_rows().size(), 2u);
 }
 
-// ---- segments
-// ------------------------------------------------------------------------------------
+// ---- segments ----
 
 TEST_F(Resume, EachProcessHasFilesOfItsOwn) {
   EXPECT_EQ(segment_count(dir), 0);

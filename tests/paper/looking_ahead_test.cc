@@ -23,7 +23,7 @@ Mission noiseless(Mission mission, double epsilon) {
   return mission;
 }
 
-// ---- the potential in time ---------------------------------------------------------------------
+// ---- the potential in time ----
 
 /// E and its parts, of a team in flight, from the places of its agents.
 class BusObserver {
@@ -115,7 +115,7 @@ TEST(LookingAhead, ThePotentialFallsByTheTeamsDescentAndRisesByWhatTimeAdds) {
   EXPECT_LT(worst[1], 0.2 * worst[0]) << "of the order of the step";
 }
 
-// ---- Proposition 1 -----------------------------------------------------------------------------
+// ---- Proposition 1 ----
 
 /// A reflection of the square.
 struct Mirror {
@@ -185,7 +185,7 @@ TEST(LookingAhead, WithoutTheMirrorsPremiseAnAgentLeavesIt) {
   EXPECT_GT(std::abs(team.x_m(0).x() - 1000), 1);
 }
 
-// ---- boundedness -------------------------------------------------------------------------------
+// ---- boundedness ----
 
 TEST(LookingAhead, NoInputExceedsItsLimitAndEveryStepKeepsCorollary1) {
   // Only ‖u‖ ≤ u_max enters, whatever is foreseen: ‖x_n − c‖ ≤ qⁿ ‖x_0 − c‖ + (u_max/k)(1 − qⁿ).

@@ -161,8 +161,7 @@ TEST_F(MapTarget, PictureShowsIt) {
   EXPECT_NEAR(density(0, 0), 3 * 8 / 20.0, 1e-12);
 }
 
-// ---- problems
-// ------------------------------------------------------------------------------------
+// ---- problems ----
 
 TEST_F(MapTarget, ThatCannotBeUsedIsOneProblemAtItsField) {
   write("zero.csv", "0,0\n0,0\n");

@@ -73,7 +73,7 @@ TEST(WorldKeepsBodiesApart, ANewcomerAppearsWhereThereIsRoom) {
   EXPECT_NE(place(state, 1), mission.starts_m[1]);
 }
 
-// ---- a world that begins anew
+// ---- a world that begins anew ----
 
 /// What a former world said at `tick` of vehicles 0 to 2.
 WorldState state_before(Tick tick, double shift_m) {

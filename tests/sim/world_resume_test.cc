@@ -14,8 +14,7 @@ namespace {
 
 using namespace test;
 
-// ---- lockstep, with real agents
-// ------------------------------------------------------------------
+// ---- lockstep, with real agents ----
 
 /// Which of three agents received the tick at which the world died; none of their answers reached
 /// it.
@@ -135,8 +134,7 @@ TEST_P(WorldRestarted, AgainAndAgainChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Disturbance, WorldRestarted, ::testing::Values(0.0, 3.0),
                          [](const auto& of) { return of.param > 0 ? "On" : "Off"; });
 
-// ---- what the team's answers mean
-// ----------------------------------------------------------------
+// ---- what the team's answers mean ----
 
 /// One of an agent's two answers to the question.
 Command command_from(AgentId id, Tick tick, const Eigen::Vector3d& x_m,
@@ -333,8 +331,7 @@ TEST(WorldAsks, NotTheRosterForATickBeyondThePlan) {
   EXPECT_EQ(world.tick(), mission.timing.tick_count);
 }
 
-// ---- real time
-// -----------------------------------------------------------------------------------
+// ---- real time ----
 
 TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
   for (const double hold_s : {10.0, 0.1}) {
@@ -356,8 +353,7 @@ TEST(WorldResumesInRealTime, WhoIsBehindHasGoneOnWithItsHeldCommand) {
   }
 }
 
-// ---- the mission
-// ---------------------------------------------------------------------------------
+// ---- the mission ----
 
 TEST(WorldWithoutAMission, AsksForItAfterASecondAndAHalfIfItKnowsTheRun) {
   World world = world_of(small_mission(1));
@@ -391,8 +387,7 @@ TEST(WorldWithoutAMission, AsksNoMoreOnceItWaitsForTheStart) {
   EXPECT_TRUE(advance(world, at(20s)).empty());
 }
 
-// ---- the record
-// ----------------------------------------------------------------------------------
+// ---- the record ----
 
 TEST(WorldRecord, ARestartedLoggerMayHaveLessThanItsPredecessorHad) {
   Mission mission = small_mission(1);

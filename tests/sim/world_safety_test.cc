@@ -31,8 +31,7 @@ WorldState answered(World& world, Tick tick, const Eigen::Vector3d& first,
   return state_after(world, at(0s));
 }
 
-// ---- speed limit
-// ---------------------------------------------------------------------------------
+// ---- speed limit ----
 
 TEST(WorldSpeedLimit, CutsWhatIsFasterCountsItAndSaysWhatItApplied) {
   World world = running_world(limited_mission(5));
@@ -74,8 +73,7 @@ TEST(WorldSpeedLimit, HoldsForAWorldThatRemembersByTheAgentsCommands) {
   EXPECT_EQ(applied(state_after(second, at(0s))), applied(before));
 }
 
-// ---- numbers
-// ---------------------------------------------------------------------------------------
+// ---- numbers ----
 
 TEST(WorldNumbers, WhateverFiniteCommandComesThePlacesStayInTheDomain) {
   for (const double limit_mps : {0.0, 5.0}) {
@@ -124,8 +122,7 @@ TEST(WorldNumbers, OfAPlaceOutsideTheDomainAWorldThatBeginsTakesNothing) {
   EXPECT_EQ(world.refused(), 4);
 }
 
-// ---- emergency stop
-// ----------------------------------------------------------------------------------
+// ---- emergency stop ----
 
 TEST(WorldHalt, SetsAllVelocitiesToZeroAtOnceAndSaysSo) {
   for (const Pace pace : {Pace::kLockstep, Pace::kRealtime}) {

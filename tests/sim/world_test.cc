@@ -14,8 +14,7 @@ namespace {
 
 using namespace test;
 
-// ---- lockstep
-// ------------------------------------------------------------------------------------
+// ---- lockstep ----
 
 TEST(WorldInLockstep, SaysNothingUntilTheMissionRunsThenAsksTheTeamAndThenSaysEverybodysStart) {
   const Mission mission = small_mission(2);
@@ -102,8 +101,7 @@ TEST(WorldInLockstep, PublishesLargeTeamsInParts) {
   EXPECT_EQ(states[1].vehicles[2].id, 18);
 }
 
-// ---- motion
-// --------------------------------------------------------------------------------------
+// ---- motion ----
 
 TEST(WorldMotion, ReflectsAtEveryEdge) {
   const struct {
@@ -153,8 +151,7 @@ TEST(WorldMotion, IsDisturbedOnlyIfTheScenarioSaysSoAndByAFunctionOfTheSeed) {
   }
 }
 
-// ---- the record's window
-// -------------------------------------------------------------------------
+// ---- the record's window ----
 
 Mission recorded_mission() {
   Mission mission = small_mission(1);
@@ -231,8 +228,7 @@ TEST(WorldRecord, DoesNotWaitIfTheScenarioWantsNoLogger) {
   EXPECT_FALSE(world.logger_lost());
 }
 
-// ---- the end
-// -------------------------------------------------------------------------------------
+// ---- the end ----
 
 TEST(WorldEnd, RepeatsTheLastStateForTwoSecondsAndIsDone) {
   Mission mission = small_mission(1);

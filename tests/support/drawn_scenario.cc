@@ -38,8 +38,7 @@ std::string name_of(const FieldDescriptor& field) {
 
 void draw_fields(Block& block, RandomStream& random);
 
-// ---- values
-// --------------------------------------------------------------------------------------
+// ---- values ----
 
 void set(Block& block, const FieldDescriptor& field, double value) {
   const auto& fields = *block.GetReflection();
@@ -284,8 +283,7 @@ void draw_fields(Block& block, RandomStream& random) {
   }
 }
 
-// ---- what depends on more than one field
-// ---------------------------------------------------------
+// ---- what depends on more than one field ----
 
 /// Around its first vertex.
 template <class Vertices>

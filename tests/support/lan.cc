@@ -62,7 +62,7 @@ table bridge counted {
 
 }  // namespace
 
-// ---- namespaces ------------------------------------------------------------------------------
+// ---- namespaces ----
 
 Namespaces Namespaces::of_this_thread() {
   Namespaces here(open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC),
@@ -96,7 +96,7 @@ std::string Namespaces::path() const {
 
 std::string Namespaces::network() const { return std::filesystem::read_symlink(path()); }
 
-// ---- the network -----------------------------------------------------------------------------
+// ---- the network ----
 
 Lan::Lan(int count) : home_(Namespaces::of_this_thread()), switch_(Namespaces::make("switch")) {
   std::string cables = "link add br0 type bridge mcast_snooping 0\nlink set br0 up\n";

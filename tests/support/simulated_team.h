@@ -22,8 +22,7 @@
 
 namespace ergocast::test {
 
-// ---- missions
-// ------------------------------------------------------------------------------------
+// ---- missions ----
 
 /// A shipped scenario; fails loudly if the file has problems.
 inline Scenario shipped_scenario(const std::string& name, const Overrides& overrides = {}) {
@@ -40,8 +39,7 @@ inline std::string with(std::string text, const std::string& from, const std::st
   return at == text.npos ? throw std::logic_error(from) : text.replace(at, from.size(), to);
 }
 
-// ---- teams
-// ---------------------------------------------------------------------------------------
+// ---- teams ----
 
 using PaperTeam = lab::IdealTeam;
 using Drop = std::function<bool(const Message&, lab::NodeId to)>;
@@ -82,8 +80,7 @@ struct TriedTeam {
   std::string trajectory;
 };
 
-// ---- figures
-// -------------------------------------------------------------------------------------
+// ---- figures ----
 
 /// The probability that a test fails with other seeds although its statement is true.
 inline constexpr double kError = 1e-9;

@@ -68,8 +68,7 @@ class Maps : public ::testing::Test {
 
 int count_up(int column, int row, int) { return 10 * row + column; }
 
-// ---- PNG
-// -----------------------------------------------------------------------------------------
+// ---- PNG ----
 
 TEST_F(Maps, PngOfEightBitsHoldsItsNumbersFromTheTop) {
   write_png(folder_ / "a.png", 3, 2, {}, count_up);
@@ -137,8 +136,7 @@ TEST_F(Maps, PngCutShortOrChangedAnywhereIsRefused) {
   expect_said(written("short.png", "abc"), " is not a PNG");
 }
 
-// ---- CSV
-// -----------------------------------------------------------------------------------------
+// ---- CSV ----
 
 TEST_F(Maps, CsvIsReadLineByLine) {
   EXPECT_EQ(rows_of(written("a.csv", "0,1.5,+2e3\n 3 ,\t4,5\r\n")),
@@ -171,8 +169,7 @@ TEST_F(Maps, CsvOfAGridReadsBackFromTheNorth) {
   EXPECT_EQ(csv_text(grid), "3,6.25\n2,5\n1,4\n");
 }
 
-// ---- ESRI ASCII grid
-// -----------------------------------------------------------------------------
+// ---- ESRI ASCII grid ----
 
 const std::string kHeader = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner -50\ncellsize 10\n";
 
@@ -227,8 +224,7 @@ TEST_F(Maps, AsciiGridThatIsNoneIsRefused) {
   expect_said(written("a.asc", "\x89PNG\r\n\x1a\n"), ", line 1: no key");
 }
 
-// ---- any
-// -----------------------------------------------------------------------------------------
+// ---- any ----
 
 TEST_F(Maps, ThatAreNoFilesAreNamed) {
   expect_said(folder_ / "none.csv", ": there is no such file");

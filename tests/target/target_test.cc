@@ -35,8 +35,7 @@ Gaussian bell(double weight, double x_m, double y_m, double deviation_x_m, doubl
   return plane_gaussian(weight, {x_m, y_m}, covariance_m2);
 }
 
-// ---- references
-// ----------------------------------------------------------------------------------
+// ---- references ----
 
 /// ∫ cos(mode·π(x − low)/length) N(x; mean, deviation²) dx over [low, low + length]: Romberg's
 /// rule.
@@ -146,8 +145,7 @@ double largest_error(const PlaneCoefficients& a, const PlaneCoefficients& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
-// ---- products of two bells
-// -----------------------------------------------------------------------
+// ---- products of two bells ----
 
 TEST(TargetCoefficients, OfSeparableBellsAreExact) {
   const Basis basis = basis_of(40, 32);
@@ -222,8 +220,7 @@ TEST(TargetCoefficients, WeighEachBellByItsWeightAndWhatTheDomainLeavesOfIt) {
   EXPECT_GT(largest_error(both, (first + second) / 2), 1e-2);
 }
 
-// ---- correlated bells
-// ----------------------------------------------------------------------------
+// ---- correlated bells ----
 
 TEST(TargetCoefficients, OfACorrelatedBellAreWithinTheirStatedError) {
   const Basis basis = basis_of(15, 15);
@@ -267,8 +264,7 @@ TEST(TargetCoefficients, OfASlightlyCorrelatedBellAreThoseOfTheSeparableOne) {
   EXPECT_LE(largest_error(with(1e-12), with(0)), 1e-12 * slope + 4e-12);
 }
 
-// ---- mass and density
-// ----------------------------------------------------------------------------
+// ---- mass and density ----
 
 TEST(MassInside, IsTheShareThatTheEdgesLeave) {
   EXPECT_NEAR(mass_inside({{bell(1, 700, 650, 50, 50)}, 0}, kDomain), 1, 1e-13);

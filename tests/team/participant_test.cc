@@ -193,8 +193,7 @@ TEST(Participant, TheWorldMayBeAsSlowAsItsTicks) {
   EXPECT_TRUE(agent.silent(kWorld, at(22s)));
 }
 
-// ---- commands of the operator
-// -------------------------------------------------------------------------
+// ---- commands of the operator ----
 
 Stop stop_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, false, "enough"}; }
 Pause pause_at(Tick tick) { return {{kRun, kOperator, 1, next_sequence(), tick}, 0}; }
@@ -242,8 +241,7 @@ TEST(Participant, ARefusedCommandTakesNoPlaceAmongTheLiving) {
   EXPECT_FALSE(agent.liveness().last_sign_of_kind(kOperator).has_value());
 }
 
-// ---- cut off
-// -------------------------------------------------------------------------------------
+// ---- cut off ----
 
 /// A lockstep mission with a time-out of 5 s, and 30 s for a process that may come back.
 Participant in_mission(Role role, MissionState state = MissionState::kRunning) {
@@ -287,8 +285,7 @@ TEST(Participant, ALoggerThatHearsOnlyARepeatedMissionWaitsAsLong) {
   EXPECT_TRUE(logger.cut_off(3, at(45001ms)));
 }
 
-// ---- what it says
-// --------------------------------------------------------------------------------
+// ---- what it says ----
 
 TEST(Participant, SequencesGrowByOneOnEachBus) {
   Participant agent = participant(Role::kAgent);
