@@ -75,7 +75,7 @@ void Agent::receive(const Message& message, Bus bus, AgentId transmitter, Instan
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
 }
 
-const Agent::InMission* Agent::flight() const {
+const Agent::InMission* Agent::mission_run() const {
   const auto* end = std::get_if<Finished>(&state_);
   if (end == nullptr) return std::get_if<InMission>(&state_);
   return end->mission ? &*end->mission : nullptr;
@@ -113,11 +113,11 @@ void Agent::on(const MissionPart& part, const Arrival& arrival) {
 
 /// A control step allocates nothing.
 void Agent::note_roster() {
-  InMission* const flight = in_mission();
-  if (flight == nullptr) return;
-  if (flight->beacons) flight->beacons->note_roster(follower().roster());
+  InMission* const mission_run = in_mission();
+  if (mission_run == nullptr) return;
+  if (mission_run->beacons) mission_run->beacons->note_roster(follower().roster());
   if (follower().holds().empty()) return;
-  flight->held_roster = in_counted_ticks(follower().roster(), follower().holds());
+  mission_run->held_roster = in_counted_ticks(follower().roster(), follower().holds());
 }
 
 /// Why it is no member at `tick` any more, if so.
@@ -129,8 +129,9 @@ std::optional<std::string> Agent::evicted(Tick tick) const {
 
 void Agent::on(const Hello& hello, const Arrival& arrival) {
   if (!me_.knows_mission() || !arrival.fresh) return;
-  InMission* const flight = in_mission();
-  if (hello.header.sender == kWorld && flight) flight->world_asks = hello.header.incarnation;
+  InMission* const mission_run = in_mission();
+  if (hello.header.sender == kWorld && mission_run)
+    mission_run->world_asks = hello.header.incarnation;
   if (asks_for_mission(hello)) mission_repeat_.asked(arrival.now, me_.received());
 }
 
@@ -154,14 +155,14 @@ void Agent::on(const Stop& stop, const Arrival&) {
 
 // ---- what teammates and the world say ----
 
-std::int64_t Agent::max_steps(const InMission& flight, const RosterEntry& author,
+std::int64_t Agent::max_steps(const InMission& mission_run, const RosterEntry& author,
                               Instant now) const {
   const Timing& timing = mission().timing;
-  const Tick tick = flight.step.tick;
+  const Tick tick = mission_run.step.tick;
   Tick lead = std::max(kLeadTicks, static_cast<Tick>(kLead_s / timing.dt_s));
   if (timing.pace == Pace::kRealtime && tick >= 0) {
     // Others have gone on while we heard nothing of the world; twice, for clocks that differ.
-    const Instant heard = std::max(flight.running_since.value_or(Instant{}),
+    const Instant heard = std::max(mission_run.running_since.value_or(Instant{}),
                                    me_.liveness().last_sign_of_kind(kWorld).value_or(Instant{}));
     const double unheard_s = std::chrono::duration<double>(now - heard).count();
     lead += static_cast<Tick>(2 * unheard_s * timing.realtime_factor / timing.dt_s);
@@ -172,18 +173,18 @@ std::int64_t Agent::max_steps(const InMission& flight, const RosterEntry& author
 }
 
 void Agent::on(const Contribution& theirs, const Arrival& arrival) {
-  InMission* const flight = in_mission();
-  if (flight == nullptr) return;
+  InMission* const mission_run = in_mission();
+  if (mission_run == nullptr) return;
   const RosterEntry* entry = me_.member(theirs.header);
   if (entry == nullptr) return;  // not a member as far as we know
   if (arrival.transmitter != theirs.header.sender) {
-    flight->anti_entropy.on_relayed(theirs, flight->table);
+    mission_run->anti_entropy.on_relayed(theirs, mission_run->table);
   }
   ++status_.contributions_received;
-  const std::int64_t limit = max_steps(*flight, *entry, arrival.now);
+  const std::int64_t limit = max_steps(*mission_run, *entry, arrival.now);
   // We do not know yet how late it is.
-  if (flight->step.tick < 0 && theirs.steps > limit) return;
-  switch (flight->table.merge(theirs, limit)) {
+  if (mission_run->step.tick < 0 && theirs.steps > limit) return;
+  switch (mission_run->table.merge(theirs, limit)) {
     case Merge::kRefusedRange:
       return count_refused(Refusal::kRange);
     case Merge::kRefusedLimit:
@@ -191,8 +192,8 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
     case Merge::kRefusedEncoding:
       return count_refused(Refusal::kEncoding);
     case Merge::kNewer:
-      flight->table.set_quality(theirs.author(), flight->sensors.of(entry->kind).quality);
-      flight->news[theirs.author()] = flight->step.counted;
+      mission_run->table.set_quality(theirs.author(), mission_run->sensors.of(entry->kind).quality);
+      mission_run->news[theirs.author()] = mission_run->step.counted;
       return;
     case Merge::kStale:
       return;
@@ -200,41 +201,44 @@ void Agent::on(const Contribution& theirs, const Arrival& arrival) {
 }
 
 void Agent::on(const Digest& theirs, const Arrival& arrival) {
-  InMission* const flight = in_mission();
-  if (flight == nullptr || !arrival.fresh || me_.member(theirs.header) == nullptr) return;
-  flight->anti_entropy.on(theirs, flight->table, follower().roster(), arrival.now,
-                          flight->step.counted);
+  InMission* const mission_run = in_mission();
+  if (mission_run == nullptr || !arrival.fresh || me_.member(theirs.header) == nullptr) return;
+  mission_run->anti_entropy.on(theirs, mission_run->table, follower().roster(), arrival.now,
+                               mission_run->step.counted);
 }
 
 void Agent::on(const Beacon& beacon, const Arrival& arrival) {
-  InMission* const flight = in_mission();
-  if (flight == nullptr || !flight->beacons) return;
-  flight->beacons->hear(beacon, arrival.fresh, {flight->step.tick, arrival.now});
+  InMission* const mission_run = in_mission();
+  if (mission_run == nullptr || !mission_run->beacons) return;
+  mission_run->beacons->hear(beacon, arrival.fresh, {mission_run->step.tick, arrival.now});
 }
 
 void Agent::on(const WorldState& world, const Arrival& arrival) {
-  InMission* const flight = in_mission();
-  if (flight == nullptr) return;
-  Step& step = flight->step;
+  InMission* const mission_run = in_mission();
+  if (mission_run == nullptr) return;
+  Step& step = mission_run->step;
   radio_.on(world);
-  if (flight->forecast && world.header.tick >= flight->active_from) note_places(*flight, world);
-  if (flight->separation) flight->bodies.see(world);
+  if (mission_run->forecast && world.header.tick >= mission_run->active_from)
+    note_places(*mission_run, world);
+  if (mission_run->separation) mission_run->bodies.see(world);
   for (int i = 0; i < world.vehicle_count; ++i) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (vehicle.id != me_.id()) continue;
     // From before we were admitted, repeated for the logger: our predecessor drove then.
-    if (world.header.tick < flight->active_from && vehicle.answered_tick > step.answered) return;
-    if (!flight->separation && !mission().domain.contains(vehicle.position_m)) {
+    if (world.header.tick < mission_run->active_from && vehicle.answered_tick > step.answered)
+      return;
+    if (!mission_run->separation && !mission().domain.contains(vehicle.position_m)) {
       return count_refused(Refusal::kRange);
     }
-    const Tick newest = flight->pending ? flight->pending->tick : step.tick;
+    const Tick newest = mission_run->pending ? mission_run->pending->tick : step.tick;
     if (world.header.tick < newest) return;
     if (world.header.tick == step.tick) {
       step.repeat_wanted = step.repeat_wanted || arrival.fresh;
       return;
     }
-    flight->pending = WorldView{world.header.tick, world.roster_revision, vehicle.answered_tick,
-                                vehicle.position_m, vehicle.velocity_mps};
+    mission_run->pending =
+        WorldView{world.header.tick, world.roster_revision, vehicle.answered_tick,
+                  vehicle.position_m, vehicle.velocity_mps};
   }
 }
 
@@ -242,11 +246,12 @@ void Agent::on(const WorldState& world, const Arrival& arrival) {
 
 void Agent::advance(Instant now, Outbox& out) {
   ask_for_admission(now, out);
-  if (phase() == AgentPhase::kRunning) fly(*in_mission(), now, out);
+  if (phase() == AgentPhase::kRunning) advance_mission(*in_mission(), now, out);
   if (!finished() && mission_repeat_.due(now)) repeat_mission(now, out);
-  if (InMission* const flight = in_mission()) {
-    answer_digests(*flight, now, out);
-    if (flight->next_status.due(now, flight->step.tick)) publish_status(*flight, now, out);
+  if (InMission* const mission_run = in_mission()) {
+    answer_digests(*mission_run, now, out);
+    if (mission_run->next_status.due(now, mission_run->step.tick))
+      publish_status(*mission_run, now, out);
   }
   if (auto* const end = std::get_if<Finished>(&state_)) {
     std::move(end->last_words.begin(), end->last_words.end(), std::back_inserter(out));
@@ -272,10 +277,10 @@ void Agent::repeat_mission(Instant now, Outbox& out) {
 Instant Agent::next_wakeup() const {
   if (finished()) return Instant::max();
   const Instant next = std::min(may_ask() ? hellos_.next : Instant::max(), mission_repeat_.next());
-  const auto* const flight = std::get_if<InMission>(&state_);
-  if (flight == nullptr) return next;
-  return std::min(
-      {next, flight->next_status.at, flight->next_digest.at, flight->anti_entropy.next_answer()});
+  const auto* const mission_run = std::get_if<InMission>(&state_);
+  if (mission_run == nullptr) return next;
+  return std::min({next, mission_run->next_status.at, mission_run->next_digest.at,
+                   mission_run->anti_entropy.next_answer()});
 }
 
 /// An id that neither has been given does not tell two joining processes apart. So only an admitted
@@ -283,15 +288,15 @@ Instant Agent::next_wakeup() const {
 void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
   if (finished()) return;
   Finished end{failed, std::move(reason), {}, {}};
-  if (InMission* const flight = in_mission()) {
+  if (InMission* const mission_run = in_mission()) {
     if (send_zero_velocity) {  // the last word to the vehicle, whose driver may know no STOP
-      flight->last_command.position_m = flight->step.x_m;
-      flight->last_command.velocity_mps.setZero();
-      me_.publish(Bus::kCommand, flight->last_command, flight->step.tick, end.last_words);
+      mission_run->last_command.position_m = mission_run->step.x_m;
+      mission_run->last_command.velocity_mps.setZero();
+      me_.publish(Bus::kCommand, mission_run->last_command, mission_run->step.tick, end.last_words);
     }
-    me_.publish(Bus::kSwarm, status_of(*flight, AgentPhase::kFinished),
-                std::max<Tick>(flight->step.tick, 0), end.last_words);
-    end.mission = std::move(*flight);
+    me_.publish(Bus::kSwarm, status_of(*mission_run, AgentPhase::kFinished),
+                std::max<Tick>(mission_run->step.tick, 0), end.last_words);
+    end.mission = std::move(*mission_run);
   }
   state_ = std::move(end);
 }
@@ -300,17 +305,17 @@ void Agent::finish(bool failed, std::string reason, bool send_zero_velocity) {
 
 AgentPhase Agent::phase() const {
   if (finished()) return AgentPhase::kFinished;
-  const auto* const flight = std::get_if<InMission>(&state_);
-  if (flight == nullptr) return AgentPhase::kJoining;
-  return flight->running_since ? AgentPhase::kRunning : AgentPhase::kWaiting;
+  const auto* const mission_run = std::get_if<InMission>(&state_);
+  if (mission_run == nullptr) return AgentPhase::kJoining;
+  return mission_run->running_since ? AgentPhase::kRunning : AgentPhase::kWaiting;
 }
 
 /// What it says of itself: phase(), and whether it goes home or rests.
-AgentPhase Agent::phase_in(const InMission& flight) const {
+AgentPhase Agent::phase_in(const InMission& mission_run) const {
   const AgentPhase phase = this->phase();
-  if (phase != AgentPhase::kRunning || !flight.way_home) return phase;
-  if (rests(mission(), me_.id(), flight.step.counted)) return AgentPhase::kResting;
-  return flight.way_home->begun() ? AgentPhase::kReturning : phase;
+  if (phase != AgentPhase::kRunning || !mission_run.way_home) return phase;
+  if (rests(mission(), me_.id(), mission_run.step.counted)) return AgentPhase::kResting;
+  return mission_run.way_home->begun() ? AgentPhase::kReturning : phase;
 }
 
 bool Agent::failed() const {
@@ -325,13 +330,13 @@ const std::string& Agent::reason() const {
 }
 
 const Coefficients& Agent::team_coverage() const {
-  if (flight() == nullptr) return kNoCoverage;
-  flight()->table.average(flight()->team_coverage);
-  return flight()->team_coverage;
+  if (mission_run() == nullptr) return kNoCoverage;
+  mission_run()->table.average(mission_run()->team_coverage);
+  return mission_run()->team_coverage;
 }
 
 const Coefficients& Agent::foreseen_coverage() const {
-  return flight() == nullptr ? kNoCoverage : flight()->foreseen;
+  return mission_run() == nullptr ? kNoCoverage : mission_run()->foreseen;
 }
 
 /// Messages of members that are missing on the swarm bus.
@@ -344,44 +349,44 @@ std::int64_t Agent::lost() const {
 }
 
 /// Ticks that count since the last news of the teammate that we know least of.
-Tick Agent::oldest_news(const InMission& flight) const {
+Tick Agent::oldest_news(const InMission& mission_run) const {
   Tick oldest = 0;
   for (const RosterEntry& entry : follower().roster()) {
-    if (entry.author == me_.author() || !entry.active_at(flight.step.tick)) continue;
-    if (rests(mission(), entry.author.agent, flight.step.counted)) continue;
-    const Tick* const news = flight.news.find(entry.author);
+    if (entry.author == me_.author() || !entry.active_at(mission_run.step.tick)) continue;
+    if (rests(mission(), entry.author.agent, mission_run.step.counted)) continue;
+    const Tick* const news = mission_run.news.find(entry.author);
     const Tick last = news == nullptr ? -1 : *news;
     const Tick joined = me_.counted(entry.active_from);
-    oldest = std::max(oldest, flight.step.counted - std::max(last, joined - 1));
+    oldest = std::max(oldest, mission_run.step.counted - std::max(last, joined - 1));
   }
   return oldest;
 }
 
-AgentStatus Agent::status_of(const InMission& flight, AgentPhase phase) {
+AgentStatus Agent::status_of(const InMission& mission_run, AgentPhase phase) {
   AgentStatus status = status_;
   status_.loop_lag_s = 0;
   status.phase = phase;
-  if (flight.step.tick >= 0) {
-    status.ergodic_metric = flight.controller.metric(team_coverage());
-    status.max_staleness_s = static_cast<double>(oldest_news(flight)) * mission().timing.dt_s;
+  if (mission_run.step.tick >= 0) {
+    status.ergodic_metric = mission_run.controller.metric(team_coverage());
+    status.max_staleness_s = static_cast<double>(oldest_news(mission_run)) * mission().timing.dt_s;
   }
-  status.waiting_for = flight.step.waiting_for;
-  status.answered_tick = flight.step.answered;
+  status.waiting_for = mission_run.step.waiting_for;
+  status.answered_tick = mission_run.step.answered;
   status.contributions_lost = lost();
   status.messages_sent = me_.sent();
   status.messages_received = me_.received();
-  status.contributions_relayed = flight.anti_entropy.relayed();
+  status.contributions_relayed = mission_run.anti_entropy.relayed();
   status.refused = me_.refused();
   return status;
 }
 
-void Agent::publish_status(InMission& flight, Instant now, Outbox& out) {
-  AgentStatus status = status_of(flight, phase_in(flight));
-  const auto since = flight.running_since;
+void Agent::publish_status(InMission& mission_run, Instant now, Outbox& out) {
+  AgentStatus status = status_of(mission_run, phase_in(mission_run));
+  const auto since = mission_run.running_since;
   if (since && me_.silent(kWorld, now, *since)) status.waiting_for = kWorld;
-  me_.publish(Bus::kSwarm, status, std::max<Tick>(flight.step.tick, 0), out);
-  flight.next_status = Deadline::in(kAgentStatusPeriod, now, kStatusMissionPeriod_s,
-                                    mission().timing.dt_s, flight.step.tick);
+  me_.publish(Bus::kSwarm, status, std::max<Tick>(mission_run.step.tick, 0), out);
+  mission_run.next_status = Deadline::in(kAgentStatusPeriod, now, kStatusMissionPeriod_s,
+                                         mission().timing.dt_s, mission_run.step.tick);
 }
 
 std::string Agent::blocked_reason() const {

@@ -5,7 +5,7 @@
 // every block due by it is held; in real time at once, with what is there. What teammates lack it
 // repeats to them (anti_entropy.h), and the mission itself on request
 // (team/mission_repeat.h). Its life until and after the mission is in agent.cc, the tick in
-// flying.cc.
+// mission_run.cc.
 #pragma once
 
 #include <algorithm>
@@ -75,18 +75,18 @@ class Agent {
   AgentId id() const { return me_.id(); }
   Author author() const { return me_.author(); }
   AgentPhase phase() const;
-  Tick tick() const { return flight() ? flight()->step.tick : -1; }
+  Tick tick() const { return mission_run() ? mission_run()->step.tick : -1; }
   /// Whether the mission was paused at tick(), as far as this agent knew when it began that.
-  bool held() const { return flight() != nullptr && flight()->step.held; }
+  bool held() const { return mission_run() != nullptr && mission_run()->step.held; }
   /// The number of tick() among those that count.
-  Tick counted_tick() const { return flight() ? flight()->step.counted : -1; }
+  Tick counted_tick() const { return mission_run() ? mission_run()->step.counted : -1; }
   /// The roster in ticks that count.
   const std::vector<RosterEntry>& counted_roster() const {
-    const bool same = follower().holds().empty() || flight() == nullptr;
-    return same ? follower().roster() : flight()->held_roster;
+    const bool same = follower().holds().empty() || mission_run() == nullptr;
+    return same ? follower().roster() : mission_run()->held_roster;
   }
   /// Null before it is admitted.
-  const CoverageTable* coverage() const { return flight() ? &flight()->table : nullptr; }
+  const CoverageTable* coverage() const { return mission_run() ? &mission_run()->table : nullptr; }
   /// c_k of the rows that it holds, added up when it is asked for: a law that looks ahead needs
   /// ĉ_k.
   const Coefficients& team_coverage() const;
@@ -95,10 +95,12 @@ class Agent {
   const MissionFollower& follower() const { return me_.follower(); }
   /// What it knows of teammates' places, where agents tell them; null elsewhere.
   const BeaconBook* beacons() const {
-    return flight() && flight()->beacons ? &*flight()->beacons : nullptr;
+    return mission_run() && mission_run()->beacons ? &*mission_run()->beacons : nullptr;
   }
   /// Of the roster that the world flies tick() by.
-  std::int64_t roster_revision() const { return flight() ? flight()->step.roster_revision : 0; }
+  std::int64_t roster_revision() const {
+    return mission_run() ? mission_run()->step.roster_revision : 0;
+  }
   const RefusalCounts& refused() const { return me_.refused(); }
 
   /// What the transport counted; shown in the status.
@@ -190,37 +192,38 @@ class Agent {
   const Mission& mission() const { return me_.mission(); }
   InMission* in_mission() { return std::get_if<InMission>(&state_); }
   /// Its mission, also after its end; null if it was never admitted.
-  const InMission* flight() const;
+  const InMission* mission_run() const;
   const RosterEntry* own_entry() const { return follower().entry_of(me_.incarnation()); }
   bool may_ask() const { return !finished() && me_.run() != 0 && own_entry() == nullptr; }
   std::optional<std::string> evicted(Tick tick) const;
   void ask_for_admission(Instant now, Outbox& out);
   void repeat_mission(Instant now, Outbox& out);
   void note_roster();
-  std::int64_t max_steps(const InMission& flight, const RosterEntry& author, Instant now) const;
+  std::int64_t max_steps(const InMission& mission_run, const RosterEntry& author,
+                         Instant now) const;
   std::int64_t lost() const;
-  Tick oldest_news(const InMission& flight) const;
-  AgentPhase phase_in(const InMission& flight) const;
-  AgentStatus status_of(const InMission& flight, AgentPhase phase);
-  void publish_status(InMission& flight, Instant now, Outbox& out);
+  Tick oldest_news(const InMission& mission_run) const;
+  AgentPhase phase_in(const InMission& mission_run) const;
+  AgentStatus status_of(const InMission& mission_run, AgentPhase phase);
+  void publish_status(InMission& mission_run, Instant now, Outbox& out);
   void finish(bool failed, std::string reason, bool send_zero_velocity = false);
 
-  void fly(InMission& flight, Instant now, Outbox& out);
-  void note_places(InMission& flight, const WorldState& world);
-  bool may_begin(const InMission& flight) const;
-  bool begin_tick(InMission& flight, Instant now, Outbox& out);
-  void say_place(InMission& flight, const WorldView& view, Outbox& out);
-  bool stalled(const InMission& flight, Instant now) const;
-  void broadcast(InMission& flight, bool all, Outbox& out);
-  void repeat(InMission& flight, Outbox& out);
-  bool may_answer(InMission& flight) const;
-  void answer(InMission& flight, Outbox& out);
-  void forget_silent(InMission& flight) const;
-  Eigen::Vector3d wanted(InMission& flight);
-  Eigen::Vector3d kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps);
-  SafeVelocity safe_velocity(InMission& flight, const Eigen::Vector3d& aim_mps);
-  void answer_digests(InMission& flight, Instant now, Outbox& out);
-  void report_position(InMission& flight, Outbox& out);
+  void advance_mission(InMission& mission_run, Instant now, Outbox& out);
+  void note_places(InMission& mission_run, const WorldState& world);
+  bool may_begin(const InMission& mission_run) const;
+  bool begin_tick(InMission& mission_run, Instant now, Outbox& out);
+  void say_place(InMission& mission_run, const WorldView& view, Outbox& out);
+  bool stalled(const InMission& mission_run, Instant now) const;
+  void broadcast(InMission& mission_run, bool all, Outbox& out);
+  void repeat(InMission& mission_run, Outbox& out);
+  bool may_answer(InMission& mission_run) const;
+  void answer(InMission& mission_run, Outbox& out);
+  void forget_silent(InMission& mission_run) const;
+  Eigen::Vector3d wanted(InMission& mission_run);
+  Eigen::Vector3d kept_apart(InMission& mission_run, const Eigen::Vector3d& wanted_mps);
+  SafeVelocity safe_velocity(InMission& mission_run, const Eigen::Vector3d& aim_mps);
+  void answer_digests(InMission& mission_run, Instant now, Outbox& out);
+  void report_position(InMission& mission_run, Outbox& out);
 
   Participant me_;
   AgentId requested_id_;

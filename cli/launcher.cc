@@ -118,7 +118,7 @@ void Launcher::attend(Instant now, Stage stage) {
 /// What a team has covered is in its agents alone. If all have stopped at once, the law begins
 /// anew; the record still has the whole mission.
 void Launcher::note_forgetting(Stage stage) {
-  if (stage != Stage::kFlying || end_expected_ || failure_ || forgot_) return;
+  if (stage != Stage::kRunning || end_expected_ || failure_ || forgot_) return;
   forgot_ = std::none_of(processes_.begin(), processes_.end(), [](Process& process) {
     const bool lives_or_left = !process.end_noted || process.child->exit_code() == kExitDone;
     return process.role == Role::kAgent && lives_or_left;
@@ -199,7 +199,7 @@ void Launcher::give_up(Process& process, Stage stage) {
   const std::string loss = loss_of(process);
   if (process.role == Role::kLogger) {
     display_.say(loss + ": the team goes on without a record");
-  } else if (process.role == Role::kCoordinator && stage == Stage::kFlying) {
+  } else if (process.role == Role::kCoordinator && stage == Stage::kRunning) {
     display_.say(loss + ": the team goes on to the plan's last tick");
   } else {
     fail(loss);

@@ -25,7 +25,7 @@ void MissionWatch::receive(const Message& message, Bus bus, AgentId transmitter,
   std::visit([&](const auto& m) { on(m, *arrival); }, message);
   const bool heard = me_.liveness().last_sign_of_kind(kCoordinator).has_value();
   progress_.coordinator_silent = heard && me_.silent(kCoordinator, now);
-  if (stage_ >= Stage::kFlying) display_.show(progress_);
+  if (stage_ >= Stage::kRunning) display_.show(progress_);
 }
 
 void MissionWatch::on(const Hello& hello, const Arrival& arrival) {
@@ -49,10 +49,10 @@ void MissionWatch::on(const TeamStatus& team, const Arrival& arrival) {
 void MissionWatch::on(const AgentStatus& agent, const Arrival& arrival) {
   const Instant now = arrival.now;
   reach(agent.header.tick, now);
-  reach(flies(agent.phase) ? Stage::kFlying : Stage::kReady, now);
-  if (flies(agent.phase)) {
+  reach(answers_ticks(agent.phase) ? Stage::kRunning : Stage::kReady, now);
+  if (answers_ticks(agent.phase)) {
     progress_.world_silent = agent.waiting_for == kWorld;
-    flown_ = now;
+    last_running_ = now;
   }
   if (progress_.coordinator_silent) progress_.ergodic_metric = agent.ergodic_metric;
   const bool at_the_end = me_.counted(agent.header.tick) >= timing_.tick_count;
@@ -93,13 +93,13 @@ void MissionWatch::reach(Tick tick, Instant now) {
 }
 
 std::optional<std::string> MissionWatch::overdue(Instant now) const {
-  const bool waiting = timing_.pace == Pace::kLockstep && stage_ == Stage::kFlying;
+  const bool waiting = timing_.pace == Pace::kLockstep && stage_ == Stage::kRunning;
   if (!waiting || now - tick_since_ < seconds(timing_.lockstep_timeout_s)) return std::nullopt;
   return "tick " + std::to_string(tick_) + " was not answered in time";
 }
 
 bool MissionWatch::deserted(Instant now) const {
-  return stage_ == Stage::kFlying && now - flown_ >= kDesertedAfter;
+  return stage_ == Stage::kRunning && now - last_running_ >= kDesertedAfter;
 }
 
 void MissionWatch::answer(Transport& transport, Instant now) {

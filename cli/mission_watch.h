@@ -25,7 +25,7 @@ namespace ergocast::cli {
 enum class Stage {
   kGathering,  ///< no agent knows the plan yet
   kReady,      ///< agents know it
-  kFlying,     ///< agents are moving
+  kRunning,    ///< agents are moving
   kOver,
 };
 
@@ -87,9 +87,9 @@ class MissionWatch {
   Stage stage_ = Stage::kGathering;
   bool failed_ = false;
   std::string reason_;
-  Tick tick_ = 0;         // the newest, whether it counts or not
-  Instant tick_since_{};  // when the last tick or stage was reached
-  Instant flown_{};       // when an agent was last heard that flies
+  Tick tick_ = 0;           // the newest, whether it counts or not
+  Instant tick_since_{};    // when the last tick or stage was reached
+  Instant last_running_{};  // when an agent was last heard that flies
 
   std::optional<StopRequest> stop_;
   std::optional<Instant> stopping_since_;

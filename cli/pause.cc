@@ -28,11 +28,11 @@ class Pausing : public TeamCommand {
     if (runs_.empty()) return nobody();
     if (runs_.size() > 1) return choose();
     transport_->set_run(team().run());
-    while (!team().flies() && !team().over() && waited() < kMissionPatience) {
+    while (!team().is_running() && !team().over() && waited() < kMissionPatience) {
       ask_for_mission();
       if (!listen()) return interrupted();
     }
-    if (!team().flies()) return refused();
+    if (!team().is_running()) return refused();
     changes_ = named_changes(team().holds());
     since_ = now();
     next_ = since_;

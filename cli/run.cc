@@ -213,8 +213,8 @@ std::optional<std::string> seal_files(const MissionOptions& options, const Missi
 }
 
 /// Runs the mission. LCM works and the run directory is ready.
-int fly(const MissionOptions& options, const Scenario& scenario, const Launcher::Setup& setup,
-        StopSignals& signals) {
+int run_mission(const MissionOptions& options, const Scenario& scenario,
+                const Launcher::Setup& setup, StopSignals& signals) {
   const MessageAuthenticator& seal = options.seal;
   ProgressDisplay display;
   MissionWatch mission(setup.run, scenario.mission().timing, display,
@@ -312,7 +312,7 @@ int run(const MissionOptions& options) {
   setup.run_dir = std::get<fs::path>(prepared);
   if (const auto problem = seal_files(options, scenario->mission(), setup))
     return report_error(kExitFailed, *problem);
-  return fly(options, *scenario, setup, signals);
+  return run_mission(options, *scenario, setup, signals);
 }
 
 }  // namespace ergocast::cli

@@ -50,9 +50,9 @@ class StudyRunner {
   StudyRunner(const StudyPoints& points, std::vector<Run> missing, StudyDirectory& directory)
       : points_(points), missing_(std::move(missing)), directory_(directory) {}
 
-  void fly(int processes) {
+  void run_all(int processes) {
     Jobs jobs = jobs_with_results<studies::StudyFigures>(
-        [this](std::uint64_t job) { return fly_one(missing_[job]); },
+        [this](std::uint64_t job) { return run_one(missing_[job]); },
         [this](std::uint64_t job, const studies::StudyFigures& figures) {
           take(missing_[job], figures);
         });
@@ -68,22 +68,22 @@ class StudyRunner {
     progress_.end();
   }
 
-  std::size_t flown() const { return flown_; }
+  std::size_t completed() const { return completed_; }
   std::size_t failed() const { return failed_; }
-  std::size_t missing() const { return missing_.size() - flown_; }
+  std::size_t missing() const { return missing_.size() - completed_; }
   /// Why rows could not be written.
   const std::optional<std::string>& problem() const { return problem_; }
 
  private:
-  studies::StudyFigures fly_one(const Run& run) const {
+  studies::StudyFigures run_one(const Run& run) const {
     const Scenario scenario = points_.scenarios[run.first].with_seed(run.second);
-    return studies::fly_study_run(encode_plan(scenario.mission()));
+    return studies::run_study_mission(encode_plan(scenario.mission()));
   }
 
   void take(const Run& run, const studies::StudyFigures& figures) {
     if (!figures.complete) return fail(run, "the mission did not come to its last tick");
     if (!std::isfinite(figures.metric)) return fail(run, "phi^2 is not a number");
-    ++flown_;
+    ++completed_;
     if (!problem_) problem_ = directory_.add({run.first, figures});
   }
 
@@ -96,11 +96,11 @@ class StudyRunner {
 
   void show() {
     const auto now = ProgressLine::Clock::now();
-    if (flown_ == 0 || !progress_.due(now)) return;
+    if (completed_ == 0 || !progress_.due(now)) return;
     const auto all = static_cast<double>(missing_.size());
-    const auto done = static_cast<double>(flown_ + failed_);
+    const auto done = static_cast<double>(completed_ + failed_);
     const double per_s = done / std::chrono::duration<double>(now - since_).count();
-    std::vector<std::string> facts{std::to_string(flown_ + failed_) + " of " +
+    std::vector<std::string> facts{std::to_string(completed_ + failed_) + " of " +
                                    std::to_string(missing_.size()) + " runs"};
     facts.push_back(clock_text((all - done) / per_s) + " left");
     if (failed_ > 0) facts.push_back(std::to_string(failed_) + " failed");
@@ -113,7 +113,7 @@ class StudyRunner {
   StudyDirectory& directory_;
   ProgressLine progress_;
   const ProgressLine::Clock::time_point since_ = ProgressLine::Clock::now();
-  std::size_t flown_ = 0, failed_ = 0;
+  std::size_t completed_ = 0, failed_ = 0;
   std::optional<std::string> problem_;
 };
 
@@ -135,7 +135,7 @@ std::string command_of(const StudyOptions& options) {
 /// Prints the paths of the results, and the command that completes the study if runs are missing.
 void say_how_it_went(const StudyRunner& runner, const StudyDirectory& directory,
                      const StudyOptions& options) {
-  std::printf("\n%zu runs flown now, %zu in %s\n", runner.flown(), directory.rows().size(),
+  std::printf("\n%zu runs flown now, %zu in %s\n", runner.completed(), directory.rows().size(),
               (options.out / "study.csv").c_str());
   std::printf("report: %s\n", (std::filesystem::absolute(options.out) / "report.html").c_str());
   if (runner.missing() == 0 && options.shard) {
@@ -174,7 +174,7 @@ int study(const StudyOptions& options) {
   StudyDirectory& directory = *std::get<0>(opened);
 
   StudyRunner runner(points, missing_runs(count, options, directory.done()), directory);
-  runner.fly(options.jobs);
+  runner.run_all(options.jobs);
   std::optional<std::string> problem = runner.problem();
   if (!problem) {
     problem = conclude(directory, {points.identity.study, command, points.missions,

@@ -54,7 +54,7 @@ class MonitoredRun {
   RunId run() const { return me_.run(); }
   bool knows_mission() const { return me_.knows_mission(); }
   /// Whether the mission has begun, is known as a whole, and is not over.
-  bool flies() const {
+  bool is_running() const {
     return knows_mission() && me_.follower().state() == MissionState::kRunning && !over_;
   }
   /// See core/hold.h. @pre knows_mission()

@@ -114,7 +114,7 @@ Condition TeamView::condition_of(const Author& author, const Seen& seen, Instant
     return Condition::kWaiting;
   }
   const bool late = now - last_sign(author) >= kOverdue || status.loop_lag_s >= kLate_s ||
-                    (flies(status.phase) && seen.behind_s >= kLate_s);
+                    (answers_ticks(status.phase) && seen.behind_s >= kLate_s);
   return late ? Condition::kLate : Condition::kOk;
 }
 

@@ -40,7 +40,7 @@ std::optional<AgentId> Coordinator::free_id(Incarnation newcomer, const std::str
   }
   const Instant since = newcomers_.asked.try_emplace(newcomer, now).first->second;
   if (may_have_stopped(since, now)) return std::nullopt;
-  const Mission& mission = *flown_.mission;
+  const Mission& mission = *led_.mission;
   const auto planned = static_cast<AgentId>(mission.starts_m.size());
   const std::optional<int> brought = kind_named(mission, kind);
   // A place that is planned for another kind stays free for that. Beyond the plan all bodies are
@@ -84,7 +84,7 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
       version_mismatches.emplace(hello.host, hello.version);
     return;
   }
-  if (const auto why = why_not_of_kind(*flown_.mission, hello.kind, hello.requested_id)) {
+  if (const auto why = why_not_of_kind(*led_.mission, hello.kind, hello.requested_id)) {
     auto& unknown_kinds = newcomers_.unknown_kinds;
     if (unknown_kinds.size() < kMaxUnknownKinds) unknown_kinds.emplace(hello.host, *why);
     return;
@@ -106,8 +106,8 @@ void Coordinator::on(const Hello& hello, const Arrival& arrival) {
     // members fall silent often, and no other agent's HELLO would ever be new enough.
     if (hello.revision < members_[holder->author].silence_revision) return repeat_mission_soon();
   }
-  const auto brought = kind_named(*flown_.mission, hello.kind);
-  admit({*id, nonce}, brought.value_or(planned_kind(*flown_.mission, *id)), now);
+  const auto brought = kind_named(*led_.mission, hello.kind);
+  admit({*id, nonce}, brought.value_or(planned_kind(*led_.mission, *id)), now);
 }
 
 void Coordinator::admit(const Author& author, int kind, Instant now) {

@@ -42,17 +42,17 @@ Coordinator::Coordinator(CoordinatorIdentity identity, std::vector<std::byte> pl
                          Takeover takeover)
     : me_(kRole, {identity.run, kCoordinator, identity.incarnation}),
       name_{std::move(identity.host), std::move(identity.version)},
-      flown_{{}, std::move(plan)},
+      led_{{}, std::move(plan)},
       search_{takeover, {}, {}} {
-  if (!flown_.plan.empty()) flown_.mission = std::get<Mission>(decode_plan(flown_.plan));
-  ERGOCAST_REQUIRE(flown_.mission || takeover == Takeover::kMust);
+  if (!led_.plan.empty()) led_.mission = std::get<Mission>(decode_plan(led_.plan));
+  ERGOCAST_REQUIRE(led_.mission || takeover == Takeover::kMust);
 }
 
 void Coordinator::receive(const Message& message, Bus bus, AgentId transmitter, Instant now) {
   if (me_.run() == 0) {
     const auto* status = std::get_if<AgentStatus>(&message);
-    const bool flying =
-        status != nullptr && (status->phase == AgentPhase::kWaiting || flies(status->phase));
+    const bool flying = status != nullptr &&
+                        (status->phase == AgentPhase::kWaiting || answers_ticks(status->phase));
     if (looking() && flying) me_.set_run(status->header.run);
     // While it searches, it knows no run. The coordinator of any run here is the one that it would
     // disturb.
@@ -186,14 +186,14 @@ RosterEntry* Coordinator::straggler(Instant now) {
 void Coordinator::check_admission(Instant now) {
   if (now - *said_.first < seconds(timing().admission_timeout_s)) return;
   std::string missing;
-  for (AgentId id = 0; id < static_cast<AgentId>(flown_.mission->starts_m.size()); ++id) {
+  for (AgentId id = 0; id < static_cast<AgentId>(led_.mission->starts_m.size()); ++id) {
     const RosterEntry* entry = active_entry(id);
     if (entry != nullptr && alive(*entry, now)) continue;
     missing += (missing.empty() ? "" : ", ") + std::to_string(id);
   }
   end(true,
       "only " + std::to_string(alive_count(now)) + " of the quorum of " +
-          std::to_string(flown_.mission->quorum) + " agents were admitted; missing: " + missing,
+          std::to_string(led_.mission->quorum) + " agents were admitted; missing: " + missing,
       now);
 }
 
@@ -239,11 +239,11 @@ void Coordinator::note_silences(Instant now) {
 /// Coverage under a number stops counting after the plan's time without a message under that
 /// number. It counts again after the next one.
 void Coordinator::review_coverage(Instant now) {
-  if (flown_.mission->forget_silent_after_s <= 0) return;
+  if (led_.mission->forget_silent_after_s <= 0) return;
   // Without any live member the coordinator may be cut off itself, so it concludes nothing from
   // silence.
   if (alive_count(now) == 0) deaf_until_ = now;
-  const auto patience = std::max(seconds(flown_.mission->forget_silent_after_s), silence_of(0));
+  const auto patience = std::max(seconds(led_.mission->forget_silent_after_s), silence_of(0));
   struct Number {
     Instant heard{};
     bool speaks = false;
@@ -275,7 +275,7 @@ Tick notice_ticks(const Timing& timing) {
 }
 
 void Coordinator::switch_coverage(RosterEntry& entry, bool forgotten) {
-  const Timing& timing = flown_.mission->timing;
+  const Timing& timing = led_.mission->timing;
   change();
   entry.forgotten = forgotten;
   entry.since_tick = world_.tick + 1 + notice_ticks(timing);
@@ -295,7 +295,7 @@ void Coordinator::lead(Instant now, Outbox& out) {
   if (state_ == MissionState::kRunning) review_coverage(now);
   if (state_ == MissionState::kWaiting) check_admission(now);
   if (state_ == MissionState::kRunning && timing().pace == Pace::kLockstep) check_tick(now);
-  if (state_ == MissionState::kWaiting && alive_count(now) >= flown_.mission->quorum) {
+  if (state_ == MissionState::kWaiting && alive_count(now) >= led_.mission->quorum) {
     state_ = MissionState::kRunning;
     world_.tick_since = now;
     change();
@@ -343,7 +343,7 @@ void Coordinator::repeat_mission_soon() {
 std::vector<MissionPart> Coordinator::mission_parts() const {
   const auto ceil_div = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
   const std::size_t parts =
-      std::max({std::size_t{1}, ceil_div(flown_.plan.size(), kMaxPlanBytesPerMessage),
+      std::max({std::size_t{1}, ceil_div(led_.plan.size(), kMaxPlanBytesPerMessage),
                 ceil_div(roster_.size(), kMaxRosterEntriesPerMessage),
                 ceil_div(holds_.size(), kMaxHoldsPerMessage)});
   std::vector<MissionPart> whole(parts);
@@ -356,10 +356,10 @@ std::vector<MissionPart> Coordinator::mission_parts() const {
     part.reason = ending_.reason;
     part.stand_by_revision = stand_by_revision_;
     if (p < holds_.size()) part.holds = {holds_[p]};
-    const std::size_t first = std::min(p * kMaxPlanBytesPerMessage, flown_.plan.size());
-    const std::size_t last = std::min(first + kMaxPlanBytesPerMessage, flown_.plan.size());
-    part.plan.assign(flown_.plan.begin() + static_cast<std::ptrdiff_t>(first),
-                     flown_.plan.begin() + static_cast<std::ptrdiff_t>(last));
+    const std::size_t first = std::min(p * kMaxPlanBytesPerMessage, led_.plan.size());
+    const std::size_t last = std::min(first + kMaxPlanBytesPerMessage, led_.plan.size());
+    part.plan.assign(led_.plan.begin() + static_cast<std::ptrdiff_t>(first),
+                     led_.plan.begin() + static_cast<std::ptrdiff_t>(last));
   }
   // By admission: a newcomer changes one part alone.
   for (const RosterEntry& entry : roster_) {
@@ -393,7 +393,7 @@ void Coordinator::publish_team_status(Instant now, Outbox& out) {
     return entry.active_until < 0;
   });
   team.agents_expected = static_cast<std::int32_t>(
-      std::max(members, static_cast<std::ptrdiff_t>(flown_.mission->starts_m.size())));
+      std::max(members, static_cast<std::ptrdiff_t>(led_.mission->starts_m.size())));
   std::vector<double> metrics;
   for (const RosterEntry& entry : roster_) {
     const auto& status = members_[entry.author].status;

@@ -72,11 +72,11 @@ class Coordinator {
   bool finished() const { return ending_.finished; }
   RunId run() const { return me_.run(); }
   /// Null until it has a mission; a takeover needs a moment to find one.
-  const Mission* mission() const { return flown_.mission ? &*flown_.mission : nullptr; }
+  const Mission* mission() const { return led_.mission ? &*led_.mission : nullptr; }
   /// Whether it still searches for a mission to take over.
   bool looking() const { return search_.takeover != Takeover::kNever; }
   /// Whether it took the mission over from a predecessor.
-  bool took_over() const { return flown_.taken_over; }
+  bool took_over() const { return led_.taken_over; }
   /// Whether it has finished silently because another coordinator leads the mission or it cannot be
   /// taken over; see reason().
   bool left() const { return ending_.left; }
@@ -102,7 +102,7 @@ class Coordinator {
     std::string host, version;
   };
   /// The mission that it leads or will lead.
-  struct Flown {
+  struct LedMission {
     std::optional<Mission> mission;
     std::vector<std::byte> plan;  // as encoded
     bool taken_over = false;
@@ -165,7 +165,7 @@ class Coordinator {
   void on(const TeamStatus& theirs, const Arrival& arrival);
   void on(const Stop& stop, const Arrival& arrival);
   void on(const Pause& pause, const Arrival& arrival);
-  const Timing& timing() const { return flown_.mission->timing; }
+  const Timing& timing() const { return led_.mission->timing; }
   Tick end_tick() const { return tick_after(holds_, timing().tick_count); }
   bool may_change_holds() const;
   void name_tick(Tick tick);
@@ -211,7 +211,7 @@ class Coordinator {
 
   Participant me_;
   Name name_;
-  Flown flown_;
+  LedMission led_;
   MissionSearch search_;
   std::optional<TeamStatus> rival_;  // another coordinator's
   MissionState state_ = MissionState::kWaiting;

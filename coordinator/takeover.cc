@@ -129,7 +129,7 @@ void Coordinator::begin_own() {
 std::optional<std::string> Coordinator::not_ours(Instant now) const {
   const std::string run = "run " + to_hex(me_.run());
   if (me_.follower().plan_problem()) return run + ": " + *me_.follower().plan_problem();
-  if (!flown_.plan.empty() && me_.follower().plan() != flown_.plan) {
+  if (!led_.plan.empty() && me_.follower().plan() != led_.plan) {
     return run + " of another plan (" + me_.follower().mission()->name +
            ") is flying on this URL: choose another URL, or wait for its end";
   }
@@ -141,9 +141,9 @@ void Coordinator::take_over(Instant now) {
   const auto problem = not_ours(now);
   search_.takeover = Takeover::kNever;
   if (problem) return leave(*problem, now);
-  flown_.taken_over = true;
-  flown_.mission = me_.follower().mission();
-  flown_.plan = me_.follower().plan();
+  led_.taken_over = true;
+  led_.mission = me_.follower().mission();
+  led_.plan = me_.follower().plan();
   roster_ = me_.follower().roster();
   state_ = me_.follower().state();
   ending_.reason = me_.follower().reason();

@@ -168,7 +168,7 @@ void Forecast::set_gains_in_slots(Track& track) {
 
 void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>& roster,
                       Tick tick) {
-  flies_.assign(table.row_count(), 0);
+  has_forecast_.assign(table.row_count(), 0);
   reckoned_.assign(table.row_count(), nullptr);
   std::size_t entry = 0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -177,7 +177,7 @@ void Forecast::gather(const CoverageTable& table, const std::vector<RosterEntry>
     if (entry == roster.size() || roster[entry].author != author || author == self_) continue;
     if (!table.counts(row) || !is_newest(roster, entry, tick)) continue;
     if (tick >= rest_from(author.agent)) continue;
-    flies_[row] = 1;
+    has_forecast_[row] = 1;
     if (reckons_) reckoned_[row] = reckon(table, row, roster[entry]);
   }
 }
@@ -189,7 +189,7 @@ bool Forecast::blocks_alike(const CoverageTable& table) const {
     if (!table.blocks_alike(row)) return false;
     const Track* track = reckoned_[row];
     const bool by_blocks = track == nullptr || track->newest_tick < table.view(row, 0).tick;
-    if (by_blocks && flies_[row] && !table.gains_alike(row)) return false;
+    if (by_blocks && has_forecast_[row] && !table.gains_alike(row)) return false;
     if (track == nullptr) continue;
     const auto& [steps, due] = std::tie(track->steps, track->due);
     if (!std::equal(steps.begin() + 1, steps.end(), steps.begin())) return false;
@@ -211,7 +211,7 @@ Forecast::Term Forecast::term_of(const CoverageTable& table, std::size_t row, in
             0,
             table.quality(row),
             rest_from(table.author(row).agent)};
-  if (!flies_[row] || said.steps == 0) return term;
+  if (!has_forecast_[row] || said.steps == 0) return term;
   Track* track = reckoned_[row];
   if (track == nullptr || track->newest_tick < said.tick) {
     term.gained_steps = table.gains(row, block).steps;

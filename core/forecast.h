@@ -126,11 +126,11 @@ class Forecast {
   std::size_t most_places_;
   std::vector<Tick> rest_from_;  // by number, where any agent has a station
   std::map<AgentId, Track> tracks_;
-  std::uint64_t looks_ = 0;        // calls of look_ahead()
-  std::vector<Track*> reckoned_;   // per row of the table; null: by its blocks
-  std::vector<char> flies_;        // per row: whether it has a forecast
-  std::vector<Term> terms_;        // of the other rows that count, ascending by author
-  std::ptrdiff_t before_own_ = 0;  // so many of them come before the own row
+  std::uint64_t looks_ = 0;         // calls of look_ahead()
+  std::vector<Track*> reckoned_;    // per row of the table; null: by its blocks
+  std::vector<char> has_forecast_;  // per row: whether it has a forecast
+  std::vector<Term> terms_;         // of the other rows that count, ascending by author
+  std::ptrdiff_t before_own_ = 0;   // so many of them come before the own row
   const double* own_sums_ = nullptr;
   double own_quality_ = 1;
   AlignedDoubles nothing_;  // zeros

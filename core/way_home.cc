@@ -87,9 +87,9 @@ double WayHome::way_m(const Eigen::Vector3d& x_m) const {
 }
 
 double WayHome::needed_s(const Eigen::Vector3d& x_m) const {
-  const double flown_s = way_m(x_m) / speed_mps_;
-  if (std::isinf(flown_s)) return flown_s;  // 0 · ∞ is not a number
-  return flown_s + drift_ * std::sqrt(flown_s) + slack_s_;
+  const double travel_s = way_m(x_m) / speed_mps_;
+  if (std::isinf(travel_s)) return travel_s;  // 0 · ∞ is not a number
+  return travel_s + drift_ * std::sqrt(travel_s) + slack_s_;
 }
 
 bool WayHome::begun(Tick counted, const Eigen::Vector3d& x_m) {

@@ -193,7 +193,7 @@ bool is_newest(const std::vector<RosterEntry>& roster, const RosterEntry& one, T
          });
 }
 
-bool flies(const Mission& mission, const TableView& agent, const RosterEntry& entry) {
+bool has_forecast(const Mission& mission, const TableView& agent, const RosterEntry& entry) {
   return entry.author != agent.self && !is_forgotten(entry, agent) &&
          is_newest(*agent.roster, entry, agent.counted) &&
          agent.counted < covers_until(mission, entry.author.agent);
@@ -261,7 +261,7 @@ void Shadow::answer(const Mission& mission, const TableView& agent) {
   if (!mission.dead_reckoning) return;
   for (auto& [author, row] : rows_) {
     const RosterEntry* entry = entry_of(*agent.roster, author);
-    const bool reckoned = entry != nullptr && flies(mission, agent, *entry);
+    const bool reckoned = entry != nullptr && has_forecast(mission, agent, *entry);
     // Of the roster as it is now: an admission may be lost with its coordinator, and come anew.
     if (!reckoned || row.active_from != entry->active_from) {
       for (Block& block : row.blocks) block.since.clear();
@@ -318,7 +318,7 @@ Shadow::Part Shadow::said(const Mission& mission, const Block& block) const {
 
 /// What each block of a row adds to ĉ.
 std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& row,
-                                           const RosterEntry* entry, bool flies) const {
+                                           const RosterEntry* entry, bool has_forecast) const {
   std::map<Tick, Coefficients> gains;
   const auto gain = [&](const Place& place, int b) {
     auto found = gains.find(place.tick);
@@ -333,7 +333,7 @@ std::vector<Shadow::Part> Shadow::parts_of(const Mission& mission, const Row& ro
     Part& part = parts.emplace_back(said(mission, block));
     part.quality = quality_of(mission, entry);
     if (entry != nullptr) part.until = covers_until(mission, entry->author.agent);
-    if (!flies) part.gained_steps = 0;
+    if (!has_forecast) part.gained_steps = 0;
     if (part.gained_steps == 0 || !row.newest || row.newest->tick < block.held.tick) continue;
     for (const Place& place : block.since) {
       const auto more = gain(place, b);
@@ -361,7 +361,7 @@ std::vector<std::vector<Shadow::Part>> Shadow::team(const Mission& mission,
     const RosterEntry* entry = entry_of(*agent.roster, author);
     if (entry != nullptr && is_forgotten(*entry, agent)) continue;
     team.push_back(
-        parts_of(mission, row, entry, entry != nullptr && flies(mission, agent, *entry)));
+        parts_of(mission, row, entry, entry != nullptr && has_forecast(mission, agent, *entry)));
   }
   return team;
 }
@@ -374,10 +374,10 @@ Coefficients Shadow::foreseen(const Mission& mission, const TableView& agent) co
   const int size = block_size(mission);
   for (int b = 0; b < agent.table->block_count(); ++b) {
     const auto at = static_cast<std::size_t>(b);
-    const auto fly = std::count_if(team.begin(), team.end(),
-                                   [at](const auto& parts) { return parts[at].gained_steps > 0; });
+    const auto forecasts = std::count_if(
+        team.begin(), team.end(), [at](const auto& parts) { return parts[at].gained_steps > 0; });
     const double h_s =
-        horizon_s(mission, *covariance_m2_, 1 + static_cast<int>(fly), agent.counted);
+        horizon_s(mission, *covariance_m2_, 1 + static_cast<int>(forecasts), agent.counted);
     double time_s = 0;
     std::vector<double> sums(static_cast<std::size_t>(size));
     for (const auto& parts : team) {

@@ -75,7 +75,7 @@ class Shadow {
   void reckon(const RosterEntry& entry, Row& row) const;
   Part said(const Mission& mission, const Block& block) const;
   std::vector<Part> parts_of(const Mission& mission, const Row& row, const RosterEntry* entry,
-                             bool flies) const;
+                             bool has_forecast) const;
   std::vector<std::vector<Part>> team(const Mission& mission, const TableView& agent) const;
 
   /// Of the one mission of its life.

@@ -402,9 +402,9 @@ void World::repeat(Instant now, Outbox& out) {
   if (schedule_.published) {
     // The same state, but who has answered, and who has joined, is news. Not so the roster that the
     // tick is flown by: that must be one for all agents, whichever repeat they hear.
-    const std::int64_t flown_by = record_.newest().front().roster_revision;
+    const std::int64_t revision_in_use = record_.newest().front().roster_revision;
     record_.newest() = snapshot();
-    for (WorldState& part : record_.newest()) part.roster_revision = flown_by;
+    for (WorldState& part : record_.newest()) part.roster_revision = revision_in_use;
   } else if (!record_.empty()) {
     // The slots have moved on already.
     for (WorldState& part : record_.newest()) {

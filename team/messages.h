@@ -106,7 +106,7 @@ struct Digest {
 enum class AgentPhase { kJoining, kWaiting, kRunning, kFinished, kReturning, kResting };
 const char* to_string(AgentPhase phase);
 /// Whether it answers ticks.
-inline bool flies(AgentPhase phase) {
+inline bool answers_ticks(AgentPhase phase) {
   return phase == AgentPhase::kRunning || phase >= AgentPhase::kReturning;
 }
 

@@ -137,7 +137,7 @@ class FilmedPhysics : public MujocoPhysics {
   int tick_ = 0;
 };
 
-int fly(const Mission& mission, const RobotDesign& design, const Film& film) {
+int film_mission(const Mission& mission, const RobotDesign& design, const Film& film) {
   std::ostringstream trajectory, metrics;
   lab::Simulation simulation(
       {.plan = encode_plan(mission),
@@ -180,7 +180,7 @@ int run(int argc, char** argv) {
   }
   if (argc > 6) film.still = argv[5];
   const bool rolls = std::strcmp(argv[2], "discs") == 0;
-  return fly(std::get<Scenario>(loaded).mission(), rolls ? kDiscs : kQuadrotors, film);
+  return film_mission(std::get<Scenario>(loaded).mission(), rolls ? kDiscs : kQuadrotors, film);
 }
 
 }  // namespace

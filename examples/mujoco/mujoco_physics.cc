@@ -140,7 +140,7 @@ void MujocoPhysics::put_in_place(Robot& robot) {
   std::fill(qvel, qvel + kQvel + (rolls() ? 2 : 0), 0);
   qpos[0] = robot.place_m.x();
   qpos[1] = robot.place_m.y();
-  qpos[2] = rolls() ? kWheelRadius_m : kFlightHeight_m;
+  qpos[2] = rolls() ? kWheelRadius_m : kHoverHeight_m;
   qpos[3] = std::cos(heading_rad / 2);
   qpos[4] = qpos[5] = 0;
   qpos[6] = std::sin(heading_rad / 2);

@@ -46,7 +46,7 @@ std::array<double, 4> QuadrotorPilot::thrusts_n(const RobotState& state,
   Eigen::Vector3d push = (wanted_mps - state.velocity_mps) / kSpeedTime_s;
   push.z() = 0;
   if (push.norm() > kGreatestAcceleration_mps2) push *= kGreatestAcceleration_mps2 / push.norm();
-  push.z() = kGravity_mps2 + kHeightGain * (kFlightHeight_m - state.position_m.z()) -
+  push.z() = kGravity_mps2 + kHeightGain * (kHoverHeight_m - state.position_m.z()) -
              kClimbGain * state.velocity_mps.z();
   const Eigen::Matrix3d to_own = state.attitude.transpose();
   const Eigen::Vector3d up = to_own * push.normalized();  // where its own z is to be

@@ -77,7 +77,7 @@ std::string floor_and_walls(const RobotDesign& design, const Box& domain, const 
   const double half_x_m = domain.size_m.x() / 2 + design.radius_m + kWallThickness_m;
   const double half_y_m = domain.size_m.y() / 2 + design.radius_m + kWallThickness_m;
   const double height_m =
-      design.kind == RobotKind::kQuadrotor ? 1.5 * kFlightHeight_m : kWallHeight_m;
+      design.kind == RobotKind::kQuadrotor ? 1.5 * kHoverHeight_m : kWallHeight_m;
   std::string out = text(
       "<geom type=\"plane\" pos=\"%.17g %.17g 0\" size=\"%g %g .1\" material=\"floor\" "
       "contype=\"2\" conaffinity=\"2\" condim=\"1\" friction=\"0\"/>\n",
@@ -147,7 +147,7 @@ std::string quadrotor(const RobotDesign& design, const Placement& at) {
       "<geom name=\"chassis%d\" type=\"cylinder\" size=\"%g .03\" contype=\"1\" conaffinity=\"1\" "
       "condim=\"3\" friction=\".4\" rgba=\"%s .35\"/>\n"
       "<geom type=\"box\" size=\".06 .03 .025\" contype=\"0\" conaffinity=\"0\" rgba=\"%s 1\"/>\n",
-      at.id, at.position_m.x(), at.position_m.y(), kFlightHeight_m, at.id, kQuadrotorMass_kg,
+      at.id, at.position_m.x(), at.position_m.y(), kHoverHeight_m, at.id, kQuadrotorMass_kg,
       kInertiaX_kgm2, kInertiaX_kgm2, kInertiaZ_kgm2, at.id, design.radius_m, colour(at.id).c_str(),
       colour(at.id).c_str());
   for (int rotor = 0; rotor < 4; ++rotor) {

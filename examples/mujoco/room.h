@@ -33,7 +33,7 @@ inline constexpr double kTrackShare = 0.7;
 inline constexpr double kWheelSpeedLimit_radps = 30, kWheelTorqueLimit_nm = 0.5;
 // Of all quadrotors:
 inline constexpr double kQuadrotorMass_kg = 0.8;
-inline constexpr double kFlightHeight_m = 1;
+inline constexpr double kHoverHeight_m = 1;
 /// Rotors from the centre, as a share of the robot's radius; and torque for each newton of thrust.
 inline constexpr double kArmShare = 0.6, kRotorTorque_m = 0.02;
 inline constexpr double kThrustLimit_n = 6;

@@ -118,7 +118,7 @@ class Observer : public lab::SimulationObserver {
 
 }  // namespace
 
-StudyFigures fly_without_messages(const Mission& mission) {
+StudyFigures run_without_messages(const Mission& mission) {
   const Mission judged = in_cosines(mission);
   StudyMeasure measure(judged);
   lab::IdealTeam team(mission);
@@ -138,7 +138,7 @@ StudyFigures fly_without_messages(const Mission& mission) {
   return figures;
 }
 
-StudyFigures fly_with_messages(std::span<const std::byte> plan) {
+StudyFigures run_with_messages(std::span<const std::byte> plan) {
   const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
   const Mission judged = in_cosines(mission);
   Observer observer(judged);
@@ -147,10 +147,10 @@ StudyFigures fly_with_messages(std::span<const std::byte> plan) {
   return observer.figures();
 }
 
-StudyFigures fly_study_run(std::span<const std::byte> plan) {
+StudyFigures run_study_mission(std::span<const std::byte> plan) {
   const Mission mission = std::get<Mission>(decode_plan_with_table(plan));
-  if (lab::IdealTeam::stands_for(mission)) return fly_without_messages(mission);
-  return fly_with_messages(plan);
+  if (lab::IdealTeam::stands_for(mission)) return run_without_messages(mission);
+  return run_with_messages(plan);
 }
 
 }  // namespace ergocast::studies

@@ -57,10 +57,10 @@ struct StudyFigures {
 /// Flies the mission of a compiled plan: without messages where that is the same (IdealTeam), else
 /// with the real cores and codec in virtual time (Simulation), whatever its pace.
 /// @pre the plan decodes
-StudyFigures fly_study_run(std::span<const std::byte> plan);
+StudyFigures run_study_mission(std::span<const std::byte> plan);
 
 /// The two ways to fly, which agree on every mission that IdealTeam stands for.
-StudyFigures fly_without_messages(const Mission& mission);
-StudyFigures fly_with_messages(std::span<const std::byte> plan);
+StudyFigures run_without_messages(const Mission& mission);
+StudyFigures run_with_messages(std::span<const std::byte> plan);
 
 }  // namespace ergocast::studies

@@ -31,7 +31,7 @@ Mission realtime(int agents) {
 }
 
 /// The world's ticks [from, until), 0.1 s each; returns all messages of the team.
-Outbox fly(LiveTeam& team, int agents, Tick from, Tick until) {
+Outbox run_ticks(LiveTeam& team, int agents, Tick from, Tick until) {
   Outbox said;
   for (Tick tick = from; tick < until; ++tick) {
     std::vector<Eigen::Vector3d> places;
@@ -63,7 +63,7 @@ TEST(Chain, NewsReachThoseWhoCannotHearTheirAuthor) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
-  fly(team, 3, 0, 30);
+  run_ticks(team, 3, 0, 30);
   team.wait(at(3s), 3s);
   EXPECT_GT(status_after(team[1], at(6s)).contributions_relayed, 0);
   for (const AgentId end : {0, 2}) {
@@ -95,7 +95,7 @@ TEST(Chain, WhatIsPassedOnIsWhatItsAuthorSaidByteForByte) {
   const Mission mission = realtime(3);
   LiveTeam team(mission);
   team.hear_by([](AgentId a, AgentId b) { return std::abs(a - b) == 1; });
-  Outbox said = fly(team, 3, 0, 30);
+  Outbox said = run_ticks(team, 3, 0, 30);
   for (Outgoing& word : team.wait(at(3s), 3s)) said.push_back(std::move(word));
   std::map<std::pair<std::int64_t, std::int32_t>, std::vector<std::byte>> original;
   int passed_on = 0;
@@ -120,7 +120,7 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   const Mission mission = realtime(4);
   LiveTeam team(mission);
   team.hear_by([](AgentId a, AgentId b) { return a / 2 == b / 2; });
-  fly(team, 4, 0, 20);
+  run_ticks(team, 4, 0, 20);
   EXPECT_EQ(team[0].coverage()->row_count(), 2u) << "its half";
   // 3 dies after only 2 has received its blocks; then the halves meet.
   team.kill(3);
@@ -128,7 +128,7 @@ TEST(Partition, HalvesThatMeetAgainCountEverythingOnce) {
   roster[3].active_until = 20;
   team.tell(mission_part(1, MissionState::kRunning, roster), at(2s));
   team.hear_by([](AgentId, AgentId) { return true; });
-  fly(team, 4, 20, 22);
+  run_ticks(team, 4, 20, 22);
   team.wait(at(2200ms), 3s);
 
   std::vector<std::pair<Author, std::vector<Eigen::Vector3d>>> lives;
@@ -146,7 +146,7 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
   const Mission mission = realtime(2);
   const Author former = author_of(0), reborn{0, 99};
   LiveTeam team(mission);
-  fly(team, 2, 0, 20);
+  run_ticks(team, 2, 0, 20);
   team.kill(0);
   const MissionPart news = mission_part(1, MissionState::kRunning,
                                         {{former, 0, 20}, {reborn, 20, -1}, {author_of(1), 0, -1}});
@@ -155,7 +155,7 @@ TEST(Restart, AnAgentGetsItsFormerLivesBackFromATeammate) {
   team.revive(0, Agent(identity));
   team.tell(news, at(2s));
   EXPECT_EQ(team[0].coverage()->steps_held(former), std::nullopt);
-  fly(team, 2, 20, 25);
+  run_ticks(team, 2, 20, 25);
   team.wait(at(2500ms), 3s);
 
   EXPECT_EQ(team[0].coverage()->steps_held(former), 20);
@@ -173,10 +173,10 @@ TEST(LostBroadcast, IsMendedByATeammateWhoHeardIt) {
   // next one.
   const Mission mission = realtime(3);
   LiveTeam team(mission);
-  fly(team, 3, 0, 10);
+  run_ticks(team, 3, 0, 10);
   team.hear_by(
       [](AgentId listener, AgentId transmitter) { return listener != 0 || transmitter != 2; });
-  fly(team, 3, 10, 11);
+  run_ticks(team, 3, 10, 11);
   team.kill(2);
   auto roster = roster_of(3);
   roster[2].active_until = 11;

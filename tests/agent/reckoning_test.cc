@@ -80,7 +80,7 @@ class Reckoning : public ::testing::Test {
     give(*agent_, block_of(mission_, 1, path, next), at(0s));
   }
   /// Ticks `from` to `until`, without the last.
-  void fly(Tick from, Tick until) {
+  void run_ticks(Tick from, Tick until) {
     for (Tick tick = from; tick < until; ++tick) tell(*agent_, world_answered(tick, tick - 1));
   }
   void expect_foreseen(const Coefficients& expected) const {
@@ -96,7 +96,7 @@ class Reckoning : public ::testing::Test {
 TEST_F(Reckoning, PlacesSinceATeammatesLastBlockCountAsIfItHadSaidThem) {
   begin(reckoning_mission());
   hear_block(their_path(0, 1));
-  fly(0, 6);
+  run_ticks(0, 6);
   expect_foreseen(foreseen(mission_, 0, 5, their_path(0, 6), 1, 0));
 }
 
@@ -105,18 +105,18 @@ TEST_F(Reckoning, WithoutItTheLastBlockIsAllThatIsKnown) {
   mission.dead_reckoning = false;
   begin(mission);
   hear_block(their_path(0, 1));
-  fly(0, 6);
+  run_ticks(0, 6);
   expect_foreseen(foreseen(mission_, 0, 5, their_path(0, 1), 1, 5));
 }
 
 TEST_F(Reckoning, TheNextBlockReplacesWhatWasReckoned) {
   begin(reckoning_mission());
   hear_block(their_path(0, 1));
-  fly(0, 6);
+  run_ticks(0, 6);
   Path truth{
       {300, 300, 0}, {310, 300, 0}, {320, 300, 0}, {330, 300, 0}};  // as only its author knows
   hear_block(truth);
-  fly(6, 8);
+  run_ticks(6, 8);
   for (Tick tick = 4; tick < 8; ++tick) truth.push_back(their_place(tick));
   expect_foreseen(foreseen(mission_, 0, 7, truth, 1, 0));
 }
@@ -125,21 +125,21 @@ TEST_F(Reckoning, NothingOfItIsHeldOrPassedOn) {
   begin(reckoning_mission());
   const Contribution said = block_of(mission_, 1, their_path(0, 1), kPeriod);
   give(*agent_, said, at(0s));
-  fly(0, 20);
+  run_ticks(0, 20);
   EXPECT_EQ(agent_->coverage()->steps_held(author_of(1)), 1);
   EXPECT_EQ(agent_->coverage()->block(author_of(1), 0).sums, said.sums);
   const Coefficients known =
       (sums_of(mission_, {own_place(0)}) + sums_of(mission_, their_path(0, 1))) / 0.2;
   begin(reckoning_mission());
   hear_block(their_path(0, 1));
-  fly(0, 1);
+  run_ticks(0, 1);
   EXPECT_LT((agent_->team_coverage() - known).cwiseAbs().maxCoeff(), 1e-15) << "nor in c";
 }
 
 TEST_F(Reckoning, APlaceFromBeforeItTookPartIsNone) {
   begin(reckoning_mission(), 3);
   hear_block(their_path(0, 1));
-  fly(0, 5);
+  run_ticks(0, 5);
   Path known = their_path(0, 1);
   for (const Eigen::Vector3d& x_m : their_path(3, 5)) known.push_back(x_m);
   expect_foreseen(foreseen(mission_, 3, 4, known, 1, 0));

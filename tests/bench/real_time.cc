@@ -49,12 +49,12 @@ double processor_s() {
   return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
 }
 
-struct Flown {
+struct Measured {
   double used_s = 0, deliveries = 0, lost = 0, late = 0, drops = 0, commands = 0;
 };
 
 /// A mission by the real programs, or why there is none.
-std::variant<Flown, std::string> fly(int agents, int period_ticks, int duration_s) {
+std::variant<Measured, std::string> measure(int agents, int period_ticks, int duration_s) {
   const TemporaryFolder folder;
   const fs::path scenario = folder.path() / "team.textproto", log = folder.path() / "log";
   std::ofstream(scenario) << scenario_text(agents, period_ticks, duration_s);
@@ -69,38 +69,38 @@ std::variant<Flown, std::string> fly(int agents, int period_ticks, int duration_
   if (launcher.exit_code() != 0) return launcher.fate() + "\n" + last_lines(log, 10);
   std::ifstream file(folder.path() / "run" / "summary.json");
   const Json summary = Json::parse(file);
-  Flown flown;
-  flown.used_s = processor_s() - before_s;
+  Measured measured;
+  measured.used_s = processor_s() - before_s;
   for (const Json& agent : summary.at("agents")) {
-    flown.deliveries += agent.value("messages_received", 0.0);
-    flown.lost += agent.value("contributions_lost", 0.0);
+    measured.deliveries += agent.value("messages_received", 0.0);
+    measured.lost += agent.value("contributions_lost", 0.0);
   }
-  flown.late = summary.at("missed_deadlines").get<double>();
-  flown.drops = summary.at("messages").value("kernel_drops", 0.0);
-  flown.commands = agents * summary.at("ticks").get<double>();
-  return flown;
+  measured.late = summary.at("missed_deadlines").get<double>();
+  measured.drops = summary.at("messages").value("kernel_drops", 0.0);
+  measured.commands = agents * summary.at("ticks").get<double>();
+  return measured;
 }
 
 void RealTime(benchmark::State& state) {
   const auto agents = static_cast<int>(state.range(0)), period = static_cast<int>(state.range(1));
   for (auto _ : state) {
-    std::array<Flown, 2> flown;
+    std::array<Measured, 2> measured;
     for (const std::size_t i : {0, 1}) {
-      const auto mission = fly(agents, period, i == 0 ? kShort_s : kLong_s);
+      const auto mission = measure(agents, period, i == 0 ? kShort_s : kLong_s);
       if (const auto* problem = std::get_if<std::string>(&mission)) {
         return state.SkipWithError(problem->c_str());
       }
-      flown[i] = std::get<Flown>(mission);
+      measured[i] = std::get<Measured>(mission);
     }
-    const double used_s = flown[1].used_s - flown[0].used_s;
-    const double deliveries = flown[1].deliveries - flown[0].deliveries;
+    const double used_s = measured[1].used_s - measured[0].used_s;
+    const double deliveries = measured[1].deliveries - measured[0].deliveries;
     state.SetIterationTime(used_s);
     state.counters["us_per_delivery"] = 1e6 * used_s / deliveries;
     state.counters["deliveries_per_s"] = deliveries / (kLong_s - kShort_s);
     state.counters["cores"] = used_s / (kLong_s - kShort_s);
-    state.counters["late_percent"] = 100 * flown[1].late / flown[1].commands;
-    state.counters["lost"] = flown[1].lost;
-    state.counters["drops"] = flown[1].drops;
+    state.counters["late_percent"] = 100 * measured[1].late / measured[1].commands;
+    state.counters["lost"] = measured[1].lost;
+    state.counters["drops"] = measured[1].drops;
   }
 }
 

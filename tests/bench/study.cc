@@ -38,7 +38,7 @@ void report(const Mission& mission, benchmark::State& state) {
 void StudyRun(benchmark::State& state) {
   const Mission mission = mission_of(static_cast<int>(state.range(0)), state.range(1) != 0);
   for (auto _ : state) {
-    const studies::StudyFigures figures = studies::fly_without_messages(mission);
+    const studies::StudyFigures figures = studies::run_without_messages(mission);
     benchmark::DoNotOptimize(figures.metric);
   }
   report(mission, state);

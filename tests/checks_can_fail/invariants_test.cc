@@ -191,7 +191,7 @@ const Plant kPlants[] = {
 class InvariantsCanFail : public OwnHost {
  protected:
   /// The exit code of two seeds of the faulty team without faults, except for those of the plant.
-  int fly(const Plant& plant, const char* bug) {
+  int run_plant(const Plant& plant, const char* bug) {
     std::string text = text_of(scenario_file("faulty_team"));
     for (std::istringstream lines(plant.scenario); lines;) {
       std::string line;
@@ -238,9 +238,10 @@ TEST_F(InvariantsCanFail, EachOfThem) {
     const std::string name(lab::name_of(plant.broken));
     planted.insert(plant.broken);
     if (*plant.bug != '\0') {
-      EXPECT_EQ(fly(plant, ""), 0) << "without the bug: " << said();
+      EXPECT_EQ(run_plant(plant, ""), 0) << "without the bug: " << said();
     }
-    EXPECT_EQ(fly(plant, plant.bug), 4) << name << " holds though " << plant.bug << '\n' << said();
+    EXPECT_EQ(run_plant(plant, plant.bug), 4) << name << " holds though " << plant.bug << '\n'
+                                              << said();
     for (const char* seed : {"seed 1: ", "seed 2: "}) {
       EXPECT_TRUE(says(seed + name + ": ")) << plant.bug << " is not seen: " << said();
     }
@@ -269,7 +270,7 @@ TEST(Invariants, AreReportedAtAsManyPlacesAsThereArePlants) {
 }
 
 TEST_F(InvariantsCanFail, AMissionWhoseProcessDiesIsOneThatFailed) {
-  EXPECT_EQ(fly({}, "an agent crashes"), 4);
+  EXPECT_EQ(run_plant({}, "an agent crashes"), 4);
   EXPECT_TRUE(says("seed 1: ")) << said();
   EXPECT_TRUE(says("SIGABRT")) << said();
 }

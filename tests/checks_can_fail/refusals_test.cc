@@ -14,7 +14,7 @@
 namespace ergocast::test {
 namespace {
 
-class RefusalsCanBeSeen : public FlyingMission {
+class RefusalsCanBeSeen : public RunningMission {
  protected:
   RefusalsCanBeSeen() {
     const MissionKey key = make_mission_key();

@@ -39,7 +39,7 @@ class RecordedTeam : public ::testing::Test {
     for (const std::byte byte : bytes) events_ += static_cast<char>(byte);
   }
   /// Half seconds of a team whose agents of `ids` are alive.
-  void fly(std::chrono::microseconds duration, const std::vector<AgentId>& ids) {
+  void record_ticks(std::chrono::microseconds duration, const std::vector<AgentId>& ids) {
     for (const auto end = now_ + duration; now_ < end; now_ += 500ms) {
       tick_ += 5;
       log(test::mission_part(1, MissionState::kRunning, test::roster_of(2)));
@@ -81,9 +81,9 @@ class RecordedTeam : public ::testing::Test {
 };
 
 TEST_F(RecordedTeam, SaysWhenAnAgentWasSilentAndWhatEachKnew) {
-  fly(5s, {0, 1});
-  fly(5s, {0});
-  fly(5s, {0, 1});
+  record_ticks(5s, {0, 1});
+  record_ticks(5s, {0});
+  record_ticks(5s, {0, 1});
   const Json team = read();
   EXPECT_EQ(incidents(team), (std::vector<std::string>{"1 silent", "1 back"}));
   const Json& one = team["agents"]["1"];
@@ -106,9 +106,9 @@ TEST_F(RecordedTeam, SaysWhenAnAgentWasSilentAndWhatEachKnew) {
 }
 
 TEST_F(RecordedTeam, APauseOfTheLoggerIsNoSilence) {
-  fly(5s, {0, 1});
+  record_ticks(5s, {0, 1});
   now_ += 1h;
-  fly(5s, {0, 1});
+  record_ticks(5s, {0, 1});
   EXPECT_EQ(incidents(read()), std::vector<std::string>());
 }
 
@@ -116,13 +116,13 @@ TEST_F(RecordedTeam, NeedsNoKey) {
   MissionKey key;
   key.shared.fill(std::byte{7});
   seal_ = MessageAuthenticator(key);
-  fly(3s, {0, 1});
+  record_ticks(3s, {0, 1});
   EXPECT_EQ(read()["agents"].size(), 2U);
 }
 
 TEST_F(RecordedTeam, EndsWhereItsLogIsDamaged) {
   EXPECT_TRUE(read().is_null());
-  fly(3s, {0, 1});
+  record_ticks(3s, {0, 1});
   const double whole = read()["t"].back();
   const std::string events = events_;
   events_ = events.substr(0, events.size() / 2 + 10);
@@ -135,7 +135,7 @@ TEST_F(RecordedTeam, EndsWhereItsLogIsDamaged) {
 TEST_F(RecordedTeam, OfALongMissionKeepsABoundedNumberOfLooks) {
   mission_.timing.tick_count = 1'000'000;
   test::announce(mission_);
-  fly(6h, {0, 1});
+  record_ticks(6h, {0, 1});
   const Json team = read();
   EXPECT_LE(team["t"].size(), 10'000U);
   EXPECT_GT(team["t"].size(), 4'000U);

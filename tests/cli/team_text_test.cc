@@ -28,7 +28,7 @@ AgentRow row_of(AgentId id, Condition condition) {
   return row;
 }
 
-TeamPicture flying_team() {
+TeamPicture running_team() {
   TeamPicture picture;
   picture.run = 0x1234;
   picture.scenario = "quadrimodal_corners";
@@ -73,7 +73,7 @@ TEST(TeamTable, SaysWhoBlocksAnAgentOnceItLasts) {
 
 TEST(TeamTable, SaysEverythingInLinesThatFit) {
   EXPECT_EQ(
-      team_table(flying_team(), false),
+      team_table(running_team(), false),
       "quadrimodal_corners, run 0000000000001234, running, tick 599999 of 1000000 (60 %), t = "
       "59999.9 s\n"
       "2 of 3 agents alive, phi^2 0.00123 (median), unauthenticated\n"
@@ -88,13 +88,13 @@ TEST(TeamTable, SaysEverythingInLinesThatFit) {
       "range 1\n"
       "  0  ok          robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        1\n"
       "127  ok          robot-12  abcdef 599999 0.00123    12.3    1.2    0     0        0\n");
-  for (const std::string& line : lines_of(team_table(flying_team(), false))) {
+  for (const std::string& line : lines_of(team_table(running_team(), false))) {
     EXPECT_LE(line.size(), 100u) << line;
   }
 }
 
 TEST(TeamTable, WarnsOfLateCommandsWithTheRemedy) {
-  TeamPicture picture = flying_team();
+  TeamPicture picture = running_team();
   picture.tick = 1000;
   picture.agents_expected = 3;
   picture.missed_deadlines = 29;
@@ -108,16 +108,16 @@ TEST(TeamTable, WarnsOfLateCommandsWithTheRemedy) {
   const auto json = nlohmann::json::parse(team_json(picture));
   EXPECT_EQ(json["late_share"], 0.12);
   EXPECT_TRUE(json["warning"].get<std::string>().starts_with("12 % of the commands"));
-  EXPECT_EQ(nlohmann::json::parse(team_json(flying_team()))["warning"], nullptr);
+  EXPECT_EQ(nlohmann::json::parse(team_json(running_team()))["warning"], nullptr);
 }
 
 TEST(TeamTable, ColourChangesNothingButColour) {
-  std::string coloured = team_table(flying_team(), true);
+  std::string coloured = team_table(running_team(), true);
   EXPECT_NE(coloured.find("\x1b[31;1msilent 4 s\x1b[0m"), std::string::npos) << coloured;
   for (auto at = coloured.find('\x1b'); at != std::string::npos; at = coloured.find('\x1b')) {
     coloured.erase(at, coloured.find('m', at) - at + 1);
   }
-  EXPECT_EQ(coloured, team_table(flying_team(), false));
+  EXPECT_EQ(coloured, team_table(running_team(), false));
 }
 
 TEST(TeamTable, NamesWhomAnAgentWaitsFor) {
@@ -129,7 +129,7 @@ TEST(TeamTable, NamesWhomAnAgentWaitsFor) {
 }
 
 TEST(TeamTable, OfALongHostNameOrANeverHeardAgentStaysAligned) {
-  TeamPicture picture = flying_team();
+  TeamPicture picture = running_team();
   picture.agents[0].status->host = std::string(63, 'h');
   picture.agents[1].status->host = "über-träge-robotermaschine";
   picture.agents[2].status.reset();
@@ -147,7 +147,7 @@ TEST(TeamTable, IsCutToTheTerminalsHeight) {
 }
 
 TEST(TeamJson, HasOneClockAndTheWorldsTickBeside) {
-  TeamPicture picture = flying_team();
+  TeamPicture picture = running_team();
   picture.tick = 700;
   picture.counted = 500;
   const auto json = nlohmann::json::parse(team_json(picture));
@@ -159,7 +159,7 @@ TEST(TeamJson, HasOneClockAndTheWorldsTickBeside) {
 }
 
 TEST(TeamJson, IsOneLineWithNullForWhatIsNotKnown) {
-  const std::string line = team_json(flying_team());
+  const std::string line = team_json(running_team());
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const auto json = nlohmann::json::parse(line);
   EXPECT_EQ(json["run_id"], "0000000000001234");

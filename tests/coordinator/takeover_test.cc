@@ -64,7 +64,7 @@ TEST(TakeoverNever, SpeaksAtOnce) {
   EXPECT_FALSE(coordinator.took_over());
 }
 
-TEST(TakeoverIfFlying, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilence) {
+TEST(TakeoverIfRunning, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilence) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   EXPECT_EQ(coordinator.next_wakeup(), Instant{}) << "at once, to listen";
   for (int ms = 0; ms < 750; ms += 10) EXPECT_TRUE(advance(coordinator, at(5s + ms * 1ms)).empty());
@@ -76,7 +76,7 @@ TEST(TakeoverIfFlying, StartsAMissionOfItsOwnAfterThreeQuartersOfASecondOfSilenc
   EXPECT_FALSE(coordinator.took_over());
 }
 
-TEST(TakeoverIfFlying, AgentsThatJoinOrHaveFinishedFlyNothing) {
+TEST(TakeoverIfRunning, AgentsThatJoinOrHaveFinishedFlyNothing) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   for (const AgentPhase phase : {AgentPhase::kJoining, AgentPhase::kFinished}) {
@@ -131,7 +131,7 @@ TEST(TakeoverMust, GivesUpAfterHalfAMinuteAndSaysNothingButWhy) {
   EXPECT_EQ(coordinator.reason(), "no agent on this URL knows a mission that could be taken over");
 }
 
-TEST(TakeoverIfFlying, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
+TEST(TakeoverIfRunning, DoesNotStartItsOwnBesideATeamThatDoesNotAnswer) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
@@ -150,7 +150,7 @@ constexpr const char* kLedByAnother =
     "URL, "
     "or take the mission over with --resume";
 
-TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
+TEST(TakeoverIfRunning, LeavesAMissionToTheCoordinatorThatLeadsIt) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   give(coordinator, status_of(0, 1), at(0s));
@@ -164,7 +164,7 @@ TEST(TakeoverIfFlying, LeavesAMissionToTheCoordinatorThatLeadsIt) {
   EXPECT_EQ(coordinator.reason(), kLedByAnother);
 }
 
-TEST(TakeoverIfFlying, LeavesALeaderAloneThatStillWaitsForItsFirstAgent) {
+TEST(TakeoverIfRunning, LeavesALeaderAloneThatStillWaitsForItsFirstAgent) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   give(coordinator, alive(kCoordinatorLife), at(100ms));
@@ -173,7 +173,7 @@ TEST(TakeoverIfFlying, LeavesALeaderAloneThatStillWaitsForItsFirstAgent) {
   EXPECT_EQ(coordinator.reason(), kLedByAnother);
 }
 
-TEST(TakeoverIfFlying, AfterTheEndOfALeadersMissionStartsItsOwn) {
+TEST(TakeoverIfRunning, AfterTheEndOfALeadersMissionStartsItsOwn) {
   Coordinator coordinator = successor(Takeover::kIfRunning);
   advance(coordinator, at(0s));
   TeamStatus farewell = alive(kCoordinatorLife, 2);

@@ -142,7 +142,7 @@ inline std::map<std::pair<Author, int>, Row> rows_of(const Known& known) {
   return rows;
 }
 
-inline bool flies(const Author& author, const Known& known) {
+inline bool has_forecast(const Author& author, const Known& known) {
   const RosterEntry* own = nullptr;
   for (const RosterEntry& entry : known.roster) {
     if (entry.author == author && entry.active_at(known.tick)) own = &entry;
@@ -194,16 +194,16 @@ inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
   auto rows = rows_of(known);
   for (int b = 0; b < 2; ++b) {
     int n = 1;
-    std::vector<Row*> counting, flying;
+    std::vector<Row*> counting, with_forecast;
     for (auto& [key, row] : rows) {
       const auto& [author, block] = key;
       const bool forgotten = std::count(known.forgotten.begin(), known.forgotten.end(), author) > 0;
       if (block != b || forgotten) continue;
       counting.push_back(&row);
-      if (!flies(author, known)) continue;
+      if (!has_forecast(author, known)) continue;
       if (mission.dead_reckoning) reckon(author, b, known, mission, row);
       if (row.gained_steps == 0) continue;
-      flying.push_back(&row);
+      with_forecast.push_back(&row);
       ++n;
     }
     const double horizon_s = mission.law.anticipation * spread_m * std::sqrt(dimensions / 2) /
@@ -215,7 +215,7 @@ inline Coefficients by_the_formula(const Known& known, const Mission& mission) {
         above += row->sums[at];
         below_s += static_cast<double>(row->steps) * kDt;
       }
-      for (const Row* row : flying) {
+      for (const Row* row : with_forecast) {
         const double w_s = weight_s(*row, horizon_s, known.tick);
         above += w_s * row->gains[at] / (static_cast<double>(row->gained_steps) * kDt);
         below_s += w_s;

@@ -34,9 +34,9 @@ the_image_runs_every_program_and_nothing_as_root() {
 }
 
 a_scaled_team_flies_to_the_end_and_the_record_is_the_persons() {
-  fly scaled 8 --duration 60
+  start_team scaled 8 --duration 60
   expect_complete
-  land
+  stop_team
   [ -z "$(find "$ERGOCAST_RUNS" ! -user "$person")" ] || fail 'parts of the record are not the person'\''s'
   expect test -s "$ERGOCAST_RUNS"/*/report.html
 }
@@ -45,7 +45,7 @@ a_team_of_more_than_planned_flies_too() {
   plan more 4 --duration 60
   expect compose up --detach --scale agent=6
   expect_complete
-  land
+  stop_team
 }
 
 too_few_agents_end_with_a_sentence() {
@@ -57,14 +57,14 @@ too_few_agents_end_with_a_sentence() {
   becomes all_ended
   is "$(one coordinator)" .State.ExitCode 4 || complain 'a mission without its quorum is no failure'
   expect says coordinator 'only 2 of the quorum of 3 agents were admitted'
-  land
+  stop_team
   ERGOCAST_SCENARIO=patient
 }
 
 # Faults of members happen during the mission, so these missions last until the test ends them.
 endless=(--duration 10000000)
 a_killed_agent_comes_back_under_its_number() {
-  fly killed 4 "${endless[@]}"
+  start_team killed 4 "${endless[@]}"
   becomes recorded 10000
   local agent
   agent=$(one agent)
@@ -73,21 +73,21 @@ a_killed_agent_comes_back_under_its_number() {
   becomes says coordinator 'agent [0-3] .* is gone at tick'
   expect_end_when_told
   ! says coordinator 'agent 4 ' || complain 'it came back under another number'
-  land
+  stop_team
 }
 
 an_agent_container_that_is_removed_is_replaced() {
-  fly removed 4 "${endless[@]}"
+  start_team removed 4 "${endless[@]}"
   becomes recorded 10000
   docker rm --force "$(one agent)" >/dev/null
   compose up --detach --scale agent=4 agent
   becomes says coordinator 'agent [0-3] .* is gone at tick'
   expect_end_when_told
-  land
+  stop_team
 }
 
 an_agent_cut_off_from_the_network_is_unhealthy_and_agrees_again() {
-  fly cut_off 4 "${endless[@]}"
+  start_team cut_off 4 "${endless[@]}"
   becomes recorded 10000
   local agent
   agent=$(one agent)
@@ -98,21 +98,21 @@ an_agent_cut_off_from_the_network_is_unhealthy_and_agrees_again() {
   becomes says agent 'listening on another network interface'
   becomes says coordinator 'agent [0-3] .* is alive at tick [1-9]'
   expect_end_when_told
-  land
+  stop_team
 }
 
 a_logger_that_dies_goes_on_with_its_record() {
-  fly logger 4 "${endless[@]}"
+  start_team logger 4 "${endless[@]}"
   becomes recorded 10000
   kill -KILL "$(pgrep -x ergocast-logger)"
   becomes is "$(one logger)" .RestartCount 1
   expect_end_when_told
   expect test -d "$ERGOCAST_RUNS"/*  # one folder
-  land
+  stop_team
 }
 
 in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order() {
-  fly real_time 4 --realtime "${endless[@]}"
+  start_team real_time 4 --realtime "${endless[@]}"
   becomes recorded 1000
   becomes all_healthy
   local process
@@ -126,21 +126,21 @@ in_real_time_all_are_healthy_and_nobody_is_root_and_stop_ends_it_in_order() {
   compose stop
   says coordinator 'mission ended .*: the coordinator was told to stop' || complain 'not ended in order'
   expect test -s "$ERGOCAST_RUNS"/*/report.html
-  land
+  stop_team
 }
 
 hosts_without_bridges_fly_too() {
   over='-f compose.hosts.yaml'
-  fly hosts 4 --duration 60
+  start_team hosts 4 --duration 60
   expect_complete
-  land
+  stop_team
   over=
 }
 
 a_team_with_keys_flies_and_who_has_none_is_told() {
   make_keys "$ERGOCAST_KEYS"
   over='-f compose.keys.yaml'
-  fly keyed 4 "${endless[@]}"
+  start_team keyed 4 "${endless[@]}"
   becomes recorded 10000
   expect docker exec "$(one coordinator)" ergocast status
   ! docker run --rm --network team_default ergocast status >"$work/keyless" 2>&1 ||
@@ -148,7 +148,7 @@ a_team_with_keys_flies_and_who_has_none_is_told() {
   expect grep 'has a mission key' "$work/keyless"
   compose stop
   expect grep -q '"result": "stopped"' "$ERGOCAST_RUNS"/*/summary.json
-  land
+  stop_team
   over=
 }
 

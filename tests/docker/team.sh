@@ -56,11 +56,11 @@ says() {
 
 # plan RECORD AGENTS [OPTION…]  a mission whose record will be below runs/RECORD
 plan() { ERGOCAST_RUNS=$work/runs/$1 ERGOCAST_AGENTS=$2 ERGOCAST_OPTIONS=${*:3}; }
-fly() {
+start_team() {
   plan "$@"
   expect compose up --detach
 }
-land() {
+stop_team() {
   expect compose down
   [ -z "$(docker ps -aq)" ] || fail "docker-compose down leaves $(docker ps -a)"
   rm -f "$ERGOCAST_RUNS"/*/events-*.lcm  # the test's disk lies in memory

@@ -32,14 +32,14 @@ Mission mission_of(const Team& team, std::uint64_t seed, double duration_s) {
   return std::get<Scenario>(Scenario::load(file, overrides)).mission();
 }
 
-struct Flight {
+struct Outcome {
   Contacts contacts;
   RunFacts facts;
   std::string trajectory;
 };
 
 /// The whole team in one process; the engine steps with the world's ticks.
-Flight flown(const Team& team, const Mission& mission) {
+Outcome outcome_of(const Team& team, const Mission& mission) {
   std::ostringstream trajectory, metrics;
   MujocoPhysics* physics = nullptr;
   lab::Simulation simulation(
@@ -51,18 +51,19 @@ Flight flown(const Team& team, const Mission& mission) {
   return {physics->contacts(), simulation.recorder().facts(), trajectory.str()};
 }
 
-Flight flown_and_told(const Team& team, const Mission& mission, const char* how) {
-  const Flight flight = flown(team, mission);
+Outcome reported_outcome_of(const Team& team, const Mission& mission, const char* how) {
+  const Outcome outcome = outcome_of(team, mission);
   std::printf(
       "%s, %s: D = %g m, T = %g s, seed %llu, %g s: %lld robot and %lld wall contacts, "
       "nearest %.3f m, phi^2 %.2e\n",
       team.scenario, how, mission.separation.distance_m, mission.separation.response_s,
       static_cast<unsigned long long>(mission.seed),
       static_cast<double>(mission.timing.tick_count) * mission.timing.dt_s,
-      static_cast<long long>(flight.contacts.robots), static_cast<long long>(flight.contacts.walls),
-      mission.separation.distance_m > 0 ? flight.facts.nearest_m : 0,
-      flight.facts.ergodic_metric_last);
-  return flight;
+      static_cast<long long>(outcome.contacts.robots),
+      static_cast<long long>(outcome.contacts.walls),
+      mission.separation.distance_m > 0 ? outcome.facts.nearest_m : 0,
+      outcome.facts.ergodic_metric_last);
+  return outcome;
 }
 
 class RobotsInPhysics : public testing::TestWithParam<int> {
@@ -77,25 +78,26 @@ TEST_P(RobotsInPhysics, TouchNobodyWhereTheyCrowd) {
   constexpr double kDuration_s = 30;
   Mission free = mission_of(team(), 1, kDuration_s);
   free.separation = {};
-  EXPECT_GE(flown_and_told(team(), free, "no separation").contacts.robots, 1000);
+  EXPECT_GE(reported_outcome_of(team(), free, "no separation").contacts.robots, 1000);
   Mission prompt = mission_of(team(), 1, kDuration_s);
   prompt.separation.response_s = 0;
-  const Contacts late = flown_and_told(team(), prompt, "lag ignored").contacts;
+  const Contacts late = reported_outcome_of(team(), prompt, "lag ignored").contacts;
   EXPECT_GE(late.robots, 50) << "the check is worth nothing if no lag touches anybody";
   EXPECT_GE(late.walls, 1);
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
-    const Flight flight = flown_and_told(team(), mission_of(team(), seed, kDuration_s), "kept");
-    EXPECT_EQ(flight.contacts.robots, 0) << seed;
-    EXPECT_EQ(flight.contacts.walls, 0) << seed;
-    EXPECT_GT(flight.facts.ergodic_metric_last, 0);
-    EXPECT_LT(flight.facts.ergodic_metric_last, 0.05)
+    const Outcome outcome =
+        reported_outcome_of(team(), mission_of(team(), seed, kDuration_s), "kept");
+    EXPECT_EQ(outcome.contacts.robots, 0) << seed;
+    EXPECT_EQ(outcome.contacts.walls, 0) << seed;
+    EXPECT_GT(outcome.facts.ergodic_metric_last, 0);
+    EXPECT_LT(outcome.facts.ergodic_metric_last, 0.05)
         << "they cover: standing still has more than 0.1";
   }
 }
 
 TEST_P(RobotsInPhysics, EqualMissionsFlyAlike) {
   const Mission mission = mission_of(team(), 5, 3);
-  EXPECT_EQ(flown(team(), mission).trajectory, flown(team(), mission).trajectory);
+  EXPECT_EQ(outcome_of(team(), mission).trajectory, outcome_of(team(), mission).trajectory);
 }
 
 /// T = lag + dt/2: the way that a robot still makes once it is told to stand, in seconds at V.
@@ -142,11 +144,11 @@ TEST(RobotsOfPhysics, TouchNoWallOfTheMission) {
   ASSERT_EQ(prompt.walls.size(), 2u);
   prompt.separation.response_s = 0;
   prompt.wall_clearance_m = 0.2;
-  EXPECT_GE(flown_and_told(rooms, prompt, "lag ignored").contacts.walls, 1);
+  EXPECT_GE(reported_outcome_of(rooms, prompt, "lag ignored").contacts.walls, 1);
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const Flight flight = flown_and_told(rooms, mission_of(rooms, seed, 30), "kept");
-    EXPECT_EQ(flight.contacts.robots, 0) << seed;
-    EXPECT_EQ(flight.contacts.walls, 0) << seed;
+    const Outcome outcome = reported_outcome_of(rooms, mission_of(rooms, seed, 30), "kept");
+    EXPECT_EQ(outcome.contacts.robots, 0) << seed;
+    EXPECT_EQ(outcome.contacts.walls, 0) << seed;
   }
 }
 

@@ -61,7 +61,7 @@ std::pair<int, int> accepted(const std::filesystem::path& folder, const Adversar
   return {all, forged};
 }
 
-class HostileNetwork : public FlyingMission {
+class HostileNetwork : public RunningMission {
  protected:
   /// Missed deadlines in a part of the mission.
   struct Stretch {

@@ -38,7 +38,7 @@ void send_to(const std::string& address, Bus bus, const std::string& bytes) {
             static_cast<ssize_t>(bytes.size()));
 }
 
-class Fragments : public FlyingMission {
+class Fragments : public RunningMission {
  protected:
   /// From now on programs start as on a kernel without socket filters.
   void take_socket_filters_away() {
@@ -50,7 +50,7 @@ class Fragments : public FlyingMission {
     unsetenv("LD_PRELOAD");
     unsetenv("ASAN_OPTIONS");
     std::system("nft delete table inet ergocast 2>/dev/null");
-    FlyingMission::TearDown();
+    RunningMission::TearDown();
   }
 
   /// Sends fragments to all listening ports; returns how many.

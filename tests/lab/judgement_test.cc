@@ -28,8 +28,8 @@ Scenario team(Pace pace, const std::string& from = "", const std::string& to = "
   return std::get<Scenario>(Scenario::parse(with(text, from, to), name, overrides));
 }
 
-TrialResult fly(const Scenario& scenario, std::uint64_t seed, const Faults& faults,
-                const SubscriptionTable& subscriptions = kSubscriptions) {
+TrialResult run_trial(const Scenario& scenario, std::uint64_t seed, const Faults& faults,
+                      const SubscriptionTable& subscriptions = kSubscriptions) {
   return TriedTeam(faults, seed, scenario, subscriptions).result;
 }
 
@@ -95,7 +95,7 @@ TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
   const Scenario hearsay = team(Pace::kRealtime, "time {",
                                 "separation { distance_m: 6 lease_s: 3 }\n"
                                 "world { speed_limit_mps: 10 }\ntime { command_hold_s: 0");
-  EXPECT_EQ(problem(fly(hearsay, 1, lab::drawn(1))), "");
+  EXPECT_EQ(problem(run_trial(hearsay, 1, lab::drawn(1))), "");
   for (const Heard& heard : heard_in_the_laboratory()) {
     // A world is told of states only where bodies keep a distance.
     const bool of_bodies =
@@ -104,7 +104,7 @@ TEST(Laboratory, MissesEachMessageThatSomebodyDoesNotSubscribeTo) {
     for (std::uint64_t seed = 1; seed <= (never_missed(heard) ? 1 : 10) && !missed; ++seed) {
       const bool of_places = MessageTypes{1} << heard.type == kTypes<Beacon>;
       const Scenario& scenario = of_places ? hearsay : of_bodies ? crowded : real_time;
-      missed = fly(scenario, seed, lab::drawn(seed), without(heard)).violation.has_value();
+      missed = run_trial(scenario, seed, lab::drawn(seed), without(heard)).violation.has_value();
     }
     EXPECT_EQ(missed, !never_missed(heard))
         << "role " << static_cast<int>(heard.role) << ", bus " << static_cast<int>(heard.bus)
@@ -122,7 +122,7 @@ TEST(RadioRange, IsNoFault) {
       for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         // Whether the goal is reached with such a radio is the scenario's affair.
         for (const TrialResult& result :
-             {fly(limited, seed, {}), fly(limited, seed, lab::drawn(seed))}) {
+             {run_trial(limited, seed, {}), run_trial(limited, seed, lab::drawn(seed))}) {
           if (broken(result) != Invariant::kGoalReached) {
             EXPECT_EQ(problem(result), "") << range << " m, seed " << seed;
           }
@@ -144,9 +144,9 @@ TEST(RadioRange, ExcusesNobodyFromPassingOnWhatItHears) {
     agents { starts { x_m: 5 y_m: 50 } starts { x_m: 35 y_m: 50 } starts { x_m: 65 y_m: 50 } starts { x_m: 95 y_m: 50 } }
   )",
                                                         "chain"));
-  EXPECT_EQ(problem(fly(chain, 1, {})), "");
+  EXPECT_EQ(problem(run_trial(chain, 1, {})), "");
   const Heard digests{Role::kAgent, Bus::kSwarm, Message(Digest()).index()};
-  EXPECT_EQ(broken(fly(chain, 1, {}, without(digests))), Invariant::kEverybodyLearnsEveryRow);
+  EXPECT_EQ(broken(run_trial(chain, 1, {}, without(digests))), Invariant::kEverybodyLearnsEveryRow);
 }
 
 // ---- time-outs and evictions ----
@@ -162,7 +162,7 @@ TEST(Eviction, OfWhoWasAwayIsNoFault) {
     Faults faults;
     faults.loss = 0.9;
     faults.swarm_bus_only = 1;
-    const TrialResult result = fly(evicting(), seed, faults);
+    const TrialResult result = run_trial(evicting(), seed, faults);
     // Who is left need not reach the goal of the whole team.
     const bool smaller = result.figures.evictions > 0;
     if (!smaller || broken(result) != Invariant::kGoalReached) {
@@ -182,7 +182,7 @@ TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
     faults.delay_max_s = 0.1;
     faults.partitions_per_s = 0.03;
     faults.partition_max_s = 10;
-    const TrialResult result = fly(evicting(), seed, faults);
+    const TrialResult result = run_trial(evicting(), seed, faults);
     EXPECT_EQ(problem(result), "") << seed;
     evicted += result.figures.evictions > 0;
   }
@@ -193,7 +193,7 @@ TEST(Eviction, IsJudgedByWhatWasWrongWhenItHappened) {
 // other process could have told its successor of the mission.
 TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
   for (const std::uint64_t seed : {751, 4022}) {
-    const TrialResult result = fly(evicting(), seed, lab::drawn(seed));
+    const TrialResult result = run_trial(evicting(), seed, lab::drawn(seed));
     EXPECT_EQ(problem(result), "") << seed;
     EXPECT_GE(result.figures.evictions, 1) << seed;
   }
@@ -201,12 +201,12 @@ TEST(Eviction, OfTheLastSparesTheCoordinatorWhoAloneKnowsTheMissionThen) {
 
 // In this run the coordinator was to be killed while no agent knew the mission.
 TEST(Eviction, LeavesTheCoordinatorAloneWhileNobodyElseKnowsTheMission) {
-  EXPECT_EQ(problem(fly(evicting(), 558, lab::drawn(558))), "");
+  EXPECT_EQ(problem(run_trial(evicting(), 558, lab::drawn(558))), "");
 }
 
 TEST(Eviction, OfWhoWasThereIs) {
   const Heard states{Role::kAgent, Bus::kWorld, Message(WorldState()).index()};
-  EXPECT_EQ(broken(fly(evicting(), 1, {}, without(states))), Invariant::kNoEarlyEnd);
+  EXPECT_EQ(broken(run_trial(evicting(), 1, {}, without(states))), Invariant::kNoEarlyEnd);
 }
 
 TEST(TimeOut, OfAnAdmissionIsAFaultUnlessSomebodyWasAway) {
@@ -215,8 +215,8 @@ TEST(TimeOut, OfAnAdmissionIsAFaultUnlessSomebodyWasAway) {
   deaf.loss = 1;
   for (const Pace pace : {Pace::kRealtime, Pace::kLockstep}) {
     const Scenario scenario = team(pace, "admission_timeout_s: 3600", "admission_timeout_s: 5");
-    EXPECT_EQ(broken(fly(scenario, 1, {}, without(hellos))), Invariant::kMissionDoesNotFail);
-    const TrialResult excused = fly(scenario, 1, deaf);
+    EXPECT_EQ(broken(run_trial(scenario, 1, {}, without(hellos))), Invariant::kMissionDoesNotFail);
+    const TrialResult excused = run_trial(scenario, 1, deaf);
     EXPECT_EQ(problem(excused), "");
     EXPECT_TRUE(excused.timed_out);
   }
@@ -228,7 +228,7 @@ TEST(TimeOut, OfATickIsAFaultIfNobodyWasAway) {
   harmless.duplication = 0.3;
   harmless.delay_mean_s = 0.01;
   harmless.delay_max_s = 0.05;
-  EXPECT_EQ(broken(fly(team(Pace::kLockstep), 1, harmless, without(states))),
+  EXPECT_EQ(broken(run_trial(team(Pace::kLockstep), 1, harmless, without(states))),
             Invariant::kMissionDoesNotFail);
 }
 

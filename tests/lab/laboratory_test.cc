@@ -31,19 +31,21 @@ const Scenario& in_lockstep() {
   return scenario;
 }
 
-TriedTeam fly(const Faults& faults, std::uint64_t seed, const Scenario& scenario = faulty_team()) {
+TriedTeam run_trial(const Faults& faults, std::uint64_t seed,
+                    const Scenario& scenario = faulty_team()) {
   return TriedTeam(faults, seed, scenario);
 }
 
 TEST(Laboratory, TheSameSeedGivesTheSameMission) {
   for (const std::uint64_t seed : {1U, 10U, 17U}) {
-    const TriedTeam first = fly(lab::drawn(seed), seed), second = fly(lab::drawn(seed), seed);
+    const TriedTeam first = run_trial(lab::drawn(seed), seed),
+                    second = run_trial(lab::drawn(seed), seed);
     EXPECT_EQ(first.trajectory, second.trajectory) << seed;
     EXPECT_EQ(first.result.figures.messages, second.result.figures.messages) << seed;
     EXPECT_EQ(first.result.figures.faults.lost, second.result.figures.faults.lost) << seed;
     EXPECT_EQ(first.result.figures.view_error, second.result.figures.view_error) << seed;
   }
-  EXPECT_NE(fly(lab::drawn(1), 1).trajectory, fly(lab::drawn(2), 2).trajectory);
+  EXPECT_NE(run_trial(lab::drawn(1), 1).trajectory, run_trial(lab::drawn(2), 2).trajectory);
 }
 
 TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
@@ -51,7 +53,7 @@ TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
   faults.loss = 0.3;
   for (const double share : {0.6, 1.0}) {
     faults.lasting_share = share;
-    const TriedTeam tried = fly(faults, 1);
+    const TriedTeam tried = run_trial(faults, 1);
     EXPECT_EQ(tried.problem(), "");
     EXPECT_GT(tried.result.figures.view_error, 0)
         << "what was said last, at different ticks, is not all";
@@ -60,7 +62,7 @@ TEST(Laboratory, TheViewErrorIsOfThoseWhoReachedTheEnd) {
 }
 
 TEST(Laboratory, WithoutFaultsNothingIsDone) {
-  const TriedTeam tried = fly({}, 1);
+  const TriedTeam tried = run_trial({}, 1);
   EXPECT_EQ(tried.problem(), "");
   const TrialFigures& f = tried.result.figures;
   EXPECT_EQ(f.faults.lost + f.faults.cut + f.faults.duplicated + f.faults.replayed +
@@ -78,7 +80,8 @@ TEST(Laboratory, LatencyAloneChangesNoLockstepTrajectory) {
   const Scenario& scenario = in_lockstep();
   SimulatedTeam simulated(scenario.mission());
   simulated.run();
-  EXPECT_EQ(fly({}, scenario.mission().seed, scenario).trajectory, simulated.trajectory.str());
+  EXPECT_EQ(run_trial({}, scenario.mission().seed, scenario).trajectory,
+            simulated.trajectory.str());
 }
 
 TEST(Laboratory, LostAndLateMessagesChangeNoLockstepTrajectory) {
@@ -90,7 +93,8 @@ TEST(Laboratory, LostAndLateMessagesChangeNoLockstepTrajectory) {
   faults.reordering_max_s = 0.05;
   faults.replay = 0.3;
   faults.replay_max_s = 60;
-  const TriedTeam faulty = fly(faults, 3, in_lockstep()), clean = fly({}, 3, in_lockstep());
+  const TriedTeam faulty = run_trial(faults, 3, in_lockstep()),
+                  clean = run_trial({}, 3, in_lockstep());
   EXPECT_EQ(faulty.problem(), "");
   EXPECT_GT(faulty.result.figures.faults.lost, 1000);
   EXPECT_EQ(faulty.trajectory, clean.trajectory);
@@ -138,7 +142,7 @@ class EachFault : public ::testing::TestWithParam<Kind> {};
 TEST_P(EachFault, HappensAndIsSurvived) {
   Faults faults;
   GetParam().set(faults);
-  const TriedTeam tried = fly(faults, 5);
+  const TriedTeam tried = run_trial(faults, 5);
   EXPECT_GT(GetParam().happened(tried.result.figures), 0);
   EXPECT_EQ(tried.problem(), "");
 }
@@ -151,7 +155,7 @@ TEST(Laboratory, TheLawsOptionsBreakNoInvariant) {
   for (const char* option : {"law.ends_with_plan", "law.paired_pushes"}) {
     overrides.fields.push_back({option, "true", option});
   }
-  EXPECT_EQ(fly(lab::drawn(7), 7, shipped_scenario("faulty_team", overrides)).problem(), "");
+  EXPECT_EQ(run_trial(lab::drawn(7), 7, shipped_scenario("faulty_team", overrides)).problem(), "");
 }
 
 TEST(Laboratory, SwarmDrawsEveryKindForSomeSeedsOnly) {

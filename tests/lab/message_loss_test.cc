@@ -36,7 +36,7 @@ struct Outcome {
   bool in_time;
 };
 
-Outcome fly(const Drop& drop, const std::string& text = kScenario) {
+Outcome simulated(const Drop& drop, const std::string& text = kScenario) {
   const auto scenario = std::get<Scenario>(Scenario::parse(text, "loss"));
   std::int64_t dropped = 0;
   SimulatedTeam team(scenario.mission(), [&](const Message& message, lab::NodeId to) {
@@ -49,7 +49,7 @@ Outcome fly(const Drop& drop, const std::string& text = kScenario) {
 }
 
 const std::string& lossless() {
-  static const std::string trajectory = fly({}).trajectory;
+  static const std::string trajectory = simulated({}).trajectory;
   return trajectory;
 }
 
@@ -67,7 +67,7 @@ Drop dropping(std::size_t kind, std::uint64_t percent) {
 }
 
 TEST(MessageLoss, NothingIsDroppedWithoutAFault) {
-  const Outcome outcome = fly({});
+  const Outcome outcome = simulated({});
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
   EXPECT_EQ(outcome.dropped, 0);
   EXPECT_EQ(lines(outcome.trajectory), 1U + 3 * 200);
@@ -98,14 +98,14 @@ TEST(MessageLoss, AllLeaveAtOnceButForLostFarewells) {
 class EachKind : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(EachKind, LosingAThirdChangesNoTrajectory) {
-  const Outcome outcome = fly(dropping(GetParam(), 33));
+  const Outcome outcome = simulated(dropping(GetParam(), 33));
   EXPECT_TRUE(outcome.in_time);
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
   EXPECT_EQ(outcome.trajectory, lossless());
 }
 
 TEST_P(EachKind, LosingFourOfFiveEndsTheMissionAllTheSame) {
-  const Outcome outcome = fly(dropping(GetParam(), 80));
+  const Outcome outcome = simulated(dropping(GetParam(), 80));
   EXPECT_TRUE(outcome.in_time);
   // A late admission starts the mission late, but the mission is the same.
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
@@ -113,7 +113,7 @@ TEST_P(EachKind, LosingFourOfFiveEndsTheMissionAllTheSame) {
 }
 
 TEST_P(EachKind, LosingAllIsDecidedByTheCoordinatorAtTheLatest) {
-  const Outcome outcome = fly(dropping(GetParam(), 100));
+  const Outcome outcome = simulated(dropping(GetParam(), 100));
   EXPECT_TRUE(outcome.state == MissionState::kEnded || outcome.state == MissionState::kFailed);
   // Only an agent that never receives a mission waits for one for ever.
   EXPECT_TRUE(outcome.in_time || std::string(kKinds[GetParam()]) == "MissionPart");
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(MessageLoss, EachKind, ::testing::Range(std::size_t{0},
                          [](const auto& kind) { return std::string(kKinds[kind.param]); });
 
 TEST(MessageLoss, EveryKindAtOnceChangesNoTrajectory) {
-  const Outcome outcome = fly([count = std::uint64_t{0}](const Message&, int) mutable {
+  const Outcome outcome = simulated([count = std::uint64_t{0}](const Message&, int) mutable {
     return random_words(6, Purpose::kFault, 0, ++count).first % 100 < 10;
   });
   EXPECT_GT(outcome.dropped, 100);
@@ -135,7 +135,7 @@ TEST(MessageLoss, LosingTheLastStateOnceHurtsNobody) {
   // The record is complete with the 192nd row, which is acknowledged at once.
   const std::string text = with(kScenario, "duration_s: 20", "duration_s: 19.2");
   for (const int node : {0, kAgents, kAgents + 2}) {  // an agent, the coordinator, the logger
-    const Outcome outcome = fly(
+    const Outcome outcome = simulated(
         [node, lost = false](const Message& message, int to) mutable {
           const auto* world = std::get_if<WorldState>(&message);
           if (world == nullptr || world->header.tick < 192 || to != node || lost) return false;
@@ -149,8 +149,8 @@ TEST(MessageLoss, LosingTheLastStateOnceHurtsNobody) {
 }
 
 TEST(MessageLoss, ALoggerThatIsNeverHeardHoldsUpNobody) {
-  const Outcome outcome =
-      fly([](const Message& message, int) { return std::holds_alternative<RecordAck>(message); });
+  const Outcome outcome = simulated(
+      [](const Message& message, int) { return std::holds_alternative<RecordAck>(message); });
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
 }
 
@@ -162,9 +162,10 @@ constexpr std::size_t kContribution = 2, kWorldState = 6;
 
 TEST(MessageLoss, HowOftenAgentsBroadcastDoesNotShowWhereTheyReckon) {
   for (const int period : {1, 2, 7, 40, 1000}) {
-    EXPECT_EQ(fly({}, each(period)).trajectory, lossless()) << period;
-    EXPECT_EQ(fly(dropping(kContribution, 33), each(period)).trajectory, lossless()) << period;
-    EXPECT_EQ(fly(dropping(kWorldState, 33), each(period)).trajectory, lossless()) << period;
+    EXPECT_EQ(simulated({}, each(period)).trajectory, lossless()) << period;
+    EXPECT_EQ(simulated(dropping(kContribution, 33), each(period)).trajectory, lossless())
+        << period;
+    EXPECT_EQ(simulated(dropping(kWorldState, 33), each(period)).trajectory, lossless()) << period;
   }
 }
 
@@ -172,20 +173,21 @@ TEST(MessageLoss, NorInATeamWhoseWorldSpeaksInParts) {
   std::string large = with(kScenario, "agents {", "agents { random_count: 15");
   large =
       with(with(large, "x: 12 modes_y: 12", "x: 4 modes_y: 4"), "duration_s: 20", "duration_s: 5");
-  const std::string trajectory = fly({}, each(1, large)).trajectory;
+  const std::string trajectory = simulated({}, each(1, large)).trajectory;
   EXPECT_EQ(lines(trajectory), 1U + 18 * 50);
   for (const int period : {2, 13}) {
-    EXPECT_EQ(fly({}, each(period, large)).trajectory, trajectory) << period;
+    EXPECT_EQ(simulated({}, each(period, large)).trajectory, trajectory) << period;
     // Parts come in any order, or not at all for a while.
-    EXPECT_EQ(fly(dropping(kWorldState, 50), each(period, large)).trajectory, trajectory) << period;
+    EXPECT_EQ(simulated(dropping(kWorldState, 50), each(period, large)).trajectory, trajectory)
+        << period;
   }
 }
 
 TEST(MessageLoss, SlowBroadcastsShowWhereTheyDoNotReckonAndLoseNothingEither) {
   const std::string rows = with(kScenario, "agents {", "agents { dead_reckoning: false");
-  const Outcome clean = fly({}, each(7, rows));
-  EXPECT_NE(clean.trajectory, fly({}, each(1, rows)).trajectory);
-  EXPECT_EQ(fly(dropping(kContribution, 33), each(7, rows)).trajectory, clean.trajectory);
+  const Outcome clean = simulated({}, each(7, rows));
+  EXPECT_NE(clean.trajectory, simulated({}, each(1, rows)).trajectory);
+  EXPECT_EQ(simulated(dropping(kContribution, 33), each(7, rows)).trajectory, clean.trajectory);
 }
 
 /// What a lockstep team may know of its teammates' plans: all laws, told each tick or seldom.
@@ -207,15 +209,15 @@ class EachLaw : public ::testing::TestWithParam<Knowing> {};
 
 TEST_P(EachLaw, LossesChangeNoTrajectory) {
   const std::string text = scenario_of(GetParam());
-  const Outcome clean = fly({}, text);
+  const Outcome clean = simulated({}, text);
   EXPECT_EQ(clean.state, MissionState::kEnded) << clean.reason;
   for (const std::size_t kind : {kContribution, kWorldState}) {
-    EXPECT_TRUE(fly(dropping(kind, 33), text).trajectory == clean.trajectory) << kKinds[kind];
+    EXPECT_TRUE(simulated(dropping(kind, 33), text).trajectory == clean.trajectory) << kKinds[kind];
   }
   const auto anything = [count = std::uint64_t{0}](const Message&, int) mutable {
     return random_words(6, Purpose::kFault, 0, ++count).first % 100 < 10;
   };
-  EXPECT_TRUE(fly(anything, text).trajectory == clean.trajectory);
+  EXPECT_TRUE(simulated(anything, text).trajectory == clean.trajectory);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -234,7 +236,7 @@ bool is_command_of(const Message& message, AgentId agent) {
 }
 
 TEST(MessageLoss, AnAgentThatIsNeverHeardIsNamedAndFailsTheMission) {
-  const Outcome outcome = fly([](const Message& m, int) { return is_command_of(m, 2); });
+  const Outcome outcome = simulated([](const Message& m, int) { return is_command_of(m, 2); });
   EXPECT_EQ(outcome.state, MissionState::kFailed);
   EXPECT_NE(outcome.reason.find("agent 2 has not answered tick 0"), std::string::npos)
       << outcome.reason;
@@ -243,7 +245,8 @@ TEST(MessageLoss, AnAgentThatIsNeverHeardIsNamedAndFailsTheMission) {
 TEST(MessageLoss, OrIsEvictedIfTheScenarioSaysSo) {
   const std::string evicting =
       with(kScenario, "lockstep_timeout_s: 10", "lockstep_timeout_s: 10 on_timeout: EVICT");
-  const Outcome outcome = fly([](const Message& m, int) { return is_command_of(m, 2); }, evicting);
+  const Outcome outcome =
+      simulated([](const Message& m, int) { return is_command_of(m, 2); }, evicting);
   EXPECT_EQ(outcome.state, MissionState::kEnded) << outcome.reason;
   EXPECT_TRUE(outcome.in_time);
   // It stays where it was; the others go on to the end.
@@ -252,7 +255,7 @@ TEST(MessageLoss, OrIsEvictedIfTheScenarioSaysSo) {
 }
 
 TEST(MessageLoss, WhoCannotHearATeammateIsNotBlamedForIt) {
-  const Outcome outcome = fly([](const Message& message, int to) {
+  const Outcome outcome = simulated([](const Message& message, int to) {
     const auto* block = std::get_if<Contribution>(&message);
     return block != nullptr && block->header.sender == 1 && to == 0;
   });
@@ -261,7 +264,7 @@ TEST(MessageLoss, WhoCannotHearATeammateIsNotBlamedForIt) {
 }
 
 TEST(MessageLoss, AQuorumThatNeverComesFailsAndNamesTheMissing) {
-  const Outcome outcome = fly([](const Message& message, int) {
+  const Outcome outcome = simulated([](const Message& message, int) {
     const auto* hello = std::get_if<Hello>(&message);
     return hello != nullptr && hello->requested_id == 1;
   });

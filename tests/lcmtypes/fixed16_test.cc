@@ -46,7 +46,7 @@ class Author16 {
   explicit Author16(AgentId id) : author_{id, 5}, table_(rounded_table()) {}
 
   /// What it has said by the end of so many ticks, as it arrives.
-  std::vector<Contribution> fly(Tick ticks, Tick period) {
+  std::vector<Contribution> run_ticks(Tick ticks, Tick period) {
     std::vector<Contribution> said;
     std::vector<Contribution> before(static_cast<std::size_t>(table_.block_count()));
     for (Tick tick = 0; tick < ticks; ++tick) {
@@ -83,7 +83,7 @@ TEST(Fixed16, IsWithinHalfAUnitOfTheExactAverageHoweverLongItFlies) {
     Author16 author(1);
     CoverageTable heard = rounded_table();
     const Tick period = ticks > 1000 ? 7 : 1;  // its last broadcast is at its last tick
-    for (const Contribution& block : author.fly(ticks, period)) {
+    for (const Contribution& block : author.run_ticks(ticks, period)) {
       ASSERT_EQ(heard.merge(block, kManySteps), Merge::kNewer);
     }
     double furthest = 0;
@@ -101,7 +101,7 @@ TEST(Fixed16, IsWithinHalfAUnitOfTheExactAverageHoweverLongItFlies) {
 
 TEST(Fixed16, PassedOnItIsTheSameBytes) {
   Author16 author(2);
-  for (const Contribution& block : author.fly(50, 3)) {
+  for (const Contribution& block : author.run_ticks(50, 3)) {
     CoverageTable one = rounded_table();
     ASSERT_EQ(one.merge(block, kManySteps), Merge::kNewer);
     Contribution relayed = one.block(block.author(), block.block);
@@ -131,7 +131,7 @@ void expect_same(const CoverageTable& a, const CoverageTable& b) {
 TEST(Fixed16, MergesInAnyOrderAndAnyNumberOfTimes) {
   std::vector<Contribution> said;
   for (AgentId id = 0; id < 3; ++id) {
-    const auto more = Author16(id).fly(20, 2);
+    const auto more = Author16(id).run_ticks(20, 2);
     said.insert(said.end(), more.begin(), more.end());
   }
   CoverageTable in_order = rounded_table();
@@ -149,7 +149,7 @@ TEST(Fixed16, MergesInAnyOrderAndAnyNumberOfTimes) {
 }
 
 TEST(Fixed16, NeverMixesWithDoubles) {
-  const std::vector<Contribution> rounded = Author16(1).fly(1, 1);
+  const std::vector<Contribution> rounded = Author16(1).run_ticks(1, 1);
   CoverageTable doubles = table_in(ContributionEncoding::kDouble), rounds = rounded_table();
   EXPECT_EQ(doubles.merge(rounded.front(), kManySteps), Merge::kRefusedEncoding);
   EXPECT_EQ(doubles.row_count(), 0u);
@@ -160,7 +160,7 @@ TEST(Fixed16, NeverMixesWithDoubles) {
 }
 
 TEST(Fixed16, RefusesAverageBeyondOneAndGainsOfMoreStepsThanThereAre) {
-  const Contribution honest = Author16(1).fly(1, 1).front();
+  const Contribution honest = Author16(1).run_ticks(1, 1).front();
   Bytes bytes = encoded(honest);
   constexpr std::size_t kFirstAverage = 100;
   bytes[kFirstAverage + 2] = std::byte{0x80};  // −32768

@@ -336,18 +336,19 @@ TEST(Metrics, ShowWhatTheWorldMissedAndSkipped) {
 TEST(Metrics, TicksOfAPauseThatIsTakenBackCountAfterAll) {
   // The coordinator that named a second pause died, and no agent had heard of it.
   Record record(small_mission(1));
-  const auto fly = [&](Tick from, Tick to, const auto& uncounted_at) {
+  const auto run_ticks = [&](Tick from, Tick to, const auto& uncounted_at) {
     for (Tick tick = from; tick < to; ++tick) {
       WorldState state = state_of(tick);
       state.uncounted_ticks = uncounted_at(tick);
       record.tell(state);
     }
   };
-  fly(0, 9, [](Tick tick) { return std::max<Tick>(0, tick - 3) - std::max<Tick>(0, tick - 5); });
+  run_ticks(0, 9,
+            [](Tick tick) { return std::max<Tick>(0, tick - 3) - std::max<Tick>(0, tick - 5); });
   EXPECT_EQ(record.recorder.facts().held_ticks, 2);
-  fly(9, 15, [](Tick tick) { return tick - 7; });
+  run_ticks(9, 15, [](Tick tick) { return tick - 7; });
   EXPECT_EQ(record.recorder.facts().held_ticks, 7);
-  fly(15, 20, [](Tick) { return 2; });
+  run_ticks(15, 20, [](Tick) { return 2; });
   EXPECT_EQ(record.recorder.facts().ticks, 19);
   EXPECT_EQ(record.recorder.facts().held_ticks, 2) << "those of the pause before it";
 }

@@ -12,7 +12,7 @@
 
 namespace ergocast::test {
 
-class PageInABrowser : public FlyingMission {
+class PageInABrowser : public RunningMission {
  protected:
   /// A finished mission, its report open in the browser.
   void open_report(std::vector<std::string> mission = {"--duration", "60"},
@@ -43,7 +43,7 @@ class PageInABrowser : public FlyingMission {
   void TearDown() override {
     if (HasFailure()) screenshot("failed");
     browser_.reset();  // its processes are on this host, too
-    FlyingMission::TearDown();
+    RunningMission::TearDown();
   }
 
   std::optional<Browser> browser_{std::in_place, folder_};

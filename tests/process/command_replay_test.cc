@@ -72,7 +72,7 @@ class CommandReplay : public ByHand {
   }
 
   /// A keyed team that flies until the test ends it.
-  void fly() {
+  void start_mission() {
     std::filesystem::create_directory(out());
     hand("ergocast-logger", {"--out", out(), "--key-file", team_key_});
     world_ = &hand("ergocast-sim", {"--key-file", team_key_});
@@ -141,7 +141,7 @@ class CommandReplay : public ByHand {
 };
 
 TEST_F(CommandReplay, APauseThatNoCoordinatorObeyedDoesNotPauseLater) {
-  fly();
+  start_mission();
   Tape tape(kUrl);
   hold_next("ERGOCAST_PAUSE", 0);  // the operator's command, once it knows the mission
   Program& pause = hand("ergocast", {"pause", "--key-file", coordinator_key_});
@@ -159,7 +159,7 @@ TEST_F(CommandReplay, APauseThatNoCoordinatorObeyedDoesNotPauseLater) {
 }
 
 TEST_F(CommandReplay, AStopThatNoCoordinatorObeyedDoesNotEndTheMissionLater) {
-  fly();
+  start_mission();
   Tape tape(kUrl);
   stop_coordinator();
   EXPECT_EQ(say("stop"), 4) << output();
@@ -172,7 +172,7 @@ TEST_F(CommandReplay, AStopThatNoCoordinatorObeyedDoesNotEndTheMissionLater) {
 
 TEST_F(CommandReplay, AStopAtOnceThatTheTeamDidNotHearDoesNotStopItLater) {
   constexpr const char* kElsewhere = "udpm://239.255.76.67:24800?ttl=0";
-  fly();
+  start_mission();
   Tape tape(kElsewhere);
   EXPECT_EQ(say("stop", {"--now", "--run-id", to_hex(kRun)}, kElsewhere), 4) << output();
   ASSERT_GT(tape.size(), 0U);

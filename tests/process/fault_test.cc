@@ -11,7 +11,7 @@
 namespace ergocast::test {
 namespace {
 
-using Fault = FlyingMission;
+using Fault = RunningMission;
 
 TEST_F(Fault, CtrlCEndsTheMissionInOrderWithACompleteRecord) {
   Child mission = launch_endless(scenario());

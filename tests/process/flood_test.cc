@@ -21,7 +21,7 @@ long resident_kb(pid_t pid) {
   return at == status.npos ? 0 : std::stol(status.substr(at + 6));
 }
 
-class Flood : public FlyingMission {
+class Flood : public RunningMission {
  protected:
   /// Short LCM messages under 100 000 unknown channel names, on one bus.
   static void send_foreign_names(Bus bus, const std::string& stem) {
@@ -233,10 +233,10 @@ TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
                                  {"--lcm-url", kUrl, "--event-log-limit", "128"});
   kill_next(agent(2));
   BusObserver observer(kUrl);
-  const auto fly_to = [&observer](Tick tick) {
+  const auto run_to = [&observer](Tick tick) {
     return observer.hears([&] { return observer.answered(observer.member(0)) >= tick; });
   };
-  ASSERT_TRUE(fly_to(kWarmUp)) << said();
+  ASSERT_TRUE(run_to(kWarmUp)) << said();
   std::map<std::string, std::pair<pid_t, long>> before;
   for (const char* program :
        {"ergocast-logger", "ergocast-sim", "ergocast-coordinator", "--id 0", "--id 2"}) {
@@ -244,7 +244,7 @@ TEST_F(Flood, MemoryIsFlatHoweverLongTheFlightIs) {
     ASSERT_EQ(found.size(), 1U) << program;
     before[program] = {found.front(), resident_kb(found.front())};
   }
-  for (Tick tick = kWarmUp; tick < ticks; tick += 3000) ASSERT_TRUE(fly_to(tick + 3000)) << said();
+  for (Tick tick = kWarmUp; tick < ticks; tick += 3000) ASSERT_TRUE(run_to(tick + 3000)) << said();
   for (const auto& [program, at] : before) {
     const long grown_kb = resident_kb(at.first) - at.second;
     RecordProperty(program + "_grown_kb", std::to_string(grown_kb));

@@ -22,7 +22,7 @@ class Found : public OwnHost {
   bool said(const std::string& part) const { return output().find(part) != std::string::npos; }
 
   /// Starts a mission that flies until it is stopped, and waits for its entry and first rows.
-  Child fly(const std::string& name, const std::vector<std::string>& more = {}) {
+  Child start_mission(const std::string& name, const std::vector<std::string>& more = {}) {
     const auto known = entries().size();
     std::vector<std::string> words{"run",         scenario_file("quadrimodal_corners"),
                                    "--realtime",  "--duration",
@@ -56,7 +56,7 @@ class Found : public OwnHost {
 TEST_F(Found, TheOnlyLiveRunNeedsNoUrl) {
   EXPECT_EQ(ergocast({"list"}), 0);
   EXPECT_TRUE(said("no run of this user is live on this host")) << output();
-  Child run = fly("one");
+  Child run = start_mission("one");
   const auto runs = listed();
   ASSERT_EQ(runs.size(), 1U);
   EXPECT_EQ(runs[0]["run_dir"], (folder_ / "one").string());
@@ -74,7 +74,7 @@ TEST_F(Found, TheOnlyLiveRunNeedsNoUrl) {
 TEST_F(Found, ItsKeyIsTakenWithIt) {
   const auto key = folder_ / "mission";
   ASSERT_EQ(ergocast({"keygen", key}), 0) << output();
-  Child run = fly("one", {"--key-file", key.string() + ".coordinator.key"});
+  Child run = start_mission("one", {"--key-file", key.string() + ".coordinator.key"});
   ergocast({"status"});
   EXPECT_TRUE(said(", running")) << output();
   EXPECT_EQ(ergocast({"stop", "--now"}), 0) << output();
@@ -82,7 +82,7 @@ TEST_F(Found, ItsKeyIsTakenWithIt) {
 }
 
 TEST_F(Found, OfTwoOneMustBeChosen) {
-  Child first = fly("one"), second = fly("two");
+  Child first = start_mission("one"), second = start_mission("two");
   for (const char* command : {"status", "stop", "watch"}) {
     EXPECT_EQ(ergocast({command}), 2);
     EXPECT_TRUE(said("several runs of this user are live; choose one with --run-id:\n  --run-id "))
@@ -97,7 +97,7 @@ TEST_F(Found, OfTwoOneMustBeChosen) {
 }
 
 TEST_F(Found, AnEmergencyStopsAllLiveRunsOfThisUser) {
-  Child first = fly("one"), second = fly("two");
+  Child first = start_mission("one"), second = start_mission("two");
   EXPECT_EQ(ergocast({"stop", "--now"}), 0) << output();
   EXPECT_EQ(wait_for(first), 0);
   EXPECT_EQ(wait_for(second), 0);
@@ -110,7 +110,7 @@ TEST_F(Found, AnEmergencyStopsAllLiveRunsOfThisUser) {
 }
 
 TEST_F(Found, AnEmergencyStopsOnlyTheRunThatIsNamed) {
-  Child first = fly("one"), second = fly("two");
+  Child first = start_mission("one"), second = start_mission("two");
   const std::string named = id_of("one"), other = id_of("two");
   EXPECT_EQ(ergocast({"stop", "--now", "--run-id", named}), 0) << output();
   EXPECT_FALSE(said(other)) << output();
@@ -123,7 +123,7 @@ TEST_F(Found, AnEmergencyStopsOnlyTheRunThatIsNamed) {
 }
 
 TEST_F(Found, AnEmergencyOfARunThatCannotBeTakenStopsTheOthers) {
-  Child first = fly("one"), second = fly("two");
+  Child first = start_mission("one"), second = start_mission("two");
   const std::string id = id_of("one");
   const auto file = registry() / (id + ".json");
   std::string text = text_of(file);
@@ -139,7 +139,7 @@ TEST_F(Found, AnEmergencyOfARunThatCannotBeTakenStopsTheOthers) {
 }
 
 TEST_F(Found, ItsProcessesAreNamedWithTheirIds) {
-  Child run = fly("one");
+  Child run = start_mission("one");
   EXPECT_EQ(ergocast({"list"}), 0);
   EXPECT_TRUE(said("processes: run " + std::to_string(run.pid()) + ", logger ")) << output();
   ASSERT_EQ(ergocast({"list", "--pid", "agent-2"}), 0) << output();
@@ -168,7 +168,7 @@ TEST_F(Found, HelpSaysWhereACommandLooks) {
 }
 
 TEST_F(Found, ARunThatWasKilledIsSaidAndNotTaken) {
-  Child run = fly("one");
+  Child run = start_mission("one");
   run.send(SIGKILL);
   wait_for(run);
   ASSERT_EQ(entries().size(), 1U);
@@ -179,7 +179,7 @@ TEST_F(Found, ARunThatWasKilledIsSaidAndNotTaken) {
 }
 
 TEST_F(Found, ARunOfAnotherVersionIsNotTaken) {
-  Child run = fly("one");
+  Child run = start_mission("one");
   const auto file = entries().front();
   std::string text = text_of(file);
   const auto at = text.find("\"version\": \"") + 12;
@@ -193,7 +193,7 @@ TEST_F(Found, ARunOfAnotherVersionIsNotTaken) {
 }
 
 TEST_F(Found, AGivenUrlIsNotLookedUp) {
-  Child run = fly("one");
+  Child run = start_mission("one");
   const std::string url = listed()[0]["lcm_url"];
   EXPECT_EQ(ergocast({"status", "--lcm-url", "udpm://239.255.76.67:23000?ttl=0"}), 4);
   setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:23000?ttl=0", 1);
@@ -204,7 +204,7 @@ TEST_F(Found, AGivenUrlIsNotLookedUp) {
   EXPECT_EQ(wait_for(run), 0);
 }
 
-TEST_F(Found, AMissionFliesWhereNothingCanBeRegistered) {
+TEST_F(Found, AMissionRunsWhereNothingCanBeRegistered) {
   fs::create_directory(registry());
   fs::permissions(registry(), fs::perms::all);
   EXPECT_EQ(ergocast({"run", scenario_file("quadrimodal_corners"), "--duration", "5", "--out",

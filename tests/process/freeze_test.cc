@@ -8,7 +8,7 @@
 namespace ergocast::test {
 namespace {
 
-class Freeze : public FlyingMission {};
+class Freeze : public RunningMission {};
 
 struct FreezeInLockstep : Freeze, ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Processes, FreezeInLockstep,

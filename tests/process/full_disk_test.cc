@@ -11,7 +11,7 @@
 namespace ergocast::test {
 namespace {
 
-class FullDisk : public FlyingMission {
+class FullDisk : public RunningMission {
  protected:
   /// Mounts a disk as the run directory. False where that is not possible.
   bool mount_disk(const char* size) {

@@ -5,7 +5,7 @@
 namespace ergocast::test {
 namespace {
 
-class AgentsWithAStation : public FlyingMission {
+class AgentsWithAStation : public RunningMission {
  protected:
   /// How many agents `ergocast status` shows with that word.
   int shown(const std::string& word) {

@@ -12,13 +12,13 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kLoggerProgram{"ergocast-logger"};
 
 /// In lockstep: a mission that continues has all its processes back.
-class Launch : public FlyingMission {
+class Launch : public RunningMission {
  protected:
   void TearDown() override {
     for (const char* name : {"ERGOCAST_BIN_DIR", "LD_PRELOAD", "ERGOCAST_TEST_NO_MORE_PROCESSES"}) {
       unsetenv(name);
     }
-    FlyingMission::TearDown();
+    RunningMission::TearDown();
   }
   bool comes_to_say(const std::string& part) const {
     return eventually([&] { return said(part); });

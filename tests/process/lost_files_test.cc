@@ -28,7 +28,7 @@ void harm(const fs::path& file, Harm how) {
   }
 }
 
-class LostFiles : public FlyingMission {
+class LostFiles : public RunningMission {
  protected:
   /// Every file of the run directory but the summary, which is written at the end.
   std::vector<fs::path> files() const {

@@ -37,7 +37,7 @@ inline std::vector<std::string> agent(int id) {
   return {"ergocast-agent", "--id " + std::to_string(id)};
 }
 
-class FlyingMission : public OwnHost {
+class RunningMission : public OwnHost {
  protected:
   /// For missions whose buses the test uses itself.
   static constexpr const char* kUrl = "udpm://239.255.76.67:24700?ttl=0";
@@ -172,7 +172,7 @@ class FlyingMission : public OwnHost {
 };
 
 /// Programs that a test starts one by one, as a person would; they end with the test.
-class ByHand : public FlyingMission {
+class ByHand : public RunningMission {
  protected:
   struct Program {
     Child child;

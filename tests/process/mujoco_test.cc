@@ -50,7 +50,7 @@ TEST_F(RobotsInPhysics, RefuseAMissionOfOtherVehicles) {
 }
 
 /// What README.md shows: robots with real contacts in the office, held on the way.
-class RobotsInTheOffice : public FlyingMission {
+class RobotsInTheOffice : public RunningMission {
  protected:
   /// After 300 s they have covered the office as well as that; it begins at 0.78.
   static constexpr Tick kCoveredTick = 3000;

@@ -5,11 +5,11 @@
 namespace ergocast::test {
 namespace {
 
-class NoMetric : public FlyingMission {
+class NoMetric : public RunningMission {
  protected:
   void TearDown() override {
     unsetenv("LD_PRELOAD");
-    FlyingMission::TearDown();
+    RunningMission::TearDown();
   }
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kPort = 8765;
 
-class AttackedPage : public FlyingMission {
+class AttackedPage : public RunningMission {
  protected:
   static std::vector<std::string> page() { return {"ergocast run-page"}; }
 

@@ -9,7 +9,7 @@
 namespace ergocast::test {
 namespace {
 
-class PauseCommand : public FlyingMission {
+class PauseCommand : public RunningMission {
  protected:
   int say(const std::string& command) { return ergocast({command, "--lcm-url", kUrl}); }
   bool answered(const std::string& part) const { return output().find(part) != std::string::npos; }

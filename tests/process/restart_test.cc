@@ -29,7 +29,7 @@ Tick last_tick(const std::filesystem::path& table) {
   return std::stoll(text.substr(text.rfind('\n', text.rfind('\n') - 1) + 1));
 }
 
-class Restart : public FlyingMission {
+class Restart : public RunningMission {
  protected:
   /// States that only a killed world had may be missing in the record; nothing else may be.
   void expect_identical_to_its_simulation(bool complete = true) {

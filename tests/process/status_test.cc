@@ -13,7 +13,7 @@ namespace {
 class Status : public ByHand {
  protected:
   /// A mission in real time that the test ends.
-  Child fly() { return launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl}); }
+  Child start_mission() { return launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl}); }
   void end(Child& mission) {
     mission.send(SIGINT);
     EXPECT_EQ(wait_for(mission), 0) << said();
@@ -55,7 +55,7 @@ class Status : public ByHand {
 };
 
 TEST_F(Status, OfATeamThatIsWellShowsEverybodyAndEndsWithZero) {
-  Child mission = fly();
+  Child mission = start_mission();
   ASSERT_TRUE(eventually([this] { return status() == 0; })) << output();
   for (const char* part : {"quadrimodal_corners, run ", ", running, tick ", " of 100000000 (",
                            "4 of 4 agents alive, phi^2 ", "coordinator  alive",
@@ -79,7 +79,7 @@ TEST_F(Status, OfATeamThatIsWellShowsEverybodyAndEndsWithZero) {
 }
 
 TEST_F(Status, OfAnAgentThatStandsStillSaysSoFirst) {
-  Child mission = fly();
+  Child mission = start_mission();
   signal_to(agent(2), SIGSTOP);
   const auto answer = status_where([](const auto& json) {
     return json["agents"][0]["state"] == "silent" && json["agents_alive"] == 3;
@@ -94,7 +94,7 @@ TEST_F(Status, OfAnAgentThatStandsStillSaysSoFirst) {
 }
 
 TEST_F(Status, OfAKilledAgentShowsItsSuccessor) {
-  Child mission = fly();
+  Child mission = start_mission();
   const auto before =
       status_where([](const auto& json) { return agent_in(json, 1)["state"] == "ok"; });
   kill_next(agent(1));
@@ -108,7 +108,7 @@ TEST_F(Status, OfAKilledAgentShowsItsSuccessor) {
 }
 
 TEST_F(Status, CountsWhatAgentsRefuse) {
-  Child mission = fly();
+  Child mission = start_mission();
   Stranger stranger(kUrl);
   std::vector<std::byte> damaged;
   Contribution contribution;

@@ -39,7 +39,7 @@ class StopCommand : public ByHand {
     return all;
   }
   /// Also waits until the mission is under way.
-  std::vector<Program*> fly(const std::filesystem::path& scenario) {
+  std::vector<Program*> start_mission(const std::filesystem::path& scenario) {
     const auto all = start_all(scenario);
     EXPECT_TRUE(recorded(30000)) << all[2]->said();
     return all;
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Paces, Stopped, ::testing::Values(false, true),
                          [](const auto& pace) { return pace.param ? "RealTime" : "Lockstep"; });
 
 TEST_P(Stopped, InOrderByTheCoordinator) {
-  const auto all = fly(endless(GetParam()));
+  const auto all = start_mission(endless(GetParam()));
   ASSERT_EQ(stop(), 0) << output();
   EXPECT_TRUE(answered("the mission has ended at tick ")) << output();
   EXPECT_TRUE(answered("stopped by `ergocast stop` on " + host_name())) << output();
@@ -81,7 +81,7 @@ TEST_P(Stopped, InOrderByTheCoordinator) {
 }
 
 TEST_P(Stopped, AtOnce) {
-  const auto all = fly(endless(GetParam()));
+  const auto all = start_mission(endless(GetParam()));
   ASSERT_EQ(stop({"--now"}), 0) << output();
   EXPECT_TRUE(answered("all stand still")) << output();
   for (Program* program : all) EXPECT_EQ(wait_for(program->child), 0) << program->said();
@@ -92,7 +92,7 @@ TEST_P(Stopped, AtOnce) {
 }
 
 TEST_P(Stopped, AtOnceWithoutACoordinator) {
-  const auto all = fly(endless(GetParam()));
+  const auto all = start_mission(endless(GetParam()));
   signal_to({"ergocast-coordinator"}, SIGKILL);
   ASSERT_TRUE(moves_on());
   EXPECT_EQ(stop(), 4);
@@ -236,7 +236,7 @@ TEST_F(StopCommand, InAnEmergencyTellsAlsoMoreRunsThanItCanWatch) {
 }
 
 TEST_F(StopCommand, InAnEmergencyDoesNotSayThatVehiclesStandWhoseWorldIsSilent) {
-  fly(endless(true));
+  start_mission(endless(true));
   signal_to({"ergocast-sim"}, SIGSTOP);
   EXPECT_EQ(stop({"--now"}), 4) << output();
   EXPECT_TRUE(answered("look at them")) << output();

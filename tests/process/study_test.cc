@@ -197,7 +197,7 @@ class Shards : public Study {
   std::filesystem::path part(int index) const {
     return folder_ / ("part-" + std::to_string(index));
   }
-  void fly(int index, const std::string& seeds, const std::string& of = "3") {
+  void run_shard(int index, const std::string& seeds, const std::string& of = "3") {
     auto words = arguments(seeds, part(index));
     words.insert(words.end(), {"--shard", std::to_string(index) + "/" + of});
     EXPECT_EQ(ergocast(words), 0) << output();
@@ -218,7 +218,7 @@ TEST_F(Shards, MergedAreTheBytesOfOneRunOfAll) {
   ASSERT_EQ(study("4:10", out()), 0) << output();
   const auto whole = folder_ / "whole";
   std::filesystem::rename(out(), whole);
-  for (const int index : {1, 2, 3}) fly(index, "4:10");
+  for (const int index : {1, 2, 3}) run_shard(index, "4:10");
   EXPECT_EQ(lines(text_of(part(1) / "study.csv")), 6U);
   EXPECT_EQ(lines(text_of(part(3) / "study.csv")), 5U);
   ASSERT_EQ(merge({part(2), part(3), part(1)}), 0) << output();
@@ -231,14 +231,14 @@ TEST_F(Shards, MergedAreTheBytesOfOneRunOfAll) {
 }
 
 TEST_F(Shards, OnlyAllShardsOfOneStudyEachOnceAreMerged) {
-  for (const int index : {1, 2, 3}) fly(index, "1:2");
+  for (const int index : {1, 2, 3}) run_shard(index, "1:2");
   refused({part(1), part(3)}, "1 of 3 shards are missing, the first is 2/3");
   refused({part(1), part(2), part(1), part(3)},
           "is shard 1/3 of seeds 1:2, and so is " + part(1).string());
   refused({part(1), folder_ / "nothing"}, "nothing: is no study");
-  fly(4, "1:2", "4");
+  run_shard(4, "1:2", "4");
   refused({part(1), part(2), part(4)}, "is shard 4/4 of seeds 1:2, but " + part(1).string());
-  fly(5, "1:3", "5");
+  run_shard(5, "1:3", "5");
   refused({part(1), part(5)}, "is shard 5/5 of seeds 1:3, but ");
   const auto whole = folder_ / "whole";
   ASSERT_EQ(study("1:2", whole), 0);
@@ -250,7 +250,7 @@ TEST_F(Shards, OnlyAllShardsOfOneStudyEachOnceAreMerged) {
 }
 
 TEST_F(Shards, AShardThatIsIncompleteOrDamagedIsNotMerged) {
-  for (const int index : {1, 2}) fly(index, "1:3", "2");
+  for (const int index : {1, 2}) run_shard(index, "1:3", "2");
   const auto table = part(2) / "study.csv";
   const std::string good = text_of(table);
   const auto with = [&](const std::string& text) { std::ofstream(table) << text; };
@@ -278,7 +278,7 @@ TEST_F(Shards, AShardThatIsIncompleteOrDamagedIsNotMerged) {
 }
 
 TEST_F(Shards, AFolderIsOfOneShard) {
-  fly(1, "1:3");
+  run_shard(1, "1:3");
   const auto again = [&](std::vector<std::string> more, const std::string& seeds,
                          const std::string& why) {
     auto words = arguments(seeds, part(1));

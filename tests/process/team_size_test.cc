@@ -6,7 +6,7 @@
 namespace ergocast::test {
 namespace {
 
-using TeamSize = FlyingMission;
+using TeamSize = RunningMission;
 
 TEST_F(TeamSize, TwoKnowWhatTheOtherCovered) {
   ASSERT_EQ(ergocast({"run", scenario("broadcast_period_ticks: 1"), "--agents", "2", "--duration",

@@ -51,7 +51,7 @@ TEST_P(SilentAgent, ItsVehicleStandsOnceItsLastCommandIsTooOld) {
   EXPECT_FALSE(held->second.at(1).stands()) << "it is held for that long";
 }
 
-class SpeedLimit : public FlyingMission {
+class SpeedLimit : public RunningMission {
  protected:
   std::filesystem::path limited(const std::string& mps) {
     std::string text = text_of(scenario());

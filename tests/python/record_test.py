@@ -52,8 +52,8 @@ class SameAsTheCommand(WithRecord):
             self.assertIn(old, text)
             text = text.replace(old, new)
         scenario.write_text(text)
-        flown = command("simulate", scenario, "--seed", 7, "--out", self.folder / "command")
-        self.assertEqual(flown.returncode, 0, flown.stderr)
+        simulated = command("simulate", scenario, "--seed", 7, "--out", self.folder / "command")
+        self.assertEqual(simulated.returncode, 0, simulated.stderr)
         theirs, ours = files_of(self.folder / "command"), files_of(self.run_dir)
         self.assertEqual(list(ours), list(theirs))
         for name, content in theirs.items():
@@ -74,10 +74,10 @@ class SameAsTheCommand(WithRecord):
     def test_several_threads_fly_at_once(self):
         runs = {}
 
-        def fly(seed):
+        def simulate(seed):
             runs[seed] = ergocast.simulate(SCENARIO, seed=seed, set={"time.duration_s": 5})
 
-        threads = [threading.Thread(target=fly, args=(seed,)) for seed in (1, 2, 1, 3)]
+        threads = [threading.Thread(target=simulate, args=(seed,)) for seed in (1, 2, 1, 3)]
         for thread in threads:
             thread.start()
         for thread in threads:

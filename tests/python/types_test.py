@@ -30,9 +30,9 @@ run: ergocast.Run = ergocast.load("runs/one")
 c: npt.NDArray[np.float64] = run.coverage(5)
 many = run.coverage([1, 2])
 phi2: float = run.ergodic_metric()
-flown = ergocast.simulate("x", seed=1, set={"law.epsilon": 0.2, "time.pace": "LOCKSTEP"}, out=None)
+simulated = ergocast.simulate("x", seed=1, set={"law.epsilon": 0.2, "time.pace": "LOCKSTEP"}, out=None)
 mu, error = ergocast.Target([ergocast.Gaussian((0, 0), sigma_m=1)]).coefficients(
-    flown.mission.domain, flown.mission.basis
+    simulated.mission.domain, simulated.mission.basis
 )
 command: npt.NDArray[np.float64] = ergocast.Controller(run.mission).command(0, 0, (1.0, 2.0))
 """

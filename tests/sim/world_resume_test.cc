@@ -24,14 +24,15 @@ struct Death {
 };
 
 /// A lockstep flight of three agents. Checks that no tick is sent with two contents.
-class Flight {
+class ResumedMission {
  public:
   using Told = std::map<Tick, std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>>;
 
-  explicit Flight(const Mission& mission) : mission_(mission), team_(mission), world_(begin(1)) {}
+  explicit ResumedMission(const Mission& mission)
+      : mission_(mission), team_(mission), world_(begin(1)) {}
 
   /// Until the team has answered tick `end`.
-  void fly_until(Tick end) {
+  void run_until(Tick end) {
     while (world_.tick() < end) {
       now_ += 10ms;
       for (const WorldState& state : only<WorldState>(step_world())) obey(team_.tell(state, now_));
@@ -40,7 +41,7 @@ class Flight {
 
   /// The world dies at `death` and another begins.
   void restart(const Death& death) {
-    fly_until(death.tick - 1);
+    run_until(death.tick - 1);
     now_ += 10ms;
     for (const WorldState& state : only<WorldState>(step_world())) {
       for (AgentId id = 0; id < 3; ++id) {
@@ -109,26 +110,26 @@ class WorldRestarted : public ::testing::TestWithParam<double> {};
 
 TEST_P(WorldRestarted, AtEveryMomentOfATickChangesNothing) {
   const Mission mission = lively_mission(GetParam());
-  Flight undisturbed(mission);
-  undisturbed.fly_until(16);
+  ResumedMission undisturbed(mission);
+  undisturbed.run_until(16);
   for (Tick tick = 0; tick < 10; ++tick) {
     for (unsigned heard = 0; heard < 8; ++heard) {
       SCOPED_TRACE("died at tick " + std::to_string(tick) + ", heard by " + std::to_string(heard));
-      Flight flight(mission);
-      flight.restart({tick, {(heard & 1) != 0, (heard & 2) != 0, (heard & 4) != 0}});
-      flight.fly_until(16);
-      EXPECT_EQ(flight.told(), undisturbed.told());
+      ResumedMission resumed(mission);
+      resumed.restart({tick, {(heard & 1) != 0, (heard & 2) != 0, (heard & 4) != 0}});
+      resumed.run_until(16);
+      EXPECT_EQ(resumed.told(), undisturbed.told());
     }
   }
 }
 
 TEST_P(WorldRestarted, AgainAndAgainChangesNothing) {
   const Mission mission = lively_mission(GetParam());
-  Flight undisturbed(mission), flight(mission);
-  undisturbed.fly_until(16);
-  for (Tick tick = 0; tick < 15; ++tick) flight.restart({tick, {true, tick % 2 == 0, false}});
-  flight.fly_until(16);
-  EXPECT_EQ(flight.told(), undisturbed.told());
+  ResumedMission undisturbed(mission), resumed(mission);
+  undisturbed.run_until(16);
+  for (Tick tick = 0; tick < 15; ++tick) resumed.restart({tick, {true, tick % 2 == 0, false}});
+  resumed.run_until(16);
+  EXPECT_EQ(resumed.told(), undisturbed.told());
 }
 
 INSTANTIATE_TEST_SUITE_P(Disturbance, WorldRestarted, ::testing::Values(0.0, 3.0),

@@ -74,7 +74,7 @@ class Screenshot {
 };
 
 /// Runs the Java checks; see SpyProbe.java.
-class WithProbe : public FlyingMission {
+class WithProbe : public RunningMission {
  protected:
   std::vector<std::string> probe_command(const std::vector<std::string>& question) const {
     std::vector<std::string> command{ERGOCAST_JAVA,

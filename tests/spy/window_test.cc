@@ -19,7 +19,7 @@ constexpr int kContributionRow = 4, kTeamStatusRow = 13;
 
 class Spy : public Desk {
  protected:
-  Child fly() { return launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl}); }
+  Child start_mission() { return launch_endless(scenario(), {"--realtime=5", "--lcm-url", kUrl}); }
   static void end(Child& child, int expected) {
     child.send(SIGINT);
     EXPECT_EQ(wait_for(child), expected);
@@ -31,7 +31,7 @@ TEST_F(Spy, EveryMessageOfAMissionIsDecoded) {
   Child listener = begin(probe_command({"listen", kUrl, kWorldUrl, kCommandUrl}));
   const auto log = log_;
   ASSERT_TRUE(eventually([&] { return text_of(log).find("listening") != std::string::npos; }));
-  Child mission = fly();
+  Child mission = start_mission();
   end(mission, 0);  // says STOP
   for (const char* type : {"HELLO", "MISSION", "CONTRIBUTION", "AGENT_STATUS", "TEAM_STATUS",
                            "STOP", "WORLD_STATE", "COMMAND", "RECORD_ACK", "DIGEST"}) {
@@ -45,7 +45,7 @@ TEST_F(Spy, EveryMessageOfAMissionIsDecoded) {
 }
 
 TEST_F(Spy, DrawsTheTeamAsItMovesAndItsCoefficients) {
-  Child mission = fly();
+  Child mission = start_mission();
   Child spy = start("ergocast", {"spy", "--lcm-url", kUrl});
   ASSERT_TRUE(sees("LCM Spy")) << output();
 
@@ -85,7 +85,7 @@ TEST_F(Spy, DrawsTheTeamAsItMovesAndItsCoefficients) {
 
 TEST_F(Spy, DebiansScriptTakesTheJarToo) {
   if (!std::filesystem::exists("/usr/bin/lcm-spy")) GTEST_SKIP() << "not installed: liblcm-bin";
-  Child mission = fly();
+  Child mission = start_mission();
   setenv("JDK_JAVA_OPTIONS", "-XX:+IgnoreUnrecognizedVMOptions", 1);
   setenv("CLASSPATH", (std::string(ERGOCAST_BIN_DIR) + "/../ops/spy/ergocast-spy.jar").c_str(), 1);
   setenv("LCM_DEFAULT_URL", kUrl, 1);

@@ -113,7 +113,7 @@ double descend(const Mission& mission, Paths velocities) {
 }
 
 /// What the law flies, and its φ²(T).
-std::pair<Paths, double> flight_of_the_law(const Mission& mission) {
+std::pair<Paths, double> velocities_of_the_law(const Mission& mission) {
   lab::IdealTeam team(mission);
   Paths velocities;
   const auto record = [&] {
@@ -126,7 +126,7 @@ std::pair<Paths, double> flight_of_the_law(const Mission& mission) {
 }
 
 /// Another velocity for each agent every L / u_max / 10.
-Paths random_flight(const Mission& mission) {
+Paths random_velocities(const Mission& mission) {
   const double held_s = mission.domain.shortest_side_m() / mission.law.u_max_mps / 10;
   const auto held = std::max<Tick>(1, std::llround(held_s / mission.timing.dt_s));
   const auto agents = static_cast<Eigen::Index>(mission.starts_m.size());
@@ -156,10 +156,10 @@ void run(const char* file, const char* duration_s, int starts) {
   std::vector<double> law, from_law, from_random;
   for (int seed = 1; seed <= starts; ++seed) {
     const Mission mission = mission_of(file, duration_s, seed);
-    const auto [flown, metric] = flight_of_the_law(mission);
+    const auto [velocities, metric] = velocities_of_the_law(mission);
     law.push_back(metric);
-    from_law.push_back(descend(mission, flown));
-    from_random.push_back(descend(mission, random_flight(mission)));
+    from_law.push_back(descend(mission, velocities));
+    from_random.push_back(descend(mission, random_velocities(mission)));
     std::fprintf(stderr, "optimum %s s, seed %d: %.2e %.2e %.2e\n", duration_s, seed, law.back(),
                  from_law.back(), from_random.back());
   }

@@ -23,7 +23,7 @@ double metric_of(const char* encoding, const char* period_ticks, const char* rec
   const auto loaded = Scenario::load(
       std::string(ERGOCAST_SCENARIO_DIR) + "/quadrimodal_corners.textproto", overrides);
   const auto plan = encode_plan(std::get<Scenario>(loaded).mission());
-  return studies::fly_with_messages(plan).metric;
+  return studies::run_with_messages(plan).metric;
 }
 
 TEST(Encoding, OfSixteenBitsEndsWhereDoublesDo) {

@@ -27,7 +27,7 @@ Mission mission_of(const std::string& file, const char* factor, const char* peri
 }
 
 double metric_of(const Mission& mission) {
-  return studies::fly_with_messages(encode_plan(mission)).metric;
+  return studies::run_with_messages(encode_plan(mission)).metric;
 }
 
 TEST(RareModes, ChangeNoBitWhereAgentsReckon) {
@@ -37,7 +37,7 @@ TEST(RareModes, ChangeNoBitWhereAgentsReckon) {
     EXPECT_TRUE(lab::IdealTeam::stands_for(rare));
     const double metric = metric_of(usual);
     EXPECT_EQ(metric_of(rare), metric) << file;
-    EXPECT_EQ(studies::fly_without_messages(rare).metric, metric);
+    EXPECT_EQ(studies::run_without_messages(rare).metric, metric);
   }
 }
 

@@ -89,8 +89,8 @@ TEST(SameAsSimulate, WhateverTheScenarioSays) {
     const std::string text = drawn.next();
     const Mission& mission = drawn.compiled->mission();
     const auto plan = encode_plan(drawn.compiled->mission());
-    const StudyFigures simulated = studies::fly_with_messages(plan);
-    ASSERT_EQ(difference(studies::fly_study_run(plan), simulated), "") << text;
+    const StudyFigures simulated = studies::run_with_messages(plan);
+    ASSERT_EQ(difference(studies::run_study_mission(plan), simulated), "") << text;
     if (mission.timing.pace == Pace::kLockstep) {
       const double recorded = recorded_metric(plan, mission.basis.free_domain);
       ASSERT_EQ(std::memcmp(&recorded, &simulated.metric, sizeof recorded), 0)
@@ -102,7 +102,7 @@ TEST(SameAsSimulate, WhateverTheScenarioSays) {
       for (const std::string& field : fields_of(drawn.scenario)) unused.erase(field);
     } else {
       ++others;
-      others_that_differ += !difference(studies::fly_without_messages(mission), simulated).empty();
+      others_that_differ += !difference(studies::run_without_messages(mission), simulated).empty();
     }
   }
   EXPECT_EQ(::testing::PrintToString(unused), R"({ "Kind.reserve_s", "Kind.station" })")

@@ -148,11 +148,11 @@ TEST(StudyRun, IsTheSameWithAndWithoutMessages) {
   for (const char* name : {"quadrimodal_corners", "paper_fig1b", "paper_fig2a"}) {
     SCOPED_TRACE(name);
     const Scenario scenario = shipped(name, 60);
-    const StudyFigures figures = fly_without_messages(scenario.mission());
+    const StudyFigures figures = run_without_messages(scenario.mission());
     EXPECT_TRUE(figures.complete);
     EXPECT_GT(figures.messages, 0);
-    expect_same(figures, fly_with_messages(encode_plan(scenario.mission())));
-    expect_same(figures, fly_study_run(encode_plan(scenario.mission())));
+    expect_same(figures, run_with_messages(encode_plan(scenario.mission())));
+    expect_same(figures, run_study_mission(encode_plan(scenario.mission())));
   }
 }
 
@@ -162,12 +162,12 @@ TEST(StudyRun, IsTheSameWithMoreAgentsThanOneWorldStateHolds) {
   overrides.agents = 20;
   const auto file = std::filesystem::path(ERGOCAST_SCENARIO_DIR) / "quadrimodal_corners.textproto";
   const auto scenario = std::get<Scenario>(Scenario::load(file, overrides));
-  expect_same(fly_without_messages(scenario.mission()),
-              fly_with_messages(encode_plan(scenario.mission())));
+  expect_same(run_without_messages(scenario.mission()),
+              run_with_messages(encode_plan(scenario.mission())));
 }
 
 TEST(StudyRun, FliesRealTimeMissionsInVirtualTime) {
-  const StudyFigures figures = fly_study_run(encode_plan(shipped("faulty_team", 20).mission()));
+  const StudyFigures figures = run_study_mission(encode_plan(shipped("faulty_team", 20).mission()));
   EXPECT_TRUE(figures.complete);
   EXPECT_GT(figures.messages, 0);
   EXPECT_GT(figures.metric_at[0], figures.metric);
@@ -175,8 +175,8 @@ TEST(StudyRun, FliesRealTimeMissionsInVirtualTime) {
 
 TEST(StudyRun, DiffersBySeed) {
   const Scenario scenario = shipped("quadrimodal_corners", 20);
-  EXPECT_NE(fly_study_run(encode_plan(scenario.with_seed(1).mission())).metric,
-            fly_study_run(encode_plan(scenario.with_seed(2).mission())).metric);
+  EXPECT_NE(run_study_mission(encode_plan(scenario.with_seed(1).mission())).metric,
+            run_study_mission(encode_plan(scenario.with_seed(2).mission())).metric);
 }
 
 }  // namespace

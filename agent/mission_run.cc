@@ -35,14 +35,14 @@ void tell_gains(const Contribution& before, Contribution& block) {
 
 }  // namespace
 
-void Agent::fly(InMission& flight, Instant now, Outbox& out) {
-  if (may_begin(flight) && !begin_tick(flight, now, out)) return;
-  const Step& step = flight.step;
-  if (step.repeat_wanted) repeat(flight, out);
-  if (step.answered < step.tick && may_answer(flight)) answer(flight, out);
-  if (stalled(flight, now)) {
-    flight.stalled_said = now;
-    broadcast(flight, true, out);
+void Agent::advance_mission(InMission& mission_run, Instant now, Outbox& out) {
+  if (may_begin(mission_run) && !begin_tick(mission_run, now, out)) return;
+  const Step& step = mission_run.step;
+  if (step.repeat_wanted) repeat(mission_run, out);
+  if (step.answered < step.tick && may_answer(mission_run)) answer(mission_run, out);
+  if (stalled(mission_run, now)) {
+    mission_run.stalled_said = now;
+    broadcast(mission_run, true, out);
   }
   if (!me_.cut_off(step.tick, now)) return;
   finish(true,
@@ -52,9 +52,9 @@ void Agent::fly(InMission& flight, Instant now, Outbox& out) {
 
 /// Where the others are, as far as they are in range. A vehicle stands still once its answers have
 /// stopped for as long as the world holds an old one; in lockstep the world waits for them.
-void Agent::note_places(InMission& flight, const WorldState& world) {
+void Agent::note_places(InMission& mission_run, const WorldState& world) {
   const Timing& timing = mission().timing;
-  flight.state_parts.see(world);
+  mission_run.state_parts.see(world);
   // Nothing is covered there, and nobody goes on from there before the mission does.
   if (me_.is_held(world.header.tick)) return;
   const Tick tick = world.header.tick;
@@ -64,24 +64,24 @@ void Agent::note_places(InMission& flight, const WorldState& world) {
     const Vehicle& vehicle = world.vehicles[static_cast<std::size_t>(i)];
     if (!radio_.hears(me_.id(), vehicle.id)) continue;
     if (timing.pace == Pace::kRealtime && vehicle.answered_tick < tick - hold) continue;
-    flight.forecast->see(vehicle.id, me_.counted(tick), vehicle.position_m);
+    mission_run.forecast->see(vehicle.id, me_.counted(tick), vehicle.position_m);
   }
 }
 
 /// Lockstep: the mission that the world names decides whether a tick counts, and who takes part. A
 /// restarted world may have gone on before all knew it.
-bool Agent::may_begin(const InMission& flight) const {
-  if (!flight.pending) return false;
+bool Agent::may_begin(const InMission& mission_run) const {
+  if (!mission_run.pending) return false;
   return mission().timing.pace == Pace::kRealtime ||
-         follower().revision() >= flight.pending->roster_revision;
+         follower().revision() >= mission_run.pending->roster_revision;
 }
 
-/// False if the mission is over for us; `flight` is no more then.
-bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
+/// False if the mission is over for us; `mission_run` is no more then.
+bool Agent::begin_tick(InMission& mission_run, Instant now, Outbox& out) {
   const Mission& mission = me_.mission();
-  const WorldView view = *flight.pending;
-  Step& step = flight.step;
-  flight.pending.reset();
+  const WorldView view = *mission_run.pending;
+  Step& step = mission_run.step;
+  mission_run.pending.reset();
   step.repeat_wanted = false;
   if (me_.is_over(view.tick)) {
     step.tick = view.tick;
@@ -102,42 +102,42 @@ bool Agent::begin_tick(InMission& flight, Instant now, Outbox& out) {
   step.body_mps = view.velocity_mps;
   step.x_m = mission.domain.nearest(view.position_m);
   step.basis_at.emplace(step.x_m, mission.domain, mission.basis);
-  if (flight.beacons) say_place(flight, view, out);
+  if (mission_run.beacons) say_place(mission_run, view, out);
   // A restarted world may be a tick behind the roster: our predecessor has covered that tick.
-  if (step.tick < flight.active_from || step.held) return true;
+  if (step.tick < mission_run.active_from || step.held) return true;
   if (!rests(mission, me_.id(), step.counted))
-    flight.table.add_sample(me_.author(), *step.basis_at,
-                            flight.sensors.of(flight.kind).footprint());
-  broadcast(flight, false, out);
+    mission_run.table.add_sample(me_.author(), *step.basis_at,
+                                 mission_run.sensors.of(mission_run.kind).footprint());
+  broadcast(mission_run, false, out);
   return true;
 }
 
-void Agent::say_place(InMission& flight, const WorldView& view, Outbox& out) {
-  flight.beacons->measured(view.answered_tick, view.roster_revision, view.position_m,
-                           view.velocity_mps);
-  const auto beacon =
-      flight.beacons->next(follower().revision(), {flight.step.tick, flight.step.begun});
-  if (beacon) me_.publish(Bus::kSwarm, *beacon, flight.step.tick, out);
+void Agent::say_place(InMission& mission_run, const WorldView& view, Outbox& out) {
+  mission_run.beacons->measured(view.answered_tick, view.roster_revision, view.position_m,
+                                view.velocity_mps);
+  const auto beacon = mission_run.beacons->next(follower().revision(),
+                                                {mission_run.step.tick, mission_run.step.begun});
+  if (beacon) me_.publish(Bus::kSwarm, *beacon, mission_run.step.tick, out);
 }
 
 /// Whether the ticks have stopped coming: then what we have is said now and then without waiting
 /// for more. In lockstep no broadcast may come before the one that was announced. While the mission
 /// is paused there is nothing new to say, and who joined meanwhile has nothing to say at all.
-bool Agent::stalled(const InMission& flight, Instant now) const {
-  return mission().timing.pace == Pace::kRealtime && !flight.step.held &&
-         flight.step.tick >= flight.active_from &&
-         now - std::max(flight.step.begun, flight.stalled_said) >= kStallPeriod;
+bool Agent::stalled(const InMission& mission_run, Instant now) const {
+  return mission().timing.pace == Pace::kRealtime && !mission_run.step.held &&
+         mission_run.step.tick >= mission_run.active_from &&
+         now - std::max(mission_run.step.begun, mission_run.stalled_said) >= kStallPeriod;
 }
 
 /// The blocks that are due, or all. Who learns late that the mission was paused has counted too
 /// many ticks, and what it announced then is too far ahead.
-void Agent::broadcast(InMission& flight, bool all, Outbox& out) {
-  const Tick tick = flight.step.counted;
-  for (int b = 0; b < flight.table.block_count(); ++b) {
-    Contribution& published = flight.published[static_cast<std::size_t>(b)];
+void Agent::broadcast(InMission& mission_run, bool all, Outbox& out) {
+  const Tick tick = mission_run.step.counted;
+  for (int b = 0; b < mission_run.table.block_count(); ++b) {
+    Contribution& published = mission_run.published[static_cast<std::size_t>(b)];
     const bool counted_less = tick < published.header.tick;
     if (!all && !counted_less && tick < published.next_broadcast_tick) continue;
-    Contribution block = flight.table.block(me_.author(), b);
+    Contribution block = mission_run.table.block(me_.author(), b);
     if (block.encoding == ContributionEncoding::kFixed16) tell_gains(published, block);
     block.header.tick = tick;  // a repeat says it, too: forecasts count a block's age from it
     block.next_broadcast_tick = next_broadcast(mission(), me_.id(), tick, b);
@@ -146,29 +146,30 @@ void Agent::broadcast(InMission& flight, bool all, Outbox& out) {
   }
 }
 
-void Agent::repeat(InMission& flight, Outbox& out) {
-  Step& step = flight.step;
+void Agent::repeat(InMission& mission_run, Outbox& out) {
+  Step& step = mission_run.step;
   step.repeat_wanted = false;
   // The blocks as they were broadcast: newer sums would make a tick depend on what was lost.
-  for (const Contribution& block : flight.published) {
+  for (const Contribution& block : mission_run.published) {
     if (block.steps > 0) me_.publish(Bus::kSwarm, block, block.header.tick, out);
   }
-  if (step.answered == step.tick) me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
+  if (step.answered == step.tick)
+    me_.publish(Bus::kCommand, mission_run.last_command, step.tick, out);
 }
 
-bool Agent::may_answer(InMission& flight) const {
-  Step& step = flight.step;
+bool Agent::may_answer(InMission& mission_run) const {
+  Step& step = mission_run.step;
   step.waiting_for = kUnassigned;
   // Who does not know where all bodies are does not move.
-  if (flight.separation && !flight.beacons && !flight.bodies.complete(step.tick)) {
+  if (mission_run.separation && !mission_run.beacons && !mission_run.bodies.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;
   }
   if (mission().timing.pace == Pace::kRealtime) return true;
   // A command must not depend on the order in which the parts of the state arrive.
-  const bool reckons =
-      flight.forecast && mission().dead_reckoning && step.tick >= flight.active_from && !step.held;
-  if (reckons && !flight.state_parts.complete(step.tick)) {
+  const bool reckons = mission_run.forecast && mission().dead_reckoning &&
+                       step.tick >= mission_run.active_from && !step.held;
+  if (reckons && !mission_run.state_parts.complete(step.tick)) {
     step.waiting_for = kWorld;
     return false;
   }
@@ -178,7 +179,7 @@ bool Agent::may_answer(InMission& flight) const {
     if (!radio_.hears(me_.id(), entry.author.agent)) continue;
     // Who was admitted to rest never broadcasts.
     if (rests(mission(), entry.author.agent, me_.counted(entry.active_from))) continue;
-    if (!flight.table.holds_due(entry.author, step.counted)) {
+    if (!mission_run.table.holds_due(entry.author, step.counted)) {
       step.waiting_for = entry.author.agent;
       return false;
     }
@@ -186,58 +187,58 @@ bool Agent::may_answer(InMission& flight) const {
   return true;
 }
 
-void Agent::answer(InMission& flight, Outbox& out) {
-  Step& step = flight.step;
-  flight.command_before = flight.last_command;
-  flight.last_command.header.tick = step.tick;
-  flight.last_command.position_m = step.x_m;
-  forget_silent(flight);
-  flight.last_command.velocity_mps = kept_apart(flight, wanted(flight));
+void Agent::answer(InMission& mission_run, Outbox& out) {
+  Step& step = mission_run.step;
+  mission_run.command_before = mission_run.last_command;
+  mission_run.last_command.header.tick = step.tick;
+  mission_run.last_command.position_m = step.x_m;
+  forget_silent(mission_run);
+  mission_run.last_command.velocity_mps = kept_apart(mission_run, wanted(mission_run));
   step.answered = step.tick;
-  if (flight.beacons) flight.beacons->commands({step.tick, step.begun});
-  me_.publish(Bus::kCommand, flight.last_command, step.tick, out);
+  if (mission_run.beacons) mission_run.beacons->commands({step.tick, step.begun});
+  me_.publish(Bus::kCommand, mission_run.last_command, step.tick, out);
 }
 
 /// By the roster that the tick may have waited for, and by nothing older: the admission of a
 /// forgotten agent may have died with its coordinator. Also while the mission is paused: forgetting
 /// goes by the world's ticks, and what the agent says of c_k then is what counts then.
-void Agent::forget_silent(InMission& flight) const {
-  const Step& step = flight.step;
-  flight.table.remember_all();
+void Agent::forget_silent(InMission& mission_run) const {
+  const Step& step = mission_run.step;
+  mission_run.table.remember_all();
   for (const RosterEntry& entry : follower().roster()) {
     // What we cover ourselves counts: we live, whatever the coordinator has heard.
     if (entry.author == me_.author()) continue;
-    if (entry.forgotten_at(step.tick, step.roster_revision)) flight.table.forget(entry.author);
+    if (entry.forgotten_at(step.tick, step.roster_revision)) mission_run.table.forget(entry.author);
   }
 }
 
 /// What the law says, or the way home; nothing while the mission is paused, so that the vehicle
 /// brakes, then stands or loiters.
-Eigen::Vector3d Agent::wanted(InMission& flight) {
-  const Step& step = flight.step;
+Eigen::Vector3d Agent::wanted(InMission& mission_run) {
+  const Step& step = mission_run.step;
   if (step.held) return {0, 0, 0};
-  const CoverageTable& table = flight.table;
-  if (flight.forecast) {
-    flight.forecast->look_ahead(table, counted_roster(), step.counted, flight.foreseen);
+  const CoverageTable& table = mission_run.table;
+  if (mission_run.forecast) {
+    mission_run.forecast->look_ahead(table, counted_roster(), step.counted, mission_run.foreseen);
   } else {
-    table.average(flight.foreseen);
+    table.average(mission_run.foreseen);
   }
-  flight.controller.set_coverage(flight.foreseen);
-  if (flight.way_home && flight.way_home->begun(step.counted, step.x_m))
-    return flight.way_home->velocity_mps(step.body_m, step.body_mps);
-  return flight.controller.command(me_.id(), step.counted, step.x_m, *step.basis_at);
+  mission_run.controller.set_coverage(mission_run.foreseen);
+  if (mission_run.way_home && mission_run.way_home->begun(step.counted, step.x_m))
+    return mission_run.way_home->velocity_mps(step.body_m, step.body_mps);
+  return mission_run.controller.command(me_.id(), step.counted, step.x_m, *step.basis_at);
 }
 
 /// The last step of a command.
-Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& wanted_mps) {
-  if (!flight.separation) return wanted_mps;
-  const bool goes_home = flight.way_home && flight.way_home->begun();
+Eigen::Vector3d Agent::kept_apart(InMission& mission_run, const Eigen::Vector3d& wanted_mps) {
+  if (!mission_run.separation) return wanted_mps;
+  const bool goes_home = mission_run.way_home && mission_run.way_home->begun();
   const Eigen::Vector3d aim_mps =
-      flight.follower && !goes_home
-          ? flight.follower->aim(flight.step.tick, flight.step.body_m, wanted_mps)
+      mission_run.follower && !goes_home
+          ? mission_run.follower->aim(mission_run.step.tick, mission_run.step.body_m, wanted_mps)
           : wanted_mps;
-  const SafeVelocity safe = safe_velocity(flight, aim_mps);
-  if (flight.follower) flight.follower->note(safe.wall);
+  const SafeVelocity safe = safe_velocity(mission_run, aim_mps);
+  if (mission_run.follower) mission_run.follower->note(safe.wall);
   status_.blocked_by = safe.blocked ? safe.by : kUnassigned;
   status_.blocked_now_ticks = safe.blocked ? status_.blocked_now_ticks + 1 : 0;
   status_.blocked_ticks += safe.blocked ? 1 : 0;
@@ -245,39 +246,41 @@ Eigen::Vector3d Agent::kept_apart(InMission& flight, const Eigen::Vector3d& want
   return safe.velocity_mps;
 }
 
-SafeVelocity Agent::safe_velocity(InMission& flight, const Eigen::Vector3d& aim_mps) {
-  const Step& step = flight.step;
+SafeVelocity Agent::safe_velocity(InMission& mission_run, const Eigen::Vector3d& aim_mps) {
+  const Step& step = mission_run.step;
   // A body may have appeared that we do not know of.
-  if (flight.beacons && follower().revision() < step.roster_revision)
+  if (mission_run.beacons && follower().revision() < step.roster_revision)
     return {.blocked = true, .blind = true};
-  const auto others = flight.beacons ? flight.beacons->bodies(step.body_m, {step.tick, step.begun})
-                                     : flight.bodies.neighbours(mission());
+  const auto others = mission_run.beacons
+                          ? mission_run.beacons->bodies(step.body_m, {step.tick, step.begun})
+                          : mission_run.bodies.neighbours(mission());
   const double limit_mps = motion_of(mission(), me_.id()).speed_limit_mps;
   const Mover self{me_.id(), step.tick, step.body_m, limit_mps, step.body_mps};
-  return flight.separation->safe(self, aim_mps, others);
+  return mission_run.separation->safe(self, aim_mps, others);
 }
 
-void Agent::answer_digests(InMission& flight, Instant now, Outbox& out) {
-  const Tick tick = flight.step.counted;
-  if (flight.world_asks) report_position(flight, out);
-  for (const Contribution& block : flight.anti_entropy.answers_due(flight.table, now, tick)) {
+void Agent::answer_digests(InMission& mission_run, Instant now, Outbox& out) {
+  const Tick tick = mission_run.step.counted;
+  if (mission_run.world_asks) report_position(mission_run, out);
+  for (const Contribution& block :
+       mission_run.anti_entropy.answers_due(mission_run.table, now, tick)) {
     me_.relay(Bus::kSwarm, block, out);
   }
-  if (!flight.next_digest.due(now, tick)) return;
-  flight.next_digest =
+  if (!mission_run.next_digest.due(now, tick)) return;
+  mission_run.next_digest =
       Deadline::in(kDigestPeriod, now, kDigestMissionPeriod_s, mission().timing.dt_s, tick);
-  const Digest digest = flight.anti_entropy.digest(flight.table, counted_roster(), tick);
-  me_.publish(Bus::kSwarm, digest, std::max<Tick>(flight.step.tick, 0), out);
+  const Digest digest = mission_run.anti_entropy.digest(mission_run.table, counted_roster(), tick);
+  me_.publish(Bus::kSwarm, digest, std::max<Tick>(mission_run.step.tick, 0), out);
 }
 
-void Agent::report_position(InMission& flight, Outbox& out) {
+void Agent::report_position(InMission& mission_run, Outbox& out) {
   // Only we still know where those stand whose agents have left.
-  for (const WorldState& state : flight.bodies.states()) out.push_back({Bus::kCommand, state});
-  for (Command command : {flight.command_before, flight.last_command}) {
-    command.asked_by = *flight.world_asks;
+  for (const WorldState& state : mission_run.bodies.states()) out.push_back({Bus::kCommand, state});
+  for (Command command : {mission_run.command_before, mission_run.last_command}) {
+    command.asked_by = *mission_run.world_asks;
     me_.publish(Bus::kCommand, command, command.header.tick, out);
   }
-  flight.world_asks.reset();
+  mission_run.world_asks.reset();
 }
 
 }  // namespace ergocast
